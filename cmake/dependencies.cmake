@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+# Every dependency comes from a Debian package; README names each with its reason.
+list(APPEND CMAKE_MODULE_PATH "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")
+find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_package(OpenVDB 10.0 REQUIRED COMPONENTS openvdb)
+find_package(glm CONFIG REQUIRED)
+find_package(fmt CONFIG REQUIRED)
+find_package(Eigen3 CONFIG REQUIRED)
+find_package(tomlplusplus CONFIG REQUIRED)
+find_package(nlohmann_json CONFIG REQUIRED)
+find_package(CLI11 CONFIG REQUIRED)
+find_package(kissfft CONFIG REQUIRED)
+find_package(assimp CONFIG REQUIRED)
+find_package(OpenGL REQUIRED COMPONENTS OpenGL EGL)
+pkg_check_modules(PORTAUDIO REQUIRED IMPORTED_TARGET portaudio-2.0)
+pkg_check_modules(SNDFILE REQUIRED IMPORTED_TARGET sndfile)
+
+# Debian's teem has neither a CMake nor a pkg-config file.
+find_path(TEEM_INCLUDE teem/nrrd.h REQUIRED)
+find_library(TEEM_LIBRARY teem PATHS /usr/lib REQUIRED)
+add_library(tactus_teem INTERFACE)
+target_include_directories(tactus_teem SYSTEM INTERFACE ${TEEM_INCLUDE})
+target_link_libraries(tactus_teem INTERFACE ${TEEM_LIBRARY})
+
+find_path(STB_INCLUDE stb/stb_image_write.h REQUIRED)
+add_library(tactus_stb INTERFACE)
+target_include_directories(tactus_stb SYSTEM INTERFACE ${STB_INCLUDE})
+
+add_library(tactus_toml INTERFACE)
+target_link_libraries(tactus_toml INTERFACE tomlplusplus::tomlplusplus)

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+namespace tactus {
+
+std::string Error::format(const SourceLocation& where, const std::string& message) {
+    if (where.file.empty()) return message;
+    if (where.line == 0) return fmt::format("{}: {}", where.file, message);
+    return fmt::format("{}:{}:{}: {}", where.file, where.line, where.column, message);
+}
+
+namespace {
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+            diagonal = row[j];
+            row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+        }
+    }
+    return row[b.size()];
+}
+
+}  // namespace
+
+std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
+    const std::string* best = nullptr;
+    // Half of a long word may be wrong, or its beginning typed: beyond that a guess only confuses.
+    std::size_t least = std::max<std::size_t>(2, word.size() / 2) + 1;
+    for (const std::string& candidate : candidates) {
+        const bool prefix = word.size() >= 2 && (candidate.starts_with(word) || word.starts_with(candidate));
+        const std::size_t distance = prefix ? 1 : edit_distance(word, candidate);
+        if (distance < least) {
+            least = distance;
+            best = &candidate;
+        }
+    }
+    return best ? fmt::format("; did you mean '{}'?", *best) : "";
+}
+
+}  // namespace tactus
