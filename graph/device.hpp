@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// What nodes and the engine see of the outside world: a thing in a hand, and a thing that makes sound. Drivers live in
+// devices/ and are opened by name; nothing here knows one.
+#pragma once
+
+#include "dsp/core/types.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+
+namespace tactus {
+
+/// Bits of `DeviceSample::buttons`.
+inline constexpr std::uint32_t button_trigger = 1u;  ///< the tool runs while it is held
+
+/// What a haptic device reports in one tick: device frame, m, rad, s.
+struct DeviceSample {
+    Pose pose;
+    Twist twist;                 ///< linear at the pose's origin, along the axes of the device frame
+    std::uint32_t buttons = 0;
+    std::int64_t counter = 0;    ///< the driver's sample counter; a counter that stands still is stale input
+    bool valid = false;          ///< false: the other members mean nothing
+};
+static_assert(std::is_trivially_copyable_v<DeviceSample>);
+
+/// What a device can do. Zero means none or unknown.
+struct DeviceInfo {
+    std::string name;
+    double max_force = 0.0;      ///< N
+    double max_torque = 0.0;     ///< N·m
+    double damping = 0.0;        ///< N·s/m, of the mechanism and the hand on it; bounds the stiffness that is stable
+    double max_stiffness = 0.0;  ///< N/m, as the maker states it
+    bool actuates_torque = false;
+    bool senses_rotation = false;
+};
+
+/// A haptic device. `acquire` and `commit` bracket the steps of the tick that belongs to it and are called by one
+/// thread; a driver may block or call the system in them, since they stand outside the real-time scope.
+class HapticDevice {
+public:
+    virtual ~HapticDevice() = default;
+
+    virtual const DeviceInfo& info() const = 0;
+
+    /// Sets the nominal tick period in s and goes to the initial state. May allocate. Throws Error.
+    virtual void prepare(double period_s) = 0;
+
+    /// Reads the device, once per activation and before the steps. `elapsed_s` is the logical time since the last call:
+    /// one period, more after skipped ticks, 0 at the first call.
+    virtual DeviceSample acquire(double elapsed_s) noexcept = 0;
+
+    /// Sets the force on the hand, after the steps; it holds until the next call. Device frame, about the pose origin.
+    virtual void commit(const Wrench& on_hand) noexcept = 0;
+};
+
+/// Counts of an audio output since `prepare`.
+struct AudioStatistics {
+    std::uint64_t frames_written = 0;     ///< accepted by `write`
+    std::uint64_t frames_dropped = 0;     ///< refused by `write` because the buffer was full
+    std::uint64_t frames_underflowed = 0; ///< played as silence because nothing had been written
+    std::uint64_t underflows = 0;         ///< times the card ran dry
+};
+
+/// How far the card's clock has come: `frames` were asked for at `steady_ns` of std::chrono::steady_clock.
+/// Frames 0 and time 0 mean that the output has no clock of its own.
+struct AudioProgress {
+    std::int64_t frames = 0;
+    std::int64_t steady_ns = 0;
+};
+
+/// An audio output.
+class AudioSink {
+public:
+    virtual ~AudioSink() = default;
+
+    virtual const std::string& name() const = 0;
+
+    /// Opens the output with `rate` Hz and `channels` channels. May allocate and take long. Throws Error saying why the
+    /// output cannot be had.
+    virtual void prepare(double rate, int channels) = 0;
+
+    /// Sends interleaved frames, nominally within ±1. Returns how many were accepted. Never waits for the card.
+    virtual std::size_t write(const float* interleaved, std::size_t frames) noexcept = 0;
+
+    /// Frames that `write` would accept now.
+    virtual std::size_t writable() const noexcept = 0;
+
+    virtual AudioStatistics statistics() const noexcept = 0;
+    virtual AudioProgress progress() const noexcept = 0;
+
+    /// Ends the output and releases the card or completes the file. Called by the control thread only, never while
+    /// another thread is inside `write`. Throws Error when a file cannot be completed.
+    virtual void close() = 0;
+};
+
+}  // namespace tactus
