@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ports: the members of a node through which wires reach it. The engine points them at the values before each call.
+#pragma once
+
+#include "dsp/core/time.hpp"
+#include "graph/value.hpp"
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+namespace tactus {
+
+/// Marks an input that may stay unconnected: `In<double> load{optional, "thrust", "N"};`
+struct Optional {};
+inline constexpr Optional optional{};
+
+enum class InputKind : std::uint8_t {
+    value,   ///< one value, constant within a call
+    stream,  ///< one value per activation: signals and ramps
+    batch,   ///< every value since the last call
+    any,     ///< any type, decided by the wire
+};
+
+/// What the engine sees of an input.
+struct Input {
+    const ValueType* type = nullptr;
+    InputKind kind = InputKind::value;
+    bool is_optional = false;
+    std::string_view about, unit;
+
+    const std::byte* data = nullptr;  ///< first value of this call
+    std::ptrdiff_t stride = 0;        ///< bytes from one activation to the next, 0 when constant
+    bool connected = false;
+    // A batch: `count` values at `data`, taken at logical times `times`.
+    const Flicks* times = nullptr;
+    int count = 0;
+};
+
+/// What the engine sees of an output.
+struct Output {
+    const ValueType* type = nullptr;
+    std::string_view about, unit;
+
+    std::byte* data = nullptr;
+    std::ptrdiff_t stride = 0;
+    // For snapshots only: what the schedule says about earlier versions (see `Out<T>::oldest_readable`).
+    std::int64_t oldest_readable = 0;
+    bool last_was_dropped = false;
+};
+
+/// An input. In a call of several activations the value is constant: the engine cuts calls where it changes.
+template <class T>
+struct In : Input {
+    In(std::string_view about_ = {}, std::string_view unit_ = {}) {
+        type = &value_type<T>();
+        kind = std::is_same_v<T, Signal> || std::is_same_v<T, Ramp> ? InputKind::stream : InputKind::value;
+        about = about_;
+        unit = unit_;
+    }
+    In(Optional, std::string_view about_ = {}, std::string_view unit_ = {}) : In(about_, unit_) { is_optional = true; }
+
+    const Element<T>& get() const { return *reinterpret_cast<const Element<T>*>(data); }
+    operator const Element<T>&() const { return get(); }
+    const Element<T>* operator->() const { return &get(); }
+    /// Value of the i-th activation of this call.
+    const Element<T>& operator[](int i) const {
+        return *reinterpret_cast<const Element<T>*>(data + i * stride);
+    }
+};
+
+/// Every value a producer published since the last call, oldest first, with the logical time of each.
+template <class T>
+struct Batch : Input {
+    Batch(std::string_view about_ = {}, std::string_view unit_ = {}) {
+        type = &value_type<T>();
+        kind = InputKind::batch;
+        about = about_;
+        unit = unit_;
+    }
+    std::span<const Element<T>> values() const {
+        return {reinterpret_cast<const Element<T>*>(data), static_cast<std::size_t>(count)};
+    }
+    std::span<const Flicks> sample_times() const { return {times, static_cast<std::size_t>(count)}; }
+    /// Logical time between two values of the producer.
+    Flicks period = 0;
+};
+
+/// An input of any type, for probes and recorders; `type` is that of the wire.
+struct AnyIn : Input {
+    AnyIn(std::string_view about_ = {}) {
+        kind = InputKind::any;
+        about = about_;
+    }
+};
+
+/// An output. A node in an audio group writes `out[i]` for every activation of the call.
+template <class T>
+struct Out : Output {
+    Out(std::string_view about_ = {}, std::string_view unit_ = {}) {
+        type = &value_type<T>();
+        about = about_;
+        unit = unit_;
+    }
+    Element<T>& get() { return *reinterpret_cast<Element<T>*>(data); }
+    Element<T>& operator[](int i) { return *reinterpret_cast<Element<T>*>(data + i * stride); }
+    Out& operator=(const Element<T>& value) {
+        get() = value;
+        return *this;
+    }
+};
+
+}  // namespace tactus

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a node sees: `Setup` while it prepares, `Tick` while it runs, `Report` when the run is over.
+#pragma once
+
+#include "dsp/core/error.hpp"
+#include "dsp/core/time.hpp"
+#include "graph/device.hpp"
+
+#include <any>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace tactus {
+
+struct ValueType;
+
+/// One call: activations index … index + frames − 1 of the node's group.
+struct Tick {
+    std::int64_t index = 0;
+    Flicks period = 0;
+    Flicks elapsed = 0;  ///< logical time since the previous activation; more than one period after skipped ticks
+    int frames = 1;      ///< always 1 outside audio groups
+
+    double rate() const { return rate_of(period); }
+    double elapsed_seconds() const { return seconds(elapsed); }
+    double time_seconds() const { return seconds(index * period); }
+};
+
+/// A device as the nodes of one group share it: the engine fills `sample` before the steps of an activation and hands
+/// `wrench` to the driver after them.
+struct DevicePort {
+    DeviceInfo info;
+    DeviceSample sample;
+    Wrench wrench;
+    bool has_output = false;  ///< a node writes `wrench`
+};
+
+/// Values that leave the graph for a file. `write` is wait-free; whoever drains it is not in the tick.
+class RecordStream {
+public:
+    virtual ~RecordStream() = default;
+    /// `bytes` of values, one after the other; false when there was no room and they were dropped.
+    virtual bool write(const void* values, std::size_t bytes) noexcept = 0;
+};
+
+/// What a recorded stream holds.
+struct StreamFormat {
+    std::string file;  ///< name within the run's folder: "haptuator.wav", "force.csv"
+    std::string unit;  ///< of one full value, "m/s^2"
+    const ValueType* type = nullptr;
+    Flicks period = 0;
+};
+
+/// The interfaces through which `prepare` sees what is outside of the patch.
+class Outside {
+public:
+    virtual ~Outside() = default;
+    /// The haptic device of that name ("" = the only one), opened on first use. Throws Error.
+    virtual DevicePort& device(const std::string& name, const SourceLocation& where) = 0;
+    virtual RecordStream& record(const StreamFormat& format, const SourceLocation& where) = 0;
+    /// Sound for a listener or an actuator; a stream to nowhere when there is no card.
+    virtual RecordStream& audio(const std::string& name, Flicks period, const SourceLocation& where) = 0;
+};
+
+struct Setup {
+    std::string name;           ///< of the node, as in the patch
+    SourceLocation where;       ///< of the node in the patch
+    Flicks period = 0;          ///< of its group
+    int max_frames = 1;         ///< most activations one call may run
+    std::uint64_t seed = 0;     ///< for its random numbers; differs per node
+    Outside* outside = nullptr;
+
+    double rate() const { return rate_of(period); }
+    [[noreturn]] void fail(const std::string& message) const { throw Error(where, message); }
+};
+
+/// What the nodes have to say about a finished run, by section and key. Becomes summary.json.
+struct Report {
+    using Value = std::variant<double, std::string, std::vector<double>>;
+    std::map<std::string, std::map<std::string, Value>> sections;
+    std::map<std::string, std::any> results;  ///< large things to look at afterwards, such as the cut bone
+
+    void set(const std::string& section, const std::string& key, Value value) {
+        sections[section][key] = std::move(value);
+    }
+};
+
+}  // namespace tactus
