@@ -42,11 +42,10 @@ struct PlanNode {
 
 /// How a wire delivers: to an input or to a parameter of a node.
 struct PlanWire {
-    int from_node = -1, from_output = -1;  ///< from_node −1: the asset `constant`
+    int from_node = -1, from_output = -1;  ///< from_node −1: the asset named `asset`
     int to_node = -1, to_input = -1;       ///< to_input −1: it drives `param`
     Param* param = nullptr;
-    std::shared_ptr<const void> constant;  ///< keeps an asset on a wire alive; its handle is in `constant_value`
-    std::vector<std::byte> constant_value;
+    std::string asset;
     WireMode mode = WireMode::hold;
     int delay = 0;  ///< activations of the producer
     SourceLocation where;

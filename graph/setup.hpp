@@ -39,15 +39,16 @@ struct DevicePort {
     bool has_output = false;  ///< a node writes `wrench`
 };
 
-/// Values that leave the graph for a file. `write` is wait-free; whoever drains it is not in the tick.
+/// Values that leave the graph for a file or a sound card. Whoever drains it is not in the tick.
 class RecordStream {
 public:
     virtual ~RecordStream() = default;
-    /// `bytes` of values, one after the other; false when there was no room and they were dropped.
-    virtual bool write(const void* values, std::size_t bytes) noexcept = 0;
+    /// `count` values of the stream's type, those of activations first, first + 1, …, `stride` bytes apart; false when
+    /// there was no room and they were dropped. Wait-free.
+    virtual bool write(std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept = 0;
 };
 
-/// What a recorded stream holds.
+/// What a recorded stream holds. Signals become sound files, all else CSV with the time in front.
 struct StreamFormat {
     std::string file;  ///< name within the run's folder: "haptuator.wav", "force.csv"
     std::string unit;  ///< of one full value, "m/s^2"
@@ -62,8 +63,8 @@ public:
     /// The haptic device of that name ("" = the only one), opened on first use. Throws Error.
     virtual DevicePort& device(const std::string& name, const SourceLocation& where) = 0;
     virtual RecordStream& record(const StreamFormat& format, const SourceLocation& where) = 0;
-    /// Sound for a listener or an actuator; a stream to nowhere when there is no card.
-    virtual RecordStream& audio(const std::string& name, Flicks period, const SourceLocation& where) = 0;
+    /// Sound for a listener or an actuator: the card when the run is live and there is one, else the format's file.
+    virtual RecordStream& audio(const StreamFormat& format, const SourceLocation& where) = 0;
 };
 
 struct Setup {

@@ -8,7 +8,9 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <type_traits>
 
@@ -26,6 +28,12 @@ concept SnapshotHandle = std::is_trivially_copyable_v<T> && requires(const T& t)
     { t.content_hash } -> std::convertible_to<std::uint64_t>;
 };
 
+/// Specialise with a `load` to let a file stand on a wire as a constant `T`.
+template <class T>
+struct SnapshotFile {
+    static constexpr std::shared_ptr<const void> (*load)(const std::string& path, void* out) = nullptr;
+};
+
 /// What the engine needs to know about a type of value. One object per type; compared by address.
 struct ValueType {
     std::string_view name;                                     ///< as users see it: "pose", "signal"
@@ -35,6 +43,8 @@ struct ValueType {
     void (*interpolate)(const void* a, const void* b, double t, void* out) = nullptr;  ///< null: not interpolable
     void (*to_columns)(const void*, double* out) = nullptr;
     std::int64_t (*version)(const void*) = nullptr;            ///< non-null for snapshots
+    /// Snapshots that a file can hold: loads it, puts the handle in `out` and returns the owner. Throws Error.
+    std::shared_ptr<const void> (*load_asset)(const std::string& path, void* out) = nullptr;
 };
 
 namespace value {
@@ -49,6 +59,7 @@ inline const ValueType snapshot{
     .interpolate = nullptr,
     .to_columns = nullptr,
     .version = [](const void* p) { return static_cast<std::int64_t>(static_cast<const T*>(p)->version); },
+    .load_asset = SnapshotFile<T>::load,
 };
 }  // namespace value
 
