@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/bone/whole_file.hpp"
+
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+namespace tactus {
+
+namespace {
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+}  // namespace
+
+std::string read_whole_file(const std::filesystem::path& path) {
+    std::error_code failure;
+    if (!std::filesystem::is_regular_file(path, failure))
+        throw Error(fmt::format("{}: no such file", path.string()));
+    const auto size = std::filesystem::file_size(path, failure);
+    if (failure) throw Error(fmt::format("{}: cannot be read: {}", path.string(), failure.message()));
+    File file(std::fopen(path.c_str(), "rb"), std::fclose);
+    if (!file) throw Error(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
+    std::string bytes(size, '\0');
+    if (std::fread(bytes.data(), 1, size, file.get()) != size)
+        throw Error(fmt::format("{}: cannot be read to its end", path.string()));
+    return bytes;
+}
+
+void write_whole_file(const std::filesystem::path& path, std::string_view bytes) {
+    const std::filesystem::path part = path.string() + ".part";
+    const auto fail = [&](int code) {
+        std::error_code ignored;
+        std::filesystem::remove(part, ignored);
+        throw Error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(code)));
+    };
+    std::FILE* file = std::fopen(part.c_str(), "wb");
+    if (!file) throw Error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
+    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() && std::fflush(file) == 0;
+    const int write_code = errno;
+    const bool closed = std::fclose(file) == 0;
+    if (!written) fail(write_code);
+    if (!closed) fail(errno);
+    if (std::rename(part.c_str(), path.c_str()) != 0) fail(errno);
+}
+
+}  // namespace tactus

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whole files as bytes: read at once, written beside and renamed.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace tactus {
+
+/// All bytes of a regular file. Throws Error.
+std::string read_whole_file(const std::filesystem::path& path);
+
+/// Writes `bytes` to `path` + ".part" and renames it. On failure nothing is left behind and Error is thrown.
+void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
+
+}  // namespace tactus
