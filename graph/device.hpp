@@ -57,10 +57,10 @@ public:
 
 /// Counts of an audio output since `prepare`.
 struct AudioStatistics {
-    std::uint64_t frames_written = 0;     ///< accepted by `write`
-    std::uint64_t frames_dropped = 0;     ///< refused by `write` because the buffer was full
-    std::uint64_t frames_underflowed = 0; ///< played as silence because nothing had been written
-    std::uint64_t underflows = 0;         ///< times the card ran dry
+    std::uint64_t frames_written = 0;  ///< accepted by `write`
+    std::uint64_t frames_dropped = 0;  ///< refused by `write` because the buffer was full
+    std::uint64_t frames_underflowed = 0;  ///< played as silence because nothing had been written
+    std::uint64_t underflows = 0;  ///< times the card ran dry
 };
 
 /// How far the card's clock has come: `frames` were asked for at `steady_ns` of std::chrono::steady_clock.

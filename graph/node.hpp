@@ -105,12 +105,12 @@ NodeType make_node_type(std::string_view struct_name, void (*visit)(void*, Membe
 #define TACTUS_VISIT_MEMBER(m) visitor.member(#m, node.m);
 
 /// Declares `Type` as a node with the listed ports and parameters; nodes/catalogue.cpp names it once more.
-#define TACTUS_NODE(Type, ...)                                                         \
-    const ::tactus::NodeType& node_type_##Type() {                                     \
-        static const ::tactus::NodeType type = ::tactus::make_node_type<Type>(         \
-            #Type, [](void* p, [[maybe_unused]] ::tactus::MemberVisitor& visitor) {    \
-                [[maybe_unused]] Type& node = *static_cast<Type*>(p);                  \
-                TACTUS_EACH(TACTUS_VISIT_MEMBER, __VA_ARGS__)                          \
-            });                                                                        \
-        return type;                                                                   \
+#define TACTUS_NODE(Type, ...)                                                                                     \
+    const ::tactus::NodeType& node_type_##Type() {                                                                 \
+        static const ::tactus::NodeType type =                                                                     \
+            ::tactus::make_node_type<Type>(#Type, [](void* p, [[maybe_unused]] ::tactus::MemberVisitor& visitor) { \
+                [[maybe_unused]] Type& node = *static_cast<Type*>(p);                                              \
+                TACTUS_EACH(TACTUS_VISIT_MEMBER, __VA_ARGS__)                                                      \
+            });                                                                                                    \
+        return type;                                                                                               \
     }

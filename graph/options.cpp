@@ -78,8 +78,8 @@ std::size_t Options::choice(std::string_view name, std::span<const std::string> 
     const auto found = std::find(choices.begin(), choices.end(), wanted);
     if (found != choices.end()) return static_cast<std::size_t>(found - choices.begin());
     if (given == nullptr) throw Error(where_, fmt::format("{}: '{}' is no choice of '{}'", owner_, wanted, name));
-    fail(*given, fmt::format("is '{}'{}; choose one of: {}", wanted, did_you_mean(wanted, choices),
-                             fmt::join(choices, ", ")));
+    fail(*given,
+         fmt::format("is '{}'{}; choose one of: {}", wanted, did_you_mean(wanted, choices), fmt::join(choices, ", ")));
 }
 
 bool Options::has(std::string_view name) const { return find(name) != nullptr; }
@@ -92,8 +92,8 @@ const SourceLocation& Options::where(std::string_view name) const {
 void Options::finish() const {
     for (const OptionText& option : given_) {
         if (std::find(known_.begin(), known_.end(), option.name) != known_.end()) continue;
-        const std::string exist = known_.empty() ? std::string("it has none")
-                                                 : fmt::format("it has: {}", fmt::join(known_, ", "));
+        const std::string exist =
+            known_.empty() ? std::string("it has none") : fmt::format("it has: {}", fmt::join(known_, ", "));
         throw Error(option.where, fmt::format("{} has no option '{}'{}; {}", owner_, option.name,
                                               did_you_mean(option.name, known_), exist));
     }

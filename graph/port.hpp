@@ -64,9 +64,7 @@ struct In : Input {
     operator const Element<T>&() const { return get(); }
     const Element<T>* operator->() const { return &get(); }
     /// Value of the i-th activation of this call.
-    const Element<T>& operator[](int i) const {
-        return *reinterpret_cast<const Element<T>*>(data + i * stride);
-    }
+    const Element<T>& operator[](int i) const { return *reinterpret_cast<const Element<T>*>(data + i * stride); }
 };
 
 /// Every value a producer published since the last call, oldest first, with the logical time of each.

@@ -95,10 +95,8 @@ const ValueType number{
     .size = sizeof(double),
     .columns = number_columns,
     .hash = hash_words<double>,
-    .interpolate =
-        [](const void* a, const void* b, double t, void* out) {
-            *static_cast<double*>(out) = as<double>(a) + (as<double>(b) - as<double>(a)) * t;
-        },
+    .interpolate = [](const void* a, const void* b, double t,
+                      void* out) { *static_cast<double*>(out) = as<double>(a) + (as<double>(b) - as<double>(a)) * t; },
     .to_columns = [](const void* p, double* out) { *out = as<double>(p); },
 };
 

@@ -75,9 +75,15 @@ constexpr const ValueType& value_type() {
 }
 
 /// What is stored for a `T` on a wire.
-template <class T> struct ElementOf { using type = T; };
-template <> struct ElementOf<Signal> { using type = float; };
-template <> struct ElementOf<Ramp> { using type = double; };
+template <class T> struct ElementOf {
+    using type = T;
+};
+template <> struct ElementOf<Signal> {
+    using type = float;
+};
+template <> struct ElementOf<Ramp> {
+    using type = double;
+};
 template <class T> using Element = typename ElementOf<T>::type;
 
 }  // namespace tactus

@@ -6,8 +6,8 @@
 #include <vector>
 
 // name of the struct, family (folder), file
-#define TACTUS_NODES(X)    \
-    X(Constant, input)     \
+#define TACTUS_NODES(X) \
+    X(Constant, input)  \
     X(Gain, vibration)
 
 namespace tactus {

@@ -69,7 +69,7 @@ public:
 private:
     struct alignas(64) Side {
         std::atomic<std::uint64_t> count{0};  // values ever moved by this side
-        std::uint64_t other = 0;              // the other side's count when last looked at
+        std::uint64_t other = 0;  // the other side's count when last looked at
     };
 
     std::size_t mask_;

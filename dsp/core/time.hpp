@@ -12,9 +12,7 @@ using Flicks = std::int64_t;
 inline constexpr Flicks flicks_per_second = 705'600'000;
 
 constexpr double seconds(Flicks t) { return static_cast<double>(t) / static_cast<double>(flicks_per_second); }
-constexpr double rate_of(Flicks period) {
-    return static_cast<double>(flicks_per_second) / static_cast<double>(period);
-}
+constexpr double rate_of(Flicks period) { return static_cast<double>(flicks_per_second) / static_cast<double>(period); }
 
 /// Floor of a / b for b > 0, also for negative a (C++ division truncates towards zero).
 constexpr std::int64_t floor_div(std::int64_t a, std::int64_t b) { return a / b - (a % b != 0 && a < 0); }

@@ -24,25 +24,36 @@ struct Named {
 constexpr double degree = std::numbers::pi / 180.0;
 
 constexpr Named named_units[] = {
-    {"m", 1.0, {1, 0, 0, 0, 0, 0}, true},      {"g", 1e-3, {0, 1, 0, 0, 0, 0}, true},
-    {"s", 1.0, {0, 0, 1, 0, 0, 0}, true},      {"A", 1.0, {0, 0, 0, 1, 0, 0}, true},
-    {"rad", 1.0, {0, 0, 0, 0, 1, 0}, true},    {"deg", degree, {0, 0, 0, 0, 1, 0}, false},
-    {"°", degree, {0, 0, 0, 0, 1, 0}, false},  {"Hz", 1.0, {0, 0, -1, 0, 0, 0}, true},
-    {"N", 1.0, {1, 1, -2, 0, 0, 0}, true},     {"J", 1.0, {2, 1, -2, 0, 0, 0}, true},
-    {"W", 1.0, {2, 1, -3, 0, 0, 0}, true},     {"V", 1.0, {2, 1, -3, -1, 0, 0}, true},
-    {"ohm", 1.0, {2, 1, -3, -2, 0, 0}, true},  {"Ω", 1.0, {2, 1, -3, -2, 0, 0}, true},
-    {"H", 1.0, {2, 1, -2, -2, 0, 0}, true},    {"Pa", 1.0, {-1, 1, -2, 0, 0, 0}, true},
-    {"L", 1e-3, {3, 0, 0, 0, 0, 0}, true},     {"min", 60.0, {0, 0, 1, 0, 0, 0}, false},
-    {"h", 3600.0, {0, 0, 1, 0, 0, 0}, false},  {"%", 0.01, {}, false},
-    {"1", 1.0, {}, false},                     {"HU", 1.0, {0, 0, 0, 0, 0, 1}, false},
+    {"m", 1.0, {1, 0, 0, 0, 0, 0}, true},
+    {"g", 1e-3, {0, 1, 0, 0, 0, 0}, true},
+    {"s", 1.0, {0, 0, 1, 0, 0, 0}, true},
+    {"A", 1.0, {0, 0, 0, 1, 0, 0}, true},
+    {"rad", 1.0, {0, 0, 0, 0, 1, 0}, true},
+    {"deg", degree, {0, 0, 0, 0, 1, 0}, false},
+    {"°", degree, {0, 0, 0, 0, 1, 0}, false},
+    {"Hz", 1.0, {0, 0, -1, 0, 0, 0}, true},
+    {"N", 1.0, {1, 1, -2, 0, 0, 0}, true},
+    {"J", 1.0, {2, 1, -2, 0, 0, 0}, true},
+    {"W", 1.0, {2, 1, -3, 0, 0, 0}, true},
+    {"V", 1.0, {2, 1, -3, -1, 0, 0}, true},
+    {"ohm", 1.0, {2, 1, -3, -2, 0, 0}, true},
+    {"Ω", 1.0, {2, 1, -3, -2, 0, 0}, true},
+    {"H", 1.0, {2, 1, -2, -2, 0, 0}, true},
+    {"Pa", 1.0, {-1, 1, -2, 0, 0, 0}, true},
+    {"L", 1e-3, {3, 0, 0, 0, 0, 0}, true},
+    {"min", 60.0, {0, 0, 1, 0, 0, 0}, false},
+    {"h", 3600.0, {0, 0, 1, 0, 0, 0}, false},
+    {"%", 0.01, {}, false},
+    {"1", 1.0, {}, false},
+    {"HU", 1.0, {0, 0, 0, 0, 0, 1}, false},
 };
 
 struct Prefix {
     std::string_view symbol;
     double factor;
 };
-constexpr Prefix prefixes[] = {{"k", 1e3}, {"c", 1e-2}, {"m", 1e-3}, {"µ", 1e-6}, {"μ", 1e-6},
-                               {"u", 1e-6}, {"n", 1e-9}, {"M", 1e6}, {"G", 1e9}};
+constexpr Prefix prefixes[] = {{"k", 1e3},  {"c", 1e-2}, {"m", 1e-3}, {"µ", 1e-6}, {"μ", 1e-6},
+                               {"u", 1e-6}, {"n", 1e-9}, {"M", 1e6},  {"G", 1e9}};
 
 std::optional<Unit> find_symbol(std::string_view symbol) {
     for (const Named& unit : named_units)
@@ -68,7 +79,8 @@ int eat_power(std::string_view& text) {
     if (!eat(text, "^")) return 1;
     int power = 0;
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), power);
-    if (failure != std::errc{} || std::abs(power) > 9) throw Error("a unit's power must be a small whole number, as in m^2");
+    if (failure != std::errc{} || std::abs(power) > 9)
+        throw Error("a unit's power must be a small whole number, as in m^2");
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
     return power;
 }
@@ -137,7 +149,8 @@ double parse_as(std::string_view text, std::string_view like) {
     const Quantity quantity = parse_quantity(text);
     if (quantity.dimension == parse_unit(like).dimension) return quantity.value;
     if (like.empty()) throw Error(fmt::format("'{}' has a unit where a bare number is needed", text));
-    if (quantity.dimension.is_bare()) throw Error(fmt::format("'{}' needs a unit, as in \"{} {}\"", text, trim(text), like));
+    if (quantity.dimension.is_bare())
+        throw Error(fmt::format("'{}' needs a unit, as in \"{} {}\"", text, trim(text), like));
     throw Error(fmt::format("'{}' has the wrong kind of unit; expected one like {}", text, like));
 }
 

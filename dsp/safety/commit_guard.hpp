@@ -67,7 +67,7 @@ private:
     std::atomic<int> owner_{idle};
     std::atomic<std::int64_t> committed_ns_{never};
     std::int64_t taken_ns_ = 0;  // watchdog thread only
-    Wrench last_;                // whoever owns
+    Wrench last_;  // whoever owns
 };
 
 }  // namespace tactus

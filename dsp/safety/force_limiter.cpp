@@ -89,10 +89,8 @@ double ForceLimiter::engagement(const Wrench& raw, double elapsed_s) noexcept {
 
 Wrench ForceLimiter::tick(const Wrench& raw, std::int64_t counter, bool valid, double elapsed_s) noexcept {
     ++statistics_.ticks;
-    if (is_finite(raw))
-        measure(raw);
-    else
-        fail(Fault::not_finite);
+    if (is_finite(raw)) measure(raw);
+    else fail(Fault::not_finite);
     watch_input(counter, valid);
     if (fault_ != Fault::none) return output_ = fade(elapsed_s);
 

@@ -26,7 +26,8 @@ struct Grid {
     float& at(int i, int j, int k) { return values[index(i, j, k)]; }
     Vec3 position(int i, int j, int k) const { return origin + Vec3(i, j, k) * spacing; }
     std::size_t count() const {
-        return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]);
+        return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
+               static_cast<std::size_t>(size[2]);
     }
 };
 

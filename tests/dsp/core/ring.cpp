@@ -58,8 +58,7 @@ TEST_CASE("nothing is lost, doubled or torn between two threads") {
     while (received < total) {
         const std::size_t count = ring.pop(block.data(), 1 + received % block.size());
         if (count == 0) std::this_thread::yield();
-        for (std::size_t i = 0; i < count; ++i, ++received)
-            wrong += block[i].a != received || block[i].b != ~received;
+        for (std::size_t i = 0; i < count; ++i, ++received) wrong += block[i].a != received || block[i].b != ~received;
     }
     writer.join();
     CHECK(wrong == 0);

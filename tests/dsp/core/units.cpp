@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
+#include "dsp/core/error.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -32,7 +32,8 @@ TEST_CASE("dimensions do not mix") {
 }
 
 TEST_CASE("malformed quantities are refused") {
-    for (const char* text : {"", "N", "1 N/", "1 N//m", "1 foo", "nan N", "inf m", "1e400 m", "1 m^", "1 m^99", "1 kdeg"})
+    for (const char* text :
+         {"", "N", "1 N/", "1 N//m", "1 foo", "nan N", "inf m", "1e400 m", "1 m^", "1 m^99", "1 kdeg"})
         CHECK_THROWS_AS(parse_as(text, "N"), Error);
 }
 

@@ -37,8 +37,7 @@ struct Rig {
     bool within_limits() const {
         constexpr double slack = 1.0 + 1e-9;
         return max_force <= limits.max_force * slack && max_torque <= limits.max_torque * slack &&
-               max_step <= limits.force_slew * period * slack &&
-               max_torque_step <= limits.torque_slew * period * slack;
+               max_step <= limits.force_slew * period * slack && max_torque_step <= limits.torque_slew * period * slack;
     }
 };
 
