@@ -23,7 +23,7 @@ struct DeviceSample {
     std::int64_t counter = 0;    ///< the driver's sample counter; a counter that stands still is stale input
     bool valid = false;          ///< false: the other members mean nothing
 };
-static_assert(std::is_trivially_copyable_v<DeviceSample>);
+static_assert(std::is_trivially_destructible_v<DeviceSample>, "samples travel through rings");
 
 /// What a device can do. Zero means none or unknown.
 struct DeviceInfo {

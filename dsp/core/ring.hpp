@@ -16,7 +16,7 @@ namespace tactus {
 /// line with a remembered copy of the other's, so the lines travel between cores only when the copy runs out.
 template <typename T>
 class Ring {
-    static_assert(std::is_trivially_copyable_v<T>, "slots are overwritten without destructors");
+    static_assert(std::is_trivially_destructible_v<T>, "slots are overwritten without destructors");
     static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
 public:

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "devices/haptic/catalogue.hpp"
+
+#include "devices/haptic/simulated.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <vector>
+
+namespace tactus {
+
+std::span<const HapticDriver> haptic_drivers() {
+    static const std::array<HapticDriver, 2> drivers{{
+        {"simulated", "a hand that presses a blade with a set thrust and saws",
+         [](Options& options, const PathResolver&) { return open_simulated(options); }},
+        {"replay", "a recorded movement led through a hand that yields to force", open_replay},
+    }};
+    return drivers;
+}
+
+std::unique_ptr<HapticDevice> open_haptic_device(std::string_view driver, const SourceLocation& where, Options& options,
+                                                 const PathResolver& resolve) {
+    std::vector<std::string> names;
+    for (const HapticDriver& one : haptic_drivers()) {
+        if (one.name == driver) return one.open(options, resolve);
+        names.push_back(one.name);
+    }
+    throw Error(where, fmt::format("there is no haptic driver '{}'{}; there are: {}", driver,
+                                   did_you_mean(driver, names), fmt::join(names, ", ")));
+}
+
+}  // namespace tactus

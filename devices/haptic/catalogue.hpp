@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// The haptic drivers there are.
+#pragma once
+
+#include "devices/haptic/replay.hpp"
+#include "graph/device.hpp"
+#include "graph/options.hpp"
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace tactus {
+
+struct HapticDriver {
+    std::string name;
+    std::string summary;  ///< one line for people
+    std::unique_ptr<HapticDevice> (*open)(Options& options, const PathResolver& resolve);
+};
+
+/// All drivers, in the order in which they are listed to users.
+std::span<const HapticDriver> haptic_drivers();
+
+/// Opens a device of the driver `driver` with the options a patch gives it. `where` is where the patch names the
+/// driver. Throws Error on an unknown driver, listing all, and on options the driver refuses.
+std::unique_ptr<HapticDevice> open_haptic_device(std::string_view driver, const SourceLocation& where, Options& options,
+                                                 const PathResolver& resolve);
+
+}  // namespace tactus

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "devices/haptic/replay.hpp"
+
+#include "assets/trajectory/trajectory.hpp"
+#include "devices/haptic/operated.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace tactus {
+namespace {
+
+struct Replaying {
+    std::shared_ptr<const TrajectoryPlayer> player;  // shared by the copy that `prepare` goes back to
+    double trigger_from = 0.0;                       // s
+    double time = 0.0;
+    std::size_t hint = 0;
+    bool gap = false, done = false;
+
+    Intention operator()(double h, const Wrench&, const Pose&) noexcept {
+        const TrajectoryState state = player->at(time + 0.5 * h, hint);
+        time += h;
+        gap = state.gap;
+        done = state.done;
+        return state.intention;
+    }
+    Pose start() const { return player->start(); }
+    std::uint32_t buttons() const noexcept {
+        return (time >= trigger_from && !done ? button_trigger : 0) | (gap ? button_gap : 0);
+    }
+};
+
+double read_trigger(Options& options) {
+    static const std::array<std::string, 3> choices{"always", "from", "never"};
+    const std::size_t choice = options.choice("trigger", choices, "always");
+    const double from = options.quantity("trigger_from", "0 s", "0 s");
+    if (choice == 0 && options.has("trigger_from"))
+        throw Error(options.where("trigger_from"),
+                    fmt::format("{}: option 'trigger_from' needs trigger = \"from\"", options.owner()));
+    return choice == 0 ? 0.0 : choice == 1 ? from : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+std::unique_ptr<HapticDevice> open_replay(Options& options, const PathResolver& resolve) {
+    const std::string file = options.text("file", "");
+    TrajectorySelection selection;
+    selection.tool = options.text("tool", "");
+    const double trial = options.quantity("trial", "0", "0", "1000000");
+    if (trial != std::floor(trial))
+        throw Error(options.where("trial"), fmt::format("{}: option 'trial' is a whole number", options.owner()));
+    selection.trial = static_cast<int>(trial);
+    const double max_speed = options.quantity("max_speed", "100 mm/s", "1 mm/s", "2 m/s");
+    Replaying operated;
+    operated.trigger_from = read_trigger(options);
+    const HandDynamics hand = read_hand(options);
+    DeviceInfo info = read_device_info(options, hand, "replayed hand");
+    options.finish();
+    if (file.empty())
+        throw Error(options.where(), fmt::format("{} replays a recording; name it with the option 'file'",
+                                                 options.owner()));
+    const Trajectory trajectory = read_trajectory(resolve(file), selection);
+    TrajectoryRules rules = trajectory.rules();
+    rules.max_speed = max_speed;
+    operated.player = std::make_shared<const TrajectoryPlayer>(trajectory.samples, trajectory.breaks, rules);
+    return std::make_unique<OperatedDevice<Replaying>>(std::move(info), hand, std::move(operated));
+}
+
+}  // namespace tactus
