@@ -104,7 +104,8 @@ private:
 
     std::optional<Column> find(const std::string& prefix, std::string_view base, std::span<const Unit> units) const {
         for (const Unit& unit : units) {
-            const auto found = std::find(names_.begin(), names_.end(), fmt::format("{}{}{}", prefix, base, unit.suffix));
+            const auto found =
+                std::find(names_.begin(), names_.end(), fmt::format("{}{}{}", prefix, base, unit.suffix));
             if (found != names_.end()) return Column{static_cast<std::size_t>(found - names_.begin()), unit.factor};
         }
         return std::nullopt;
@@ -142,8 +143,8 @@ private:
         const auto value = [&](const Column& c) { return number(fields[c.index], names_[c.index]) * c.factor; };
         const double time = value(time_);
         if (has_time_ && time <= last_time_)
-            fail(fields[time_.index].column, fmt::format("time {} s does not follow {} s; times must increase",
-                                                         time, last_time_));
+            fail(fields[time_.index].column,
+                 fmt::format("time {} s does not follow {} s; times must increase", time, last_time_));
         last_time_ = time;
         has_time_ = true;
         bool breaks = false;

@@ -26,7 +26,7 @@ struct Trajectory {
 /// What to take from a file.
 struct TrajectorySelection {
     std::string tool;  ///< prefix of the columns ("Stylus" for "Stylus_px_mm"); "" when they have none
-    int trial = 0;     ///< number in the column "trial"; 0 takes all of them
+    int trial = 0;  ///< number in the column "trial"; 0 takes all of them
 };
 
 /// Reads a CSV file with a header line. Columns are found by name, units are part of the names: t_s or t_ms; px, py, pz

@@ -60,8 +60,8 @@ std::unique_ptr<HapticDevice> open_replay(Options& options, const PathResolver& 
     DeviceInfo info = read_device_info(options, hand, "replayed hand");
     options.finish();
     if (file.empty())
-        throw Error(options.where(), fmt::format("{} replays a recording; name it with the option 'file'",
-                                                 options.owner()));
+        throw Error(options.where(),
+                    fmt::format("{} replays a recording; name it with the option 'file'", options.owner()));
     const Trajectory trajectory = read_trajectory(resolve(file), selection);
     TrajectoryRules rules = trajectory.rules();
     rules.max_speed = max_speed;

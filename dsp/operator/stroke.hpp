@@ -62,7 +62,7 @@ public:
     double time() const noexcept { return time_; }             ///< s
 
 private:
-    static constexpr double sense_s = 0.03;   // proprioceptive delay as a low-pass; ten times faster than the feed loop
+    static constexpr double sense_s = 0.03;  // proprioceptive delay as a low-pass; ten times faster than the feed loop
     static constexpr double ease_s = 1.0;
 
     double feed(double h, const Wrench& force, const Pose& hand) noexcept {

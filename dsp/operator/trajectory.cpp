@@ -64,8 +64,8 @@ void TrajectoryPlayer::fit(std::size_t first, std::size_t last, std::span<const 
         const double pivot = 2.0 * (a + b) - a * factor[i - 1 - first];
         factor[i - first] = b / pivot;
         for (std::size_t c = 0; c < channels; ++c) {
-            const double bend = (knots_[i + 1].value[c] - knots_[i].value[c]) / b -
-                                (knots_[i].value[c] - knots_[i - 1].value[c]) / a;
+            const double bend =
+                (knots_[i + 1].value[c] - knots_[i].value[c]) / b - (knots_[i].value[c] - knots_[i - 1].value[c]) / a;
             knots_[i].second[c] = (6.0 * bend - a * knots_[i - 1].second[c]) / pivot;
         }
     }

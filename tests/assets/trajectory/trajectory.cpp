@@ -5,11 +5,11 @@
 
 #include <catch2/catch.hpp>
 
+#include <unistd.h>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <unistd.h>
 
 using namespace tactus;
 using Catch::Matchers::Contains;
@@ -46,9 +46,10 @@ const std::string first = "1.00,1,10,20,30,0,0,0,1,0.1,0.2,0.3\n";
 }  // namespace
 
 TEST_CASE("a trajectory is read in SI with its forces, whatever line ends it has") {
-    const Csv csv("\xef\xbb\xbft_ms,px_cm,py_cm,pz_cm,qx,qy,qz,qw,fx_N,fy_N,fz_N,note\r\n"
-                  "0, 1, 2,3,0,0,0,1,0.1,0.2,0.3,a\r\n"
-                  "16,1,2,4,0,0,1,0,0,0,0,b\r\n");
+    const Csv csv(
+        "\xef\xbb\xbft_ms,px_cm,py_cm,pz_cm,qx,qy,qz,qw,fx_N,fy_N,fz_N,note\r\n"
+        "0, 1, 2,3,0,0,0,1,0.1,0.2,0.3,a\r\n"
+        "16,1,2,4,0,0,1,0,0,0,0,b\r\n");
     const Trajectory t = read_trajectory(csv.path);
     REQUIRE(t.samples.size() == 2);
     CHECK(t.samples[1].time == Approx(0.016));
@@ -70,10 +71,11 @@ TEST_CASE("a new trial begins a segment, and one trial can be chosen") {
 }
 
 TEST_CASE("a tool is chosen by the prefix of its columns, and lost samples are left out") {
-    const Csv csv("t_s,A_status,A_px_mm,A_py_mm,A_pz_mm,A_qx,A_qy,A_qz,A_qw\n"
-                  "0.00,OK,1,2,3,0,0,0,1\n"
-                  "0.06,OUT_OF_VIEW,0,0,0,0,0,0,0\n"
-                  "0.12,OK,1,2,4,0,0,0,1\n");
+    const Csv csv(
+        "t_s,A_status,A_px_mm,A_py_mm,A_pz_mm,A_qx,A_qy,A_qz,A_qw\n"
+        "0.00,OK,1,2,3,0,0,0,1\n"
+        "0.06,OUT_OF_VIEW,0,0,0,0,0,0,0\n"
+        "0.12,OK,1,2,4,0,0,0,1\n");
     const Trajectory t = read_trajectory(csv.path, {"A", 0});
     CHECK(t.samples.size() == 2);
     CHECK(t.lost == 1);

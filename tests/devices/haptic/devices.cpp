@@ -3,11 +3,11 @@
 
 #include <catch2/catch.hpp>
 
+#include <unistd.h>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <unistd.h>
 
 using namespace tactus;
 using Catch::Matchers::Contains;
@@ -17,8 +17,9 @@ namespace {
 constexpr double period = 0.001;
 const SourceLocation somewhere{"saw.toml", 4, 10};
 
-std::unique_ptr<HapticDevice> open(std::string_view driver, std::vector<OptionText> given,
-                                   const PathResolver& resolve = [](const std::string& name) { return name; }) {
+std::unique_ptr<HapticDevice> open(
+    std::string_view driver, std::vector<OptionText> given,
+    const PathResolver& resolve = [](const std::string& name) { return name; }) {
     Options options("device 'hand'", std::move(given), {"saw.toml", 3, 1});
     return open_haptic_device(driver, somewhere, options, resolve);
 }
@@ -84,8 +85,9 @@ TEST_CASE("preparing a device again repeats it to the last bit") {
 }
 
 TEST_CASE("options of the simulated hand change what it does") {
-    const auto turned = open("simulated", {{"feed_axis", "2 0 0", {}}, {"stroke_amplitude", "0 mm", {}},
-                                           {"tremor", "0 mm", {}}, {"turn", "90 deg", {}}});
+    const auto turned = open(
+        "simulated",
+        {{"feed_axis", "2 0 0", {}}, {"stroke_amplitude", "0 mm", {}}, {"tremor", "0 mm", {}}, {"turn", "90 deg", {}}});
     turned->prepare(period);
     const DeviceSample sample = run(*turned, 1.0);
     CHECK(sample.pose.position.x > 5e-3);

@@ -49,7 +49,8 @@ TEST_CASE("recorded samples are passed through exactly, and twist has no jump th
     const TrajectoryPlayer player(samples, {}, {});
     std::size_t hint = 0;
     for (std::size_t i = 1; i + 1 < samples.size(); ++i) {
-        const TrajectoryState before = player.at(samples[i].time - 1e-9, hint), after = player.at(samples[i].time, hint);
+        const TrajectoryState before = player.at(samples[i].time - 1e-9, hint),
+                              after = player.at(samples[i].time, hint);
         REQUIRE(glm::distance(after.intention.pose.position, samples[i].pose.position) < 1e-9);
         REQUIRE(glm::distance(before.intention.twist.linear, after.intention.twist.linear) < 1e-6);
     }
@@ -61,8 +62,8 @@ TEST_CASE("a quaternion that changes sign between samples does not turn the hand
     const TrajectoryPlayer flipped(samples, {}, {}), plain(recorded(0.0, 1.0), {}, {});
     std::size_t a = 0, b = 0;
     for (double t = 0.0; t < 0.99; t += 0.001) {
-        const Vec3 apart = rotation_between(flipped.at(t, a).intention.pose.orientation,
-                                            plain.at(t, b).intention.pose.orientation);
+        const Vec3 apart =
+            rotation_between(flipped.at(t, a).intention.pose.orientation, plain.at(t, b).intention.pose.orientation);
         REQUIRE(glm::length(apart) < 1e-9);
     }
 }
