@@ -10,6 +10,8 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <thread>
 
@@ -95,13 +97,42 @@ TEST_CASE("an output that does not exist is refused with a reason, quietly, and 
     CHECK(said[1] == said[0]);
 }
 
+namespace {
+
+/// Runs one hidden test of this program under another ALSA configuration, which a process reads only once.
+bool passes_under(const std::string& configuration, const std::string& tag) {
+    const std::string command = "ALSA_CONFIG_PATH='" + configuration + "' '/proc/" + std::to_string(::getpid()) +
+                                "/exe' '" + tag + "' >/dev/null 2>&1";
+    return std::system(command.c_str()) == 0;
+}
+
+}  // namespace
+
 TEST_CASE("an ALSA configuration without a default device is an error, not the end of the process") {
-    // A process reads the configuration once, so the broken one needs a process of its own.
-    const std::string command = "ALSA_CONFIG_PATH=/dev/null '" + std::string("/proc/") + std::to_string(::getpid()) +
-                                "/exe' '[.broken_alsa]' >/dev/null 2>&1";
-    CHECK(std::system(command.c_str()) == 0);
+    CHECK(passes_under("/dev/null", "[.broken_alsa]"));
 }
 
 TEST_CASE("run by the test of a broken ALSA configuration", "[.broken_alsa]") {
     CHECK_THROWS_WITH(list_audio_outputs(), Catch::Contains("pcm.default"));
+}
+
+TEST_CASE("an output opens, asks for sound and closes") {
+    const std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("tactus_null_card_" + std::to_string(::getpid()) + ".conf");
+    std::ofstream(path) << "pcm.!default { type null }\n";
+    CHECK(passes_under(path.string(), "[.null_card]"));
+    std::filesystem::remove(path);
+}
+
+TEST_CASE("run by the test of an output that opens", "[.null_card]") {
+    const auto sink = make_portaudio_sink("default");
+    sink->prepare(48000.0, 1);
+    const std::array<float, 64> sound{};
+    CHECK(sink->write(sound.data(), sound.size()) == sound.size());
+    const std::int64_t before = sink->progress().frames;
+    while (sink->progress().frames < before + 10'000) std::this_thread::yield();
+    CHECK(sink->statistics().underflows > 0);
+    CHECK(sink->statistics().frames_written == sound.size());
+    CHECK_NOTHROW(sink->close());
+    CHECK(sink->writable() == 0);
 }
