@@ -3,7 +3,10 @@
 list(APPEND CMAKE_MODULE_PATH "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
+# Debian's Imath describes Python libraries it does not ship, and says so at length; errors still show.
+set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
 find_package(OpenVDB 10.0 REQUIRED COMPONENTS openvdb)
+unset(CMAKE_MESSAGE_LOG_LEVEL)
 find_package(glm CONFIG REQUIRED)
 find_package(fmt CONFIG REQUIRED)
 find_package(Eigen3 CONFIG REQUIRED)

@@ -142,6 +142,7 @@ Quantity parse_quantity(std::string_view text) {
         throw Error(fmt::format("'{}' is not a number with a unit", whole));
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
     const Unit unit = parse_unit(text);
+    if (!std::isfinite(number * unit.factor)) throw Error(fmt::format("'{}' is too large", whole));
     return {number * unit.factor, unit.dimension};
 }
 

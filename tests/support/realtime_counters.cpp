@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// The executable's own malloc, mutex and sleep functions come before those of libc, also for calls from shared
+// libraries. They count inside a real-time scope and pass the call on.
+#include "tests/support/realtime_counters.hpp"
+
+#include <dlfcn.h>
+#include <pthread.h>
+#include <unistd.h>
+#include <atomic>
+#include <cerrno>
+#include <cstddef>
+#include <ctime>
+
+#if defined(__SANITIZE_THREAD__)
+#define TACTUS_UNDER_TSAN
+#elif defined(__SANITIZE_ADDRESS__)
+#define TACTUS_UNDER_ASAN
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define TACTUS_UNDER_TSAN
+#elif __has_feature(address_sanitizer)
+#define TACTUS_UNDER_ASAN
+#endif
+#endif
+
+#if defined(TACTUS_UNDER_ASAN) || defined(TACTUS_UNDER_TSAN)
+#include <sanitizer/allocator_interface.h>
+#endif
+
+namespace tactus {
+namespace {
+
+struct Counters {
+    std::atomic<std::int64_t> allocations, releases, locks, waits, system_calls, system_call;
+};
+constinit Counters counters{};
+
+inline void count(std::atomic<std::int64_t>& counter) noexcept {
+    if (realtime_depth > 0) counter.fetch_add(1, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+void start_counting() {
+#if defined(TACTUS_UNDER_ASAN) || defined(TACTUS_UNDER_TSAN)
+    [[maybe_unused]] static const int installed = __sanitizer_install_malloc_and_free_hooks(
+        [](const volatile void*, std::size_t) { count(counters.allocations); },
+        [](const volatile void*) { count(counters.releases); });
+#endif
+    for (auto* counter :
+         {&counters.allocations, &counters.releases, &counters.locks, &counters.waits, &counters.system_calls})
+        *counter = 0;
+    counters.system_call = -1;
+}
+
+RealtimeViolations counted() {
+    return {counters.allocations, counters.releases,     counters.locks,
+            counters.waits,       counters.system_calls, counters.system_call};
+}
+
+void count_system_call(std::int64_t number) noexcept {
+    if (realtime_depth == 0) return;
+    counters.system_calls.fetch_add(1, std::memory_order_relaxed);
+    counters.system_call.store(number, std::memory_order_relaxed);
+}
+
+bool interposes_locks() {
+#if defined(TACTUS_UNDER_TSAN)
+    return false;
+#else
+    return true;
+#endif
+}
+
+}  // namespace tactus
+
+extern "C" {
+
+#if !defined(TACTUS_UNDER_ASAN) && !defined(TACTUS_UNDER_TSAN)
+
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* memory, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+void __libc_free(void* memory);
+
+void* malloc(std::size_t size) noexcept {
+    tactus::count(tactus::counters.allocations);
+    return __libc_malloc(size);
+}
+
+void* calloc(std::size_t n, std::size_t size) noexcept {
+    tactus::count(tactus::counters.allocations);
+    return __libc_calloc(n, size);
+}
+
+void* realloc(void* memory, std::size_t size) noexcept {
+    tactus::count(tactus::counters.allocations);
+    return __libc_realloc(memory, size);
+}
+
+void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
+    tactus::count(tactus::counters.allocations);
+    return __libc_memalign(alignment, size);
+}
+
+int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexcept {
+    tactus::count(tactus::counters.allocations);
+    if (alignment % sizeof(void*) != 0 || (alignment & (alignment - 1)) != 0 || alignment == 0) return EINVAL;
+    void* const got = __libc_memalign(alignment, size);
+    if (got == nullptr) return ENOMEM;
+    *memory = got;
+    return 0;
+}
+
+void free(void* memory) noexcept {
+    if (memory != nullptr) tactus::count(tactus::counters.releases);
+    __libc_free(memory);
+}
+
+#endif
+
+#if !defined(TACTUS_UNDER_TSAN)
+
+// The next definition after ours, looked up once. pthread_cond_* exist in two versions; the old one is incompatible.
+#define TACTUS_PASS_ON(function, counter, ...)                                 \
+    static std::atomic<void*> next{nullptr};                                   \
+    void* found = next.load(std::memory_order_relaxed);                        \
+    if (found == nullptr) found = dlvsym(RTLD_NEXT, #function, "GLIBC_2.3.2"); \
+    if (found == nullptr) found = dlsym(RTLD_NEXT, #function);                 \
+    next.store(found, std::memory_order_relaxed);                              \
+    tactus::count(tactus::counters.counter);                                   \
+    return reinterpret_cast<decltype(&function)>(found)(__VA_ARGS__)
+
+int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept { TACTUS_PASS_ON(pthread_mutex_lock, locks, mutex); }
+
+int pthread_cond_wait(pthread_cond_t* condition, pthread_mutex_t* mutex) {
+    TACTUS_PASS_ON(pthread_cond_wait, waits, condition, mutex);
+}
+
+int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_t* mutex, const timespec* until) {
+    TACTUS_PASS_ON(pthread_cond_timedwait, waits, condition, mutex, until);
+}
+
+int nanosleep(const timespec* duration, timespec* left) { TACTUS_PASS_ON(nanosleep, waits, duration, left); }
+
+int clock_nanosleep(clockid_t clock, int flags, const timespec* duration, timespec* left) {
+    TACTUS_PASS_ON(clock_nanosleep, waits, clock, flags, duration, left);
+}
+
+int usleep(useconds_t duration) { TACTUS_PASS_ON(usleep, waits, duration); }
+
+#endif
+}
