@@ -13,6 +13,10 @@
 
 namespace tactus {
 
+/// Marks what a patch may leave out: an input without a wire, an asset without a file.
+struct Optional {};
+inline constexpr Optional optional{};
+
 /// A structural parameter shapes memory or wiring and cannot change while the patch runs.
 struct Structural {};
 inline constexpr Structural structural{};
@@ -110,6 +114,7 @@ struct Asset : AssetParam {
             return std::make_shared<const T>(AssetLoader<T>::load(path));
         };
     }
+    Asset(Optional, std::string_view about_ = {}) : Asset(about_) { is_optional = true; }
     explicit operator bool() const { return loaded != nullptr; }
     const T& operator*() const { return *static_cast<const T*>(loaded.get()); }
     const T* operator->() const { return static_cast<const T*>(loaded.get()); }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dsp/core/time.hpp"
+#include "graph/param.hpp"
 #include "graph/value.hpp"
 
 #include <cstddef>
@@ -10,10 +11,6 @@
 #include <string_view>
 
 namespace tactus {
-
-/// Marks an input that may stay unconnected: `In<double> load{optional, "thrust", "N"};`
-struct Optional {};
-inline constexpr Optional optional{};
 
 enum class InputKind : std::uint8_t {
     value,   ///< one value, constant within a call
@@ -75,6 +72,9 @@ struct Batch : Input {
         kind = InputKind::batch;
         about = about_;
         unit = unit_;
+    }
+    Batch(Optional, std::string_view about_ = {}, std::string_view unit_ = {}) : Batch(about_, unit_) {
+        is_optional = true;
     }
     std::span<const Element<T>> values() const {
         return {reinterpret_cast<const Element<T>*>(data), static_cast<std::size_t>(count)};

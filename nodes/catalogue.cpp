@@ -6,9 +6,21 @@
 #include <vector>
 
 // name of the struct, family (folder), file
-#define TACTUS_NODES(X) \
-    X(Constant, input)  \
-    X(Gain, vibration)
+#define TACTUS_NODES(X)       \
+    X(AudioOutput, output)    \
+    X(Constant, input)        \
+    X(DeviceInput, input)     \
+    X(DeviceOutput, input)    \
+    X(DeviceWrench, input)    \
+    X(Gain, vibration)        \
+    X(Magnitude, math)        \
+    X(Mix, vibration)         \
+    X(Probe, output)          \
+    X(Range, math)            \
+    X(Record, output)         \
+    X(SphereContact, contact) \
+    X(Spring, coupling)       \
+    X(Workspace, input)
 
 namespace tactus {
 

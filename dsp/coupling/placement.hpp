@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a device and the tool in its hand stand in the scene, and the way of a force back to the hand.
+#pragma once
+
+#include "dsp/core/types.hpp"
+
+namespace tactus {
+
+/// Turns about the fixed x axis first, then y, then z; angles in rad.
+inline Quat rotation_xyz(const Vec3& angles) {
+    return glm::angleAxis(angles.z, Vec3(0.0, 0.0, 1.0)) * glm::angleAxis(angles.y, Vec3(0.0, 1.0, 0.0)) *
+           glm::angleAxis(angles.x, Vec3(1.0, 0.0, 0.0));
+}
+
+/// Device frame into scene, and tool into handle.
+struct Placement {
+    Pose device;         ///< frame of the device in the scene
+    double scale = 1.0;  ///< m in the scene per m of the device; turns are not scaled
+    Pose grip;           ///< tool in the frame of the handle, m in the scene
+
+    /// The axes of the device, carried to where the handle is in the scene.
+    Pose frame(const Pose& handle) const { return {device.apply(handle.position * scale), device.orientation}; }
+    /// The tool in the scene, for a handle in the device frame.
+    Pose tool(const Pose& handle) const {
+        return Pose{device.apply(handle.position * scale), device.orientation * handle.orientation} * grip;
+    }
+};
+
+/// A wrench about the origin of `tool`, scene axes, as the hand feels it: about the handle, device axes. `frame` is
+/// Placement::frame of the same moment. The power of hand and scene is the same, so forces come `scale` times as large
+/// and a coupled scene stays passive.
+inline Wrench wrench_on_hand(const Wrench& on_tool, const Vec3& tool, const Pose& frame, double scale) {
+    const Quat back = glm::conjugate(frame.orientation);
+    return {back * on_tool.force * scale,
+            back * (on_tool.torque + glm::cross(tool - frame.position, on_tool.force))};
+}
+
+}  // namespace tactus

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/node.hpp"
+
+#include <algorithm>
+
+namespace tactus {
+
+struct SphereContact {
+    static constexpr auto about =
+        "A ball on the tool against a ball that is fixed in the scene: force = stiffness × depth, along the line of centres.";
+
+    In<Pose> pose{"tool; the ball sits at its origin", "m"};
+    Out<Wrench> wrench{"on the tool, about its origin", "N, N m"};
+    Out<double> penetration{"depth of the tool's ball in the fixed one", "m"};
+    Out<bool> in_contact{"they touch"};
+    Vector centre{"0 mm, 0 mm, 0 mm", "of the fixed ball"};
+    Param radius{"50 mm", "0.1 mm", "1 m", "of the fixed ball"};
+    Param tool_radius{"5 mm", "0 mm", "1 m", "of the ball on the tool"};
+    Param stiffness{"0.8 N/mm", "0 N/mm", "20 N/mm", "force per depth"};
+
+    void process(const Tick&) noexcept {
+        const Vec3 from_centre = pose->position - centre.value;
+        const double distance = glm::length(from_centre);
+        const double depth = std::max(0.0, radius + tool_radius - distance);
+        // In the very centre every direction is as good as any other.
+        const Vec3 normal = distance > 0.0 ? from_centre / distance : Vec3(0.0, 0.0, 1.0);
+        wrench = {normal * (stiffness * depth), {}};
+        penetration = depth;
+        in_contact = depth > 0.0;
+    }
+};
+
+TACTUS_NODE(SphereContact, pose, wrench, penetration, in_contact, centre, radius, tool_radius, stiffness)
+
+}  // namespace tactus

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/operator/hand.hpp"
+#include "graph/node.hpp"
+
+namespace tactus {
+
+struct Spring {
+    static constexpr auto about =
+        "Spring and damper that pull the device towards an object, in position and in orientation. Both poses and both "
+        "velocities are in one frame.";
+
+    In<Pose> device{"what is pulled", "m"};
+    In<Pose> object{"where it is pulled to", "m"};
+    In<Twist> device_twist{optional, "its velocity, for the damping", "m/s, rad/s"};
+    In<Twist> object_twist{optional, "velocity of the object, for the damping", "m/s, rad/s"};
+    Out<Wrench> wrench{"on the device, about its origin; the object feels the opposite", "N, N m"};
+    Param stiffness{"1 N/mm", "0 N/mm", "20 N/mm", "force per distance"};
+    Param damping{"0 N s/m", "0 N s/m", "50 N s/m", "force per velocity between the two"};
+    Param angular_stiffness{"0 N m/rad", "0 N m/rad", "20 N m/rad", "torque per angle"};
+    Param angular_damping{"0 N m s/rad", "0 N m s/rad", "1 N m s/rad", "torque per angular velocity between the two"};
+
+    void process(const Tick&) noexcept {
+        const Vec3 velocity = object_twist->linear - device_twist->linear;
+        const Vec3 spin = object_twist->angular - device_twist->angular;
+        const Vec3 angle = rotation_between(device->orientation, object->orientation);
+        wrench = {(object->position - device->position) * stiffness.value + velocity * damping.value,
+                  angle * angular_stiffness.value + spin * angular_damping.value};
+    }
+};
+
+TACTUS_NODE(Spring, device, object, device_twist, object_twist, wrench, stiffness, damping, angular_stiffness,
+            angular_damping)
+
+}  // namespace tactus

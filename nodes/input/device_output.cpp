@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/safety/force_limiter.hpp"
+#include "graph/node.hpp"
+
+#include <algorithm>
+
+namespace tactus {
+
+/// A limit of 0 in `info` means that the device states none.
+static double lower_limit(double wanted, double of_device) {
+    return of_device > 0.0 ? std::min(wanted, of_device) : wanted;
+}
+
+struct DeviceOutput {
+    static constexpr auto about =
+        "Force on the hand: checked, limited, ramped in, and faded to zero on any fault. The device's own limits hold too.";
+
+    In<Wrench> wrench{"on the hand about the handle, device frame", "N, N m"};
+    Out<Wrench> applied{"what the device is given", "N, N m"};
+    Out<bool> engaged{"forces pass"};
+    Text device{"", "name of an entry of [devices]; empty: the only one"};
+    Param max_force{structural, "10 N", "0 N", "50 N", "largest force on the hand"};
+    Param max_torque{structural, "0.5 N m", "0 N m", "5 N m", "largest torque on the hand"};
+    Param slew{structural, "1 N/ms", "0.01 N/ms", "100 N/ms", "fastest change of the force"};
+    Param torque_slew{structural, "0.05 N m/ms", "0.001 N m/ms", "10 N m/ms", "fastest change of the torque"};
+    Param engage_time{structural, "100 ms", "0 ms", "10 s", "forces come in over this time once they were small"};
+
+    void prepare(const Setup& setup) {
+        port_ = &setup.outside->device(device.value, device.where);
+        port_->has_output = true;
+        ForceLimits limits;
+        limits.max_force = lower_limit(max_force, port_->info.max_force);
+        limits.max_torque = lower_limit(max_torque, port_->info.max_torque);
+        limits.force_slew = slew;
+        limits.torque_slew = torque_slew;
+        limits.engage_ramp_s = engage_time;
+        limiter_.prepare(limits, seconds(setup.period));
+    }
+
+    void process(const Tick& tick) noexcept {
+        const DeviceSample& s = port_->sample;
+        const Wrench out = limiter_.tick(wrench, s.counter, s.valid && is_valid(s.pose), tick.elapsed_seconds());
+        applied = out;
+        port_->wrench = out;
+        engaged = limiter_.engaged();
+        const double force = glm::length(out.force);
+        largest_ = std::max(largest_, force);
+        sum_ += force;
+    }
+
+    void report(Report& report) const {
+        const ForceStatistics& s = limiter_.statistics();
+        const auto ticks = static_cast<double>(s.ticks);
+        report.set("force", "max_N", largest_);
+        report.set("force", "mean_N", s.ticks > 0 ? sum_ / ticks : 0.0);
+        report.set("force", "ticks", ticks);
+        report.set("force", "raw_max_N", s.max_force);
+        report.set("force", "raw_max_step_N", s.max_force_step);
+        report.set("force", "limited_ticks", static_cast<double>(s.force_limited));
+        report.set("force", "slew_limited_ticks", static_cast<double>(s.slew_limited));
+        report.set("force", "fault", std::string(describe(limiter_.fault())));
+    }
+
+private:
+    DevicePort* port_ = nullptr;
+    ForceLimiter limiter_;
+    double largest_ = 0.0, sum_ = 0.0;
+};
+
+TACTUS_NODE(DeviceOutput, wrench, applied, engaged, device, max_force, max_torque, slew, torque_slew, engage_time)
+
+}  // namespace tactus
