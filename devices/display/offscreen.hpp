@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of triangle meshes without a display or window: OpenGL 3.3 through surfaceless EGL. On a machine without a
+// graphics card Mesa renders in software; LP_NUM_THREADS limits its threads.
+#pragma once
+
+#include "dsp/core/types.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tactus {
+
+/// A lit triangle mesh; both sides of a triangle are seen.
+struct PictureMesh {
+    std::vector<float> positions;          ///< x y z per vertex, m
+    std::vector<float> normals;            ///< x y z per vertex, need not be of unit length
+    std::vector<float> colours;            ///< r g b per vertex, 0 to 1
+    std::vector<std::uint32_t> triangles;  ///< three vertices each
+};
+
+/// Where a picture is taken from: perspective, `eye` looks at `target`. m, rad.
+struct View {
+    Vec3 eye{0.0, 0.0, 1.0};
+    Vec3 target{0.0, 0.0, 0.0};
+    Vec3 up{0.0, 1.0, 0.0};
+    double vertical_field_of_view_rad = 0.6;
+};
+
+/// 8-bit sRGB picture: r g b per pixel, rows from top to bottom.
+struct Image {
+    int width = 0;
+    int height = 0;
+    std::vector<std::uint8_t> rgb;
+
+    const std::uint8_t* pixel(int x, int y) const {
+        return rgb.data() +
+               3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+    }
+};
+
+/// The view along `direction` (from the eye into the scene) that just holds the sphere around the box of `low` and
+/// `high` in a picture of `aspect` = width / height. `up` must not be parallel to `direction`.
+View fit_view(const Vec3& low, const Vec3& high, const Vec3& direction, const Vec3& up = {0.0, 0.0, 1.0},
+              double aspect = 1.0);
+
+/// Renders with two lights, anti-aliased, on a light neutral background. Throws Error when no OpenGL context can be had,
+/// when a mesh's arrays do not fit together, or for a size outside 1 to 8192 pixels. The same machine gives the same
+/// pixels.
+Image render_picture(std::span<const PictureMesh> meshes, const View& view, int width, int height);
+
+/// An arrow from `from` to `to` (shaft and head), for forces and paths. `radius` of the shaft in m.
+PictureMesh arrow_mesh(const Vec3& from, const Vec3& to, double radius, const Vec3& colour);
+
+}  // namespace tactus

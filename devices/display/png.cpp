@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "devices/display/png.hpp"
+
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_STATIC
+#if defined(__GNUC__)
+#pragma GCC diagnostic ignored "-Wunused-function"
+#endif
+#include <stb/stb_image_write.h>
+
+namespace tactus {
+
+void write_png(const Image& image, const std::string& path) {
+    const std::string part = path + ".part";
+    std::error_code failure;
+    if (stbi_write_png(part.c_str(), image.width, image.height, 3, image.rgb.data(), 3 * image.width) == 0) {
+        std::filesystem::remove(part, failure);
+        throw Error(fmt::format("cannot write picture '{}'; is the folder there and writable?", path));
+    }
+    std::filesystem::rename(part, path, failure);
+    if (failure) throw Error(fmt::format("cannot rename '{}' to '{}': {}", part, path, failure.message()));
+}
+
+}  // namespace tactus

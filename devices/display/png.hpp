@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "devices/display/offscreen.hpp"
+
+#include <string>
+
+namespace tactus {
+
+/// Writes `path` + ".part" and renames it when whole. Throws Error when the file cannot be written.
+void write_png(const Image& image, const std::string& path);
+
+}  // namespace tactus
