@@ -57,7 +57,8 @@ out vec4 colour;
 void main() {
     vec3 n = normalize(eye_normal);
     vec3 v = normalize(-eye_position);
-    if (dot(n, v) < 0.0) n = -n;
+    // The triangle's own normal decides which side is seen: an interpolated one may point away at the rim.
+    if (dot(n, cross(dFdx(eye_position), dFdy(eye_position))) < 0.0) n = -n;
     vec3 key = normalize(vec3(-0.4, 0.6, 0.7));
     vec3 fill = normalize(vec3(0.8, 0.1, 0.4));
     float diffuse = 0.75 * max(dot(n, key), 0.0) + 0.25 * max(dot(n, fill), 0.0);
