@@ -24,7 +24,9 @@
 #endif
 
 #if defined(TACTUS_UNDER_ASAN) || defined(TACTUS_UNDER_TSAN)
-#include <sanitizer/allocator_interface.h>
+// gcc 12 ships the function but not its header.
+extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*on_malloc)(const volatile void*, std::size_t),
+                                                         void (*on_free)(const volatile void*));
 #endif
 
 namespace tactus {
