@@ -49,7 +49,8 @@ struct Param {
 
 /// One of several words.
 struct Choice {
-    Choice(std::initializer_list<std::string_view> words, std::string_view about_ = {})
+    // Not string_view: two words in braces would be read as the begin and end of one.
+    Choice(std::initializer_list<const char*> words, std::string_view about_ = {})
         : options(words.begin(), words.end()), about(about_) {}  ///< the first word is the default
 
     bool is(std::string_view word) const { return options[static_cast<std::size_t>(index)] == word; }

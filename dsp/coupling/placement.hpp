@@ -31,8 +31,7 @@ struct Placement {
 /// and a coupled scene stays passive.
 inline Wrench wrench_on_hand(const Wrench& on_tool, const Vec3& tool, const Pose& frame, double scale) {
     const Quat back = glm::conjugate(frame.orientation);
-    return {back * on_tool.force * scale,
-            back * (on_tool.torque + glm::cross(tool - frame.position, on_tool.force))};
+    return {back * on_tool.force * scale, back * (on_tool.torque + glm::cross(tool - frame.position, on_tool.force))};
 }
 
 }  // namespace tactus

@@ -7,7 +7,8 @@ namespace tactus {
 
 struct SphereContact {
     static constexpr auto about =
-        "A ball on the tool against a ball that is fixed in the scene: force = stiffness × depth, along the line of centres.";
+        "A ball on the tool against a ball that is fixed in the scene: force = stiffness × depth, along the line of "
+        "centres.";
 
     In<Pose> pose{"tool; the ball sits at its origin", "m"};
     Out<Wrench> wrench{"on the tool, about its origin", "N, N m"};

@@ -13,7 +13,8 @@ static double lower_limit(double wanted, double of_device) {
 
 struct DeviceOutput {
     static constexpr auto about =
-        "Force on the hand: checked, limited, ramped in, and faded to zero on any fault. The device's own limits hold too.";
+        "Force on the hand: checked, limited, ramped in, and faded to zero on any fault. The device's own limits hold "
+        "too.";
 
     In<Wrench> wrench{"on the hand about the handle, device frame", "N, N m"};
     Out<Wrench> applied{"what the device is given", "N, N m"};

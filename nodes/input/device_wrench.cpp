@@ -6,7 +6,8 @@ namespace tactus {
 
 struct DeviceWrench {
     static constexpr auto about =
-        "Brings a wrench on the tool back to the hand: device axes, torque about the handle, the same power on both sides.";
+        "Brings a wrench on the tool back to the hand: device axes, torque about the handle, the same power on both "
+        "sides.";
 
     In<Wrench> wrench{"on the tool, about its origin, in the scene", "N, N m"};
     In<Pose> tool{"tool in the scene: workspace.pose", "m"};

@@ -16,7 +16,8 @@ struct Workspace {
     Vector rotation{"0 deg, 0 deg, 0 deg", "of the device frame in the scene: about x first, then y, then z"};
     Param scale{structural, "1", "0.01", "100", "distance in the scene per distance of the device"};
     Vector grip{"0 mm, 0 mm, 0 mm", "origin of the tool in the frame of the handle"};
-    Vector grip_rotation{"0 deg, 0 deg, 0 deg", "of the tool in the frame of the handle: about x first, then y, then z"};
+    Vector grip_rotation{"0 deg, 0 deg, 0 deg",
+                         "of the tool in the frame of the handle: about x first, then y, then z"};
 
     void prepare(const Setup&) {
         placement_ = {{origin, rotation_xyz(rotation)}, scale, {grip, rotation_xyz(grip_rotation)}};

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// The assets that a node may name in a patch, and how each is loaded.
+#pragma once
+
+#include "assets/bone/bone.hpp"
+#include "assets/recording/recording_set.hpp"
+#include "graph/param.hpp"
+
+namespace tactus {
+
+template <>
+struct AssetLoader<Bone> {
+    static constexpr std::string_view name = "bone";
+    static Bone load(const std::string& path) { return load_bone(path); }
+};
+
+template <>
+struct AssetLoader<RecordingSet> {
+    static constexpr std::string_view name = "recording set";
+    static RecordingSet load(const std::string& path) { return load_recording_set(path); }
+};
+
+}  // namespace tactus

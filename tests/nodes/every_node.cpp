@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every node type of the catalogue must keep, whatever it computes.
+#include "nodes/catalogue.hpp"
+#include "tests/support/node_harness.hpp"
+#include "tests/support/realtime_check.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace tactus;
+using test::Feed;
+using test::NodeHarness;
+
+namespace {
+
+/// The types that an input of any type is tried with.
+std::vector<const ValueType*> wires_of(const NodeType& type) {
+    NodeHarness probe(type);
+    if (!probe.takes_any()) return {&value::number};
+    if (type.name == "magnitude") return {&value::wrench, &value::twist, &value::pose, &value::number};
+    return {&value::number, &value::boolean, &value::pose, &value::twist, &value::wrench, &value::signal};
+}
+
+template <class Check>
+void for_every_node(Check&& check) {
+    for (const NodeType* type : catalogue())
+        for (const ValueType* any : wires_of(*type)) {
+            INFO(type->name << " on a wire of " << any->name);
+            check(*type, any);
+        }
+}
+
+std::uint64_t hash_of(const NodeType& type, const ValueType* any, Feed feed, std::uint64_t partition) {
+    NodeHarness harness(type, {.max_frames = 17, .feed = feed, .drive_params = true, .any = any});
+    harness.prepare();
+    harness.run(2000, partition);
+    return harness.output_hash();
+}
+
+struct Declaration final : MemberVisitor {
+    void input(std::string_view name, Input& port) override { require(name, port.about); }
+    void output(std::string_view name, Output& port) override { require(name, port.about); }
+    void param(std::string_view name, Param& p) override {
+        require(name, p.about);
+        INFO(name << " = " << p.value << " in " << p.min << " … " << p.max);
+        CHECK(p.min < p.max);
+        CHECK(p.value >= p.min);
+        CHECK(p.value <= p.max);
+    }
+    void choice(std::string_view name, Choice& c) override {
+        require(name, c.about);
+        CHECK(c.options.size() > 1);
+    }
+    void text(std::string_view name, Text& t) override { require(name, t.about); }
+    void flag(std::string_view name, Flag& f) override { require(name, f.about); }
+    void vector(std::string_view name, Vector& v) override { require(name, v.about); }
+    void asset(std::string_view name, AssetParam& a) override { require(name, a.about); }
+
+    /// These keys of a node say what it is and when it runs.
+    static void require(std::string_view name, std::string_view about) {
+        INFO("member " << name);
+        CHECK_FALSE(about.empty());
+        CHECK(name != "type");
+        CHECK(name != "group");
+    }
+};
+
+}  // namespace
+
+TEST_CASE("any partition of a run into blocks gives the same bits") {
+    for_every_node([](const NodeType& type, const ValueType* any) {
+        for (const Feed feed : {Feed::ordinary, Feed::hostile}) {
+            const std::uint64_t whole = hash_of(type, any, feed, 0);
+            CHECK(hash_of(type, any, feed, 0) == whole);
+            for (const std::uint64_t partition : {1u, 2u, 3u}) CHECK(hash_of(type, any, feed, partition) == whole);
+        }
+    });
+}
+
+TEST_CASE("finite values in give finite values out") {
+    for_every_node([](const NodeType& type, const ValueType* any) {
+        NodeHarness harness(type, {.drive_params = true, .any = any});
+        harness.prepare();
+        harness.run(3000);
+        CHECK(harness.finite());
+    });
+}
+
+TEST_CASE("a node recovers from values that are not finite, huge or denormal") {
+    for_every_node([](const NodeType& type, const ValueType* any) {
+        NodeHarness harness(type, {.feed = Feed::hostile, .any = any});
+        harness.prepare();
+        harness.run(3000);
+        harness.feed_with(Feed::ordinary);
+        harness.run(3000);
+        harness.forget();
+        harness.run(3000);
+        CHECK(harness.finite());
+    });
+}
+
+TEST_CASE("a tick of a node allocates nothing, takes no lock and calls no system") {
+    for_every_node([](const NodeType& type, const ValueType* any) {
+        for (const Feed feed : {Feed::ordinary, Feed::hostile}) {
+            NodeHarness harness(type, {.feed = feed, .drive_params = true, .any = any});
+            harness.prepare();
+            const RealtimeViolations seen = watch_scopes([&] { harness.run(500, 1); });
+            INFO(seen.describe());
+            CHECK(seen.none());
+        }
+    });
+}
+
+TEST_CASE("a node runs with every optional input left open") {
+    for_every_node([](const NodeType& type, const ValueType* any) {
+        NodeHarness harness(type, {.any = any});
+        harness.disconnect_optional();
+        harness.prepare();
+        harness.run(500);
+        CHECK(harness.finite());
+    });
+}
+
+TEST_CASE("every member is explained and every default lies in its range") {
+    for (const NodeType* type : catalogue()) {
+        INFO(type->name);
+        CHECK_FALSE(type->about.empty());
+        void* node = type->create();
+        Declaration declaration;
+        type->visit(node, declaration);
+        type->destroy(node);
+    }
+}

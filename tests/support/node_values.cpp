@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/node_values.hpp"
+
+#include <cstring>
+#include <limits>
+
+namespace tactus::test {
+
+namespace {
+
+constexpr double nasty[] = {std::numeric_limits<double>::quiet_NaN(),
+                            std::numeric_limits<double>::infinity(),
+                            -std::numeric_limits<double>::infinity(),
+                            std::numeric_limits<double>::max(),
+                            -1e300,
+                            5e-324,
+                            1e-310,
+                            -0.0};
+
+/// Draws numbers one after the other for one value.
+struct Draw {
+    const Random& random;
+    std::uint64_t at;
+    Feed feed;
+
+    double number(double span) {
+        const double u = random.uniform(at++);
+        if (feed == Feed::hostile && random.uniform(at++) < 0.2) return nasty[random.bits(at++) % std::size(nasty)];
+        return (2.0 * u - 1.0) * span;
+    }
+    Vec3 vector(double span) {
+        const double x = number(span), y = number(span), z = number(span);
+        return {x, y, z};
+    }
+    Pose pose() {
+        const Vec3 position = vector(0.05);
+        const double w = number(1.0), x = number(1.0), y = number(1.0), z = number(1.0);
+        const Quat q(w, x, y, z);
+        const double length = std::sqrt(glm::dot(q, q));
+        if (length > 1e-6 && length < 10.0) return {position, q / length};
+        return {position, feed == Feed::hostile ? q : Quat(1.0, 0.0, 0.0, 0.0)};
+    }
+};
+
+template <class T>
+void put(void* out, const T& value) {
+    std::memcpy(out, &value, sizeof(T));
+}
+
+Draw draw_at(const Random& random, std::int64_t k, Feed feed) {
+    return {random, static_cast<std::uint64_t>(k) * 64, feed};
+}
+
+}  // namespace
+
+void sample_value(const ValueType& type, const Random& random, std::int64_t k, Feed feed, void* out) {
+    Draw draw = draw_at(random, k, feed);
+    if (&type == &value::pose) put(out, draw.pose());
+    else if (&type == &value::twist) {
+        const Vec3 linear = draw.vector(1.0);
+        put(out, Twist{linear, draw.vector(5.0)});
+    } else if (&type == &value::wrench) {
+        const Vec3 force = draw.vector(10.0);
+        put(out, Wrench{force, draw.vector(0.5)});
+    } else if (&type == &value::number) put(out, draw.number(10.0));
+    else if (&type == &value::boolean) put(out, random.uniform(static_cast<std::uint64_t>(k)) < 0.5);
+    else if (&type == &value::signal) {
+        const double v = draw.number(1.0);
+        // A conversion of what a float cannot hold is undefined; its own largest value stands in.
+        const double largest = std::numeric_limits<float>::max();
+        put(out, std::isfinite(v) && std::abs(v) > largest ? std::numeric_limits<float>::max() : static_cast<float>(v));
+    } else throw Error("no sample values for a " + std::string(type.name));
+}
+
+DeviceSample sample_device(const Random& random, std::int64_t k, Feed feed) {
+    Draw draw = draw_at(random, k, feed);
+    DeviceSample sample;
+    sample.pose = draw.pose();
+    sample.twist.linear = draw.vector(0.2);
+    sample.twist.angular = draw.vector(1.0);
+    sample.buttons = static_cast<std::uint32_t>(random.bits(draw.at));
+    sample.counter = k;
+    sample.valid = feed == Feed::ordinary || random.uniform(draw.at + 1) < 0.8;
+    return sample;
+}
+
+}  // namespace tactus::test

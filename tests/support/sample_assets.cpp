@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Assets for tests, made in memory: a ball of bone and a saw of two recordings.
+#include "graph/assets.hpp"
+#include "tests/support/node_harness.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace tactus::test {
+
+namespace {
+
+Bone ball() {
+    Bone bone;
+    bone.name = "ball";
+    Grid& d = bone.distance;
+    d.size = {56, 56, 56};
+    d.spacing = Vec3(0.5e-3);
+    d.origin = -0.5 * 55.0 * d.spacing;
+    d.values.resize(d.count());
+    bone.density = d;
+    for (int k = 0; k < d.size[2]; ++k)
+        for (int j = 0; j < d.size[1]; ++j)
+            for (int i = 0; i < d.size[0]; ++i) {
+                const double distance = glm::length(d.position(i, j, k)) - 10e-3;
+                d.at(i, j, k) = static_cast<float>(distance);
+                bone.density.at(i, j, k) = distance < 0.0 ? 1600.0f : 0.0f;
+            }
+    return bone;
+}
+
+Recording tone(bool cutting, double rate, double load) {
+    Recording r;
+    r.cutting = cutting;
+    r.rate = rate;
+    r.load = load;
+    r.full_scale = 100.0;
+    r.sample_rate = 48000;
+    for (int i = 0; i < 9600; ++i) {
+        const double phase = 2.0 * std::numbers::pi * rate * i / r.sample_rate;
+        r.samples.push_back(
+            static_cast<float>((cutting ? 0.5 : 0.2) * (std::sin(phase) + 0.3 * std::sin(2.0 * phase))));
+    }
+    return r;
+}
+
+}  // namespace
+
+std::shared_ptr<const void> sample_asset(std::string_view type_name) {
+    if (type_name == AssetLoader<Bone>::name) return std::make_shared<const Bone>(ball());
+    if (type_name == AssetLoader<RecordingSet>::name) {
+        RecordingSet set;
+        set.recordings = {tone(false, 200.0, 0.0), tone(true, 200.0, 7.0)};
+        return std::make_shared<const RecordingSet>(std::move(set));
+    }
+    throw Error("no sample of a " + std::string(type_name));
+}
+
+}  // namespace tactus::test
