@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/vibration/fundamental.hpp"
+
+#include "dsp/filter/biquad.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <vector>
+
+namespace tactus {
+
+namespace {
+
+struct Decimated {
+    std::vector<double> samples;
+    double rate;
+};
+
+Decimated decimate(std::span<const float> samples, double rate, double wanted, double cutoff) {
+    const auto step = static_cast<std::size_t>(std::max(1.0, std::floor(rate / wanted)));
+    Decimated out{{}, rate / static_cast<double>(step)};
+    out.samples.reserve(samples.size() / step + 1);
+    Biquad first{highpass(30.0, rate)}, second{lowpass(cutoff, rate, 0.541)}, third{lowpass(cutoff, rate, 1.307)};
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const double y = third(second(first(samples[i])));
+        if (i % step == 0) out.samples.push_back(y);
+    }
+    return out;
+}
+
+double line_power(std::span<const double> samples, double cycles_per_sample) {
+    const std::complex<double> step = std::polar(1.0, -2.0 * std::numbers::pi * cycles_per_sample);
+    std::complex<double> phasor = 1.0, sum = 0.0;
+    for (double x : samples) {
+        sum += x * phasor;
+        phasor *= step;
+    }
+    return std::norm(sum);
+}
+
+}  // namespace
+
+Fundamental estimate_fundamental(std::span<const float> samples, double sample_rate, double lowest, double highest) {
+    const Decimated low = decimate(samples, sample_rate, 6000.0, 1500.0);
+    const auto shortest = static_cast<std::size_t>(std::max(2.0, std::floor(low.rate / highest)));
+    const auto longest = static_cast<std::size_t>(std::ceil(low.rate / lowest));
+    const std::size_t count = low.samples.size();
+    if (count < 8 * longest) return {};
+    std::vector<double> likeness(longest + 2);
+    for (std::size_t lag = shortest - 1; lag <= longest + 1; ++lag) {
+        double product = 0.0, power = 0.0;
+        for (std::size_t i = 0; i + lag < count; ++i) {
+            const double a = low.samples[i], b = low.samples[i + lag];
+            product += a * b;
+            power += a * a + b * b;
+        }
+        likeness[lag] = power > 0.0 ? 2.0 * product / power : 0.0;
+    }
+    double best = 0.0;
+    for (std::size_t lag = shortest; lag <= longest; ++lag) best = std::max(best, likeness[lag]);
+    if (!(best > 0.0)) return {};
+    for (std::size_t lag = shortest; lag <= longest; ++lag) {
+        const double left = likeness[lag - 1], mid = likeness[lag], right = likeness[lag + 1];
+        if (mid < 0.85 * best || mid < left || mid < right) continue;
+        const double bend = left - 2.0 * mid + right;
+        const double shift = bend < 0.0 ? 0.5 * (left - right) / bend : 0.0;
+        const double rate = low.rate / (static_cast<double>(lag) + shift);
+        return {refine_rate(samples, sample_rate, rate, 0.02), mid};
+    }
+    return {};
+}
+
+double refine_rate(std::span<const float> samples, double sample_rate, double rate, double range, int orders) {
+    if (!(static_cast<double>(samples.size()) * rate / sample_rate >= 8.0)) return rate;
+    Decimated low = decimate(samples, sample_rate, 6000.0, std::min(1500.0, 0.4 * sample_rate));
+    const auto count = static_cast<double>(low.samples.size());
+    for (std::size_t i = 0; i < low.samples.size(); ++i)
+        low.samples[i] *= 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * (static_cast<double>(i) + 0.5) / count);
+    const auto together = [&](double f) {
+        double sum = 0.0;
+        for (int k = 1; k <= orders && k * f < 0.3 * low.rate; ++k) sum += line_power(low.samples, k * f / low.rate);
+        return sum;
+    };
+    // The main lobe of the highest order is 4/(duration × orders) wide: step a quarter of it, then close in.
+    const double step = low.rate / count / orders;
+    const int reach = std::clamp(static_cast<int>(range * rate / step), 1, 400);
+    const double stride = std::max(step, range * rate / reach);
+    double centre = rate, best = together(rate);
+    for (int i = -reach; i <= reach; ++i) {
+        const double f = rate + i * stride, power = together(f);
+        if (power > best) best = power, centre = f;
+    }
+    double a = centre - stride, b = centre + stride;
+    for (int i = 0; i < 24; ++i) {
+        const double left = a + (b - a) / 3.0, right = b - (b - a) / 3.0;
+        if (together(left) < together(right))
+            a = left;
+        else
+            b = right;
+    }
+    return 0.5 * (a + b);
+}
+
+}  // namespace tactus

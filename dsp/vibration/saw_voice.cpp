@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/vibration/saw_voice.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/filter/one_pole.hpp"
+#include "dsp/vibration/fundamental.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus {
+
+namespace {
+
+constexpr double stand_in_level = 0.25;  // −12 dB: cutting recordings in place of free air
+constexpr double same_rate = 1.03;       // recorded rates within this ratio are loads of one rate
+
+double ratio(double a, double b) noexcept { return a > b ? a / b : b / a; }
+
+bool positive(double value) { return std::isfinite(value) && value > 0.0; }
+
+}  // namespace
+
+void SawVoice::prepare(double rate, std::span<const SawRecording> recordings, const SawBehaviour& behaviour) {
+    if (!positive(rate)) throw Error("the sample rate of a saw must be above 0 Hz");
+    if (recordings.empty()) throw Error("a saw needs at least one recording");
+    if (recordings.size() > most_recordings)
+        throw Error(fmt::format("a saw takes at most {} recordings, not {}", most_recordings, recordings.size()));
+    *this = SawVoice{};
+    rate_ = rate;
+    behaviour_ = behaviour;
+    up_share_ = lag_share(behaviour.spin_up_time, 1.0 / rate);
+    down_share_ = lag_share(behaviour.spin_down_time, 1.0 / rate);
+    fade_step_ = behaviour.fade_time * rate > 1.0 ? 1.0 / (behaviour.fade_time * rate) : 1.0;
+    bool any[2] = {false, false};
+    for (const SawRecording& recording : recordings) {
+        const std::size_t end = recording.loop_end == 0 ? recording.samples.size() : recording.loop_end;
+        if (!positive(recording.sample_rate) || !positive(recording.reciprocation_rate) ||
+            !std::isfinite(recording.gain) || !std::isfinite(recording.load) || end > recording.samples.size() ||
+            recording.loop_begin >= end)
+            throw Error("a recording of a saw needs samples, a sample rate and a rate of reciprocation above 0");
+        const auto part = recording.samples.subspan(recording.loop_begin, end - recording.loop_begin);
+        const double exact = refine_rate(part, recording.sample_rate, recording.reciprocation_rate, 0.02);
+        loops_.emplace_back(part, recording.sample_rate, exact, rate);
+        loops_.back().align(loops_.front());
+        layers_.push_back({loops_.size() - 1, exact, recording.load, recording.gain, recording.cutting});
+        any[recording.cutting] = true;
+    }
+    for (const bool cutting : {false, true}) {
+        if (any[cutting]) continue;
+        for (std::size_t i = 0, count = layers_.size(); i < count && count <= most_recordings; ++i) {
+            if (layers_[i].cutting == cutting) break;
+            Layer stand_in = layers_[i];
+            stand_in.cutting = cutting;
+            if (!cutting) stand_in.amplitude *= stand_in_level;
+            layers_.push_back(stand_in);
+        }
+    }
+    for (const CycleLoop& a : loops_)
+        for (const CycleLoop& b : loops_) likeness_.push_back(&a == &b ? 1.0 : likeness(a, b));
+    lowest_recorded_ = layers_.front().rate;
+    for (const Layer& layer : layers_) lowest_recorded_ = std::min(lowest_recorded_, layer.rate);
+}
+
+void SawVoice::move_blade(bool trigger, double commanded_rate) noexcept {
+    const double wanted = trigger && commanded_rate > 0.0 ? std::min(commanded_rate, greatest_rate) : 0.0;
+    blade_rate_ += (wanted > 0.0 ? up_share_ : down_share_) * (wanted - blade_rate_);
+    if (wanted == 0.0 && blade_rate_ < 1.0) {
+        blade_rate_ = 0.0;
+        state_ = SawState::off;
+        return;
+    }
+    if (wanted == 0.0) {
+        state_ = SawState::spin_down;
+    } else if (state_ == SawState::off || state_ == SawState::spin_down) {
+        state_ = SawState::spin_up;
+    }
+    const bool reached = std::abs(blade_rate_ - wanted) < 0.02 * wanted;
+    if (wanted > 0.0 && (state_ != SawState::spin_up || reached)) state_ = loaded_ ? SawState::cutting : SawState::idle;
+}
+
+double SawVoice::choose_rate(bool cutting) const noexcept {
+    const double playing = playing_rate_[cutting];
+    double nearest = 0.0;
+    for (const Layer& layer : layers_)
+        if (layer.cutting == cutting && (nearest == 0.0 || ratio(blade_rate_, layer.rate) < ratio(blade_rate_, nearest)))
+            nearest = layer.rate;
+    if (playing == 0.0) return nearest;
+    const double off = ratio(blade_rate_, playing), off_nearest = ratio(blade_rate_, nearest);
+    const auto too_far = [&](double recorded) { return std::abs(blade_rate_ / recorded - 1.0) > greatest_pitch_change; };
+    return off > 1.02 * off_nearest || (too_far(playing) && !too_far(nearest)) ? nearest : playing;
+}
+
+void SawVoice::choose_layers(double load) noexcept {
+    const double rate = playing_rate_[loaded_] = choose_rate(loaded_);
+    // Below and above are the recorded loads on both sides of this one; equal outside the recorded range.
+    Layer *below = nullptr, *above = nullptr;
+    for (Layer& layer : layers_) {
+        layer.target = 0.0;
+        if (layer.cutting != loaded_ || ratio(layer.rate, rate) > same_rate) continue;
+        if (layer.load <= load && (!below || layer.load > below->load)) below = &layer;
+        if (layer.load >= load && (!above || layer.load < above->load)) above = &layer;
+    }
+    if (!below) below = above;
+    if (!above) above = below;
+    if (!below) return;
+    const double span = above->load - below->load;
+    const double x = span > 0.0 ? (load - below->load) / span : 0.0;
+    below->target += 1.0 - x;
+    above->target += x;
+}
+
+double SawVoice::mix() noexcept {
+    double sum = 0.0, weights = 0.0, wanted = 0.0, got = 0.0;
+    const std::size_t count = loops_.size();
+    for (Layer& a : layers_) {
+        a.weight += std::clamp(a.target - a.weight, -fade_step_, fade_step_);
+        if (a.weight <= 0.0) continue;
+        sum += a.weight * a.amplitude * loops_[a.loop](cycles_);
+    }
+    for (const Layer& a : layers_) {
+        if (a.weight <= 0.0) continue;
+        const double level_a = std::abs(a.amplitude) * std::sqrt(loops_[a.loop].power());
+        weights += a.weight;
+        wanted += a.weight * level_a * level_a;
+        for (const Layer& b : layers_) {
+            if (b.weight <= 0.0) continue;
+            const double level_b = std::abs(b.amplitude) * std::sqrt(loops_[b.loop].power());
+            got += a.weight * b.weight * level_a * level_b * likeness_[a.loop * count + b.loop];
+        }
+    }
+    if (!(weights > 0.0) || !(got > 0.0)) return 0.0;
+    return sum * std::sqrt(wanted / (weights * got));
+}
+
+float SawVoice::tick(double load, bool trigger, double commanded_rate) noexcept {
+    const double thrust = std::isfinite(load) ? load : 0.0;
+    loaded_ = thrust > (loaded_ ? behaviour_.load_off : behaviour_.load_on);
+    move_blade(trigger, commanded_rate);
+    if (state_ == SawState::off) return 0.0f;
+    choose_layers(thrust);
+    const double slow = std::min(1.0, blade_rate_ / lowest_recorded_);
+    const double y = behaviour_.gain * slow * slow * mix();
+    cycles_ += blade_rate_ / rate_;
+    return static_cast<float>(y);
+}
+
+int SawVoice::loudest_recording() const {
+    if (state_ == SawState::off) return -1;
+    const auto loudest = std::max_element(layers_.begin(), layers_.end(), [](const Layer& a, const Layer& b) {
+        return a.weight < b.weight;
+    });
+    return loudest == layers_.end() ? -1 : static_cast<int>(loudest->loop);
+}
+
+}  // namespace tactus
