@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/bone/import.hpp"
+
+#include "assets/bone/from_hu.hpp"
+#include "assets/bone/nrrd.hpp"
+#include "assets/bone/whole_file.hpp"
+#include "assets/mesh/mesh.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/hash.hpp"
+#include "dsp/distance/resample.hpp"
+#include "dsp/distance/surface_distance.hpp"
+
+#include <glm/common.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace tactus {
+
+namespace {
+
+constexpr double mm = 1e-3;
+constexpr double most_voxels = 2.5e8;
+
+struct Range {
+    Vec3 low{-std::numeric_limits<double>::infinity()}, high{std::numeric_limits<double>::infinity()};  // m
+};
+
+Range parse_crop(const std::string& text) {
+    Range range;
+    if (text.empty()) return range;
+    int read = 0;
+    Vec3 &a = range.low, &b = range.high;
+    const int found = std::sscanf(text.c_str(), "%lf:%lf,%lf:%lf,%lf:%lf%n", &a.x, &b.x, &a.y, &b.y, &a.z, &b.z, &read);
+    if (found != 6 || read != static_cast<int>(text.size()) || !is_finite(a) || !is_finite(b) || a.x >= b.x ||
+        a.y >= b.y || a.z >= b.z)
+        throw Error(fmt::format("crop box '{}' is not x0:x1,y0:y1,z0:z1 in mm with x0 < x1, y0 < y1, z0 < z1", text));
+    a *= mm;
+    b *= mm;
+    return range;
+}
+
+std::size_t parse_component(const std::string& text) {
+    if (text == "largest") return 1;
+    if (text == "all") return 0;
+    std::size_t count = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), count);
+    if (code != std::errc{} || end != text.data() + text.size() || count == 0)
+        throw Error(fmt::format("component '{}' is not 'largest', 'all' or a number from 1 up", text));
+    return count;
+}
+
+void check_layout(const Grid& layout) {
+    double count = 1.0;
+    for (const int n : layout.size) count *= n;
+    if (count > most_voxels)
+        throw Error(fmt::format("{:.0f} voxels at {:.3g} mm are too many (at most {:.0f}); use a larger spacing or a crop box",
+                                count, layout.spacing.x / mm, most_voxels));
+}
+
+// Samples of the result: the file's own within the box, or new ones at `spacing`.
+Grid ct_layout(const Grid& ct, const Range& crop, std::optional<double> spacing) {
+    Grid layout{{}, {}, spacing ? Vec3(*spacing) : ct.spacing, {}};
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        const double last = ct.origin[axis] + (ct.size[a] - 1) * ct.spacing[axis];
+        double low = std::max(crop.low[axis], ct.origin[axis]);
+        const double high = std::min(crop.high[axis], last);
+        if (!spacing)
+            low = ct.origin[axis] + std::ceil((low - ct.origin[axis]) / ct.spacing[axis] - 1e-9) * ct.spacing[axis];
+        const double steps = std::floor((high - low) / layout.spacing[axis] + 1e-9);
+        if (!(steps >= 2.0))
+            throw Error(fmt::format("the crop box leaves no volume along {}: the file spans {:.1f} to {:.1f} mm there",
+                                    "xyz"[axis], ct.origin[axis] / mm, last / mm));
+        if (steps > 100000.0) throw Error("the spacing gives more than 100000 voxels along an axis; use a larger one");
+        layout.origin[axis] = low;
+        layout.size[a] = static_cast<int>(steps) + 1;
+    }
+    check_layout(layout);
+    return layout;
+}
+
+// Decides whether values can be HU. Air at about -1000 shows that they are; a volume that was masked has exact zeros
+// all around and in most places instead.
+std::string hu_kind(const Grid& ct, const std::string& file) {
+    const auto [low, high] = std::minmax_element(ct.values.begin(), ct.values.end());
+    if (*low <= -500.0f) return "HU";
+    std::size_t zeros = 0, border = 0, border_zeros = 0;
+    std::size_t n = 0;
+    for (int k = 0; k < ct.size[2]; ++k)
+        for (int j = 0; j < ct.size[1]; ++j)
+            for (int i = 0; i < ct.size[0]; ++i, ++n) {
+                const bool zero = ct.values[n] == 0.0f;
+                zeros += zero;
+                if (i == 0 || j == 0 || k == 0 || i == ct.size[0] - 1 || j == ct.size[1] - 1 || k == ct.size[2] - 1)
+                    ++border, border_zeros += zero;
+            }
+    if (zeros * 2 > ct.values.size() && border_zeros * 100 >= border * 99) return "masked";
+    throw Error(fmt::format("{}: values {:g} to {:g} are not HU (no air near -1000): scanner numbers. Give the slope and "
+                            "intercept of the scanner's rescale, or convert the file to HU first",
+                            file, *low, *high));
+}
+
+struct Report {
+    const ImportProgress& progress;
+    void operator()(double share, std::string_view what) const {
+        if (progress) progress(share, what);
+    }
+};
+
+Bone import_ct(const ImportOptions& options, const Report& report, ImportSummary& summary) {
+    const Range crop = parse_crop(options.crop);
+    const std::size_t keep = parse_component(options.component);
+    report(0.0, "reading");
+    CtVolume ct = load_nrrd(options.input);
+    if (options.rescale) {
+        for (float& value : ct.grid.values)
+            value = static_cast<float>(options.rescale->first * double(value) + options.rescale->second);
+        summary.hu = "rescaled";
+    } else {
+        summary.hu = hu_kind(ct.grid, options.input.string());
+    }
+    const Grid layout = ct_layout(ct.grid, crop, options.spacing);
+    report(0.2, "resampling");
+    const Grid hu = resampled(ct.grid, layout);
+    report(0.4, "surface and distance");
+    HuBone made = bone_from_hu(hu, {static_cast<float>(options.threshold), keep, options.fill});
+    summary.components = made.components;
+    made.bone.provenance["encoding"] = ct.encoding;
+    if (ct.resampled) made.bone.provenance["axes"] = "turned; resampled to LPS";
+    if (options.rescale)
+        made.bone.provenance["rescale"] = fmt::format("HU = {} * value + {}", options.rescale->first, options.rescale->second);
+    return std::move(made.bone);
+}
+
+double unit_of(const ImportOptions& options, double extent) {
+    if (options.unit) {
+        if (*options.unit == "mm") return mm;
+        if (*options.unit == "cm") return 10.0 * mm;
+        if (*options.unit == "m") return 1.0;
+        throw Error(fmt::format("unit '{}' is not mm, cm or m", *options.unit));
+    }
+    if (extent < 5.0 || extent > 2000.0)
+        throw Error(fmt::format("{}: {:.3g} across cannot be mm for a bone; say what its coordinates are with --unit mm, cm or m",
+                                options.input.string(), extent));
+    return mm;
+}
+
+void require_watertight(const MeshTopology& topology, const std::string& file) {
+    if (topology.boundary_edges > 0)
+        throw Error(fmt::format("{}: the mesh is open: {} boundary edges; close its holes first", file, topology.boundary_edges));
+    if (topology.non_manifold_edges > 0)
+        throw Error(fmt::format("{}: {} edges belong to more than two triangles (non-manifold); repair the mesh first", file,
+                                topology.non_manifold_edges));
+    if (topology.flipped_edges > 0)
+        throw Error(fmt::format("{}: {} edges join triangles of opposite orientation; make the normals consistent first",
+                                file, topology.flipped_edges));
+}
+
+// Keeps the components of largest enclosed volume, each turned to look outwards.
+Mesh largest_components(const Mesh& mesh, const MeshTopology& topology, std::size_t keep) {
+    std::vector<Mesh> parts(topology.components);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        parts[static_cast<std::size_t>(topology.component_of[t])].triangles.push_back(mesh.triangles[t]);
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        parts[p].vertices = mesh.vertices;
+        order.push_back({volume_of(parts[p]), p});
+        parts[p].vertices.clear();
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });
+    Mesh kept;
+    kept.vertices = mesh.vertices;
+    if (keep == 0 || keep > order.size()) keep = order.size();
+    for (std::size_t n = 0; n < keep; ++n)
+        for (auto t : parts[order[n].second].triangles) {
+            // Shells of hollows look inwards on purpose, so all components turn with the largest.
+            if (order[0].first < 0.0) std::swap(t[1], t[2]);
+            kept.triangles.push_back(t);
+        }
+    return kept;
+}
+
+float assumed_density(double depth) {
+    const double core = std::clamp((depth - 2.0 * mm) / (1.0 * mm), 0.0, 1.0);
+    return depth < 0.0 ? 0.0f : static_cast<float>(1800.0 - 1400.0 * core * core * (3.0 - 2.0 * core));
+}
+
+Bone import_mesh(const ImportOptions& options, const Report& report, ImportSummary& summary) {
+    if (!options.crop.empty()) throw Error("a crop box is for CT volumes; cut the mesh in a mesh editor");
+    const std::size_t keep = parse_component(options.component);
+    report(0.0, "reading");
+    Mesh mesh = load_mesh(options.input);
+    Vec3 low = mesh.vertices.front(), high = low;
+    for (const Vec3& v : mesh.vertices) low = glm::min(low, v), high = glm::max(high, v);
+    const auto widest = [](const Vec3& v) { return std::max({v.x, v.y, v.z}); };
+    const double unit = unit_of(options, widest(high - low));
+    for (Vec3& v : mesh.vertices) v *= unit;
+    const MeshTopology topology = topology_of(mesh);
+    require_watertight(topology, options.input.string());
+    mesh = largest_components(mesh, topology, keep);
+    const auto corner = [&](const auto& t, std::size_t c) { return mesh.vertices[static_cast<std::size_t>(t[c])]; };
+    low = high = corner(mesh.triangles.front(), 0);
+    for (const auto& t : mesh.triangles)
+        for (std::size_t c = 0; c < 3; ++c) low = glm::min(low, corner(t, c)), high = glm::max(high, corner(t, c));
+    Grid layout{{}, {}, Vec3(options.spacing.value_or(std::max(0.4 * mm, widest(high - low) / 400.0))), {}};
+    layout.origin = low - 4.0 * layout.spacing;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double steps = std::ceil((high[axis] - low[axis]) / layout.spacing[axis]) + 9.0;
+        if (steps > 100000.0) throw Error("the spacing gives more than 100000 voxels along an axis; use a larger one");
+        layout.size[static_cast<std::size_t>(axis)] = static_cast<int>(steps);
+    }
+    check_layout(layout);
+    report(0.3, "distance");
+    Bone bone;
+    bone.distance = signed_distance(layout, mesh);
+    bone.density = Grid{layout.size, layout.origin, layout.spacing, {}};
+    bone.density.values.reserve(layout.count());
+    for (const float d : bone.distance.values)
+        bone.density.values.push_back(d > 0.0f ? 0.0f
+                                               : options.mesh_density ? static_cast<float>(*options.mesh_density)
+                                                                      : assumed_density(-double(d)));
+    summary.hu = "none";
+    summary.components = topology.components;
+    bone.provenance["calibration"] =
+        options.mesh_density ? fmt::format("assumed: density = {} kg/m3 throughout", *options.mesh_density)
+                             : "assumed: 1800 kg/m3 to 2 mm depth, falling to 400 at 3 mm";
+    bone.provenance["unit"] = fmt::format("{} m{}", unit, options.unit ? "" : " (assumed)");
+    return bone;
+}
+
+void measure(const Bone& bone, ImportSummary& summary) {
+    const TriangleSurface surface = iso_surface(bone.distance, 0.0f, false);
+    summary.frame = "LPS";
+    summary.size = bone.distance.size;
+    for (int axis = 0; axis < 3; ++axis)
+        summary.voxel_mm[static_cast<std::size_t>(axis)] = bone.distance.spacing[axis] / mm;
+    summary.bone_volume_mm3 = volume_of(surface) / (mm * mm * mm);
+    summary.surface_area_mm2 = area_of(surface) / (mm * mm);
+    double sum = 0.0, low = std::numeric_limits<double>::infinity(), high = 0.0;
+    std::size_t inside = 0;
+    for (std::size_t n = 0; n < bone.distance.values.size(); ++n) {
+        if (bone.distance.values[n] >= 0.0f) continue;
+        const double density = bone.density.values[n];
+        sum += density;
+        low = std::min(low, density);
+        high = std::max(high, density);
+        ++inside;
+    }
+    if (inside == 0) throw Error("the bone is thinner than a voxel everywhere; use a smaller spacing");
+    summary.density.min = low;
+    summary.density.max = high;
+    summary.density.mean = sum / static_cast<double>(inside);
+}
+
+}  // namespace
+
+Bone import_bone(const ImportOptions& options, const ImportProgress& progress, ImportSummary* summary) {
+    if (options.spacing && !(*options.spacing >= 0.01 * mm && *options.spacing <= 100.0 * mm))
+        throw Error("the spacing must be between 0.01 and 100 mm");
+    if (!std::isfinite(options.threshold)) throw Error("the threshold must be a number of HU");
+    if (options.mesh_density && !(*options.mesh_density > 0.0 && *options.mesh_density < 1e5))
+        throw Error("the density of a mesh must be above 0 and below 100000 kg/m3");
+    const Report report{progress};
+    ImportSummary found;
+    const std::string kind = options.input.extension().string();
+    const bool is_ct = kind == ".nrrd" || kind == ".nhdr";
+    Bone bone = is_ct ? import_ct(options, report, found) : import_mesh(options, report, found);
+    report(0.9, "measuring");
+    measure(bone, found);
+    const std::string bytes = read_whole_file(options.input);
+    Hash hash;
+    hash.add_bytes(bytes.data(), bytes.size());
+    bone.name = options.input.stem().string();
+    bone.provenance["source"] = options.input.filename().string();
+    bone.provenance["source_hash"] = fmt::format("{:016x}", hash.value());
+    bone.provenance["frame"] = found.frame;
+    bone.provenance["hu"] = found.hu;
+    bone.provenance["component"] = options.component;
+    bone.provenance["fill"] = options.fill ? "true" : "false";
+    if (!options.crop.empty()) bone.provenance["crop"] = options.crop + " mm";
+    if (options.spacing) bone.provenance["spacing"] = fmt::format("{} mm", *options.spacing / mm);
+    if (summary) *summary = found;
+    report(1.0, "done");
+    return bone;
+}
+
+}  // namespace tactus

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/mesh/mesh.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace tactus {
+
+namespace {
+
+const Vec3& corner(const TriangleSurface& mesh, const std::array<int, 3>& triangle, std::size_t n) {
+    return mesh.vertices[static_cast<std::size_t>(triangle[n])];
+}
+
+}  // namespace
+
+Mesh surface_of(const Grid& distance) {
+    Mesh mesh;
+    static_cast<TriangleSurface&>(mesh) = iso_surface(distance, 0.0f, false);
+    const auto& size = distance.size;
+    for (const Vec3& vertex : mesh.vertices) {
+        const Vec3 u = (vertex - distance.origin) / distance.spacing;
+        const int i = static_cast<int>(u.x + 0.5), j = static_cast<int>(u.y + 0.5), k = static_cast<int>(u.z + 0.5);
+        const int x0 = std::max(i - 1, 0), x1 = std::min(i + 1, size[0] - 1), y0 = std::max(j - 1, 0);
+        const int y1 = std::min(j + 1, size[1] - 1), z0 = std::max(k - 1, 0), z1 = std::min(k + 1, size[2] - 1);
+        const Vec3 slope = Vec3(distance.at(x1, j, k) - distance.at(x0, j, k), distance.at(i, y1, k) - distance.at(i, y0, k),
+                                distance.at(i, j, z1) - distance.at(i, j, z0)) /
+                           (Vec3(x1 - x0, y1 - y0, z1 - z0) * distance.spacing);
+        const double length = glm::length(slope);
+        mesh.normals.push_back(length > 0.0 ? slope / length : Vec3(0.0, 0.0, 1.0));
+    }
+    return mesh;
+}
+
+double volume_of(const TriangleSurface& mesh) {
+    if (mesh.vertices.empty()) return 0.0;
+    const Vec3 base = mesh.vertices.front();  // near the mesh, so that little cancels
+    double six = 0.0;
+    for (const auto& t : mesh.triangles)
+        six += glm::dot(corner(mesh, t, 0) - base, glm::cross(corner(mesh, t, 1) - base, corner(mesh, t, 2) - base));
+    return six / 6.0;
+}
+
+double area_of(const TriangleSurface& mesh) {
+    double twice = 0.0;
+    for (const auto& t : mesh.triangles)
+        twice += glm::length(glm::cross(corner(mesh, t, 1) - corner(mesh, t, 0), corner(mesh, t, 2) - corner(mesh, t, 0)));
+    return 0.5 * twice;
+}
+
+MeshTopology topology_of(const TriangleSurface& mesh) {
+    struct Edge {
+        int low, high, forward;
+        bool operator<(const Edge& other) const { return std::pair(low, high) < std::pair(other.low, other.high); }
+    };
+    std::vector<Edge> edges;
+    std::vector<int> parent(mesh.vertices.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto root = [&parent](int v) {
+        while (parent[static_cast<std::size_t>(v)] != v) {
+            parent[static_cast<std::size_t>(v)] = parent[static_cast<std::size_t>(parent[static_cast<std::size_t>(v)])];
+            v = parent[static_cast<std::size_t>(v)];
+        }
+        return v;
+    };
+    for (const auto& t : mesh.triangles)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const int a = t[c], b = t[(c + 1) % 3];
+            edges.push_back({std::min(a, b), std::max(a, b), a < b});
+            parent[static_cast<std::size_t>(root(a))] = root(b);
+        }
+    std::sort(edges.begin(), edges.end());
+    MeshTopology found;
+    for (std::size_t n = 0; n < edges.size();) {
+        std::size_t count = 0;
+        int forward = 0;
+        for (const Edge first = edges[n]; n < edges.size() && edges[n].low == first.low && edges[n].high == first.high; ++n)
+            ++count, forward += edges[n].forward;
+        found.boundary_edges += count == 1;
+        found.non_manifold_edges += count > 2;
+        found.flipped_edges += count == 2 && forward != 1;
+    }
+    std::vector<int> number(mesh.vertices.size(), -1);
+    for (const auto& t : mesh.triangles) {
+        int& id = number[static_cast<std::size_t>(root(t[0]))];
+        if (id < 0) id = static_cast<int>(found.components++);
+        found.component_of.push_back(id);
+    }
+    return found;
+}
+
+}  // namespace tactus

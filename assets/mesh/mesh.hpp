@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangle meshes: from files, from a distance grid, and what can be measured on them.
+#pragma once
+
+#include "dsp/distance/iso_surface.hpp"
+
+#include <cstddef>
+#include <filesystem>
+
+namespace tactus {
+
+/// Triangles with shared vertices (m inside; as in the file after load_mesh), and optionally one unit normal each.
+struct Mesh : TriangleSurface {
+    std::vector<Vec3> normals;  ///< empty or one per vertex
+};
+
+/// STL (binary, text), PLY or OBJ. Coordinates as in the file, times `scale`; equal points are joined, triangles
+/// without area dropped. Throws Error for damaged files, coordinates that are no numbers and files without triangles.
+Mesh load_mesh(const std::filesystem::path& path, double scale = 1.0);
+
+/// The zero surface of a signed distance (m, negative inside) with normals from its gradient.
+Mesh surface_of(const Grid& distance);
+
+double volume_of(const TriangleSurface& mesh);  ///< m³, positive when triangles look outwards; mesh must be closed
+double area_of(const TriangleSurface& mesh);    ///< m²
+
+/// How the triangles hang together. Watertight: every edge has two triangles that pass it in opposite directions.
+struct MeshTopology {
+    std::size_t boundary_edges = 0;      ///< with one triangle
+    std::size_t non_manifold_edges = 0;  ///< with more than two triangles
+    std::size_t flipped_edges = 0;       ///< with two triangles that pass it the same way
+    std::size_t components = 0;          ///< joined through vertices
+    std::vector<int> component_of;       ///< per triangle, in order of first appearance
+
+    bool is_watertight() const { return boundary_edges + non_manifold_edges + flipped_edges == 0; }
+};
+MeshTopology topology_of(const TriangleSurface& mesh);
+
+}  // namespace tactus

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Signed distance to the sub-voxel surface of grey values.
+#pragma once
+
+#include "dsp/volume/grid.hpp"
+
+namespace tactus {
+
+/// Each sample replaced by the mean under a cubic B-spline of one cell's width (weights 1/6, 4/6, 1/6 per axis, border
+/// repeated): standard deviation 0.58 cells. Takes off the staircase that partial volume leaves on an oblique surface
+/// (0.08 cells high), for a shift of an edge of radius R of about cell² / 3R.
+Grid smoothed(const Grid& grid);
+
+/// Signed distance (m, negative where grey ≥ iso) at the samples of `grey` to the surface grey == iso. Within three
+/// cells the distance is to the iso-surface of the tricubic (Catmull-Rom) interpolant, found by Newton steps from the
+/// nearest triangle; farther away it is to triangles whose corners lie on that surface. The sign is the sample's own.
+/// All samples on one side give an infinite distance.
+Grid distance_to_iso(const Grid& grey, float iso);
+
+}  // namespace tactus
