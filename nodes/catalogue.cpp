@@ -12,26 +12,31 @@
     X(DeviceInput, input)     \
     X(DeviceOutput, input)    \
     X(DeviceWrench, input)    \
+    X(Envelope, vibration)    \
+    X(Filter, vibration)      \
     X(Gain, vibration)        \
     X(Magnitude, math)        \
     X(Mix, vibration)         \
     X(Probe, output)          \
     X(Range, math)            \
     X(Record, output)         \
+    X(Sine, input)            \
     X(SphereContact, contact) \
     X(Spring, coupling)       \
     X(Workspace, input)
 
 namespace tactus {
 
+namespace nodes {
 #define X(Type, family) const NodeType& node_type_##Type();
 TACTUS_NODES(X)
 #undef X
+}  // namespace nodes
 
 Catalogue catalogue() {
     static const std::vector<const NodeType*> types = [] {
         std::vector<const NodeType*> all{
-#define X(Type, family) &node_type_##Type(),
+#define X(Type, family) &nodes::node_type_##Type(),
             TACTUS_NODES(X)
 #undef X
         };

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace tactus {
+namespace tactus::nodes {
 
 struct SphereContact {
     static constexpr auto about =
@@ -33,4 +33,4 @@ struct SphereContact {
 
 TACTUS_NODE(SphereContact, pose, wrench, penetration, in_contact, centre, radius, tool_radius, stiffness)
 
-}  // namespace tactus
+}  // namespace tactus::nodes

@@ -2,7 +2,7 @@
 #include "dsp/operator/hand.hpp"
 #include "graph/node.hpp"
 
-namespace tactus {
+namespace tactus::nodes {
 
 struct Spring {
     static constexpr auto about =
@@ -31,4 +31,4 @@ struct Spring {
 TACTUS_NODE(Spring, device, object, device_twist, object_twist, wrench, stiffness, damping, angular_stiffness,
             angular_damping)
 
-}  // namespace tactus
+}  // namespace tactus::nodes

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/node.hpp"
 
-namespace tactus {
+namespace tactus::nodes {
 
 /// A number that stays what the patch, or a live change, says.
 struct Constant {
@@ -16,4 +16,4 @@ struct Constant {
 
 TACTUS_NODE(Constant, value, number)
 
-}  // namespace tactus
+}  // namespace tactus::nodes

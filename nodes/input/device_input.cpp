@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/node.hpp"
 
-namespace tactus {
+namespace tactus::nodes {
 
 struct DeviceInput {
     static constexpr auto about =
@@ -36,4 +36,4 @@ private:
 
 TACTUS_NODE(DeviceInput, pose, twist, trigger, valid, device)
 
-}  // namespace tactus
+}  // namespace tactus::nodes

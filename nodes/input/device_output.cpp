@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace tactus {
+namespace tactus::nodes {
 
 /// A limit of 0 in `info` means that the device states none.
 static double lower_limit(double wanted, double of_device) {
@@ -70,4 +70,4 @@ private:
 
 TACTUS_NODE(DeviceOutput, wrench, applied, engaged, device, max_force, max_torque, slew, torque_slew, engage_time)
 
-}  // namespace tactus
+}  // namespace tactus::nodes

@@ -2,7 +2,7 @@
 #include "dsp/coupling/placement.hpp"
 #include "graph/node.hpp"
 
-namespace tactus {
+namespace tactus::nodes {
 
 struct DeviceWrench {
     static constexpr auto about =
@@ -20,4 +20,4 @@ struct DeviceWrench {
 
 TACTUS_NODE(DeviceWrench, wrench, tool, frame, on_hand, scale)
 
-}  // namespace tactus
+}  // namespace tactus::nodes

@@ -2,7 +2,7 @@
 #include "dsp/coupling/placement.hpp"
 #include "graph/node.hpp"
 
-namespace tactus {
+namespace tactus::nodes {
 
 struct Workspace {
     static constexpr auto about =
@@ -37,4 +37,4 @@ private:
 
 TACTUS_NODE(Workspace, device, pose, frame, force_scale, origin, rotation, scale, grip, grip_rotation)
 
-}  // namespace tactus
+}  // namespace tactus::nodes

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace tactus {
+namespace tactus::nodes {
 
 struct Magnitude {
     static constexpr auto about =
@@ -37,4 +37,4 @@ private:
 
 TACTUS_NODE(Magnitude, in, out, part)
 
-}  // namespace tactus
+}  // namespace tactus::nodes

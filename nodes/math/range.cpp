@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace tactus {
+namespace tactus::nodes {
 
 struct Range {
     static constexpr auto about =
@@ -31,4 +31,4 @@ private:
 
 TACTUS_NODE(Range, in, out, in_low, in_high, out_low, out_high)
 
-}  // namespace tactus
+}  // namespace tactus::nodes

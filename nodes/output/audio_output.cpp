@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace tactus {
+namespace tactus::nodes {
 
 struct AudioOutput {
     static constexpr auto about = "Sound for a listener or an actuator: the sound card, or a file when there is none.";
@@ -41,4 +41,4 @@ private:
 
 TACTUS_NODE(AudioOutput, signal, full_scale)
 
-}  // namespace tactus
+}  // namespace tactus::nodes

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tactus {
+namespace tactus::nodes {
 
 struct Probe {
     static constexpr auto about = "Least, greatest, mean and last value of a wire, told when the run is over.";
@@ -83,4 +83,4 @@ private:
 
 TACTUS_NODE(Probe, in)
 
-}  // namespace tactus
+}  // namespace tactus::nodes

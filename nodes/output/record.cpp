@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/node.hpp"
 
-namespace tactus {
+namespace tactus::nodes {
 
 struct Record {
     static constexpr auto about = "Writes every value of a wire to a file: a signal as sound, all else as a table.";
@@ -31,4 +31,4 @@ private:
 
 TACTUS_NODE(Record, in, file, unit)
 
-}  // namespace tactus
+}  // namespace tactus::nodes

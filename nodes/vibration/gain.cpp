@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/node.hpp"
 
-namespace tactus {
+namespace tactus::nodes {
 
 struct Gain {
     static constexpr auto about = "Multiplies a signal by a factor.";
@@ -18,4 +18,4 @@ struct Gain {
 
 TACTUS_NODE(Gain, in, out, factor)
 
-}  // namespace tactus
+}  // namespace tactus::nodes

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/node.hpp"
 
-namespace tactus {
+namespace tactus::nodes {
 
 struct Mix {
     static constexpr auto about = "Sum of up to eight signals, each times its gain.";
@@ -37,4 +37,4 @@ private:
 
 TACTUS_NODE(Mix, in1, in2, in3, in4, in5, in6, in7, in8, out, gain1, gain2, gain3, gain4, gain5, gain6, gain7, gain8)
 
-}  // namespace tactus
+}  // namespace tactus::nodes

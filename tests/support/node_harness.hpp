@@ -100,8 +100,12 @@ public:
     template <class T>
     std::vector<T> values(const std::string& output) const {
         const std::vector<std::byte>& bytes = trace(output);
-        std::vector<T> all(bytes.size() / sizeof(T));
-        std::memcpy(static_cast<void*>(all.data()), bytes.data(), all.size() * sizeof(T));
+        std::vector<T> all;
+        for (std::size_t at = 0; at < bytes.size(); at += sizeof(T)) {
+            T value;
+            std::memcpy(static_cast<void*>(&value), bytes.data() + at, sizeof(T));
+            all.push_back(value);
+        }
         return all;
     }
     template <class T>

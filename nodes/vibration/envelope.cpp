@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/filter/one_pole.hpp"
+#include "dsp/filter/sample.hpp"
+#include "graph/node.hpp"
+
+namespace tactus::nodes {
+
+struct Envelope {
+    static constexpr auto about = "Level of a signal: its absolute value, smoothed.";
+
+    In<Signal> in{"the signal"};
+    Out<Signal> out{"its level"};
+    Out<double> level{"the same, as a number for slower nodes"};
+    Param attack{"5 ms", "0 ms", "10 s", "time constant of rising"};
+    Param release{"50 ms", "0 ms", "10 s", "time constant of falling"};
+
+    void prepare(const Setup& setup) { dt_ = seconds(setup.period); }
+
+    void process(const Tick& tick) noexcept {
+        follower_.attack_share = lag_share(attack, dt_);
+        follower_.release_share = lag_share(release, dt_);
+        for (int i = 0; i < tick.frames; ++i) {
+            level[i] = follower_(finite_or_zero(in[i]));
+            out[i] = static_cast<float>(level[i]);
+        }
+    }
+
+private:
+    EnvelopeFollower follower_;
+    double dt_ = 0.0;
+};
+
+TACTUS_NODE(Envelope, in, out, level, attack, release)
+
+}  // namespace tactus::nodes

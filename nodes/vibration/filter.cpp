@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/filter/biquad.hpp"
+#include "dsp/filter/sample.hpp"
+#include "graph/node.hpp"
+
+namespace tactus::nodes {
+
+struct Filter {
+    static constexpr auto about =
+        "Second-order filter. A sample that is not finite counts as 0; a frequency above half the rate acts as just "
+        "below.";
+
+    In<Signal> in{"the signal"};
+    Out<Signal> out{"filtered"};
+    Choice kind{{"lowpass", "highpass", "bandpass", "notch"}, "what passes"};
+    Param frequency{"1 kHz", "0.1 Hz", "1 MHz", "of the edge, of the band's or the notch's middle"};
+    Param q{"0.70710678", "0.05", "200", "gain at the edge; middle frequency per -3 dB width of band and notch"};
+
+    void prepare(const Setup& setup) { rate_ = setup.rate(); }
+
+    void process(const Tick& tick) noexcept {
+        if (frequency != frequency_ || q != q_) design();
+        for (int i = 0; i < tick.frames; ++i) out[i] = to_sample(section_(finite_or_zero(in[i])));
+    }
+
+private:
+    void design() noexcept {
+        frequency_ = frequency;
+        q_ = q;
+        using Design = BiquadCoefficients (*)(double, double, double) noexcept;
+        constexpr Design designs[] = {lowpass, highpass, bandpass, notch};
+        section_.coefficients = designs[kind.index](frequency_, rate_, q_);
+    }
+
+    Biquad section_;
+    double rate_ = 48000.0, frequency_ = 0.0, q_ = 0.0;
+};
+
+TACTUS_NODE(Filter, in, out, kind, frequency, q)
+
+}  // namespace tactus::nodes

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/operator/hand.hpp"
+#include "tests/support/node_harness.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <limits>
+
+using namespace tactus;
+using test::NodeHarness;
+
+namespace {
+
+constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
+
+DeviceSample sample_at(double x, std::int64_t counter) {
+    DeviceSample sample;
+    sample.pose.position.x = x;
+    sample.twist.linear.x = 0.1;
+    sample.buttons = button_trigger;
+    sample.counter = counter;
+    sample.valid = true;
+    return sample;
+}
+
+double number_of(const Report& report, const std::string& section, const std::string& key) {
+    return std::get<double>(report.sections.at(section).at(key));
+}
+
+}  // namespace
+
+TEST_CASE("device_input holds the last good pose, and lets go of the trigger, while samples are bad") {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    NodeHarness node("device_input", servo);
+    node.device_feed = [&](std::int64_t k, DevicePort& port) {
+        port.sample = sample_at(0.001 * static_cast<double>(k), k);
+        if (k == 5) port.sample.valid = false;
+        if (k == 6) port.sample.pose.position.y = nan;
+        if (k == 7) port.sample.pose.orientation = {0.0, 0.0, 0.0, 0.0};
+    };
+    node.prepare();
+    node.run(10);
+    const auto poses = node.values<Pose>("pose");
+    for (const std::size_t k : {5u, 6u, 7u}) {
+        CHECK(poses[k].position == poses[4].position);
+        CHECK_FALSE(node.values<bool>("valid")[k]);
+        CHECK_FALSE(node.values<bool>("trigger")[k]);
+        CHECK(node.values<Twist>("twist")[k].linear.x == 0.0);
+    }
+    CHECK(poses[8].position.x == Approx(0.008));
+    CHECK(node.values<bool>("trigger")[8]);
+}
+
+TEST_CASE("device_output bounds what reaches the hand and tells what it was asked for") {
+    NodeHarness node("device_output", servo);
+    node.set("max_force", "6 N");
+    node.device_feed = [](std::int64_t k, DevicePort& port) { port.sample = sample_at(0.0, k); };
+    node.feed<Wrench>("wrench",
+                      [](std::int64_t k) { return k < 300 ? Wrench{} : Wrench{{k < 600 ? 2.0 : 40.0, 0.0, 0.0}, {}}; });
+    node.prepare();
+    node.run(1000);
+    const auto applied = node.values<Wrench>("applied");
+    CHECK(applied[550].force.x == Approx(2.0));
+    CHECK(applied[999].force.x == Approx(6.0));
+    for (std::size_t k = 1; k < applied.size(); ++k)
+        REQUIRE(std::abs(applied[k].force.x - applied[k - 1].force.x) <= 1.0 + 1e-12);
+    CHECK(node.outside.devices.at("")->wrench.force.x == applied.back().force.x);
+    CHECK(node.outside.devices.at("")->has_output);
+    const Report report = node.report();
+    CHECK(number_of(report, "force", "max_N") == Approx(6.0));
+    CHECK(number_of(report, "force", "raw_max_N") == Approx(40.0));
+    CHECK(number_of(report, "force", "raw_max_step_N") == Approx(38.0));
+    CHECK(number_of(report, "force", "limited_ticks") == 400.0);
+}
+
+TEST_CASE("device_output takes the device's own limit when that is lower") {
+    NodeHarness node("device_output", servo);
+    node.outside.device("", {}).info.max_force = 3.0;
+    node.device_feed = [](std::int64_t k, DevicePort& port) { port.sample = sample_at(0.0, k); };
+    node.feed<Wrench>("wrench", [](std::int64_t k) { return k < 300 ? Wrench{} : Wrench{{8.0, 0.0, 0.0}, {}}; });
+    node.prepare();
+    node.run(600);
+    CHECK(node.last<Wrench>("applied").force.x == Approx(3.0));
+}
+
+TEST_CASE("device_output lets go, and says why, when the device stops delivering samples") {
+    NodeHarness node("device_output", servo);
+    node.device_feed = [](std::int64_t k, DevicePort& port) {
+        port.sample = sample_at(0.0, std::min<std::int64_t>(k, 500));
+    };
+    node.feed<Wrench>("wrench", [](std::int64_t k) { return k < 300 ? Wrench{} : Wrench{{5.0, 0.0, 0.0}, {}}; });
+    node.prepare();
+    node.run(600);
+    CHECK(node.values<Wrench>("applied")[490].force.x == Approx(5.0));
+    CHECK(node.last<Wrench>("applied").force.x == 0.0);
+    CHECK(std::get<std::string>(node.report().sections.at("force").at("fault")).find("stopped") != std::string::npos);
+}
+
+TEST_CASE("workspace and device_wrench together keep the power of hand and tool equal") {
+    const Pose handle{{0.03, 0.01, -0.02}, rotation_by({0.3, 0.7, -0.2})};
+    const Vec3 velocity(0.2, -0.1, 0.05);
+    const double dt = 1e-3 / 1024.0;
+    NodeHarness place("workspace", servo);
+    place.set("origin", "10 mm, -20 mm, 5 mm").set("rotation", "30 deg, 40 deg, -70 deg").set("scale", "2.5");
+    place.set("grip", "0 mm, 30 mm, -80 mm").set("grip_rotation", "-90 deg, 10 deg, 0 deg");
+    place.feed<Pose>("device", [&](std::int64_t k) {
+        return Pose{handle.position + velocity * (static_cast<double>(k) * dt), handle.orientation};
+    });
+    place.prepare();
+    place.run(2);
+    const auto tools = place.values<Pose>("pose");
+
+    const Wrench on_tool{{3.0, -5.0, 2.0}, {0.1, 0.2, -0.3}};
+    NodeHarness back("device_wrench", servo);
+    back.set("scale", "2.5").feed("wrench", on_tool).feed("tool", tools[0]);
+    back.feed("frame", place.values<Pose>("frame")[0]);
+    back.prepare();
+    back.run(1);
+    const double scene = glm::dot(on_tool.force, (tools[1].position - tools[0].position) / dt);
+    CHECK(glm::dot(back.last<Wrench>("on_hand").force, velocity) == Approx(scene).epsilon(1e-9));
+    CHECK(place.last<double>("force_scale") == 2.5);
+}
