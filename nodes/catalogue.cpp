@@ -7,6 +7,7 @@
 
 // name of the struct, family (folder), file
 #define TACTUS_NODES(X)       \
+    X(Actuator, vibration)    \
     X(AudioOutput, output)    \
     X(Constant, input)        \
     X(DeviceInput, input)     \

@@ -11,7 +11,7 @@ using test::NodeHarness;
 namespace {
 
 constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace
 
@@ -46,7 +46,7 @@ TEST_CASE("record writes one value per tick of anything else, to a table") {
 TEST_CASE("sound beyond full scale is cut, NaN is silence, and both are counted") {
     NodeHarness node("audio_output");
     node.set("full_scale", "10").feed<float>("signal", [](std::int64_t k) {
-        return k == 1 ? 25.0f : k == 2 ? -25.0f : k == 3 ? nan : 5.0f;
+        return k == 1 ? 25.0f : k == 2 ? -25.0f : k == 3 ? not_a_number : 5.0f;
     });
     node.prepare();
     node.run(100, 3);
@@ -63,7 +63,7 @@ TEST_CASE("a probe tells least, greatest, mean and last of each column, and coun
     test::HarnessOptions options = servo;
     NodeHarness number("probe", options);
     number.feed<double>("in",
-                        [](std::int64_t k) { return k == 4 ? static_cast<double>(nan) : static_cast<double>(k); });
+                        [](std::int64_t k) { return k == 4 ? static_cast<double>(not_a_number) : static_cast<double>(k); });
     number.prepare();
     number.run(10);
     const Report report = number.report();

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/vibration/actuator.hpp"
+
+#include "dsp/filter/sample.hpp"
+#include "graph/node.hpp"
+
+namespace tactus::nodes {
+
+struct Actuator {
+    static constexpr auto about =
+        "A voice-coil actuator on a handle: what its amplifier delivers, and the acceleration that follows.";
+
+    In<Signal> drive{"what it is to play"};
+    Out<Signal> voltage{"what the amplifier delivers", "V"};
+    Out<Signal> signal{"acceleration of the handle", "m/s^2"};
+    Choice preset{{"haptuator_small", "haptuator_large", "markII_D"}, "its data where the parameters below say 0"};
+    Param gain{"1 V", "-100 V", "100 V", "drive voltage per unit of the signal"};
+    Param mass{structural, "100 g", "1 g", "10 kg", "all that is shaken"};
+    Param resonance{structural, "0 Hz", "0 Hz", "2 kHz", "of the moving mass on its spring"};
+    Param damping{structural, "0", "0", "10", "ratio to critical"};
+    Param resistance{structural, "0 ohm", "0 ohm", "1 kohm", "of the coil"};
+    Param inductance{structural, "0 mH", "0 mH", "1 H", "of the coil"};
+    Param voltage_limit{structural, "0 V", "0 V", "100 V", "of the amplifier"};
+    Param current_limit{structural, "0 A", "0 A", "100 A", "of the coil"};
+
+    void prepare(const Setup& setup) {
+        try {
+            ActuatorModel data = find_actuator(preset.options[static_cast<std::size_t>(preset.index)]);
+            override_with(data.resonance, resonance);
+            override_with(data.damping, damping);
+            override_with(data.resistance, resistance);
+            override_with(data.inductance, inductance);
+            override_with(data.voltage_limit, voltage_limit);
+            override_with(data.current_limit, current_limit);
+            actuator_ = tactus::Actuator(data, mass, setup.rate());
+        } catch (const Error& error) {
+            setup.fail(error.message());
+        }
+        name_ = setup.name;
+    }
+
+    void process(const Tick& tick) noexcept {
+        const double volts = gain;
+        for (int i = 0; i < tick.frames; ++i) {
+            const ActuatorOutput out = actuator_(volts * finite_or_zero(drive[i]));
+            voltage[i] = to_sample(out.voltage);
+            signal[i] = to_sample(out.acceleration);
+            limited_ += out.limited;
+        }
+    }
+
+    void report(Report& report) const { report.set(name_, "limited_samples", static_cast<double>(limited_)); }
+
+private:
+    static void override_with(double& value, double given) {
+        if (given > 0.0) value = given;
+    }
+
+    tactus::Actuator actuator_;
+    std::int64_t limited_ = 0;
+    std::string name_;
+};
+
+TACTUS_NODE(Actuator, drive, voltage, signal, preset, gain, mass, resonance, damping, resistance, inductance,
+            voltage_limit, current_limit)
+
+}  // namespace tactus::nodes
