@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/bone/bone.hpp"
 #include "dsp/operator/hand.hpp"
 #include "tests/support/node_harness.hpp"
 
@@ -120,4 +121,30 @@ TEST_CASE("workspace and device_wrench together keep the power of hand and tool 
     const double scene = glm::dot(on_tool.force, (tools[1].position - tools[0].position) / dt);
     CHECK(glm::dot(back.last<Wrench>("on_hand").force, velocity) == Approx(scene).epsilon(1e-9));
     CHECK(place.last<double>("force_scale") == 2.5);
+}
+
+TEST_CASE("a workspace with a bone puts the resting blade in front of it, teeth towards it") {
+    NodeHarness node("workspace", servo);
+    node.asset("bone", test::sample_asset("bone")).set("clearance", "4 mm");
+    node.feed<Pose>("device", [](std::int64_t k) {
+        return Pose{k == 1 ? Vec3(0.0, 0.0, -3e-3) : k == 2 ? Vec3(2e-3, 0.0, 0.0) : Vec3(0.0), Quat(1.0, 0.0, 0.0, 0.0)};
+    });
+    node.prepare();
+    node.run(3);
+    const auto tools = node.values<Pose>("pose");
+    const Vec3 inwards = -glm::normalize(tools[0].position);  // the bone is a ball of 10 mm about the origin
+    CHECK(glm::length(tools[0].position) == Approx(14e-3).epsilon(0.01));
+    CHECK(glm::dot(tools[0].rotate({0.0, 1.0, 0.0}), inwards) > 0.99);
+    CHECK(glm::length(tools[1].position) == Approx(11e-3).epsilon(0.01));
+    CHECK(glm::length(tools[2].position - tools[0].position - tools[0].rotate({2e-3, 0.0, 0.0})) < 1e-9);
+    const Report report = node.report();
+    CHECK(std::get<double>(report.sections.at("site").at("thickness_mm")) == Approx(20.0).margin(1.0));
+}
+
+TEST_CASE("a workspace says so when a bone has no place for a blade") {
+    Bone air = *std::static_pointer_cast<const Bone>(test::sample_asset("bone"));
+    for (float& d : air.distance.values) d = 1.0f;
+    NodeHarness node("workspace", servo);
+    node.asset("bone", std::make_shared<const Bone>(air));
+    CHECK_THROWS_WITH(node.prepare(), Catch::Contains("leave 'bone' out"));
 }

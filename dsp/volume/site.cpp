@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/volume/site.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace tactus {
+
+namespace {
+
+constexpr double far = 1.0;               // m, beyond the grid there is no bone
+constexpr double deepest = 40e-3;         // m
+constexpr double least_thickness = 1e-3;  // m; thinner is noise of the segmentation
+constexpr double hollow_density = 200.0;  // kg/m³: below is air that was filled in
+constexpr double longest_hollow = 3e-3;   // m that may lie between two walls of one bone
+constexpr std::size_t most_candidates = 12'000;
+constexpr int directions = 8;
+
+/// Value between the samples; `outside` beyond them.
+double value_at(const Grid& grid, const Vec3& p, double outside) {
+    const Vec3 u = (p - grid.origin) / grid.spacing;
+    int cell[3];
+    double t[3];
+    for (int a = 0; a < 3; ++a) {
+        if (!(u[a] >= 0.0 && u[a] <= grid.size[static_cast<std::size_t>(a)] - 1)) return outside;
+        cell[a] = std::min(static_cast<int>(u[a]), grid.size[static_cast<std::size_t>(a)] - 2);
+        t[a] = u[a] - cell[a];
+    }
+    double sum = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
+        const double weight = (dx ? t[0] : 1.0 - t[0]) * (dy ? t[1] : 1.0 - t[1]) * (dz ? t[2] : 1.0 - t[2]);
+        sum += weight * static_cast<double>(grid.at(cell[0] + dx, cell[1] + dy, cell[2] + dz));
+    }
+    return sum;
+}
+
+class Search {
+public:
+    Search(const Grid& distance, const Grid& density, const SiteRequest& request)
+        : distance_(distance),
+          density_(density),
+          request_(request),
+          reach_(request.blade_length / 2.0 + request.travel) {
+        const Vec3& h = distance.spacing;
+        step_ = std::max(0.25e-3, std::min({h.x, h.y, h.z}) / 2.0);
+        coarse_ = std::max({h.x, h.y, h.z});
+    }
+
+    std::optional<SawSite> run() {
+        for (const int index : candidates()) look_at(index);
+        if (!(best_score_ > 0.0)) return std::nullopt;
+        return best_;
+    }
+
+private:
+    double d(const Vec3& p) const { return value_at(distance_, p, far); }
+
+    /// Samples near the surface on a lattice that is as fine as their number allows.
+    std::vector<int> candidates() const {
+        std::vector<int> found;
+        for (double pitch = std::max(3e-3, coarse_);; pitch *= 1.5) {
+            found.clear();
+            int stride[3];
+            for (int a = 0; a < 3; ++a) stride[a] = std::max(1, static_cast<int>(pitch / distance_.spacing[a]));
+            for (int k = 0; k < distance_.size[2]; k += stride[2])
+                for (int j = 0; j < distance_.size[1]; j += stride[1])
+                    for (int i = 0; i < distance_.size[0]; i += stride[0])
+                        if (std::abs(static_cast<double>(distance_.at(i, j, k))) < 0.5 * pitch)
+                            found.push_back(static_cast<int>(distance_.index(i, j, k)));
+            if (found.size() <= most_candidates) return found;
+        }
+    }
+
+    /// Differences over 1.5 mm to both sides: the blade meets the shape of the bone, not the roughness of its voxels.
+    Vec3 slope(const Vec3& p) const {
+        const double e = std::max(1.5e-3, coarse_);
+        Vec3 g;
+        for (int a = 0; a < 3; ++a) {
+            Vec3 offset(0.0);
+            offset[a] = e;
+            const double above = value_at(distance_, p + offset, e), below = value_at(distance_, p - offset, e);
+            g[a] = (above - below) / (2.0 * e);
+        }
+        return g;
+    }
+
+    bool near_border(const Vec3& p) const {
+        // Import puts up to four layers of air around a bone that the scan cuts; its flat face lies inside of them.
+        const Vec3 margin = 5.0 * distance_.spacing + Vec3(2e-3);
+        const Vec3 last = distance_.position(distance_.size[0] - 1, distance_.size[1] - 1, distance_.size[2] - 1);
+        for (int a = 0; a < 3; ++a)
+            if (p[a] < distance_.origin[a] + margin[a] || p[a] > last[a] - margin[a]) return true;
+        return false;
+    }
+
+    /// No bone nearer than `gap` from `from` along `direction` until the grid is left.
+    bool is_open(const Vec3& from, const Vec3& direction, double gap) const {
+        for (double t = 0.0; t < far;) {
+            const double clear = d(from + direction * t);
+            if (clear >= far) return true;
+            if (clear < gap) return false;
+            t += std::max(clear - gap, 1e-3);
+        }
+        return true;
+    }
+
+    double thickness(const Vec3& p, const Vec3& feed) const {
+        double solid = 0.0, hollow = 0.0;
+        for (double t = step_; t < deepest; t += step_) {
+            const Vec3 at = p + feed * t;
+            if (d(at) >= 0.0 && t > 2.0 * step_ + 0.5e-3) break;
+            // Its own surface is blurred in any scan: half a millimetre of it may look soft.
+            hollow = value_at(density_, at, 0.0) < hollow_density ? hollow + step_ : 0.0;
+            if (hollow > longest_hollow) break;
+            solid = t;
+        }
+        return solid > hollow ? solid - hollow : 0.0;
+    }
+
+    /// Depth of the surface below the plane through `p`, seen along `feed` at `offset`; 6 mm when there is none.
+    double drop(const Vec3& p, const Vec3& feed, const Vec3& offset) const {
+        constexpr double span = 6e-3;
+        double before = d(p + offset - feed * span);
+        for (double t = -span + step_; t < span; t += step_) {
+            const double now = d(p + offset + feed * t);
+            if (now < 0.0) return t - step_ * now / (now - std::min(before, far));
+            before = now;
+        }
+        return span;
+    }
+
+    /// 1 for a surface that falls off alike to both sides along `axis`, 0 when it is 2 mm out of square.
+    double evenness(const Vec3& p, const Vec3& feed, const Vec3& axis, double arm) const {
+        return 1.0 - std::min(1.0, std::abs(drop(p, feed, axis * arm) - drop(p, feed, -axis * arm)) / 2e-3);
+    }
+
+    /// The blade and its travel above the bone touch nothing.
+    bool body_is_free(const Vec3& p, const Vec3& feed, const Vec3& stroke) const {
+        for (const double height : {2e-3, 5e-3, request_.blade_height})
+            for (double t = 0.0; t <= reach_; t += 2.5e-3)
+                for (const double side : {-t, t})
+                    if (d(p - feed * height + stroke * side) < request_.least_gap) return false;
+        return true;
+    }
+
+    /// Width of the bone along the blade at a depth; negative when the blade would meet another bone beside it.
+    double width(const Vec3& p, const Vec3& feed, const Vec3& stroke, double depth) const {
+        const Vec3 middle = p + feed * depth;
+        double sum = 0.0;
+        for (const double sign : {-1.0, 1.0}) {
+            bool left = false;
+            for (double t = 0.0; t <= reach_; t += 1e-3) {
+                const bool in_bone = d(middle + stroke * (sign * t)) < 0.0;
+                if (in_bone && left) return -1.0;
+                if (in_bone) sum += 1e-3;
+                else left = true;
+            }
+        }
+        return sum;
+    }
+
+    /// How much bone the cut leaves on both of its sides: a corner that is sawn off is no cut through the bone.
+    double both_sides(const Vec3& middle, const Vec3& across) const {
+        const auto holds = [&](double arm) { return d(middle + across * arm) < 0.0 && d(middle - across * arm) < 0.0; };
+        return !holds(5e-3) ? 0.0 : holds(10e-3) ? 1.0 : 0.6;
+    }
+
+    void look_at(int index) {
+        const int nx = distance_.size[0], ny = distance_.size[1];
+        Vec3 p = distance_.position(index % nx, index / nx % ny, index / (nx * ny));
+        for (int i = 0; i < 3; ++i) {
+            const Vec3 g = slope(p);
+            const double square = glm::dot(g, g);
+            if (square < 0.1) return;
+            p -= g * (d(p) / square);
+        }
+        if (std::abs(d(p)) > 0.5 * coarse_ || near_border(p)) return;
+        const Vec3 g = slope(p);
+        if (glm::dot(g, g) < 0.25) return;
+        const Vec3 feed = -glm::normalize(g);
+        const double deep = thickness(p, feed);
+        if (deep < least_thickness || !is_open(p - feed * 3e-3, -feed, 2e-3)) return;
+        const double depth_score = deep < request_.best_depth ? deep / request_.best_depth : request_.best_depth / deep;
+        if (depth_score <= best_score_) return;
+
+        // The reference axis is the one that the feed is least along, so that it is never parallel.
+        const Vec3 size = glm::abs(feed);
+        const Vec3 axis = size.x <= size.y && size.x <= size.z ? Vec3(1.0, 0.0, 0.0)
+                          : size.y <= size.z                   ? Vec3(0.0, 1.0, 0.0)
+                                                               : Vec3(0.0, 0.0, 1.0);
+        const Vec3 first = glm::normalize(axis - feed * glm::dot(axis, feed)), second = glm::cross(feed, first);
+        for (int i = 0; i < directions; ++i) {
+            const double angle = std::numbers::pi * i / directions;
+            look_along(p, feed, first * std::cos(angle) + second * std::sin(angle), deep, depth_score);
+        }
+    }
+
+    void look_along(const Vec3& p, const Vec3& feed, const Vec3& stroke, double deep, double depth_score) {
+        if (!body_is_free(p, feed, stroke)) return;
+        const double wide = width(p, feed, stroke, 0.5 * deep);
+        if (wide < least_thickness) return;
+        double score = depth_score * request_.blade_length / (request_.blade_length + wide);
+        score *= both_sides(p + feed * (0.5 * deep), glm::cross(feed, stroke));
+        if (score <= best_score_) return;
+        score *= evenness(p, feed, stroke, std::clamp(0.4 * wide, 2e-3, 6e-3)) *
+                 evenness(p, feed, glm::cross(feed, stroke), 2e-3);
+        if (score <= best_score_) return;
+        // The hand and the handpiece come the way of the blade.
+        const Vec3 start = p - feed * (request_.blade_height + 2e-3);
+        for (const double side : {-0.5, 0.5})
+            if (!is_open(start + stroke * (side * request_.blade_length), -feed, 2e-3)) return;
+        best_score_ = score;
+        best_ = {p, feed, stroke, deep, wide};
+    }
+
+    const Grid &distance_, &density_;
+    SiteRequest request_;
+    double reach_, step_ = 0.0, coarse_ = 0.0, best_score_ = 0.0;
+    SawSite best_;
+};
+
+}  // namespace
+
+std::optional<SawSite> find_saw_site(const Grid& distance, const Grid& density, const SiteRequest& request) {
+    for (const int n : distance.size)
+        if (n < 2) return std::nullopt;
+    return Search(distance, density, request).run();
+}
+
+}  // namespace tactus
