@@ -10,21 +10,24 @@ namespace tactus::nodes {
 
 struct Workspace {
     static constexpr auto about =
-        "Places the device in the scene and the tool in the hand. Given a bone, it finds a place where a saw blade can be "
+        "Places the device in the scene and the tool in the hand. Given a bone, it finds a place where a saw blade can "
+        "be "
         "set on, and puts the resting tool in front of it. Forces go back through device_wrench.";
 
     In<Pose> device{"handle in the device frame", "m"};
     Out<Pose> pose{"tool in the scene", "m"};
     Out<Pose> frame{"the device's axes, at the handle, in the scene; for device_wrench", "m"};
     Out<double> force_scale{"the scale, for device_wrench", "1"};
-    Asset<Bone> bone{optional, "what is to be cut; origin and rotation then count from the tool's place in front of it"};
+    Asset<Bone> bone{optional,
+                     "what is to be cut; origin and rotation then count from the tool's place in front of it"};
     Vector origin{"0 mm, 0 mm, 0 mm", "of the device frame in the scene"};
     Vector rotation{"0 deg, 0 deg, 0 deg", "of the device frame in the scene: about x first, then y, then z"};
     Param scale{structural, "1", "0.01", "100", "distance in the scene per distance of the device"};
     Vector grip{"0 mm, 0 mm, 0 mm", "origin of the tool in the frame of the handle"};
-    Vector grip_rotation{"-90 deg, 0 deg, 0 deg",
-                         "of the tool in the frame of the handle: about x first, then y, then z; by default a blade cuts "
-                         "towards -z of the device"};
+    Vector grip_rotation{
+        "-90 deg, 0 deg, 0 deg",
+        "of the tool in the frame of the handle: about x first, then y, then z; by default a blade cuts "
+        "towards -z of the device"};
     Param clearance{structural, "5 mm", "0 mm", "100 mm", "from the resting tool to the bone"};
 
     void prepare(const Setup& setup) {

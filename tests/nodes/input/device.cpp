@@ -127,7 +127,10 @@ TEST_CASE("a workspace with a bone puts the resting blade in front of it, teeth 
     NodeHarness node("workspace", servo);
     node.asset("bone", test::sample_asset("bone")).set("clearance", "4 mm");
     node.feed<Pose>("device", [](std::int64_t k) {
-        return Pose{k == 1 ? Vec3(0.0, 0.0, -3e-3) : k == 2 ? Vec3(2e-3, 0.0, 0.0) : Vec3(0.0), Quat(1.0, 0.0, 0.0, 0.0)};
+        return Pose{k == 1   ? Vec3(0.0, 0.0, -3e-3)
+                    : k == 2 ? Vec3(2e-3, 0.0, 0.0)
+                             : Vec3(0.0),
+                    Quat(1.0, 0.0, 0.0, 0.0)};
     });
     node.prepare();
     node.run(3);

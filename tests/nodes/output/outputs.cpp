@@ -62,8 +62,8 @@ TEST_CASE("sound beyond full scale is cut, NaN is silence, and both are counted"
 TEST_CASE("a probe tells least, greatest, mean and last of each column, and counts what is not finite") {
     test::HarnessOptions options = servo;
     NodeHarness number("probe", options);
-    number.feed<double>("in",
-                        [](std::int64_t k) { return k == 4 ? static_cast<double>(not_a_number) : static_cast<double>(k); });
+    number.feed<double>(
+        "in", [](std::int64_t k) { return k == 4 ? static_cast<double>(not_a_number) : static_cast<double>(k); });
     number.prepare();
     number.run(10);
     const Report report = number.report();
