@@ -28,6 +28,7 @@ struct DeviceOutput {
 
     void prepare(const Setup& setup) {
         port_ = &setup.outside->device(device.value, device.where);
+        if (port_->has_output) setup.fail("another device_output already drives this device; a hand takes one force");
         port_->has_output = true;
         ForceLimits limits;
         limits.max_force = lower_limit(max_force, port_->info.max_force);

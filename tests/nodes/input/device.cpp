@@ -85,6 +85,12 @@ TEST_CASE("device_output takes the device's own limit when that is lower") {
     CHECK(node.last<Wrench>("applied").force.x == Approx(3.0));
 }
 
+TEST_CASE("a device takes one device_output only") {
+    NodeHarness node("device_output", servo);
+    node.outside.device("", {}).has_output = true;
+    CHECK_THROWS_AS(node.prepare(), Error);
+}
+
 TEST_CASE("device_output lets go, and says why, when the device stops delivering samples") {
     NodeHarness node("device_output", servo);
     node.device_feed = [](std::int64_t k, DevicePort& port) {
