@@ -41,6 +41,7 @@ struct Declaration final : MemberVisitor {
     void output(std::string_view name, Output& port) override { require(name, port.about); }
     void param(std::string_view name, Param& p) override {
         require(name, p.about);
+        CHECK(name != "rate");
         INFO(name << " = " << p.value << " in " << p.min << " … " << p.max);
         CHECK(p.min < p.max);
         CHECK(p.value >= p.min);
@@ -55,7 +56,7 @@ struct Declaration final : MemberVisitor {
     void vector(std::string_view name, Vector& v) override { require(name, v.about); }
     void asset(std::string_view name, AssetParam& a) override { require(name, a.about); }
 
-    /// These keys of a node say what it is and when it runs.
+    /// The keys type, rate and group of a node say what it is and when it runs; a port may still be called rate.
     static void require(std::string_view name, std::string_view about) {
         INFO("member " << name);
         CHECK_FALSE(about.empty());

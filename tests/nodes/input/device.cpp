@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/bone.hpp"
+#include "assets/library/mandible.hpp"
 #include "dsp/operator/hand.hpp"
 #include "tests/support/node_harness.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 using namespace tactus;
@@ -148,6 +150,22 @@ TEST_CASE("a workspace with a bone puts the resting blade in front of it, teeth 
     CHECK(glm::length(tools[2].position - tools[0].position - tools[0].rotate({2e-3, 0.0, 0.0})) < 1e-9);
     const Report report = node.report();
     CHECK(std::get<double>(report.sections.at("site").at("thickness_mm")) == Approx(20.0).margin(1.0));
+}
+
+TEST_CASE("on the bundled mandible the blade goes across the body from the outside, clear of everything else") {
+    const auto mandible = std::make_shared<const Bone>(make_mandible());
+    NodeHarness node("workspace", servo);
+    node.asset("bone", mandible);
+    node.prepare();
+    const Report report = node.report();
+    const auto& site = report.sections.at("site");
+    const auto normal = std::get<std::vector<double>>(site.at("normal"));
+    const auto stroke = std::get<std::vector<double>>(site.at("stroke"));
+    CHECK(std::hypot(normal[1], normal[2]) > 0.8);  // the arch runs along x here
+    CHECK(std::abs(stroke[0]) < 0.4);
+    CHECK(std::get<double>(site.at("thickness_mm")) > 8.0);
+    CHECK(std::get<double>(site.at("thickness_mm")) < 20.0);
+    CHECK(std::get<double>(site.at("width_mm")) < 32.0);
 }
 
 TEST_CASE("a workspace says so when a bone has no place for a blade") {
