@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// The wires from one group to another: rings of plain slots, guarded by the progress words of both groups.
+#pragma once
+
+#include "graph/plan.hpp"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tactus {
+
+/// One wire between two groups. Its ring belongs to both, all else to the consumer.
+struct LinkWire {
+    const ValueType* type = nullptr;
+    const Output* source = nullptr;
+    Input* target = nullptr;   ///< or null, and then:
+    Param* param = nullptr;
+    WireMode mode = WireMode::hold;
+    std::vector<std::byte> ring;               ///< depth values
+    std::vector<std::byte> current, previous;  ///< values of the used index and of the one before it
+    std::vector<std::byte> glide;              ///< `linear`: one value per activation of a call
+    std::vector<std::byte> batch;              ///< `batch`: the values of a call, and when they were made
+    std::vector<Flicks> batch_times;
+
+    std::byte* slot(std::int64_t index, std::int64_t depth) {
+        return ring.data() + static_cast<std::size_t>(index % depth) * type->size;
+    }
+};
+
+/// All wires of one latency from one group to another; whether a value is there is decided for all of them at once.
+class Link {
+public:
+    int producer = 0, consumer = 0;
+    int id = 0;
+    Flicks producer_period = 0, consumer_period = 0, latency = 0;
+    std::vector<LinkWire> wires;
+
+    /// Fixes the depth of the rings and takes the outputs' present values as index −1. `slack` is how late, in flicks,
+    /// the consumer may run before publications are dropped; `max_frames` the longest calls of producer and consumer.
+    void prepare(Flicks slack, int producer_frames, int consumer_frames);
+
+    /// Index that consumer activation `j` reads when all is in time.
+    std::int64_t wanted(std::int64_t j) const { return source_index(j, consumer_period, latency, producer_period); }
+    /// First activation after `j` that wants another index.
+    std::int64_t window_end(std::int64_t j) const {
+        return ceil_div((wanted(j) + 1) * producer_period + latency, consumer_period);
+    }
+
+    // Producer's side.
+    /// True when the slots of indices first … first + count − 1 are released. Wait-free.
+    bool has_room(std::int64_t first, int count) const noexcept {
+        return first + count - 1 - depth_ < oldest_.load(std::memory_order_acquire);
+    }
+    /// Copies the outputs' values into the slots. The group's progress word publishes them. Wait-free.
+    void publish(std::int64_t first, int count) noexcept;
+    /// Smallest version of `output` that the consumer may still look at, or INT64_MAX when this link has none.
+    std::int64_t oldest_version(const Output* output) const noexcept;
+
+    // Consumer's side.
+    /// Newest index ≤ `want` and < `done` that was published and not dropped, or the one in use. Wait-free.
+    std::int64_t newest_available(std::int64_t want, std::int64_t done) const noexcept;
+    /// Takes over the values of `index` (≥ the one in use) and releases what is older. Wait-free.
+    void read(std::int64_t index) noexcept;
+    /// Points inputs at values for the call of activations j … j + frames − 1. Wait-free.
+    void deliver(std::int64_t j, int frames) noexcept;
+
+    std::int64_t used() const { return used_; }
+    std::int64_t depth() const { return depth_; }
+
+private:
+    bool holds(std::int64_t index) const noexcept {
+        return index >= 0 && stamp_[static_cast<std::size_t>(index % depth_)] == index;
+    }
+    void gather_batch(LinkWire& wire, std::int64_t index) noexcept;
+
+    std::int64_t depth_ = 0;
+    std::vector<std::int64_t> stamp_;  ///< index whose values are in each slot, −1: none
+    std::int64_t used_ = -1;
+    bool fresh_ = false;               ///< `read` was called since the last `deliver`
+    alignas(64) std::atomic<std::int64_t> oldest_{-1};  ///< index the consumer holds; older ones it never reads again
+};
+
+}  // namespace tactus

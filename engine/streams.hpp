@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Streams that leave a run: values go through a ring to a file or a sound card, drained outside of the ticks.
+#pragma once
+
+#include "dsp/core/ring.hpp"
+#include "graph/setup.hpp"
+#include "graph/value.hpp"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace tactus {
+
+/// Where the values of a stream end. Called by one thread at a time, never in a tick.
+class StreamEnd {
+public:
+    virtual ~StreamEnd() = default;
+    /// Values of activations first, first + 1, …; activations that never ran are missing. Throws Error.
+    virtual void take(std::int64_t first, const std::byte* values, std::size_t count) = 0;
+    /// Completes the file; throws Error.
+    virtual void finish() = 0;
+};
+
+/// A sound file: one float channel, silence where activations are missing.
+std::unique_ptr<StreamEnd> make_sound_end(const std::filesystem::path& path, const StreamFormat& format);
+/// A CSV file: a line of column names with units, then time in s and the values.
+std::unique_ptr<StreamEnd> make_csv_end(const std::filesystem::path& path, const StreamFormat& format);
+/// A device that plays.
+std::unique_ptr<StreamEnd> make_audio_end(AudioSink& sink);
+
+class Stream : public RecordStream {
+public:
+    Stream(StreamFormat format, std::unique_ptr<StreamEnd> end);
+
+    bool write(std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept override;
+
+    /// Moves what has gathered to its end. Any thread outside of a tick. Throws Error.
+    void drain();
+    /// True when less than half of the ring is left.
+    bool wants_drain() const noexcept { return ring_.size() * 2 > ring_.capacity(); }
+    void finish();
+
+    const StreamFormat& format() const { return format_; }
+    std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
+
+private:
+    // A piece: the index of its first activation, its count, then the values, all as bytes.
+    struct Piece {
+        std::int64_t first;
+        std::uint64_t count;
+    };
+
+    StreamFormat format_;
+    std::unique_ptr<StreamEnd> end_;
+    Ring<std::byte> ring_;
+    std::vector<std::byte> packed_, drained_;  // of the writer, of the drainer
+    std::mutex draining_;
+    std::atomic<std::uint64_t> dropped_{0};
+};
+
+}  // namespace tactus

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// What each group tells about its own running. Written by the group's thread, read by others at any time.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstdint>
+
+namespace tactus {
+
+/// Counts of durations in ns, in bins of one eighth of an octave: quantiles within 9 %. One writer; wait-free.
+class DurationHistogram {
+    static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
+
+public:
+    void add(std::int64_t ns) noexcept {
+        const auto value = static_cast<std::uint64_t>(ns < 0 ? 0 : ns);
+        auto& bin = bins_[bin_of(value)];
+        bin.store(bin.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+        if (value > max_.load(std::memory_order_relaxed)) max_.store(value, std::memory_order_relaxed);
+    }
+    std::uint64_t max_ns() const noexcept { return max_.load(std::memory_order_relaxed); }
+
+    /// Upper edge of the bin that holds the quantile, in ns; 0 when nothing was counted.
+    double quantile_ns(double q) const noexcept {
+        std::uint64_t total = 0;
+        for (const auto& bin : bins_) total += bin.load(std::memory_order_relaxed);
+        const double wanted = q * static_cast<double>(total);
+        std::uint64_t seen = 0;
+        for (std::size_t i = 0; i < bins_.size(); ++i) {
+            seen += bins_[i].load(std::memory_order_relaxed);
+            if (seen > 0 && static_cast<double>(seen) >= wanted) {
+                const double edge = static_cast<double>(lower_edge(i + 1));
+                return edge < static_cast<double>(max_ns()) ? edge : static_cast<double>(max_ns());
+            }
+        }
+        return 0.0;
+    }
+
+private:
+    static std::size_t bin_of(std::uint64_t value) noexcept {
+        if (value < 8) return value;
+        const auto octave = static_cast<std::size_t>(std::bit_width(value)) - 1;  // >= 3
+        const std::size_t bin = (octave - 2) * 8 + ((value >> (octave - 3)) & 7);
+        return bin < bin_count ? bin : bin_count - 1;
+    }
+    static std::uint64_t lower_edge(std::size_t bin) noexcept {
+        if (bin < 8) return bin;
+        return (8 + (bin & 7)) << (bin / 8 - 1);
+    }
+
+    static constexpr std::size_t bin_count = 320;  // up to 2^41 ns
+    std::array<std::atomic<std::uint64_t>, bin_count> bins_{};
+    std::atomic<std::uint64_t> max_{0};
+};
+
+struct GroupTelemetry {
+    std::atomic<std::int64_t> ticks{0};    ///< activations that ran
+    std::atomic<std::int64_t> misses{0};   ///< activations that read an older value than the schedule says
+    std::atomic<std::int64_t> skipped{0};
+    std::atomic<std::int64_t> dropped{0};  ///< publications that found no room
+    DurationHistogram execution;           ///< ns per call
+    DurationHistogram lateness;            ///< ns from release to start, live only
+};
+
+}  // namespace tactus
