@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// Real time: one thread per group on the steady clock. Nobody waits for anybody; what that decides goes to the log.
+#include "engine/engine.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/core/realtime.hpp"
+
+#include <pthread.h>
+#include <sys/mman.h>
+#include <time.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+namespace tactus {
+
+namespace {
+
+// The scheduler wakes a sleeper late by tens of microseconds; the last stretch is spun instead, never more.
+constexpr std::int64_t spin_ns = 80'000;
+constexpr std::int64_t start_delay_ns = 20'000'000;
+
+std::int64_t now_ns() noexcept {
+    timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return t.tv_sec * 1'000'000'000LL + t.tv_nsec;
+}
+
+void wait_until(std::int64_t when_ns) noexcept {
+    const std::int64_t sleep_to = when_ns - spin_ns;
+    if (now_ns() < sleep_to) {
+        const timespec t{sleep_to / 1'000'000'000, sleep_to % 1'000'000'000};
+        clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr);
+    }
+    while (now_ns() < when_ns) {}
+}
+
+/// The faster the group, the higher its priority. False when the system refuses.
+bool make_real_time(int rank) noexcept {
+    sched_param parameters{};
+    parameters.sched_priority = std::max(10, 80 - 5 * rank);
+    return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
+}
+
+}  // namespace
+
+void Engine::live_worker(GroupRuntime& group, std::int64_t start_ns, double dilate) {
+    flush_denormals_to_zero();
+    const auto release_ns = [&](std::int64_t tick) {
+        return start_ns + std::llround(static_cast<double>(nanoseconds(tick * group.plan->period)) * dilate);
+    };
+    const double period_ns = dilate * 1e9 / rate_of(group.plan->period);
+    while (!group.finished()) {
+        const std::int64_t due = release_ns(group.next());
+        wait_until(due);
+        const std::int64_t begin = now_ns();
+        group.telemetry.lateness.add(begin - due);
+        const auto late = static_cast<std::int64_t>(static_cast<double>(begin - due) / period_ns);
+        if (late > group.backlog) {
+            group.skip_to(std::min(group.next() + late, group.end.load()));
+            continue;
+        }
+        group.call(group.max_frames, Pace::live);
+        group.telemetry.execution.add(now_ns() - begin);
+    }
+    group.end_at(group.next());
+}
+
+void Engine::run_live(const LiveOptions& options) {
+    std::vector<std::unique_ptr<Ring<TimingRecord>>> rings;
+    std::unique_ptr<TimingLogWriter> log;
+    if (options.log) {
+        log = std::make_unique<TimingLogWriter>(*options.log, plan_hash(), options_.seconds, groups_.size());
+        for (const auto& group : groups_) group->log = rings.emplace_back(std::make_unique<Ring<TimingRecord>>(1 << 15)).get();
+    }
+    if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
+        outside_->notices.push_back("memory could not be locked: a page fault may delay a tick (run as root or raise RLIMIT_MEMLOCK)");
+    std::atomic<bool> refused{false};
+    std::atomic<std::size_t> running{groups_.size()};
+    const std::int64_t start = now_ns() + start_delay_ns;
+    std::vector<std::jthread> threads;
+    for (const auto& group : groups_)
+        threads.emplace_back([this, &group = *group, &refused, &running, start, &options] {
+            if (!make_real_time(group.index)) refused = true;
+            live_worker(group, start, options.dilate);
+            --running;
+        });
+    const auto drain_log = [&] {
+        TimingRecord record;
+        for (const auto& ring : rings)
+            while (ring->pop(record)) log->write(record);
+    };
+    bool stopping = false;
+    while (running.load() > 0) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        try {
+            drain_log();
+            drain_streams();
+            if (options.watch) options.watch();
+        } catch (...) {
+            fail(std::current_exception());
+            for (const auto& group : groups_) group->end = 0;
+            break;
+        }
+        if (options.stop && options.stop->load() && !stopping) {
+            stopping = true;
+            // All groups end at one logical time, a little ahead of the furthest.
+            Flicks furthest = 0;
+            for (const auto& group : groups_) furthest = std::max(furthest, group->done() * group->plan->period);
+            const Flicks end = furthest + flicks_per_second / 20;
+            for (const auto& group : groups_) group->end = std::min(group->end.load(), ceil_div(end, group->plan->period));
+        }
+    }
+    threads.clear();
+    munlockall();
+    if (failure_) std::rethrow_exception(failure_);
+    drain_log();
+    drain_streams();
+    if (refused) outside_->notices.push_back("real-time priority was refused: expect late ticks (run as root or raise RLIMIT_RTPRIO)");
+    if (!log) return;
+    for (const auto& group : groups_)
+        if (group->log_overflow) throw Error("the timing log could not keep up; it was not written");
+    log->finish();
+}
+
+}  // namespace tactus
