@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/outside.hpp"
 
-#include "devices/audio/portaudio_sink.hpp"
+#include "devices/audio/portaudio.hpp"
 #include "devices/haptic/catalogue.hpp"
 
 #include <fmt/format.h>
@@ -42,12 +42,12 @@ DevicePort& EngineOutside::device(const std::string& wanted, const SourceLocatio
     const bool is_declared = declared != patch_.devices.end();
     Options options(fmt::format("device '{}'", name), is_declared ? declared->settings : std::vector<OptionText>{},
                     is_declared ? declared->where : where);
-    const PathResolver resolve = [this](const std::string& asset, const SourceLocation& at) {
+    const PathResolver resolve = [this, &where](const std::string& asset) {
         const auto found = std::ranges::find(patch_.assets, asset, &PatchAsset::name);
         if (found != patch_.assets.end()) return found->path;
         std::vector<std::string> names;
         for (const PatchAsset& known : patch_.assets) names.push_back(known.name);
-        throw Error(at, fmt::format("no asset '{}' in [assets]{}", asset, did_you_mean(asset, names)));
+        throw Error(where, fmt::format("no asset '{}' in [assets]{}", asset, did_you_mean(asset, names)));
     };
     auto slot = std::make_unique<DeviceSlot>();
     slot->name = name;
@@ -80,7 +80,7 @@ RecordStream& EngineOutside::record(const StreamFormat& format, const SourceLoca
 RecordStream& EngineOutside::audio(const StreamFormat& format, const SourceLocation& where) {
     if (live_) {
         try {
-            auto sink = std::make_unique<PortAudioSink>();
+            std::unique_ptr<AudioSink> sink = make_portaudio_sink();
             sink->prepare(rate_of(format.period), 1);
             notices.push_back(fmt::format("playing on {}", sink->name()));
             sinks_.push_back(std::move(sink));
