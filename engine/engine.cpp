@@ -33,8 +33,9 @@ Engine::Engine(Plan plan, const EngineOptions& options) : options_(options), pla
         group.index = static_cast<int>(i);
         group.backlog = plan_.groups[i].backlog;
         if (group.plan->has_audio)
-            group.max_frames = options.block > 0 ? options.block
-                                                 : static_cast<int>(std::max<Flicks>(1, plan_.patch.quantum / group.plan->period));
+            group.max_frames = options.block > 0
+                                   ? options.block
+                                   : static_cast<int>(std::max<Flicks>(1, plan_.patch.quantum / group.plan->period));
     }
     allocate_outputs();
     prepare_nodes();
@@ -94,7 +95,8 @@ void Engine::prepare_nodes() {
 Link& Engine::link_for(const PlanWire& wire) {
     const int from = plan_.nodes[static_cast<std::size_t>(wire.from_node)].group;
     const int to = plan_.nodes[static_cast<std::size_t>(wire.to_node)].group;
-    const PlanGroup &producer = plan_.groups[static_cast<std::size_t>(from)], &consumer = plan_.groups[static_cast<std::size_t>(to)];
+    const PlanGroup &producer = plan_.groups[static_cast<std::size_t>(from)],
+                    &consumer = plan_.groups[static_cast<std::size_t>(to)];
     const Flicks latency = wire_latency(producer, wire);
     for (const auto& link : links_)
         if (link->producer == from && link->consumer == to && link->latency == latency) return *link;
@@ -109,7 +111,8 @@ Link& Engine::link_for(const PlanWire& wire) {
 }
 
 void Engine::load_constant(const PlanWire& wire) {
-    Input& input = *plan_.nodes[static_cast<std::size_t>(wire.to_node)].inputs[static_cast<std::size_t>(wire.to_input)].port;
+    Input& input =
+        *plan_.nodes[static_cast<std::size_t>(wire.to_node)].inputs[static_cast<std::size_t>(wire.to_input)].port;
     const auto asset = std::ranges::find(plan_.patch.assets, wire.asset, &PatchAsset::name);
     auto& handle = buffers_.emplace_back(input.type->size);
     try {
@@ -172,8 +175,8 @@ bool Engine::varies_within_call(const PlanNode& node, std::size_t index) const {
         if (wire.to_node != static_cast<int>(index) || wire.from_node < 0) continue;
         const bool same_group = plan_.nodes[static_cast<std::size_t>(wire.from_node)].group == node.group;
         if (!same_group && wire.mode != WireMode::linear) continue;
-        const InputKind kind = wire.to_input < 0 ? InputKind::value
-                                                 : node.inputs[static_cast<std::size_t>(wire.to_input)].port->kind;
+        const InputKind kind =
+            wire.to_input < 0 ? InputKind::value : node.inputs[static_cast<std::size_t>(wire.to_input)].port->kind;
         if (kind == InputKind::value) return true;
     }
     return false;
@@ -213,7 +216,8 @@ void Engine::set_ends() {
     if (options_.replay && options_.replay->plan_hash != plan_hash())
         throw Error("the timing log was made with another patch or other settings; replay needs the same");
     for (const auto& group : groups_) {
-        const double ticks = options_.seconds * static_cast<double>(flicks_per_second) / static_cast<double>(group->plan->period);
+        const double ticks =
+            options_.seconds * static_cast<double>(flicks_per_second) / static_cast<double>(group->plan->period);
         // The last activation is the last that starts before the end; the nudge keeps 0.1 s at 1 kHz at 100.
         group->end = static_cast<std::int64_t>(std::ceil(ticks - 1e-6));
         if (!options_.replay) continue;

@@ -3,6 +3,8 @@
 
 #include "dsp/core/realtime.hpp"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -21,7 +23,8 @@ const TimingRecord* GroupRuntime::replayed_at(TimingKind kind, std::uint16_t sou
 }
 
 int GroupRuntime::cut(int frames) const noexcept {
-    std::int64_t until = std::min<std::int64_t>(next_ + std::min(frames, max_frames), end.load(std::memory_order_relaxed));
+    std::int64_t until =
+        std::min<std::int64_t>(next_ + std::min(frames, max_frames), end.load(std::memory_order_relaxed));
     for (const Link* link : inputs) until = std::min(until, link->window_end(next_));
     for (const DelayLine& delay : delays) until = std::min(until, next_ + delay.count);
     if (replayed) {
@@ -47,7 +50,8 @@ bool GroupRuntime::ready() const noexcept {
     }
     const int frames = cut(max_frames);
     for (const Link* link : outputs)
-        if (!replayed_at(TimingKind::dropped, static_cast<std::uint16_t>(link->id), next_) && !link->has_room(next_, frames))
+        if (!replayed_at(TimingKind::dropped, static_cast<std::uint16_t>(link->id), next_) &&
+            !link->has_room(next_, frames))
             return false;
     return true;
 }
@@ -84,8 +88,7 @@ void GroupRuntime::read_links(int frames, Pace pace) noexcept {
         std::int64_t chosen = link.used();
         if (const TimingRecord* held = replayed_at(TimingKind::held_read, static_cast<std::uint16_t>(link.id), next_))
             chosen = held->value;
-        else if (want > chosen)
-            chosen = link.newest_available(want, producers[i]->done());
+        else if (want > chosen) chosen = link.newest_available(want, producers[i]->done());
         // Past the producer's last activation there is nothing to miss.
         if (chosen < std::min(want, producers[i]->end.load(std::memory_order_relaxed) - 1)) {
             missed = true;
@@ -100,11 +103,13 @@ void GroupRuntime::read_links(int frames, Pace pace) noexcept {
 void GroupRuntime::run_one_at_a_time(const Step& step, int frames) noexcept {
     for (int i = 0; i < frames; ++i) {
         for (const Drive& drive : step.drives) {
-            const std::byte* value = drive.source ? drive.source->data + i * drive.source->stride
-                                                  : drive.glide->glide.data() + static_cast<std::size_t>(i) * sizeof(double);
+            const std::byte* value = drive.source
+                                         ? drive.source->data + i * drive.source->stride
+                                         : drive.glide->glide.data() + static_cast<std::size_t>(i) * sizeof(double);
             drive.param->drive(*reinterpret_cast<const double*>(value));
         }
-        const Tick tick{next_ + i, plan->period, i == 0 && last_ >= 0 ? (next_ - last_) * plan->period : plan->period, 1};
+        const Tick tick{next_ + i, plan->period, i == 0 && last_ >= 0 ? (next_ - last_) * plan->period : plan->period,
+                        1};
         step.process(step.node, tick);
         for (Input* input : step.inputs) {
             if (input->kind == InputKind::batch) input->count = 0;
@@ -125,7 +130,8 @@ void GroupRuntime::run_steps(int frames) noexcept {
         else step.process(step.node, tick);
         for (std::size_t k = 0; k < step.outputs.size(); ++k) {
             const Output& output = *step.outputs[k];
-            for (int i = 0; i < frames; ++i) output.type->hash(hashes[step.first_hash + k], output.data + i * output.stride);
+            for (int i = 0; i < frames; ++i)
+                output.type->hash(hashes[step.first_hash + k], output.data + i * output.stride);
         }
     }
 }
@@ -160,18 +166,23 @@ int GroupRuntime::call(int frames, Pace pace) noexcept {
         }
         for (DelayLine& delay : delays)
             for (int i = 0; i < n; ++i)
-                std::memcpy(delay.delayed.data() + static_cast<std::size_t>(i) * delay.type->size,
-                            delay.history.data() + static_cast<std::size_t>((next_ + i) % delay.count) * delay.type->size,
-                            delay.type->size);
+                std::memcpy(
+                    delay.delayed.data() + static_cast<std::size_t>(i) * delay.type->size,
+                    delay.history.data() + static_cast<std::size_t>((next_ + i) % delay.count) * delay.type->size,
+                    delay.type->size);
         run_steps(n);
         for (DelayLine& delay : delays)
             for (int i = 0; i < n; ++i)
-                std::memcpy(delay.history.data() + static_cast<std::size_t>((next_ + i) % delay.count) * delay.type->size,
-                            delay.source->data + i * delay.source->stride, delay.type->size);
+                std::memcpy(
+                    delay.history.data() + static_cast<std::size_t>((next_ + i) % delay.count) * delay.type->size,
+                    delay.source->data + i * delay.source->stride, delay.type->size);
         publish(n, pace);
     }
-    for (DeviceSlot* slot : devices)
-        if (slot->port.has_output && !replayed) slot->device->commit(slot->port.wrench);
+    for (DeviceSlot* slot : devices) {
+        if (!slot->port.has_output) continue;
+        telemetry.force_N.store(glm::length(slot->port.wrench.force), std::memory_order_relaxed);
+        if (!replayed) slot->device->commit(slot->port.wrench);
+    }
     telemetry.ticks.fetch_add(n, std::memory_order_relaxed);
     last_ = next_ + n - 1;
     next_ += n;

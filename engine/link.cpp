@@ -62,7 +62,8 @@ void Link::gather_batch(LinkWire& wire, std::int64_t index) noexcept {
     int count = 0;
     for (std::int64_t k = std::max(used_ + 1, index - depth_ + 1); k <= index; ++k) {
         if (!holds(k)) continue;
-        std::memcpy(wire.batch.data() + static_cast<std::size_t>(count) * wire.type->size, wire.slot(k, depth_), wire.type->size);
+        std::memcpy(wire.batch.data() + static_cast<std::size_t>(count) * wire.type->size, wire.slot(k, depth_),
+                    wire.type->size);
         wire.batch_times[static_cast<std::size_t>(count++)] = k * producer_period;
     }
     wire.target->count = count;
@@ -79,7 +80,8 @@ void Link::read(std::int64_t index) noexcept {
         if (wire.mode == WireMode::linear) {
             // The value before the new one; after a gap, the one that was in use.
             const bool adjacent = index - 1 > used_ && holds(index - 1);
-            std::memcpy(wire.previous.data(), adjacent ? wire.slot(index - 1, depth_) : wire.current.data(), wire.type->size);
+            std::memcpy(wire.previous.data(), adjacent ? wire.slot(index - 1, depth_) : wire.current.data(),
+                        wire.type->size);
         }
         std::memcpy(wire.current.data(), wire.slot(index, depth_), wire.type->size);
     }

@@ -78,7 +78,7 @@ private:
     std::int64_t depth_ = 0;
     std::vector<std::int64_t> stamp_;  ///< index whose values are in each slot, −1: none
     std::int64_t used_ = -1;
-    bool fresh_ = false;               ///< `read` was called since the last `deliver`
+    bool fresh_ = false;  ///< `read` was called since the last `deliver`
     alignas(64) std::atomic<std::int64_t> oldest_{-1};  ///< index the consumer holds; older ones it never reads again
 };
 

@@ -34,7 +34,8 @@ void wait_until(std::int64_t when_ns) noexcept {
         const timespec t{sleep_to / 1'000'000'000, sleep_to % 1'000'000'000};
         clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr);
     }
-    while (now_ns() < when_ns) {}
+    while (now_ns() < when_ns) {
+    }
 }
 
 /// The faster the group, the higher its priority. False when the system refuses.
@@ -73,10 +74,12 @@ void Engine::run_live(const LiveOptions& options) {
     std::unique_ptr<TimingLogWriter> log;
     if (options.log) {
         log = std::make_unique<TimingLogWriter>(*options.log, plan_hash(), options_.seconds, groups_.size());
-        for (const auto& group : groups_) group->log = rings.emplace_back(std::make_unique<Ring<TimingRecord>>(1 << 15)).get();
+        for (const auto& group : groups_)
+            group->log = rings.emplace_back(std::make_unique<Ring<TimingRecord>>(1 << 15)).get();
     }
     if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
-        outside_->notices.push_back("memory could not be locked: a page fault may delay a tick (run as root or raise RLIMIT_MEMLOCK)");
+        outside_->notices.push_back(
+            "memory could not be locked: a page fault may delay a tick (run as root or raise RLIMIT_MEMLOCK)");
     std::atomic<bool> refused{false};
     std::atomic<std::size_t> running{groups_.size()};
     const std::int64_t start = now_ns() + start_delay_ns;
@@ -110,7 +113,8 @@ void Engine::run_live(const LiveOptions& options) {
             Flicks furthest = 0;
             for (const auto& group : groups_) furthest = std::max(furthest, group->done() * group->plan->period);
             const Flicks end = furthest + flicks_per_second / 20;
-            for (const auto& group : groups_) group->end = std::min(group->end.load(), ceil_div(end, group->plan->period));
+            for (const auto& group : groups_)
+                group->end = std::min(group->end.load(), ceil_div(end, group->plan->period));
         }
     }
     threads.clear();
@@ -118,7 +122,9 @@ void Engine::run_live(const LiveOptions& options) {
     if (failure_) std::rethrow_exception(failure_);
     drain_log();
     drain_streams();
-    if (refused) outside_->notices.push_back("real-time priority was refused: expect late ticks (run as root or raise RLIMIT_RTPRIO)");
+    if (refused)
+        outside_->notices.push_back(
+            "real-time priority was refused: expect late ticks (run as root or raise RLIMIT_RTPRIO)");
     if (!log) return;
     for (const auto& group : groups_)
         if (group->log_overflow) throw Error("the timing log could not keep up; it was not written");

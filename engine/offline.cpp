@@ -22,7 +22,8 @@ void Engine::offline_worker(const std::vector<GroupRuntime*>& mine, std::uint64_
         GroupRuntime* earliest = nullptr;
         bool all_finished = true;
         for (GroupRuntime* group : mine) {
-            while (!group->finished() && group->replay_skip()) {}
+            while (!group->finished() && group->replay_skip()) {
+            }
             if (group->finished()) continue;
             all_finished = false;
             const auto release = [](const GroupRuntime* g) { return g->next() * g->plan->period; };
@@ -34,7 +35,8 @@ void Engine::offline_worker(const std::vector<GroupRuntime*>& mine, std::uint64_
             continue;
         }
         int frames = earliest->max_frames;
-        if (options_.random_blocks) frames = 1 + static_cast<int>(random.bits(draws++) % static_cast<std::uint64_t>(frames));
+        if (options_.random_blocks)
+            frames = 1 + static_cast<int>(random.bits(draws++) % static_cast<std::uint64_t>(frames));
         const auto before = std::chrono::steady_clock::now();
         earliest->call(frames, Pace::offline);
         earliest->telemetry.execution.add((std::chrono::steady_clock::now() - before).count());

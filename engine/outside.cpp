@@ -51,7 +51,8 @@ DevicePort& EngineOutside::device(const std::string& wanted, const SourceLocatio
     };
     auto slot = std::make_unique<DeviceSlot>();
     slot->name = name;
-    slot->device = open_haptic_device(is_declared ? declared->driver : name, is_declared ? declared->where : where, options, resolve);
+    slot->device = open_haptic_device(is_declared ? declared->driver : name, is_declared ? declared->where : where,
+                                      options, resolve);
     options.finish();
     slot->device->prepare(seconds(period_));
     slot->port.info = slot->device->info();
@@ -72,7 +73,8 @@ RecordStream& EngineOutside::record(const StreamFormat& format, const SourceLoca
     if (!is_sound && format.type->columns.empty())
         throw Error(where, fmt::format("a {} cannot be recorded as numbers", format.type->name));
     std::unique_ptr<StreamEnd> end = std::make_unique<NowhereEnd>();
-    if (folder_) end = is_sound ? make_sound_end(*folder_ / format.file, format) : make_csv_end(*folder_ / format.file, format);
+    if (folder_)
+        end = is_sound ? make_sound_end(*folder_ / format.file, format) : make_csv_end(*folder_ / format.file, format);
     streams.push_back(std::make_unique<Stream>(format, std::move(end)));
     return *streams.back();
 }

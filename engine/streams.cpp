@@ -40,7 +40,10 @@ private:
 class CsvEnd : public StreamEnd {
 public:
     CsvEnd(std::filesystem::path path, const StreamFormat& format)
-        : path_(std::move(path)), part_(path_.string() + ".part"), file_(std::fopen(part_.c_str(), "w")), type_(*format.type),
+        : path_(std::move(path)),
+          part_(path_.string() + ".part"),
+          file_(std::fopen(part_.c_str(), "w")),
+          type_(*format.type),
           period_(format.period) {
         if (!file_) fail();
         std::string header = "t_s";
@@ -59,7 +62,8 @@ public:
         std::vector<double> row(type_.columns.size());
         for (std::size_t i = 0; i < count; ++i) {
             type_.to_columns(values + i * type_.size, row.data());
-            fmt::format_to(std::back_inserter(lines), "{:.6f}", seconds((first + static_cast<std::int64_t>(i)) * period_));
+            fmt::format_to(std::back_inserter(lines), "{:.6f}",
+                           seconds((first + static_cast<std::int64_t>(i)) * period_));
             for (const double number : row) fmt::format_to(std::back_inserter(lines), ",{}", number);
             lines += '\n';
         }
@@ -76,7 +80,9 @@ private:
     void put(const std::string& text) {
         if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail();
     }
-    [[noreturn]] void fail() const { throw Error(fmt::format("{}: cannot write: {}", path_.string(), std::strerror(errno))); }
+    [[noreturn]] void fail() const {
+        throw Error(fmt::format("{}: cannot write: {}", path_.string(), std::strerror(errno)));
+    }
 
     std::filesystem::path path_, part_;
     std::FILE* file_;
@@ -108,8 +114,11 @@ std::unique_ptr<StreamEnd> make_csv_end(const std::filesystem::path& path, const
 std::unique_ptr<StreamEnd> make_audio_end(AudioSink& sink) { return std::make_unique<AudioEnd>(sink); }
 
 Stream::Stream(StreamFormat format, std::unique_ptr<StreamEnd> end)
-    : format_(std::move(format)), end_(std::move(end)), ring_(ring_bytes),
-      packed_(sizeof(Piece) + longest_piece * format_.type->size), drained_(longest_piece * format_.type->size) {}
+    : format_(std::move(format)),
+      end_(std::move(end)),
+      ring_(ring_bytes),
+      packed_(sizeof(Piece) + longest_piece * format_.type->size),
+      drained_(longest_piece * format_.type->size) {}
 
 bool Stream::write(std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept {
     const std::size_t size = format_.type->size;

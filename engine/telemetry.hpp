@@ -60,6 +60,7 @@ struct GroupTelemetry {
     std::atomic<std::int64_t> misses{0};   ///< activations that read an older value than the schedule says
     std::atomic<std::int64_t> skipped{0};
     std::atomic<std::int64_t> dropped{0};  ///< publications that found no room
+    std::atomic<double> force_N{0.0};      ///< on the hand, of the last tick
     DurationHistogram execution;           ///< ns per call
     DurationHistogram lateness;            ///< ns from release to start, live only
 };

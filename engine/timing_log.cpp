@@ -79,7 +79,8 @@ TimingLog TimingLog::load(const std::filesystem::path& path) {
         log.groups[record.group].push_back(record);
         ended += record.kind == TimingKind::end;
     }
-    if (ended != header.groups) fail("the timing log stops before the end of the run; it cannot be replayed to the bit");
+    if (ended != header.groups)
+        fail("the timing log stops before the end of the run; it cannot be replayed to the bit");
     return log;
 }
 

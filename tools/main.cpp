@@ -1,2 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-int main() { return 0; }
+#include "tools/verbs.hpp"
+
+int main(int argc, char** argv) { return tactus::command_line(argc, argv); }

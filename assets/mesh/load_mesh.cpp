@@ -26,8 +26,8 @@ std::string lower_extension(const std::filesystem::path& path) {
 
 // A binary STL says how many triangles follow; a file that is shorter would be read past its end or half.
 void check_stl(const std::string& bytes, const std::string& file) {
-    const bool text = bytes.starts_with("solid") && bytes.find("facet") != std::string::npos &&
-                      bytes.find('\0') == std::string::npos;
+    const bool text =
+        bytes.starts_with("solid") && bytes.find("facet") != std::string::npos && bytes.find('\0') == std::string::npos;
     if (text) {
         if (bytes.find("endsolid") == std::string::npos)
             throw Error(fmt::format("{}: cut short: no 'endsolid'; copy the file again", file));
@@ -65,7 +65,8 @@ void join_equal_points(Mesh& mesh) {
     std::vector<int> renamed(mesh.vertices.size());
     std::vector<Vec3> kept;
     for (std::size_t n = 0; n < order.size(); ++n) {
-        if (n == 0 || key(order[n]) != key(order[n - 1])) kept.push_back(mesh.vertices[static_cast<std::size_t>(order[n])]);
+        if (n == 0 || key(order[n]) != key(order[n - 1]))
+            kept.push_back(mesh.vertices[static_cast<std::size_t>(order[n])]);
         renamed[static_cast<std::size_t>(order[n])] = static_cast<int>(kept.size()) - 1;
     }
     mesh.vertices = std::move(kept);

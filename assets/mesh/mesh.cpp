@@ -26,9 +26,10 @@ Mesh surface_of(const Grid& distance) {
         const int i = static_cast<int>(u.x + 0.5), j = static_cast<int>(u.y + 0.5), k = static_cast<int>(u.z + 0.5);
         const int x0 = std::max(i - 1, 0), x1 = std::min(i + 1, size[0] - 1), y0 = std::max(j - 1, 0);
         const int y1 = std::min(j + 1, size[1] - 1), z0 = std::max(k - 1, 0), z1 = std::min(k + 1, size[2] - 1);
-        const Vec3 slope = Vec3(distance.at(x1, j, k) - distance.at(x0, j, k), distance.at(i, y1, k) - distance.at(i, y0, k),
-                                distance.at(i, j, z1) - distance.at(i, j, z0)) /
-                           (Vec3(x1 - x0, y1 - y0, z1 - z0) * distance.spacing);
+        const Vec3 slope =
+            Vec3(distance.at(x1, j, k) - distance.at(x0, j, k), distance.at(i, y1, k) - distance.at(i, y0, k),
+                 distance.at(i, j, z1) - distance.at(i, j, z0)) /
+            (Vec3(x1 - x0, y1 - y0, z1 - z0) * distance.spacing);
         const double length = glm::length(slope);
         mesh.normals.push_back(length > 0.0 ? slope / length : Vec3(0.0, 0.0, 1.0));
     }
@@ -47,7 +48,8 @@ double volume_of(const TriangleSurface& mesh) {
 double area_of(const TriangleSurface& mesh) {
     double twice = 0.0;
     for (const auto& t : mesh.triangles)
-        twice += glm::length(glm::cross(corner(mesh, t, 1) - corner(mesh, t, 0), corner(mesh, t, 2) - corner(mesh, t, 0)));
+        twice +=
+            glm::length(glm::cross(corner(mesh, t, 1) - corner(mesh, t, 0), corner(mesh, t, 2) - corner(mesh, t, 0)));
     return 0.5 * twice;
 }
 
@@ -77,7 +79,8 @@ MeshTopology topology_of(const TriangleSurface& mesh) {
     for (std::size_t n = 0; n < edges.size();) {
         std::size_t count = 0;
         int forward = 0;
-        for (const Edge first = edges[n]; n < edges.size() && edges[n].low == first.low && edges[n].high == first.high; ++n)
+        for (const Edge first = edges[n]; n < edges.size() && edges[n].low == first.low && edges[n].high == first.high;
+             ++n)
             ++count, forward += edges[n].forward;
         found.boundary_edges += count == 1;
         found.non_manifold_edges += count > 2;

@@ -27,8 +27,8 @@ struct Marcher {
         if (from > to) std::swap(from, to);
         const int a = i + (from & 1), b = j + (from >> 1 & 1), c = from >> 2;
         const int step = to ^ from;
-        const std::size_t sample = static_cast<std::size_t>(b) * static_cast<std::size_t>(grid.size[0]) +
-                                   static_cast<std::size_t>(a);
+        const std::size_t sample =
+            static_cast<std::size_t>(b) * static_cast<std::size_t>(grid.size[0]) + static_cast<std::size_t>(a);
         int& slot = edges[static_cast<std::size_t>((k + c) & 1)][sample * 7 + static_cast<std::size_t>(step - 1)];
         if (slot < 0) {
             const int x = a + (step & 1), y = b + (step >> 1 & 1), z = k + c + (step >> 2);
@@ -74,8 +74,8 @@ struct Marcher {
             const int place = apex_in ? in_place[0] : out_place[0];
             const auto& rest_place = apex_in ? out_place : in_place;
             const bool even = is_even({place, rest_place[0], rest_place[1], rest_place[2]});
-            add(vertex(i, j, k, apex[0], rest[0]), vertex(i, j, k, apex[0], rest[1]),
-                vertex(i, j, k, apex[0], rest[2]), even == apex_in);
+            add(vertex(i, j, k, apex[0], rest[0]), vertex(i, j, k, apex[0], rest[1]), vertex(i, j, k, apex[0], rest[2]),
+                even == apex_in);
             return;
         }
         const bool even = is_even({in_place[0], in_place[1], out_place[0], out_place[1]});
@@ -86,8 +86,7 @@ struct Marcher {
     }
 
     void run() {
-        const std::size_t layer =
-            7 * static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1]);
+        const std::size_t layer = 7 * static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1]);
         edges = {std::vector<int>(layer, -1), std::vector<int>(layer, -1)};
         for (int k = 0; k + 1 < grid.size[2]; ++k) {
             auto& next = edges[static_cast<std::size_t>((k + 1) & 1)];
@@ -109,8 +108,7 @@ struct Marcher {
 
 TriangleSurface iso_surface(const Grid& grid, float iso, bool inside_above) {
     TriangleSurface surface;
-    if (grid.size[0] > 1 && grid.size[1] > 1 && grid.size[2] > 1)
-        Marcher{grid, iso, inside_above, surface, {}}.run();
+    if (grid.size[0] > 1 && grid.size[1] > 1 && grid.size[2] > 1) Marcher{grid, iso, inside_above, surface, {}}.run();
     return surface;
 }
 

@@ -23,7 +23,8 @@ Taps taps_at(double u, double width, int size) {
     Taps taps;
     double sum = 0.0;
     std::vector<double> weight;
-    for (int n = static_cast<int>(std::floor(u - 2.0 * width)); n <= static_cast<int>(std::ceil(u + 2.0 * width)); ++n) {
+    for (int n = static_cast<int>(std::floor(u - 2.0 * width)); n <= static_cast<int>(std::ceil(u + 2.0 * width));
+         ++n) {
         const double w = cubic((n - u) / width);
         if (w == 0.0) continue;
         taps.index.push_back(static_cast<std::size_t>(std::clamp(n, 0, size - 1)));

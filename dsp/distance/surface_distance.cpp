@@ -87,7 +87,8 @@ struct Sweeper {
                             continue;
                         // Far away a small triangle is as good as its point: they differ by radius² / 2 distance.
                         const float own = nearest.distance[sample];
-                        if (own < 1e30f && own > 4.0f * cell && radius[static_cast<std::size_t>(triangle)] < 2.0f * cell) {
+                        if (own < 1e30f && own > 4.0f * cell &&
+                            radius[static_cast<std::size_t>(triangle)] < 2.0f * cell) {
                             const glm::vec3 here(layout.position(i, j, k) - layout.origin);
                             const glm::vec3 apart = foot[other] - here;
                             if (glm::dot(apart, apart) >= own * own) continue;
@@ -114,8 +115,9 @@ NearestTriangles nearest_triangles(const Grid& layout, const TriangleSurface& su
     NearestTriangles nearest{std::vector<std::int32_t>(layout.count(), -1),
                              std::vector<float>(layout.count(), std::numeric_limits<float>::infinity())};
     if (surface.triangles.empty()) return nearest;
-    Sweeper sweeper{layout, surface, nearest, std::vector<glm::vec3>(layout.count()), {},
-                    static_cast<float>(std::max({layout.spacing.x, layout.spacing.y, layout.spacing.z}))};
+    Sweeper sweeper{layout,  surface,
+                    nearest, std::vector<glm::vec3>(layout.count()),
+                    {},      static_cast<float>(std::max({layout.spacing.x, layout.spacing.y, layout.spacing.z}))};
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
         const auto [a, b, c] = sweeper.corners(static_cast<std::int32_t>(t));
         const double longest = std::max({glm::length(b - a), glm::length(c - b), glm::length(a - c)});
@@ -158,8 +160,8 @@ std::vector<std::int16_t> winding_numbers(const Grid& layout, const TriangleSurf
     for (int k = 0; k < layout.size[2]; ++k)
         for (int j = 0; j < layout.size[1]; ++j)
             for (int i = 1; i < layout.size[0]; ++i)
-                crossings[layout.index(i, j, k)] = static_cast<std::int16_t>(crossings[layout.index(i, j, k)] +
-                                                                              crossings[layout.index(i - 1, j, k)]);
+                crossings[layout.index(i, j, k)] =
+                    static_cast<std::int16_t>(crossings[layout.index(i, j, k)] + crossings[layout.index(i - 1, j, k)]);
     return crossings;
 }
 

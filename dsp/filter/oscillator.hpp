@@ -14,7 +14,8 @@ struct SineOscillator {
     std::uint64_t phase = 0;  ///< 2^64 is one cycle
 
     double operator()(double frequency) noexcept {
-        const double y = std::sin(static_cast<double>(static_cast<std::int64_t>(phase)) * (std::numbers::pi * 0x1.0p-63));
+        const double y =
+            std::sin(static_cast<double>(static_cast<std::int64_t>(phase)) * (std::numbers::pi * 0x1.0p-63));
         phase += increment(frequency / rate);
         return y;
     }

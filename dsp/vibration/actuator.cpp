@@ -48,11 +48,11 @@ const ActuatorModel& find_actuator(std::string_view name) {
         names.emplace_back(model.name);
         list += (list.empty() ? "" : ", ") + names.back();
     }
-    throw Error("no actuator is called '" + std::string(name) + "'" + did_you_mean(name, names) + "; known are " + list);
+    throw Error("no actuator is called '" + std::string(name) + "'" + did_you_mean(name, names) + "; known are " +
+                list);
 }
 
-Actuator::Actuator(const ActuatorModel& model, double mass, double rate)
-    : rate_(rate), resistance_(model.resistance) {
+Actuator::Actuator(const ActuatorModel& model, double mass, double rate) : rate_(rate), resistance_(model.resistance) {
     const auto positive = [](double value) { return std::isfinite(value) && value > 0.0; };
     for (double value : {model.resonance, model.damping, model.resistance, model.voltage_limit, model.current_limit,
                          model.reference_acceleration, model.reference_frequency, model.reference_mass, mass, rate})

@@ -95,10 +95,8 @@ double refine_rate(std::span<const float> samples, double sample_rate, double ra
     double a = centre - stride, b = centre + stride;
     for (int i = 0; i < 24; ++i) {
         const double left = a + (b - a) / 3.0, right = b - (b - a) / 3.0;
-        if (together(left) < together(right))
-            a = left;
-        else
-            b = right;
+        if (together(left) < together(right)) a = left;
+        else b = right;
     }
     return 0.5 * (a + b);
 }

@@ -85,11 +85,14 @@ double SawVoice::choose_rate(bool cutting) const noexcept {
     const double playing = playing_rate_[cutting];
     double nearest = 0.0;
     for (const Layer& layer : layers_)
-        if (layer.cutting == cutting && (nearest == 0.0 || ratio(blade_rate_, layer.rate) < ratio(blade_rate_, nearest)))
+        if (layer.cutting == cutting &&
+            (nearest == 0.0 || ratio(blade_rate_, layer.rate) < ratio(blade_rate_, nearest)))
             nearest = layer.rate;
     if (playing == 0.0) return nearest;
     const double off = ratio(blade_rate_, playing), off_nearest = ratio(blade_rate_, nearest);
-    const auto too_far = [&](double recorded) { return std::abs(blade_rate_ / recorded - 1.0) > greatest_pitch_change; };
+    const auto too_far = [&](double recorded) {
+        return std::abs(blade_rate_ / recorded - 1.0) > greatest_pitch_change;
+    };
     return off > 1.02 * off_nearest || (too_far(playing) && !too_far(nearest)) ? nearest : playing;
 }
 
@@ -149,9 +152,8 @@ float SawVoice::tick(double load, bool trigger, double commanded_rate) noexcept 
 
 int SawVoice::loudest_recording() const {
     if (state_ == SawState::off) return -1;
-    const auto loudest = std::max_element(layers_.begin(), layers_.end(), [](const Layer& a, const Layer& b) {
-        return a.weight < b.weight;
-    });
+    const auto loudest = std::max_element(layers_.begin(), layers_.end(),
+                                          [](const Layer& a, const Layer& b) { return a.weight < b.weight; });
     return loudest == layers_.end() ? -1 : static_cast<int>(loudest->loop);
 }
 

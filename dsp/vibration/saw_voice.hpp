@@ -13,11 +13,11 @@ namespace tactus {
 struct SawRecording {
     std::span<const float> samples;
     double sample_rate = 48000.0;         ///< Hz
-    double reciprocation_rate = 0.0;      ///< strokes to and fro per second, Hz; corrected by ±2 % from the sound itself
-    double load = 0.0;                    ///< thrust on the blade, N; without meaning in free air
-    bool cutting = false;                 ///< in bone, else in free air
-    double gain = 1.0;                    ///< output per unit of sample: m/s² per full scale when calibrated
-    std::size_t loop_begin = 0;           ///< samples to be used: [begin, end); end 0 means all
+    double reciprocation_rate = 0.0;  ///< strokes to and fro per second, Hz; corrected by ±2 % from the sound itself
+    double load = 0.0;  ///< thrust on the blade, N; without meaning in free air
+    bool cutting = false;  ///< in bone, else in free air
+    double gain = 1.0;  ///< output per unit of sample: m/s² per full scale when calibrated
+    std::size_t loop_begin = 0;  ///< samples to be used: [begin, end); end 0 means all
     std::size_t loop_end = 0;
 };
 
@@ -25,12 +25,12 @@ enum class SawState { off, spin_up, idle, cutting, spin_down };
 
 /// How the saw behaves; times in s.
 struct SawBehaviour {
-    double spin_up_time = 0.08;    ///< time constant of the rate after the trigger is pulled
+    double spin_up_time = 0.08;  ///< time constant of the rate after the trigger is pulled
     double spin_down_time = 0.15;  ///< and after it is released
-    double load_on = 0.5;          ///< N: cutting begins above ...
-    double load_off = 0.3;         ///< ... and ends below
-    double fade_time = 0.02;       ///< cross-fade between recordings
-    double gain = 1.0;             ///< on top of each recording's
+    double load_on = 0.5;  ///< N: cutting begins above ...
+    double load_off = 0.3;  ///< ... and ends below
+    double fade_time = 0.02;  ///< cross-fade between recordings
+    double gain = 1.0;  ///< on top of each recording's
 };
 
 /// Plays the recordings at the blade's rate. Output is in m/s² when the recordings' gains say so, else in full scale.
@@ -45,7 +45,7 @@ struct SawBehaviour {
 /// `tick` is wait-free, allocates nothing, and depends on its arguments and the state only.
 class SawVoice {
 public:
-    static constexpr double greatest_rate = 1000.0;     ///< Hz, of the blade
+    static constexpr double greatest_rate = 1000.0;  ///< Hz, of the blade
     static constexpr double greatest_pitch_change = 0.15;
     static constexpr std::size_t most_recordings = 32;
 
@@ -58,14 +58,14 @@ public:
 
     SawState state() const { return state_; }
     double reciprocation_rate() const { return blade_rate_; }  ///< Hz, at this instant
-    bool running() const { return state_ != SawState::off; }   ///< the blade moves
-    double phase() const { return cycles_; }                   ///< cycles of the blade since the start
+    bool running() const { return state_ != SawState::off; }  ///< the blade moves
+    double phase() const { return cycles_; }  ///< cycles of the blade since the start
     /// Which recording of `prepare`'s list sounds loudest now; -1 when off.
     int loudest_recording() const;
 
 private:
     struct Layer {
-        std::size_t loop;      // in loops_
+        std::size_t loop;  // in loops_
         double rate, load, amplitude;
         bool cutting;
         double target = 0.0, weight = 0.0;  // shares in the mix

@@ -22,8 +22,9 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const std::string lps = "space: left-posterior-superior\nspace directions: (0.5,0,0) (0,0.5,0) (0,0,0.5)\n"
-                        "space origin: (-10,-10,-10)\n";
+const std::string lps =
+    "space: left-posterior-superior\nspace directions: (0.5,0,0) (0,0.5,0) (0,0,0.5)\n"
+    "space origin: (-10,-10,-10)\n";
 
 struct Ct {
     std::array<int, 3> size{41, 41, 41};
@@ -45,8 +46,8 @@ void append(std::string& bytes, double value, bool swap) {
 }
 
 std::string header_of(const Ct& ct) {
-    return fmt::format("NRRD0005\ntype: {}\ndimension: 3\nsizes: {} {} {}\n{}endian: {}\nencoding: raw\n", ct.type, ct.size[0],
-                       ct.size[1], ct.size[2], ct.geometry, ct.endian);
+    return fmt::format("NRRD0005\ntype: {}\ndimension: 3\nsizes: {} {} {}\n{}endian: {}\nencoding: raw\n", ct.type,
+                       ct.size[0], ct.size[1], ct.size[2], ct.geometry, ct.endian);
 }
 
 std::string samples_of(const Ct& ct) {
@@ -105,7 +106,8 @@ std::string cube_stl(double size = 20.0, int triangles = 12) {
     for (int t = 0; t < triangles; ++t) {
         text += "facet normal 0 0 0\nouter loop\n";
         for (const int c : index[t])
-            text += fmt::format("vertex {} {} {}\n", (c & 1 ? size : 0.0) + 5.0, c & 2 ? size : 0.0, c & 4 ? size : 0.0);
+            text +=
+                fmt::format("vertex {} {} {}\n", (c & 1 ? size : 0.0) + 5.0, c & 2 ? size : 0.0, c & 4 ? size : 0.0);
         text += "endloop\nendfacet\n";
     }
     return text + "endsolid cube\n";
@@ -152,8 +154,9 @@ TEST_CASE("sample type and byte order do not change a bone") {
 TEST_CASE("RAS and LPS files of the same head give the same place, whichever way their axes run") {
     Ct ct = corner_ball();
     CHECK(is_at(middle_of(import_of(ct).bone), {-5.0, 0.0, 4.0}));
-    ct.geometry = "space: right-anterior-superior\nspace directions: (-0.5,0,0) (0,-0.5,0) (0,0,0.5)\n"
-                  "space origin: (10,10,-10)\n";
+    ct.geometry =
+        "space: right-anterior-superior\nspace directions: (-0.5,0,0) (0,-0.5,0) (0,0,0.5)\n"
+        "space origin: (10,10,-10)\n";
     CHECK(is_at(middle_of(import_of(ct).bone), {-5.0, 0.0, 4.0}));
     ct.geometry = "space: RAS\nspace directions: (0.5,0,0) (0,0.5,0) (0,0,0.5)\nspace origin: (-10,-10,-10)\n";
     CHECK(is_at(middle_of(import_of(ct).bone), {5.0, 0.0, 4.0}));
@@ -235,7 +238,8 @@ TEST_CASE("a volume without bone is refused") {
 TEST_CASE("a file that is shorter than its header says is refused before memory is taken") {
     const TemporaryFolder folder;
     const std::string whole = header_of(Ct{}) + "\n" + samples_of(Ct{});
-    for (const std::size_t length : {whole.size() - 200, whole.size() / 2, std::size_t{150}, std::size_t{20}, std::size_t{0}}) {
+    for (const std::size_t length :
+         {whole.size() - 200, whole.size() / 2, std::size_t{150}, std::size_t{20}, std::size_t{0}}) {
         write_whole_file(folder / "cut.nrrd", std::string_view(whole).substr(0, length));
         CHECK_THROWS_AS(load_nrrd(folder / "cut.nrrd"), Error);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/distance/components.hpp"
 #include "dsp/distance/iso_distance.hpp"
+#include "dsp/distance/components.hpp"
 #include "dsp/distance/resample.hpp"
 #include "dsp/distance/surface_distance.hpp"
 
@@ -77,7 +77,8 @@ TEST_CASE("distance to a partial-volume sphere of 0.35 mm voxels is right within
     const Vec3 centre(0.11 * mm, -0.07 * mm, 0.05 * mm);
     for (const double radius : {4.0 * mm, 7.3 * mm}) {
         const Grid grey = partial_volume_sphere(radius, 0.35 * mm, centre, radius > 5.0 * mm ? 52 : 34);
-        const Errors errors = sphere_errors(distance_to_iso(smoothed(smoothed(smoothed(grey))), 300.0f), radius, centre);
+        const Errors errors =
+            sphere_errors(distance_to_iso(smoothed(smoothed(smoothed(grey))), 300.0f), radius, centre);
         CAPTURE(radius, errors.depth / mm, errors.direction);
         // 300 HU is the half-way value of air at -1000 and bone at 1600.
         CHECK(errors.depth < 0.05 * mm);
@@ -96,8 +97,8 @@ TEST_CASE("the distance to a smooth sphere stays within a tenth of a voxel every
     for (int k = 0; k < 48; ++k)
         for (int j = 0; j < 48; ++j)
             for (int i = 0; i < 48; ++i)
-                worst = std::max(worst, std::abs(distance.at(i, j, k) -
-                                                 (glm::length(distance.position(i, j, k)) - 5.0 * mm)));
+                worst = std::max(worst,
+                                 std::abs(distance.at(i, j, k) - (glm::length(distance.position(i, j, k)) - 5.0 * mm)));
     CAPTURE(worst / mm);
     CHECK(worst < 0.05 * mm);
 }
@@ -115,7 +116,8 @@ TEST_CASE("the iso-surface is closed, oriented outwards and of the sphere's volu
         for (const auto& t : surface.triangles) {
             for (int c = 0; c < 3; ++c) ++edges[{t[std::size_t(c)], t[std::size_t((c + 1) % 3)]}];
             volume += glm::dot(surface.vertices[std::size_t(t[0])],
-                               glm::cross(surface.vertices[std::size_t(t[1])], surface.vertices[std::size_t(t[2])])) / 6.0;
+                               glm::cross(surface.vertices[std::size_t(t[1])], surface.vertices[std::size_t(t[2])])) /
+                      6.0;
         }
         bool closed = true;
         for (const auto& [edge, count] : edges) closed = closed && count == 1 && edges.count({edge.second, edge.first});
@@ -127,7 +129,8 @@ TEST_CASE("the iso-surface is closed, oriented outwards and of the sphere's volu
 
 TEST_CASE("a box of triangles through the samples has an exact signed distance") {
     TriangleSurface box;
-    for (int c = 0; c < 8; ++c) box.vertices.push_back(Vec3(c & 1 ? 1 : -1, c & 2 ? 1 : -1, c & 4 ? 1 : -1) * (4.0 * mm));
+    for (int c = 0; c < 8; ++c)
+        box.vertices.push_back(Vec3(c & 1 ? 1 : -1, c & 2 ? 1 : -1, c & 4 ? 1 : -1) * (4.0 * mm));
     box.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
     const Grid layout = cube_grid(25, 0.5 * mm);
@@ -171,7 +174,8 @@ TEST_CASE("a closed hollow is filled and an open one is not") {
     for (int k = 0; k < 30; ++k)
         for (int j = 0; j < 30; ++j)
             for (int i = 0; i < 30; ++i)
-                shell.at(i, j, k) = static_cast<float>(1.5 * mm - std::abs(glm::length(shell.position(i, j, k)) - 4.5 * mm));
+                shell.at(i, j, k) =
+                    static_cast<float>(1.5 * mm - std::abs(glm::length(shell.position(i, j, k)) - 4.5 * mm));
     Grid open = shell;
     CHECK(fill_hollows(shell, 0.0f) > 100);
     CHECK(shell.at(15, 15, 15) > 0.0f);

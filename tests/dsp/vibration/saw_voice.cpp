@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/vibration/saw_voice.hpp"
 #include "dsp/vibration/actuator.hpp"
 #include "dsp/vibration/fundamental.hpp"
-#include "dsp/vibration/saw_voice.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/sound/sound.hpp"
+
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+#include <sndfile.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+namespace tactus {
+
+namespace {
+
+constexpr std::size_t most_samples = std::size_t{1} << 28;
+
+struct Closer {
+    void operator()(SNDFILE* file) const { sf_close(file); }
+};
+using Handle = std::unique_ptr<SNDFILE, Closer>;
+
+/// libsndfile plays a RIFF file that lost its tail as if it had been made that short.
+void check_riff_length(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    unsigned char head[8] = {};
+    if (!file.read(reinterpret_cast<char*>(head), sizeof head) || std::memcmp(head, "RIFF", 4) != 0) return;
+    const std::uintmax_t promised =
+        8u + (head[4] | head[5] << 8 | head[6] << 16 | static_cast<std::uintmax_t>(head[7]) << 24);
+    const std::uintmax_t present = std::filesystem::file_size(path);
+    // Programs that stream leave the length at its largest value.
+    if (promised < 0xFFFFFF00u && present < promised)
+        throw Error(
+            fmt::format("{}: the sound is cut short: {} of {} bytes are there", path.string(), present, promised));
+}
+
+}  // namespace
+
+Sound load_sound(const std::filesystem::path& path) {
+    const auto fail = [&path](const std::string& why) { throw Error(fmt::format("{}: {}", path.string(), why)); };
+    if (!std::filesystem::exists(path)) fail("no such sound file");
+    if (std::filesystem::is_directory(path)) fail("is a folder, not a sound file");
+    SF_INFO info{};
+    const Handle file(sf_open(path.c_str(), SFM_READ, &info));
+    if (!file) fail(fmt::format("cannot be read as sound: {}", sf_strerror(nullptr)));
+    check_riff_length(path);
+    if (info.frames <= 0) fail("the sound is empty");
+    if (info.samplerate <= 0 || info.channels <= 0) fail("the sound's header is damaged");
+    if (static_cast<std::size_t>(info.frames) > most_samples / static_cast<std::size_t>(info.channels))
+        fail("the sound is longer than 2^28 samples; cut it first");
+    Sound sound{info.samplerate, info.channels, static_cast<std::size_t>(info.frames), {}};
+    // A header may claim anything: memory grows with what is really there.
+    constexpr std::size_t chunk_frames = 65536;
+    std::vector<float> chunk(chunk_frames * static_cast<std::size_t>(info.channels));
+    for (sf_count_t got; (got = sf_readf_float(file.get(), chunk.data(), chunk_frames)) > 0;)
+        sound.samples.insert(sound.samples.end(), chunk.begin(), chunk.begin() + got * info.channels);
+    if (sf_error(file.get()) != SF_ERR_NO_ERROR) fail(fmt::format("the sound is damaged: {}", sf_strerror(file.get())));
+    if (sound.samples.size() != sound.frames * static_cast<std::size_t>(sound.channels)) fail("the sound is cut short");
+    for (const float sample : sound.samples)
+        if (!std::isfinite(sample)) fail("the sound holds a NaN or an infinity");
+    return sound;
+}
+
+std::vector<float> mix_to_mono(const Sound& sound) {
+    const auto channels = static_cast<std::size_t>(sound.channels);
+    std::vector<float> mono(sound.frames);
+    for (std::size_t i = 0; i < sound.frames; ++i) {
+        double sum = 0.0;
+        for (std::size_t c = 0; c < channels; ++c) sum += static_cast<double>(sound.samples[i * channels + c]);
+        mono[i] = static_cast<float>(sum / static_cast<double>(channels));
+    }
+    return mono;
+}
+
+struct SoundWriter::File {
+    std::filesystem::path path, part;
+    Handle handle;
+
+    ~File() {
+        if (!handle) return;
+        handle.reset();
+        std::error_code ignored;
+        std::filesystem::remove(part, ignored);
+    }
+};
+
+SoundWriter::SoundWriter(std::filesystem::path path, int channels, int rate, SoundFormat format)
+    : file_(std::make_unique<File>()) {
+    file_->part = path.string() + ".part";
+    file_->path = std::move(path);
+    SF_INFO info{};
+    info.channels = channels;
+    info.samplerate = rate;
+    info.format = format == SoundFormat::flac ? SF_FORMAT_FLAC | SF_FORMAT_PCM_24 : SF_FORMAT_WAV | SF_FORMAT_FLOAT;
+    file_->handle.reset(sf_open(file_->part.c_str(), SFM_WRITE, &info));
+    if (!file_->handle) throw Error(fmt::format("{}: cannot write: {}", file_->path.string(), sf_strerror(nullptr)));
+    // The PEAK chunk carries the time of writing: without it the same samples give the same bytes.
+    sf_command(file_->handle.get(), SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);
+    if (format == SoundFormat::flac) sf_command(file_->handle.get(), SFC_SET_CLIPPING, nullptr, SF_TRUE);
+}
+
+SoundWriter::~SoundWriter() = default;
+SoundWriter::SoundWriter(SoundWriter&&) noexcept = default;
+SoundWriter& SoundWriter::operator=(SoundWriter&&) noexcept = default;
+
+void SoundWriter::write(const float* samples, std::size_t frames) {
+    if (sf_writef_float(file_->handle.get(), samples, static_cast<sf_count_t>(frames)) !=
+        static_cast<sf_count_t>(frames))
+        throw Error(fmt::format("{}: cannot write: {}", file_->path.string(), sf_strerror(file_->handle.get())));
+}
+
+void SoundWriter::finish() {
+    sf_write_sync(file_->handle.get());
+    const bool failed = sf_error(file_->handle.get()) != SF_ERR_NO_ERROR || sf_close(file_->handle.release()) != 0;
+    if (failed) {
+        std::error_code ignored;
+        std::filesystem::remove(file_->part, ignored);
+        throw Error(fmt::format("{}: the sound could not be completed; is the disk full?", file_->path.string()));
+    }
+    std::filesystem::rename(file_->part, file_->path);
+}
+
+}  // namespace tactus

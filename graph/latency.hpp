@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// How old, in logical time, what leaves a patch can be.
+#pragma once
+
+#include "graph/plan.hpp"
+
+#include <string>
+#include <vector>
+
+namespace tactus {
+
+struct PathLatency {
+    std::string from, to;          ///< names of nodes
+    double latency_ms = 0.0;       ///< largest age at the end of the path of a value from its start
+    std::vector<std::string> via;  ///< the nodes on the way, ends included
+};
+
+/// Largest age, over all activations of the consumer, of the value that a wire between two groups delivers.
+Flicks worst_age(const PlanGroup& producer, const PlanGroup& consumer, const PlanWire& wire);
+
+/// The quickest path from every device input to every output of the patch (device_output, audio_output, record), in
+/// order of names. Inside a group values are passed on in the same tick and do not age.
+std::vector<PathLatency> path_latencies(const Plan& plan);
+
+}  // namespace tactus

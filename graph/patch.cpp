@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/patch.hpp"
+
+#include "dsp/core/units.hpp"
+#include "graph/patch_wire.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+namespace tactus {
+
+namespace {
+
+const std::array<std::string, 9> top_level{"title",  "about",  "wires",   "quantum", "seed",
+                                           "assets", "groups", "devices", "nodes"};
+
+class PatchReader {
+public:
+    PatchReader(const std::filesystem::path& file, Problems& problems) : file_(file), problems_(problems) {}
+
+    Patch read(std::string_view text) {
+        patch_.file = file_;
+        patch_.text = text;
+        toml::table root;
+        try {
+            root = toml::parse(text, file_.string());
+        } catch (const toml::parse_error& error) {
+            const toml::source_position at = error.source().begin;
+            problems_.add({file_.string(), static_cast<int>(at.line), static_cast<int>(at.column)},
+                          fmt::format("not valid TOML: {}", error.description()));
+            return std::move(patch_);
+        }
+        for (const auto& [key, value] : root) entry(key, value);
+        sort_by_place(patch_.nodes);
+        sort_by_place(patch_.assets);
+        sort_by_place(patch_.devices);
+        check_names();
+        if (patch_.nodes.empty() && problems_.empty())
+            problems_.add({file_.string(), 1, 1}, "the patch has no nodes; a node is a table such as [nodes.hand]");
+        return std::move(patch_);
+    }
+
+private:
+    SourceLocation at(const toml::source_region& region) const {
+        return {file_.string(), static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
+    }
+    SourceLocation at(const toml::node& node) const { return at(node.source()); }
+
+    // TOML tables come sorted by key; the file's order is what people see.
+    template <class Item>
+    static void sort_by_place(std::vector<Item>& items) {
+        std::ranges::stable_sort(items, [](const Item& a, const Item& b) {
+            return std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
+        });
+    }
+
+    void entry(const toml::key& key, const toml::node& value) {
+        const std::string_view name = key.str();
+        if (name == "title" || name == "about") {
+            const std::string text = string_of(value, name);
+            if (name == "title") patch_.title = text;
+        } else if (name == "wires") wires(value);
+        else if (name == "quantum") quantum(value);
+        else if (name == "seed") seed(value);
+        else if (name == "assets") for_each(value, name, [this](const auto& k, const toml::node& v) { asset(k, v); });
+        else if (name == "groups") for_each(value, name, [this](const auto& k, const toml::node& v) { group(k, v); });
+        else if (name == "devices") for_each(value, name, [this](const auto& k, const toml::node& v) { device(k, v); });
+        else if (name == "nodes") for_each(value, name, [this](const auto& k, const toml::node& v) { node(k, v); });
+        else
+            problems_.add(at(key.source()),
+                          fmt::format("unknown key '{}' at the top of a patch{}", name, did_you_mean(name, top_level)));
+    }
+
+    template <class Each>
+    void for_each(const toml::node& value, std::string_view name, Each&& each) {
+        const toml::table* table = value.as_table();
+        if (!table) return problems_.add(at(value), fmt::format("'{}' is a table; write [{}]", name, name));
+        for (const auto& [key, item] : *table) {
+            if (key.str() == "wires" && item.is_array())
+                problems_.add(at(key.source()),
+                              fmt::format("'wires' stands inside [{}]; move it above the first table", name));
+            else if (!is_name(key.str()))
+                problems_.add(at(key.source()),
+                              fmt::format("'{}' is no name; names have letters, digits, '_' and '-'", key.str()));
+            else each(key, item);
+        }
+    }
+
+    std::string string_of(const toml::node& value, std::string_view name) {
+        if (const auto* text = value.as_string()) return text->get();
+        problems_.add(at(value), fmt::format("'{}' is a text; put it in quotes", name));
+        return {};
+    }
+
+    void wires(const toml::node& value) {
+        const toml::array* list = value.as_array();
+        if (!list) return problems_.add(at(value), "'wires' is a list: wires = [ \"hand.pose -> blade.pose\", … ]");
+        for (const toml::node& item : *list) {
+            const auto* text = item.as_string();
+            if (!text) {
+                problems_.add(at(item), "a wire is a text: \"hand.pose -> blade.pose\"");
+                continue;
+            }
+            SourceLocation where = at(item);
+            ++where.column;  // past the quotation mark
+            try {
+                patch_.wires.push_back(parse_wire(text->get(), where));
+            } catch (const Error& error) {
+                problems_.list.push_back(error);
+            }
+        }
+    }
+
+    void quantum(const toml::node& value) {
+        const std::string text = string_of(value, "quantum");
+        if (text.empty()) return;
+        try {
+            const double flicks = parse_as(text, "s") * static_cast<double>(flicks_per_second);
+            if (flicks < 1.0 || flicks > static_cast<double>(flicks_per_second))
+                throw Error(fmt::format("a quantum lies above zero and up to 1 s, not {}", text));
+            if (std::abs(flicks - std::round(flicks)) > 1e-6)
+                throw Error(fmt::format("{} is not exact; the nearest that is: {:.12g} ms", text,
+                                        std::round(flicks) * 1e3 / static_cast<double>(flicks_per_second)));
+            patch_.quantum = std::llround(flicks);
+        } catch (const Error& error) {
+            problems_.add(at(value), error.message());
+        }
+    }
+
+    void seed(const toml::node& value) {
+        const auto* number = value.as_integer();
+        if (!number || number->get() < 0) return problems_.add(at(value), "'seed' is a whole number, not negative");
+        patch_.seed = static_cast<std::uint64_t>(number->get());
+    }
+
+    void asset(const toml::key& key, const toml::node& value) {
+        const std::string path = string_of(value, key.str());
+        if (path.empty()) return problems_.add(at(value), fmt::format("asset '{}' names no file", key.str()));
+        const std::filesystem::path given(path);
+        patch_.assets.push_back(
+            {std::string(key.str()), given.is_absolute() ? given : file_.parent_path() / given, at(value)});
+    }
+
+    /// The table behind `[kind.name]`, or null after saying what is wrong.
+    const toml::table* table_of(const toml::key& key, const toml::node& value, std::string_view kind) {
+        const toml::table* table = value.as_table();
+        if (!table) problems_.add(at(value), fmt::format("'{}' is a table; write [{}.{}]", key.str(), kind, key.str()));
+        return table;
+    }
+
+    void group(const toml::key& key, const toml::node& value) {
+        const toml::table* table = table_of(key, value, "groups");
+        if (!table) return;
+        PatchGroup group{std::string(key.str()), {}, {}, -1, at(key.source())};
+        static const std::array<std::string, 3> keys{"rate", "latency", "backlog"};
+        for (const auto& [name, item] : *table) {
+            if (name.str() == "rate") group.rate = string_of(item, "rate");
+            else if (name.str() == "latency") group.latency = string_of(item, "latency");
+            else if (name.str() == "backlog") {
+                const auto* number = item.as_integer();
+                if (number && number->get() >= 0 && number->get() <= 1'000'000)
+                    group.backlog = static_cast<int>(number->get());
+                else problems_.add(at(item), "'backlog' is a whole number of ticks, not negative");
+            } else
+                problems_.add(at(name.source()),
+                              fmt::format("unknown key '{}' of a group{}", name.str(), did_you_mean(name.str(), keys)));
+        }
+        if (group.rate.empty()) problems_.add(group.where, fmt::format("group '{}' has no rate", group.name));
+        patch_.groups.push_back(std::move(group));
+    }
+
+    void device(const toml::key& key, const toml::node& value) {
+        const toml::table* table = table_of(key, value, "devices");
+        if (!table) return;
+        PatchDevice device{std::string(key.str()), {}, at(key.source()), {}};
+        for (const auto& [name, item] : *table) {
+            if (name.str() == "driver") device.driver = string_of(item, "driver");
+            else setting(name, item, fmt::format("devices.{}", device.name), device.settings);
+        }
+        if (device.driver.empty()) problems_.add(device.where, fmt::format("device '{}' names no driver", device.name));
+        sort_by_place(device.settings);
+        patch_.devices.push_back(std::move(device));
+    }
+
+    void node(const toml::key& key, const toml::node& value) {
+        const toml::table* table = table_of(key, value, "nodes");
+        if (!table) return;
+        PatchNode node;
+        node.name = key.str();
+        node.where = node.type_where = node.rate_where = at(key.source());
+        for (const auto& [name, item] : *table) {
+            if (name.str() == "type") {
+                node.type = string_of(item, "type");
+                node.type_where = at(item);
+            } else if (name.str() == "rate" || name.str() == "group") {
+                (name.str() == "rate" ? node.rate : node.group) = string_of(item, name.str());
+                node.rate_where = at(item);
+            } else setting(name, item, fmt::format("nodes.{}", node.name), node.settings);
+        }
+        if (node.type.empty()) problems_.add(node.where, fmt::format("node '{}' has no type", node.name));
+        if (node.rate.empty() == node.group.empty())
+            problems_.add(node.where,
+                          fmt::format("node '{}' needs {} 'rate' {} 'group'", node.name,
+                                      node.rate.empty() ? "a" : "either", node.rate.empty() ? "or a" : "or"));
+        sort_by_place(node.settings);
+        patch_.nodes.push_back(std::move(node));
+    }
+
+    void setting(const toml::key& key, const toml::node& value, const std::string& owner,
+                 std::vector<OptionText>& into) {
+        if (key.str() == "wires" && value.is_array())
+            return problems_.add(at(key.source()),
+                                 fmt::format("'wires' stands inside [{}]; move it above the first table", owner));
+        if (const std::optional<std::string> text = scalar_text(value)) {
+            into.push_back({std::string(key.str()), *text, at(value)});
+            return;
+        }
+        if (const toml::array* list = value.as_array(); list && list->size() == 3) {
+            std::string joined;
+            for (const toml::node& item : *list)
+                if (const std::optional<std::string> text = scalar_text(item))
+                    joined += (joined.empty() ? "" : ", ") + *text;
+                else return problems_.add(at(item), "a vector has three quantities");
+            into.push_back({std::string(key.str()), joined, at(value)});
+            return;
+        }
+        problems_.add(at(value),
+                      fmt::format("'{}' is neither a text, a number, true or false, nor a list of three", key.str()));
+    }
+
+    static std::optional<std::string> scalar_text(const toml::node& value) {
+        if (const auto* text = value.as_string()) return text->get();
+        if (const auto* number = value.as_integer()) return fmt::format("{}", number->get());
+        if (const auto* number = value.as_floating_point()) return fmt::format("{}", number->get());
+        if (const auto* flag = value.as_boolean()) return flag->get() ? "true" : "false";
+        return std::nullopt;
+    }
+
+    void check_names() {
+        for (const PatchNode& node : patch_.nodes)
+            for (const PatchAsset& asset : patch_.assets)
+                if (asset.name == node.name)
+                    problems_.add(
+                        asset.where,
+                        fmt::format("'{}' is the name of an asset and of a node; a wire could not tell them apart",
+                                    node.name));
+    }
+
+    std::filesystem::path file_;
+    Problems& problems_;
+    Patch patch_;
+};
+
+}  // namespace
+
+Patch read_patch(std::string_view text, const std::filesystem::path& file, Problems& problems) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    return PatchReader(file, problems).read(text);
+}
+
+Patch load_patch(const std::filesystem::path& file, Problems& problems) {
+    std::error_code failure;
+    if (std::filesystem::is_directory(file, failure))
+        throw Error(fmt::format("{}: is a folder, not a patch", file.string()));
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw Error(fmt::format("{}: cannot read the patch", file.string()));
+    constexpr std::uintmax_t largest = 16u << 20;
+    if (std::filesystem::file_size(file, failure) > largest && !failure)
+        throw Error(fmt::format("{}: larger than 16 MB; that is no patch", file.string()));
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return read_patch(text.str(), file, problems);
+}
+
+}  // namespace tactus

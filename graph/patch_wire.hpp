@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// The grammar of one wire: "from.port -> to.port as linear".
+#pragma once
+
+#include "graph/patch.hpp"
+
+#include <string_view>
+
+namespace tactus {
+
+/// `where` is the place of the text's first character. Throws Error at the word that is wrong.
+PatchWire parse_wire(std::string_view text, const SourceLocation& where);
+
+/// Letters, digits, '_' and '-', not empty.
+bool is_name(std::string_view text);
+
+}  // namespace tactus

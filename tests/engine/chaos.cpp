@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/engine/chaos.hpp"
+
+#include "nodes/catalogue.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::test {
+
+/// x ← 3.9 x (1 − x), nudged by what comes in.
+struct Chaos {
+    static constexpr auto about = "Logistic map.";
+
+    In<double> in{optional, "nudge"};
+    In<double> other{optional, "nudge"};
+    Out<double> out{"x"};
+    Out<Pose> pose{"x as a pose"};
+    Param gain{"0.01", "0", "1", "size of the nudges"};
+    Param work{"0", "0", "100000", "iterations of useless work"};
+
+    void prepare(const Setup& setup) {
+        x_ = 0.2 + 0.5 * Random{setup.seed}.uniform(0);
+        out = x_;
+    }
+    void process(const Tick& tick) noexcept {
+        double sink = x_;
+        for (int i = 0; i < static_cast<int>(work); ++i) sink = std::sqrt(sink + 1.0);
+        const double nudge = std::fmod(std::abs(in + other), 1.0) * gain + 1e-300 * sink;
+        x_ = 3.9 * x_ * (1.0 - x_) * (1.0 - gain) + nudge * 0.2;
+        x_ = std::clamp(x_, 0.01, 0.99);
+        out = x_ + 1e-6 * static_cast<double>(tick.elapsed / tick.period);
+        pose.get().position = Vec3(x_, 0.0, 0.0);
+    }
+    double x_ = 0.3;
+};
+TACTUS_NODE(Chaos, in, other, out, pose, gain, work)
+
+/// A chaotic signal; its gain glides in from a slower group.
+struct ChaosSignal {
+    static constexpr auto about = "Logistic map per sample.";
+
+    In<Ramp> glide{optional, "nudge"};
+    In<double> held{optional, "nudge"};
+    Out<Signal> signal{"x"};
+    Out<double> level{"x"};
+
+    void process(const Tick& tick) noexcept {
+        for (int i = 0; i < tick.frames; ++i) {
+            x_ = 3.9 * x_ * (1.0 - x_) * 0.98 + 0.01 * std::fmod(std::abs(glide[i] + held), 1.0);
+            signal[i] = static_cast<float>(x_);
+            level[i] = x_;
+        }
+    }
+    double x_ = 0.3;
+};
+TACTUS_NODE(ChaosSignal, glide, held, signal, level)
+
+/// Sums what a batch brings.
+struct BatchSum {
+    static constexpr auto about = "Sum over a batch, order-dependent.";
+
+    Batch<Pose> path{"path"};
+    Batch<Signal> sound{optional, "sound"};
+    Out<double> sum{"running sum"};
+    Out<double> count{"values seen"};
+
+    void process(const Tick&) noexcept {
+        for (std::size_t i = 0; i < path.values().size(); ++i) {
+            sum_ = std::fmod(
+                sum_ * 1.7 + path.values()[i].position.x + 1e-9 * static_cast<double>(path.sample_times()[i]), 1.0);
+            ++count_;
+        }
+        for (const float s : sound.values()) sum_ = std::fmod(sum_ * 1.3 + static_cast<double>(s), 1.0);
+        sum = sum_;
+        count = count_;
+    }
+    double sum_ = 0.0, count_ = 0.0;
+};
+TACTUS_NODE(BatchSum, path, sound, sum, count)
+
+Catalogue chaos_catalogue() {
+    static const std::vector<const NodeType*> types = [] {
+        const Catalogue all = catalogue();
+        std::vector<const NodeType*> with(all.begin(), all.end());
+        for (const NodeType* type : {&node_type_Chaos(), &node_type_ChaosSignal(), &node_type_BatchSum()})
+            with.push_back(type);
+        return with;
+    }();
+    return types;
+}
+
+std::string PatchText::toml() const {
+    std::string text = "wires = [\n";
+    for (const std::string& wire : wires) text += "  \"" + wire + "\",\n";
+    text += "]\n" + extra + "\n";
+    for (const Node& node : nodes) {
+        text += "[nodes." + node.name + "]\ntype = \"" + node.type + "\"\nrate = \"" + node.rate + "\"\n";
+        for (const auto& [key, value] : node.settings) text += key + " = \"" + value + "\"\n";
+    }
+    return text;
+}
+
+Plan compile_text(const std::string& toml) {
+    Problems problems;
+    const Patch patch = read_patch(toml, "test.toml", problems);
+    std::optional<Plan> plan;
+    if (problems.empty()) plan = compile(patch, chaos_catalogue(), problems);
+    for (const Error& problem : problems.list) UNSCOPED_INFO(problem.what());
+    REQUIRE(problems.empty());
+    return std::move(*plan);
+}
+
+std::string four_rates() {
+    return PatchText{
+        {{"a", "chaos", "1 kHz", {}},
+         {"b", "chaos", "1 kHz", {}},
+         {"slow", "chaos", "60 Hz", {}},
+         {"grip", "chaos", "150 Hz", {}},
+         {"voice", "chaos_signal", "48 kHz", {}},
+         {"loud", "gain", "48 kHz", {}},
+         {"path", "batch_sum", "60 Hz", {}}},
+        {"a.out -> b.in", "b.out -> a.other as delay 2", "slow.out -> a.in as linear", "grip.out -> b.other",
+         "a.out -> slow.in", "path.sum -> slow.other", "b.out -> grip.in", "slow.out -> grip.other",
+         "a.out -> voice.glide as linear", "grip.out -> voice.held", "voice.signal -> loud.in", "b.out -> loud.factor",
+         "voice.level -> slow.gain", "b.pose -> path.path as batch", "loud.out -> path.sound as batch"},
+        "seed = 7"}
+        .toml();
+}
+
+}  // namespace tactus::test

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Node types whose state is chaotic: one wrong, late or doubled value anywhere changes every later output.
+#pragma once
+
+#include "engine/engine.hpp"
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace tactus::test {
+
+/// The types below plus the whole catalogue.
+Catalogue chaos_catalogue();
+
+/// A patch from lines: nodes as {name, type, rate} and wires as in a patch file's `wires`.
+struct PatchText {
+    struct Node {
+        std::string name, type, rate;
+        std::vector<std::pair<std::string, std::string>> settings;
+    };
+    std::vector<Node> nodes;
+    std::vector<std::string> wires;
+    std::string extra;  ///< further TOML
+
+    std::string toml() const;
+};
+
+/// Compiles, with REQUIRE that there are no problems.
+Plan compile_text(const std::string& toml);
+
+/// 48 kHz, 1 kHz, 150 Hz and 60 Hz groups, wired in cycles across rates, with every mode of delivery.
+std::string four_rates();
+
+}  // namespace tactus::test

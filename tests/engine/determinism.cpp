@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/engine/chaos.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <unistd.h>
+
+#include <filesystem>
+
+using namespace tactus;
+using namespace tactus::test;
+
+namespace {
+
+std::uint64_t rendered(const std::string& toml, int threads, int block, bool random_blocks, double length = 1.0) {
+    EngineOptions options;
+    options.seconds = length;
+    options.block = block;
+    options.random_blocks = random_blocks;
+    Engine engine(compile_text(toml), options);
+    engine.render(threads);
+    return engine.output_hash();
+}
+
+std::filesystem::path scratch(const std::string& name) {
+    return std::filesystem::temp_directory_path() / ("tactus_" + std::to_string(::getpid()) + "_" + name);
+}
+
+}  // namespace
+
+TEST_CASE("threads and blocks cannot change a bit of the output") {
+    const std::string patch = four_rates();
+    const std::uint64_t reference = rendered(patch, 1, 1, false);
+    for (const int threads : {1, 2, 4})
+        for (const int block : {1, 16, 48, 480}) {
+            INFO(threads << " threads, blocks of " << block);
+            CHECK(rendered(patch, threads, block, false) == reference);
+            CHECK(rendered(patch, threads, block, true) == reference);
+        }
+}
+
+TEST_CASE("another seed gives another output") {
+    std::string patch = four_rates();
+    const std::uint64_t reference = rendered(patch, 1, 0, false);
+    patch.replace(patch.find("seed = 7"), 8, "seed = 8");
+    CHECK(rendered(patch, 1, 0, false) != reference);
+}
+
+TEST_CASE("every group runs the activations that start before the end, and no more") {
+    EngineOptions options;
+    options.seconds = 0.5;
+    Engine engine(compile_text(four_rates()), options);
+    engine.render(2);
+    std::vector<std::int64_t> ticks;
+    for (const auto& group : engine.groups()) ticks.push_back(group->telemetry.ticks.load());
+    CHECK(ticks == std::vector<std::int64_t>{24000, 500, 75, 30});
+    for (const auto& group : engine.groups()) CHECK(group->telemetry.misses.load() == 0);
+}
+
+TEST_CASE("a live run that misses nothing has the offline hash, and one that misses has that of its log") {
+    const std::string patch = four_rates();
+    const std::uint64_t offline = rendered(patch, 1, 0, false, 0.4);
+    for (const double dilate : {1.0, 4.0, 16.0}) {
+        const auto log = scratch("determinism.log");
+        EngineOptions options;
+        options.seconds = 0.4;
+        options.live = true;
+        Engine live(compile_text(patch), options);
+        live.run_live({.dilate = dilate, .log = log, .stop = nullptr, .watch = {}});
+        std::int64_t misses = 0;
+        for (const auto& group : live.groups())
+            misses += group->telemetry.misses + group->telemetry.skipped + group->telemetry.dropped;
+        INFO("dilated " << dilate << ", misses " << misses);
+        if (misses == 0) CHECK(live.output_hash() == offline);
+        const TimingLog recorded = TimingLog::load(log);
+        for (const int threads : {1, 3}) {
+            EngineOptions again;
+            again.seconds = 0.4;
+            again.replay = &recorded;
+            Engine replay(compile_text(patch), again);
+            replay.render(threads);
+            CHECK(replay.port_hashes() == live.port_hashes());
+        }
+        std::filesystem::remove(log);
+    }
+}
+
+TEST_CASE("an overloaded live run skips, drops and holds, and its log still gives the same bits") {
+    // The 1 kHz and 60 Hz groups need longer than their periods.
+    std::string patch = four_rates();
+    const auto slow_down = [&patch](const std::string& node, const std::string& work) {
+        const std::size_t at = patch.find("[nodes." + node + "]\n") + ("[nodes." + node + "]\n").size();
+        patch.insert(at, "work = " + work + "\n");
+    };
+    slow_down("a", "100000");
+    slow_down("slow", "100000");
+    const auto log = scratch("overload.log");
+    EngineOptions options;
+    options.seconds = 0.3;
+    options.live = true;
+    Engine live(compile_text(patch), options);
+    live.run_live({.dilate = 0.2, .log = log, .stop = nullptr, .watch = {}});
+    std::int64_t decisions = 0;
+    for (const auto& group : live.groups())
+        decisions += group->telemetry.misses + group->telemetry.skipped + group->telemetry.dropped;
+    CHECK(decisions > 0);
+    const TimingLog recorded = TimingLog::load(log);
+    EngineOptions again;
+    again.seconds = 0.3;
+    again.replay = &recorded;
+    Engine replay(compile_text(patch), again);
+    replay.render(2);
+    CHECK(replay.port_hashes() == live.port_hashes());
+    std::filesystem::remove(log);
+}
+
+TEST_CASE("a damaged or foreign log is refused") {
+    const auto log = scratch("damaged.log");
+    EngineOptions options;
+    options.seconds = 0.05;
+    options.live = true;
+    Engine live(compile_text(four_rates()), options);
+    live.run_live({.dilate = 1.0, .log = log, .stop = nullptr, .watch = {}});
+    const auto size = std::filesystem::file_size(log);
+    std::filesystem::resize_file(log, size - 200);
+    CHECK_THROWS_WITH(TimingLog::load(log), Catch::Contains("stops before the end"));
+    std::filesystem::resize_file(log, 10);
+    CHECK_THROWS_WITH(TimingLog::load(log), Catch::Contains("not a timing log"));
+    std::filesystem::remove(log);
+    CHECK_THROWS_WITH(TimingLog::load(log), Catch::Contains("cannot read"));
+}

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/core/error.hpp"
+#include "dsp/core/units.hpp"
+#include "tools/verbs.hpp"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <exception>
+#include <new>
+
+namespace tactus {
+
+namespace {
+
+void add_patch_options(CLI::App& verb, PatchChoice& choice) {
+    verb.add_option("patch", choice.patch, "patch file, or a name in the library such as saw-training")->required();
+    verb.add_option("--set", choice.overrides.settings, "change a parameter: NODE.PARAM=VALUE")
+        ->allow_extra_args(false);
+    verb.add_option("--asset", choice.overrides.assets, "use another file: NAME=PATH")->allow_extra_args(false);
+    verb.add_option("--seed", choice.seed, "seed of the random numbers");
+}
+
+void add_import(CLI::App& app, ImportChoice& choice) {
+    CLI::App* verb =
+        app.add_subcommand("import", "make a bone from a CT volume (NRRD) or a closed mesh (STL, PLY, OBJ)");
+    verb->add_option("input", choice.input, "the file")->required();
+    verb->add_option("-o,--out", choice.out, "the bone, an OpenVDB file")->required();
+    verb->add_option("--threshold", choice.threshold, "CT number from which on there is bone, HU")
+        ->capture_default_str();
+    verb->add_option("--crop", choice.crop, "x0:x1,y0:y1,z0:z1 in mm, LPS");
+    verb->add_option("--component", choice.component, "largest, all, or how many of the largest")
+        ->capture_default_str();
+    verb->add_option("--unit", choice.unit, "unit of a mesh: mm, cm or m")->check(CLI::IsMember({"mm", "cm", "m"}));
+    verb->add_option_function<double>(
+        "--spacing", [&choice](const double& mm) { choice.spacing = mm * 1e-3; }, "resample to this grid spacing, mm");
+    verb->add_option_function<std::string>(
+        "--rescale",
+        [&choice](const std::string& text) {
+            double slope = 0.0, intercept = 0.0;
+            if (std::sscanf(text.c_str(), "%lf,%lf", &slope, &intercept) != 2)
+                throw Error("--rescale takes SLOPE,INTERCEPT, as in --rescale 1,-1024");
+            choice.rescale = {slope, intercept};
+        },
+        "scanner numbers to HU: SLOPE,INTERCEPT");
+    verb->add_flag("--json", choice.json, "print a summary as JSON");
+}
+
+}  // namespace
+
+int command_line(int argc, char** argv) {
+    CLI::App app{"Tactus: patches of nodes for haptics, from 60 Hz to audio rate", "tactus"};
+    app.require_subcommand(1);
+
+    RenderChoice render;
+    CLI::App* render_app = app.add_subcommand("render", "run a patch on a virtual clock, as fast as it goes");
+    add_patch_options(*render_app, render);
+    render_app->add_option("--seconds", render.seconds, "logical time to render, s")
+        ->capture_default_str()
+        ->check(CLI::Range(1e-3, 1e6));
+    render_app->add_option("--out", render.out, "folder for what comes out")->required();
+    render_app->add_option("--threads", render.threads, "threads, 0: one per core")->check(CLI::Range(0, 64));
+    render_app->add_option("--block", render.block, "most samples per call, or 'random'; the output is the same");
+    render_app->add_option("--log", render.log, "repeat the timing decisions of a live run");
+    render_app->add_flag("--json", render.json, "print the summary");
+
+    RunChoice run;
+    CLI::App* run_app = app.add_subcommand("run", "run a patch in real time, until Ctrl-C or --seconds");
+    add_patch_options(*run_app, run);
+    run_app->add_option("--seconds", run.seconds, "stop after so much logical time, s")->check(CLI::Range(1e-3, 1e6));
+    run_app->add_option("--dilate", run.dilate, "real seconds per logical second")->check(CLI::Range(0.01, 1000.0));
+    run_app->add_option("--out", run.out, "folder for what comes out (default: PATCH-run)");
+    run_app->add_option("--log", run.log, "write what timing decided, for 'render --log'");
+    run_app->add_flag("--json", run.json, "print the summary as JSON and nothing else");
+
+    PatchChoice check;
+    CLI::App* check_app = app.add_subcommand("check", "find errors; list groups and latencies");
+    add_patch_options(*check_app, check);
+    check_app->add_flag("--json", check.json, "as JSON");
+
+    PatchChoice draw;
+    std::filesystem::path drawing;
+    CLI::App* draw_app = app.add_subcommand("draw", "draw the graph as SVG");
+    add_patch_options(*draw_app, draw);
+    draw_app->add_option("-o,--out", drawing, "file (default: standard output)");
+
+    std::string type;
+    bool nodes_json = false, devices_json = false;
+    CLI::App* nodes_app = app.add_subcommand("nodes", "the node types: ports, parameters, units, ranges");
+    nodes_app->add_option("type", type, "only this type");
+    nodes_app->add_flag("--json", nodes_json, "as JSON");
+    CLI::App* devices_app = app.add_subcommand("devices", "haptic drivers and sound outputs of this machine");
+    devices_app->add_flag("--json", devices_json, "as JSON");
+
+    ImportChoice import;
+    add_import(app, import);
+
+    try {
+        app.parse(argc, argv);
+        if (*render_app) return render_verb(render);
+        if (*run_app) return run_verb(run);
+        if (*check_app) return check_verb(check);
+        if (*draw_app) return draw_verb(draw, drawing);
+        if (*nodes_app) return nodes_verb(type, nodes_json);
+        if (*devices_app) return devices_verb(devices_json);
+        return import_verb(import);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? done : bad_input;
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "tactus: not enough memory\n");
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "tactus: {}\n", error.what());
+    }
+    return bad_input;
+}
+
+}  // namespace tactus

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/load_plan.hpp"
+
+#include "nodes/catalogue.hpp"
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+namespace tactus {
+
+namespace fs = std::filesystem;
+
+fs::path library_folder() {
+    if (const char* given = std::getenv("TACTUS_LIBRARY"); given && *given) return given;
+    std::error_code failure;
+    const fs::path self = fs::read_symlink("/proc/self/exe", failure);
+    return failure ? fs::path("library") : self.parent_path() / "library";
+}
+
+fs::path find_patch(const std::string& name) {
+    if (fs::exists(name)) return name;
+    const fs::path folder = library_folder() / "patches";
+    if (const fs::path bundled = folder / (name + ".toml"); fs::exists(bundled)) return bundled;
+    std::vector<std::string> names;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored))
+        if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+    std::ranges::sort(names);
+    std::string list;
+    for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
+    throw Error(fmt::format("no patch '{}': neither a file nor one of the library ({}){}", name,
+                            list.empty() ? "which is empty; build first" : list, did_you_mean(name, names)));
+}
+
+std::optional<Plan> read_plan(const PatchChoice& choice, Problems& problems) {
+    Patch patch = load_patch(find_patch(choice.patch), problems);
+    apply_overrides(patch, choice.overrides, problems);
+    if (choice.seed) patch.seed = *choice.seed;
+    // Without a sound text, what the compiler would say is mostly echo.
+    if (!problems.empty()) return std::nullopt;
+    return compile(patch, catalogue(), problems);
+}
+
+Plan load_plan(const PatchChoice& choice, AssetCache& assets) {
+    Problems problems;
+    std::optional<Plan> plan = read_plan(choice, problems);
+    if (plan) assets.load(*plan, problems);
+    if (problems.empty()) return std::move(*plan);
+    for (std::size_t i = 0; i + 1 < problems.list.size(); ++i)
+        fmt::print(stderr, "tactus: {}\n", problems.list[i].what());
+    throw problems.list.back();
+}
+
+void make_output_folder(const fs::path& folder) {
+    std::error_code failure;
+    fs::create_directories(folder, failure);
+    if (failure) throw Error(fmt::format("{}: cannot make the folder: {}", folder.string(), failure.message()));
+    const fs::path probe = folder / fmt::format(".write-{}.part", ::getpid());
+    std::FILE* file = std::fopen(probe.c_str(), "w");
+    if (!file) throw Error(fmt::format("{}: the folder is not writable", folder.string()));
+    std::fclose(file);
+    fs::remove(probe, failure);
+}
+
+}  // namespace tactus

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// From what the command line says to a plan that is ready for an engine.
+#pragma once
+
+#include "graph/load_assets.hpp"
+#include "graph/plan.hpp"
+#include "tools/verbs.hpp"
+
+#include <filesystem>
+
+namespace tactus {
+
+/// Folder of the bundled library: $TACTUS_LIBRARY, or "library" beside the command.
+std::filesystem::path library_folder();
+
+/// File of a patch given by path, or by name in the library. Throws Error listing what the library has.
+std::filesystem::path find_patch(const std::string& name);
+
+/// Reads and compiles. Problems are collected.
+std::optional<Plan> read_plan(const PatchChoice& choice, Problems& problems);
+
+/// Reads, compiles and loads assets. Prints every problem on standard error and throws the last when there are any.
+Plan load_plan(const PatchChoice& choice, AssetCache& assets);
+
+/// Makes `folder` and checks that files can be written to it. Throws Error.
+void make_output_folder(const std::filesystem::path& folder);
+
+}  // namespace tactus

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/load_plan.hpp"
+#include "tools/results.hpp"
+#include "tools/summary.hpp"
+#include "tools/terminal.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+
+namespace tactus {
+
+namespace {
+
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+// Without --seconds the run lasts until Ctrl-C; a day is as good as for ever and keeps every index small.
+constexpr double for_ever = 86400.0;
+
+double force_of(const Engine& engine) {
+    double force = 0.0;
+    for (const auto& group : engine.groups())
+        force = std::max(force, group->telemetry.force_N.load(std::memory_order_relaxed));
+    return force;
+}
+
+std::string live_line(const Engine& engine) {
+    std::string text = fmt::format("{:6.1f} s ", engine.progress_seconds());
+    for (const auto& group : engine.groups()) {
+        const GroupTelemetry& t = group->telemetry;
+        text += fmt::format("| {} late {:.2f} ms, {} missed ", group->plan->name,
+                            static_cast<double>(t.lateness.max_ns()) * 1e-6, t.misses.load() + t.skipped.load());
+    }
+    return text + fmt::format("| {:.1f} N", force_of(engine));
+}
+
+}  // namespace
+
+int run_verb(const RunChoice& choice) {
+    EngineOptions options;
+    options.seconds = choice.seconds.value_or(for_ever);
+    options.live = true;
+    std::filesystem::path folder = choice.out;
+    if (folder.empty()) folder = std::filesystem::path(choice.patch).stem().string() + "-run";
+    options.folder = folder;
+    AssetCache assets;
+    Plan plan = load_plan(choice, assets);
+    make_output_folder(folder);
+    Engine engine(std::move(plan), options);
+
+    LiveLine line;
+    LiveOptions live;
+    live.dilate = choice.dilate;
+    if (!choice.log.empty()) live.log = choice.log;
+    live.stop = &interrupted;
+    live.watch = [&] {
+        if (!choice.json) line.show(live_line(engine));
+    };
+    std::signal(SIGINT, [](int) { interrupted = true; });
+    std::signal(SIGTERM, [](int) { interrupted = true; });
+    if (!choice.json)
+        fmt::print(stderr, "running {} for {}; Ctrl-C ends it\n", engine.plan().patch.title,
+                   choice.seconds ? fmt::format("{} s", *choice.seconds) : "as long as you like");
+    const auto begin = std::chrono::steady_clock::now();
+    engine.run_live(live);
+    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    line.clear();
+    engine.finish();
+    const Report report = engine.report();
+    std::vector<std::string> files = write_pictures(report, folder);
+    files.push_back("summary.json");
+    const double ran = engine.progress_seconds();
+    const std::string summary = summary_json(engine, report, ran, true, files);
+    write_text(folder / "summary.json", summary);
+    if (choice.json) fmt::print("{}", summary);
+    else fmt::print("{}  results in {}/\n", summary_text(engine, report, ran, wall), folder.string());
+    return done;
+}
+
+}  // namespace tactus

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run was, for programs and for people.
+#pragma once
+
+#include "engine/engine.hpp"
+
+#include <string>
+#include <vector>
+
+namespace tactus {
+
+/// The summary as JSON text. `files` are those written besides the recordings.
+std::string summary_json(const Engine& engine, const Report& report, double seconds, bool live,
+                         const std::vector<std::string>& files);
+
+/// The same in a few lines.
+std::string summary_text(const Engine& engine, const Report& report, double seconds, double wall_seconds);
+
+/// Writes text beside the file and renames it. Throws Error.
+void write_text(const std::filesystem::path& path, const std::string& text);
+
+}  // namespace tactus
