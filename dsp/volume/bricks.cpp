@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/volume/bricks.hpp"
+
+#include "dsp/core/error.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace tactus {
+
+namespace {
+
+/// The cell that holds a position, and where in it.
+struct Cell {
+    const float* corner = nullptr;  // sample at the cell's low corner, or null
+    double fx = 0.0, fy = 0.0, fz = 0.0;
+};
+
+Cell find_cell(const BrickLayout& layout, const std::vector<const float*>& table, const Vec3& position) noexcept {
+    const double x = (position.x - layout.origin.x) / layout.spacing.x;
+    const double y = (position.y - layout.origin.y) / layout.spacing.y;
+    const double z = (position.z - layout.origin.z) / layout.spacing.z;
+    // Written so that a NaN is outside.
+    if (!(x >= 0.0 && y >= 0.0 && z >= 0.0 && x <= layout.size[0] - 1 && y <= layout.size[1] - 1 &&
+          z <= layout.size[2] - 1))
+        return {};
+    const int i = std::min(static_cast<int>(x), layout.size[0] - 2);
+    const int j = std::min(static_cast<int>(y), layout.size[1] - 2);
+    const int k = std::min(static_cast<int>(z), layout.size[2] - 2);
+    const float* brick = table[static_cast<std::size_t>(layout.brick_index(i >> 3, j >> 3, k >> 3))];
+    if (!brick) return {};
+    return {brick + BrickLayout::sample_index(i & 7, j & 7, k & 7), x - i, y - j, z - k};
+}
+
+struct Corners {
+    double c000, c100, c010, c110, c001, c101, c011, c111;
+
+    explicit Corners(const float* p) noexcept
+        : c000(static_cast<double>(p[0])),
+          c100(static_cast<double>(p[1])),
+          c010(static_cast<double>(p[brick_side])),
+          c110(static_cast<double>(p[brick_side + 1])),
+          c001(static_cast<double>(p[brick_side * brick_side])),
+          c101(static_cast<double>(p[brick_side * brick_side + 1])),
+          c011(static_cast<double>(p[brick_side * brick_side + brick_side])),
+          c111(static_cast<double>(p[brick_side * brick_side + brick_side + 1])) {}
+};
+
+double mix(double a, double b, double t) { return a + (b - a) * t; }
+
+double interpolate(const Cell& cell) noexcept {
+    const Corners c(cell.corner);
+    return mix(mix(mix(c.c000, c.c100, cell.fx), mix(c.c010, c.c110, cell.fx), cell.fy),
+               mix(mix(c.c001, c.c101, cell.fx), mix(c.c011, c.c111, cell.fx), cell.fy), cell.fz);
+}
+
+}  // namespace
+
+Sample BoneSnapshot::sample(const Vec3& position) const noexcept {
+    const BrickLayout& grid = *root->layout;
+    const Cell cell = find_cell(grid, root->distance, position);
+    if (!cell.corner) return {grid.far, Vec3(0.0), false};
+    const Corners c(cell.corner);
+    const double x00 = mix(c.c000, c.c100, cell.fx), x10 = mix(c.c010, c.c110, cell.fx);
+    const double x01 = mix(c.c001, c.c101, cell.fx), x11 = mix(c.c011, c.c111, cell.fx);
+    const double y0 = mix(x00, x10, cell.fy), y1 = mix(x01, x11, cell.fy);
+    const double dx =
+        mix(mix(c.c100 - c.c000, c.c110 - c.c010, cell.fy), mix(c.c101 - c.c001, c.c111 - c.c011, cell.fy), cell.fz);
+    const double dy = mix(x10 - x00, x11 - x01, cell.fz);
+    return {mix(y0, y1, cell.fz), Vec3(dx / grid.spacing.x, dy / grid.spacing.y, (y1 - y0) / grid.spacing.z), true};
+}
+
+double BoneSnapshot::value(const Vec3& position) const noexcept {
+    const Cell cell = find_cell(*root->layout, root->distance, position);
+    return cell.corner ? interpolate(cell) : root->layout->far;
+}
+
+double BoneSnapshot::density(const Vec3& position) const noexcept {
+    const Cell cell = find_cell(*root->layout, root->density, position);
+    return cell.corner ? interpolate(cell) : 0.0;
+}
+
+BoneEditor::BoneEditor(const Grid& distance, const Grid& density, const BoneEditorOptions& options)
+    : options_(options) {
+    if (distance.size != density.size || distance.values.size() != distance.count() ||
+        density.values.size() != density.count())
+        throw Error("a bone's distance and density need grids of one size");
+    for (const int n : distance.size)
+        if (n < 2) throw Error("a bone needs at least two samples along each axis");
+    layout_.size = distance.size;
+    layout_.origin = distance.origin;
+    layout_.spacing = distance.spacing;
+    layout_.far = options.band;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        layout_.bricks[axis] = (distance.size[axis] - 1 + brick_cells - 1) / brick_cells;
+
+    const auto count = static_cast<std::size_t>(layout_.brick_count());
+    const auto gather = [this](const Grid& grid, std::size_t brick, float* into) {
+        const int bx = static_cast<int>(brick) % layout_.bricks[0];
+        const int by = static_cast<int>(brick) / layout_.bricks[0] % layout_.bricks[1];
+        const int bz = static_cast<int>(brick) / layout_.bricks[0] / layout_.bricks[1];
+        for (int z = 0; z < brick_side; ++z)
+            for (int y = 0; y < brick_side; ++y)
+                for (int x = 0; x < brick_side; ++x)
+                    into[BrickLayout::sample_index(x, y, z)] =
+                        grid.at(std::min(8 * bx + x, grid.size[0] - 1), std::min(8 * by + y, grid.size[1] - 1),
+                                std::min(8 * bz + z, grid.size[2] - 1));
+    };
+    std::vector<std::uint8_t> stored(count);
+    std::size_t needed = 0;
+    std::array<float, brick_samples> brick;
+    for (std::size_t b = 0; b < count; ++b) {
+        gather(distance, b, brick.data());
+        stored[b] = std::ranges::any_of(brick, [&](float d) { return static_cast<double>(d) < options.band; });
+        needed += stored[b];
+    }
+    const std::size_t extra =
+        needed + static_cast<std::size_t>(options.max_versions) * static_cast<std::size_t>(options.max_dirty);
+    storage_ = std::make_unique<float[]>((2 * needed + extra) * brick_samples);
+    float* next = storage_.get();
+    const auto take = [&next] { return std::exchange(next, next + brick_samples); };
+    working_.layout = &layout_;
+    working_.distance.resize(count);
+    working_.density.resize(count);
+    for (std::size_t b = 0; b < count; ++b) {
+        if (!stored[b]) continue;
+        float* d = take();
+        gather(distance, b, d);
+        working_.distance[b] = d;
+        float* rho = take();
+        gather(density, b, rho);
+        working_.density[b] = rho;
+    }
+    free_.reserve(extra + needed);
+    for (std::size_t i = 0; i < extra; ++i) free_.push_back(take());
+    // A publication may wait in the consumer's hand while max_versions others are on their way.
+    for (int i = 0; i < options.max_versions + 2; ++i) {
+        roots_.push_back(std::make_unique<BoneRoot>(working_));
+        free_roots_.push_back(roots_.back().get());
+    }
+    born_.assign(count, 1);
+    is_dirty_.assign(count, 0);
+    dirty_.reserve(static_cast<std::size_t>(options.max_dirty));
+    changed_.reserve(static_cast<std::size_t>(options.max_dirty));
+    retired_.reserve(extra + needed);
+    readable_.reserve(static_cast<std::size_t>(options.max_versions) + 2);
+    BoneRoot* first = free_roots_.back();
+    free_roots_.pop_back();
+    readable_.push_back({version_, first});
+    current_ = {first, version_, hash_.value()};
+}
+
+float BoneEditor::get(int i, int j, int k) const noexcept {
+    // The last plane of samples lies in the last brick, as its ninth.
+    const int bx = std::min(i >> 3, layout_.bricks[0] - 1), by = std::min(j >> 3, layout_.bricks[1] - 1),
+              bz = std::min(k >> 3, layout_.bricks[2] - 1);
+    const float* brick = working_.distance[static_cast<std::size_t>(layout_.brick_index(bx, by, bz))];
+    return brick ? brick[BrickLayout::sample_index(i - 8 * bx, j - 8 * by, k - 8 * bz)]
+                 : static_cast<float>(layout_.far);
+}
+
+float* BoneEditor::writable(int brick) noexcept {
+    const auto b = static_cast<std::size_t>(brick);
+    // The editor owns every brick; the table is const only towards readers.
+    auto* present = const_cast<float*>(working_.distance[b]);
+    if (is_dirty_[b]) return present;
+    float* copy = free_.back();
+    free_.pop_back();
+    std::memcpy(copy, present, brick_samples * sizeof(float));
+    retired_.push_back({present, born_[b], version_ + 1});
+    working_.distance[b] = copy;
+    born_[b] = version_ + 1;
+    is_dirty_[b] = 1;
+    dirty_.push_back(static_cast<std::uint32_t>(brick));
+    return copy;
+}
+
+bool BoneEditor::set(int i, int j, int k, float value) noexcept {
+    if (i < 0 || j < 0 || k < 0 || i >= layout_.size[0] || j >= layout_.size[1] || k >= layout_.size[2]) return false;
+    std::array<int, 8> bricks;
+    int count = 0, fresh = 0;
+    for (int bz = std::max(0, (k - 1) >> 3); bz <= std::min(k >> 3, layout_.bricks[2] - 1); ++bz)
+        for (int by = std::max(0, (j - 1) >> 3); by <= std::min(j >> 3, layout_.bricks[1] - 1); ++by)
+            for (int bx = std::max(0, (i - 1) >> 3); bx <= std::min(i >> 3, layout_.bricks[0] - 1); ++bx) {
+                const int brick = layout_.brick_index(bx, by, bz);
+                if (!working_.distance[static_cast<std::size_t>(brick)]) continue;
+                fresh += !is_dirty_[static_cast<std::size_t>(brick)];
+                bricks[static_cast<std::size_t>(count++)] = brick;
+            }
+    if (count == 0 || fresh > dirty_left() || fresh > static_cast<int>(free_.size())) return false;
+    for (int n = 0; n < count; ++n) {
+        const int brick = bricks[static_cast<std::size_t>(n)];
+        const int bx = brick % layout_.bricks[0], by = brick / layout_.bricks[0] % layout_.bricks[1],
+                  bz = brick / layout_.bricks[0] / layout_.bricks[1];
+        writable(brick)[BrickLayout::sample_index(i - 8 * bx, j - 8 * by, k - 8 * bz)] = value;
+    }
+    return true;
+}
+
+BoneSnapshot BoneEditor::publish() noexcept {
+    // Without room for one more version the edits wait for the next publication.
+    if (dirty_.empty() || free_roots_.empty()) {
+        if (dirty_.empty()) changed_.clear();
+        return current_;
+    }
+    ++version_;
+    std::ranges::sort(dirty_);
+    for (const std::uint32_t brick : dirty_) {
+        hash_.add_word(brick);
+        hash_.add_bytes(working_.distance[brick], brick_samples * sizeof(float));
+        is_dirty_[brick] = 0;
+    }
+    changed_.swap(dirty_);
+    dirty_.clear();
+    BoneRoot* root = free_roots_.back();
+    free_roots_.pop_back();
+    std::ranges::copy(working_.distance, root->distance.begin());
+    readable_.push_back({version_, root});
+    current_ = {root, version_, hash_.value()};
+    return current_;
+}
+
+void BoneEditor::release_unreadable() noexcept {
+    std::erase_if(retired_, [this](const Retired& old) {
+        const auto first = std::ranges::lower_bound(readable_, old.first, {}, &Published::version);
+        if (first != readable_.end() && first->version < old.end) return false;
+        free_.push_back(old.brick);
+        return true;
+    });
+}
+
+void BoneEditor::reclaim(std::int64_t oldest_readable) noexcept {
+    const std::size_t before = readable_.size();
+    std::erase_if(readable_, [&](const Published& old) {
+        if (old.version >= oldest_readable || old.version == version_) return false;
+        free_roots_.push_back(old.root);
+        return true;
+    });
+    if (readable_.size() != before) release_unreadable();
+}
+
+void BoneEditor::forget(std::int64_t version) noexcept {
+    const auto found = std::ranges::find(readable_, version, &Published::version);
+    if (found == readable_.end() || version == version_) return;
+    free_roots_.push_back(found->root);
+    readable_.erase(found);
+    release_unreadable();
+}
+
+Grid to_grid(const BoneSnapshot& bone) {
+    const BrickLayout& layout = bone.layout();
+    Grid grid{layout.size, layout.origin, layout.spacing, {}};
+    grid.values.resize(grid.count());
+    for (int k = 0; k < grid.size[2]; ++k)
+        for (int j = 0; j < grid.size[1]; ++j)
+            for (int i = 0; i < grid.size[0]; ++i) {
+                const int bx = std::min(i >> 3, layout.bricks[0] - 1), by = std::min(j >> 3, layout.bricks[1] - 1),
+                          bz = std::min(k >> 3, layout.bricks[2] - 1);
+                const float* brick = bone.root->distance[static_cast<std::size_t>(layout.brick_index(bx, by, bz))];
+                grid.at(i, j, k) = brick ? brick[BrickLayout::sample_index(i - 8 * bx, j - 8 * by, k - 8 * bz)]
+                                         : static_cast<float>(layout.far);
+            }
+    return grid;
+}
+
+}  // namespace tactus
