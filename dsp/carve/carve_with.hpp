@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+// Carving of a distance field by a saw blade, over any kind of field.
+#pragma once
+
+#include "dsp/carve/cutting_edge.hpp"
+#include "dsp/carve/swept_edge.hpp"
+#include "dsp/carve/voxel_fraction.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace tactus {
+
+/// See Carver. A Field adds to what CuttingEdge needs: `float get(i, j, k)`, `bool set(i, j, k, float)` (false: no room
+/// for more changes), `std::array<int, 3> size()`, `Vec3 origin()`, `Vec3 spacing()`.
+class CarveCore {
+public:
+    CarveCore() = default;
+    /// `spacing`: of the field, m.
+    CarveCore(const CarveSettings& settings, const Vec3& spacing)
+        : settings_(settings),
+          voxel_(std::max({spacing.x, spacing.y, spacing.z})),
+          edge_(settings, voxel_),
+          swept_(edge_.nodes().size() - 1, edge_.first(), edge_.pitch()),
+          cut_(edge_.nodes().size() - 1),
+          deep_(edge_.nodes().size() - 1) {}
+
+    template <class Field>
+    CarveResult update(Field& field, std::span<const CarveSample> samples) noexcept {
+        CarveResult result;
+        for (const CarveSample& sample : samples) {
+            if (!is_valid(sample.pose) || !(sample.dt > 0.0) || !std::isfinite(sample.dt)) continue;
+            pose_ = sample.pose;
+            if (!placed_) {
+                edge_.place(field, pose_);
+                placed_ = true;
+            }
+            const double removal = sample.running ? removal_at(sample) : 0.0;
+            if (cutting_ && !sample.running) cut_out(field, result);
+            cutting_ = sample.running;
+            edge_.follow(field, pose_, sample.dt, removal);
+            if (!cutting_) {
+                forget_path();
+            } else if (turned()) {
+                cut_out(field, result);
+            }
+        }
+        if (cutting_) {
+            cut_out(field, result);
+            deepen(field, result);
+        }
+        return result;
+    }
+
+    const CuttingEdge& edge() const noexcept { return edge_; }
+    double voxel() const noexcept { return voxel_; }
+    const CarveSettings& settings() const noexcept { return settings_; }
+
+private:
+    static constexpr std::size_t chunk = 8;  // spans stamped together
+    static constexpr double near_voxels = 3.0;  // depth below the cut that is kept up at every update
+    static constexpr double detour = 2e-5;  // m by which a path may be longer than what is cut out at once
+
+    /// Ends of a span where it was last cut out, in the bone's frame.
+    struct Ends {
+        Vec3 a, b;
+    };
+
+    double removal_at(const CarveSample& sample) const noexcept {
+        const CarveSettings& s = settings_;
+        const double force = std::pow(std::max(sample.thrust, 0.0) / s.reference_force, s.force_exponent);
+        const double speed = s.speed * force * std::max(sample.rate, 0.0) / s.reference_rate;
+        return std::isfinite(speed) ? speed * s.reference_density : 0.0;
+    }
+
+    void forget_path() noexcept {
+        const auto nodes = edge_.nodes();
+        for (std::size_t n = 0; n < cut_.size(); ++n) cut_[n] = deep_[n] = {nodes[n].at, nodes[n + 1].at};
+        for (EdgeNode& node : nodes) {
+            node.travel = 0.0;
+            node.fresh = true;  // whatever the edge touches when the saw starts is cut then
+        }
+    }
+
+    bool turned() const noexcept {
+        const auto nodes = edge_.nodes();
+        for (std::size_t n = 0; n < nodes.size(); ++n) {
+            if (nodes[n].fresh || !nodes[n].seated) continue;
+            const Vec3& last = n < cut_.size() ? cut_[n].a : cut_[n - 1].b;
+            if (nodes[n].travel > glm::length(nodes[n].at - last) + detour) return true;
+        }
+        return false;
+    }
+
+    /// Removes what the edge swept since this was last done, and keeps the field a distance close to the new wall.
+    template <class Field>
+    void cut_out(Field& field, CarveResult& result) noexcept {
+        const auto nodes = edge_.nodes();
+        const Pose back = pose_.inverse();
+        const double radius = 0.5 * settings_.kerf;
+        const auto spans = swept_.spans();
+        for (std::size_t n = 0; n < spans.size(); ++n) {
+            const EdgeNode &a = nodes[n], &b = nodes[n + 1];
+            if (a.fresh) cut_[n].a = deep_[n].a = a.at;
+            if (b.fresh) cut_[n].b = deep_[n].b = b.at;
+            const double moved = std::max(glm::length(a.at - cut_[n].a), glm::length(b.at - cut_[n].b));
+            const double clear = radius + moved + edge_.pitch() + voxel_;
+            const bool near = field.value(a.at) < clear || field.value(b.at) < clear;
+            spans[n] = {back.apply(cut_[n].a), back.apply(cut_[n].b), back.apply(a.at), back.apply(b.at),
+                        a.seated && b.seated && near && (moved > 1e-9 || a.fresh || b.fresh)};
+        }
+        const double reach = radius + near_voxels * voxel_;
+        swept_.arrange(reach);
+        const VoxelFraction fraction(field.spacing(), back_axis_z());
+        bool whole = true;
+        for (std::size_t c = 0; c < spans.size(); c += chunk) whole &= stamp(field, c, reach, fraction, result);
+        if (!whole) {  // what found no room is cut out again, from the same place
+            result.budget_hit = true;
+            return;
+        }
+        for (std::size_t n = 0; n < spans.size(); ++n) cut_[n] = {nodes[n].at, nodes[n + 1].at};
+        for (EdgeNode& node : nodes) {
+            node.travel = 0.0;
+            node.fresh = false;
+        }
+    }
+
+    /// Keeps the field a distance deeper down: one chunk at a time, the one whose edge has moved most since, and only
+    /// when that is more than a quarter of a voxel.
+    template <class Field>
+    void deepen(Field& field, CarveResult& result) noexcept {
+        if (result.budget_hit) return;
+        const auto nodes = edge_.nodes();
+        std::size_t worst = 0;
+        double most = 0.25 * voxel_;
+        for (std::size_t n = 0; n < deep_.size(); ++n) {
+            const double moved =
+                std::max(glm::length(nodes[n].at - deep_[n].a), glm::length(nodes[n + 1].at - deep_[n].b));
+            if (moved > most) {
+                most = moved;
+                worst = n / chunk * chunk + 1;
+            }
+        }
+        if (worst == 0) return;
+        const std::size_t begin = worst - 1, end = std::min(begin + chunk, deep_.size());
+        const Pose back = pose_.inverse();
+        const auto spans = swept_.spans();
+        for (std::size_t n = 0; n < spans.size(); ++n) {
+            const bool seated = nodes[n].seated && nodes[n + 1].seated;
+            spans[n] = {back.apply(deep_[n].a), back.apply(deep_[n].b), back.apply(nodes[n].at),
+                        back.apply(nodes[n + 1].at), seated && n + 2 >= begin && n < end + 2};
+        }
+        const double reach = 0.5 * settings_.kerf + settings_.depth;
+        swept_.arrange(reach);
+        const VoxelFraction fraction(field.spacing(), back_axis_z());
+        if (!stamp(field, begin, reach, fraction, result)) result.budget_hit = true;
+        for (std::size_t n = begin; n < end; ++n) deep_[n] = {nodes[n].at, nodes[n + 1].at};
+    }
+
+    Vec3 back_axis_z() const noexcept { return pose_.rotate({0, 0, 1}); }
+
+    /// d ← max(d, R − distance) over the voxels within `reach` of one chunk of the swept edge.
+    template <class Field>
+    bool stamp(Field& field, std::size_t begin, double reach, const VoxelFraction& fraction,
+               CarveResult& result) noexcept {
+        const auto spans = swept_.spans();
+        const std::size_t end = std::min(begin + chunk, spans.size());
+        Vec3 low(HUGE_VAL), high(-HUGE_VAL);  // in the blade's frame
+        bool any = false;
+        for (std::size_t n = begin; n < end; ++n) {
+            const SweptSpan& s = spans[n];
+            if (!s.moved) continue;
+            any = true;
+            low = glm::min(low, glm::min(glm::min(s.a0, s.b0), glm::min(s.a1, s.b1)));
+            high = glm::max(high, glm::max(glm::max(s.a0, s.b0), glm::max(s.a1, s.b1)));
+        }
+        if (!any) return true;
+        low -= Vec3(reach);
+        high += Vec3(reach);
+        // Neighbouring chunks share their border; a voxel belongs to one of them.
+        if (begin > 0) low.x = edge_.first() + edge_.pitch() * static_cast<double>(begin);
+        if (end < spans.size()) high.x = edge_.first() + edge_.pitch() * static_cast<double>(end);
+        return stamp_box(field, low, high, fraction, result);
+    }
+
+    template <class Field>
+    bool stamp_box(Field& field, const Vec3& low, const Vec3& high, const VoxelFraction& fraction,
+                   CarveResult& result) noexcept {
+        const std::array<int, 3> size = field.size();
+        const Vec3 spacing = field.spacing();
+        std::array<int, 3> first{}, last{};
+        const Vec3 centre = (pose_.apply(0.5 * (low + high)) - field.origin()) / spacing;
+        const Vec3 half = 0.5 * (high - low);
+        const Vec3 ax = pose_.rotate({1, 0, 0}), ay = pose_.rotate({0, 1, 0}), az = pose_.rotate({0, 0, 1});
+        for (int axis = 0; axis < 3; ++axis) {
+            const double extent =
+                (std::abs(ax[axis]) * half.x + std::abs(ay[axis]) * half.y + std::abs(az[axis]) * half.z) /
+                spacing[axis];
+            const auto a = static_cast<std::size_t>(axis);
+            first[a] = static_cast<int>(std::ceil(std::clamp(centre[axis] - extent, 0.0, 1e6)));
+            last[a] = static_cast<int>(std::floor(std::clamp(centre[axis] + extent, -1.0, size[a] - 1.0)));
+        }
+        const Pose back = pose_.inverse();
+        const Vec3 step = back.rotate({spacing.x, 0, 0});
+        bool whole = true;
+        for (int k = first[2]; k <= last[2]; ++k) {
+            for (int j = first[1]; j <= last[1]; ++j) {
+                const Vec3 start = back.apply(field.origin() + Vec3(0.0, j, k) * spacing);
+                double from = first[0], to = last[0];
+                clip(low, high, start, step, from, to);
+                const int stop = static_cast<int>(std::floor(to));
+                for (int i = static_cast<int>(std::ceil(from)); i <= stop; ++i) {
+                    whole &= lift(field, i, j, k, start + step * static_cast<double>(i), fraction, result);
+                }
+            }
+        }
+        return whole;
+    }
+
+    /// Shortens [from, to] to where start + i·step lies in the box.
+    static void clip(const Vec3& low, const Vec3& high, const Vec3& start, const Vec3& step, double& from,
+                     double& to) noexcept {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (std::abs(step[axis]) < 1e-12) {
+                if (start[axis] < low[axis] || start[axis] >= high[axis]) to = from - 1.0;
+                continue;
+            }
+            const double a = (low[axis] - start[axis]) / step[axis], b = (high[axis] - start[axis]) / step[axis];
+            from = std::max(from, std::min(a, b));
+            to = std::min(to, std::max(a, b));
+        }
+    }
+
+    template <class Field>
+    bool lift(Field& field, int i, int j, int k, const Vec3& p, const VoxelFraction& fraction,
+              CarveResult& result) noexcept {
+        const double radius = 0.5 * settings_.kerf;
+        const double before = field.get(i, j, k);
+        if (before >= radius) return true;
+        const double limit = (radius - before) * (radius - before);
+        const double squared = swept_.squared_distance(p, limit);
+        if (squared >= limit) return true;
+        const auto after = static_cast<float>(radius - std::sqrt(squared));
+        if (after <= static_cast<float>(before)) return true;
+        if (!field.set(i, j, k, after)) return false;
+        const double gone = fraction(before) - fraction(static_cast<double>(after));
+        if (gone > 0.0) {
+            const Vec3 spacing = field.spacing();
+            const double volume = gone * spacing.x * spacing.y * spacing.z;
+            const double density = field.density(field.origin() + Vec3(i, j, k) * spacing);
+            std::size_t kind = 0;
+            while (kind < density_class_limits.size() && density >= density_class_limits[kind]) ++kind;
+            result.removed_m3 += volume;
+            result.removed_by_density[kind] += volume;
+        }
+        return true;
+    }
+
+    CarveSettings settings_;
+    double voxel_ = 0.0;
+    CuttingEdge edge_;
+    SweptEdge swept_;
+    std::vector<Ends> cut_, deep_;
+    Pose pose_;
+    bool placed_ = false;
+    bool cutting_ = false;
+};
+
+}  // namespace tactus

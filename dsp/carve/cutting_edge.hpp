@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+// The effective cutting edge: where the saw has really come to, as opposed to where the blade is held.
+#pragma once
+
+#include "dsp/carve/settings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+namespace tactus {
+
+/// One point of the edge, in the bone's frame, m.
+struct EdgeNode {
+    Vec3 at;           ///< effective position
+    Vec3 target;       ///< where the blade holds it
+    double travel = 0.0;  ///< m moved since the path was last cut out
+    bool seated = false;  ///< false: the blade stands in bone where no air is near; it neither moves nor cuts
+    bool fresh = false;   ///< placed anew: no path leads here
+};
+
+/// The edge is a row of nodes one tooth pitch apart, longer than the blade by the stroke. Because the stroke exceeds the
+/// pitch, every place between is passed by a tooth, so the row is one continuous edge of width `kerf` with a round front.
+/// Each node follows its target along the blade's y, then x, then z: through air at once, through bone no faster than
+/// the removal speed at the density ahead of it. A node beyond the bone's end is held back while bone is within one
+/// pitch of it, so that the edge between it and its neighbour does not cut what neither has.
+///
+/// A Field has `double value(Vec3)`: distance, m, negative in bone; `double density(Vec3)`, kg/m³. Nothing allocates
+/// after construction.
+class CuttingEdge {
+public:
+    CuttingEdge() = default;
+
+    CuttingEdge(const CarveSettings& settings, double voxel)
+        : radius_(0.5 * settings.kerf), pitch_(settings.tooth_pitch), voxel_(voxel), ahead_(0.25 * voxel) {
+        const double length = settings.blade_length + settings.stroke;
+        const int spans = std::max(1, static_cast<int>(std::ceil(length / pitch_ - 1e-9)));
+        pitch_ = length / spans;
+        first_ = -0.5 * length;
+        nodes_.resize(static_cast<std::size_t>(spans) + 1);
+    }
+
+    std::span<EdgeNode> nodes() noexcept { return nodes_; }
+    std::span<const EdgeNode> nodes() const noexcept { return nodes_; }
+    double pitch() const noexcept { return pitch_; }
+    double first() const noexcept { return first_; }  ///< x of the first node in the blade's frame, m
+
+    /// Puts every node where the blade holds it, or behind that, against y, where it comes out of the bone.
+    template <class Field>
+    void place(const Field& field, const Pose& pose) noexcept {
+        frame(pose);
+        for (std::size_t n = 0; n < nodes_.size(); ++n) {
+            nodes_[n].target = local(pose, n);
+            seat(field, nodes_[n]);
+        }
+    }
+
+    /// Moves the targets to `pose` and lets the nodes follow. `removal` is the speed times the density it is meant for,
+    /// kg/(m² s); 0 for a saw that does not run. Steps are at most 1 ms long.
+    template <class Field>
+    void follow(const Field& field, const Pose& pose, double dt, double removal) noexcept {
+        frame(pose);
+        const int steps = std::clamp(static_cast<int>(std::ceil(dt / longest_step - 1e-9)), 1, most_steps);
+        for (std::size_t n = 0; n < nodes_.size(); ++n) {
+            EdgeNode& node = nodes_[n];
+            const Vec3 from = node.target;
+            const Vec3 to = local(pose, n);
+            if (glm::length(to - from) > std::max(fastest_hand * dt, 0.001)) {  // put elsewhere, not moved there
+                node.target = to;
+                seat(field, node);
+                continue;
+            }
+            for (int step = 1; step <= steps; ++step) {
+                node.target = step == steps ? to : from + (to - from) * (static_cast<double>(step) / steps);
+                if (!node.seated) {
+                    seat(field, node);
+                } else {
+                    const Vec3 before = node.at;
+                    pursue(field, node, dt / steps, removal);
+                    node.travel += glm::length(node.at - before);
+                }
+            }
+        }
+    }
+
+private:
+    static constexpr double longest_step = 0.001;  // s
+    static constexpr int most_steps = 64;
+    static constexpr double fastest_hand = 3.0;  // m/s
+    static constexpr double reach = 0.030;  // m of bone out of which a blade put elsewhere is backed
+    static constexpr double most_aside = 0.010;  // m off its blade where a node can no longer belong to it
+    static constexpr int most_moves = 32;
+
+    struct Front {
+        double density = 0.0;  // kg/m³ of the bone the front touches; 0: none
+        double clear = 0.0;  // m of free way
+    };
+
+    void frame(const Pose& pose) noexcept {
+        x_ = pose.rotate({1, 0, 0});
+        y_ = pose.rotate({0, 1, 0});
+        z_ = pose.rotate({0, 0, 1});
+    }
+    Vec3 local(const Pose& pose, std::size_t n) const noexcept {
+        return pose.position + x_ * (first_ + pitch_ * static_cast<double>(n));
+    }
+
+    template <class Field>
+    void seat(const Field& field, EdgeNode& node) noexcept {
+        node.fresh = true;
+        node.travel = 0.0;
+        node.at = node.target;
+        for (double back = 0.0; back <= reach;) {
+            const Vec3 at = node.target - y_ * back;
+            const double d = field.value(at);
+            if (d >= radius_) {
+                node.at = at;
+                node.seated = true;
+                return;
+            }
+            back += std::max(radius_ - d, 0.25 * voxel_);
+        }
+        node.seated = false;
+    }
+
+    template <class Field>
+    void pursue(const Field& field, EdgeNode& node, double dt, double removal) noexcept {
+        const Vec3 lag = node.target - node.at;
+        const double distance = glm::length(lag);
+        if (distance < 1e-12) return;
+        if (field.value(node.at) > radius_ + distance + pitch_ + ahead_) {
+            node.at = node.target;
+            return;
+        }
+        const bool withdrawn = glm::dot(lag, y_) <= 0.0 && field.value(node.target) >= radius_;
+        const double aside = std::sqrt(std::max(0.0, distance * distance - glm::dot(lag, y_) * glm::dot(lag, y_)));
+        if (aside > most_aside || (withdrawn && distance > radius_)) return seat(field, node);
+        if (withdrawn) {
+            node.at = node.target;
+            return;
+        }
+        const auto along = [&](const Vec3& axis, const Vec3& side, const Vec3& neighbour) {
+            const double way = glm::dot(lag, axis);
+            const double sign = way < 0.0 ? -1.0 : 1.0;
+            advance(field, node.at, axis * sign, side, neighbour, std::abs(way), dt * std::abs(way) / distance,
+                    removal);
+        };
+        along(y_, z_, x_ * pitch_);
+        along(x_, z_, Vec3(0.0));
+        along(z_, y_, x_ * pitch_);
+    }
+
+    template <class Field>
+    void advance(const Field& field, Vec3& at, const Vec3& direction, const Vec3& side, const Vec3& neighbour,
+                 double way, double time, double removal) const noexcept {
+        for (int move = 0; move < most_moves && way > 1e-12; ++move) {
+            const Front front = look(field, at, direction, side, neighbour);
+            if (front.density > 0.0) {
+                at += direction * std::min(way, removal / front.density * time);
+                return;
+            }
+            const double step = std::min(way, front.clear);
+            at += direction * step;
+            way -= step;
+        }
+    }
+
+    /// Looks at three points of the round front (Gauss-Legendre places across the kerf) and at its middle one pitch to
+    /// either side, all a quarter voxel below the surface of the swept body.
+    template <class Field>
+    Front look(const Field& field, const Vec3& at, const Vec3& direction, const Vec3& side,
+               const Vec3& neighbour) const noexcept {
+        const double touching = -ahead_ + 0.02 * voxel_;
+        const Vec3 middle = at + direction * (radius_ + ahead_);
+        const Vec3 low = at + direction * (0.63246 * radius_ + ahead_);
+        const Vec3 own[3] = {low - side * (0.77460 * radius_), middle, low + side * (0.77460 * radius_)};
+        constexpr double weight[3] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+        double mass = 0.0, share = 0.0, nearest = 1.0;
+        for (int n = 0; n < 3; ++n) {
+            const double d = field.value(own[n]);
+            if (d <= touching) {
+                mass += weight[n] * field.density(own[n]);
+                share += weight[n];
+            }
+            nearest = std::min(nearest, d);
+        }
+        double beside = 0.0;
+        if (neighbour != Vec3(0.0)) {
+            for (const double sign : {-1.0, 1.0}) {
+                const Vec3 there = middle + neighbour * sign;
+                const double d = field.value(there);
+                if (d <= touching) beside = std::max(beside, field.density(there));
+                nearest = std::min(nearest, d);
+            }
+        }
+        Front front;
+        front.density = share > 0.0 ? mass / share : beside;
+        if (!(front.density >= 1.0)) front.density = 0.0;
+        // Bone without density gives way, but it may be thin: look again after a quarter voxel.
+        front.clear = nearest > touching ? nearest + ahead_ : ahead_;
+        return front;
+    }
+
+    double radius_ = 0.0;
+    double pitch_ = 0.0;
+    double voxel_ = 0.0;
+    double ahead_ = 0.0;
+    double first_ = 0.0;
+    Vec3 x_{1, 0, 0}, y_{0, 1, 0}, z_{0, 0, 1};
+    std::vector<EdgeNode> nodes_;
+};
+
+}  // namespace tactus
