@@ -3,3 +3,15 @@
 target_compile_definitions(tactus_tools PRIVATE
   TACTUS_SOURCE_LIBRARY="${PROJECT_SOURCE_DIR}/assets/library"
   TACTUS_BUILD_LIBRARY="${CMAKE_BINARY_DIR}/library")
+
+# The bone and the saw that come with Tactus are computed, not kept; again only when their generator has changed.
+add_executable(make_library tools/make_library.cpp)
+target_link_libraries(make_library PRIVATE tactus_assets tactus_flags)
+add_custom_command(
+  OUTPUT ${CMAKE_BINARY_DIR}/library/bones/mandible.vdb ${CMAKE_BINARY_DIR}/library/saw/reciprocating.toml
+  COMMAND make_library ${CMAKE_BINARY_DIR}/library
+  DEPENDS make_library
+  COMMENT "Computing the bundled bone and saw"
+  VERBATIM)
+add_custom_target(bundled_library ALL
+  DEPENDS ${CMAKE_BINARY_DIR}/library/bones/mandible.vdb ${CMAKE_BINARY_DIR}/library/saw/reciprocating.toml)
