@@ -2,6 +2,7 @@
 #include "graph/patch.hpp"
 
 #include "dsp/core/units.hpp"
+#include "graph/patch_depth.hpp"
 #include "graph/patch_wire.hpp"
 
 #include <fmt/format.h>
@@ -10,9 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <set>
-#include <sstream>
+#include <optional>
 
 namespace tactus {
 
@@ -23,11 +22,20 @@ const std::array<std::string, 9> top_level{"title",  "about",  "wires",   "quant
 
 class PatchReader {
 public:
-    PatchReader(const std::filesystem::path& file, Problems& problems) : file_(file), problems_(problems) {}
+    PatchReader(const std::filesystem::path& file, Problems& problems)
+        : file_(file), problems_(problems), earlier_(problems.list.size()) {}
 
     Patch read(std::string_view text) {
         patch_.file = file_;
         patch_.text = text;
+        if (const std::optional<std::size_t> offset = overlong_key(text)) {
+            const std::string_view before = text.substr(0, *offset);
+            const std::size_t line_start = before.rfind('\n') + 1;  // npos + 1 is the start of the text
+            problems_.add({file_.string(), 1 + static_cast<int>(std::ranges::count(before, '\n')),
+                           1 + static_cast<int>(*offset - line_start)},
+                          fmt::format("a key has at most {} dots", most_dots_in_key));
+            return std::move(patch_);
+        }
         toml::table root;
         try {
             root = toml::parse(text, file_.string());
@@ -44,6 +52,8 @@ public:
         check_names();
         if (patch_.nodes.empty() && problems_.empty())
             problems_.add({file_.string(), 1, 1}, "the patch has no nodes; a node is a table such as [nodes.hand]");
+        std::ranges::stable_sort(problems_.list.begin() + static_cast<std::ptrdiff_t>(earlier_), problems_.list.end(),
+                                 comes_before, &Error::where);
         return std::move(patch_);
     }
 
@@ -53,12 +63,14 @@ private:
     }
     SourceLocation at(const toml::node& node) const { return at(node.source()); }
 
+    static bool comes_before(const SourceLocation& a, const SourceLocation& b) {
+        return std::pair(a.line, a.column) < std::pair(b.line, b.column);
+    }
+
     // TOML tables come sorted by key; the file's order is what people see.
     template <class Item>
     static void sort_by_place(std::vector<Item>& items) {
-        std::ranges::stable_sort(items, [](const Item& a, const Item& b) {
-            return std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
-        });
+        std::ranges::stable_sort(items, comes_before, &Item::where);
     }
 
     void entry(const toml::key& key, const toml::node& value) {
@@ -83,9 +95,7 @@ private:
         const toml::table* table = value.as_table();
         if (!table) return problems_.add(at(value), fmt::format("'{}' is a table; write [{}]", name, name));
         for (const auto& [key, item] : *table) {
-            if (key.str() == "wires" && item.is_array())
-                problems_.add(at(key.source()),
-                              fmt::format("'wires' stands inside [{}]; move it above the first table", name));
+            if (key.str() == "wires" && item.is_array()) misplaced_wires(key, name);
             else if (!is_name(key.str()))
                 problems_.add(at(key.source()),
                               fmt::format("'{}' is no name; names have letters, digits, '_' and '-'", key.str()));
@@ -99,6 +109,11 @@ private:
         return {};
     }
 
+    void misplaced_wires(const toml::key& key, std::string_view table) {
+        problems_.add(at(key.source()),
+                      fmt::format("'wires' stands inside [{}]; move it above the first table", table));
+    }
+
     void wires(const toml::node& value) {
         const toml::array* list = value.as_array();
         if (!list) return problems_.add(at(value), "'wires' is a list: wires = [ \"hand.pose -> blade.pose\", … ]");
@@ -108,10 +123,14 @@ private:
                 problems_.add(at(item), "a wire is a text: \"hand.pose -> blade.pose\"");
                 continue;
             }
+            // Columns within a text are only known when it is written as it reads: on one line, without escapes.
+            const toml::source_region& region = item.source();
+            const bool as_written = region.begin.line == region.end.line &&
+                                    region.end.column - region.begin.column == text->get().size() + 2;
             SourceLocation where = at(item);
-            ++where.column;  // past the quotation mark
+            if (as_written) ++where.column;  // past the quotation mark
             try {
-                patch_.wires.push_back(parse_wire(text->get(), where));
+                patch_.wires.push_back(parse_wire(text->get(), where, as_written));
             } catch (const Error& error) {
                 problems_.list.push_back(error);
             }
@@ -142,10 +161,17 @@ private:
 
     void asset(const toml::key& key, const toml::node& value) {
         const std::string path = string_of(value, key.str());
+        if (!value.is_string()) return;
         if (path.empty()) return problems_.add(at(value), fmt::format("asset '{}' names no file", key.str()));
         const std::filesystem::path given(path);
         patch_.assets.push_back(
             {std::string(key.str()), given.is_absolute() ? given : file_.parent_path() / given, at(value)});
+    }
+
+    /// There, but no text, which has been said already.
+    static bool is_mistyped(const toml::table& table, std::string_view key) {
+        const toml::node* value = table.get(key);
+        return value && !value->is_string();
     }
 
     /// The table behind `[kind.name]`, or null after saying what is wrong.
@@ -168,11 +194,12 @@ private:
                 if (number && number->get() >= 0 && number->get() <= 1'000'000)
                     group.backlog = static_cast<int>(number->get());
                 else problems_.add(at(item), "'backlog' is a whole number of ticks, not negative");
-            } else
+            } else if (name.str() == "wires") misplaced_wires(name, fmt::format("groups.{}", group.name));
+            else
                 problems_.add(at(name.source()),
                               fmt::format("unknown key '{}' of a group{}", name.str(), did_you_mean(name.str(), keys)));
         }
-        if (group.rate.empty()) problems_.add(group.where, fmt::format("group '{}' has no rate", group.name));
+        if (group.rate.empty() && !is_mistyped(*table, "rate")) problems_.add(group.where, fmt::format("group '{}' has no rate", group.name));
         patch_.groups.push_back(std::move(group));
     }
 
@@ -184,7 +211,8 @@ private:
             if (name.str() == "driver") device.driver = string_of(item, "driver");
             else setting(name, item, fmt::format("devices.{}", device.name), device.settings);
         }
-        if (device.driver.empty()) problems_.add(device.where, fmt::format("device '{}' names no driver", device.name));
+        if (device.driver.empty() && !is_mistyped(*table, "driver"))
+            problems_.add(device.where, fmt::format("device '{}' names no driver", device.name));
         sort_by_place(device.settings);
         patch_.devices.push_back(std::move(device));
     }
@@ -204,11 +232,12 @@ private:
                 node.rate_where = at(item);
             } else setting(name, item, fmt::format("nodes.{}", node.name), node.settings);
         }
-        if (node.type.empty()) problems_.add(node.where, fmt::format("node '{}' has no type", node.name));
-        if (node.rate.empty() == node.group.empty())
-            problems_.add(node.where,
-                          fmt::format("node '{}' needs {} 'rate' {} 'group'", node.name,
-                                      node.rate.empty() ? "a" : "either", node.rate.empty() ? "or a" : "or"));
+        if (node.type.empty() && !is_mistyped(*table, "type"))
+            problems_.add(node.where, fmt::format("node '{}' has no type", node.name));
+        if (node.rate.empty() == node.group.empty() && !is_mistyped(*table, "rate") && !is_mistyped(*table, "group"))
+            problems_.add(node.where, fmt::format("node '{}' needs {}", node.name,
+                                                  node.rate.empty() ? "a 'rate' or a 'group'"
+                                                                    : "either 'rate' or 'group', not both"));
         sort_by_place(node.settings);
         patch_.nodes.push_back(std::move(node));
     }
@@ -216,18 +245,18 @@ private:
     void setting(const toml::key& key, const toml::node& value, const std::string& owner,
                  std::vector<OptionText>& into) {
         if (key.str() == "wires" && value.is_array())
-            return problems_.add(at(key.source()),
-                                 fmt::format("'wires' stands inside [{}]; move it above the first table", owner));
+            return misplaced_wires(key, owner);
         if (const std::optional<std::string> text = scalar_text(value)) {
             into.push_back({std::string(key.str()), *text, at(value)});
             return;
         }
         if (const toml::array* list = value.as_array(); list && list->size() == 3) {
             std::string joined;
-            for (const toml::node& item : *list)
-                if (const std::optional<std::string> text = scalar_text(item))
-                    joined += (joined.empty() ? "" : ", ") + *text;
-                else return problems_.add(at(item), "a vector has three quantities");
+            for (const toml::node& item : *list) {
+                const std::optional<std::string> text = item.is_boolean() ? std::nullopt : scalar_text(item);
+                if (!text) return problems_.add(at(item), "a vector has three quantities");
+                joined += (&item == list->get(0) ? "" : ", ") + *text;
+            }
             into.push_back({std::string(key.str()), joined, at(value)});
             return;
         }
@@ -255,6 +284,7 @@ private:
 
     std::filesystem::path file_;
     Problems& problems_;
+    std::size_t earlier_;  ///< problems that were there before
     Patch patch_;
 };
 
@@ -263,20 +293,6 @@ private:
 Patch read_patch(std::string_view text, const std::filesystem::path& file, Problems& problems) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     return PatchReader(file, problems).read(text);
-}
-
-Patch load_patch(const std::filesystem::path& file, Problems& problems) {
-    std::error_code failure;
-    if (std::filesystem::is_directory(file, failure))
-        throw Error(fmt::format("{}: is a folder, not a patch", file.string()));
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw Error(fmt::format("{}: cannot read the patch", file.string()));
-    constexpr std::uintmax_t largest = 16u << 20;
-    if (std::filesystem::file_size(file, failure) > largest && !failure)
-        throw Error(fmt::format("{}: larger than 16 MB; that is no patch", file.string()));
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return read_patch(text.str(), file, problems);
 }
 
 }  // namespace tactus

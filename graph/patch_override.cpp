@@ -24,15 +24,15 @@ void set(Patch& patch, const std::string& assignment) {
     const SourceLocation where{"--set " + assignment, 0, 0};
     const std::size_t equals = assignment.find('=');
     std::string_view target = std::string_view(assignment).substr(0, equals);
-    if (target.starts_with("devices.")) target.remove_prefix(8);
-    if (target.starts_with("nodes.")) target.remove_prefix(6);
+    const bool is_device = target.starts_with("devices.");
+    if (is_device) target.remove_prefix(8);
+    else if (target.starts_with("nodes.")) target.remove_prefix(6);
     const std::size_t dot = target.find('.');
     if (equals == std::string::npos || dot == std::string_view::npos || dot + 1 == target.size())
         throw Error(where, "write NODE.PARAM=VALUE");
     const std::string_view owner = target.substr(0, dot), key = target.substr(dot + 1);
     std::string_view text = std::string_view(assignment).substr(equals + 1);
     if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
-    const bool is_device = assignment.starts_with("devices.");
     if (PatchNode* node = is_device ? nullptr : find_named(patch.nodes, owner)) {
         if (key == "type") {
             node->type = text;
@@ -47,9 +47,10 @@ void set(Patch& patch, const std::string& assignment) {
         else put(device->settings, key, text, where);
     } else {
         std::vector<std::string> names;
-        for (const PatchNode& n : patch.nodes) names.push_back(n.name);
+        if (!is_device)
+            for (const PatchNode& n : patch.nodes) names.push_back(n.name);
         for (const PatchDevice& d : patch.devices) names.push_back(d.name);
-        throw Error(where, fmt::format("no node '{}'{}", owner, did_you_mean(owner, names)));
+        throw Error(where, fmt::format("no {} '{}'{}", is_device ? "device" : "node", owner, did_you_mean(owner, names)));
     }
 }
 

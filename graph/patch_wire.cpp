@@ -44,8 +44,8 @@ std::vector<Word> words_of(std::string_view text) {
 
 class WireParser {
 public:
-    WireParser(std::string_view text, const SourceLocation& where)
-        : text_(text), where_(where), words_(words_of(text)) {}
+    WireParser(std::string_view text, const SourceLocation& where, bool as_written)
+        : text_(text), where_(where), as_written_(as_written), words_(words_of(text)) {}
 
     PatchWire parse() {
         wire_.where = where_;
@@ -60,8 +60,10 @@ public:
 private:
     [[noreturn]] void fail(std::size_t at, const std::string& message) const {
         SourceLocation where = where_;
-        if (where.column > 0) where.column += static_cast<int>(at);
-        throw Error(where, fmt::format("{}, not \"{}\"", message, text_));
+        if (as_written_ && where.column > 0) where.column += static_cast<int>(at);
+        constexpr std::size_t most_shown = 80;
+        const bool is_long = text_.size() > most_shown;
+        throw Error(where, fmt::format("{}, not \"{}{}\"", message, text_.substr(0, most_shown), is_long ? "…" : ""));
     }
 
     void end_of(const Word& word, std::string& node, std::string& port, bool may_be_asset) const {
@@ -100,12 +102,15 @@ private:
 
     std::string_view text_;
     SourceLocation where_;
+    bool as_written_;
     std::vector<Word> words_;
     PatchWire wire_;
 };
 
 }  // namespace
 
-PatchWire parse_wire(std::string_view text, const SourceLocation& where) { return WireParser(text, where).parse(); }
+PatchWire parse_wire(std::string_view text, const SourceLocation& where, bool as_written) {
+    return WireParser(text, where, as_written).parse();
+}
 
 }  // namespace tactus

@@ -8,8 +8,9 @@
 
 namespace tactus {
 
-/// `where` is the place of the text's first character. Throws Error at the word that is wrong.
-PatchWire parse_wire(std::string_view text, const SourceLocation& where);
+/// `where` is the place of the text's first character. Throws Error at the word that is wrong, or at `where` when the
+/// text does not stand in the file `as_written`.
+PatchWire parse_wire(std::string_view text, const SourceLocation& where, bool as_written = true);
 
 /// Letters, digits, '_' and '-', not empty.
 bool is_name(std::string_view text);

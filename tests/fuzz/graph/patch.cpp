@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// read_patch: any text is a patch or a list of problems, and each problem has a place in it.
+#include "graph/patch.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    tactus::Problems problems;
+    const tactus::Patch patch = tactus::read_patch({reinterpret_cast<const char*>(data), size}, "p.toml", problems);
+    for (const tactus::Error& error : problems.list)
+        if (error.where().line < 1 || error.where().column < 1 || error.message().empty()) std::abort();
+    if (problems.empty() && patch.nodes.empty()) std::abort();
+    for (const tactus::PatchNode& node : patch.nodes) {
+        try {
+            tactus::parse_rate(node.rate);
+        } catch (const tactus::Error&) {
+            // Refusing is right for most texts.
+        }
+    }
+    return 0;
+}
