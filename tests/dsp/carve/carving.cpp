@@ -19,7 +19,7 @@ bool same(const Grid& a, const Grid& b) { return a.values == b.values; }
 
 }  // namespace
 
-TEST_CASE("A saw pressed into bone advances at the reference speed over density") {
+TEST_CASE("a saw pressed into bone advances at the reference speed over density") {
     for (const double density : {200.0, 600.0, 1000.0, 1800.0}) {
         DenseField field = block(Vec3(0.0), density);
         CarveCore carver = saw();
@@ -34,7 +34,7 @@ TEST_CASE("A saw pressed into bone advances at the reference speed over density"
     }
 }
 
-TEST_CASE("The volume removed does not depend on how often the carver is called") {
+TEST_CASE("the volume removed does not depend on how often the carver is called") {
     for (const double density : {200.0, 1800.0}) {
         const auto path = stroke(above, {0, -0.010, 0}, density < 1000.0 ? 0.8 : 3.0);
         std::vector<double> volumes;
@@ -48,7 +48,7 @@ TEST_CASE("The volume removed does not depend on how often the carver is called"
     }
 }
 
-TEST_CASE("The volume removed is that of the swept blade, wherever the samples of the grid lie") {
+TEST_CASE("the volume removed is that of the swept blade, wherever the samples of the grid lie") {
     std::vector<double> volumes;
     for (const double share : {0.0, 0.23, 0.5, 0.81}) {
         DenseField field = block(Vec3(0.4, 1.0, 0.7) * (share * voxel), 600.0);
@@ -59,7 +59,7 @@ TEST_CASE("The volume removed is that of the swept blade, wherever the samples o
     }
 }
 
-TEST_CASE("The volume removed by an oblique blade in a grid of flat voxels is that of the swept blade") {
+TEST_CASE("the volume removed by an oblique blade in a grid of flat voxels is that of the swept blade") {
     const Quat oblique = glm::angleAxis(0.5, Vec3(0, 1, 0)) * downwards;  // turned about its way into the bone
     DenseField field = block(Vec3(0.0), 600.0, {0.00035, 0.0003, 0.0005});
     CarveCore carver({}, field.spacing());
@@ -69,7 +69,7 @@ TEST_CASE("The volume removed by an oblique blade in a grid of flat voxels is th
     CHECK(volume == Approx(slot(depth(carver)) * length / 0.018).epsilon(0.02));
 }
 
-TEST_CASE("Removed bone is counted in its density class") {
+TEST_CASE("removed bone is counted in its density class") {
     DenseField field = block();
     field.bone_density = [](const Vec3& p) {
         return p.x < 0.0 ? (p.x < -0.004 ? 300.0 : 500.0) : (p.x < 0.004 ? 900.0 : 1500.0);
@@ -88,7 +88,7 @@ TEST_CASE("Removed bone is counted in its density class") {
     CHECK(sum == Approx(result.removed_m3).epsilon(1e-12));
 }
 
-TEST_CASE("The kerf is as wide as set, and smooth along the blade") {
+TEST_CASE("the kerf is as wide as set, and smooth along the blade") {
     for (const double kerf : {0.001, 0.0014}) {
         CarveSettings settings;
         settings.kerf = kerf;
@@ -105,7 +105,7 @@ TEST_CASE("The kerf is as wide as set, and smooth along the blade") {
     }
 }
 
-TEST_CASE("Force, rate and density change the advance as the law says") {
+TEST_CASE("force, rate and density change the advance as the law says") {
     CarveSettings settings;
     settings.force_exponent = 1.0;
     const auto advance = [&](double force, double rate) {
@@ -125,7 +125,7 @@ TEST_CASE("Force, rate and density change the advance as the law says") {
     CHECK(advance(0.0, 228.0) == Approx(0.0).margin(1e-5));
 }
 
-TEST_CASE("A saw that does not run removes nothing and does not pass") {
+TEST_CASE("a saw that does not run removes nothing and does not pass") {
     DenseField field = block();
     const Grid before = field.grid;
     CarveCore carver = saw();
@@ -135,7 +135,7 @@ TEST_CASE("A saw that does not run removes nothing and does not pass") {
     CHECK(depth(carver) == Approx(-0.0005).margin(2e-5));
 }
 
-TEST_CASE("A saw that starts while pressed against bone cuts from the surface on") {
+TEST_CASE("a saw that starts while pressed against bone cuts from the surface on") {
     DenseField field = block();
     CarveCore carver = saw();
     carve(carver, field, stroke(above, {0, -0.010, 0}, 0.2, downwards, false));
@@ -144,7 +144,7 @@ TEST_CASE("A saw that starts while pressed against bone cuts from the surface on
     CHECK(result.removed_m3 > 0.0);
 }
 
-TEST_CASE("Drawing the blade back is free and it returns to where it had come") {
+TEST_CASE("drawing the blade back is free and it returns to where it had come") {
     DenseField field = block(Vec3(0.0), 600.0);
     CarveCore carver = saw();
     carve(carver, field, stroke(above, {0, -0.010, 0}, 1.5));
@@ -157,7 +157,7 @@ TEST_CASE("Drawing the blade back is free and it returns to where it had come") 
     CHECK(back.removed_m3 < 0.01 * slot(reached));
 }
 
-TEST_CASE("A wall is cut through and the blade goes on through air") {
+TEST_CASE("a wall is cut through and the blade goes on through air") {
     DenseField field = block(Vec3(0.0), 1000.0);
     field.grid = sampled(field.grid.origin, Vec3(0.013, 0.004, 0.009), Vec3(voxel),
                          [](const Vec3& p) { return box_distance(p, {-0.009, -0.003, -0.006}, block_high); });
@@ -167,7 +167,7 @@ TEST_CASE("A wall is cut through and the blade goes on through air") {
     CHECK(result.removed_m3 == Approx(0.018 * 0.003 * 0.001).epsilon(0.02));
 }
 
-TEST_CASE("Two cuts leave an island between them untouched") {
+TEST_CASE("two cuts leave an island between them untouched") {
     DenseField field = block(Vec3(0.0), 600.0);
     CarveCore carver = saw();
     carve(carver, field, stroke(above + Vec3(0, 0, -0.002), {0, -0.010, 0}, 1.0));
@@ -180,7 +180,7 @@ TEST_CASE("Two cuts leave an island between them untouched") {
     CHECK(field.value({0, -0.0053, 0.0}) < -0.001);
 }
 
-TEST_CASE("A blade outside the grid removes nothing") {
+TEST_CASE("a blade outside the grid removes nothing") {
     DenseField field = block();
     const Grid before = field.grid;
     CarveCore carver = saw();
@@ -188,7 +188,7 @@ TEST_CASE("A blade outside the grid removes nothing") {
     CHECK(same(field.grid, before));
 }
 
-TEST_CASE("A blade that appears in the middle of bone cuts from the surface on") {
+TEST_CASE("a blade that appears in the middle of bone cuts from the surface on") {
     DenseField field = block();
     CarveCore carver = saw();
     const auto result = carve(carver, field, stroke({0, -0.006, 0}, Vec3(0.0), 0.1));
@@ -196,7 +196,7 @@ TEST_CASE("A blade that appears in the middle of bone cuts from the surface on")
     CHECK(result.removed_m3 < 0.018 * 0.001 * 0.67e-4);
 }
 
-TEST_CASE("Bone without density gives way and is removed") {
+TEST_CASE("bone without density gives way and is removed") {
     DenseField field = block(Vec3(0.0), 0.0);
     CarveCore carver = saw();
     const auto result = carve(carver, field, stroke(above, {0, -0.010, 0}, 0.4));
@@ -205,7 +205,7 @@ TEST_CASE("Bone without density gives way and is removed") {
     CHECK(result.removed_by_density[0] == result.removed_m3);
 }
 
-TEST_CASE("Samples that are not numbers are ignored") {
+TEST_CASE("samples that are not numbers are ignored") {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     auto path = stroke(above, {0, -0.010, 0}, 0.5);
     DenseField clean = block(Vec3(0.0), 600.0), noisy = block(Vec3(0.0), 600.0);
