@@ -98,16 +98,19 @@ Signal friction(double rate) {
 std::vector<float> synthesise(double rate, double load, std::uint64_t seed) {
     const Random random{seed};
     const double speed = rate / greatest_rate;
-    Signal sum(count);
-    // The stroke stays the same, so the acceleration goes with the square of the rate.
-    add(sum, drive(rate, random), free_air_level * speed * speed);
+    // The stroke stays the same, so the blade's acceleration goes with the square of the rate.
+    const double blade = free_air_level * speed * speed;
+    const double cut = std::sqrt(cutting_level * cutting_level - free_air_level * free_air_level) *
+                       (load / greatest_load) * speed;
+    Signal parts(count), sum(count);
+    add(parts, drive(rate, random), blade);
     if (load > 0.0) {
-        const double most = std::sqrt(cutting_level * cutting_level - free_air_level * free_air_level);
-        const double rms = most * (load / greatest_load) * speed;
-        add(sum, chips(rate, random), rms * std::sqrt(chip_share));
-        add(sum, teeth(rate), rms * std::sqrt(tooth_share));
-        add(sum, friction(rate), rms * std::sqrt(friction_share));
+        add(parts, chips(rate, random), cut * std::sqrt(chip_share));
+        add(parts, teeth(rate), cut * std::sqrt(tooth_share));
+        add(parts, friction(rate), cut * std::sqrt(friction_share));
     }
+    // The parts share orders, so their powers alone do not make the level.
+    add(sum, parts, std::hypot(blade, cut));
     std::vector<float> out(count);
     for (std::size_t i = 0; i < count; ++i) out[i] = static_cast<float>(sum[i] / full_scale);
     return out;

@@ -152,8 +152,9 @@ private:
         r.file = path_.parent_path() / text(*file, "file");
         const std::string word = text(*state, "state");
         if (std::find(states.begin(), states.end(), word) == states.end())
-            throw Error(location(state->source()), fmt::format("unknown state '{}'; a saw is cutting or free_air{}", word,
-                                                               did_you_mean(word, states)));
+            throw Error(location(state->source()),
+                        fmt::format("unknown state '{}'; a saw is cutting or free_air{}", word,
+                                    did_you_mean(word, states)));
         r.cutting = word == "cutting";
         r.note = text_of(*table, "note");
         r.sensor = table->contains("sensor") ? text_of(*table, "sensor") : sensor_;

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/vibration/fundamental.hpp"
+
+#include "dsp/core/random.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+using namespace tactus;
+
+namespace {
+
+/// Five orders that fall off as 1/k, and white noise of the given rms.
+std::vector<float> buzz(double frequency, double noise, double rate, double seconds = 1.0) {
+    std::vector<float> out(static_cast<std::size_t>(seconds * rate));
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        double y = noise * Random{3}.normal(i);
+        for (int k = 1; k <= 5; ++k)
+            y += 0.3 / k * std::sin(2.0 * std::numbers::pi * k * frequency * static_cast<double>(i) / rate + 0.7 * k);
+        out[i] = static_cast<float>(y);
+    }
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("the rate of a buzz is heard to 0.05 Hz, whatever the sample rate, in silence and in noise") {
+    for (const double sample_rate : {22050.0, 44100.0, 48000.0, 96000.0})
+        for (const double frequency : {75.0, 150.3, 233.0, 333.3})
+            for (const double noise : {0.0, 0.1}) {
+                INFO(sample_rate << " Hz, " << frequency << " Hz, noise " << noise);
+                const Fundamental heard = estimate_fundamental(buzz(frequency, noise, sample_rate), sample_rate);
+                CHECK(heard.rate == Approx(frequency).margin(0.05));
+                CHECK(heard.periodicity > 0.5);
+            }
+}
+
+TEST_CASE("noise and silence have no rate worth the name") {
+    std::vector<float> noise(48000), silence(48000);
+    for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = static_cast<float>(Random{9}.normal(i));
+    CHECK(estimate_fundamental(noise, 48000.0).periodicity < 0.15);
+    CHECK(estimate_fundamental(silence, 48000.0).rate == 0.0);
+    CHECK(estimate_fundamental(std::vector<float>(100, 0.5f), 48000.0).rate == 0.0);
+}
+
+TEST_CASE("a rate stated 2 % off is corrected from the sound to 0.02 Hz") {
+    const std::vector<float> sound = buzz(190.4, 0.05, 48000.0, 2.0);
+    for (const double stated : {187.0, 190.0, 194.0})
+        CHECK(refine_rate(sound, 48000.0, stated, 0.02) == Approx(190.4).margin(0.02));
+    // Too short to say anything: what was stated stays.
+    CHECK(refine_rate(std::span(sound).first(500), 48000.0, 187.0, 0.02) == 187.0);
+}
