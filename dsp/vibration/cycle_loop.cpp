@@ -38,8 +38,39 @@ struct Kernel {
     }
 };
 
-constexpr int reading_half = 8;
-const Kernel reading{reading_half};
+constexpr int reading_half = 8, taps = 2 * reading_half;
+
+/// The kernel for reading between samples, one row of taps per fraction of a sample, so that a row is read in one go.
+struct ReadingTable {
+    static constexpr int steps = 512;
+    std::vector<float> rows = std::vector<float>((steps + 1) * taps);
+
+    ReadingTable() {
+        const Kernel kernel{reading_half};
+        for (int row = 0; row <= steps; ++row)
+            for (int tap = 0; tap < taps; ++tap)
+                rows[static_cast<std::size_t>(row * taps + tap)] =
+                    static_cast<float>(kernel(static_cast<double>(row) / steps - (tap + 1 - reading_half)));
+    }
+    /// `samples`: 16 of them; x in [0, 1] lies between the eighth and the ninth.
+    double operator()(const float* samples, double x) const noexcept {
+        const double position = x * steps;
+        const int row = std::min(static_cast<int>(position), steps - 1);
+        const auto part = static_cast<float>(position - row);
+        const float* const here = rows.data() + row * taps;
+        const float* const next = here + taps;
+        // Four sums side by side, for the sake of vector units.
+        float lanes[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+        for (int tap = 0; tap < taps; tap += 4)
+            for (int lane = 0; lane < 4; ++lane) {
+                const int i = tap + lane;
+                lanes[lane] += samples[i] * (here[i] + part * (next[i] - here[i]));
+            }
+        return static_cast<double>((lanes[0] + lanes[1]) + (lanes[2] + lanes[3]));
+    }
+};
+
+const ReadingTable reading;
 
 /// The sound at a position (in samples) with everything above `cutoff` (1 is half the sample rate) taken away.
 double read_filtered(std::span<const float> samples, const Kernel& kernel, double position, double cutoff) {
@@ -134,11 +165,8 @@ double CycleLoop::operator()(double cycles) const noexcept {
     const double position = std::min(part * static_cast<double>(count_), static_cast<double>(count_));
     const auto whole = std::min(static_cast<std::size_t>(position), count_ - 1);
     const double x = position - static_cast<double>(whole);
-    // samples_[whole + 1 ...] are the 16 samples around the position; the guard shifts them by reading_half.
-    double sum = 0.0;
-    for (int j = 1 - reading_half; j <= reading_half; ++j)
-        sum += samples_[whole + static_cast<std::size_t>(j + reading_half)] * reading(x - j);
-    return sum;
+    // The guard shifts the samples by reading_half: these are the 16 around the position.
+    return reading(samples_.data() + whole + 1, x);
 }
 
 void CycleLoop::align(const CycleLoop& reference) {

@@ -61,7 +61,29 @@ void SawVoice::prepare(double rate, std::span<const SawRecording> recordings, co
     for (const CycleLoop& a : loops_)
         for (const CycleLoop& b : loops_) likeness_.push_back(&a == &b ? 1.0 : likeness(a, b));
     lowest_recorded_ = layers_.front().rate;
-    for (const Layer& layer : layers_) lowest_recorded_ = std::min(lowest_recorded_, layer.rate);
+    for (Layer& layer : layers_) {
+        lowest_recorded_ = std::min(lowest_recorded_, layer.rate);
+        layer.level = std::abs(layer.amplitude) * std::sqrt(loops_[layer.loop].power());
+    }
+    make_groups();
+}
+
+void SawVoice::make_groups() {
+    for (const bool cutting : {false, true}) {
+        auto& groups = groups_[cutting];
+        for (const Layer& layer : layers_)
+            if (layer.cutting == cutting) groups.push_back({layer.rate, 0.0, {}});
+        std::sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) { return a.rate < b.rate; });
+        groups.erase(std::unique(groups.begin(), groups.end(),
+                                 [](const Group& a, const Group& b) { return a.rate == b.rate; }),
+                     groups.end());
+        for (std::size_t i = 0; i < groups.size(); ++i) {
+            if (i + 1 < groups.size()) groups[i].border = groups[i].rate * groups[i + 1].rate;
+            for (std::size_t k = 0; k < layers_.size(); ++k)
+                if (layers_[k].cutting == cutting && ratio(layers_[k].rate, groups[i].rate) <= same_rate)
+                    groups[i].layers.push_back(k);
+        }
+    }
 }
 
 void SawVoice::move_blade(bool trigger, double commanded_rate) noexcept {
@@ -81,57 +103,77 @@ void SawVoice::move_blade(bool trigger, double commanded_rate) noexcept {
     if (wanted > 0.0 && (state_ != SawState::spin_up || reached)) state_ = loaded_ ? SawState::cutting : SawState::idle;
 }
 
-double SawVoice::choose_rate(bool cutting) const noexcept {
-    const double playing = playing_rate_[cutting];
-    double nearest = 0.0;
-    for (const Layer& layer : layers_)
-        if (layer.cutting == cutting &&
-            (nearest == 0.0 || ratio(blade_rate_, layer.rate) < ratio(blade_rate_, nearest)))
-            nearest = layer.rate;
-    if (playing == 0.0) return nearest;
-    const double off = ratio(blade_rate_, playing), off_nearest = ratio(blade_rate_, nearest);
-    const auto too_far = [&](double recorded) {
-        return std::abs(blade_rate_ / recorded - 1.0) > greatest_pitch_change;
+const SawVoice::Group& SawVoice::choose_group() noexcept {
+    const auto& groups = groups_[loaded_];
+    std::ptrdiff_t& playing = playing_[loaded_];
+    std::size_t nearest = 0;
+    while (nearest + 1 < groups.size() && blade_rate_ * blade_rate_ > groups[nearest].border) ++nearest;
+    if (playing < 0) playing = static_cast<std::ptrdiff_t>(nearest);
+    const Group &kept = groups[static_cast<std::size_t>(playing)], &near = groups[nearest];
+    if (&kept == &near) return kept;
+    const auto too_far = [&](const Group& group) {
+        return std::abs(blade_rate_ / group.rate - 1.0) > greatest_pitch_change;
     };
-    return off > 1.02 * off_nearest || (too_far(playing) && !too_far(nearest)) ? nearest : playing;
+    const bool nearer = ratio(blade_rate_, kept.rate) > 1.02 * ratio(blade_rate_, near.rate);
+    if (!nearer && !(too_far(kept) && !too_far(near))) return kept;
+    playing = static_cast<std::ptrdiff_t>(nearest);
+    return near;
+}
+
+void SawVoice::aim(Layer& layer, double share) noexcept {
+    layer.target += share;
+    const auto index = static_cast<std::size_t>(&layer - layers_.data());
+    std::size_t* const end = active_.data() + active_count_;
+    std::size_t* const place = std::lower_bound(active_.data(), end, index);
+    if (place != end && *place == index) return;
+    std::move_backward(place, end, end + 1);
+    *place = index;
+    ++active_count_;
 }
 
 void SawVoice::choose_layers(double load) noexcept {
-    const double rate = playing_rate_[loaded_] = choose_rate(loaded_);
+    for (const std::size_t i : active()) layers_[i].target = 0.0;
     // Below and above are the recorded loads on both sides of this one; equal outside the recorded range.
     Layer *below = nullptr, *above = nullptr;
-    for (Layer& layer : layers_) {
-        layer.target = 0.0;
-        if (layer.cutting != loaded_ || ratio(layer.rate, rate) > same_rate) continue;
+    for (const std::size_t i : choose_group().layers) {
+        Layer& layer = layers_[i];
         if (layer.load <= load && (!below || layer.load > below->load)) below = &layer;
         if (layer.load >= load && (!above || layer.load < above->load)) above = &layer;
     }
     if (!below) below = above;
     if (!above) above = below;
-    if (!below) return;
     const double span = above->load - below->load;
     const double x = span > 0.0 ? (load - below->load) / span : 0.0;
-    below->target += 1.0 - x;
-    above->target += x;
+    aim(*below, 1.0 - x);
+    if (x > 0.0) aim(*above, x);
 }
 
 double SawVoice::mix() noexcept {
+    for (const std::size_t i : active()) {
+        Layer& layer = layers_[i];
+        layer.weight += std::clamp(layer.target - layer.weight, -fade_step_, fade_step_);
+    }
+    const auto silent = [&](std::size_t i) { return layers_[i].weight <= 0.0 && layers_[i].target <= 0.0; };
+    std::size_t* const end = active_.data() + active_count_;
+    active_count_ = static_cast<std::size_t>(std::remove_if(active_.data(), end, silent) - active_.data());
+    if (active_count_ == 1) {
+        // One alone sounds at its own level, whatever its weight.
+        const Layer& alone = layers_[active_.front()];
+        return alone.weight > 0.0 ? alone.amplitude * loops_[alone.loop](cycles_) : 0.0;
+    }
     double sum = 0.0, weights = 0.0, wanted = 0.0, got = 0.0;
     const std::size_t count = loops_.size();
-    for (Layer& a : layers_) {
-        a.weight += std::clamp(a.target - a.weight, -fade_step_, fade_step_);
+    for (std::size_t i = 0; i < active_count_; ++i) {
+        const Layer& a = layers_[active_[i]];
         if (a.weight <= 0.0) continue;
         sum += a.weight * a.amplitude * loops_[a.loop](cycles_);
-    }
-    for (const Layer& a : layers_) {
-        if (a.weight <= 0.0) continue;
-        const double level_a = std::abs(a.amplitude) * std::sqrt(loops_[a.loop].power());
         weights += a.weight;
-        wanted += a.weight * level_a * level_a;
-        for (const Layer& b : layers_) {
-            if (b.weight <= 0.0) continue;
-            const double level_b = std::abs(b.amplitude) * std::sqrt(loops_[b.loop].power());
-            got += a.weight * b.weight * level_a * level_b * likeness_[a.loop * count + b.loop];
+        const double share = a.weight * a.level;
+        wanted += share * a.level;
+        got += share * share;
+        for (std::size_t j = 0; j < i; ++j) {
+            const Layer& b = layers_[active_[j]];
+            got += 2.0 * share * b.weight * b.level * likeness_[a.loop * count + b.loop];
         }
     }
     if (!(weights > 0.0) || !(got > 0.0)) return 0.0;

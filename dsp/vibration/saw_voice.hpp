@@ -4,6 +4,8 @@
 
 #include "dsp/vibration/cycle_loop.hpp"
 
+#include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -50,7 +52,7 @@ public:
     static constexpr std::size_t most_recordings = 32;
 
     /// `rate`: samples per second of the output. Throws Error when there is no recording, a value is not positive and
-    /// finite, or a recording is shorter than 8 cycles. Resamples and loops each recording (about 20 ms per second).
+    /// finite, or a recording is shorter than 8 cycles. Resamples and loops each recording, which allocates.
     void prepare(double rate, std::span<const SawRecording> recordings, const SawBehaviour& behaviour = {});
 
     /// One sample. `load` in N (not finite: none), `commanded_rate` in Hz, clamped to [0, greatest_rate].
@@ -68,21 +70,34 @@ private:
         std::size_t loop;  // in loops_
         double rate, load, amplitude;
         bool cutting;
+        double level = 0.0;                 // rms
         double target = 0.0, weight = 0.0;  // shares in the mix
     };
+    /// The layers of one recorded rate, one per load.
+    struct Group {
+        double rate = 0.0;
+        double border = 0.0;  // square of the blade's rate from which the next group is nearer
+        std::vector<std::size_t> layers;
+    };
 
+    void make_groups();
     void move_blade(bool trigger, double commanded_rate) noexcept;
     void choose_layers(double load) noexcept;
-    double choose_rate(bool cutting) const noexcept;
+    const Group& choose_group() noexcept;
+    void aim(Layer& layer, double share) noexcept;
     double mix() noexcept;
+    std::span<const std::size_t> active() const noexcept { return {active_.data(), active_count_}; }
 
     std::vector<CycleLoop> loops_;
     std::vector<Layer> layers_;
     std::vector<double> likeness_;  // loops × loops
+    std::vector<Group> groups_[2];  // free air, cutting; by rate
+    std::array<std::size_t, 2 * most_recordings> active_{};  // layers that sound or are about to, in order
+    std::size_t active_count_ = 0;
     SawBehaviour behaviour_;
     double rate_ = 48000.0, up_share_ = 1.0, down_share_ = 1.0, fade_step_ = 1.0, lowest_recorded_ = 1.0;
     double blade_rate_ = 0.0, cycles_ = 0.0;
-    double playing_rate_[2] = {0.0, 0.0};  // recorded rate in use: free air, cutting
+    std::ptrdiff_t playing_[2] = {-1, -1};  // group in use: free air, cutting
     bool loaded_ = false;
     SawState state_ = SawState::off;
 };
