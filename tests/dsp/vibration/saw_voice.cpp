@@ -4,6 +4,7 @@
 #include "dsp/core/random.hpp"
 #include "dsp/vibration/actuator.hpp"
 #include "dsp/vibration/fundamental.hpp"
+#include "tests/support/realtime_check.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -175,6 +176,28 @@ TEST_CASE("the voice is the same bits for the same input, and a load that is not
         if (i == 30000) copy = one;  // goes on where the other is
         if (i > 30000) REQUIRE(copy.tick(load, trigger, 200.0) == y);
     }
+}
+
+TEST_CASE("a saw and its actuator do nothing in a tick that could wait") {
+    const auto free_air = tone(233.0, 0.3), light = tone(190.0, 2.5), heavy = tone(150.0, 1.5);
+    const SawRecording recordings[] = {
+        {free_air, 48000.0, 233.0}, {light, 48000.0, 190.0, 3.0, true}, {heavy, 48000.0, 150.0, 12.0, true}};
+    SawVoice voice;
+    voice.prepare(48000.0, recordings);
+    SawVoice copy = voice;
+    Actuator actuator(find_actuator("haptuator_small"), 0.1, 48000.0);
+    double power = 0.0;
+    const RealtimeViolations found = watch_scopes([&] {
+        const RealtimeScope scope;
+        for (int i = 0; i < 96000; ++i) {
+            const double load = (i / 5000) % 2 ? 9.0 : 0.0, rate = 140.0 + 1e-3 * i;
+            const double y = actuator(voice.tick(load, i < 80000, rate)).acceleration;
+            power += y * y + copy.tick(load, i < 80000, rate);
+        }
+    });
+    INFO(found.describe());
+    CHECK(found.none());
+    CHECK(power > 0.0);
 }
 
 TEST_CASE("a saw that is off is silent, and no command makes it faster than its greatest rate") {
