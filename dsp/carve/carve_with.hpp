@@ -21,7 +21,7 @@ public:
         : settings_(settings),
           voxel_(std::max({spacing.x, spacing.y, spacing.z})),
           edge_(settings, voxel_),
-          swept_(edge_.nodes().size() - 1, edge_.first(), edge_.pitch()),
+          swept_(edge_.nodes().size() - 1, edge_.pitch()),
           cut_(edge_.nodes().size() - 1),
           deep_(edge_.nodes().size() - 1) {}
 
@@ -46,7 +46,7 @@ public:
             }
         }
         if (cutting_) {
-            cut_out(field, result);
+            if (moved_since(cut_) > least_cut * voxel_ || any_fresh()) cut_out(field, result);
             deepen(field, result);
         }
         return result;
@@ -59,6 +59,7 @@ public:
 private:
     static constexpr std::size_t chunk = 8;  // spans stamped together
     static constexpr double near_voxels = 3.0;  // depth below the cut that is kept up at every update
+    static constexpr double least_cut = 0.05;  // voxels of way that wait for the next update
     static constexpr double detour = 2e-5;  // m by which a path may be longer than what is cut out at once
 
     /// Ends of a span where it was last cut out, in the bone's frame.
@@ -82,6 +83,21 @@ private:
         }
     }
 
+    double way(const Ends& last, std::size_t n) const noexcept {
+        const auto nodes = edge_.nodes();
+        return std::max(glm::length(nodes[n].at - last.a), glm::length(nodes[n + 1].at - last.b));
+    }
+
+    double moved_since(const std::vector<Ends>& last) const noexcept {
+        double most = 0.0;
+        for (std::size_t n = 0; n < last.size(); ++n) most = std::max(most, way(last[n], n));
+        return most;
+    }
+
+    bool any_fresh() const noexcept {
+        return std::ranges::any_of(edge_.nodes(), [](const EdgeNode& node) { return node.fresh; });
+    }
+
     bool turned() const noexcept {
         const auto nodes = edge_.nodes();
         for (std::size_t n = 0; n < nodes.size(); ++n) {
@@ -96,22 +112,21 @@ private:
     template <class Field>
     void cut_out(Field& field, CarveResult& result) noexcept {
         const auto nodes = edge_.nodes();
-        const Pose back = pose_.inverse();
         const double radius = 0.5 * settings_.kerf;
         const auto spans = swept_.spans();
         for (std::size_t n = 0; n < spans.size(); ++n) {
             const EdgeNode &a = nodes[n], &b = nodes[n + 1];
             if (a.fresh) cut_[n].a = deep_[n].a = a.at;
             if (b.fresh) cut_[n].b = deep_[n].b = b.at;
-            const double moved = std::max(glm::length(a.at - cut_[n].a), glm::length(b.at - cut_[n].b));
+            const double moved = way(cut_[n], n);
             const double clear = radius + moved + edge_.pitch() + voxel_;
             const bool near = field.value(a.at) < clear || field.value(b.at) < clear;
-            spans[n] = {back.apply(cut_[n].a), back.apply(cut_[n].b), back.apply(a.at), back.apply(b.at),
-                        a.seated && b.seated && near && (moved > 1e-9 || a.fresh || b.fresh)};
+            spans[n].fresh = a.fresh || b.fresh;
+            spans[n].moved = a.seated && b.seated && near && (moved > 1e-9 || spans[n].fresh);
         }
         const double reach = radius + near_voxels * voxel_;
-        swept_.arrange(reach);
-        const VoxelFraction fraction(field.spacing(), back_axis_z());
+        lay_out(cut_, reach);
+        const VoxelFraction fraction(field.spacing(), pose_.rotate({0, 0, 1}));
         bool whole = true;
         for (std::size_t c = 0; c < spans.size(); c += chunk) whole &= stamp(field, c, reach, fraction, result);
         if (!whole) {  // what found no room is cut out again, from the same place
@@ -131,33 +146,56 @@ private:
     void deepen(Field& field, CarveResult& result) noexcept {
         if (result.budget_hit) return;
         const auto nodes = edge_.nodes();
-        std::size_t worst = 0;
+        std::size_t worst = deep_.size();
         double most = 0.25 * voxel_;
         for (std::size_t n = 0; n < deep_.size(); ++n) {
-            const double moved =
-                std::max(glm::length(nodes[n].at - deep_[n].a), glm::length(nodes[n + 1].at - deep_[n].b));
+            const double moved = way(deep_[n], n);
             if (moved > most) {
                 most = moved;
-                worst = n / chunk * chunk + 1;
+                worst = n;
             }
         }
-        if (worst == 0) return;
-        const std::size_t begin = worst - 1, end = std::min(begin + chunk, deep_.size());
-        const Pose back = pose_.inverse();
+        if (worst == deep_.size()) return;
+        const std::size_t begin = worst / chunk * chunk, end = std::min(begin + chunk, deep_.size());
         const auto spans = swept_.spans();
         for (std::size_t n = 0; n < spans.size(); ++n) {
-            const bool seated = nodes[n].seated && nodes[n + 1].seated;
-            spans[n] = {back.apply(deep_[n].a), back.apply(deep_[n].b), back.apply(nodes[n].at),
-                        back.apply(nodes[n + 1].at), seated && n + 2 >= begin && n < end + 2};
+            spans[n].fresh = false;
+            spans[n].moved = nodes[n].seated && nodes[n + 1].seated && n + 2 >= begin && n < end + 2;
         }
         const double reach = 0.5 * settings_.kerf + settings_.depth;
-        swept_.arrange(reach);
-        const VoxelFraction fraction(field.spacing(), back_axis_z());
+        lay_out(deep_, reach);
+        const VoxelFraction fraction(field.spacing(), pose_.rotate({0, 0, 1}));
         if (!stamp(field, begin, reach, fraction, result)) result.budget_hit = true;
         for (std::size_t n = begin; n < end; ++n) deep_[n] = {nodes[n].at, nodes[n + 1].at};
     }
 
-    Vec3 back_axis_z() const noexcept { return pose_.rotate({0, 0, 1}); }
+    /// Gives the moved spans their ends, in a frame with x along the edge, so that a straight edge is level in it.
+    void lay_out(const std::vector<Ends>& last, double reach) noexcept {
+        const auto nodes = edge_.nodes();
+        const auto spans = swept_.spans();
+        std::size_t begin = spans.size(), end = 0;
+        for (std::size_t n = 0; n < spans.size(); ++n) {
+            if (!spans[n].moved) continue;
+            begin = std::min(begin, n);
+            end = n + 1;
+        }
+        if (end == 0) return;
+        Vec3 x = pose_.rotate({1, 0, 0});
+        const Vec3 chord = nodes[end].at - nodes[begin].at;
+        if (glm::dot(chord, x) > 0.7 * glm::length(chord)) x = glm::normalize(chord);
+        const Vec3 along = pose_.rotate({0, 1, 0});
+        const Vec3 y = glm::normalize(along - x * glm::dot(along, x));
+        frame_ = {pose_.position, glm::normalize(glm::quat_cast(Mat3(x, y, glm::cross(x, y))))};
+        const Pose back = frame_.inverse();
+        for (std::size_t n = begin; n < end; ++n) {
+            SweptSpan& span = spans[n];
+            span.a0 = back.apply(last[n].a);
+            span.b0 = back.apply(last[n].b);
+            span.a1 = back.apply(nodes[n].at);
+            span.b1 = back.apply(nodes[n + 1].at);
+        }
+        swept_.arrange(reach);
+    }
 
     /// d ← max(d, R − distance) over the voxels within `reach` of one chunk of the swept edge.
     template <class Field>
@@ -165,22 +203,29 @@ private:
                CarveResult& result) noexcept {
         const auto spans = swept_.spans();
         const std::size_t end = std::min(begin + chunk, spans.size());
-        Vec3 low(HUGE_VAL), high(-HUGE_VAL);  // in the blade's frame
-        bool any = false;
+        Vec3 low(HUGE_VAL), high(-HUGE_VAL);  // in the spans' frame
         for (std::size_t n = begin; n < end; ++n) {
             const SweptSpan& s = spans[n];
             if (!s.moved) continue;
-            any = true;
-            low = glm::min(low, glm::min(glm::min(s.a0, s.b0), glm::min(s.a1, s.b1)));
-            high = glm::max(high, glm::max(glm::max(s.a0, s.b0), glm::max(s.a1, s.b1)));
+            Vec3 before(reach);
+            before.y = s.fresh ? reach : std::min(reach, behind(s, reach) + 0.1 * voxel_);
+            low = glm::min(low, glm::min(glm::min(s.a0, s.b0), glm::min(s.a1, s.b1)) - before);
+            high = glm::max(high, glm::max(glm::max(s.a0, s.b0), glm::max(s.a1, s.b1)) + reach);
         }
-        if (!any) return true;
-        low -= Vec3(reach);
-        high += Vec3(reach);
+        if (low.x > high.x) return true;
         // Neighbouring chunks share their border; a voxel belongs to one of them.
-        if (begin > 0) low.x = edge_.first() + edge_.pitch() * static_cast<double>(begin);
-        if (end < spans.size()) high.x = edge_.first() + edge_.pitch() * static_cast<double>(end);
+        if (begin > 0) low.x = std::max(low.x, swept_.begin_of(begin));
+        if (end < spans.size()) high.x = std::min(high.x, swept_.begin_of(end));
         return stamp_box(field, low, high, fraction, result);
+    }
+
+    /// What lies behind an edge that moves on is nearer to where the edge was, and was kept up then: how far against y
+    /// new values can come, within `reach`, is a matter of how much the way turns aside.
+    static double behind(const SweptSpan& s, double reach) noexcept {
+        const auto of = [reach](const Vec3& way) {
+            return way.y > 0.0 ? reach * (std::abs(way.x) + std::abs(way.z)) / way.y : reach;
+        };
+        return std::max(of(s.a1 - s.a0), of(s.b1 - s.b0));
     }
 
     template <class Field>
@@ -189,9 +234,9 @@ private:
         const std::array<int, 3> size = field.size();
         const Vec3 spacing = field.spacing();
         std::array<int, 3> first{}, last{};
-        const Vec3 centre = (pose_.apply(0.5 * (low + high)) - field.origin()) / spacing;
+        const Vec3 centre = (frame_.apply(0.5 * (low + high)) - field.origin()) / spacing;
         const Vec3 half = 0.5 * (high - low);
-        const Vec3 ax = pose_.rotate({1, 0, 0}), ay = pose_.rotate({0, 1, 0}), az = pose_.rotate({0, 0, 1});
+        const Vec3 ax = frame_.rotate({1, 0, 0}), ay = frame_.rotate({0, 1, 0}), az = frame_.rotate({0, 0, 1});
         for (int axis = 0; axis < 3; ++axis) {
             const double extent =
                 (std::abs(ax[axis]) * half.x + std::abs(ay[axis]) * half.y + std::abs(az[axis]) * half.z) /
@@ -200,7 +245,7 @@ private:
             first[a] = static_cast<int>(std::ceil(std::clamp(centre[axis] - extent, 0.0, 1e6)));
             last[a] = static_cast<int>(std::floor(std::clamp(centre[axis] + extent, -1.0, size[a] - 1.0)));
         }
-        const Pose back = pose_.inverse();
+        const Pose back = frame_.inverse();
         const Vec3 step = back.rotate({spacing.x, 0, 0});
         bool whole = true;
         for (int k = first[2]; k <= last[2]; ++k) {
@@ -261,7 +306,7 @@ private:
     CuttingEdge edge_;
     SweptEdge swept_;
     std::vector<Ends> cut_, deep_;
-    Pose pose_;
+    Pose pose_, frame_;
     bool placed_ = false;
     bool cutting_ = false;
 };

@@ -15,6 +15,7 @@ namespace tactus {
 struct EdgeNode {
     Vec3 at;           ///< effective position
     Vec3 target;       ///< where the blade holds it
+    bool cutting = false;  ///< bone held it back in the last step
     double travel = 0.0;  ///< m moved since the path was last cut out
     bool seated = false;  ///< false: the blade stands in bone where no air is near; it neither moves nor cuts
     bool fresh = false;   ///< placed anew: no path leads here
@@ -44,7 +45,6 @@ public:
     std::span<EdgeNode> nodes() noexcept { return nodes_; }
     std::span<const EdgeNode> nodes() const noexcept { return nodes_; }
     double pitch() const noexcept { return pitch_; }
-    double first() const noexcept { return first_; }  ///< x of the first node in the blade's frame, m
 
     /// Puts every node where the blade holds it, or behind that, against y, where it comes out of the bone.
     template <class Field>
@@ -140,38 +140,43 @@ private:
             node.at = node.target;
             return;
         }
+        bool held = false;
         const auto along = [&](const Vec3& axis, const Vec3& side, const Vec3& neighbour) {
             const double way = glm::dot(lag, axis);
             const double sign = way < 0.0 ? -1.0 : 1.0;
-            advance(field, node.at, axis * sign, side, neighbour, std::abs(way), dt * std::abs(way) / distance,
-                    removal);
+            held |= advance(field, node, axis * sign, side, neighbour, std::abs(way), dt * std::abs(way) / distance,
+                            removal);
         };
         along(y_, z_, x_ * pitch_);
         along(x_, z_, Vec3(0.0));
         along(z_, y_, x_ * pitch_);
+        node.cutting = held;
     }
 
     template <class Field>
-    void advance(const Field& field, Vec3& at, const Vec3& direction, const Vec3& side, const Vec3& neighbour,
+    bool advance(const Field& field, EdgeNode& node, const Vec3& direction, const Vec3& side, const Vec3& neighbour,
                  double way, double time, double removal) const noexcept {
+        // In contact the interpolated distance ripples a little: it takes more to come free than to stay so.
+        const double slack = (node.cutting ? 0.15 : 0.02) * voxel_;
         for (int move = 0; move < most_moves && way > 1e-12; ++move) {
-            const Front front = look(field, at, direction, side, neighbour);
+            const Front front = look(field, node.at, direction, side, neighbour, slack);
             if (front.density > 0.0) {
-                at += direction * std::min(way, removal / front.density * time);
-                return;
+                node.at += direction * std::min(way, removal / front.density * time);
+                return true;
             }
             const double step = std::min(way, front.clear);
-            at += direction * step;
+            node.at += direction * step;
             way -= step;
         }
+        return false;
     }
 
     /// Looks at three points of the round front (Gauss-Legendre places across the kerf) and at its middle one pitch to
     /// either side, all a quarter voxel below the surface of the swept body.
     template <class Field>
-    Front look(const Field& field, const Vec3& at, const Vec3& direction, const Vec3& side,
-               const Vec3& neighbour) const noexcept {
-        const double touching = -ahead_ + 0.02 * voxel_;
+    Front look(const Field& field, const Vec3& at, const Vec3& direction, const Vec3& side, const Vec3& neighbour,
+               double slack) const noexcept {
+        const double touching = -ahead_ + slack;
         const Vec3 middle = at + direction * (radius_ + ahead_);
         const Vec3 low = at + direction * (0.63246 * radius_ + ahead_);
         const Vec3 own[3] = {low - side * (0.77460 * radius_), middle, low + side * (0.77460 * radius_)};
@@ -185,17 +190,17 @@ private:
             }
             nearest = std::min(nearest, d);
         }
-        double beside = 0.0;
-        if (neighbour != Vec3(0.0)) {
+        Front front;
+        if (share > 0.0) {
+            front.density = mass / share;
+        } else if (neighbour != Vec3(0.0)) {
             for (const double sign : {-1.0, 1.0}) {
                 const Vec3 there = middle + neighbour * sign;
                 const double d = field.value(there);
-                if (d <= touching) beside = std::max(beside, field.density(there));
+                if (d <= touching) front.density = std::max(front.density, field.density(there));
                 nearest = std::min(nearest, d);
             }
         }
-        Front front;
-        front.density = share > 0.0 ? mass / share : beside;
         if (!(front.density >= 1.0)) front.density = 0.0;
         // Bone without density gives way, but it may be thin: look again after a quarter voxel.
         front.clear = nearest > touching ? nearest + ahead_ : ahead_;

@@ -12,26 +12,36 @@
 
 namespace tactus {
 
-/// A stretch of edge between two nodes, before (0) and after (1), in the blade's frame, m.
+/// A stretch of edge between two nodes, before (0) and after (1), m. Frame: x along the edge, y where the blade cuts.
 struct SweptSpan {
     Vec3 a0, b0, a1, b1;
     bool moved = false;  ///< false: nothing new is swept here
+    bool fresh = false;  ///< the edge was put here, it did not come from anywhere
 };
 
-/// Rounded sheet swept by a row of spans. Where neighbours are more than one node spacing apart in depth, the deeper one
-/// is brought up to that: the edge between them is cut by teeth that pass both.
+/// Rounded sheet swept by a row of spans. Where neighbours differ in depth by more than their spacing, the edge between
+/// them is brought up towards the shallower one, to its level from twice the spacing on: the teeth that cut there pass
+/// both places, and the deeper one is in air.
 class SweptEdge {
 public:
     SweptEdge() = default;
-    SweptEdge(std::size_t spans, double first, double pitch) : first_(first), pitch_(pitch), per_pitch_(1.0 / pitch) {
-        spans_.resize(spans);
-        buckets_.resize(spans);
-    }
+    SweptEdge(std::size_t spans, double pitch) : spans_(spans), buckets_(spans), pitch_(pitch) {}
 
     std::span<SweptSpan> spans() noexcept { return spans_; }
 
-    /// Prepares the look-up after the spans were set. `reach`: m up to which distances must be right.
+    /// Prepares the look-up after the spans were set; their x ascends. `reach`: m up to which distances must be right.
     void arrange(double reach) noexcept {
+        std::size_t begin = spans_.size(), end = 0;
+        for (std::size_t n = 0; n < spans_.size(); ++n) {
+            if (!spans_[n].moved) continue;
+            begin = std::min(begin, n);
+            end = n + 1;
+        }
+        if (end == 0) return;
+        const double length = spans_[end - 1].b1.x - spans_[begin].a1.x;
+        step_ = std::max(length / static_cast<double>(end - begin), 0.25 * pitch_);
+        per_step_ = 1.0 / step_;
+        first_ = spans_[begin].a1.x - step_ * static_cast<double>(begin);
         for (SweptSpan& span : spans_) {
             if (!span.moved) continue;
             bound(span.a0, span.b0);
@@ -40,7 +50,10 @@ public:
         for (std::size_t b = 0; b < buckets_.size(); ++b) arrange(b, reach);
     }
 
-    /// Squared distance of a point in the blade's frame to the sheet, m², if it is less than `limit`, else `limit`.
+    /// x where span n begins, m, if spans are of equal length.
+    double begin_of(std::size_t n) const noexcept { return first_ + step_ * static_cast<double>(n); }
+
+    /// Squared distance of a point in the spans' frame to the sheet, m², if it is less than `limit`, else `limit`.
     double squared_distance(const Vec3& p, double limit) const noexcept {
         const Bucket& bucket = buckets_[bucket_of(p.x)];
         const double y = std::max(std::max(bucket.low_y - p.y, p.y - bucket.high_y), 0.0);
@@ -62,13 +75,14 @@ private:
     };
 
     std::size_t bucket_of(double x) const noexcept {
-        const double at = (x - first_) * per_pitch_;
+        const double at = (x - first_) * per_step_;
         return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(buckets_.size()) - 1.0));
     }
 
     void bound(Vec3& a, Vec3& b) const noexcept {
-        a.y = std::min(a.y, b.y + pitch_);
-        b.y = std::min(b.y, a.y + pitch_);
+        const auto rise = [this](double step) { return std::clamp(2.0 * pitch_ - step, 0.0, std::min(step, pitch_)); };
+        if (b.y > a.y) b.y = a.y + rise(b.y - a.y);
+        else a.y = b.y + rise(a.y - b.y);
     }
 
     static double slope(const SweptSpan& s) noexcept {
@@ -84,11 +98,11 @@ private:
         for (std::size_t n = b > 0 ? b - 1 : 0; n < std::min(b + 2, spans_.size()); ++n) {
             if (spans_[n].moved) steep = std::max(steep, slope(spans_[n]));
         }
-        bucket.level = steep < 1e-3;
+        bucket.level = steep < 0.1;  // off by at most 0.5 % of the distance
         // The nearest point of a sloping edge stands off by the sine of its slope.
         const double margin = bucket.level ? -1e-9 : 1.2 * reach * steep / std::sqrt(1.0 + steep * steep);
-        const double low = b == 0 ? -infinite : first_ + pitch_ * static_cast<double>(b) - margin;
-        const double high = b + 1 == buckets_.size() ? infinite : first_ + pitch_ * static_cast<double>(b + 1) + margin;
+        const double low = b == 0 ? -infinite : begin_of(b) - margin;
+        const double high = b + 1 == buckets_.size() ? infinite : begin_of(b + 1) + margin;
         bucket.begin = bucket.end = 0;
         bucket.low_y = bucket.low_z = infinite;
         bucket.high_y = bucket.high_z = -infinite;
@@ -119,20 +133,17 @@ private:
         double u = std::abs(along1.x) > 1e-9 ? std::clamp((p.x - s.a1.x) / along1.x, 0.0, 1.0) : 0.5;
         double t = nearest_on(s.a0 + along0 * u, forth + twist * u, p);
         if (!level) {
-            for (int turn = 0; turn < 2; ++turn) {
-                u = nearest_on(s.a0 + forth * t, along0 + twist * t, p);
-                t = nearest_on(s.a0 + along0 * u, forth + twist * u, p);
-            }
+            u = nearest_on(s.a0 + forth * t, along0 + twist * t, p);
+            t = nearest_on(s.a0 + along0 * u, forth + twist * u, p);
         }
         const Vec3 off = s.a0 + along0 * u + (forth + twist * u) * t - p;
         return glm::dot(off, off);
     }
 
-    double first_ = 0.0;
-    double pitch_ = 0.0;
-    double per_pitch_ = 0.0;
     std::vector<SweptSpan> spans_;
     std::vector<Bucket> buckets_;
+    double pitch_ = 0.0;
+    double first_ = 0.0, step_ = 1.0, per_step_ = 1.0;
 };
 
 }  // namespace tactus
