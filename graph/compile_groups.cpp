@@ -91,8 +91,9 @@ void form_groups(Plan& plan, Problems& problems) {
 
 namespace {
 
-/// Follows unmet dependencies from a node that is on or behind a cycle until one repeats; returns the loop as text.
-std::string cycle_text(const Plan& plan, const std::vector<int>& left, const std::vector<std::vector<int>>& before) {
+/// Follows unmet dependencies from a node that is on or behind a cycle until one repeats; returns the loop in the order
+/// values flow, its first node also at the end.
+std::vector<int> find_cycle(const std::vector<int>& left, const std::vector<std::vector<int>>& before) {
     std::vector<int> path{left.front()};
     for (;;) {
         int next = -1;
@@ -106,10 +107,8 @@ std::string cycle_text(const Plan& plan, const std::vector<int>& left, const std
         }
         path.push_back(next);
     }
-    std::string text;
-    for (auto node = path.rbegin(); node != path.rend(); ++node)
-        text += (text.empty() ? "" : " -> ") + plan.nodes[static_cast<std::size_t>(*node)].name;
-    return text;
+    std::ranges::reverse(path);
+    return path;
 }
 
 }  // namespace
@@ -150,9 +149,11 @@ void order_nodes(Plan& plan, Problems& problems) {
     for (std::size_t i = 0; i < plan.nodes.size(); ++i)
         if (!placed[i]) left.push_back(static_cast<int>(i));
     if (left.empty()) return;
-    const PlanNode& first = plan.nodes[static_cast<std::size_t>(left.front())];
-    problems.add(first.where, fmt::format("a cycle without a delay: {}; write 'as delay 1' on one of its wires",
-                                          cycle_text(plan, left, before)));
+    const std::vector<int> cycle = find_cycle(left, before);
+    std::string text;
+    for (const int node : cycle) text += (text.empty() ? "" : " -> ") + plan.nodes[static_cast<std::size_t>(node)].name;
+    problems.add(plan.nodes[static_cast<std::size_t>(cycle.front())].where,
+                 fmt::format("a cycle without a delay: {}; write 'as delay 1' on one of its wires", text));
 }
 
 }  // namespace tactus

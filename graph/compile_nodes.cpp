@@ -70,16 +70,16 @@ private:
 };
 
 const NodeType* find_type(const PatchNode& node, Catalogue catalogue, Problems& problems) {
-    std::vector<std::string> names;
-    for (const NodeType* type : catalogue) {
+    for (const NodeType* type : catalogue)
         if (type->name == node.type) return type;
-        names.push_back(type->name);
-    }
+    std::vector<std::string> names;
+    for (const NodeType* type : catalogue) names.push_back(type->name);
     problems.add(node.type_where, fmt::format("unknown node type '{}'{}", node.type, did_you_mean(node.type, names)));
     return nullptr;
 }
 
 void check_assets(const PlanNode& node, const Patch& patch, Problems& problems) {
+    if (node.assets.empty()) return;
     std::vector<std::string> names;
     for (const PatchAsset& asset : patch.assets) names.push_back(asset.name);
     for (const AssetParam* asset : node.assets) {

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <string_view>
 
 namespace tactus {
 
@@ -26,10 +28,14 @@ std::string no_port(const PlanNode& node, const std::string& port, const std::ve
     return fmt::format("no port '{}' on node '{}'{}", port, node.name, did_you_mean(port, candidates));
 }
 
+/// Nodes by name.
+using NodeIndex = std::map<std::string_view, int>;
+
 /// Both ends of one wire found, or what is wrong with it.
 class WireResolver {
 public:
-    WireResolver(Plan& plan, const PatchWire& source) : plan_(plan), source_(source) {}
+    WireResolver(Plan& plan, const NodeIndex& nodes, const PatchWire& source)
+        : plan_(plan), nodes_(nodes), source_(source) {}
 
     PlanWire resolve() {
         wire_.mode = source_.mode;
@@ -42,13 +48,23 @@ public:
         return std::move(wire_);
     }
 
+    /// The input that the wire means, or null: a wire with a fault feeds it all the same, and one slip is said once.
+    Input* meant_input() {
+        const auto found = nodes_.find(source_.to_node);
+        if (found == nodes_.end()) return nullptr;
+        auto& inputs = node(found->second).inputs;
+        const int input = index_of(inputs, source_.to_port);
+        return input < 0 ? nullptr : inputs[static_cast<std::size_t>(input)].port;
+    }
+
 private:
     PlanNode& node(int index) { return plan_.nodes[static_cast<std::size_t>(index)]; }
 
     int find_node(const std::string& name) {
-        const int found = index_of(plan_.nodes, name);
-        if (found < 0) throw Error(fmt::format("no node '{}'{}", name, did_you_mean(name, names_of(plan_.nodes))));
-        return found;
+        const auto found = nodes_.find(name);
+        if (found == nodes_.end())
+            throw Error(fmt::format("no node '{}'{}", name, did_you_mean(name, names_of(plan_.nodes))));
+        return found->second;
     }
 
     void find_source() {
@@ -101,6 +117,8 @@ private:
             if (port.kind != InputKind::value || !port.type->version)
                 throw Error(fmt::format("asset '{}' cannot feed '{}', which takes a {}", wire_.asset, target.name,
                                         port.type ? port.type->name : "value"));
+            if (source_.mode_given)
+                throw Error(fmt::format("asset '{}' is constant; leave out how it is delivered", wire_.asset));
             if (!port.type->load_asset)
                 throw Error(fmt::format("no file holds a {} for input '{}'", port.type->name, target.name));
             return;
@@ -141,6 +159,7 @@ private:
     }
 
     Plan& plan_;
+    const NodeIndex& nodes_;
     const PatchWire& source_;
     PlanWire wire_;
 };
@@ -166,11 +185,16 @@ void resolve_wires(Plan& plan, Problems& problems) {
     // Without every node there is nothing sound to say about the wires between them.
     for (const PlanNode& node : plan.nodes)
         if (!node.type || node.group < 0) return;
+    NodeIndex nodes;
+    for (const PlanNode& node : plan.nodes) nodes.emplace(node.name, static_cast<int>(nodes.size()));
+    plan.wires.reserve(plan.patch.wires.size());
     for (const PatchWire& source : plan.patch.wires) {
+        WireResolver resolver(plan, nodes, source);
         try {
-            plan.wires.push_back(WireResolver(plan, source).resolve());
+            plan.wires.push_back(resolver.resolve());
         } catch (const Error& error) {
             problems.add(source.where, error.message());
+            if (Input* meant = resolver.meant_input()) meant->connected = true;
         }
     }
     for (PlanNode& node : plan.nodes) {
