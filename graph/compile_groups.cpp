@@ -20,7 +20,8 @@ bool has_signal_port(const PlanNode& node) {
 
 Flicks parse_latency(const PatchGroup& group) {
     const double flicks = parse_as(group.latency, "s") * static_cast<double>(flicks_per_second);
-    if (flicks < 1.0 || flicks > 9e15) throw Error(fmt::format("a latency must be above zero, got '{}'", group.latency));
+    if (flicks < 1.0 || flicks > 9e15)
+        throw Error(fmt::format("a latency must be above zero, got '{}'", group.latency));
     return std::llround(flicks);
 }
 
@@ -85,7 +86,8 @@ void form_groups(Plan& plan, Problems& problems) {
     for (PlanGroup& group : plan.groups) {
         if (group.latency == 0) group.latency = group.has_audio ? plan.patch.quantum : group.period;
         // A tenth of a second of catching up keeps a stalled machine's log short without losing what was cut or played.
-        if (!group.backlog_given) group.backlog = static_cast<int>(std::max<Flicks>(1, flicks_per_second / 10 / group.period));
+        if (!group.backlog_given)
+            group.backlog = static_cast<int>(std::max<Flicks>(1, flicks_per_second / 10 / group.period));
     }
 }
 

@@ -54,7 +54,8 @@ public:
         try {
             setters_[static_cast<std::size_t>(found - names_.begin())](given);
         } catch (const Error& error) {
-            problems.add(given.where, fmt::format("parameter '{}' of node '{}': {}", given.name, node_.name, error.message()));
+            problems.add(given.where,
+                         fmt::format("parameter '{}' of node '{}': {}", given.name, node_.name, error.message()));
         }
     }
 
@@ -88,8 +89,8 @@ void check_assets(const PlanNode& node, const Patch& patch, Problems& problems) 
                 problems.add(node.where, fmt::format("node '{}' needs {} from [assets] ({})", node.name,
                                                      asset->type_name, asset->about));
         } else if (std::ranges::find(names, asset->name) == names.end()) {
-            problems.add(asset->where, fmt::format("no asset '{}' in [assets]{}", asset->name,
-                                                   did_you_mean(asset->name, names)));
+            problems.add(asset->where,
+                         fmt::format("no asset '{}' in [assets]{}", asset->name, did_you_mean(asset->name, names)));
         }
     }
 }

@@ -82,7 +82,8 @@ private:
         wire_.from_output = index_of(from.outputs, source_.from_port);
         if (wire_.from_output >= 0) return;
         if (index_of(from.inputs, source_.from_port) >= 0)
-            throw Error(fmt::format("'{}' is an input of node '{}'; a wire starts at an output", source_.from_port, from.name));
+            throw Error(
+                fmt::format("'{}' is an input of node '{}'; a wire starts at an output", source_.from_port, from.name));
         throw Error(no_port(from, source_.from_port, names_of(from.outputs)));
     }
 
@@ -96,13 +97,16 @@ private:
             return;
         }
         if (index_of(to.outputs, source_.to_port) >= 0)
-            throw Error(fmt::format("'{}' is an output of node '{}'; a wire ends at an input", source_.to_port, to.name));
+            throw Error(
+                fmt::format("'{}' is an output of node '{}'; a wire ends at an input", source_.to_port, to.name));
         std::vector<std::string> candidates = names_of(to.inputs);
         for (const auto& [name, param] : to.params) candidates.push_back(name);
         throw Error(no_port(to, source_.to_port, candidates));
     }
 
-    const ValueType& source_type() { return *node(wire_.from_node).outputs[static_cast<std::size_t>(wire_.from_output)].port->type; }
+    const ValueType& source_type() {
+        return *node(wire_.from_node).outputs[static_cast<std::size_t>(wire_.from_output)].port->type;
+    }
     bool crosses() { return wire_.from_node >= 0 && node(wire_.from_node).group != node(wire_.to_node).group; }
 
     void check_input() {
@@ -133,7 +137,8 @@ private:
 
     void check_mode(const Input& port, const ValueType& type) {
         if (port.kind == InputKind::batch && wire_.mode != WireMode::batch)
-            throw Error(fmt::format("input '{}' takes every value since its last tick; write 'as batch'", source_.to_port));
+            throw Error(
+                fmt::format("input '{}' takes every value since its last tick; write 'as batch'", source_.to_port));
         if (port.kind != InputKind::batch && wire_.mode == WireMode::batch)
             throw Error(fmt::format("input '{}' takes one value; 'as batch' is not for it", source_.to_port));
         if (wire_.mode == WireMode::linear && !type.interpolate)
@@ -154,8 +159,8 @@ private:
         if (wire_.mode == WireMode::batch) throw Error("a parameter takes one value; 'as batch' is not for it");
         for (const PlanWire& other : plan_.wires)
             if (other.param == wire_.param)
-                throw Error(fmt::format("parameter '{}' of node '{}' is already driven by another wire", source_.to_port,
-                                        source_.to_node));
+                throw Error(fmt::format("parameter '{}' of node '{}' is already driven by another wire",
+                                        source_.to_port, source_.to_node));
     }
 
     Plan& plan_;

@@ -13,8 +13,10 @@ namespace tactus {
 
 namespace {
 
-constexpr double box_width = 150, box_height = 46, column_gap = 70, row_gap = 26, lane_label = 130, lane_padding = 18,
+constexpr double box_width = 150, box_height = 46, column_gap = 90, row_gap = 26, lane_label = 190, lane_padding = 18,
                  margin = 16, title_height = 44;
+
+constexpr std::size_t most_shown = 40;  ///< characters of a name
 
 struct Place {
     double x = 0, y = 0;
@@ -140,13 +142,25 @@ private:
             text += fmt::format(
                 "<rect x=\"{0:.1f}\" y=\"{1:.1f}\" width=\"{2}\" height=\"{3}\" rx=\"6\" fill=\"#ffffff\" "
                 "stroke=\"#334155\"/>\n<text x=\"{4:.1f}\" y=\"{5:.1f}\" text-anchor=\"middle\" font-weight=\"bold\" "
+                "font-size=\"{9:.1f}\" "
                 "fill=\"#0f172a\">{6}</text>\n<text x=\"{4:.1f}\" y=\"{7:.1f}\" text-anchor=\"middle\" "
                 "font-size=\"10\" "
                 "fill=\"#64748b\">{8}</text>\n",
-                p.x, p.y, box_width, box_height, p.x + box_width / 2, p.y + 20, escaped(plan_.nodes[i].name), p.y + 36,
-                escaped(plan_.nodes[i].type->name));
+                p.x, p.y, box_width, box_height, p.x + box_width / 2, p.y + 20, escaped(shown(plan_.nodes[i].name)),
+                p.y + 36, escaped(plan_.nodes[i].type->name), name_size(plan_.nodes[i].name));
         }
         return text;
+    }
+
+    /// The size at which a name stays within its box, or that of 40 characters.
+    static double name_size(std::string_view name) {
+        constexpr double character = 0.66;  // width of a bold one, of its height
+        const auto characters = static_cast<double>(std::clamp<std::size_t>(name.size(), 1, most_shown));
+        return std::min(12.0, (box_width - 12) / (character * characters));
+    }
+
+    static std::string shown(const std::string& name) {
+        return name.size() <= most_shown ? name : name.substr(0, most_shown - 1) + "…";
     }
 
     /// Where among a node's ports a wire docks, so that wires do not lie on each other.
@@ -170,12 +184,11 @@ private:
             const double ms =
                 crosses ? seconds(wire_latency(plan_.groups[static_cast<std::size_t>(from.group)], wire)) * 1e3
                         : seconds(wire.delay * plan_.groups[static_cast<std::size_t>(from.group)].period) * 1e3;
-            // Labels sit a quarter of the way along, where the curves have parted from their node but not yet crossed.
+            // Labels stand before the input, which no other wire reaches, so none covers a node or another label.
             labels_ += fmt::format(
-                "<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"9\" text-anchor=\"middle\" fill=\"{}\" stroke=\"#ffffff\" "
+                "<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"9\" text-anchor=\"end\" fill=\"{}\" stroke=\"#ffffff\" "
                 "stroke-width=\"3\" paint-order=\"stroke\">{} {:.4g} ms</text>\n",
-                0.58 * x1 + 0.42 * x2 + 0.14 * reach, 0.72 * y1 + 0.28 * y2 - 3, colour_of(type), mode_name(wire.mode),
-                ms);
+                x2 - 7, y2 - 3, colour_of(type), mode_name(wire.mode), ms);
         }
         return fmt::format(
             "<path d=\"M{:.1f} {:.1f} C{:.1f} {:.1f} {:.1f} {:.1f} {:.1f} {:.1f}\" fill=\"none\" stroke=\"{}\" "

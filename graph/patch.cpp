@@ -199,7 +199,8 @@ private:
                 problems_.add(at(name.source()),
                               fmt::format("unknown key '{}' of a group{}", name.str(), did_you_mean(name.str(), keys)));
         }
-        if (group.rate.empty() && !is_mistyped(*table, "rate")) problems_.add(group.where, fmt::format("group '{}' has no rate", group.name));
+        if (group.rate.empty() && !is_mistyped(*table, "rate"))
+            problems_.add(group.where, fmt::format("group '{}' has no rate", group.name));
         patch_.groups.push_back(std::move(group));
     }
 
@@ -244,8 +245,7 @@ private:
 
     void setting(const toml::key& key, const toml::node& value, const std::string& owner,
                  std::vector<OptionText>& into) {
-        if (key.str() == "wires" && value.is_array())
-            return misplaced_wires(key, owner);
+        if (key.str() == "wires" && value.is_array()) return misplaced_wires(key, owner);
         if (const std::optional<std::string> text = scalar_text(value)) {
             into.push_back({std::string(key.str()), *text, at(value)});
             return;

@@ -50,7 +50,8 @@ void set(Patch& patch, const std::string& assignment) {
         if (!is_device)
             for (const PatchNode& n : patch.nodes) names.push_back(n.name);
         for (const PatchDevice& d : patch.devices) names.push_back(d.name);
-        throw Error(where, fmt::format("no {} '{}'{}", is_device ? "device" : "node", owner, did_you_mean(owner, names)));
+        throw Error(where,
+                    fmt::format("no {} '{}'{}", is_device ? "device" : "node", owner, did_you_mean(owner, names)));
     }
 }
 

@@ -47,8 +47,7 @@ TEST_CASE("a cycle is refused with its path, a delay opens it") {
     const Compiled closed = compiled(wires(before + "\"y.out -> x.b\"") + nodes);
     CHECK_FALSE(closed.plan);
     // The node behind the cycle, though first in the file, is not on its path.
-    CHECK(closed.said ==
-          "p.toml:11:8: a cycle without a delay: y -> x -> y; write 'as delay 1' on one of its wires\n");
+    CHECK(closed.said == "p.toml:11:8: a cycle without a delay: y -> x -> y; write 'as delay 1' on one of its wires\n");
     const Compiled open = compiled(wires(before + "\"y.out -> x.b as delay 1\"") + nodes);
     INFO(open.said);
     REQUIRE(open.plan);
@@ -60,7 +59,8 @@ TEST_CASE("a cycle is refused with its path, a delay opens it") {
 //  │ x │◄──┘
 //  └───┘
 TEST_CASE("a node wired to itself is a cycle") {
-    CHECK_THAT(compiled(wires("\"x.out -> x.in\"") + a_node("x", "relay")).said, Contains("p.toml:2:8: a cycle") && Contains("x -> x;"));
+    CHECK_THAT(compiled(wires("\"x.out -> x.in\"") + a_node("x", "relay")).said,
+               Contains("p.toml:2:8: a cycle") && Contains("x -> x;"));
 }
 
 //  1 kHz ┌───┐   60 Hz ┌───┐
@@ -68,8 +68,8 @@ TEST_CASE("a node wired to itself is a cycle") {
 //        └─▲─┘         └─┬─┘
 //          └─────────────┘
 TEST_CASE("a loop through two groups needs no delay") {
-    const Compiled c = compiled(wires("\"x.out -> y.in\", \"y.out -> x.in\"") + a_node("x", "relay") +
-                                a_node("y", "relay", "60 Hz"));
+    const Compiled c =
+        compiled(wires("\"x.out -> y.in\", \"y.out -> x.in\"") + a_node("x", "relay") + a_node("y", "relay", "60 Hz"));
     INFO(c.said);
     REQUIRE(c.plan);
     REQUIRE(c.plan->groups.size() == 2);
@@ -87,7 +87,8 @@ TEST_CASE("an unknown name is refused where it stands, with the nearest") {
     CHECK_THAT(compiled(a_node("s", "source", "1 kHz", "level = \"1 Nn\"\n")).said,
                Contains("p.toml:4:9: parameter 'level' of node 's'"));
     CHECK_THAT(compiled(a_node("s", "source", "1 kHz", "level = \"1 mm\"\n")).said, Contains("p.toml:4:9"));
-    CHECK_THAT(compiled(a_node("s", "source", "1 kHz", "level = \"11 N\"\n")).said, Contains("p.toml:4:9") && Contains("10 N"));
+    CHECK_THAT(compiled(a_node("s", "source", "1 kHz", "level = \"11 N\"\n")).said,
+               Contains("p.toml:4:9") && Contains("10 N"));
     CHECK_THAT(compiled(wires("\"s.valu -> r.in\"") + source_and_relay).said,
                Contains("p.toml:1:11: no port 'valu' on node 's'; did you mean 'value'?"));
     CHECK_THAT(compiled(wires("\"s.value -> rr.in\"") + source_and_relay).said,
@@ -104,7 +105,8 @@ TEST_CASE("one faulty wire is one problem") {
 
 TEST_CASE("a wire the wrong way round is told so") {
     CHECK_THAT(compiled(wires("\"r.in -> r.in\"") + source_and_relay).said, Contains("a wire starts at an output"));
-    CHECK_THAT(compiled(wires("\"s.value -> s.value\"") + a_node("s", "source")).said, Contains("a wire ends at an input"));
+    CHECK_THAT(compiled(wires("\"s.value -> s.value\"") + a_node("s", "source")).said,
+               Contains("a wire ends at an input"));
 }
 
 TEST_CASE("a rate that is not exact is refused at the rate") {
@@ -149,7 +151,8 @@ TEST_CASE("a batch goes to inputs that take one, and only there") {
 //         └───┘                   └───┘
 TEST_CASE("a signal stays in its group") {
     const std::string one = wires("\"w.out -> g.in\"") + a_node("w", "wave", "48 kHz");
-    CHECK_THAT(compiled(one + a_node("g", "gain", "44.1 kHz")).said, Contains("p.toml:1:11: a signal stays in its group"));
+    CHECK_THAT(compiled(one + a_node("g", "gain", "44.1 kHz")).said,
+               Contains("p.toml:1:11: a signal stays in its group"));
     const Compiled c = compiled(one + a_node("g", "gain", "48 kHz"));
     REQUIRE(c.plan);
     CHECK(c.plan->groups[0].has_audio);
@@ -162,7 +165,8 @@ TEST_CASE("a signal stays in its group") {
 TEST_CASE("a wire drives a parameter once, unless it is structural") {
     const std::string nodes = a_node("s", "source") + a_node("d", "source");
     CHECK(compiled(wires("\"s.value -> d.level\"") + nodes).plan);
-    CHECK_THAT(compiled(wires("\"s.value -> d.memory\"") + nodes).said, Contains("p.toml:1:11") && Contains("is structural"));
+    CHECK_THAT(compiled(wires("\"s.value -> d.memory\"") + nodes).said,
+               Contains("p.toml:1:11") && Contains("is structural"));
     CHECK_THAT(compiled(wires("\"s.value -> d.level\",\n\"s.value -> d.level\"") + nodes).said,
                Contains("p.toml:2:2") && Contains("already driven"));
 }

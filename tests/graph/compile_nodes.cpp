@@ -82,8 +82,8 @@ TACTUS_NODE(DeviceOutput, in)
 }  // namespace
 
 Catalogue test_catalogue() {
-    static const std::array types{&node_type_Source(), &node_type_Relay(), &node_type_Sum(),
-                                  &node_type_Wave(),   &node_type_Gain(),  &node_type_Path(),
+    static const std::array types{&node_type_Source(), &node_type_Relay(),       &node_type_Sum(),
+                                  &node_type_Wave(),   &node_type_Gain(),        &node_type_Path(),
                                   &node_type_Truth(),  &node_type_DeviceInput(), &node_type_DeviceOutput()};
     return types;
 }

@@ -40,6 +40,14 @@ TEST_CASE("what a title says cannot break the picture") {
 }
 
 TEST_CASE("a plan is drawn the same twice") {
-    const std::string text = "wires = [\"s.value -> r.in as linear\"]\n" + a_node("s", "source") + a_node("r", "relay", "60 Hz");
+    const std::string text =
+        "wires = [\"s.value -> r.in as linear\"]\n" + a_node("s", "source") + a_node("r", "relay", "60 Hz");
     CHECK(picture_of(text) == picture_of(text));
+}
+
+TEST_CASE("a name too long for its box is set smaller, and cut when that is not enough") {
+    const std::string svg =
+        picture_of(a_node(std::string(25, 'n'), "source") + a_node(std::string(200, 'm'), "source"));
+    CHECK_THAT(svg, Contains(">" + std::string(25, 'n') + "<") && Contains(">" + std::string(39, 'm') + "…<"));
+    CHECK_THAT(svg, Contains("font-size=\"8.4\"") && Contains("font-size=\"5.2\""));
 }

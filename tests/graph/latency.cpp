@@ -62,9 +62,9 @@ TEST_CASE("a delay inside a group ages by its ticks") {
 //  1 kHz  in ──┐          ┌──► out     ages 1 ms on the way down, 10 ms + 9 ms on the way up
 //  100 Hz      └──► slow ─┘
 TEST_CASE("a way through a slow group has its wait in both directions") {
-    const auto paths = paths_of("wires = [\"in.out -> slow.in\", \"slow.out -> out.in\"]\n" +
-                                a_node("in", "device_input") + a_node("slow", "relay", "100 Hz") +
-                                a_node("out", "device_output"));
+    const auto paths =
+        paths_of("wires = [\"in.out -> slow.in\", \"slow.out -> out.in\"]\n" + a_node("in", "device_input") +
+                 a_node("slow", "relay", "100 Hz") + a_node("out", "device_output"));
     REQUIRE(paths.size() == 1);
     CHECK(paths[0].latency_ms == Approx(1.0 + 10.0 + 9.0));
 }

@@ -113,12 +113,14 @@ TEST_CASE("a value of the wrong kind is one problem, at the value") {
     CHECK_THAT(problems_of(with_hand("", "date = 2020-01-01\n")), Contains("p.toml:4:8") && Contains("'date'"));
     CHECK_THAT(problems_of(with_hand("", "table = {a = 1}\n")), Contains("p.toml:4:9") && Contains("'table'"));
     CHECK_THAT(problems_of(with_hand("", "v = [1, 2]\n")), Contains("p.toml:4:5") && Contains("list of three"));
-    CHECK_THAT(problems_of(with_hand("", "v = [1, 2, [3]]\n")), Contains("p.toml:4:12") && Contains("three quantities"));
+    CHECK_THAT(problems_of(with_hand("", "v = [1, 2, [3]]\n")),
+               Contains("p.toml:4:12") && Contains("three quantities"));
     CHECK_THAT(problems_of(with_hand("", "v = [1, true, 3]\n")), Contains("p.toml:4:9"));
 }
 
 TEST_CASE("names are letters, digits, '_' and '-', and mean one thing") {
-    CHECK_THAT(problems_of("[nodes.\"a b\"]\ntype = \"t\"\nrate = \"1 Hz\"\n"), Contains("p.toml:1:8: 'a b' is no name"));
+    CHECK_THAT(problems_of("[nodes.\"a b\"]\ntype = \"t\"\nrate = \"1 Hz\"\n"),
+               Contains("p.toml:1:8: 'a b' is no name"));
     CHECK_THAT(problems_of("[nodes.\"\"]\ntype = \"t\"\nrate = \"1 Hz\"\n"), Contains("is no name"));
     CHECK_THAT(problems_of(with_hand("[assets]\nhand = \"x.vdb\"\n")),
                Contains("p.toml:2") && Contains("an asset and of a node"));

@@ -28,7 +28,9 @@ TEST_CASE("text that is no TOML is one problem with its place") {
     CHECK_THAT(problems_of("title = \"never ends\nseed = 1\n"), Contains("p.toml:1:"));
     CHECK_THAT(problems_of("title = \"\"\"never ends\n\n"), Contains("p.toml:") && Contains("not valid TOML"));
     CHECK_THAT(problems_of("seed = 1\nseed = 2\n"), Contains("p.toml:2:") && Contains("redefine"));
-    CHECK(lines(problems_of(std::string("\x7f" "ELF\x02\x01\x01\0\0\xff\xfe", 11))) == 1);
+    CHECK(lines(problems_of(std::string("\x7f"
+                                        "ELF\x02\x01\x01\0\0\xff\xfe",
+                                        11))) == 1);
     CHECK(lines(problems_of(std::string(1000, '\0'))) == 1);
     CHECK(lines(problems_of("title = \"\xc3\x28\"\n")) == 1);
 }

@@ -78,7 +78,8 @@ TEST_CASE("devices are set by their name, a node of that name comes first") {
 TEST_CASE("names that the patch does not have are refused with the nearest") {
     CHECK(set("blad.x=1").said == "--set blad.x=1: no node 'blad'; did you mean 'blade'?\n");
     CHECK_THAT(set("devices.pan.x=1").said, Contains("no device 'pan'; did you mean 'pen'?"));
-    CHECK_THAT(use("bine=x.vdb").said, Contains("--asset bine=x.vdb: no asset 'bine' in the patch; did you mean 'bone'?"));
+    CHECK_THAT(use("bine=x.vdb").said,
+               Contains("--asset bine=x.vdb: no asset 'bine' in the patch; did you mean 'bone'?"));
 }
 
 TEST_CASE("what is no assignment is refused") {
