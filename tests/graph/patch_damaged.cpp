@@ -24,6 +24,7 @@ std::ptrdiff_t lines(const std::string& text) { return std::ranges::count(text, 
 
 TEST_CASE("text that is no TOML is one problem with its place") {
     CHECK(lines(problems_of("[nodes.a\n")) == 1);
+    CHECK_THAT(problems_of("title = \"x\"\n[$a]\n"), Contains("p.toml:2:2: not valid TOML"));
     CHECK_THAT(problems_of("title = \"x\"\nseed = = 3\n"), Contains("p.toml:2:8: not valid TOML"));
     CHECK_THAT(problems_of("title = \"never ends\nseed = 1\n"), Contains("p.toml:1:"));
     CHECK_THAT(problems_of("title = \"\"\"never ends\n\n"), Contains("p.toml:") && Contains("not valid TOML"));
