@@ -35,6 +35,7 @@ public:
     double kerf_voxels() const noexcept { return core_.settings().kerf / core_.voxel(); }
     double removed_m3() const noexcept { return removed_m3_; }  ///< since prepare
     const std::array<double, 4>& removed_by_density() const noexcept { return by_density_; }  ///< m³, since prepare
+    /// Where the saw has come to: centres of the round front, half a kerf behind the floor of the cut.
     std::span<const EdgeNode> edge() const noexcept { return core_.edge().nodes(); }
 
 private:

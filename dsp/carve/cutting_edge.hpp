@@ -13,7 +13,7 @@ namespace tactus {
 
 /// One point of the edge, in the bone's frame, m.
 struct EdgeNode {
-    Vec3 at;           ///< effective position
+    Vec3 at;           ///< effective position of the front's centre
     Vec3 target;       ///< where the blade holds it
     bool cutting = false;  ///< bone held it back in the last step
     double travel = 0.0;  ///< m moved since the path was last cut out
@@ -23,6 +23,7 @@ struct EdgeNode {
 
 /// The edge is a row of nodes one tooth pitch apart, longer than the blade by the stroke. Because the stroke exceeds the
 /// pitch, every place between is passed by a tooth, so the row is one continuous edge of width `kerf` with a round front.
+/// The blade's teeth end where that front is foremost; the nodes are its centre, half a kerf behind.
 /// Each node follows its target along the blade's y, then x, then z: through air at once, through bone no faster than
 /// the removal speed at the density ahead of it. A node beyond the bone's end is held back while bone is within one
 /// pitch of it, so that the edge between it and its neighbour does not cut what neither has.
@@ -103,7 +104,7 @@ private:
         z_ = pose.rotate({0, 0, 1});
     }
     Vec3 local(const Pose& pose, std::size_t n) const noexcept {
-        return pose.position + x_ * (first_ + pitch_ * static_cast<double>(n));
+        return pose.position + x_ * (first_ + pitch_ * static_cast<double>(n)) - y_ * radius_;
     }
 
     template <class Field>

@@ -54,7 +54,7 @@ void carve_update(benchmark::State& state) {
         }
         for (std::size_t n = 0; n < samples.size(); ++n) {
             const double time = 0.001 * (17.0 * (updates % 120) + static_cast<double>(n));
-            samples[n] = {Pose{Vec3(0, 0.0006 - 0.003 * time, 0), orientation}, 0.001, 7.0, 228.0, true};
+            samples[n] = {Pose{Vec3(0, 0.0001 - 0.003 * time, 0), orientation}, 0.001, 7.0, 228.0, true};
         }
         ++updates;
         state.ResumeTiming();

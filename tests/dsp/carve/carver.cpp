@@ -78,7 +78,7 @@ TEST_CASE("the same path gives the same bits, and the same volume in other porti
 
 TEST_CASE("a cut that exceeds the budget of bricks is completed by the updates that follow") {
     auto path = stroke(above, {0, -0.010, 0}, 0.8);
-    const auto rest = stroke(path.back().pose.position, Vec3(0.0), 0.2);
+    const auto rest = stroke(path.back().pose.position + Vec3(0, 0.0005, 0), Vec3(0.0), 0.2);
     path.insert(path.end(), rest.begin(), rest.end());
     const auto wide = bone(400.0), narrow = bone(400.0, 30);
     Carver a, b;

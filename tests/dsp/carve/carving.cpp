@@ -167,6 +167,20 @@ TEST_CASE("a wall is cut through and the blade goes on through air") {
     CHECK(result.removed_m3 == Approx(0.018 * 0.003 * 0.001).epsilon(0.02));
 }
 
+TEST_CASE("a blade that does not touch the bone removes nothing, and one that does cuts as deep as it is held") {
+    DenseField field = block(Vec3(0.0), 200.0);
+    const Grid before = field.grid;
+    CarveCore carver = saw();
+    const auto held = [](double height) {
+        return std::vector<CarveSample>(500, {Pose{Vec3(0, height, 0), downwards}, 0.001, 7.0, 228.0, true});
+    };
+    carve(carver, field, held(0.00002));
+    CHECK(same(field.grid, before));
+    carve(carver, field, held(-0.001));
+    CHECK(field.value({0, -0.00095, 0}) > 0.0);
+    CHECK(field.value({0, -0.00105, 0}) < 0.0);
+}
+
 TEST_CASE("two cuts leave an island between them untouched") {
     DenseField field = block(Vec3(0.0), 600.0);
     CarveCore carver = saw();

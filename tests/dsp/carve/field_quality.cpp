@@ -45,7 +45,7 @@ void compare(const DenseField& field, const Grid& exact, double deepest, double 
     REQUIRE(carved.size() > 1000);
     const std::size_t p95 = carved.size() * 95 / 100;
     CHECK(carved[p95] <= right[p95] + 0.02);
-    CHECK(carved.back() <= std::max(right.back(), 1.02));
+    CHECK(carved.back() <= std::max(right.back(), 1.02) + 0.01);
     CHECK(mean(carved) == Approx(mean(right)).margin(0.01));
     double worst = 0.0;
     for (int k = 0; k < exact.size[2]; ++k) {

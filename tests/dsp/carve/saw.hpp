@@ -21,13 +21,14 @@ inline DenseField block(const Vec3& shift = Vec3(0.0), double density = 1800.0, 
     return field;
 }
 
-/// The blade held at `from`, then moved at `velocity` (m/s), a sample each millisecond.
+/// The centre of the blade's round front, half a kerf behind the teeth, held at `from`, then moved at `velocity` (m/s), a sample each millisecond.
 inline std::vector<CarveSample> stroke(const Vec3& from, const Vec3& velocity, double seconds,
                                        const Quat& orientation = downwards, bool running = true) {
     std::vector<CarveSample> samples;
+    const Vec3 teeth = from + orientation * Vec3(0.0, 0.0005, 0.0);
     const int count = static_cast<int>(std::lround(seconds * 1000.0));
     for (int n = 0; n < count; ++n) {
-        samples.push_back({Pose{from + velocity * (0.001 * n), orientation}, 0.001, 7.0, 228.0, running});
+        samples.push_back({Pose{teeth + velocity * (0.001 * n), orientation}, 0.001, 7.0, 228.0, running});
     }
     return samples;
 }
