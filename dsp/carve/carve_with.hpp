@@ -51,6 +51,15 @@ public:
         return result;
     }
 
+    /// Takes over the law of advance (speed, references, exponent); the blade's shape stays.
+    void set_law(const CarveSettings& law) noexcept {
+        settings_.speed = law.speed;
+        settings_.reference_force = law.reference_force;
+        settings_.reference_rate = law.reference_rate;
+        settings_.reference_density = law.reference_density;
+        settings_.force_exponent = law.force_exponent;
+    }
+
     const CuttingEdge& edge() const noexcept { return edge_; }
     double voxel() const noexcept { return voxel_; }
     const CarveSettings& settings() const noexcept { return settings_; }

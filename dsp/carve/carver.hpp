@@ -27,6 +27,10 @@ public:
     /// kerf exceeds the band outside of which the bone is not stored.
     void prepare(const BoneEditor& bone, const CarveSettings& settings);
 
+    /// Changes speed, reference values and force exponent from the next update on; the blade's shape stays. A law that
+    /// gives no finite speed removes nothing.
+    void set_law(const CarveSettings& law) noexcept { core_.set_law(law); }
+
     /// Cuts along `samples`, oldest first; samples that are not finite are ignored. The caller publishes the edits. When
     /// the bricks that may change run out, the rest is cut by the next update. Allocates nothing.
     CarveResult update(BoneEditor& bone, std::span<const CarveSample> samples) noexcept;

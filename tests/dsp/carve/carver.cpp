@@ -140,6 +140,26 @@ TEST_CASE("a kerf of less than three voxels is told") {
     CHECK(carver.kerf_voxels() < 3.0);
 }
 
+TEST_CASE("a new law of advance holds from the next update on") {
+    const auto editor = bone(1800.0);
+    Carver carver;
+    carver.prepare(*editor, {});
+    const auto path = stroke({0, -0.0001, 0}, {0, -0.010, 0}, 1.0);
+    const auto middle = [&] { return -carver.edge()[carver.edge().size() / 2].at.y; };
+    saw_through(carver, *editor, path, 17);
+    const double first = middle();
+    CarveSettings law;
+    law.speed *= 2.0;
+    carver.set_law(law);
+    saw_through(carver, *editor, stroke({0, -0.0101, 0}, Vec3(0.0), 1.0), 17);
+    const double second = middle();
+    CHECK(second - first == Approx(2.0 * 0.67e-3).epsilon(0.02));
+    law.reference_rate = 0.0;
+    carver.set_law(law);
+    saw_through(carver, *editor, stroke({0, -0.0101, 0}, Vec3(0.0), 0.5), 17);
+    CHECK(middle() == Approx(second).margin(1e-9));
+}
+
 TEST_CASE("settings that make no saw are refused") {
     const auto editor = bone(600.0);
     Carver carver;
