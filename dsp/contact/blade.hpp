@@ -33,13 +33,16 @@ struct BladeContact {
     int count = 0;  ///< points in contact
 };
 
-/// Force of point i: k_i·|d|·∇d for d < 0, with the exact gradient of the interpolated distance.
+/// Force of point i: k_i·|d|·∇d for d < 0, with the exact gradient of the interpolated distance, a
+/// quadratic B-spline: under a narrow kerf the gradient of a trilinear one would turn by 10° at every cell face.
 ///
-/// `stiffness` (N/m) is the largest the hand can feel. Equal k for every point in contact would ring with 132 of them,
-/// and dividing by their number makes the force drop when one more just touches. Instead the energy is
-/// ½·(K/c)·‖d‖₈², the 8-norm over the depths: k_i = (K/c)·(|d_i|/‖d‖₈)⁶. The force is conservative, continuous, never
-/// softens as points come in, and with c = 4 no number of points in no arrangement of depths exceeds K; one point
-/// alone gives K/4, a whole edge 0.64·K. Deterministic; a pose that is not finite gives nothing.
+/// `stiffness` K (N/m) is the largest the hand can feel. Equal k for every point in contact would ring with 132 of
+/// them, and dividing by their number makes the force drop when one more just touches. Instead each family of points,
+/// the tooth edge and the two faces, has the energy ½·(K/c)·‖d‖₈², the 8-norm over its depths, so that
+/// k_i = (K/c)·(|d_i|/‖d‖₈)⁶. The force is conservative and continuous, never softens as points come in, and the
+/// curvature of the energy, the stiffness felt, stays below K: c = 4 for the edge, whose points are pushed back
+/// alike (one tooth alone gives K/4, a whole edge 0.64·K); c = 22 for the faces, which a kerf can pinch from both
+/// sides. Deterministic; a pose that is not finite gives nothing.
 BladeContact blade_contact(const BoneSnapshot& bone, const BladePoints& blade, const Pose& tool, const Vec3& about,
                            double stiffness) noexcept;
 

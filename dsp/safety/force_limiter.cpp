@@ -54,10 +54,12 @@ void ForceLimiter::measure(const Wrench& raw) noexcept {
     statistics_.max_torque = std::max(statistics_.max_torque, glm::length(raw.torque));
     statistics_.max_force_step = std::max(statistics_.max_force_step, glm::length(force_step));
     statistics_.max_torque_step = std::max(statistics_.max_torque_step, glm::length(torque_step));
-    statistics_.force_limited +=
-        glm::length(raw.force) > limits_.max_force || glm::length(raw.torque) > limits_.max_torque;
-    statistics_.slew_limited += glm::length(force_step) > limits_.force_slew * period_s_ ||
-                                glm::length(torque_step) > limits_.torque_slew * period_s_;
+    const bool too_large = glm::length(raw.force) > limits_.max_force || glm::length(raw.torque) > limits_.max_torque;
+    const bool too_fast = glm::length(force_step) > limits_.force_slew * period_s_ ||
+                          glm::length(torque_step) > limits_.torque_slew * period_s_;
+    statistics_.force_limited += too_large;
+    statistics_.slew_limited += too_fast;
+    statistics_.limited += too_large || too_fast;
     raw_ = raw;
 }
 

@@ -32,6 +32,7 @@ struct ForceStatistics {
     std::uint64_t ticks = 0;
     std::uint64_t force_limited = 0;   ///< ticks whose force or torque was above the limit
     std::uint64_t slew_limited = 0;    ///< ticks whose change was above the slew limit
+    std::uint64_t limited = 0;         ///< ticks with one or both
     double max_force = 0.0;            ///< N
     double max_torque = 0.0;           ///< N·m
     double max_force_step = 0.0;       ///< N between successive ticks

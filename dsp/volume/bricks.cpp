@@ -71,6 +71,52 @@ Sample BoneSnapshot::sample(const Vec3& position) const noexcept {
     return {mix(y0, y1, cell.fz), Vec3(dx / grid.spacing.x, dy / grid.spacing.y, (y1 - y0) / grid.spacing.z), true};
 }
 
+Sample BoneSnapshot::smooth_sample(const Vec3& position) const noexcept {
+    const BrickLayout& grid = *root->layout;
+    if (!find_cell(grid, root->distance, position).corner) return {grid.far, Vec3(0.0), false};
+    // Per axis: brick and place within it of the three samples around the nearest one, their weights and slopes.
+    int brick[3][3], within[3][3];
+    double weight[3][3], slope[3][3];
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        const double x = (position[axis] - grid.origin[axis]) / grid.spacing[axis];
+        const int nearest = static_cast<int>(x + 0.5);
+        const double t = x - nearest;
+        weight[axis][0] = 0.5 * (0.5 - t) * (0.5 - t);
+        weight[axis][1] = 0.75 - t * t;
+        weight[axis][2] = 0.5 * (0.5 + t) * (0.5 + t);
+        slope[axis][0] = t - 0.5;
+        slope[axis][1] = -2.0 * t;
+        slope[axis][2] = t + 0.5;
+        for (int n = 0; n < 3; ++n) {
+            const int index = std::clamp(nearest + n - 1, 0, grid.size[a] - 1);
+            brick[axis][n] = std::min(index >> 3, grid.bricks[a] - 1);
+            within[axis][n] = index - 8 * brick[axis][n];
+        }
+    }
+    double value = 0.0;
+    Vec3 gradient(0.0);
+    for (int k = 0; k < 3; ++k)
+        for (int j = 0; j < 3; ++j) {
+            double along = 0.0, change = 0.0;
+            for (int i = 0; i < 3; ++i) {
+                const float* samples =
+                    root->distance[static_cast<std::size_t>(grid.brick_index(brick[0][i], brick[1][j], brick[2][k]))];
+                const double d = samples
+                                     ? static_cast<double>(
+                                           samples[BrickLayout::sample_index(within[0][i], within[1][j], within[2][k])])
+                                     : grid.far;
+                along += weight[0][i] * d;
+                change += slope[0][i] * d;
+            }
+            value += weight[1][j] * weight[2][k] * along;
+            gradient.x += weight[1][j] * weight[2][k] * change;
+            gradient.y += slope[1][j] * weight[2][k] * along;
+            gradient.z += weight[1][j] * slope[2][k] * along;
+        }
+    return {value, gradient / grid.spacing, true};
+}
+
 double BoneSnapshot::value(const Vec3& position) const noexcept {
     const Cell cell = find_cell(*root->layout, root->distance, position);
     return cell.corner ? interpolate(cell) : root->layout->far;

@@ -58,6 +58,9 @@ struct BoneSnapshot {
 
     Sample sample(const Vec3& position) const noexcept;
     double value(const Vec3& position) const noexcept;
+    /// The same from a quadratic B-spline over 27 samples: its gradient is continuous, so forces made of it have no
+    /// steps at cell faces. It rounds what is curved: a surface of curvature κ moves by about κ·spacing²/4.
+    Sample smooth_sample(const Vec3& position) const noexcept;
     /// kg/m³, 0 where nothing is stored.
     double density(const Vec3& position) const noexcept;
     const BrickLayout& layout() const noexcept { return *root->layout; }

@@ -164,6 +164,29 @@ TEST_CASE("a hand on the blade does not ring at the stated stiffness, however ma
     }
 }
 
+TEST_CASE("a pinched blade feels no more than the stated stiffness, and rests") {
+    for (const double half_width : {0.45e-3, 0.35e-3, 0.2e-3}) {
+        const auto bone = bone_of([half_width](const Vec3& p) { return half_width - std::abs(p.z); });
+        const auto side = [&](double z) {
+            return blade_contact(bone->current(), points, {Vec3(0.0, 0.0, z), Quat(1, 0, 0, 0)}, Vec3(0.0), stiffness)
+                .wrench.force.z;
+        };
+        INFO("half width " << half_width);
+        const double h = 1e-7;
+        CHECK((side(-h) - side(h)) / (2.0 * h) <= 1.05 * stiffness);
+        CHECK((side(-h) - side(h)) / (2.0 * h) > 0.0);
+        double z = 1e-6, v = 0.0;
+        for (int tick = 0; tick < 3000; ++tick) {
+            const double force = side(z);
+            for (int sub = 0; sub < 10; ++sub) {
+                v += (force - 5.0 * v) / 0.2 * 1e-4;
+                z += v * 1e-4;
+            }
+        }
+        CHECK(std::abs(side(z)) < 1e-3);
+    }
+}
+
 TEST_CASE("a pose that is no pose, or far away, feels nothing") {
     const auto bone = bone_of(half_space);
     for (const Pose& pose : {Pose{Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0), Quat(1, 0, 0, 0)},
