@@ -164,9 +164,10 @@ void Engine::wire_group(const PlanWire& wire, std::vector<std::vector<Drive>>& d
     target->data = source.data;
     target->stride = source.stride;
     if (target->kind == InputKind::batch) {
-        // Within one group a batch is the one value of this tick; its time is set in the step.
+        // Within one group a batch is the one value of this tick.
         target->count = 1;
-        target->times = nullptr;
+        target->times = &group.now;
+        target->period = group.plan->period;
     }
 }
 

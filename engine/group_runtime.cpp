@@ -112,13 +112,14 @@ void GroupRuntime::run_one_at_a_time(const Step& step, int frames) noexcept {
                         1};
         step.process(step.node, tick);
         for (Input* input : step.inputs) {
-            if (input->kind == InputKind::batch) input->count = 0;
+            // A batch from another group belongs to the first activation of a call.
+            if (input->kind == InputKind::batch && input->times != &now) input->count = 0;
             else input->data += input->stride;
         }
         for (Output* output : step.outputs) output->data += output->stride;
     }
     for (Input* input : step.inputs)
-        if (input->kind != InputKind::batch) input->data -= frames * input->stride;
+        if (input->kind != InputKind::batch || input->times == &now) input->data -= frames * input->stride;
     for (Output* output : step.outputs) output->data -= frames * output->stride;
 }
 
@@ -155,6 +156,7 @@ void GroupRuntime::publish(int frames, Pace pace) noexcept {
 
 int GroupRuntime::call(int frames, Pace pace) noexcept {
     const int n = cut(plan->has_audio ? frames : 1);
+    now = next_ * plan->period;
     acquire(pace);
     {
         RealtimeScope scope;

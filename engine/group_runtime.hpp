@@ -67,6 +67,7 @@ public:
     std::vector<DelayLine> delays;
     std::vector<DeviceSlot*> devices;
     std::vector<Output*> snapshots;
+    Flicks now = 0;  ///< logical time of the call that runs
     std::vector<Hash> hashes;  ///< one per output, in the order of the steps
     const std::vector<TimingRecord>* replayed = nullptr;  ///< decisions to repeat, or null
     Ring<TimingRecord>* log = nullptr;                    ///< where live decisions go, or null

@@ -27,6 +27,7 @@ void Link::prepare(Flicks slack, int producer_frames, int consumer_frames) {
         if (wire.target) {
             wire.target->data = wire.mode == WireMode::batch ? wire.batch.data() : wire.current.data();
             wire.target->times = wire.batch_times.data();
+            wire.target->period = producer_period;
         }
     }
 }

@@ -33,7 +33,8 @@ int group_of(Plan& plan, const PatchNode& node) {
     PlanGroup group;
     if (node.group.empty()) {
         group.period = parse_rate(node.rate);
-        group.name = format_quantity(rate_of(group.period), "Hz");
+        const double rate = rate_of(group.period);
+        group.name = format_quantity(rate, rate >= 1000.0 ? "kHz" : "Hz");
     } else {
         const auto& groups = plan.patch.groups;
         const auto declared = std::ranges::find(groups, node.group, &PatchGroup::name);

@@ -193,6 +193,7 @@ void resolve_wires(Plan& plan, Problems& problems) {
     NodeIndex nodes;
     for (const PlanNode& node : plan.nodes) nodes.emplace(node.name, static_cast<int>(nodes.size()));
     plan.wires.reserve(plan.patch.wires.size());
+    const std::size_t known = problems.list.size();
     for (const PatchWire& source : plan.patch.wires) {
         WireResolver resolver(plan, nodes, source);
         try {
@@ -202,8 +203,10 @@ void resolve_wires(Plan& plan, Problems& problems) {
             if (Input* meant = resolver.meant_input()) meant->connected = true;
         }
     }
+    const bool wires_are_sound = problems.list.size() == known;
     for (PlanNode& node : plan.nodes) {
-        check_unconnected(node, problems);
+        // A wire that is wrong leaves its input open: one slip, told once.
+        if (wires_are_sound) check_unconnected(node, problems);
         node.takes_blocks = carries_stream(node);
         if (node.takes_blocks) plan.groups[static_cast<std::size_t>(node.group)].has_audio = true;
     }

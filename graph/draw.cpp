@@ -123,7 +123,8 @@ private:
         std::string text;
         for (std::size_t i = 0; i < lanes_.size(); ++i) {
             const PlanGroup& group = plan_.groups[i];
-            const std::string rate = format_quantity(rate_of(group.period), "Hz");
+            const std::string rate =
+                format_quantity(rate_of(group.period), rate_of(group.period) >= 1000.0 ? "kHz" : "Hz");
             text += fmt::format(
                 "<rect x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" rx=\"8\" fill=\"#f1f5f9\"/>\n"
                 "<text x=\"{}\" y=\"{:.1f}\" font-weight=\"bold\" fill=\"#0f172a\">{}</text>\n"

@@ -49,7 +49,6 @@ public:
         sort_by_place(patch_.nodes);
         sort_by_place(patch_.assets);
         sort_by_place(patch_.devices);
-        check_names();
         if (patch_.nodes.empty() && problems_.empty())
             problems_.add({file_.string(), 1, 1}, "the patch has no nodes; a node is a table such as [nodes.hand]");
         std::ranges::stable_sort(problems_.list.begin() + static_cast<std::ptrdiff_t>(earlier_), problems_.list.end(),
@@ -270,16 +269,6 @@ private:
         if (const auto* number = value.as_floating_point()) return fmt::format("{}", number->get());
         if (const auto* flag = value.as_boolean()) return flag->get() ? "true" : "false";
         return std::nullopt;
-    }
-
-    void check_names() {
-        for (const PatchNode& node : patch_.nodes)
-            for (const PatchAsset& asset : patch_.assets)
-                if (asset.name == node.name)
-                    problems_.add(
-                        asset.where,
-                        fmt::format("'{}' is the name of an asset and of a node; a wire could not tell them apart",
-                                    node.name));
     }
 
     std::filesystem::path file_;

@@ -32,6 +32,7 @@ struct Input {
     // A batch: `count` values at `data`, taken at logical times `times`.
     const Flicks* times = nullptr;
     int count = 0;
+    Flicks period = 0;  ///< logical time between two values of the producer
 };
 
 /// What the engine sees of an output.
@@ -80,8 +81,6 @@ struct Batch : Input {
         return {reinterpret_cast<const Element<T>*>(data), static_cast<std::size_t>(count)};
     }
     std::span<const Flicks> sample_times() const { return {times, static_cast<std::size_t>(count)}; }
-    /// Logical time between two values of the producer.
-    Flicks period = 0;
 };
 
 /// An input of any type, for probes and recorders; `type` is that of the wire.

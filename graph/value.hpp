@@ -4,6 +4,7 @@
 
 #include "dsp/core/hash.hpp"
 #include "dsp/core/types.hpp"
+#include "dsp/volume/bricks.hpp"
 
 #include <concepts>
 #include <cstddef>
@@ -32,6 +33,12 @@ concept SnapshotHandle = std::is_trivially_copyable_v<T> && requires(const T& t)
 template <class T>
 struct SnapshotFile {
     static constexpr std::shared_ptr<const void> (*load)(const std::string& path, void* out) = nullptr;
+};
+
+/// A bone file as a bone that nobody carves.
+template <>
+struct SnapshotFile<BoneSnapshot> {
+    static std::shared_ptr<const void> load(const std::string& path, void* out);
 };
 
 /// What the engine needs to know about a type of value. One object per type; compared by address.

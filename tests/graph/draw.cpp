@@ -24,7 +24,7 @@ TEST_CASE("the picture names every node, its type and its group") {
                                        a_node("r", "relay", "60 Hz"));
     CHECK(svg.starts_with("<svg"));
     CHECK(svg.ends_with("</svg>\n"));
-    for (const char* part : {">s<", ">source<", ">r<", ">relay<", ">1000 Hz<", ">60 Hz<", "latency 16.67 ms"})
+    for (const char* part : {">s<", ">source<", ">r<", ">relay<", ">1 kHz<", ">60 Hz<", "latency 16.67 ms"})
         CHECK_THAT(svg, Contains(part));
     CHECK_THAT(svg, Contains("stroke-dasharray") && Contains("hold 1 ms"));
 }
