@@ -9,6 +9,8 @@
 #define TACTUS_NODES(X)       \
     X(Actuator, vibration)    \
     X(AudioOutput, output)    \
+    X(BladeContact, contact)  \
+    X(Carve, contact)         \
     X(Constant, input)        \
     X(DeviceInput, input)     \
     X(DeviceOutput, input)    \
@@ -21,6 +23,7 @@
     X(Probe, output)          \
     X(Range, math)            \
     X(Record, output)         \
+    X(Saw, vibration)         \
     X(Sine, input)            \
     X(SphereContact, contact) \
     X(Spring, coupling)       \

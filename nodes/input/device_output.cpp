@@ -58,8 +58,9 @@ struct DeviceOutput {
         report.set("force", "ticks", ticks);
         report.set("force", "raw_max_N", s.max_force);
         report.set("force", "raw_max_step_N", s.max_force_step);
-        report.set("force", "limited_ticks", static_cast<double>(s.force_limited));
+        report.set("force", "over_limit_ticks", static_cast<double>(s.force_limited));
         report.set("force", "slew_limited_ticks", static_cast<double>(s.slew_limited));
+        report.set("contact", "limited_ticks", static_cast<double>(s.limited));
         report.set("force", "fault", std::string(describe(limiter_.fault())));
     }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/node_values.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -53,6 +55,27 @@ Draw draw_at(const Random& random, std::int64_t k, Feed feed) {
 
 }  // namespace
 
+namespace {
+
+/// A cube of bone, the same for every activation.
+const BoneEditor& sample_bone() {
+    static const BoneEditor bone = [] {
+        Grid distance{{20, 20, 20}, Vec3(-0.01), Vec3(0.001), std::vector<float>(8000)};
+        for (int k = 0; k < 20; ++k)
+            for (int j = 0; j < 20; ++j)
+                for (int i = 0; i < 20; ++i) {
+                    const Vec3 p = distance.position(i, j, k);
+                    distance.at(i, j, k) =
+                        static_cast<float>(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) - 0.006);
+                }
+        const Grid density{distance.size, distance.origin, distance.spacing, std::vector<float>(8000, 1600.0f)};
+        return BoneEditor(distance, density, {.band = 0.1, .max_dirty = 1, .max_versions = 1});
+    }();
+    return bone;
+}
+
+}  // namespace
+
 void sample_value(const ValueType& type, const Random& random, std::int64_t k, Feed feed, void* out) {
     Draw draw = draw_at(random, k, feed);
     if (&type == &value::pose) put(out, draw.pose());
@@ -69,7 +92,8 @@ void sample_value(const ValueType& type, const Random& random, std::int64_t k, F
         // A conversion of what a float cannot hold is undefined; its own largest value stands in.
         const double largest = std::numeric_limits<float>::max();
         put(out, std::isfinite(v) && std::abs(v) > largest ? std::numeric_limits<float>::max() : static_cast<float>(v));
-    } else throw Error("no sample values for a " + std::string(type.name));
+    } else if (&type == &value::snapshot<BoneSnapshot>) put(out, sample_bone().current());
+    else throw Error("no sample values for a " + std::string(type.name));
 }
 
 DeviceSample sample_device(const Random& random, std::int64_t k, Feed feed) {

@@ -14,9 +14,9 @@ Bone ball() {
     Bone bone;
     bone.name = "ball";
     Grid& d = bone.distance;
-    d.size = {56, 56, 56};
-    d.spacing = Vec3(0.5e-3);
-    d.origin = -0.5 * 55.0 * d.spacing;
+    d.size = {84, 84, 84};
+    d.spacing = Vec3(1.0 / 3200.0);
+    d.origin = -0.5 * 83.0 * d.spacing;
     d.values.resize(d.count());
     bone.density = d;
     for (int k = 0; k < d.size[2]; ++k)

@@ -74,7 +74,7 @@ TEST_CASE("device_output bounds what reaches the hand and tells what it was aske
     CHECK(number_of(report, "force", "max_N") == Approx(6.0));
     CHECK(number_of(report, "force", "raw_max_N") == Approx(40.0));
     CHECK(number_of(report, "force", "raw_max_step_N") == Approx(38.0));
-    CHECK(number_of(report, "force", "limited_ticks") == 400.0);
+    CHECK(number_of(report, "force", "over_limit_ticks") == 400.0);
 }
 
 TEST_CASE("device_output takes the device's own limit when that is lower") {

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/contact/blade.hpp"
+#include "graph/node.hpp"
+
+#include <algorithm>
+#include <optional>
+
+namespace tactus::nodes {
+
+struct BladeContact {
+    static constexpr auto about =
+        "Forces on a saw blade in a bone, from 132 points on its edge and faces (thesis 6.2.2).";
+
+    In<Pose> pose{"blade: x along the stroke, y into the bone, origin in the middle of the teeth"};
+    In<BoneSnapshot> bone{"the bone as carved so far"};
+    Out<Wrench> wrench{"on the blade, about its origin", "N"};
+    Out<double> load{"thrust against the cutting direction", "N"};
+    Out<double> penetration{"depth of the deepest point", "m"};
+    Out<bool> in_contact{"some point is in the bone"};
+    Param stiffness{"0.8 N/mm", "0.01 N/mm", "50 N/mm", "the largest the hand can feel, however many points touch"};
+    Param length{structural, "40 mm", "5 mm", "200 mm", "of the tooth edge"};
+    Param height{structural, "10 mm", "1 mm", "100 mm", "of the blade, from the teeth back"};
+    Param thickness{structural, "0.7 mm", "0.1 mm", "5 mm", "of the blade; the teeth cut a little wider"};
+
+    void prepare(const Setup&) { points_.emplace(BladeShape{length, height, thickness}); }
+
+    void process(const Tick&) noexcept {
+        const tactus::BladeContact now = blade_contact(bone.get(), *points_, pose.get(), pose->position, stiffness);
+        wrench = now.wrench;
+        load = now.load;
+        penetration = now.penetration;
+        in_contact = now.count > 0;
+        ++ticks_;
+        if (now.count == 0) return;
+        ++touching_;
+        thrust_ += now.load;
+        deepest_ = std::max(deepest_, now.penetration);
+    }
+
+    void report(Report& report) const {
+        const auto share = [](double part, double whole) { return whole > 0.0 ? part / whole : 0.0; };
+        report.set("contact", "fraction", share(touching_, ticks_));
+        report.set("contact", "max_penetration_mm", deepest_ * 1e3);
+        report.set("force", "thrust_mean_N", share(thrust_, touching_));
+    }
+
+private:
+    std::optional<BladePoints> points_;
+    double ticks_ = 0.0, touching_ = 0.0, thrust_ = 0.0, deepest_ = 0.0;
+};
+
+TACTUS_NODE(BladeContact, pose, bone, wrench, load, penetration, in_contact, stiffness, length, height, thickness)
+
+}  // namespace tactus::nodes

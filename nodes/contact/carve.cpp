@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/carve/carver.hpp"
+#include "graph/assets.hpp"
+#include "graph/node.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace tactus::nodes {
+
+struct Carve {
+    static constexpr auto about =
+        "Removes bone along the true path of a saw's teeth, at a speed inverse to the bone's density (thesis 6.2.2).";
+
+    Batch<Pose> path{"every pose of the blade: x along the stroke, y into the bone"};
+    Batch<double> load{optional, "thrust at each pose; unconnected: the reference force", "N"};
+    In<bool> running{optional, "only a running saw removes; unconnected: always"};
+    In<double> strokes{optional, "reciprocation; unconnected: the reference rate", "Hz"};
+    Out<BoneSnapshot> bone{"the bone as carved so far"};
+    Out<double> removed{"volume removed since the start", "m^3"};
+    Asset<Bone> source{"the bone that is carved"};
+    Param speed{"0.67 mm/s", "0 mm/s", "100 mm/s",
+                "of removal in the reference density at the reference force and rate"};
+    Param reference_force{"7 N", "0.1 N", "100 N", "thrust at which the speed holds"};
+    Param reference_rate{"228 Hz", "1 Hz", "1000 Hz", "reciprocation at which the speed holds"};
+    Param reference_density{"1800 mg/cm^3", "1 mg/cm^3", "5000 mg/cm^3", "density at which the speed holds: cortex"};
+    Param force_exponent{"0", "0", "2", "how speed grows with thrust; 0 is the law of the thesis"};
+    Param length{structural, "40 mm", "5 mm", "200 mm", "of the tooth edge"};
+    Param kerf{structural, "1 mm", "0.1 mm", "5 mm", "width of the cut"};
+    Param stroke{structural, "3 mm", "1 mm", "20 mm", "of the blade, peak to peak"};
+    Param bricks_per_tick{structural, "512", "16", "4096", "most bricks of 8 x 8 x 8 voxels that one tick may change"};
+
+    void prepare(const Setup& setup) {
+        bone_ = source.shared();
+        BoneEditorOptions options;
+        options.max_dirty = static_cast<int>(bricks_per_tick);
+        options.band =
+            4.0 * std::max({bone_->distance.spacing.x, bone_->distance.spacing.y, bone_->distance.spacing.z}) + kerf;
+        editor_ = std::make_unique<BoneEditor>(bone_->distance, bone_->density, options);
+        carver_.prepare(*editor_, settings());
+        if (carver_.kerf_voxels() < 3.0)
+            setup.fail(fmt::format(
+                "the kerf of {:.3g} mm is only {:.2g} voxels wide; import the bone with --spacing {:.2g} or finer",
+                kerf * 1e3, carver_.kerf_voxels(), kerf * 1e3 / 3.05));
+        samples_.reserve(4096);
+        bone = editor_->current();
+        last_ = editor_->current().version;
+    }
+
+    void process(const Tick&) noexcept {
+        gather();
+        carver_.set_law(settings());
+        // A version that no reader took is never looked at, unless an earlier publication of it was.
+        if (bone.last_was_dropped && last_was_new_) editor_->forget(last_);
+        editor_->reclaim(bone.oldest_readable);
+        const CarveResult now = carver_.update(*editor_, samples_);
+        total_ += now.removed_m3;
+        for (std::size_t i = 0; i < by_density_.size(); ++i) by_density_[i] += now.removed_by_density[i];
+        if (now.budget_hit) ++budget_hits_;
+        const BoneSnapshot next = editor_->publish();
+        last_was_new_ = next.version != last_;
+        last_ = next.version;
+        bone = next;
+        removed = total_;
+    }
+
+    void report(Report& report) const {
+        std::vector<double> classes;
+        for (const double volume : by_density_) classes.push_back(volume * 1e9);
+        report.set("carve", "removed_mm3", total_ * 1e9);
+        report.set("carve", "by_density", classes);
+        report.set("carve", "kerf_voxels", carver_.kerf_voxels());
+        report.set("carve", "ticks_over_budget", budget_hits_);
+        auto carved = std::make_shared<Bone>(*bone_);
+        carved->distance = to_grid(editor_->current());
+        report.results["bone"] = std::shared_ptr<const Bone>(std::move(carved));
+    }
+
+private:
+    CarveSettings settings() const {
+        CarveSettings s;
+        s.blade_length = length;
+        s.kerf = kerf;
+        s.stroke = stroke;
+        s.speed = speed;
+        s.reference_force = reference_force;
+        s.reference_rate = reference_rate;
+        s.reference_density = reference_density;
+        s.force_exponent = force_exponent;
+        return s;
+    }
+
+    /// The path as the carver wants it; more than 4096 poses in one tick are thinned by leaving out the oldest.
+    void gather() noexcept {
+        samples_.clear();
+        const auto poses = path.values();
+        const auto loads = load.connected ? load.values() : std::span<const double>{};
+        const std::size_t first = poses.size() > samples_.capacity() ? poses.size() - samples_.capacity() : 0;
+        for (std::size_t i = first; i < poses.size(); ++i) {
+            if (i < loads.size()) thrust_ = loads[i];
+            samples_.push_back({poses[i], seconds(path.period),
+                                load.connected ? thrust_ : static_cast<double>(reference_force),
+                                strokes.connected ? *strokes.operator->() : static_cast<double>(reference_rate),
+                                running.connected ? running.get() : true});
+        }
+    }
+
+    std::shared_ptr<const Bone> bone_;
+    std::unique_ptr<BoneEditor> editor_;
+    Carver carver_;
+    std::vector<CarveSample> samples_;
+    std::array<double, 4> by_density_{};
+    double total_ = 0.0, thrust_ = 0.0, budget_hits_ = 0.0;
+    std::int64_t last_ = 0;
+    bool last_was_new_ = false;
+};
+
+TACTUS_NODE(Carve, path, load, running, strokes, bone, removed, source, speed, reference_force, reference_rate,
+            reference_density, force_exponent, length, kerf, stroke, bricks_per_tick)
+
+}  // namespace tactus::nodes

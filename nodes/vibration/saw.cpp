@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/vibration/saw_voice.hpp"
+#include "graph/assets.hpp"
+#include "graph/node.hpp"
+
+namespace tactus::nodes {
+
+struct Saw {
+    static constexpr auto about = "The vibration of a powered saw, played from recordings by rate and load.";
+
+    In<Ramp> load{optional, "thrust on the blade; none: in free air", "N"};
+    In<bool> trigger{optional, "the saw runs while it is true; without a wire it always runs"};
+    Out<Signal> signal{"vibration; of full scale when the recordings are not calibrated", "m/s^2"};
+    Out<double> rate{"strokes of the blade per second", "Hz"};
+    Out<bool> running{"the blade moves"};
+    Asset<RecordingSet> saw{"the recordings"};
+    Param blade_rate{"233 Hz", "0 Hz", "1 kHz", "strokes to and fro per second that the operator has set"};
+    Param gain{structural, "1", "0", "1000", "factor of the vibration"};
+    Param spin_up{structural, "80 ms", "0 ms", "10 s", "time constant of the rate after the trigger is pulled"};
+    Param spin_down{structural, "150 ms", "0 ms", "10 s", "time constant of the rate after it is released"};
+    Param load_on{structural, "0.5 N", "0 N", "100 N", "cutting begins above this load"};
+    Param load_off{structural, "0.3 N", "0 N", "100 N", "and ends below this"};
+    Param fade{structural, "20 ms", "1 ms", "1 s", "cross-fade between recordings"};
+
+    void prepare(const Setup& setup) {
+        try {
+            voice_.prepare(setup.rate(), saw_recordings(*saw), {spin_up, spin_down, load_on, load_off, fade, gain});
+        } catch (const Error& error) {
+            setup.fail(error.message());
+        }
+    }
+
+    void process(const Tick& tick) noexcept {
+        const bool pulled = !trigger.connected || trigger;
+        const double commanded = blade_rate;
+        for (int i = 0; i < tick.frames; ++i) {
+            signal[i] = voice_.tick(load[i], pulled, commanded);
+            rate[i] = voice_.reciprocation_rate();
+            running[i] = voice_.running();
+        }
+    }
+
+private:
+    SawVoice voice_;
+};
+
+TACTUS_NODE(Saw, load, trigger, signal, rate, running, saw, blade_rate, gain, spin_up, spin_down, load_on, load_off,
+            fade)
+
+}  // namespace tactus::nodes
