@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-# Where the command finds the bundled patches, bones and recordings when it runs from the build tree.
-target_compile_definitions(tactus_tools PRIVATE
-  TACTUS_SOURCE_LIBRARY="${PROJECT_SOURCE_DIR}/assets/library"
-  TACTUS_BUILD_LIBRARY="${CMAKE_BINARY_DIR}/library")
+# The library stands beside the command: patches copied from assets/library, bones and recordings computed.
+file(GLOB patches CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/assets/library/patches/*.toml)
+foreach(patch ${patches})
+  get_filename_component(name ${patch} NAME)
+  configure_file(${patch} ${CMAKE_BINARY_DIR}/library/patches/${name} COPYONLY)
+endforeach()
 
 # The bone and the saw that come with Tactus are computed, not kept; again only when their generator has changed.
 add_executable(make_library tools/make_library.cpp)

@@ -49,8 +49,11 @@ PictureMesh coloured_surface(const Bone& bone) {
     PictureMesh picture;
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         const Vec3 &v = mesh.vertices[i], &n = mesh.normals[i];
-        // The partial-volume rim of any bone is thin; half a voxel below it lies what the surface is made of.
-        const double density = sample(bone.density, v - n * (0.5 * bone.density.spacing.x));
+        // A CT's partial-volume rim makes the surface of any bone look porous: the densest of what lies just below
+        // it is what it is made of.
+        double density = 0.0;
+        for (int half_voxels = 1; half_voxels <= 6; ++half_voxels)
+            density = std::max(density, sample(bone.density, v - n * (0.5 * half_voxels * bone.density.spacing.x)));
         const double t = std::clamp((density - core_density) / (cortex_density - core_density), 0.0, 1.0);
         const Vec3 colour = core_colour + (cortex_colour - core_colour) * t;
         for (int axis = 0; axis < 3; ++axis) {
@@ -84,7 +87,10 @@ View view_of(const Report& report, const PictureMesh& mesh, double aspect) {
     const Vec3 across = glm::cross(normal, stroke);
     const Vec3 towards = glm::normalize(-normal - 0.55 * across - 0.45 * stroke);
     const Vec3 up = std::abs(towards.z) < 0.9 ? Vec3(0.0, 0.0, 1.0) : Vec3(0.0, -1.0, 0.0);
-    return fit_view(low, high, towards, up, aspect);
+    View view = fit_view(low, high, towards, up, aspect);
+    // The box's corners are empty on anything but a box: go nearer.
+    view.eye = view.target + (view.eye - view.target) * 0.8;
+    return view;
 }
 
 }  // namespace

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command as scripts see it: exit codes, one clear error, nothing half-written.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+std::string slurp(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+struct Outcome {
+    int code = -1;
+    std::string out, err;
+};
+
+class Folder {
+public:
+    Folder()
+        : path(fs::temp_directory_path() / ("tactus_" + std::to_string(::getpid()) + "_" + std::to_string(next++))) {
+        fs::create_directories(path);
+    }
+    ~Folder() { fs::remove_all(path); }
+
+    fs::path write(const std::string& name, const std::string& text) const {
+        std::ofstream(path / name, std::ios::binary) << text;
+        return path / name;
+    }
+    Outcome tactus(const std::string& arguments) const {
+        const std::string command = std::string(TACTUS_COMMAND) + " " + arguments + " >" + (path / "stdout").string() +
+                                    " 2>" + (path / "stderr").string();
+        const int status = std::system(command.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(path / "stdout"), slurp(path / "stderr")};
+    }
+
+    fs::path path;
+
+private:
+    static inline int next = 0;
+};
+
+const std::string good = R"(title = "test"
+wires = [
+  "tone.signal -> loud.in",
+  "loud.out -> kept.in",
+  "half.value -> loud.factor",
+]
+[nodes.tone]
+type = "sine"
+rate = "48 kHz"
+[nodes.loud]
+type = "gain"
+rate = "48 kHz"
+[nodes.kept]
+type = "record"
+rate = "48 kHz"
+[nodes.half]
+type = "constant"
+rate = "1 kHz"
+number = 0.5
+)";
+
+}  // namespace
+
+TEST_CASE("a render leaves recordings and a summary; the hash depends on neither threads nor blocks") {
+    const Folder folder;
+    const std::string patch = folder.write("good.toml", good).string(), out = (folder.path / "out").string();
+    std::string hash;
+    for (const char* how : {"--threads 1", "--threads 2 --block 1", "--threads 4 --block 480", "--block random"}) {
+        const Outcome done = folder.tactus("render " + patch + " --seconds 0.2 --out " + out + " " + how);
+        INFO(done.err);
+        REQUIRE(done.code == 0);
+        const json summary = json::parse(slurp(folder.path / "out/summary.json"));
+        CHECK(summary["seconds"] == 0.2);
+        CHECK(summary["groups"][0]["ticks"] == 9600);
+        CHECK(summary["signals"][0]["file"] == "kept.wav");
+        CHECK(fs::file_size(folder.path / "out/kept.wav") > 9600 * 4);
+        if (hash.empty()) hash = summary["output_hash"];
+        CHECK(summary["output_hash"] == hash);
+    }
+}
+
+TEST_CASE("check names every slip with file, line and column") {
+    const Folder folder;
+    struct Slip {
+        std::string what, to, message;
+        int line;
+    };
+    const Slip slips[] = {
+        {"type = \"sine\"", "type = \"sin\"", "did you mean 'sine'?", 8},
+        {"loud.in\"", "loud.inn\"", "did you mean 'in'?", 3},
+        {"tone.signal ->", "tune.signal ->", "did you mean 'tone'?", 3},
+        {"number = 0.5", "nummber = 0.5", "did you mean 'number'?", 19},
+        {"number = 0.5", "number = \"0.5 N\"", "unit", 19},
+        {"rate = \"1 kHz\"", "rate = \"59.94001 Hz\"", "not exact", 18},
+        {"half.value -> loud.factor", "loud.out -> half.number", "gives a signal", 5},
+        {"half.value -> loud.factor", "loud.out -> loud.in", "already fed", 5},
+        {"  \"half", "  \"loud.out -> tone.x\", \"half", "no port 'x'", 5},
+    };
+    for (const Slip& slip : slips) {
+        std::string text = good;
+        text.replace(text.find(slip.what), slip.what.size(), slip.to);
+        const std::string patch = folder.write("slip.toml", text).string();
+        const Outcome bad = folder.tactus("check " + patch + " --json");
+        INFO(slip.to << "\n" << bad.out << bad.err);
+        CHECK(bad.code == 2);
+        const json errors = json::parse(bad.out)["errors"];
+        REQUIRE(errors.size() == 1);
+        CHECK(errors[0]["file"] == patch);
+        CHECK(errors[0]["line"] == slip.line);
+        CHECK(errors[0]["column"] > 0);
+        CHECK(errors[0]["message"].get<std::string>().find(slip.message) != std::string::npos);
+    }
+    CHECK(json::parse(folder.tactus("check " + folder.write("good.toml", good).string() + " --json").out)["ok"] ==
+          true);
+}
+
+TEST_CASE("a cycle, wires inside a table, broken TOML and an empty patch are named for what they are") {
+    const Folder folder;
+    const auto message = [&folder](const std::string& text) {
+        const Outcome bad = folder.tactus("check " + folder.write("bad.toml", text).string());
+        CHECK(bad.code == 2);
+        return bad.err;
+    };
+    using Catch::Contains;
+    CHECK_THAT(message("wires = [\"a.out -> b.in\", \"b.out -> a.in\"]\n[nodes.a]\ntype=\"gain\"\nrate=\"48 kHz\"\n"
+                       "[nodes.b]\ntype=\"gain\"\nrate=\"48 kHz\"\n"),
+               Contains("cycle"));
+    CHECK_THAT(message("[nodes.a]\ntype=\"constant\"\nrate=\"1 kHz\"\nwires = [\"a.value -> a.x\"]\n"),
+               Contains("move it above"));
+    CHECK_THAT(message("wires = [\n"), Contains("bad.toml:"));
+    CHECK_THAT(message(""), Contains("no nodes"));
+}
+
+TEST_CASE("assets and settings that cannot be used end in exit code 2, say which, and write nothing") {
+    const Folder folder;
+    const fs::path out = folder.path / "out";
+    const auto refused = [&](const std::string& how, const std::string& part) {
+        const Outcome bad = folder.tactus("render saw-training --seconds 0.1 --out " + out.string() + " " + how);
+        INFO(how << "\n" << bad.err);
+        CHECK(bad.code == 2);
+        CHECK(bad.err.find(part) != std::string::npos);
+        CHECK_FALSE(fs::exists(out / "summary.json"));
+    };
+    refused("--asset bone=/nonexistent.vdb", "nonexistent.vdb");
+    refused("--asset bone=" + folder.write("garbage.vdb", std::string(5000, 'x')).string(), "garbage.vdb");
+    refused("--asset saw=" + folder.write("cut.wav", "RIFF....WAVEfmt ").string(), "cut.wav");
+    refused("--asset bonne=x.vdb", "did you mean 'bone'?");
+    refused("--set 'blade.stifness=1 N/mm'", "did you mean 'stiffness'?");
+    refused("--set 'blade.stiffness=1 kg'", "unit");
+    refused("--set 'blade.stiffness=900 N/mm'", "outside");
+    refused("--set hand.device=replay --asset trajectory=" +
+                folder.write("bad.csv", "t_s,px_mm,py_mm,pz_mm,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.01,nan,0,0,0,0,0,1\n")
+                    .string(),
+            "bad.csv");
+}
+
+TEST_CASE("a folder that cannot be made or written is refused, and an import that fails leaves nothing") {
+    const Folder folder;
+    const std::string patch = folder.write("good.toml", good).string();
+    CHECK(folder.tactus("render " + patch + " --seconds 0.1 --out /proc/nowhere").code == 2);
+    CHECK(folder.tactus("render " + patch + " --seconds 0.1 --out " + patch).code == 2);
+    CHECK(folder.tactus("import " + patch + " -o " + (folder.path / "x.vdb").string()).code == 2);
+    CHECK_FALSE(fs::exists(folder.path / "x.vdb"));
+}
+
+TEST_CASE("usage that makes no sense ends in exit code 2") {
+    const Folder folder;
+    for (const char* line :
+         {"", "frobnicate", "render", "render saw-training --out o --seconds -1",
+          "render saw-training --out o --seconds 1 --block 0", "run no-such-patch --seconds 1", "nodes gainn"}) {
+        INFO(line);
+        CHECK(folder.tactus(line).code == 2);
+    }
+    for (const char* line : {"--help", "nodes --json", "devices --json", "draw saw-training"})
+        CHECK(folder.tactus(line).code == 0);
+}
+
+TEST_CASE("saw-training saws: forces within limits, bone removed, the same bits on any number of threads") {
+    const Folder folder;
+    const fs::path out = folder.path / "saw";
+    std::string hash;
+    for (const char* how : {"--threads 1 --block random", "--threads 3"}) {
+        const Outcome done = folder.tactus("render saw-training --seconds 3 --out " + out.string() + " " + how);
+        INFO(done.err);
+        REQUIRE(done.code == 0);
+        const json summary = json::parse(slurp(out / "summary.json"));
+        CHECK(summary["contact"]["fraction"] > 0.5);
+        CHECK(summary["contact"]["limited_ticks"] <= 3);
+        CHECK(summary["contact"]["max_penetration_mm"] < 3.0);
+        CHECK(summary["force"]["thrust_mean_N"] > 6.3);
+        CHECK(summary["force"]["thrust_mean_N"] < 7.7);
+        CHECK(summary["force"]["max_N"] < 15.0);
+        CHECK(summary["carve"]["removed_mm3"] > 20.0);
+        CHECK(summary["carve"]["by_density"].size() == 4);
+        for (const char* file : {"haptuator.wav", "handle.wav", "force.csv", "pose.csv", "removed.csv"})
+            CHECK(fs::file_size(out / file) > 1000);
+        if (hash.empty()) hash = summary["output_hash"];
+        CHECK(summary["output_hash"] == hash);
+    }
+}
+
+TEST_CASE("a live run's log repeats it to the bit") {
+    const Folder folder;
+    const std::string log = (folder.path / "timing.log").string();
+    const Outcome live = folder.tactus("run saw-training --seconds 1 --dilate 2 --json --out " +
+                                       (folder.path / "live").string() + " --log " + log);
+    INFO(live.err);
+    REQUIRE(live.code == 0);
+    const Outcome again = folder.tactus("render saw-training --seconds 1 --json --out " +
+                                        (folder.path / "again").string() + " --log " + log);
+    INFO(again.err);
+    REQUIRE(again.code == 0);
+    CHECK(json::parse(live.out)["live"] == true);
+    CHECK(json::parse(again.out)["output_hash"] == json::parse(live.out)["output_hash"]);
+}
