@@ -3,6 +3,7 @@
 
 #include "assets/trajectory/trajectory.hpp"
 #include "devices/haptic/operated.hpp"
+#include "dsp/operator/alignment.hpp"
 
 #include <fmt/format.h>
 
@@ -54,6 +55,9 @@ std::unique_ptr<HapticDevice> open_replay(Options& options, const PathResolver& 
         throw Error(options.where("trial"), fmt::format("{}: option 'trial' is a whole number", options.owner()));
     selection.trial = static_cast<int>(trial);
     const double max_speed = options.quantity("max_speed", "100 mm/s", "1 mm/s", "2 m/s");
+    static const std::array<std::string, 2> places{"rest", "recorded"};
+    const bool at_rest = options.choice("place", places, "rest") == 0;
+    const double reach = options.quantity("reach", "9 mm", "-1 m", "1 m");
     Replaying operated;
     operated.trigger_from = read_trigger(options);
     const HandDynamics hand = read_hand(options);
@@ -62,7 +66,9 @@ std::unique_ptr<HapticDevice> open_replay(Options& options, const PathResolver& 
     if (file.empty())
         throw Error(options.where(),
                     fmt::format("{} replays a recording; name it with the option 'file'", options.owner()));
-    const Trajectory trajectory = read_trajectory(resolve(file), selection);
+    Trajectory trajectory = read_trajectory(resolve(file), selection);
+    // Tools work towards −z of the device, as with the simulated hand.
+    if (at_rest) align_to_rest(trajectory.samples, Vec3(0.0, 0.0, -1.0), reach);
     TrajectoryRules rules = trajectory.rules();
     rules.max_speed = max_speed;
     operated.player = std::make_shared<const TrajectoryPlayer>(trajectory.samples, trajectory.breaks, rules);

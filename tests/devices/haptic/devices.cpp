@@ -100,7 +100,7 @@ TEST_CASE("options of the simulated hand change what it does") {
 
 TEST_CASE("a replayed hand follows its recording and yields to force") {
     const Recording recording;
-    const auto device = open("replay", {{"file", recording.path.string(), {}}});
+    const auto device = open("replay", {{"file", recording.path.string(), {}}, {"place", "recorded", {}}});
     device->prepare(period);
     CHECK(device->acquire(0.0).pose.position.y == Approx(5e-3));
     const DeviceSample middle = run(*device, 0.512);
