@@ -6,7 +6,9 @@ target_compile_options(tactus_flags INTERFACE
   -ffp-contract=off -fno-omit-frame-pointer)
 if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
   # Boost 1.74's MPL, reached through OpenVDB, casts out-of-range constants to an enum.
-  target_compile_options(tactus_flags INTERFACE -Wno-enum-constexpr-conversion)
+  target_compile_options(tactus_flags INTERFACE -Wno-enum-constexpr-conversion
+    # libstdc++ 12 implements std::stable_sort with std::get_temporary_buffer, which C++17 deprecates.
+    -Wno-deprecated-declarations)
 endif()
 if(TACTUS_SANITIZE)
   target_compile_options(tactus_flags INTERFACE -fsanitize=${TACTUS_SANITIZE} -fno-sanitize-recover=all)

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <limits>
 
@@ -131,8 +132,14 @@ void GroupRuntime::run_steps(int frames) noexcept {
         else step.process(step.node, tick);
         for (std::size_t k = 0; k < step.outputs.size(); ++k) {
             const Output& output = *step.outputs[k];
-            for (int i = 0; i < frames; ++i)
-                output.type->hash(hashes[step.first_hash + k], output.data + i * output.stride);
+            Hash hash = hashes[step.first_hash + k];  // a copy stays in a register
+            if (output.type == &value::signal) {
+                const auto* samples = reinterpret_cast<const float*>(output.data);
+                for (int i = 0; i < frames; ++i) hash.add_word(std::bit_cast<std::uint32_t>(samples[i]));
+            } else {
+                for (int i = 0; i < frames; ++i) output.type->hash(hash, output.data + i * output.stride);
+            }
+            hashes[step.first_hash + k] = hash;
         }
     }
 }
