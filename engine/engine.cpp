@@ -2,12 +2,14 @@
 #include "engine/engine.hpp"
 
 #include "dsp/core/realtime.hpp"
+#include "graph/layout.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <memory>
 
 namespace tactus {
 
@@ -64,19 +66,35 @@ Engine::Engine(Plan plan, const EngineOptions& options) : options_(options), pla
 Engine::~Engine() = default;
 
 void Engine::allocate_outputs() {
-    for (PlanNode& node : plan_.nodes) {
+    std::vector<int> frames;
+    std::vector<std::byte*> silence;  // per group, what a signal input without a wire reads
+    for (const auto& group : groups_) {
+        frames.push_back(group->max_frames);
+        silence.push_back(buffers_.emplace_back(static_cast<std::size_t>(group->max_frames) * sizeof(float)).data());
+    }
+    const ValueLayout layout = lay_out_values(plan_, frames);
+    auto& values = buffers_.emplace_back(layout.bytes + value_alignment);
+    void* start = values.data();
+    std::size_t room = values.size();
+    auto* block = static_cast<std::byte*>(std::align(value_alignment, layout.bytes, start, room));
+    for (std::size_t n = 0; n < plan_.nodes.size(); ++n) {
+        PlanNode& node = plan_.nodes[n];
         const GroupRuntime& group = *groups_[static_cast<std::size_t>(node.group)];
-        for (PlanOutput& output : node.outputs) {
-            const std::size_t size = output.port->type->size;
-            const auto frames = static_cast<std::size_t>(group.plan->has_audio ? group.max_frames : 1);
-            auto& buffer = buffers_.emplace_back(frames * size);
-            if (output.port->type == &value::pose)
-                for (std::size_t i = 0; i < frames; ++i) reinterpret_cast<Pose*>(buffer.data())[i] = Pose{};
-            output.port->data = buffer.data();
-            output.port->stride = group.plan->has_audio ? static_cast<std::ptrdiff_t>(size) : 0;
+        const bool has_audio = group.plan->has_audio;
+        for (std::size_t k = 0; k < node.outputs.size(); ++k) {
+            Output& port = *node.outputs[k].port;
+            port.data = block + layout.offsets[n][k];
+            port.stride = has_audio ? static_cast<std::ptrdiff_t>(port.type->size) : 0;
+            if (port.type == &value::pose)
+                std::fill_n(reinterpret_cast<Pose*>(port.data), has_audio ? group.max_frames : 1, Pose{});
         }
-        for (PlanInput& input : node.inputs)
-            if (input.port->type) input.port->data = default_value(*input.port->type, buffers_);
+        for (PlanInput& input : node.inputs) {
+            if (!input.port->type) continue;
+            const bool is_signal = input.port->type == &value::signal && input.port->kind == InputKind::stream;
+            input.port->data =
+                is_signal ? silence[static_cast<std::size_t>(node.group)] : default_value(*input.port->type, buffers_);
+            if (is_signal) input.port->stride = sizeof(float);
+        }
     }
 }
 
@@ -171,16 +189,18 @@ void Engine::wire_group(const PlanWire& wire, std::vector<std::vector<Drive>>& d
     }
 }
 
-bool Engine::varies_within_call(const PlanNode& node, std::size_t index) const {
+std::vector<bool> Engine::vary_within_call() const {
+    std::vector<bool> vary(plan_.nodes.size());
     for (const PlanWire& wire : plan_.wires) {
-        if (wire.to_node != static_cast<int>(index) || wire.from_node < 0) continue;
+        if (wire.from_node < 0) continue;
+        const PlanNode& node = plan_.nodes[static_cast<std::size_t>(wire.to_node)];
         const bool same_group = plan_.nodes[static_cast<std::size_t>(wire.from_node)].group == node.group;
         if (!same_group && wire.mode != WireMode::linear) continue;
         const InputKind kind =
             wire.to_input < 0 ? InputKind::value : node.inputs[static_cast<std::size_t>(wire.to_input)].port->kind;
-        if (kind == InputKind::value) return true;
+        if (kind == InputKind::value) vary[static_cast<std::size_t>(wire.to_node)] = true;
     }
-    return false;
+    return vary;
 }
 
 void Engine::make_steps(std::vector<std::vector<Drive>>& drives) {
@@ -191,22 +211,26 @@ void Engine::make_steps(std::vector<std::vector<Drive>>& drives) {
                 for (const auto& [name, param] : plan_.nodes[i].params)
                     if (param == wire.param) drives[i].push_back({param, nullptr, &wire});
         }
+    const std::vector<bool> vary = vary_within_call();
     for (const auto& group : groups_) {
+        group->hashes_outputs = options_.hash;
         for (const int node_index : group->plan->order) {
             PlanNode& node = plan_.nodes[static_cast<std::size_t>(node_index)];
+            StepWires& wires = group->wires.emplace_back();
+            wires.drives = std::move(drives[static_cast<std::size_t>(node_index)]);
+            for (const PlanInput& input : node.inputs)
+                if (input.port->type) wires.inputs.push_back(input.port);
             Step& step = group->steps.emplace_back();
             step.process = node.type->process;
             step.node = node.instance.get();
-            step.drives = std::move(drives[static_cast<std::size_t>(node_index)]);
-            step.first_hash = group->hashes.size();
-            for (const PlanInput& input : node.inputs)
-                if (input.port->type) step.inputs.push_back(input.port);
+            step.driven = !wires.drives.empty();
+            step.one_at_a_time = !node.takes_blocks || vary[static_cast<std::size_t>(node_index)];
+            step.first_output = static_cast<std::uint32_t>(group->published.size());
+            step.output_count = static_cast<std::uint32_t>(node.outputs.size());
             for (const PlanOutput& output : node.outputs) {
-                step.outputs.push_back(output.port);
-                group->hashes.emplace_back();
+                group->published.push_back({output.port, output.port->type == &value::signal, {}, {}});
                 if (output.port->type->version) group->snapshots.push_back(output.port);
             }
-            step.one_at_a_time = !node.takes_blocks || varies_within_call(node, static_cast<std::size_t>(node_index));
         }
     }
 }
@@ -254,7 +278,7 @@ std::vector<std::pair<std::string, std::uint64_t>> Engine::port_hashes() const {
         for (const int node_index : group->plan->order) {
             const PlanNode& node = plan_.nodes[static_cast<std::size_t>(node_index)];
             for (const PlanOutput& output : node.outputs)
-                ports.emplace_back(node.name + "." + output.name, group->hashes[next++].value());
+                ports.emplace_back(node.name + "." + output.name, group->hash_of(next++));
         }
     }
     std::ranges::sort(ports);

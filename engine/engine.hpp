@@ -25,6 +25,7 @@ struct EngineOptions {
     std::optional<std::filesystem::path> folder;  ///< where recordings go, none: nowhere
     const TimingLog* replay = nullptr;            ///< repeat what timing decided in a live run
     bool live = false;
+    bool hash = true;  ///< keep `output_hash`; costs about as much per sample of a signal as a trivial node
 };
 
 struct LiveOptions {
@@ -71,7 +72,7 @@ private:
     void load_constant(const PlanWire& wire);
     Link& link_for(const PlanWire& wire);
     void make_steps(std::vector<std::vector<Drive>>& drives);
-    bool varies_within_call(const PlanNode& node, std::size_t index) const;
+    std::vector<bool> vary_within_call() const;
     void set_ends();
     void drain_streams();
     void offline_worker(const std::vector<GroupRuntime*>& mine, std::uint64_t seed);

@@ -6,9 +6,9 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 #include <limits>
+#include <span>
 
 namespace tactus {
 
@@ -101,47 +101,71 @@ void GroupRuntime::read_links(int frames, Pace pace) noexcept {
     if (missed) telemetry.misses.fetch_add(1, std::memory_order_relaxed);
 }
 
-void GroupRuntime::run_one_at_a_time(const Step& step, int frames) noexcept {
-    for (int i = 0; i < frames; ++i) {
-        for (const Drive& drive : step.drives) {
-            const std::byte* value = drive.source
-                                         ? drive.source->data + i * drive.source->stride
-                                         : drive.glide->glide.data() + static_cast<std::size_t>(i) * sizeof(double);
-            drive.param->drive(*reinterpret_cast<const double*>(value));
-        }
-        const Tick tick{next_ + i, plan->period, i == 0 && last_ >= 0 ? (next_ - last_) * plan->period : plan->period,
-                        1};
-        step.process(step.node, tick);
-        for (Input* input : step.inputs) {
+void GroupRuntime::drive(const StepWires& step, int i) noexcept {
+    for (const Drive& drive : step.drives) {
+        const std::byte* value = drive.source
+                                     ? drive.source->data + i * drive.source->stride
+                                     : drive.glide->glide.data() + static_cast<std::size_t>(i) * sizeof(double);
+        drive.param->drive(*reinterpret_cast<const double*>(value));
+    }
+}
+
+void GroupRuntime::run_one_at_a_time(const Step& step, const StepWires& of, const Tick& all) noexcept {
+    const std::span<PublishedOutput> mine(published.data() + step.first_output, step.output_count);
+    for (int i = 0; i < all.frames; ++i) {
+        drive(of, i);
+        step.process(step.node, {all.index + i, all.period, i == 0 ? all.elapsed : all.period, 1});
+        for (Input* input : of.inputs) {
             // A batch from another group belongs to the first activation of a call.
             if (input->kind == InputKind::batch && input->times != &now) input->count = 0;
             else input->data += input->stride;
         }
-        for (Output* output : step.outputs) output->data += output->stride;
+        for (PublishedOutput& output : mine) output.port->data += output.port->stride;
     }
-    for (Input* input : step.inputs)
-        if (input->kind != InputKind::batch || input->times == &now) input->data -= frames * input->stride;
-    for (Output* output : step.outputs) output->data -= frames * output->stride;
+    for (Input* input : of.inputs)
+        if (input->kind != InputKind::batch || input->times == &now) input->data -= all.frames * input->stride;
+    for (PublishedOutput& output : mine) output.port->data -= all.frames * output.port->stride;
+}
+
+void GroupRuntime::hash_outputs(const Step& step, int frames) noexcept {
+    const auto position = static_cast<std::uint64_t>(ran_);
+    for (std::uint32_t k = step.first_output; k < step.first_output + step.output_count; ++k) {
+        PublishedOutput& output = published[k];
+        const std::byte* data = output.port->data;
+        if (output.is_signal) {
+            const auto* samples = reinterpret_cast<const float*>(data);
+            if (frames == 1) output.samples.add(position, *samples);
+            else output.samples.add(position, samples, static_cast<std::size_t>(frames));
+        } else {
+            for (int i = 0; i < frames; ++i) output.port->type->hash(output.hash, data + i * output.port->stride);
+        }
+    }
+}
+
+template <bool hashed>
+void GroupRuntime::run_each(const Tick& tick) noexcept {
+    for (const Step& step : steps) {
+        if (step.one_at_a_time && tick.frames > 1) {
+            run_one_at_a_time(step, wires[static_cast<std::size_t>(&step - steps.data())], tick);
+        } else {
+            if (step.driven) drive(wires[static_cast<std::size_t>(&step - steps.data())], 0);
+            step.process(step.node, tick);
+        }
+        if constexpr (hashed) hash_outputs(step, tick.frames);
+    }
 }
 
 void GroupRuntime::run_steps(int frames) noexcept {
     const Flicks elapsed = last_ < 0 ? plan->period : (next_ - last_) * plan->period;
     const Tick tick{next_, plan->period, elapsed, frames};
-    for (const Step& step : steps) {
-        if (step.one_at_a_time || frames == 1) run_one_at_a_time(step, frames);
-        else step.process(step.node, tick);
-        for (std::size_t k = 0; k < step.outputs.size(); ++k) {
-            const Output& output = *step.outputs[k];
-            Hash hash = hashes[step.first_hash + k];  // a copy stays in a register
-            if (output.type == &value::signal) {
-                const auto* samples = reinterpret_cast<const float*>(output.data);
-                for (int i = 0; i < frames; ++i) hash.add_word(std::bit_cast<std::uint32_t>(samples[i]));
-            } else {
-                for (int i = 0; i < frames; ++i) output.type->hash(hash, output.data + i * output.stride);
-            }
-            hashes[step.first_hash + k] = hash;
-        }
-    }
+    if (hashes_outputs) run_each<true>(tick);
+    else run_each<false>(tick);
+    ran_ += frames;
+}
+
+std::uint64_t GroupRuntime::hash_of(std::size_t k) const {
+    const PublishedOutput& output = published[k];
+    return output.is_signal ? output.samples.value(static_cast<std::uint64_t>(ran_)) : output.hash.value();
 }
 
 void GroupRuntime::publish(int frames, Pace pace) noexcept {

@@ -2,6 +2,7 @@
 // One rate group while it runs: its steps, links, devices, hashes, and where it is in logical time.
 #pragma once
 
+#include "dsp/core/signal_hash.hpp"
 #include "engine/link.hpp"
 #include "engine/telemetry.hpp"
 #include "engine/timing_log.hpp"
@@ -32,14 +33,28 @@ struct DelayLine {
     std::vector<std::byte> delayed;  ///< the values of this call
 };
 
+/// What every call touches of a node; 32 bytes, so that a long chain runs through few cache lines.
 struct Step {
     void (*process)(void*, const Tick&) noexcept = nullptr;
     void* node = nullptr;
+    std::uint32_t first_output = 0, output_count = 0;  ///< in the group's `published`
+    bool driven = false;         ///< numbers of this group, or gliding ones, drive its parameters
+    bool one_at_a_time = false;  ///< in an audio group: called once per activation
+};
+
+/// The rest of it, at the same index.
+struct StepWires {
     std::vector<Drive> drives;
     std::vector<Input*> inputs;
-    std::vector<Output*> outputs;
-    bool one_at_a_time = false;  ///< in an audio group: called once per activation
-    std::size_t first_hash = 0;
+};
+
+/// An output and the hash over all it gave. The values of a signal are there only until its last reader has run (see
+/// graph/layout.hpp), so each is hashed right after its step.
+struct PublishedOutput {
+    Output* port = nullptr;
+    bool is_signal = false;
+    Hash hash;
+    SignalHash samples;
 };
 
 /// A device of this group; see graph/setup.hpp for how nodes see it.
@@ -62,13 +77,15 @@ public:
     int backlog = 0;
     std::atomic<std::int64_t> end{0};  ///< activations 0 … end − 1 run; only ever lowered while running
     std::vector<Step> steps;
+    std::vector<StepWires> wires;
+    std::vector<PublishedOutput> published;  ///< every output, in the order of the steps
+    bool hashes_outputs = true;
     std::vector<Link*> inputs, outputs;         ///< links into and out of this group
     std::vector<const GroupRuntime*> producers; ///< of each input link
     std::vector<DelayLine> delays;
     std::vector<DeviceSlot*> devices;
     std::vector<Output*> snapshots;
     Flicks now = 0;  ///< logical time of the call that runs
-    std::vector<Hash> hashes;  ///< one per output, in the order of the steps
     const std::vector<TimingRecord>* replayed = nullptr;  ///< decisions to repeat, or null
     Ring<TimingRecord>* log = nullptr;                    ///< where live decisions go, or null
     GroupTelemetry telemetry;
@@ -77,6 +94,10 @@ public:
     /// Next activation to run. Own thread only.
     std::int64_t next() const { return next_; }
     bool finished() const { return next_ >= end.load(std::memory_order_relaxed); }
+    /// Activations that ran. Own thread, or after the run.
+    std::int64_t ran() const { return ran_; }
+    /// Hash over every value of published[k]. Own thread, or after the run.
+    std::uint64_t hash_of(std::size_t k) const;
     /// Activations before this one are complete; their values may be read. Any thread.
     std::int64_t done() const noexcept { return done_.load(std::memory_order_acquire); }
 
@@ -96,11 +117,15 @@ private:
     void read_links(int frames, Pace pace) noexcept;
     void acquire(Pace pace) noexcept;
     void run_steps(int frames) noexcept;
-    void run_one_at_a_time(const Step& step, int frames) noexcept;
+    template <bool hashed>
+    void run_each(const Tick& tick) noexcept;
+    void drive(const StepWires& step, int i) noexcept;
+    void run_one_at_a_time(const Step& step, const StepWires& of, const Tick& all) noexcept;
+    void hash_outputs(const Step& step, int frames) noexcept;
     void publish(int frames, Pace pace) noexcept;
     void note(TimingKind kind, int source, std::int64_t count, std::int64_t value, const DeviceSample* sample) noexcept;
 
-    std::int64_t next_ = 0, last_ = -1;
+    std::int64_t next_ = 0, last_ = -1, ran_ = 0;
     mutable std::size_t cursor_ = 0;  ///< replayed records before this one are past
     alignas(64) std::atomic<std::int64_t> done_{0};
 };

@@ -61,8 +61,11 @@ struct In : Input {
     const Element<T>& get() const { return *reinterpret_cast<const Element<T>*>(data); }
     operator const Element<T>&() const { return get(); }
     const Element<T>* operator->() const { return &get(); }
-    /// Value of the i-th activation of this call.
-    const Element<T>& operator[](int i) const { return *reinterpret_cast<const Element<T>*>(data + i * stride); }
+    /// Value of the i-th activation of this call. The samples of a signal are always adjacent.
+    const Element<T>& operator[](int i) const {
+        if constexpr (std::is_same_v<T, Signal>) return reinterpret_cast<const float*>(data)[i];
+        else return *reinterpret_cast<const Element<T>*>(data + i * stride);
+    }
 };
 
 /// Every value a producer published since the last call, oldest first, with the logical time of each.
@@ -91,7 +94,8 @@ struct AnyIn : Input {
     }
 };
 
-/// An output. A node in an audio group writes `out[i]` for every activation of the call.
+/// An output. A node in an audio group writes `out[i]` for every activation of the call; what a signal held before is
+/// not there any more.
 template <class T>
 struct Out : Output {
     Out(std::string_view about_ = {}, std::string_view unit_ = {}) {
@@ -100,7 +104,7 @@ struct Out : Output {
         unit = unit_;
     }
     Element<T>& get() { return *reinterpret_cast<Element<T>*>(data); }
-    Element<T>& operator[](int i) { return *reinterpret_cast<Element<T>*>(data + i * stride); }
+    Element<T>& operator[](int i) { return reinterpret_cast<Element<T>*>(data)[i]; }
     Out& operator=(const Element<T>& value) {
         get() = value;
         return *this;

@@ -229,6 +229,11 @@ void NodeHarness::fill_inputs(std::int64_t first, int frames) {
     for (auto& [name, port] : outside.devices) device_feed(first, *port);
 }
 
+void NodeHarness::spoil_signals() {
+    for (OutputSlot& output : members_->outputs)
+        if (output.port->type == &value::signal) std::ranges::fill(output.buffer, std::byte{0xff});
+}
+
 void NodeHarness::drive_params(std::int64_t first) {
     if (!options_.drive_params || first % hold != 0) return;
     std::uint64_t salt = mix(options_.seed ^ 0x5a17);
@@ -255,6 +260,7 @@ void NodeHarness::run(std::int64_t activations, std::uint64_t partition) {
         const int frames = next_block(end - index_, partition);
         drive_params(index_);
         fill_inputs(index_, frames);
+        spoil_signals();
         const Tick tick{index_, options_.period, index_ == 0 ? 0 : options_.period, frames};
         {
             const RealtimeScope scope;

@@ -134,6 +134,8 @@ private:
     NodeHarness& feed_bytes(const std::string& input, std::function<void(std::int64_t, void*)> function);
     const std::vector<std::byte>& trace(const std::string& output) const;
     void fill_inputs(std::int64_t first, int frames);
+    /// In an engine the place of a signal is another's between calls; here it holds NaN.
+    void spoil_signals();
     void drive_params(std::int64_t first);
     void collect(int frames);
     int next_block(std::int64_t left, std::uint64_t partition) const;

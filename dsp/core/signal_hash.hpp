@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Running 64-bit hash over the samples of a signal: made so that a block of samples is hashed by vector instructions and
+// any partition into blocks gives the same value.
+#pragma once
+
+#include "dsp/core/hash.hpp"
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+namespace tactus {
+
+/// Sample k, as its 32 raw bits, counts as bits · key(k mod 256) in a sum of 256 samples (multilinear hashing, Carter and
+/// Wegman 1979); full sums are chained. Sums of integers do not depend on the order, so lanes may be added as they come.
+struct SignalHash {
+    static constexpr std::size_t window = 256;
+    using Keys = std::array<std::uint32_t, window>;
+
+    std::uint64_t chain = Hash{}.state;
+    std::uint64_t sum = 0;
+
+    /// The sample after `position` others. Wait-free.
+    void add(std::uint64_t position, float sample) noexcept {
+        const std::size_t at = position % window;
+        sum += std::uint64_t{std::bit_cast<std::uint32_t>(sample)} * keys[at];
+        if (at == window - 1) close();
+    }
+    /// The `count` samples after `position` others. Wait-free.
+    void add(std::uint64_t position, const float* samples, std::size_t count) noexcept;
+
+    /// Hash of all `position` samples so far.
+    std::uint64_t value(std::uint64_t position) const noexcept {
+        Hash all{chain};
+        all.add_word(sum);
+        all.add_word(position);
+        return all.value();
+    }
+
+private:
+    void close() noexcept {
+        Hash next{chain};
+        next.add_word(sum);
+        chain = next.state;
+        sum = 0;
+    }
+
+    // Odd, so that no bit of a sample is lost.
+    static constexpr Keys keys = [] {
+        Keys all{};
+        for (std::size_t i = 0; i < window; ++i) all[i] = static_cast<std::uint32_t>(mix(i)) | 1u;
+        return all;
+    }();
+};
+
+}  // namespace tactus
