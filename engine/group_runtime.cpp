@@ -142,9 +142,21 @@ void GroupRuntime::hash_outputs(const Step& step, int frames) noexcept {
     }
 }
 
+/// Asks for the cache lines of a node's ports and first parameters, a few steps before they are needed: nodes are
+/// scattered, and a thousand of them do not fit the nearest cache.
+static void fetch_ahead(const Step* step, const Step* past) noexcept {
+    constexpr std::ptrdiff_t distance = 4;
+    if (past - step <= distance) return;
+    const auto* node = static_cast<const std::byte*>(step[distance].node);
+    __builtin_prefetch(node + 64);
+    __builtin_prefetch(node + 128);
+}
+
 template <bool hashed>
 void GroupRuntime::run_each(const Tick& tick) noexcept {
+    const Step* const past = steps.data() + steps.size();
     for (const Step& step : steps) {
+        fetch_ahead(&step, past);
         if (step.one_at_a_time && tick.frames > 1) {
             run_one_at_a_time(step, wires[static_cast<std::size_t>(&step - steps.data())], tick);
         } else {

@@ -19,29 +19,31 @@ enum class InputKind : std::uint8_t {
     any,     ///< any type, decided by the wire
 };
 
+// What every call touches stands last in an input and first in an output, so that a node's is close together.
+
 /// What the engine sees of an input.
 struct Input {
     const ValueType* type = nullptr;
     InputKind kind = InputKind::value;
     bool is_optional = false;
-    std::string_view about, unit;
-
-    const std::byte* data = nullptr;  ///< first value of this call
-    std::ptrdiff_t stride = 0;        ///< bytes from one activation to the next, 0 when constant
     bool connected = false;
+    std::string_view about, unit;
     // A batch: `count` values at `data`, taken at logical times `times`.
     const Flicks* times = nullptr;
     int count = 0;
     Flicks period = 0;  ///< logical time between two values of the producer
+
+    const std::byte* data = nullptr;  ///< first value of this call
+    std::ptrdiff_t stride = 0;        ///< bytes from one activation to the next, 0 when constant
 };
 
 /// What the engine sees of an output.
 struct Output {
-    const ValueType* type = nullptr;
-    std::string_view about, unit;
-
     std::byte* data = nullptr;
     std::ptrdiff_t stride = 0;
+
+    const ValueType* type = nullptr;
+    std::string_view about, unit;
     // For snapshots only: what the schedule says about earlier versions (see `Out<T>::oldest_readable`).
     std::int64_t oldest_readable = 0;
     bool last_was_dropped = false;

@@ -12,19 +12,26 @@
 
 namespace tactus {
 
-/// Sample k, as its 32 raw bits, counts as bits · key(k mod 256) in a sum of 256 samples (multilinear hashing, Carter and
-/// Wegman 1979); full sums are chained. Sums of integers do not depend on the order, so lanes may be added as they come.
+/// To the raw bits of each sample a key is added, pairs are multiplied to 64 bits, and 256 samples make a sum (NH, Black
+/// et al. 1999, the core of UMAC); sums are chained. Sums of integers do not depend on the order, so lanes of a vector
+/// may be added as they come.
 struct SignalHash {
     static constexpr std::size_t window = 256;
     using Keys = std::array<std::uint32_t, window>;
 
     std::uint64_t chain = Hash{}.state;
     std::uint64_t sum = 0;
+    std::uint32_t first_of_pair = 0;
 
     /// The sample after `position` others. Wait-free.
     void add(std::uint64_t position, float sample) noexcept {
         const std::size_t at = position % window;
-        sum += std::uint64_t{std::bit_cast<std::uint32_t>(sample)} * keys[at];
+        const std::uint32_t keyed = std::bit_cast<std::uint32_t>(sample) + keys[at];
+        if (at % 2 == 0) {
+            first_of_pair = keyed;
+            return;
+        }
+        sum += std::uint64_t{first_of_pair} * keyed;
         if (at == window - 1) close();
     }
     /// The `count` samples after `position` others. Wait-free.
@@ -34,6 +41,7 @@ struct SignalHash {
     std::uint64_t value(std::uint64_t position) const noexcept {
         Hash all{chain};
         all.add_word(sum);
+        all.add_word(position % 2 == 1 ? first_of_pair : 0);
         all.add_word(position);
         return all.value();
     }
@@ -46,10 +54,9 @@ private:
         sum = 0;
     }
 
-    // Odd, so that no bit of a sample is lost.
-    static constexpr Keys keys = [] {
+    alignas(16) static constexpr Keys keys = [] {
         Keys all{};
-        for (std::size_t i = 0; i < window; ++i) all[i] = static_cast<std::uint32_t>(mix(i)) | 1u;
+        for (std::size_t i = 0; i < window; ++i) all[i] = static_cast<std::uint32_t>(mix(i));
         return all;
     }();
 };
