@@ -1,52 +1,90 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a plan: on a virtual clock as fast as it goes, or in real time. Both give the same output bits.
+// Runs a plan: on a virtual clock as fast as it goes, or in real time. Both give the same output bits. A plan that runs
+// can be changed: another takes over at one logical time, and what the edit does not touch goes on.
 #pragma once
 
+#include "engine/generation.hpp"
 #include "engine/group_runtime.hpp"
 #include "engine/outside.hpp"
+#include "engine/take_writer.hpp"
 #include "graph/plan.hpp"
 
 #include <atomic>
 #include <exception>
 #include <filesystem>
 #include <functional>
+#include <future>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace tactus {
 
 struct EngineOptions {
     double seconds = 1.0;
-    int block = 0;                ///< most samples per call of an audio group, 0: the patch's quantum
-    bool random_blocks = false;   ///< calls of random length up to `block`, for tests
+    int block = 0;  ///< most samples per call of an audio group, 0: the patch's quantum
+    bool random_blocks = false;  ///< calls of random length up to `block`, for tests
     std::optional<std::filesystem::path> folder;  ///< where recordings go, none: nowhere
-    const TimingLog* replay = nullptr;            ///< repeat what timing decided in a live run
+    const TimingLog* replay = nullptr;  ///< repeat what timing decided in a live run
+    const std::vector<RecordedDevice>* devices = nullptr;  ///< stand-ins for the devices of the run that is repeated
+    TakeWriter* take = nullptr;  ///< records the run
     bool live = false;
     bool hash = true;  ///< keep `output_hash`; costs about as much per sample of a signal as a trivial node
+    /// Where every value of an output goes; used by replay, which compares. Null results: nowhere.
+    std::function<std::unique_ptr<Stream>(const std::string& port, const ValueType&, const GroupRuntime&)> tap;
 };
 
+class Engine;
+
 struct LiveOptions {
-    double dilate = 1.0;                             ///< real seconds per logical second
-    std::optional<std::filesystem::path> log;        ///< where timing decisions are written
-    const std::atomic<bool>* stop = nullptr;         ///< set from outside to end the run early
-    std::function<void()> watch;                     ///< called about every 50 ms by the control thread
+    double dilate = 1.0;  ///< real seconds per logical second
+    std::optional<std::filesystem::path> log;  ///< where timing decisions are written
+    const std::atomic<bool>* stop = nullptr;  ///< set from outside to end the run early
+    std::function<void()> watch;  ///< called about every 20 ms by the control thread
+};
+
+/// What became of an edit.
+struct EditOutcome {
+    std::optional<std::string> error;  ///< why the old plan runs on
+    std::int64_t generation = 0;
+    Flicks when = 0;  ///< logical time of the switch
+    std::size_t kept = 0, nodes = 0;  ///< nodes that go on, of all
 };
 
 class Engine {
 public:
+    using PortHashes = std::vector<std::pair<std::string, std::uint64_t>>;
+
     /// Takes the plan, prepares every node and lays out the wires. Assets must be loaded. Throws Error.
     Engine(Plan plan, const EngineOptions& options);
     ~Engine();
     Engine(const Engine&) = delete;
     Engine& operator=(const Engine&) = delete;
 
+    /// Before an offline run: from logical time `when` on, or where the replayed log says, this plan runs. Later ones
+    /// have later times. Throws Error.
+    void schedule(Plan plan, Flicks when);
+    /// Before an offline run: parameter changes by their number in the replayed log, in the plan scheduled last.
+    void schedule_change(std::int64_t id, const std::string& node, const std::string& param, double value);
+
     /// Runs to the end on `threads` threads; `progress` is told the fraction done. Throws Error.
     void render(int threads, const std::function<void(double)>& progress = {});
     /// Runs in real time, one thread per group. Throws Error. Engines run once.
     void run_live(const LiveOptions& options);
+
+    /// While a live run goes on, from `watch`: `make` compiles a plan on another thread, which then takes over; `text`
+    /// is what the take keeps of it. `told` hears of the outcome from the control thread. Edits wait for each other;
+    /// of those that wait the last one counts.
+    void edit(std::function<Plan()> make, std::string text, std::function<void(const EditOutcome&)> told);
+    /// While a live run goes on, from `watch`: sets a parameter, "0.8 N/mm", two quanta ahead. Returns the logical time.
+    /// Throws Error on unknown names, structural or driven parameters, and values out of range.
+    Flicks set(const std::string& node, const std::string& param, const std::string& text);
+    /// No edit is on its way.
+    bool is_settled() const { return !waiting_ && !building_.valid() && !before_; }
 
     /// Completes recordings. Throws Error.
     void finish();
@@ -56,36 +94,62 @@ public:
     /// Hash over every published value of every output, joined in name order. After the run.
     std::uint64_t output_hash() const;
     /// The same, per output ("node.port").
-    std::vector<std::pair<std::string, std::uint64_t>> port_hashes() const;
+    PortHashes port_hashes() const;
 
-    const Plan& plan() const { return plan_; }
-    const std::vector<std::unique_ptr<GroupRuntime>>& groups() const { return groups_; }
-    const EngineOutside& outside() const { return *outside_; }
-    std::uint64_t plan_hash() const;
+    /// The plan that runs, or ran last.
+    const Plan& plan() const { return now_->plan; }
+    /// Every group that ever ran, the first plan's first.
+    const std::vector<std::shared_ptr<GroupRuntime>>& groups() const { return groups_; }
+    const EngineOutside& outside() const { return outside_; }
+    std::uint64_t plan_hash() const { return plan_hash_; }
+    std::int64_t edits() const { return now_->number; }
     /// Logical time that every group has reached, s.
     double progress_seconds() const;
 
 private:
-    void allocate_outputs();
-    void prepare_nodes();
-    void wire_group(const PlanWire& wire, std::vector<std::vector<Drive>>& drives);
-    void load_constant(const PlanWire& wire);
-    Link& link_for(const PlanWire& wire);
-    void make_steps(std::vector<std::vector<Drive>>& drives);
-    std::vector<bool> vary_within_call() const;
-    void set_ends();
+    struct WaitingEdit {
+        std::function<Plan()> make;
+        std::string text;
+        std::function<void(const EditOutcome&)> told;
+    };
+    struct LiveRun;
+
+    void keep_opened();
+    void adopt_groups(const Generation& generation, Flicks when);
+    void set_end(GroupRuntime& group) const;
+    void add_log(GroupRuntime& group);
+    std::int64_t tick_at(double time, Flicks period) const;
+    static void gather_hashes(const Generation& old, const Generation* next, PortHashes& parts);
     void drain_streams();
+    void drain_log();
     void offline_worker(const std::vector<GroupRuntime*>& mine, std::uint64_t seed);
-    void live_worker(GroupRuntime& group, std::int64_t start_ns, double dilate);
+    void live_worker(GroupRuntime& group);
+    void start_thread(GroupRuntime& group);
+    void tend_edits();
+    void hand_over(std::unique_ptr<Generation> next);
+    void retire();
+    Flicks furthest() const;
     void fail(std::exception_ptr error);
 
     EngineOptions options_;
-    Plan plan_;
-    std::unique_ptr<EngineOutside> outside_;
-    std::vector<std::vector<std::byte>> buffers_;  // values of outputs, defaults of inputs, constants
-    std::vector<std::shared_ptr<const void>> owners_;
-    std::vector<std::unique_ptr<GroupRuntime>> groups_;
-    std::vector<std::unique_ptr<Link>> links_;
+    std::uint64_t plan_hash_ = 0;
+    EngineOutside outside_;
+    Workshop workshop_;
+    std::map<std::string, std::unique_ptr<Stream>> taps_;  // by output, group and type
+    std::vector<Stream*> open_taps_;  // of the plans that ran so far
+    std::vector<std::shared_ptr<GroupRuntime>> groups_;
+    std::unique_ptr<Generation> now_, before_;
+    std::vector<std::unique_ptr<Generation>> scheduled_;  // offline: all that come before `now_`
+    PortHashes ended_hashes_;
+    std::vector<ParameterChange> replayed_changes_;
+    std::optional<WaitingEdit> waiting_, making_;
+    std::future<std::unique_ptr<Generation>> building_;
+    std::vector<std::int64_t> settled_at_;  // what each group had done when nothing read the plan before any more
+    std::int64_t changes_ = 0;
+    std::vector<std::unique_ptr<Ring<TimingRecord>>> log_rings_;
+    std::unique_ptr<TimingLogWriter> log_;
+    std::mutex log_lock_;
+    LiveRun* live_ = nullptr;
     std::atomic<std::uint32_t> generation_{0};  // rises after every offline call
     std::atomic<bool> stop_{false};
     std::mutex failure_lock_;

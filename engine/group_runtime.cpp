@@ -26,31 +26,115 @@ const TimingRecord* GroupRuntime::replayed_at(TimingKind kind, std::uint16_t sou
 int GroupRuntime::cut(int frames) const noexcept {
     std::int64_t until =
         std::min<std::int64_t>(next_ + std::min(frames, max_frames), end.load(std::memory_order_relaxed));
-    for (const Link* link : inputs) until = std::min(until, link->window_end(next_));
-    for (const DelayLine& delay : delays) until = std::min(until, next_ + delay.count);
-    if (replayed) {
+    const auto cut_at = [&](std::int64_t tick) {
+        if (tick > next_) until = std::min(until, tick);
+    };
+    for (const Link* link : program_->inputs) cut_at(link->window_end(next_));
+    for (const auto& delay : program_->delays) cut_at(next_ + delay->count);
+    if (!replayed) {
+        if (upcoming_) {
+            cut_at(ceil_div(upcoming_->fade_time, plan->period));
+            cut_at(ceil_div(upcoming_->switch_time, plan->period));
+        }
+        if (has_change_) cut_at(ceil_div(change_.when, plan->period));
+    } else {
         // A logged decision begins or ends only between calls.
         for (std::size_t i = cursor_; i < replayed->size(); ++i) {
             const TimingRecord& record = (*replayed)[i];
             if (record.tick >= until) break;
-            if (record.tick > next_) until = record.tick;
-            else if (record.tick + record.count > next_) until = std::min(until, record.tick + record.count);
+            cut_at(record.tick > next_ ? record.tick : record.tick + record.count);
         }
     }
     return static_cast<int>(std::max<std::int64_t>(until - next_, 1));
 }
 
+void GroupRuntime::apply_parameters() noexcept {
+    if (replayed) {
+        for (std::size_t i = cursor_; i < replayed->size() && (*replayed)[i].tick <= next_; ++i) {
+            const TimingRecord& record = (*replayed)[i];
+            if (record.kind != TimingKind::parameter || record.tick != next_) continue;
+            const ParameterChange& change = (*replayed_changes)[static_cast<std::size_t>(record.value)];
+            change.param->value = change.value;
+        }
+        return;
+    }
+    while (has_change_ || (has_change_ = changes_.pop(change_))) {
+        if (change_.when > next_ * plan->period) return;
+        change_.param->value = change_.value;
+        note(TimingKind::parameter, 0, 0, change_.id, nullptr);
+        has_change_ = false;
+    }
+}
+
+void GroupRuntime::hold_off(bool wanted) noexcept {
+    held_off_ = wanted;
+    for (DeviceSlot* slot : program_->driven) slot->port.hold_off = wanted;
+}
+
+void GroupRuntime::take_over(GroupProgram& next) noexcept {
+    if (held_off_) hold_off(false);
+    if (program_) {
+        program_->ran = ran_;
+        for (PublishedOutput& output : next.published) {
+            if (output.before < 0) continue;
+            const PublishedOutput& old = program_->published[static_cast<std::size_t>(output.before)];
+            output.hash = old.hash;
+            output.samples = old.samples;
+        }
+    }
+    for (const MovedOutput& output : next.moved) {
+        std::memcpy(output.to, output.port->data, output.bytes);
+        output.port->data = output.to;
+    }
+    for (const auto& [input, wired] : next.wiring) *input = *wired;
+    for (const auto& [param, value] : next.params) param->value = value;
+    for (const auto& delay : next.delays)
+        if (delay->before) delay->history.swap(delay->before->history);
+    for (Link* link : next.ended) link->abandon();
+    for (Link* link : next.new_inputs) link->take_over();
+    for (Link* link : next.new_outputs) link->begin_at(next_);
+    program_ = &next;
+    generation_.store(next.generation, std::memory_order_release);
+}
+
+void GroupRuntime::take_changes(Pace pace) noexcept {
+    const RealtimeScope scope;
+    if (finished()) return;
+    if (!upcoming_ && taken_ < scheduled.size()) upcoming_ = scheduled[taken_++];
+    if (!upcoming_) programs_.pop(upcoming_);
+    // What the log says belongs to the ticks of the program that was there then: the first one is not in it.
+    if (program_) apply_parameters();
+    if (!upcoming_) return;
+    const Flicks time = next_ * plan->period;
+    const bool is_logged = replayed && program_;
+    const bool must_fade = is_logged ? replayed_at(TimingKind::fade, 0, next_) != nullptr
+                                     : program_ && !held_off_ && time >= upcoming_->fade_time &&
+                                           upcoming_->fade_time < upcoming_->switch_time;
+    const TimingRecord* logged = is_logged ? replayed_at(TimingKind::plan, 0, next_) : nullptr;
+    const bool must_switch =
+        is_logged ? logged && logged->value == upcoming_->generation : time >= upcoming_->switch_time;
+    if (must_fade && !must_switch) {
+        hold_off(true);
+        if (pace == Pace::live) note(TimingKind::fade, 0, 0, 0, nullptr);
+    }
+    if (!must_switch) return;
+    if (pace == Pace::live && program_) note(TimingKind::plan, 0, 0, upcoming_->generation, nullptr);
+    take_over(*upcoming_);
+    upcoming_ = nullptr;
+}
+
 bool GroupRuntime::ready() const noexcept {
-    for (std::size_t i = 0; i < inputs.size(); ++i) {
-        const Link& link = *inputs[i];
+    for (std::size_t i = 0; i < program_->inputs.size(); ++i) {
+        const Link& link = *program_->inputs[i];
         std::int64_t wanted = link.wanted(next_);
         if (const TimingRecord* held = replayed_at(TimingKind::held_read, static_cast<std::uint16_t>(link.id), next_))
             wanted = held->value;
-        wanted = std::min(wanted, producers[i]->end.load(std::memory_order_relaxed) - 1);
-        if (wanted >= 0 && producers[i]->done() <= wanted) return false;
+        const GroupRuntime& producer = *program_->producers[i];
+        wanted = std::min(wanted, producer.end.load(std::memory_order_relaxed) - 1);
+        if (wanted >= 0 && producer.done() <= wanted) return false;
     }
     const int frames = cut(max_frames);
-    for (const Link* link : outputs)
+    for (const Link* link : program_->outputs)
         if (!replayed_at(TimingKind::dropped, static_cast<std::uint16_t>(link->id), next_) &&
             !link->has_room(next_, frames))
             return false;
@@ -71,27 +155,28 @@ void GroupRuntime::note(TimingKind kind, int source, std::int64_t count, std::in
     if (!log->push(record)) log_overflow.store(true, std::memory_order_relaxed);
 }
 
-void GroupRuntime::acquire(Pace pace) noexcept {
+void GroupRuntime::acquire() noexcept {
     const Flicks elapsed = last_ < 0 ? 0 : (next_ - last_) * plan->period;
-    for (DeviceSlot* slot : devices) {
+    for (DeviceSlot* slot : program_->devices) {
         const TimingRecord* logged =
             replayed_at(TimingKind::device_sample, static_cast<std::uint16_t>(slot->id), next_);
         slot->port.sample = logged ? logged->sample : slot->device->acquire(seconds(elapsed));
-        if (pace == Pace::live) note(TimingKind::device_sample, slot->id, 1, 0, &slot->port.sample);
+        note(TimingKind::device_sample, slot->id, 1, 0, &slot->port.sample);
     }
 }
 
 void GroupRuntime::read_links(int frames, Pace pace) noexcept {
     bool missed = false;
-    for (std::size_t i = 0; i < inputs.size(); ++i) {
-        Link& link = *inputs[i];
+    for (std::size_t i = 0; i < program_->inputs.size(); ++i) {
+        Link& link = *program_->inputs[i];
+        const GroupRuntime& producer = *program_->producers[i];
         const std::int64_t want = link.wanted(next_);
         std::int64_t chosen = link.used();
         if (const TimingRecord* held = replayed_at(TimingKind::held_read, static_cast<std::uint16_t>(link.id), next_))
             chosen = held->value;
-        else if (want > chosen) chosen = link.newest_available(want, producers[i]->done());
+        else if (want > chosen) chosen = link.newest_available(want, producer.done());
         // Past the producer's last activation there is nothing to miss.
-        if (chosen < std::min(want, producers[i]->end.load(std::memory_order_relaxed) - 1)) {
+        if (chosen < std::min(want, producer.end.load(std::memory_order_relaxed) - 1) && link.misses(want)) {
             missed = true;
             if (pace == Pace::live) note(TimingKind::held_read, link.id, frames, chosen, nullptr);
         }
@@ -111,7 +196,7 @@ void GroupRuntime::drive(const StepWires& step, int i) noexcept {
 }
 
 void GroupRuntime::run_one_at_a_time(const Step& step, const StepWires& of, const Tick& all) noexcept {
-    const std::span<PublishedOutput> mine(published.data() + step.first_output, step.output_count);
+    const std::span<PublishedOutput> mine(program_->published.data() + step.first_output, step.output_count);
     for (int i = 0; i < all.frames; ++i) {
         drive(of, i);
         step.process(step.node, {all.index + i, all.period, i == 0 ? all.elapsed : all.period, 1});
@@ -130,7 +215,7 @@ void GroupRuntime::run_one_at_a_time(const Step& step, const StepWires& of, cons
 void GroupRuntime::hash_outputs(const Step& step, int frames) noexcept {
     const auto position = static_cast<std::uint64_t>(ran_);
     for (std::uint32_t k = step.first_output; k < step.first_output + step.output_count; ++k) {
-        PublishedOutput& output = published[k];
+        PublishedOutput& output = program_->published[k];
         const std::byte* data = output.port->data;
         if (output.is_signal) {
             const auto* samples = reinterpret_cast<const float*>(data);
@@ -139,6 +224,14 @@ void GroupRuntime::hash_outputs(const Step& step, int frames) noexcept {
         } else {
             for (int i = 0; i < frames; ++i) output.port->type->hash(output.hash, data + i * output.port->stride);
         }
+    }
+}
+
+void GroupRuntime::record_outputs(const Step& step, int frames) noexcept {
+    for (std::uint32_t k = step.first_output; k < step.first_output + step.output_count; ++k) {
+        const PublishedOutput& output = program_->published[k];
+        if (output.take)
+            output.take->write(next_, output.port->data, static_cast<std::size_t>(frames), output.port->stride);
     }
 }
 
@@ -154,6 +247,8 @@ static void fetch_ahead(const Step* step, const Step* past) noexcept {
 
 template <bool hashed>
 void GroupRuntime::run_each(const Tick& tick) noexcept {
+    const auto& steps = program_->steps;
+    const auto& wires = program_->wires;
     const Step* const past = steps.data() + steps.size();
     for (const Step& step : steps) {
         fetch_ahead(&step, past);
@@ -164,25 +259,21 @@ void GroupRuntime::run_each(const Tick& tick) noexcept {
             step.process(step.node, tick);
         }
         if constexpr (hashed) hash_outputs(step, tick.frames);
+        if (program_->records_outputs) record_outputs(step, tick.frames);
     }
 }
 
 void GroupRuntime::run_steps(int frames) noexcept {
     const Flicks elapsed = last_ < 0 ? plan->period : (next_ - last_) * plan->period;
     const Tick tick{next_, plan->period, elapsed, frames};
-    if (hashes_outputs) run_each<true>(tick);
+    if (program_->hashes_outputs) run_each<true>(tick);
     else run_each<false>(tick);
     ran_ += frames;
 }
 
-std::uint64_t GroupRuntime::hash_of(std::size_t k) const {
-    const PublishedOutput& output = published[k];
-    return output.is_signal ? output.samples.value(static_cast<std::uint64_t>(ran_)) : output.hash.value();
-}
-
 void GroupRuntime::publish(int frames, Pace pace) noexcept {
     std::size_t took = 0;
-    for (Link* link : outputs) {
+    for (Link* link : program_->outputs) {
         const auto id = static_cast<std::uint16_t>(link->id);
         const bool drop = pace == Pace::live ? !link->has_room(next_, frames)
                                              : replayed_at(TimingKind::dropped, id, next_) != nullptr;
@@ -194,37 +285,27 @@ void GroupRuntime::publish(int frames, Pace pace) noexcept {
         link->publish(next_, frames);
         ++took;
     }
-    for (Output* output : snapshots) output->last_was_dropped = took == 0 && !outputs.empty();
+    for (Output* output : program_->snapshots) output->last_was_dropped = took == 0 && !program_->outputs.empty();
 }
 
 int GroupRuntime::call(int frames, Pace pace) noexcept {
     const int n = cut(plan->has_audio ? frames : 1);
     now = next_ * plan->period;
-    acquire(pace);
+    acquire();
     {
         RealtimeScope scope;
         read_links(n, pace);
-        for (Output* output : snapshots) {
+        for (Output* output : program_->snapshots) {
             output->oldest_readable = std::numeric_limits<std::int64_t>::max();
-            for (const Link* link : outputs)
+            for (const Link* link : program_->outputs)
                 output->oldest_readable = std::min(output->oldest_readable, link->oldest_version(output));
         }
-        for (DelayLine& delay : delays)
-            for (int i = 0; i < n; ++i)
-                std::memcpy(
-                    delay.delayed.data() + static_cast<std::size_t>(i) * delay.type->size,
-                    delay.history.data() + static_cast<std::size_t>((next_ + i) % delay.count) * delay.type->size,
-                    delay.type->size);
+        for (const auto& delay : program_->delays) delay->recall(next_, n);
         run_steps(n);
-        for (DelayLine& delay : delays)
-            for (int i = 0; i < n; ++i)
-                std::memcpy(
-                    delay.history.data() + static_cast<std::size_t>((next_ + i) % delay.count) * delay.type->size,
-                    delay.source->data + i * delay.source->stride, delay.type->size);
+        for (const auto& delay : program_->delays) delay->remember(next_, n);
         publish(n, pace);
     }
-    for (DeviceSlot* slot : devices) {
-        if (!slot->port.has_output) continue;
+    for (DeviceSlot* slot : program_->driven) {
         telemetry.force_N.store(glm::length(slot->port.wrench.force), std::memory_order_relaxed);
         if (!replayed) slot->device->commit(slot->port.wrench);
     }

@@ -7,7 +7,9 @@
 
 namespace tactus {
 
-void Link::prepare(Flicks slack, int producer_frames, int consumer_frames) {
+void Link::prepare(Flicks slack, int producer_frames, int consumer_frames, std::int64_t first) {
+    first_.store(first);
+    settled_.store(continued == nullptr);
     // Slot m is wanted until the consumer's next read; latency and the lengths of calls on both sides add to that.
     const Flicks reach = consumer_period * consumer_frames + latency + slack;
     depth_ = ceil_div(reach, producer_period) + 2 + 2 * static_cast<std::int64_t>(producer_frames);
@@ -16,7 +18,9 @@ void Link::prepare(Flicks slack, int producer_frames, int consumer_frames) {
     for (LinkWire& wire : wires) {
         const std::size_t size = wire.type->size;
         wire.ring.assign(depth * size, std::byte{0});
-        wire.current.assign(wire.source->data, wire.source->data + size);
+        wire.current.resize(size);
+        if (wire.starts_from_output) std::memcpy(wire.current.data(), wire.source->data, size);
+        else wire.type->make_default(wire.current.data());
         wire.previous = wire.current;
         if (wire.mode == WireMode::linear) wire.glide.resize(size * static_cast<std::size_t>(consumer_frames));
         if (wire.mode == WireMode::batch) {
@@ -24,12 +28,14 @@ void Link::prepare(Flicks slack, int producer_frames, int consumer_frames) {
             wire.batch_times.resize(depth);
         }
         if (wire.param) wire.param->drive(*reinterpret_cast<const double*>(wire.current.data()));
-        if (wire.target) {
-            wire.target->data = wire.mode == WireMode::batch ? wire.batch.data() : wire.current.data();
-            wire.target->times = wire.batch_times.data();
-            wire.target->period = producer_period;
-        }
+        if (wire.target) wire.point(*wire.target, producer_period);
     }
+}
+
+void LinkWire::point(Input& input, Flicks producer_period) const {
+    input.data = mode == WireMode::batch ? batch.data() : current.data();
+    input.times = batch_times.data();
+    input.period = producer_period;
 }
 
 void Link::publish(std::int64_t first, int count) noexcept {
@@ -39,13 +45,54 @@ void Link::publish(std::int64_t first, int count) noexcept {
     for (int i = 0; i < count; ++i) stamp_[static_cast<std::size_t>((first + i) % depth_)] = first + i;
 }
 
+void Link::take_over() noexcept {
+    if (!continued) return;
+    continues_ = true;
+    used_ = continued->used_;
+    fresh_ = continued->fresh_;
+    for (LinkWire& wire : wires) {
+        if (!wire.before) continue;
+        std::memcpy(wire.current.data(), wire.before->current.data(), wire.type->size);
+        std::memcpy(wire.previous.data(), wire.before->previous.data(), wire.type->size);
+    }
+}
+
+void Link::abandon() noexcept { hold_from(std::numeric_limits<std::int64_t>::max() / 2); }
+
+void Link::hold_from(std::int64_t index) noexcept {
+    oldest_.store(index, std::memory_order_release);
+    if (settled_.load(std::memory_order_relaxed)) return;
+    if (index < first_.load(std::memory_order_acquire)) {
+        continued->hold_from(index);
+        return;
+    }
+    continued->abandon();
+    continues_ = false;
+    settled_.store(true, std::memory_order_release);
+}
+
+bool Link::holds(std::int64_t index) const noexcept {
+    if (index < 0) return false;
+    if (index < first_.load(std::memory_order_acquire)) return continues_ && continued->holds(index);
+    return stamp_[static_cast<std::size_t>(index % depth_)] == index;
+}
+
+const std::byte* Link::value(const LinkWire& wire, std::int64_t index) const noexcept {
+    if (index >= first_.load(std::memory_order_acquire))
+        return wire.ring.data() + static_cast<std::size_t>(index % depth_) * wire.type->size;
+    // A wire that is new has brought nothing yet.
+    return continues_ && wire.before ? continued->value(*wire.before, index) : wire.current.data();
+}
+
 std::int64_t Link::oldest_version(const Output* output) const noexcept {
     std::int64_t oldest = std::numeric_limits<std::int64_t>::max();
+    if (!settled_.load(std::memory_order_acquire)) oldest = continued->oldest_version(output);
     const std::int64_t held = oldest_.load(std::memory_order_acquire);
+    const bool is_begun = held >= first_.load(std::memory_order_relaxed);
     for (const LinkWire& wire : wires) {
         if (wire.source != output) continue;
         // Index −1 is the value set by prepare, which counts as the oldest there is.
-        if (held < 0) return 0;
+        if (!is_begun && !wire.before && wire.starts_from_output) return 0;
         for (std::size_t slot = 0; slot < stamp_.size(); ++slot)
             if (stamp_[slot] >= held)
                 oldest = std::min(oldest, wire.type->version(wire.ring.data() + slot * wire.type->size));
@@ -54,7 +101,9 @@ std::int64_t Link::oldest_version(const Output* output) const noexcept {
 }
 
 std::int64_t Link::newest_available(std::int64_t want, std::int64_t done) const noexcept {
-    for (std::int64_t index = std::min(want, done - 1); index > used_; --index)
+    const std::int64_t newest = std::min(want, done - 1);
+    // What is older than a ring is long was overwritten.
+    for (std::int64_t index = newest; index > std::max(used_, newest - depth_ - 1); --index)
         if (holds(index)) return index;
     return used_;
 }
@@ -63,7 +112,8 @@ void Link::gather_batch(LinkWire& wire, std::int64_t index) noexcept {
     int count = 0;
     for (std::int64_t k = std::max(used_ + 1, index - depth_ + 1); k <= index; ++k) {
         if (!holds(k)) continue;
-        std::memcpy(wire.batch.data() + static_cast<std::size_t>(count) * wire.type->size, wire.slot(k, depth_),
+        if (k < first_.load(std::memory_order_acquire) && !wire.before) continue;
+        std::memcpy(wire.batch.data() + static_cast<std::size_t>(count) * wire.type->size, value(wire, k),
                     wire.type->size);
         wire.batch_times[static_cast<std::size_t>(count++)] = k * producer_period;
     }
@@ -81,13 +131,13 @@ void Link::read(std::int64_t index) noexcept {
         if (wire.mode == WireMode::linear) {
             // The value before the new one; after a gap, the one that was in use.
             const bool adjacent = index - 1 > used_ && holds(index - 1);
-            std::memcpy(wire.previous.data(), adjacent ? wire.slot(index - 1, depth_) : wire.current.data(),
-                        wire.type->size);
+            std::memcpy(wire.previous.data(), adjacent ? value(wire, index - 1) : wire.current.data(), wire.type->size);
         }
-        std::memcpy(wire.current.data(), wire.slot(index, depth_), wire.type->size);
+        const std::byte* now = value(wire, index);
+        if (now != wire.current.data()) std::memcpy(wire.current.data(), now, wire.type->size);
     }
     used_ = index;
-    oldest_.store(index, std::memory_order_release);
+    hold_from(index);
 }
 
 void Link::deliver(std::int64_t j, int frames) noexcept {

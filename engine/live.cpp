@@ -39,16 +39,29 @@ void wait_until(std::int64_t when_ns) noexcept {
 }
 
 /// The faster the group, the higher its priority. False when the system refuses.
-bool make_real_time(int rank) noexcept {
+bool make_real_time(Flicks period) noexcept {
     sched_param parameters{};
-    parameters.sched_priority = std::max(10, 80 - 5 * rank);
+    // 48 kHz: 77, 1 kHz: 60, 60 Hz: 47.
+    const double octaves_above_1_hz = std::log2(rate_of(period));
+    parameters.sched_priority = std::clamp(30 + static_cast<int>(3.0 * octaves_above_1_hz), 10, 80);
     return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
 }
 
 }  // namespace
 
-void Engine::live_worker(GroupRuntime& group, std::int64_t start_ns, double dilate) {
+/// What the threads of a live run share.
+struct Engine::LiveRun {
+    std::int64_t start_ns = 0;
+    double dilate = 1.0;
+    std::atomic<std::size_t> running{0};
+    std::atomic<bool> refused{false};  // real-time priority
+    std::vector<std::jthread> threads;
+};
+
+void Engine::live_worker(GroupRuntime& group) {
     flush_denormals_to_zero();
+    const std::int64_t start_ns = live_->start_ns;
+    const double dilate = live_->dilate;
     const auto release_ns = [&](std::int64_t tick) {
         return start_ns + std::llround(static_cast<double>(nanoseconds(tick * group.plan->period)) * dilate);
     };
@@ -59,48 +72,45 @@ void Engine::live_worker(GroupRuntime& group, std::int64_t start_ns, double dila
         const std::int64_t begin = now_ns();
         group.telemetry.lateness.add(begin - due);
         const auto late = static_cast<std::int64_t>(static_cast<double>(begin - due) / period_ns);
-        if (late > group.backlog) {
+        if (late > group.backlog()) {
             group.skip_to(std::min(group.next() + late, group.end.load()));
             continue;
         }
+        group.take_changes(Pace::live);
         group.call(group.max_frames, Pace::live);
         group.telemetry.execution.add(now_ns() - begin);
     }
     group.end_at(group.next());
 }
 
+void Engine::start_thread(GroupRuntime& group) {
+    ++live_->running;
+    live_->threads.emplace_back([this, &group] {
+        if (!make_real_time(group.plan->period)) live_->refused = true;
+        live_worker(group);
+        --live_->running;
+    });
+}
+
 void Engine::run_live(const LiveOptions& options) {
-    std::vector<std::unique_ptr<Ring<TimingRecord>>> rings;
-    std::unique_ptr<TimingLogWriter> log;
-    if (options.log) {
-        log = std::make_unique<TimingLogWriter>(*options.log, plan_hash(), options_.seconds, groups_.size());
-        for (const auto& group : groups_)
-            group->log = rings.emplace_back(std::make_unique<Ring<TimingRecord>>(1 << 15)).get();
-    }
-    if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
-        outside_->notices.push_back(
-            "memory could not be locked: a page fault may delay a tick (run as root or raise RLIMIT_MEMLOCK)");
-    std::atomic<bool> refused{false};
-    std::atomic<std::size_t> running{groups_.size()};
-    const std::int64_t start = now_ns() + start_delay_ns;
-    std::vector<std::jthread> threads;
+    if (options.log) log_ = std::make_unique<TimingLogWriter>(*options.log, plan_hash_, options_.seconds);
     for (const auto& group : groups_)
-        threads.emplace_back([this, &group = *group, &refused, &running, start, &options] {
-            if (!make_real_time(group.index)) refused = true;
-            live_worker(group, start, options.dilate);
-            --running;
-        });
-    const auto drain_log = [&] {
-        TimingRecord record;
-        for (const auto& ring : rings)
-            while (ring->pop(record)) log->write(record);
-    };
+        if ((log_ || options_.take) && !group->log) add_log(*group);
+    if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
+        outside_.notices.push_back(
+            "memory could not be locked: a page fault may delay a tick (run as root or raise RLIMIT_MEMLOCK)");
+    LiveRun run;
+    live_ = &run;
+    run.start_ns = now_ns() + start_delay_ns;
+    run.dilate = options.dilate;
+    for (const auto& group : now_->groups) start_thread(*group);
     bool stopping = false;
-    while (running.load() > 0) {
+    while (run.running.load() > 0) {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
         try {
             drain_log();
             drain_streams();
+            tend_edits();
             if (options.watch) options.watch();
         } catch (...) {
             fail(std::current_exception());
@@ -110,25 +120,24 @@ void Engine::run_live(const LiveOptions& options) {
         if (options.stop && options.stop->load() && !stopping) {
             stopping = true;
             // All groups end at one logical time, a little ahead of the furthest.
-            Flicks furthest = 0;
-            for (const auto& group : groups_) furthest = std::max(furthest, group->done() * group->plan->period);
-            const Flicks end = furthest + flicks_per_second / 20;
+            const Flicks end = furthest() + flicks_per_second / 20;
             for (const auto& group : groups_)
                 group->end = std::min(group->end.load(), ceil_div(end, group->plan->period));
         }
     }
-    threads.clear();
+    run.threads.clear();
+    if (building_.valid()) building_.wait();
+    live_ = nullptr;
     munlockall();
     if (failure_) std::rethrow_exception(failure_);
     drain_log();
     drain_streams();
-    if (refused)
-        outside_->notices.push_back(
+    if (run.refused)
+        outside_.notices.push_back(
             "real-time priority was refused: expect late ticks (run as root or raise RLIMIT_RTPRIO)");
-    if (!log) return;
     for (const auto& group : groups_)
-        if (group->log_overflow) throw Error("the timing log could not keep up; it was not written");
-    log->finish();
+        if (group->log_overflow) throw Error("the timing log could not keep up; the run cannot be repeated");
+    if (log_) log_->finish();
 }
 
 }  // namespace tactus

@@ -25,6 +25,7 @@ void Engine::offline_worker(const std::vector<GroupRuntime*>& mine, std::uint64_
             while (!group->finished() && group->replay_skip()) {
             }
             if (group->finished()) continue;
+            group->take_changes(Pace::offline);
             all_finished = false;
             const auto release = [](const GroupRuntime* g) { return g->next() * g->plan->period; };
             if (group->ready() && (!earliest || release(group) < release(earliest))) earliest = group;
@@ -42,8 +43,11 @@ void Engine::offline_worker(const std::vector<GroupRuntime*>& mine, std::uint64_
         earliest->telemetry.execution.add((std::chrono::steady_clock::now() - before).count());
         generation_.fetch_add(1, std::memory_order_release);
         generation_.notify_all();
-        for (const auto& stream : outside_->streams)
+        for (const auto& stream : outside_.streams)
             if (stream->wants_drain()) stream->drain();
+        for (Stream* tap : open_taps_)
+            if (tap->wants_drain()) tap->drain();
+        if (earliest->log && earliest->log->size() * 2 > earliest->log->capacity()) drain_log();
     }
 }
 
@@ -58,7 +62,7 @@ void Engine::render(int threads, const std::function<void(double)>& progress) {
     for (std::size_t i = 0; i < count; ++i)
         workers.emplace_back([this, &shares, &running, i] {
             try {
-                offline_worker(shares[i], mix(plan_.patch.seed + i));
+                offline_worker(shares[i], mix(now_->plan.patch.seed + i));
             } catch (...) {
                 fail(std::current_exception());
             }
@@ -73,6 +77,8 @@ void Engine::render(int threads, const std::function<void(double)>& progress) {
     }
     workers.clear();
     if (failure_) std::rethrow_exception(failure_);
+    for (const auto& group : groups_) group->end_at(group->next());
+    drain_log();
     drain_streams();
 }
 

@@ -18,26 +18,78 @@ public:
     void finish() override {}
 };
 
+/// What a device reported is in the log that is replayed; there is no hand to feel the forces.
+class StandIn : public HapticDevice {
+public:
+    explicit StandIn(RecordedDevice recorded) : recorded_(std::move(recorded)) {}
+    const DeviceInfo& info() const override { return recorded_.info; }
+    void prepare(double) override {}
+    DeviceSample acquire(double) noexcept override { return recorded_.first; }
+    void commit(const Wrench&) noexcept override {}
+
+private:
+    RecordedDevice recorded_;
+};
+
+bool same_settings(const std::vector<OptionText>& a, const std::vector<OptionText>& b) {
+    return std::ranges::equal(
+        a, b, [](const OptionText& x, const OptionText& y) { return x.name == y.name && x.text == y.text; });
+}
+
 }  // namespace
 
-EngineOutside::EngineOutside(const Patch& patch, std::optional<std::filesystem::path> folder, bool live)
-    : patch_(patch), folder_(std::move(folder)), live_(live) {}
+EngineOutside::EngineOutside(std::optional<std::filesystem::path> folder, bool live)
+    : folder_(std::move(folder)), live_(live) {}
+
+void EngineOutside::begin(const Patch& patch) {
+    patch_ = patch;
+    for (const auto& [name, settings] : device_settings_)
+        for (const PatchDevice& declared : patch.devices)
+            if (declared.name == name && !same_settings(declared.settings, settings))
+                throw Error(declared.where,
+                            fmt::format("device '{}' is open; its settings take effect at the next start", name));
+}
+
+void EngineOutside::keep() {
+    for (auto& slot : opened_.devices) {
+        const auto declared = std::ranges::find(patch_.devices, slot->name, &PatchDevice::name);
+        if (declared != patch_.devices.end()) device_settings_.emplace_back(slot->name, declared->settings);
+        devices.push_back(std::move(slot));
+    }
+    for (auto& stream : opened_.streams) streams.push_back(std::move(stream));
+    for (auto& notice : opened_.notices) notices.push_back(std::move(notice));
+    opened_ = {};
+}
+
+void EngineOutside::discard() { opened_ = {}; }
 
 std::string EngineOutside::device_name(const std::string& wanted, const SourceLocation& where) const {
     if (!wanted.empty()) return wanted;
-    if (devices.size() == 1) return devices.front()->name;
-    if (devices.empty() && patch_.devices.size() == 1) return patch_.devices.front().name;
+    if (patch_.devices.size() == 1) return patch_.devices.front().name;
+    if (devices.size() + opened_.devices.size() == 1)
+        return (devices.empty() ? opened_.devices : devices).front()->name;
     throw Error(where, "which device is meant? Name it, as in device = \"simulated\"");
 }
 
-DevicePort& EngineOutside::device(const std::string& wanted, const SourceLocation& where) {
+DeviceSlot* EngineOutside::find_device(const std::string& name) const {
+    for (const auto* list : {&devices, &opened_.devices})
+        for (const auto& slot : *list)
+            if (slot->name == name) return slot.get();
+    return nullptr;
+}
+
+DevicePort& EngineOutside::use_device(DeviceSlot& slot, DeviceUse use, const SourceLocation& where) {
+    if (slot.group != group_)
+        throw Error(where, fmt::format("device '{}' is used in two groups; its nodes must share one rate, and keep it "
+                                       "while the patch runs",
+                                       slot.name));
+    uses_->emplace_back(&slot, use);
+    return slot.port;
+}
+
+DevicePort& EngineOutside::device(const std::string& wanted, DeviceUse use, const SourceLocation& where) {
     const std::string name = device_name(wanted, where);
-    for (const auto& slot : devices) {
-        if (slot->name != name) continue;
-        if (slot->group != group_)
-            throw Error(where, fmt::format("device '{}' is used in two groups; its nodes must share one rate", name));
-        return slot->port;
-    }
+    if (DeviceSlot* slot = find_device(name)) return use_device(*slot, use, where);
     const auto declared = std::ranges::find(patch_.devices, name, &PatchDevice::name);
     const bool is_declared = declared != patch_.devices.end();
     Options options(fmt::format("device '{}'", name), is_declared ? declared->settings : std::vector<OptionText>{},
@@ -51,32 +103,51 @@ DevicePort& EngineOutside::device(const std::string& wanted, const SourceLocatio
     };
     auto slot = std::make_unique<DeviceSlot>();
     slot->name = name;
-    slot->device = open_haptic_device(is_declared ? declared->driver : name, is_declared ? declared->where : where,
-                                      options, resolve);
-    options.finish();
+    if (recorded_) {
+        const auto recorded = std::ranges::find(*recorded_, name, &RecordedDevice::name);
+        if (recorded == recorded_->end()) throw Error(where, fmt::format("the take knows no device '{}'", name));
+        slot->device = std::make_unique<StandIn>(*recorded);
+    } else {
+        slot->device = open_haptic_device(is_declared ? declared->driver : name, is_declared ? declared->where : where,
+                                          options, resolve);
+        options.finish();
+    }
     slot->device->prepare(seconds(period_));
     slot->port.info = slot->device->info();
     slot->port.sample = slot->device->acquire(0.0);
     slot->group = group_;
-    for (const auto& other : devices) slot->id += other->group == group_;
-    devices.push_back(std::move(slot));
-    return devices.back()->port;
+    for (const auto* list : {&devices, &opened_.devices})
+        for (const auto& other : *list) slot->id += other->group == group_;
+    opened_.devices.push_back(std::move(slot));
+    return use_device(*opened_.devices.back(), use, where);
 }
 
-RecordStream& EngineOutside::record(const StreamFormat& format, const SourceLocation& where) {
-    if (format.file.empty() || format.file.find('/') != std::string::npos || format.file.starts_with('.'))
-        throw Error(where, fmt::format("'{}' is not a file name; recordings go to the folder of the run", format.file));
-    for (const auto& stream : streams)
-        if (stream->format().file == format.file)
-            throw Error(where, fmt::format("two recordings would be written to '{}'", format.file));
+Stream* EngineOutside::find_stream(const std::string& file) const {
+    for (const auto* list : {&streams, &opened_.streams})
+        for (const auto& stream : *list)
+            if (stream->format().file == file) return stream.get();
+    return nullptr;
+}
+
+RecordStream& EngineOutside::record(const StreamFormat& wanted, const SourceLocation& where) {
+    if (wanted.file.empty() || wanted.file.find('/') != std::string::npos || wanted.file.starts_with('.'))
+        throw Error(where, fmt::format("'{}' is not a file name; recordings go to the folder of the run", wanted.file));
+    for (const auto& stream : opened_.streams)
+        if (stream->format().file == wanted.file)
+            throw Error(where, fmt::format("two recordings would be written to '{}'", wanted.file));
+    StreamFormat format = wanted;
+    // A recording that an edit begins anew leaves what was recorded before untouched.
+    const std::filesystem::path name = wanted.file;
+    for (int again = 2; find_stream(format.file); ++again)
+        format.file = fmt::format("{}-{}{}", name.stem().string(), again, name.extension().string());
     const bool is_sound = format.type == &value::signal;
     if (!is_sound && format.type->columns.empty())
         throw Error(where, fmt::format("a {} cannot be recorded as numbers", format.type->name));
     std::unique_ptr<StreamEnd> end = std::make_unique<NowhereEnd>();
     if (folder_)
         end = is_sound ? make_sound_end(*folder_ / format.file, format) : make_csv_end(*folder_ / format.file, format);
-    streams.push_back(std::make_unique<Stream>(format, std::move(end)));
-    return *streams.back();
+    opened_.streams.push_back(std::make_unique<Stream>(format, std::move(end)));
+    return *opened_.streams.back();
 }
 
 RecordStream& EngineOutside::audio(const StreamFormat& format, const SourceLocation& where) {
@@ -84,14 +155,15 @@ RecordStream& EngineOutside::audio(const StreamFormat& format, const SourceLocat
         try {
             std::unique_ptr<AudioSink> sink = make_portaudio_sink();
             sink->prepare(rate_of(format.period), 1);
-            notices.push_back(fmt::format("playing on {}", sink->name()));
+            opened_.notices.push_back(fmt::format("playing on {}", sink->name()));
             sinks_.push_back(std::move(sink));
             StreamFormat played = format;
             played.file.clear();
-            streams.push_back(std::make_unique<Stream>(played, make_audio_end(*sinks_.back())));
-            return *streams.back();
+            opened_.streams.push_back(std::make_unique<Stream>(played, make_audio_end(*sinks_.back())));
+            return *opened_.streams.back();
         } catch (const Error& error) {
-            notices.push_back(fmt::format("no sound card ({}); the sound goes to {}", error.message(), format.file));
+            opened_.notices.push_back(
+                fmt::format("no sound card ({}); the sound goes to {}", error.message(), format.file));
         }
     }
     return record(format, where);

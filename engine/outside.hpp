@@ -2,40 +2,76 @@
 // The engine's side of graph/setup.hpp: opens what the nodes ask for and owns it.
 #pragma once
 
-#include "engine/group_runtime.hpp"
+#include "engine/group_program.hpp"
 #include "engine/streams.hpp"
+#include "graph/patch.hpp"
 
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tactus {
 
+/// A device of a run that is over, as a take remembers it.
+struct RecordedDevice {
+    std::string name;
+    DeviceInfo info;
+    DeviceSample first;  ///< what nodes saw when they were prepared
+};
+
+/// Devices that a node asked for.
+using DeviceUses = std::vector<std::pair<DeviceSlot*, DeviceUse>>;
+
 class EngineOutside : public Outside {
 public:
     /// Without a folder nothing is written: streams end nowhere. `live` allows real devices and sound cards.
-    EngineOutside(const Patch& patch, std::optional<std::filesystem::path> folder, bool live);
+    EngineOutside(std::optional<std::filesystem::path> folder, bool live);
 
-    DevicePort& device(const std::string& name, const SourceLocation& where) override;
+    DevicePort& device(const std::string& name, DeviceUse use, const SourceLocation& where) override;
     RecordStream& record(const StreamFormat& format, const SourceLocation& where) override;
     RecordStream& audio(const StreamFormat& format, const SourceLocation& where) override;
 
-    /// The group whose nodes are being prepared: a device belongs to one.
-    void prepare_for(int group, Flicks period) {
+    /// What the nodes prepared from now on ask for belongs to this plan. It is opened aside, while the run goes on.
+    void begin(const Patch& patch);
+    /// Which group the node being prepared belongs to, and where to note the devices it asks for.
+    void prepare_for(int group, Flicks period, DeviceUses& uses) {
         group_ = group;
         period_ = period;
+        uses_ = &uses;
     }
+    /// Puts what was opened since `begin` to use; control thread.
+    void keep();
+    /// Closes what was opened since `begin`.
+    void discard();
 
+    /// Instead of opening devices, stand-ins for those of a run that is over: what they reported is in its log.
+    void imitate(std::vector<RecordedDevice> recorded) { recorded_ = std::move(recorded); }
+
+    // Of the run; control thread.
     std::vector<std::unique_ptr<DeviceSlot>> devices;
     std::vector<std::unique_ptr<Stream>> streams;
     std::vector<std::string> notices;  ///< what the user should know once: "no sound card: …"
 
 private:
     std::string device_name(const std::string& wanted, const SourceLocation& where) const;
+    DeviceSlot* find_device(const std::string& name) const;
+    DevicePort& use_device(DeviceSlot& slot, DeviceUse use, const SourceLocation& where);
+    Stream* find_stream(const std::string& file) const;
 
-    const Patch& patch_;
+    struct Opened {
+        std::vector<std::unique_ptr<DeviceSlot>> devices;
+        std::vector<std::unique_ptr<Stream>> streams;
+        std::vector<std::string> notices;
+    };
+
+    Patch patch_;
+    std::optional<std::vector<RecordedDevice>> recorded_;
+    Opened opened_;
+    DeviceUses* uses_ = nullptr;
+    std::vector<std::pair<std::string, std::vector<OptionText>>> device_settings_;
     std::optional<std::filesystem::path> folder_;
     bool live_;
     int group_ = -1;

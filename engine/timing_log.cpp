@@ -5,21 +5,23 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <limits>
 #include <type_traits>
 
 namespace tactus {
 
 namespace {
 
-constexpr char magic[8] = {'T', 'A', 'C', 'T', 'L', 'O', 'G', '1'};
+constexpr char magic[8] = {'T', 'A', 'C', 'T', 'L', 'O', 'G', '2'};
+constexpr std::size_t most_groups = 256;
 
 struct Header {
     char magic[8];
     std::uint64_t plan_hash;
     double seconds;
-    std::uint64_t groups;
 };
 static_assert(std::is_trivially_copyable_v<Header> && std::is_trivially_copyable_v<TimingRecord>);
 
@@ -29,11 +31,12 @@ struct Closer {
 
 }  // namespace
 
-TimingLogWriter::TimingLogWriter(const std::filesystem::path& path, std::uint64_t plan_hash, double seconds,
-                                 std::size_t groups)
-    : path_(path), part_(path.string() + ".part"), file_(std::fopen(part_.c_str(), "wb")) {
-    if (!file_) throw Error(fmt::format("{}: cannot write the timing log: {}", path.string(), std::strerror(errno)));
-    Header header{{}, plan_hash, seconds, groups};
+TimingLogWriter::TimingLogWriter(const std::filesystem::path& path, std::uint64_t plan_hash, double seconds, Name name)
+    : path_(path),
+      part_(name == Name::when_whole ? path.string() + ".part" : path.string()),
+      file_(std::fopen(part_.c_str(), "wb")) {
+    if (!file_) fail();
+    Header header{{}, plan_hash, seconds};
     std::memcpy(header.magic, magic, sizeof magic);
     std::fwrite(&header, sizeof header, 1, file_);
 }
@@ -42,7 +45,11 @@ TimingLogWriter::~TimingLogWriter() {
     if (!file_) return;
     std::fclose(file_);
     std::error_code ignored;
-    std::filesystem::remove(part_, ignored);
+    if (part_ != path_) std::filesystem::remove(part_, ignored);
+}
+
+void TimingLogWriter::fail() const {
+    throw Error(fmt::format("{}: cannot write the timing log: {}", path_.string(), std::strerror(errno)));
 }
 
 void TimingLogWriter::write(const TimingRecord& record) {
@@ -50,38 +57,64 @@ void TimingLogWriter::write(const TimingRecord& record) {
     alignas(TimingRecord) unsigned char bytes[sizeof(TimingRecord)] = {};
     TimingRecord* clean = new (bytes) TimingRecord;
     *clean = record;
-    if (std::fwrite(bytes, sizeof bytes, 1, file_) != 1)
-        throw Error(fmt::format("{}: cannot write the timing log: {}", path_.string(), std::strerror(errno)));
+    if (std::fwrite(bytes, sizeof bytes, 1, file_) != 1) fail();
+}
+
+void TimingLogWriter::flush() {
+    if (std::fflush(file_) != 0) fail();
 }
 
 void TimingLogWriter::finish() {
+    TimingRecord last;
+    last.kind = TimingKind::whole;
+    write(last);
     const bool written = std::fclose(file_) == 0;
     file_ = nullptr;
-    if (!written) throw Error(fmt::format("{}: cannot write the timing log: {}", path_.string(), std::strerror(errno)));
-    std::filesystem::rename(part_, path_);
+    if (!written) fail();
+    if (part_ != path_) std::filesystem::rename(part_, path_);
 }
 
-TimingLog TimingLog::load(const std::filesystem::path& path) {
+TimingLog TimingLog::load(const std::filesystem::path& path, bool may_be_cut) {
     const std::unique_ptr<std::FILE, Closer> file(std::fopen(path.c_str(), "rb"));
     const auto fail = [&path](const std::string& what) { throw Error(fmt::format("{}: {}", path.string(), what)); };
     if (!file) fail(fmt::format("cannot read the timing log: {}", std::strerror(errno)));
     Header header;
     if (std::fread(&header, sizeof header, 1, file.get()) != 1 || std::memcmp(header.magic, magic, sizeof magic) != 0)
         fail("not a timing log of this version; make one with 'tactus run PATCH --log FILE'");
-    if (header.groups == 0 || header.groups > 256) fail("the header of the timing log is damaged");
-    TimingLog log{header.plan_hash, header.seconds, {}};
-    log.groups.resize(header.groups);
-    std::size_t ended = 0;
+    TimingLog log;
+    log.is_whole = false;
+    log.plan_hash = header.plan_hash;
+    log.seconds = header.seconds;
     TimingRecord record;
     while (std::fread(&record, sizeof record, 1, file.get()) == 1) {
-        if (record.group >= header.groups || record.kind > TimingKind::end || record.tick < 0 || record.count < 0)
+        if (record.group >= most_groups || record.kind > TimingKind::whole || record.tick < 0 || record.count < 0)
             fail("a record of the timing log is damaged");
+        log.is_whole = record.kind == TimingKind::whole;
+        if (log.is_whole) break;
+        if (log.groups.size() <= record.group) log.groups.resize(record.group + std::size_t{1});
         log.groups[record.group].push_back(record);
-        ended += record.kind == TimingKind::end;
     }
-    if (ended != header.groups)
-        fail("the timing log stops before the end of the run; it cannot be replayed to the bit");
+    if (log.is_whole) return log;
+    if (!may_be_cut) fail("the timing log stops before the end of the run; it cannot be replayed to the bit");
+    // Every round of progress names all groups; the last one that is complete says where they all were.
+    log.cut = std::numeric_limits<Flicks>::max();
+    for (const auto& group : log.groups) {
+        Flicks reached = 0;
+        for (const TimingRecord& entry : group)
+            if (entry.kind == TimingKind::progress) reached = entry.value;
+            else if (entry.kind == TimingKind::end) reached = std::numeric_limits<Flicks>::max();
+        log.cut = std::min(log.cut, reached);
+    }
+    if (log.groups.empty()) log.cut = 0;
     return log;
+}
+
+std::int64_t TimingLog::end_of(std::size_t group, Flicks period) const {
+    std::int64_t end = is_whole ? std::numeric_limits<std::int64_t>::max() : ceil_div(cut, period);
+    if (group >= groups.size()) return is_whole ? 0 : end;
+    for (const TimingRecord& record : groups[group])
+        if (record.kind == TimingKind::end) end = std::min(end, record.tick);
+    return end;
 }
 
 }  // namespace tactus

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "dsp/core/ring.hpp"
+#include "dsp/core/time.hpp"
 #include "graph/device.hpp"
 
 #include <cstdint>
@@ -20,7 +21,12 @@ enum class TimingKind : std::uint8_t {
     held_read,      ///< activations tick … tick + count − 1 read index `value` of link `source`
     skipped,        ///< activations tick … tick + count − 1 never ran
     dropped,        ///< publications tick … tick + count − 1 towards link `source` found no room
+    parameter,      ///< from activation tick on, the parameter change numbered `value` holds
+    fade,           ///< from activation tick on, forces fade because the plan will change
+    plan,           ///< from activation tick on, the plan numbered `value` runs
+    progress,       ///< all before tick is in the log; where a log that was cut off can be trusted to
     end,            ///< the group ran up to tick − 1
+    whole,          ///< the last record of a log that was written to its end
 };
 
 /// Written by the group that decides, in its own order.
@@ -38,24 +44,39 @@ struct TimingRecord {
 struct TimingLog {
     std::uint64_t plan_hash = 0;
     double seconds = 0.0;  ///< as asked for
+    bool is_whole = true;  ///< false: the run was cut off, and the log ends where all groups were known to be
     std::vector<std::vector<TimingRecord>> groups;
+    Flicks cut = 0;        ///< of a run that was cut off: logical time up to which it can be repeated
 
-    /// Throws Error when the file is missing, not a log, or was not written to its end.
-    static TimingLog load(const std::filesystem::path& path);
+    /// `may_be_cut` accepts a log that stops anywhere, as after a crash. Throws Error when the file is missing, not a
+    /// log, or was not written to its end.
+    static TimingLog load(const std::filesystem::path& path, bool may_be_cut = false);
+
+    /// Activations of a group that can be repeated.
+    std::int64_t end_of(std::size_t group, Flicks period) const;
 };
 
-/// Writes a log outside of the ticks; renamed from PATH.part when complete.
+/// Writes a log outside of the ticks.
 class TimingLogWriter {
 public:
-    TimingLogWriter(const std::filesystem::path& path, std::uint64_t plan_hash, double seconds, std::size_t groups);
+    enum class Name {
+        when_whole,  ///< written as PATH.part and renamed when complete
+        at_once,  ///< readable while it grows
+    };
+    TimingLogWriter(const std::filesystem::path& path, std::uint64_t plan_hash, double seconds,
+                    Name name = Name::when_whole);
     ~TimingLogWriter();
     TimingLogWriter(const TimingLogWriter&) = delete;
     TimingLogWriter& operator=(const TimingLogWriter&) = delete;
 
     void write(const TimingRecord& record);
+    /// Hands what was written to the system: a crash of the program loses nothing of it.
+    void flush();
     void finish();
 
 private:
+    [[noreturn]] void fail() const;
+
     std::filesystem::path path_, part_;
     std::FILE* file_ = nullptr;
 };

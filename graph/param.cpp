@@ -25,11 +25,11 @@ Param::Param(std::string_view default_text, std::string_view min_text, std::stri
     max = parse_as(max_text, unit);
 }
 
-void Param::set(std::string_view text) {
+double Param::parse(std::string_view text) const {
     const double v = parse_as(text, unit);
     if (v < min || v > max)
         throw Error(fmt::format("{} is outside {} … {}", text, format_quantity(min, unit), format_quantity(max, unit)));
-    value = v;
+    return v;
 }
 
 void Choice::set(std::string_view word) {

@@ -34,8 +34,9 @@ struct Param {
     Param& operator=(const Param&) = delete;
 
     operator double() const { return value; }
-    /// Sets from "0.8 N/mm". Throws Error without a location.
-    void set(std::string_view text);
+    /// SI value of "0.8 N/mm". Throws Error without a location when it is no such quantity or out of range.
+    double parse(std::string_view text) const;
+    void set(std::string_view text) { value = parse(text); }
     /// Driven by a wire: outside its range it is clamped, NaN keeps the last value.
     void drive(double v) noexcept {
         if (v == v) value = v < min ? min : v > max ? max : v;

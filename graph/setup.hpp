@@ -36,7 +36,12 @@ struct DevicePort {
     DeviceInfo info;
     DeviceSample sample;
     Wrench wrench;
-    bool has_output = false;  ///< a node writes `wrench`
+    bool hold_off = false;  ///< the engine is about to change the plan: fade the force to zero, ramp in when this ends
+};
+
+enum class DeviceUse : std::uint8_t {
+    read,
+    drive,  ///< the node writes the port's wrench; one node per device may
 };
 
 /// Values that leave the graph for a file or a sound card. Whoever drains it is not in the tick.
@@ -61,7 +66,7 @@ class Outside {
 public:
     virtual ~Outside() = default;
     /// The haptic device of that name ("" = the only one), opened on first use. Throws Error.
-    virtual DevicePort& device(const std::string& name, const SourceLocation& where) = 0;
+    virtual DevicePort& device(const std::string& name, DeviceUse use, const SourceLocation& where) = 0;
     virtual RecordStream& record(const StreamFormat& format, const SourceLocation& where) = 0;
     /// Sound for a listener or an actuator: the card when the run is live and there is one, else the format's file.
     virtual RecordStream& audio(const StreamFormat& format, const SourceLocation& where) = 0;

@@ -4,6 +4,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include <bit>
+#include <new>
 
 namespace tactus::value {
 
@@ -23,6 +24,11 @@ template <class T>
 void hash_words(Hash& hash, const void* p) {
     static_assert(sizeof(T) % 8 == 0);
     hash.add_bytes(p, sizeof(T));
+}
+
+template <class T>
+void set_default(void* out) {
+    new (out) T{};
 }
 
 void put(const Vec3& v, double* out) {
@@ -54,6 +60,7 @@ const ValueType pose{
             out[5] = q.y;
             out[6] = q.z;
         },
+    .make_default = set_default<Pose>,
 };
 
 const ValueType twist{
@@ -71,6 +78,7 @@ const ValueType twist{
             put(as<Twist>(p).linear, out);
             put(as<Twist>(p).angular, out + 3);
         },
+    .make_default = set_default<Twist>,
 };
 
 const ValueType wrench{
@@ -88,6 +96,7 @@ const ValueType wrench{
             put(as<Wrench>(p).force, out);
             put(as<Wrench>(p).torque, out + 3);
         },
+    .make_default = set_default<Wrench>,
 };
 
 const ValueType number{
@@ -98,6 +107,7 @@ const ValueType number{
     .interpolate = [](const void* a, const void* b, double t,
                       void* out) { *static_cast<double*>(out) = as<double>(a) + (as<double>(b) - as<double>(a)) * t; },
     .to_columns = [](const void* p, double* out) { *out = as<double>(p); },
+    .make_default = set_default<double>,
 };
 
 const ValueType boolean{
@@ -106,6 +116,7 @@ const ValueType boolean{
     .columns = number_columns,
     .hash = [](Hash& hash, const void* p) { hash.add_word(as<bool>(p) ? 1 : 0); },
     .to_columns = [](const void* p, double* out) { *out = as<bool>(p) ? 1.0 : 0.0; },
+    .make_default = set_default<bool>,
 };
 
 const ValueType signal{
@@ -114,6 +125,7 @@ const ValueType signal{
     .columns = number_columns,
     .hash = [](Hash& hash, const void* p) { hash.add_word(std::bit_cast<std::uint32_t>(as<float>(p))); },
     .to_columns = [](const void* p, double* out) { *out = static_cast<double>(as<float>(p)); },
+    .make_default = set_default<float>,
 };
 
 }  // namespace tactus::value

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <new>
 #include <span>
 #include <string>
 #include <string_view>
@@ -49,6 +50,7 @@ struct ValueType {
     void (*hash)(Hash&, const void*) = nullptr;
     void (*interpolate)(const void* a, const void* b, double t, void* out) = nullptr;  ///< null: not interpolable
     void (*to_columns)(const void*, double* out) = nullptr;
+    void (*make_default)(void* out) = nullptr;                 ///< zero, identity, nothing
     std::int64_t (*version)(const void*) = nullptr;            ///< non-null for snapshots
     /// Snapshots that a file can hold: loads it, puts the handle in `out` and returns the owner. Throws Error.
     std::shared_ptr<const void> (*load_asset)(const std::string& path, void* out) = nullptr;
@@ -65,6 +67,7 @@ inline const ValueType snapshot{
     .hash = [](Hash& hash, const void* p) { hash.add_word(static_cast<const T*>(p)->content_hash); },
     .interpolate = nullptr,
     .to_columns = nullptr,
+    .make_default = [](void* out) { new (out) T{}; },
     .version = [](const void* p) { return static_cast<std::int64_t>(static_cast<const T*>(p)->version); },
     .load_asset = SnapshotFile<T>::load,
 };

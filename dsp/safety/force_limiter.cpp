@@ -41,6 +41,15 @@ void ForceLimiter::fail(Fault reason) noexcept {
     faded_s_ = 0.0;
 }
 
+void ForceLimiter::hold_off(bool wanted) noexcept {
+    if (wanted == held_off_) return;
+    held_off_ = wanted;
+    ramped_s_ = 0.0;
+    if (!wanted || fault_ != Fault::none) return;
+    fade_from_ = output_;
+    faded_s_ = 0.0;
+}
+
 void ForceLimiter::recover() noexcept {
     fault_ = Fault::none;
     has_counter_ = false;
@@ -94,7 +103,7 @@ Wrench ForceLimiter::tick(const Wrench& raw, std::int64_t counter, bool valid, d
     if (is_finite(raw)) measure(raw);
     else fail(Fault::not_finite);
     watch_input(counter, valid);
-    if (fault_ != Fault::none) return output_ = fade(elapsed_s);
+    if (fault_ != Fault::none || held_off_) return output_ = fade(elapsed_s);
 
     const double gain = engagement(raw, elapsed_s);
     const Wrench wanted{shorten(raw.force, limits_.max_force) * gain, shorten(raw.torque, limits_.max_torque) * gain};

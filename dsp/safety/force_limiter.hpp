@@ -53,6 +53,9 @@ public:
     /// Starts the fade for a reason found elsewhere. The first reason stays until `recover`.
     void fail(Fault reason) noexcept;
 
+    /// While true, forces fade to zero and stay there; afterwards they ramp in. For changes that are meant.
+    void hold_off(bool wanted) noexcept;
+
     /// Forgets the fault; forces come back through engagement.
     void recover() noexcept;
 
@@ -73,7 +76,7 @@ private:
     double faded_s_ = 0.0, ramped_s_ = 0.0;
     std::int64_t counter_ = 0;
     int still_ticks_ = 0, small_ticks_ = 0;
-    bool has_counter_ = false;
+    bool has_counter_ = false, held_off_ = false;
     Fault fault_ = Fault::none;
     ForceStatistics statistics_;
 };

@@ -57,6 +57,10 @@ double interpolate(const Cell& cell) noexcept {
 
 }  // namespace
 
+// Without samples every position is outside.
+static constexpr BrickLayout empty_layout{.far = 1.0};
+const BoneRoot empty_bone{&empty_layout, {}, {}};
+
 Sample BoneSnapshot::sample(const Vec3& position) const noexcept {
     const BrickLayout& grid = *root->layout;
     const Cell cell = find_cell(grid, root->distance, position);

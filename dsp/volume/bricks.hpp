@@ -41,6 +41,9 @@ struct BoneRoot {
     std::vector<const float*> distance, density;
 };
 
+/// No bone: far everywhere.
+extern const BoneRoot empty_bone;
+
 /// Value and exact gradient of the trilinear interpolant.
 struct Sample {
     double value = 0.0;  ///< m, negative inside the bone
@@ -52,7 +55,7 @@ struct Sample {
 struct BoneSnapshot {
     static constexpr std::string_view wire_name = "bone";
 
-    const BoneRoot* root = nullptr;
+    const BoneRoot* root = &empty_bone;
     std::int64_t version = 0;
     std::uint64_t content_hash = 0;  ///< over all that ever changed, up to this version
 

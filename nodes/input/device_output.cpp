@@ -27,9 +27,7 @@ struct DeviceOutput {
     Param engage_time{structural, "100 ms", "0 ms", "10 s", "forces come in over this time once they were small"};
 
     void prepare(const Setup& setup) {
-        port_ = &setup.outside->device(device.value, device.where);
-        if (port_->has_output) setup.fail("another device_output already drives this device; a hand takes one force");
-        port_->has_output = true;
+        port_ = &setup.outside->device(device.value, DeviceUse::drive, device.where);
         ForceLimits limits;
         limits.max_force = lower_limit(max_force, port_->info.max_force);
         limits.max_torque = lower_limit(max_torque, port_->info.max_torque);
@@ -41,6 +39,7 @@ struct DeviceOutput {
 
     void process(const Tick& tick) noexcept {
         const DeviceSample& s = port_->sample;
+        limiter_.hold_off(port_->hold_off);
         const Wrench out = limiter_.tick(wrench, s.counter, s.valid && is_valid(s.pose), tick.elapsed_seconds());
         applied = out;
         port_->wrench = out;

@@ -38,8 +38,9 @@ bool MemoryStream::write(std::int64_t first, const void* values, std::size_t cou
     return true;
 }
 
-DevicePort& FakeOutside::device(const std::string& name, const SourceLocation&) {
+DevicePort& FakeOutside::device(const std::string& name, DeviceUse use, const SourceLocation&) {
     auto& port = devices[name];
+    driven = driven || use == DeviceUse::drive;
     if (!port) port = std::make_unique<DevicePort>();
     return *port;
 }

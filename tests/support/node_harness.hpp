@@ -36,11 +36,12 @@ struct MemoryStream final : RecordStream {
 };
 
 struct FakeOutside final : Outside {
-    DevicePort& device(const std::string& name, const SourceLocation& where) override;
+    DevicePort& device(const std::string& name, DeviceUse use, const SourceLocation& where) override;
     RecordStream& record(const StreamFormat& format, const SourceLocation& where) override;
     RecordStream& audio(const StreamFormat& format, const SourceLocation& where) override;
 
     std::map<std::string, std::unique_ptr<DevicePort>> devices;
+    bool driven = false;  ///< a node asked to drive one
     std::vector<std::unique_ptr<MemoryStream>> records, sounds;
 };
 

@@ -69,7 +69,7 @@ TEST_CASE("device_output bounds what reaches the hand and tells what it was aske
     for (std::size_t k = 1; k < applied.size(); ++k)
         REQUIRE(std::abs(applied[k].force.x - applied[k - 1].force.x) <= 1.0 + 1e-12);
     CHECK(node.outside.devices.at("")->wrench.force.x == applied.back().force.x);
-    CHECK(node.outside.devices.at("")->has_output);
+    CHECK(node.outside.driven);
     const Report report = node.report();
     CHECK(number_of(report, "force", "max_N") == Approx(6.0));
     CHECK(number_of(report, "force", "raw_max_N") == Approx(40.0));
@@ -79,18 +79,12 @@ TEST_CASE("device_output bounds what reaches the hand and tells what it was aske
 
 TEST_CASE("device_output takes the device's own limit when that is lower") {
     NodeHarness node("device_output", servo);
-    node.outside.device("", {}).info.max_force = 3.0;
+    node.outside.device("", DeviceUse::read, {}).info.max_force = 3.0;
     node.device_feed = [](std::int64_t k, DevicePort& port) { port.sample = sample_at(0.0, k); };
     node.feed<Wrench>("wrench", [](std::int64_t k) { return k < 300 ? Wrench{} : Wrench{{8.0, 0.0, 0.0}, {}}; });
     node.prepare();
     node.run(600);
     CHECK(node.last<Wrench>("applied").force.x == Approx(3.0));
-}
-
-TEST_CASE("a device takes one device_output only") {
-    NodeHarness node("device_output", servo);
-    node.outside.device("", {}).has_output = true;
-    CHECK_THROWS_AS(node.prepare(), Error);
 }
 
 TEST_CASE("device_output lets go, and says why, when the device stops delivering samples") {

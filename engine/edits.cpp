@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Changing what runs. A plan is built aside and handed to every group; each takes it over at the same logical time.
+// The old plan is taken apart when no group can touch it any more.
+#include "engine/engine.hpp"
+
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace tactus {
+
+namespace {
+
+// How far ahead of the furthest group the switch lies.
+constexpr Flicks switch_lead = flicks_per_second / 20;
+
+}  // namespace
+
+Flicks Engine::furthest() const {
+    Flicks furthest = 0;
+    for (const auto& group : now_->groups) furthest = std::max(furthest, group->done() * group->plan->period);
+    return furthest;
+}
+
+void Engine::edit(std::function<Plan()> make, std::string text, std::function<void(const EditOutcome&)> told) {
+    waiting_ = WaitingEdit{std::move(make), std::move(text), std::move(told)};
+}
+
+void Engine::tend_edits() {
+    retire();
+    if (building_.valid()) {
+        if (building_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+        try {
+            hand_over(building_.get());
+        } catch (const std::exception& error) {
+            outside_.discard();
+            EditOutcome outcome;
+            outcome.error = error.what();
+            if (making_->told) making_->told(outcome);
+        }
+        making_.reset();
+        return;
+    }
+    if (!waiting_ || before_) return;
+    making_ = std::exchange(waiting_, std::nullopt);
+    building_ = std::async(std::launch::async, [this] {
+        Plan plan = making_->make();
+        outside_.begin(plan.patch);
+        return build_generation(std::move(plan), now_.get(), workshop_);
+    });
+}
+
+void Engine::hand_over(std::unique_ptr<Generation> next) {
+    const Flicks when = furthest() + switch_lead;
+    if (seconds(when) >= options_.seconds) throw Error("the run is over before the edit could take effect");
+    keep_opened();
+    if (options_.take) options_.take->edit(next->number, when, making_->text, next->plan.patch);
+    const std::size_t known = groups_.size();
+    adopt_groups(*next, when);
+    for (std::size_t g = 0; g < next->groups.size(); ++g) {
+        GroupRuntime& group = *next->groups[g];
+        if (next->group_is_new[g]) group.scheduled.push_back(next->programs[g].get());
+        else group.hand_over(next->programs[g].get());
+    }
+    for (std::size_t g = known; g < groups_.size(); ++g) start_thread(*groups_[g]);
+    EditOutcome outcome{{}, next->number, when, 0, next->nodes.size()};
+    outcome.kept = static_cast<std::size_t>(std::ranges::count(next->survived, true));
+    before_ = std::exchange(now_, std::move(next));
+    settled_at_.clear();
+    if (making_->told) making_->told(outcome);
+}
+
+/// Takes the plan before apart once every group has left it and completed a call since.
+void Engine::retire() {
+    if (!before_) return;
+    for (const auto& group : groups_) {
+        const bool has_left = now_->keeps(group.get()) && group->generation() >= now_->number;
+        if (!has_left && !group->is_over()) return;
+    }
+    if (!now_->settled()) return;
+    if (settled_at_.empty()) {
+        for (const auto& group : groups_) settled_at_.push_back(group->done());
+        return;
+    }
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+        if (groups_[g]->done() <= settled_at_[g] && !groups_[g]->is_over()) return;
+    gather_hashes(*before_, now_.get(), ended_hashes_);
+    before_.reset();
+    for (const auto& link : now_->links) link->forget_continued();
+}
+
+Flicks Engine::set(const std::string& node, const std::string& param, const std::string& text) {
+    std::vector<std::string> names;
+    for (const auto& live : now_->nodes) names.push_back(live->name);
+    const int at = now_->find(node);
+    if (at < 0) throw Error(fmt::format("no node '{}'{}", node, did_you_mean(node, names)));
+    LiveNode& live = *now_->nodes[static_cast<std::size_t>(at)];
+    names.clear();
+    for (const auto& [name, known] : live.params) names.push_back(name);
+    const auto found = live.params.find(param);
+    if (found == live.params.end())
+        throw Error(fmt::format("node '{}' has no parameter '{}' that is a quantity{}", node, param,
+                                did_you_mean(param, names)));
+    if (found->second->is_structural)
+        throw Error(fmt::format("'{}.{}' is structural: change it in the patch", node, param));
+    const auto& compiled = now_->plan.nodes[static_cast<std::size_t>(at)].params.at(param);
+    for (const PlanWire& wire : now_->plan.wires)
+        if (wire.to_node == at && wire.to_input < 0 && wire.param == compiled)
+            throw Error(fmt::format("'{}.{}' is driven by a wire", node, param));
+    const double value = found->second->parse(text);
+    const Flicks when = furthest() + 2 * now_->plan.patch.quantum;
+    const ParameterChange change{changes_++, when, found->second, value};
+    if (options_.take) options_.take->change(change.id, now_->number, node, param, value);
+    if (!live.group->hand_over(change)) throw Error("too many changes are waiting already");
+    return when;
+}
+
+}  // namespace tactus

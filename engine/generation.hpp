@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// A plan made runnable: its nodes prepared, its wires laid out, one program for each rate group. When it follows on
+// another, nodes and channels that the edit did not touch go on as they are.
+#pragma once
+
+#include "engine/group_program.hpp"
+#include "engine/group_runtime.hpp"
+#include "engine/outside.hpp"
+#include "graph/plan.hpp"
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tactus {
+
+/// A node while it runs. Lives as long as the youngest plan that keeps it.
+struct LiveNode {
+    std::string name;
+    const NodeType* type = nullptr;
+    NodeInstance instance{nullptr, nullptr};
+    GroupRuntime* group = nullptr;
+    std::string structure;  ///< what must be equal for a node to survive an edit
+    std::vector<Input*> inputs;
+    std::vector<Output*> outputs;
+    std::map<std::string, Param*> params;
+    DeviceUses devices;                          ///< that its prepare asked for
+};
+
+/// What the generations of one run share. Used by one builder at a time.
+struct Workshop {
+    EngineOutside& outside;
+    int block = 0;  ///< most samples per call of an audio group, 0: the patch's quantum
+    bool hash = true;  ///< keep hashes of all outputs
+    std::map<std::pair<const ValueType*, std::string>, std::pair<std::shared_ptr<const void>, std::vector<std::byte>>>
+        constants;
+    /// Where the values of an output are recorded, or null. Named "node.port"; empty: there is no take.
+    std::function<RecordStream*(const std::string& port, const ValueType&, const GroupRuntime&)> take;
+    int next_group = 0, next_link = 0;
+};
+
+struct Generation {
+    std::int64_t number = 0;
+    Plan plan;
+    std::vector<std::map<std::string, double>> patch_values;  ///< of each node's parameters, SI
+    std::vector<std::shared_ptr<LiveNode>> nodes;             ///< as plan.nodes
+    std::vector<bool> survived;                               ///< as plan.nodes
+    std::vector<std::shared_ptr<GroupRuntime>> groups;        ///< as plan.groups
+    std::vector<bool> group_is_new;                           ///< as plan.groups
+    std::vector<std::unique_ptr<GroupProgram>> programs;      ///< as plan.groups
+    std::vector<std::shared_ptr<Link>> links;
+    std::vector<std::unique_ptr<std::vector<std::byte>>> memory;  ///< values of outputs and unconnected inputs
+
+    /// Index of a node, −1: none of that name.
+    int find(std::string_view node) const;
+    bool keeps(const GroupRuntime* group) const;
+    /// Nothing reads from links of the generation before any more. Any thread.
+    bool settled() const;
+};
+
+/// Builds what follows `before` (null: nothing). Assets must be loaded. What runs is not touched. Throws Error.
+std::unique_ptr<Generation> build_generation(Plan plan, const Generation* before, Workshop& workshop);
+
+}  // namespace tactus

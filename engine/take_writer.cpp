@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/take_writer.hpp"
+
+#include "dsp/core/error.hpp"
+#include "engine/group_runtime.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <functional>
+
+namespace tactus {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr auto flush_every = std::chrono::milliseconds(500);
+
+/// Opens its file with the first values: until then it is not known at which activation the output begins.
+class TakeEnd : public StreamEnd {
+public:
+    using Opened = std::function<void(const TakeStreamInfo&)>;
+    TakeEnd(fs::path folder, TakeStreamInfo info, const ValueType& type, Opened opened)
+        : folder_(std::move(folder)), info_(std::move(info)), type_(type), opened_(std::move(opened)) {}
+
+    void take(std::int64_t first, const std::byte* values, std::size_t count) override {
+        if (!writer_) {
+            info_.start = first;
+            writer_ = std::make_unique<TakeStreamWriter>(folder_ / info_.file, info_, type_);
+            opened_(info_);
+        }
+        writer_->write(first, values, count);
+        const auto now = std::chrono::steady_clock::now();
+        if (now - updated_ < flush_every) return;
+        updated_ = now;
+        writer_->update();
+    }
+    void finish() override {
+        if (writer_) writer_->finish();
+    }
+
+private:
+    fs::path folder_;
+    TakeStreamInfo info_;
+    const ValueType& type_;
+    Opened opened_;
+    std::unique_ptr<TakeStreamWriter> writer_;
+    std::chrono::steady_clock::time_point updated_ = std::chrono::steady_clock::now();
+};
+
+void write_whole(const fs::path& path, const std::string& text) {
+    const fs::path part = path.string() + ".part";
+    std::ofstream file(part, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) throw Error(fmt::format("{}: cannot write: {}", path.string(), std::strerror(errno)));
+    fs::rename(part, path);
+}
+
+Json assets_json(const Patch& patch) {
+    Json assets = Json::array();
+    for (const PatchAsset& asset : patch.assets)
+        assets.push_back({{"name", asset.name},
+                          {"path", fs::absolute(asset.path).string()},
+                          {"hash", fmt::format("{:016x}", hash_of_file(asset.path))}});
+    return assets;
+}
+
+Json sample_json(const DeviceSample& s) {
+    const auto bits = [](double v) { return fmt::format("{:016x}", std::bit_cast<std::uint64_t>(v)); };
+    Json json{{"buttons", s.buttons}, {"counter", s.counter}, {"valid", s.valid}, {"numbers", Json::array()}};
+    const Quat& q = s.pose.orientation;
+    for (const double v :
+         {s.pose.position.x, s.pose.position.y, s.pose.position.z, q.w, q.x, q.y, q.z, s.twist.linear.x,
+          s.twist.linear.y, s.twist.linear.z, s.twist.angular.x, s.twist.angular.y, s.twist.angular.z})
+        json["numbers"].push_back(bits(v));
+    return json;
+}
+
+}  // namespace
+
+std::uint64_t hash_of_file(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw Error(fmt::format("{}: cannot read: {}", path.string(), std::strerror(errno)));
+    Hash hash;
+    std::string text;
+    const bool is_text = path.extension() == ".toml";
+    std::vector<char> block(1 << 16);
+    while (file.read(block.data(), static_cast<std::streamsize>(block.size())), file.gcount() > 0) {
+        hash.add_bytes(block.data(), static_cast<std::size_t>(file.gcount()));
+        if (is_text) text.append(block.data(), static_cast<std::size_t>(file.gcount()));
+    }
+    if (!is_text) return hash.value();
+    // A recording set is a text that names its sounds.
+    std::vector<fs::path> beside;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(path.parent_path().empty() ? "." : path.parent_path(), ignored))
+        if (entry.is_regular_file() && entry.path() != path && text.find(entry.path().filename()) != std::string::npos)
+            beside.push_back(entry.path());
+    std::ranges::sort(beside);
+    for (const fs::path& other : beside)
+        if (other.extension() != ".toml") hash.add_word(hash_of_file(other));
+    return hash.value();
+}
+
+std::string build_identity() {
+    static const std::string identity = fmt::format("{:016x}", hash_of_file("/proc/self/exe"));
+    return identity;
+}
+
+std::string cpu_family() {
+    std::ifstream file("/proc/cpuinfo");
+    std::string vendor, family, model;
+    for (std::string line; std::getline(file, line) && !line.empty();) {
+        const auto value = [&line] { return line.substr(std::min(line.size(), line.find(':') + 2)); };
+        if (line.starts_with("vendor_id")) vendor = value();
+        else if (line.starts_with("cpu family")) family = value();
+        else if (line.starts_with("model\t")) model = value();
+    }
+    return vendor.empty() ? "unknown" : fmt::format("{} family {} model {}", vendor, family, model);
+}
+
+TakeWriter::TakeWriter(fs::path folder, TakeAbout about) : folder_(std::move(folder)), about_(std::move(about)) {
+    std::error_code failure;
+    fs::create_directories(folder_ / "streams", failure);
+    if (failure) throw Error(fmt::format("{}: cannot make the folder: {}", folder_.string(), failure.message()));
+    if (fs::exists(folder_ / "take.json"))
+        throw Error(fmt::format("{}: there is a take already; choose another name", folder_.string()));
+    events_ = std::fopen((folder_ / "events.jsonl").c_str(), "wb");
+    if (!events_) throw Error(fmt::format("{}: cannot write: {}", folder_.string(), std::strerror(errno)));
+}
+
+TakeWriter::~TakeWriter() {
+    if (events_) std::fclose(events_);
+}
+
+void TakeWriter::begin(const Patch& patch, std::uint64_t plan_hash) {
+    write_whole(folder_ / "patch-0.toml", patch.text);
+    Json json{{"format", 1},
+              {"patch", fs::absolute(about_.patch_file).string()},
+              {"title", patch.title},
+              {"settings", about_.overrides.settings},
+              {"asset_overrides", about_.overrides.assets},
+              {"seconds", about_.seconds},
+              {"live", about_.live},
+              {"build", build_identity()},
+              {"cpu", cpu_family()},
+              {"assets", assets_json(patch)}};
+    if (about_.seed) json["seed"] = *about_.seed;
+    log_ = std::make_unique<TimingLogWriter>(folder_ / "timing.log", plan_hash, about_.seconds,
+                                             TimingLogWriter::Name::at_once);
+    log_->flush();
+    write_whole(folder_ / "take.json", json.dump(2) + "\n");
+}
+
+void TakeWriter::line(const std::string& json) {
+    const std::lock_guard lock(writing_);
+    if (std::fputs((json + "\n").c_str(), events_) < 0 || std::fflush(events_) != 0)
+        throw Error(fmt::format("{}: cannot write events.jsonl: {}", folder_.string(), std::strerror(errno)));
+}
+
+void TakeWriter::device(const DeviceSlot& slot) {
+    const DeviceInfo& info = slot.port.info;
+    line(Json{{"device", slot.name},
+              {"info",
+               {{"name", info.name},
+                {"max_force", info.max_force},
+                {"max_torque", info.max_torque},
+                {"damping", info.damping},
+                {"max_stiffness", info.max_stiffness},
+                {"actuates_torque", info.actuates_torque},
+                {"senses_rotation", info.senses_rotation}}},
+              {"first", sample_json(slot.port.sample)}}
+             .dump());
+}
+
+std::unique_ptr<Stream> TakeWriter::stream(const std::string& port, const ValueType& type, const GroupRuntime& group) {
+    TakeStreamInfo info;
+    info.port = port;
+    info.group = group.plan->name;
+    info.type = type.name;
+    info.period = group.plan->period;
+    std::string stem = "streams/" + port;
+    for (int again = 2; std::ranges::find(files_, stem) != files_.end(); ++again)
+        stem = fmt::format("streams/{}-{}", port, again);
+    files_.push_back(stem);
+    info.file = stem + ".wav";
+    StreamFormat format;
+    format.file = info.file;
+    format.type = &type;
+    format.period = info.period;
+    const auto opened = [this, &type](const TakeStreamInfo& now) {
+        line(Json{{"stream", now.file},
+                  {"port", now.port},
+                  {"group", now.group},
+                  {"type", now.type},
+                  {"period_flicks", now.period},
+                  {"rate_hz", rate_of(now.period)},
+                  {"start", now.start},
+                  {"channels", channels_of(type)}}
+                 .dump());
+    };
+    return std::make_unique<Stream>(format, std::make_unique<TakeEnd>(folder_, info, type, opened));
+}
+
+void TakeWriter::edit(std::int64_t number, Flicks when, const std::string& text, const Patch& patch) {
+    const std::string file = fmt::format("patch-{}.toml", number);
+    write_whole(folder_ / file, text);
+    line(Json{{"plan", number}, {"file", file}, {"when_flicks", when}, {"assets", assets_json(patch)}}.dump());
+}
+
+void TakeWriter::change(std::int64_t id, std::int64_t plan, const std::string& node, const std::string& param,
+                        double value) {
+    line(Json{{"set", id},
+              {"in_plan", plan},
+              {"node", node},
+              {"param", param},
+              {"value", value},
+              {"bits", fmt::format("{:016x}", std::bit_cast<std::uint64_t>(value))}}
+             .dump());
+}
+
+void TakeWriter::checkpoint(const std::vector<Progress>& progress) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - flushed_ < flush_every) return;
+    flushed_ = now;
+    for (const Progress& group : progress) {
+        TimingRecord record;
+        record.kind = TimingKind::progress;
+        record.group = static_cast<std::uint8_t>(group.group);
+        record.tick = group.done;
+        record.value = group.time;
+        log_->write(record);
+    }
+    log_->flush();
+}
+
+void TakeWriter::finish(const std::vector<std::pair<std::string, std::uint64_t>>& port_hashes) {
+    log_->finish();
+    Json json{{"ports", Json::object()}};
+    for (const auto& [name, hash] : port_hashes) json["ports"][name] = fmt::format("{:016x}", hash);
+    write_whole(folder_ / "result.json", json.dump(2) + "\n");
+}
+
+}  // namespace tactus

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// A take: a folder that holds all that is needed to repeat a run and to check that the repetition is the same. Files
+// only grow, and can be read up to the last second after a crash:
+//
+//   take.json       the patch, what the command line changed, hashes of assets, build, CPU family, seconds asked for
+//   patch-N.toml    the text of the plan numbered N, 0 first
+//   events.jsonl    one line for each edit, each parameter set, each device opened, each stream
+//   timing.log      everything that timing decided, see engine/timing_log.hpp
+//   streams/        every published value of every output, see engine/take_stream.hpp
+//   result.json     hash of every output, when the run came to its end
+#pragma once
+
+#include "engine/outside.hpp"
+#include "engine/streams.hpp"
+#include "engine/take_stream.hpp"
+#include "engine/timing_log.hpp"
+#include "graph/patch.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tactus {
+
+class GroupRuntime;
+
+/// What a take says about the run it is of.
+struct TakeAbout {
+    std::filesystem::path patch_file;  ///< absolute
+    PatchOverrides overrides;
+    std::optional<std::uint64_t> seed;
+    double seconds = 0.0;
+    bool live = false;
+};
+
+class TakeWriter {
+public:
+    /// Makes the folder; one that holds something else is refused. Throws Error.
+    TakeWriter(std::filesystem::path folder, TakeAbout about);
+    ~TakeWriter();
+    TakeWriter(const TakeWriter&) = delete;
+    TakeWriter& operator=(const TakeWriter&) = delete;
+
+    /// The plan that runs first; before anything is recorded.
+    void begin(const Patch& patch, std::uint64_t plan_hash);
+    void device(const DeviceSlot& slot);
+    std::unique_ptr<Stream> stream(const std::string& port, const ValueType& type, const GroupRuntime& group);
+    void edit(std::int64_t number, Flicks when, const std::string& text, const Patch& patch);
+    void change(std::int64_t id, std::int64_t plan, const std::string& node, const std::string& param, double value);
+    void record(const TimingRecord& record) { log_->write(record); }
+    /// What each group had reached (index in the log, activation, logical time) before the last records were written.
+    struct Progress {
+        int group;
+        std::int64_t done;
+        Flicks time;
+    };
+    void checkpoint(const std::vector<Progress>& progress);
+    void finish(const std::vector<std::pair<std::string, std::uint64_t>>& port_hashes);
+
+    const std::filesystem::path& folder() const { return folder_; }
+
+private:
+    void line(const std::string& json);
+
+    std::filesystem::path folder_;
+    TakeAbout about_;
+    std::unique_ptr<TimingLogWriter> log_;
+    std::FILE* events_ = nullptr;
+    std::mutex writing_;  // lines come from whoever drains a stream
+    std::vector<std::string> files_;
+    std::chrono::steady_clock::time_point flushed_;
+};
+
+/// Hash of a file's bytes; of a text that names other files beside it, theirs too. Throws Error.
+std::uint64_t hash_of_file(const std::filesystem::path& path);
+/// Of the running program.
+std::string build_identity();
+/// Vendor, family and model of the processor, as far as they may change rounding.
+std::string cpu_family();
+
+}  // namespace tactus
