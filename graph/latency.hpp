@@ -4,6 +4,7 @@
 
 #include "graph/plan.hpp"
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,16 @@ struct PathLatency {
 
 /// Largest age, over all activations of the consumer, of the value that a wire between two groups delivers.
 Flicks worst_age(const PlanGroup& producer, const PlanGroup& consumer, const PlanWire& wire);
+
+inline constexpr Flicks unreached = std::numeric_limits<Flicks>::max();
+
+/// By the quickest way from one node to each other: how old its value is there, or `unreached`, and the node before on
+/// that way (−1: none).
+struct Ages {
+    std::vector<Flicks> age;
+    std::vector<int> before;
+};
+Ages ages_from(const Plan& plan, int source);
 
 /// The quickest path from every device input to every output of the patch (device_output, audio_output, record), in
 /// order of names. Inside a group values are passed on in the same tick and do not age.

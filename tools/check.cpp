@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/draw.hpp"
 #include "graph/latency.hpp"
+#include "graph/stiffness.hpp"
 #include "tools/load_plan.hpp"
 #include "tools/summary.hpp"
 
@@ -9,11 +10,32 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <functional>
+
 namespace tactus {
 
 using Json = nlohmann::ordered_json;
 
 namespace {
+
+/// One row per path; a loop through a hand has its stiffness too.
+Json paths_json(const Plan& plan, const std::vector<ForceLoop>& loops) {
+    Json paths = Json::array();
+    for (const PathLatency& path : path_latencies(plan)) {
+        Json row{{"from", path.from}, {"to", path.to}, {"latency_ms", path.latency_ms}, {"via", path.via}};
+        for (const ForceLoop& loop : loops) {
+            if (loop.from != path.from || loop.to != path.to) continue;
+            row["latency_ms"] = loop.latency_s * 1e3;
+            row["damping_N_s_per_m"] = loop.damping;
+            row["stiffness_limit_N_per_mm"] = loop.limit * 1e-3;
+            row["declared_N_per_mm"] = loop.declared ? Json(loop.declared->newton_per_metre * 1e-3) : Json();
+            row["declared_by"] = loop.declared ? Json(loop.declared->param) : Json();
+            row["ok"] = loop.ok();
+        }
+        paths.push_back(std::move(row));
+    }
+    return paths;
+}
 
 Json check_json(const std::optional<Plan>& plan, const Problems& problems) {
     Json json{{"ok", problems.empty()}, {"errors", Json::array()}, {"groups", Json::array()}, {"paths", Json::array()}};
@@ -31,19 +53,39 @@ Json check_json(const std::optional<Plan>& plan, const Problems& problems) {
                                   {"latency_ms", seconds(group.latency) * 1e3},
                                   {"nodes", nodes}});
     }
-    for (const PathLatency& path : path_latencies(*plan))
-        json["paths"].push_back(
-            {{"from", path.from}, {"to", path.to}, {"latency_ms", path.latency_ms}, {"via", path.via}});
+    json["paths"] = paths_json(*plan, {});
     return json;
+}
+
+/// Damping of a device by its name in the patch, N·s/m; "" is the only one.
+std::function<double(const std::string&)> damping_of(const EngineOutside& outside) {
+    return [&outside](const std::string& name) {
+        for (const auto& slot : outside.devices)
+            if (name.empty() || slot->name == name) return slot->port.info.damping;
+        return 0.0;
+    };
 }
 
 void print_check(const Json& json) {
     for (const Json& group : json["groups"])
         fmt::print("{:>10}  latency {:.4g} ms  {} nodes\n", group["name"].get<std::string>(),
                    group["latency_ms"].get<double>(), group["nodes"].size());
-    for (const Json& path : json["paths"])
-        fmt::print("{} -> {}: {:.4g} ms\n", path["from"].get<std::string>(), path["to"].get<std::string>(),
-                   path["latency_ms"].get<double>());
+    if (json["paths"].empty()) return;
+    fmt::print("\n{:<32} {:>10} {:>12} {:>12}\n", "path", "latency", "may feel", "declared");
+    for (const Json& path : json["paths"]) {
+        std::string line =
+            fmt::format("{:<32} {:>7.4g} ms", path["from"].get<std::string>() + " -> " + path["to"].get<std::string>(),
+                        path["latency_ms"].get<double>());
+        if (path.contains("ok")) {
+            const double limit = path["stiffness_limit_N_per_mm"];
+            line += limit > 0.0 ? fmt::format(" {:>7.3g} N/mm", limit) : fmt::format(" {:>12}", "?");
+            if (!path["declared_by"].is_null())
+                line += fmt::format(" {:>7.3g} N/mm  {}{}", path["declared_N_per_mm"].get<double>(),
+                                    path["declared_by"].get<std::string>(), path["ok"] ? "" : "  TOO STIFF");
+        }
+        fmt::print("{}\n", line);
+    }
+    fmt::print("What a hand may feel before it hums: damping of the device / (period / 2 + latency).\n");
 }
 
 }  // namespace
@@ -58,7 +100,10 @@ int check_verb(const PatchChoice& choice) {
         if (plan) assets.load(*plan, problems);
         json = check_json(plan, problems);
         // What only `prepare` can find: devices, file names, sizes.
-        if (problems.empty()) Engine(std::move(*plan), EngineOptions{});
+        if (problems.empty()) {
+            const Engine engine(std::move(*plan), EngineOptions{});
+            json["paths"] = paths_json(engine.plan(), force_loops(engine.plan(), damping_of(engine.outside())));
+        }
     } catch (const Error& error) {
         problems.list.push_back(error);
         const Json groups = json.is_null() ? Json::array() : json["groups"];

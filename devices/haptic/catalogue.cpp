@@ -6,18 +6,29 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <array>
+#include <utility>
 #include <vector>
 
 namespace tactus {
 
-std::span<const HapticDriver> haptic_drivers() {
-    static const std::array<HapticDriver, 2> drivers{{
+namespace {
+
+std::vector<HapticDriver>& drivers() {
+    static std::vector<HapticDriver> all{
         {"simulated", "a hand that presses a blade with a set thrust and saws",
          [](Options& options, const PathResolver&) { return open_simulated(options); }},
         {"replay", "a recorded movement led through a hand that yields to force", open_replay},
-    }};
-    return drivers;
+    };
+    return all;
+}
+
+}  // namespace
+
+std::span<const HapticDriver> haptic_drivers() { return drivers(); }
+
+void add_haptic_driver(HapticDriver driver) {
+    std::erase_if(drivers(), [&](const HapticDriver& known) { return known.name == driver.name; });
+    drivers().push_back(std::move(driver));
 }
 
 std::unique_ptr<HapticDevice> open_haptic_device(std::string_view driver, const SourceLocation& where, Options& options,

@@ -22,6 +22,10 @@ struct HapticDriver {
 /// All drivers, in the order in which they are listed to users.
 std::span<const HapticDriver> haptic_drivers();
 
+/// Adds a driver that the program brings along: a device in the laboratory, or one that a test plays. Before anything
+/// is opened; a driver of the same name is replaced.
+void add_haptic_driver(HapticDriver driver);
+
 /// Opens a device of the driver `driver` with the options a patch gives it. `where` is where the patch names the
 /// driver. Throws Error on an unknown driver, listing all, and on options the driver refuses.
 std::unique_ptr<HapticDevice> open_haptic_device(std::string_view driver, const SourceLocation& where, Options& options,

@@ -35,6 +35,15 @@ struct Sum {
 };
 TACTUS_NODE(Sum, a, b, out)
 
+struct Stiff {
+    static constexpr auto about = "A spring.";
+    In<double> in{"distance"};
+    Out<double> out{"force"};
+    Param stiffness{"1 N/mm", "0 N/mm", "20 N/mm", "force per distance"};
+    void process(const Tick&) noexcept {}
+};
+TACTUS_NODE(Stiff, in, out, stiffness)
+
 struct Wave {
     static constexpr auto about = "A signal.";
     Out<Signal> out{"signal"};
@@ -82,9 +91,10 @@ TACTUS_NODE(DeviceOutput, in)
 }  // namespace
 
 Catalogue test_catalogue() {
-    static const std::array types{&node_type_Source(), &node_type_Relay(),       &node_type_Sum(),
-                                  &node_type_Wave(),   &node_type_Gain(),        &node_type_Path(),
-                                  &node_type_Truth(),  &node_type_DeviceInput(), &node_type_DeviceOutput()};
+    static const std::array types{&node_type_Source(),      &node_type_Relay(), &node_type_Sum(),
+                                  &node_type_Wave(),        &node_type_Gain(),  &node_type_Path(),
+                                  &node_type_Truth(),       &node_type_Stiff(), &node_type_DeviceInput(),
+                                  &node_type_DeviceOutput()};
     return types;
 }
 

@@ -95,6 +95,28 @@ TEST_CASE("a render leaves recordings and a summary; the hash depends on neither
     }
 }
 
+TEST_CASE("check says how stiff a hand may feel each path, and what the patch declares") {
+    const Folder folder;
+    const auto loop = [&](const std::string& settings) {
+        const Outcome o = folder.tactus("check saw-training --json " + settings);
+        INFO(o.err);
+        REQUIRE(o.code == 0);
+        const json answer = json::parse(o.out);
+        for (const json& path : answer["paths"])
+            if (path["from"] == "hand" && path["to"] == "hand_out") return path;
+        FAIL("no path hand -> hand_out");
+        return json();
+    };
+    const json as_shipped = loop("");
+    CHECK(as_shipped["latency_ms"] == 0.0);
+    // 30 N s/m over half a millisecond.
+    CHECK(as_shipped["stiffness_limit_N_per_mm"].get<double>() == Approx(60.0));
+    CHECK(as_shipped["declared_N_per_mm"].get<double>() == Approx(20.0));
+    CHECK(as_shipped["declared_by"] == "blade.stiffness");
+    CHECK(as_shipped["ok"] == true);
+    CHECK(loop("--set simulated.damping='5 N s/m'")["ok"] == false);
+}
+
 TEST_CASE("check names every slip with file, line and column") {
     const Folder folder;
     struct Slip {
