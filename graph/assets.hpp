@@ -3,6 +3,7 @@
 #pragma once
 
 #include "assets/bone/bone.hpp"
+#include "assets/equaliser/equaliser_file.hpp"
 #include "assets/recording/recording_set.hpp"
 #include "graph/param.hpp"
 
@@ -18,6 +19,12 @@ template <>
 struct AssetLoader<RecordingSet> {
     static constexpr std::string_view name = "recording set";
     static RecordingSet load(const std::string& path) { return load_recording_set(path); }
+};
+
+template <>
+struct AssetLoader<Equaliser> {
+    static constexpr std::string_view name = "equaliser";
+    static Equaliser load(const std::string& path) { return load_equaliser(path); }
 };
 
 }  // namespace tactus

@@ -16,6 +16,7 @@
     X(DeviceOutput, input)    \
     X(DeviceWrench, input)    \
     X(Envelope, vibration)    \
+    X(Equaliser, vibration)   \
     X(Filter, vibration)      \
     X(Gain, vibration)        \
     X(Magnitude, math)        \
@@ -27,6 +28,7 @@
     X(Sine, input)            \
     X(SphereContact, contact) \
     X(Spring, coupling)       \
+    X(Sweep, input)           \
     X(Workspace, input)
 
 namespace tactus {

@@ -47,6 +47,68 @@ void add_import(CLI::App& app, ImportChoice& choice) {
     verb->add_flag("--json", choice.json, "print a summary as JSON");
 }
 
+void add_measure(CLI::App& app, MeasureChoice& choice) {
+    CLI::App* verb = app.add_subcommand(
+        "measure", "sweep through a patch or a sound card: response, resonance, distortion, latency");
+    verb->add_option("patch", choice.patch, "patch file, or a name in the library");
+    verb->add_option("--in", choice.in, "NODE.PORT that the sweep feeds (an input) or replaces (an output)");
+    verb->add_option("--out", choice.out_port, "NODE.PORT, the output that is recorded");
+    verb->add_option("--device", choice.device, "a sound card instead: part of its name, or 'default'");
+    verb->add_option("--output-channel", choice.output_channel, "of the card, from 1")->capture_default_str();
+    verb->add_option("--input-channel", choice.input_channel, "of the card, from 1")->capture_default_str();
+    verb->add_option("--rate", choice.rate, "of the card, Hz")->capture_default_str()->check(CLI::Range(1e3, 1e6));
+    verb->add_option("-o,--csv", choice.csv, "the response, CSV")->capture_default_str();
+    verb->add_option("--first", choice.first, "first frequency, Hz")
+        ->capture_default_str()
+        ->check(CLI::Range(0.1, 1e5));
+    verb->add_option("--last", choice.last, "last frequency, Hz")->capture_default_str()->check(CLI::Range(0.1, 1e5));
+    verb->add_option("--duration", choice.duration, "of the sweep, s")
+        ->capture_default_str()
+        ->check(CLI::Range(0.1, 1e3));
+    verb->add_option("--pause", choice.pause, "silence after it, s")
+        ->capture_default_str()
+        ->check(CLI::Range(0.05, 1e2));
+    verb->add_option("--repeats", choice.repeats, "sweeps, averaged")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 1000));
+    verb->add_option("--amplitude", choice.amplitude, "of the sweep, in the unit of what it feeds; card: of full scale")
+        ->capture_default_str();
+    verb->add_option("--fit-from", choice.fit_lowest, "where the resonance is looked for, Hz")->capture_default_str();
+    verb->add_option("--fit-to", choice.fit_highest, "and up to where, Hz")->capture_default_str();
+    verb->add_option("--set", choice.overrides.settings, "change a parameter: NODE.PARAM=VALUE")
+        ->allow_extra_args(false);
+    verb->add_option("--asset", choice.overrides.assets, "use another file: NAME=PATH")->allow_extra_args(false);
+    verb->add_option("--seed", choice.seed, "seed of the random numbers");
+    verb->add_flag("--json", choice.json, "as JSON");
+}
+
+void add_equalise(CLI::App& app, EqualiseChoice& choice) {
+    CLI::App* verb = app.add_subcommand("equalise", "make a filter for the 'equaliser' node from a measured response");
+    verb->add_option("response", choice.response, "file of 'tactus measure', or a table of Hz, dB and degrees")
+        ->required();
+    verb->add_option("-o,--out", choice.out, "the filter, TOML")->required();
+    verb->add_option("--kind", choice.kind,
+                     "minimum: adds at most 2 ms; linear: undoes the phase, adds half its length")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"minimum", "linear"}));
+    verb->add_option("--rate", choice.rate, "of the node that will use it, Hz")->capture_default_str();
+    verb->add_option("--from", choice.lowest, "band to be made flat, Hz")->capture_default_str();
+    verb->add_option("--to", choice.highest, "and its upper end, Hz")->capture_default_str();
+    verb->add_option("--length", choice.length, "of the impulse response, s")->capture_default_str();
+    verb->add_option("--max-boost", choice.greatest_boost_db, "greatest gain of the filter, dB")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 60.0));
+    verb->add_option("--regularisation", choice.regularisation, "share of the mean power gain below which it lets go")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 1.0));
+    verb->add_option("--actuator", choice.actuator, "whose voltage and current limits count")->capture_default_str();
+    verb->add_option("--volts", choice.volts, "drive voltage per unit of the response's input")->capture_default_str();
+    verb->add_option("--signal", choice.signal, "a recording to be played: how much of it the limits would cut");
+    verb->add_option("--scale", choice.scale, "units of the response's input per full scale of the recording")
+        ->capture_default_str();
+    verb->add_flag("--json", choice.json, "as JSON");
+}
+
 }  // namespace
 
 int command_line(int argc, char** argv) {
@@ -95,6 +157,10 @@ int command_line(int argc, char** argv) {
 
     ImportChoice import;
     add_import(app, import);
+    MeasureChoice measure;
+    add_measure(app, measure);
+    EqualiseChoice equalise;
+    add_equalise(app, equalise);
 
     try {
         app.parse(argc, argv);
@@ -104,6 +170,8 @@ int command_line(int argc, char** argv) {
         if (*draw_app) return draw_verb(draw, drawing);
         if (*nodes_app) return nodes_verb(type, nodes_json);
         if (*devices_app) return devices_verb(devices_json);
+        if (app.got_subcommand("measure")) return measure_verb(measure);
+        if (app.got_subcommand("equalise")) return equalise_verb(equalise);
         return import_verb(import);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? done : bad_input;

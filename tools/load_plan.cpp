@@ -50,7 +50,12 @@ Plan load_plan(const PatchChoice& choice, AssetCache& assets) {
     Problems problems;
     std::optional<Plan> plan = read_plan(choice, problems);
     if (plan) assets.load(*plan, problems);
-    if (problems.empty()) return std::move(*plan);
+    throw_problems(problems);
+    return std::move(*plan);
+}
+
+void throw_problems(const Problems& problems) {
+    if (problems.empty()) return;
     for (std::size_t i = 0; i + 1 < problems.list.size(); ++i)
         fmt::print(stderr, "tactus: {}\n", problems.list[i].what());
     throw problems.list.back();

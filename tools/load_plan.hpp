@@ -22,6 +22,9 @@ std::optional<Plan> read_plan(const PatchChoice& choice, Problems& problems);
 /// Reads, compiles and loads assets. Prints every problem on standard error and throws the last when there are any.
 Plan load_plan(const PatchChoice& choice, AssetCache& assets);
 
+/// Prints every problem but the last on standard error and throws the last; nothing when there are none.
+void throw_problems(const Problems& problems);
+
 /// Makes `folder` and checks that files can be written to it. Throws Error.
 void make_output_folder(const std::filesystem::path& folder);
 

@@ -41,6 +41,34 @@ struct ImportChoice : ImportOptions {
     bool json = false;
 };
 
+struct MeasureChoice : PatchChoice {
+    std::string in, out_port, device;
+    std::filesystem::path csv = "response.csv";
+    double first = 20.0, last = 2000.0;              ///< Hz
+    double duration = 8.0, pause = 1.0;              ///< s
+    double amplitude = 1.0;
+    int repeats = 1;
+    double fit_lowest = 30.0, fit_highest = 400.0;   ///< Hz: where the resonance is looked for
+    double rate = 48000.0;                           ///< of the sound card, Hz
+    int output_channel = 1, input_channel = 1;       ///< from 1
+};
+
+struct EqualiseChoice {
+    std::filesystem::path response, out, signal;
+    std::string kind = "minimum";
+    double rate = 48000.0;                       ///< Hz
+    double lowest = 45.0, highest = 1000.0;      ///< Hz
+    double length = 0.128;                       ///< s
+    double greatest_boost_db = 20.0;
+    double regularisation = 1e-4;
+    std::string actuator = "haptuator_large";
+    double volts = 1.0;                          ///< per unit of the response's input
+    double scale = 1.0;                          ///< units of the response's input per unit of the signal file
+    bool json = false;
+};
+
+int measure_verb(const MeasureChoice& choice);
+int equalise_verb(const EqualiseChoice& choice);
 int render_verb(const RenderChoice& choice);
 int run_verb(const RunChoice& choice);
 int check_verb(const PatchChoice& choice);

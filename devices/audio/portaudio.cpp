@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/audio/portaudio.hpp"
 
+#include "devices/audio/portaudio_session.hpp"
 #include "devices/audio/quiet.hpp"
 #include "devices/audio/stream_state.hpp"
 #include "dsp/core/error.hpp"
@@ -15,24 +16,6 @@
 namespace tactus {
 namespace {
 
-/// PortAudio in use; it counts its users itself.
-class Session {
-public:
-    Session() {
-        const QuietStderr quiet;
-        require_alsa_default();
-        if (const PaError error = Pa_Initialize(); error != paNoError)
-            throw Error(fmt::format("the sound system cannot be used: {}", Pa_GetErrorText(error)));
-    }
-    ~Session() { Pa_Terminate(); }
-    Session(const Session&) = delete;
-    Session& operator=(const Session&) = delete;
-};
-
-std::string full_name(const PaDeviceInfo& info) {
-    return fmt::format("{}: {}", Pa_GetHostApiInfo(info.hostApi)->name, info.name);
-}
-
 /// The default of JACK when it runs, since it then owns the card, otherwise the system's.
 PaDeviceIndex default_output() {
     const PaHostApiIndex jack = Pa_HostApiTypeIdToHostApiIndex(paJACK);
@@ -46,7 +29,7 @@ PaDeviceIndex find_output(const std::string& wanted) {
     for (PaDeviceIndex i = 0; i < Pa_GetDeviceCount(); ++i) {
         const PaDeviceInfo& info = *Pa_GetDeviceInfo(i);
         if (info.maxOutputChannels == 0) continue;
-        const std::string name = full_name(info);
+        const std::string name = audio_device_name(i);
         if (!wanted.empty() && name.find(wanted) != std::string::npos) return i;
         names += fmt::format("{}'{}'", names.empty() ? "" : ", ", name);
     }
@@ -73,7 +56,7 @@ public:
 
     void prepare(double rate, int channels) override {
         release();
-        session_ = std::make_unique<Session>();
+        session_ = std::make_unique<PortAudioSession>();
         try {
             open(rate, channels);
         } catch (...) {
@@ -96,7 +79,7 @@ private:
         PaStreamParameters parameters{};
         parameters.device = find_output(device_);
         const PaDeviceInfo& info = *Pa_GetDeviceInfo(parameters.device);
-        name_ = full_name(info);
+        name_ = audio_device_name(parameters.device);
         if (channels < 1 || channels > info.maxOutputChannels)
             throw Error(fmt::format("'{}' has {} channels, {} are needed", name_, info.maxOutputChannels, channels));
         parameters.channelCount = channels;
@@ -144,7 +127,7 @@ private:
 
     std::string device_, name_ = "sound card";
     double buffer_s_;
-    std::unique_ptr<Session> session_;
+    std::unique_ptr<PortAudioSession> session_;
     std::unique_ptr<StreamState> state_;
     PaStream* stream_ = nullptr;
 };
@@ -152,11 +135,11 @@ private:
 }  // namespace
 
 std::vector<AudioOutput> list_audio_outputs() {
-    const Session session;
+    const PortAudioSession session;
     std::vector<AudioOutput> outputs;
     for (PaDeviceIndex i = 0; i < Pa_GetDeviceCount(); ++i)
         if (const PaDeviceInfo& info = *Pa_GetDeviceInfo(i); info.maxOutputChannels > 0)
-            outputs.push_back({full_name(info), info.maxOutputChannels, info.defaultSampleRate});
+            outputs.push_back({audio_device_name(i), info.maxOutputChannels, info.defaultSampleRate});
     return outputs;
 }
 

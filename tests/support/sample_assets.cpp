@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Assets for tests, made in memory: a ball of bone and a saw of two recordings.
+// Assets for tests, made in memory: a ball of bone, a saw of two recordings and a short equaliser.
 #include "graph/assets.hpp"
 #include "tests/support/node_harness.hpp"
 
@@ -52,6 +52,12 @@ std::shared_ptr<const void> sample_asset(std::string_view type_name) {
         RecordingSet set;
         set.recordings = {tone(false, 200.0, 0.0), tone(true, 200.0, 7.0)};
         return std::make_shared<const RecordingSet>(std::move(set));
+    }
+    if (type_name == AssetLoader<Equaliser>::name) {
+        Equaliser equaliser;
+        equaliser.taps = {0.5f, -0.25f, 0.125f};
+        equaliser.delay = 1.0 / 48000.0;
+        return std::make_shared<const Equaliser>(std::move(equaliser));
     }
     throw Error("no sample of a " + std::string(type_name));
 }

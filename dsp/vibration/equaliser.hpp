@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// A filter that undoes what an actuator does to a vibration, within its band and with bounded gain.
+#pragma once
+
+#include "dsp/vibration/frequency_response.hpp"
+
+#include <string>
+#include <vector>
+
+namespace tactus {
+
+enum class EqualiserKind {
+    minimum_phase,  ///< adds at most 2 ms: for what a hand drives
+    linear_phase,   ///< undoes the phase as well, and adds half its length: for what is known beforehand
+};
+
+struct EqualiserDesign {
+    EqualiserKind kind = EqualiserKind::minimum_phase;
+    double rate = 48000.0;         ///< of the signal that will be filtered, Hz
+    double lowest = 45.0;          ///< Hz: the band that is made flat ...
+    double highest = 1000.0;       ///< ... and beyond which the filter lets go within an octave or less
+    double length = 0.128;         ///< of the impulse response, s
+    double greatest_gain = 10.0;   ///< of the filter: 20 dB
+    double regularisation = 1e-4;  ///< β in the band, relative to the squared mean gain of the actuator
+};
+
+struct Equaliser {
+    EqualiserKind kind = EqualiserKind::minimum_phase;
+    double rate = 48000.0;     ///< Hz
+    double delay = 0.0;        ///< s that it adds
+    double lowest = 0.0, highest = 0.0;  ///< the band, Hz
+    double mean_gain = 1.0;    ///< of the actuator in the band: what actuator and equaliser together have
+    std::string unit;          ///< of `mean_gain`, "m/s^2 per V"; for the reader
+    std::vector<float> taps;   ///< impulse response
+
+    /// Of the filter at a frequency in Hz.
+    std::complex<double> gain(double frequency) const;
+};
+
+/// The regularised inverse C = g D H* / (|H|² + β g²) (Kirkeby and Nelson 1999), with g the geometric mean of |H| over
+/// the band, D a delay, and β rising to 1 outside the band. The response must cover the band. Throws Error. Allocates.
+Equaliser design_equaliser(const FrequencyResponse& response, const EqualiserDesign& design = {});
+
+}  // namespace tactus

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/vibration/identify.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/spectrum/transform.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+
+namespace tactus {
+
+namespace {
+
+using Complex = std::complex<double>;
+using Spectrum = std::vector<Complex>;
+
+constexpr double pi = std::numbers::pi;
+
+struct Spectra {
+    Spectrum drive;
+    std::vector<Spectrum> answers;  ///< one per repeat
+    double step = 0.0;              ///< Hz from bin to bin
+    std::size_t size = 0;           ///< of the transform, samples
+};
+
+Spectra transform(const SweepRun& run, std::span<const float> captured, double rate) {
+    const auto period = static_cast<std::size_t>(std::llround((run.sweep.duration + run.pause) * rate));
+    const auto repeats = static_cast<std::size_t>(run.repeats);
+    if (captured.size() + 1 < period * repeats)
+        throw Error(fmt::format("the answer to the sweep is {:.3g} s long; {:.3g} s were played",
+                                static_cast<double>(captured.size()) / rate,
+                                static_cast<double>(period * repeats) / rate));
+    Spectra spectra;
+    spectra.size = std::bit_ceil(period);
+    spectra.step = rate / static_cast<double>(spectra.size);
+    std::vector<double> samples(period);
+    for (std::size_t i = 0; i < period; ++i) samples[i] = run.amplitude * run.sweep(static_cast<double>(i) / rate);
+    spectra.drive = spectrum_of(samples, spectra.size);
+    for (std::size_t r = 0; r < repeats; ++r) {
+        for (std::size_t i = 0; i < period; ++i) {
+            const std::size_t at = r * period + i;
+            samples[i] = at < captured.size() ? static_cast<double>(captured[at]) : 0.0;
+        }
+        spectra.answers.push_back(spectrum_of(samples, spectra.size));
+    }
+    return spectra;
+}
+
+/// What is left of the answers around `hz` after the delay: cross-spectrum and powers, averaged under a Hann window.
+struct Average {
+    Complex cross = 0.0;
+    double drive = 0.0, answer = 0.0;
+
+    Complex gain() const { return drive > 0.0 ? cross / drive : 0.0; }
+    double coherence() const {
+        const double product = drive * answer;
+        return product > 0.0 ? std::min(1.0, std::norm(cross) / product) : 0.0;
+    }
+};
+
+Average average(const Spectra& spectra, double hz, double width, double delay) {
+    const double first = std::max(1.0, std::ceil((hz - width) / spectra.step));
+    const double last =
+        std::min(static_cast<double>(spectra.drive.size() - 1), std::floor((hz + width) / spectra.step));
+    Average sum;
+    for (double bin = first; bin <= last; ++bin) {
+        const auto k = static_cast<std::size_t>(bin);
+        const double f = bin * spectra.step;
+        const double weight = 0.5 + 0.5 * std::cos(pi * (f - hz) / width);
+        const Complex turn = std::polar(weight, 2.0 * pi * (f - hz) * delay);
+        for (const Spectrum& answer : spectra.answers) {
+            sum.cross += turn * std::conj(spectra.drive[k]) * answer[k];
+            sum.drive += weight * std::norm(spectra.drive[k]);
+            sum.answer += weight * std::norm(answer[k]);
+        }
+    }
+    return sum;
+}
+
+/// Where the impulse response within the swept band is strongest, s.
+double coarse_delay(const SweepRun& run, const Spectra& spectra, double rate) {
+    Spectrum cross(spectra.drive.size());
+    double greatest = 0.0;
+    for (const Complex& x : spectra.drive) greatest = std::max(greatest, std::norm(x));
+    for (std::size_t k = 1; k < cross.size(); ++k) {
+        const double f = static_cast<double>(k) * spectra.step;
+        if (f < run.sweep.first || f > run.sweep.last) continue;
+        // A window over the octaves keeps the ringing of the band's edges small beside the peak.
+        const double place = std::log(f / run.sweep.first) / std::log(run.sweep.last / run.sweep.first);
+        const double window = std::sin(pi * place);
+        for (const Spectrum& answer : spectra.answers)
+            cross[k] += window * window * std::conj(spectra.drive[k]) * answer[k] /
+                        (std::norm(spectra.drive[k]) + 1e-6 * greatest);
+    }
+    const std::vector<double> impulse = samples_of(cross);
+    const auto end = static_cast<std::size_t>(run.pause * rate);
+    std::size_t peak = 0;
+    for (std::size_t i = 0; i < std::min(end, impulse.size()); ++i)
+        if (std::abs(impulse[i]) > std::abs(impulse[peak])) peak = i;
+    if (!(std::abs(impulse[peak]) > 0.0)) throw Error("the sweep does not come back: the answer is silent");
+    return static_cast<double>(peak) / rate;
+}
+
+/// What the phase says beyond minimum phase: the slope over frequency of the rest, s.
+double excess_delay(const FrequencyResponse& response) {
+    std::vector<double> magnitude;
+    for (const Complex& gain : response.gain)
+        magnitude.push_back(std::max(std::abs(gain), std::numeric_limits<double>::min()));
+    const std::vector<double> least = minimum_phase(response.hz, magnitude);
+    const std::vector<double> phase = unwrapped_phase(response.gain);
+    // A straight line through the rest; its value at 0 Hz is a polarity and stays in the response.
+    double w = 0.0, wf = 0.0, wff = 0.0, wp = 0.0, wfp = 0.0;
+    const double low = 2.0 * response.hz.front(), high = 0.5 * response.hz.back();
+    for (std::size_t i = 0; i < phase.size(); ++i) {
+        const double f = response.hz[i], rest = phase[i] - least[i];
+        if (f < low || f > high) continue;
+        const double weight = std::pow(response.coherence[i], 4);
+        w += weight, wf += weight * f, wff += weight * f * f, wp += weight * rest, wfp += weight * f * rest;
+    }
+    const double spread = w * wff - wf * wf;
+    return spread > 0.0 ? -(w * wfp - wf * wp) / spread / (2.0 * pi) : 0.0;
+}
+
+}  // namespace
+
+Identified identify(const SweepRun& run, std::span<const float> captured, double rate, int highest_order,
+                    int per_octave) {
+    const ExponentialSweep& sweep = run.sweep;
+    if (!(sweep.first > 0.0 && sweep.last > 2.0 * sweep.first && sweep.last < 0.5 * rate && sweep.duration > 0.0 &&
+          run.repeats >= 1 && run.amplitude != 0.0))
+        throw Error("a sweep needs at least an octave, below half the sample rate, and an amplitude");
+    const Spectra spectra = transform(run, captured, rate);
+    // Wide enough to shut out the second order, which lies lead(2) earlier, and to hold a few dozen bins; as a window
+    // in time this keeps ±1/width around the linear response.
+    const double width = std::max({2.5, 1.5 / sweep.lead(2), 12.0 * spectra.step});
+    Identified out;
+    FrequencyResponse& response = out.response;
+    // The fades and the averaging spoil the outermost frequencies.
+    const double first = sweep.first + width, last = sweep.last - width;
+    const int count = static_cast<int>(std::floor(std::log2(last / first) * per_octave)) + 1;
+    for (int i = 0; i < count; ++i) response.hz.push_back(first * std::exp2(static_cast<double>(i) / per_octave));
+
+    const auto measure = [&](double delay) {
+        response.gain.clear();
+        response.coherence.clear();
+        for (const double f : response.hz) {
+            const Average here = average(spectra, f, width, delay);
+            response.gain.push_back(here.gain() * std::polar(1.0, 2.0 * pi * f * delay));
+            response.coherence.push_back(here.coherence());
+        }
+        response.latency = delay;
+    };
+    measure(coarse_delay(run, spectra, rate));
+    measure(response.latency + excess_delay(response));
+
+    // The linear response is far stronger and must not leak in: a wider average shuts it out better.
+    const double wide = 3.0 * width;
+    for (int order = 2; order <= highest_order; ++order) {
+        Distortion& distortion = out.distortions.emplace_back();
+        distortion.order = order;
+        for (std::size_t i = 0; i < response.hz.size(); ++i) {
+            const double f = order * response.hz[i];
+            const double fundamental = std::abs(response.gain[i]);
+            distortion.ratio.push_back(
+                f <= last && fundamental > 0.0
+                    ? std::abs(average(spectra, f, wide, response.latency - sweep.lead(order)).gain()) / fundamental
+                    : std::numeric_limits<double>::quiet_NaN());
+        }
+    }
+    return out;
+}
+
+}  // namespace tactus
