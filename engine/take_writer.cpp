@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/take_writer.hpp"
 
+#include "assets/bone/bone.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/group_runtime.hpp"
 
@@ -87,7 +88,7 @@ Json sample_json(const DeviceSample& s) {
 }  // namespace
 
 std::uint64_t hash_of_file(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
+    std::ifstream file(file_of_bone(path), std::ios::binary);
     if (!file) throw Error(fmt::format("{}: cannot read: {}", path.string(), std::strerror(errno)));
     Hash hash;
     std::string text;

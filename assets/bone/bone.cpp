@@ -9,8 +9,12 @@
 #include <openvdb/openvdb.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <optional>
 #include <sstream>
 
 namespace tactus {
@@ -20,6 +24,9 @@ namespace {
 constexpr std::string_view seal_mark = "TACTUSBONE000001";
 constexpr std::size_t seal_size = seal_mark.size() + 8;
 constexpr std::string_view provenance_prefix = "provenance.";
+// Files without this number hold one bone whose name and provenance stand in the file's own metadata.
+constexpr const char* format_key = "tactus_format";
+constexpr std::int32_t newest_format = 2;
 // Magic (8), file version (4), library version (8) and one flag stand before OpenVDB's identifier.
 constexpr std::size_t identifier_offset = 21, identifier_size = 36;
 
@@ -27,6 +34,17 @@ std::uint64_t hash_of(std::string_view bytes) {
     Hash hash;
     hash.add_bytes(bytes.data(), bytes.size());
     return hash.value();
+}
+
+// Calls visit(leaf, first, end) for every block of 8 x 8 x 8 samples: those of the grid in [first, end).
+template <typename Visit>
+void for_each_block(const std::array<int, 3>& size, Visit visit) {
+    constexpr int side = openvdb::FloatTree::LeafNodeType::DIM;
+    for (int k = 0; k < size[2]; k += side)
+        for (int j = 0; j < size[1]; j += side)
+            for (int i = 0; i < size[0]; i += side)
+                visit(openvdb::Coord(i, j, k), openvdb::Coord(std::min(i + side, size[0]), std::min(j + side, size[1]),
+                                                              std::min(k + side, size[2])));
 }
 
 openvdb::FloatGrid::Ptr to_vdb(const Grid& grid, const std::string& name) {
@@ -40,10 +58,12 @@ openvdb::FloatGrid::Ptr to_vdb(const Grid& grid, const std::string& name) {
     vdb->insertMeta("origin", openvdb::Vec3DMetadata({grid.origin.x, grid.origin.y, grid.origin.z}));
     vdb->insertMeta("spacing", openvdb::Vec3DMetadata({grid.spacing.x, grid.spacing.y, grid.spacing.z}));
     // Every sample is active, so that compression keeps its bits.
-    auto access = vdb->getAccessor();
-    for (int k = 0; k < grid.size[2]; ++k)
-        for (int j = 0; j < grid.size[1]; ++j)
-            for (int i = 0; i < grid.size[0]; ++i) access.setValueOn({i, j, k}, grid.at(i, j, k));
+    for_each_block(grid.size, [&](const openvdb::Coord& first, const openvdb::Coord& end) {
+        auto* leaf = vdb->tree().touchLeaf(first);
+        for (int k = first.z(); k < end.z(); ++k)
+            for (int j = first.y(); j < end.y(); ++j)
+                for (int i = first.x(); i < end.x(); ++i) leaf->setValueOn({i, j, k}, grid.at(i, j, k));
+    });
     return vdb;
 }
 
@@ -55,14 +75,20 @@ Grid from_vdb(const openvdb::FloatGrid& vdb, const std::string& file) {
     grid.size = {size.x(), size.y(), size.z()};
     grid.origin = {origin.x(), origin.y(), origin.z()};
     grid.spacing = {spacing.x(), spacing.y(), spacing.z()};
-    if (size.x() < 1 || size.y() < 1 || size.z() < 1 || grid.count() != vdb.activeVoxelCount())
+    if (size.x() < 1 || size.y() < 1 || size.z() < 1 ||
+        double(size.x()) * size.y() * size.z() != double(vdb.activeVoxelCount()))
         throw Error(fmt::format("{}: grid '{}' does not hold the samples its size asks for", file, vdb.getName()));
+    if (!is_finite(grid.origin) || !is_finite(grid.spacing) ||
+        !(std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}) > 0.0))
+        throw Error(fmt::format("{}: grid '{}' has no usable origin and spacing", file, vdb.getName()));
     grid.values.resize(grid.count());
-    auto access = vdb.getConstAccessor();
-    std::size_t at = 0;
-    for (int k = 0; k < grid.size[2]; ++k)
-        for (int j = 0; j < grid.size[1]; ++j)
-            for (int i = 0; i < grid.size[0]; ++i) grid.values[at++] = access.getValue({i, j, k});
+    for_each_block(grid.size, [&](const openvdb::Coord& first, const openvdb::Coord& end) {
+        const auto* leaf = vdb.tree().probeConstLeaf(first);
+        for (int k = first.z(); k < end.z(); ++k)
+            for (int j = first.y(); j < end.y(); ++j)
+                for (int i = first.x(); i < end.x(); ++i)
+                    grid.at(i, j, k) = leaf ? leaf->getValue({i, j, k}) : vdb.tree().getValue({i, j, k});
+    });
     return grid;
 }
 
@@ -74,13 +100,40 @@ void check(const Bone& bone) {
         throw Error("a bone's grids must hold as many values as their size says, and at least one");
 }
 
-std::string serialise(const Bone& bone) {
-    openvdb::GridPtrVec grids{to_vdb(bone.distance, "distance"), to_vdb(bone.density, "density")};
-    grids[0]->setGridClass(openvdb::GRID_LEVEL_SET);
+void check(std::span<const Bone> bones) {
+    if (bones.empty()) throw Error("a bone file holds at least one bone");
+    for (std::size_t n = 0; n < bones.size(); ++n) {
+        check(bones[n]);
+        if (bones.size() > 1 && (bones[n].name.empty() || bones[n].name.find('#') != std::string::npos))
+            throw Error(fmt::format("'{}' cannot name one of several bones: it is empty or has a '#'", bones[n].name));
+        for (std::size_t m = 0; m < n; ++m)
+            if (bones[m].name == bones[n].name)
+                throw Error(fmt::format("two bones of one file are both called '{}'", bones[n].name));
+    }
+}
+
+void add_text(openvdb::MetaMap& meta, const std::string& key, const std::string& value) {
+    meta.insertMeta(key, openvdb::StringMetadata(value));
+}
+
+std::string serialise(std::span<const Bone> bones) {
+    openvdb::GridPtrVec grids;
+    for (const Bone& bone : bones) {
+        const std::string prefix = bones.size() > 1 ? bone.name + "." : "";
+        const auto distance = to_vdb(bone.distance, prefix + "distance");
+        const auto density = to_vdb(bone.density, prefix + "density");
+        distance->setGridClass(openvdb::GRID_LEVEL_SET);
+        add_text(*distance, "quantity", "distance");
+        add_text(*density, "quantity", "density");
+        for (const auto& grid : {distance, density}) add_text(*grid, "bone", bone.name);
+        distance->insertMeta("colour", openvdb::Vec3DMetadata({bone.colour.x, bone.colour.y, bone.colour.z}));
+        for (const auto& [key, value] : bone.provenance)
+            add_text(*distance, std::string(provenance_prefix) + key, value);
+        grids.push_back(distance);
+        grids.push_back(density);
+    }
     openvdb::MetaMap meta;
-    meta.insertMeta("name", openvdb::StringMetadata(bone.name));
-    for (const auto& [key, value] : bone.provenance)
-        meta.insertMeta(std::string(provenance_prefix) + key, openvdb::StringMetadata(value));
+    meta.insertMeta(format_key, openvdb::Int32Metadata(newest_format));
     std::ostringstream out(std::ios::binary);
     openvdb::io::Stream(out).write(grids, meta);
     std::string bytes = std::move(out).str();
@@ -93,44 +146,90 @@ std::string serialise(const Bone& bone) {
     return bytes;
 }
 
-Bone deserialise(const std::string& bytes, const std::string& file) {
-    std::istringstream in(bytes, std::ios::binary);
+std::string text_of(const openvdb::MetaMap& meta, const std::string& key) {
+    const auto text = meta.getMetadata<openvdb::StringMetadata>(key);
+    return text ? text->value() : "";
+}
+
+void read_provenance(const openvdb::MetaMap& meta, Bone& bone) {
+    for (auto it = meta.beginMeta(); it != meta.endMeta(); ++it)
+        if (const auto text = std::dynamic_pointer_cast<openvdb::StringMetadata>(it->second);
+            text && it->first.starts_with(provenance_prefix))
+            bone.provenance[it->first.substr(provenance_prefix.size())] = text->value();
+}
+
+std::vector<Bone> deserialise(std::string bytes, const std::string& file) {
+    std::istringstream in(std::move(bytes), std::ios::binary);
     openvdb::io::Stream stream(in, /*delayLoad=*/false);
     const auto grids = stream.getGrids();
-    Bone bone;
-    bool has_distance = false, has_density = false;
+    const auto meta = stream.getMetadata();
+    const auto format = meta->getMetadata<openvdb::Int32Metadata>(format_key);
+    const std::int32_t version = format ? format->value() : 1;
+    if (version < 1 || version > newest_format)
+        throw Error(
+            fmt::format("{}: bone file of format {}; this program reads up to {}", file, version, newest_format));
+    struct Parts {
+        openvdb::FloatGrid::Ptr distance, density;
+    };
+    std::vector<std::pair<std::string, Parts>> found;
     for (const auto& base : *grids) {
         const auto vdb = openvdb::gridPtrCast<openvdb::FloatGrid>(base);
         if (!vdb) continue;
-        if (vdb->getName() == "distance") bone.distance = from_vdb(*vdb, file), has_distance = true;
-        if (vdb->getName() == "density") bone.density = from_vdb(*vdb, file), has_density = true;
+        const std::string name = version == 1 ? text_of(*meta, "name") : text_of(*vdb, "bone");
+        const std::string quantity = version == 1 ? vdb->getName() : text_of(*vdb, "quantity");
+        if (quantity != "distance" && quantity != "density") continue;
+        auto at = std::find_if(found.begin(), found.end(), [&](const auto& entry) { return entry.first == name; });
+        if (at == found.end()) at = found.insert(found.end(), {name, {}});
+        (quantity == "distance" ? at->second.distance : at->second.density) = vdb;
     }
-    if (!has_distance || !has_density)
-        throw Error(fmt::format("{}: a bone file holds the float grids 'distance' and 'density'", file));
-    const auto meta = stream.getMetadata();
-    for (auto it = meta->beginMeta(); it != meta->endMeta(); ++it) {
-        const auto text = std::dynamic_pointer_cast<openvdb::StringMetadata>(it->second);
-        if (!text) continue;
-        if (it->first == "name") bone.name = text->value();
-        if (it->first.starts_with(provenance_prefix))
-            bone.provenance[it->first.substr(provenance_prefix.size())] = text->value();
+    grids->clear();
+    std::vector<Bone> bones;
+    for (auto& [name, parts] : found) {
+        if (!parts.distance || !parts.density)
+            throw Error(
+                fmt::format("{}: a bone has the float grids 'distance' and 'density'; '{}' lacks one", file, name));
+        Bone& bone = bones.emplace_back();
+        bone.name = name;
+        read_provenance(version == 1 ? *meta : *parts.distance, bone);
+        if (const auto colour = parts.distance->getMetadata<openvdb::Vec3DMetadata>("colour"))
+            bone.colour = {colour->value().x(), colour->value().y(), colour->value().z()};
+        bone.distance = from_vdb(*parts.distance, file);
+        parts.distance.reset();
+        bone.density = from_vdb(*parts.density, file);
+        parts.density.reset();
     }
-    return bone;
+    if (bones.empty()) throw Error(fmt::format("{}: a bone file holds the float grids 'distance' and 'density'", file));
+    return bones;
+}
+
+struct BonePath {
+    std::filesystem::path file;
+    std::optional<std::string> name;
+};
+
+BonePath split(const std::filesystem::path& path) {
+    const std::string text = path.string();
+    const std::size_t mark = text.rfind('#');
+    std::error_code ignored;
+    if (mark == std::string::npos || std::filesystem::exists(path, ignored)) return {path, {}};
+    return {text.substr(0, mark), text.substr(mark + 1)};
 }
 
 }  // namespace
 
-void save_bone(const Bone& bone, const std::filesystem::path& path) {
-    check(bone);
+void save_bones(std::span<const Bone> bones, const std::filesystem::path& path) {
+    check(bones);
     openvdb::initialize();
-    std::string bytes = serialise(bone);
+    std::string bytes = serialise(bones);
     const std::uint64_t hash = hash_of(bytes);
     bytes += seal_mark;
     bytes.append(reinterpret_cast<const char*>(&hash), sizeof hash);
     write_whole_file(path, bytes);
 }
 
-Bone load_bone(const std::filesystem::path& path) {
+void save_bone(const Bone& bone, const std::filesystem::path& path) { save_bones({&bone, 1}, path); }
+
+std::vector<Bone> load_bones(const std::filesystem::path& path) {
     const std::string file = path.string();
     std::string bytes = read_whole_file(path);
     // OpenVDB trusts the sizes it reads, so only bytes that are known to be whole reach it.
@@ -143,12 +242,30 @@ Bone load_bone(const std::filesystem::path& path) {
         throw Error(fmt::format("{}: damaged (its checksum differs); make it again with 'tactus import'", file));
     openvdb::initialize();
     try {
-        Bone bone = deserialise(bytes, file);
-        check(bone);
-        return bone;
+        std::vector<Bone> bones = deserialise(std::move(bytes), file);
+        check(bones);
+        return bones;
     } catch (const openvdb::Exception& failure) {
         throw Error(fmt::format("{}: OpenVDB cannot read it: {}", file, failure.what()));
     }
 }
+
+Bone load_bone(const std::filesystem::path& path) {
+    const auto [file, name] = split(path);
+    std::vector<Bone> bones = load_bones(file);
+    if (!name && bones.size() == 1) return std::move(bones.front());
+    std::vector<std::string> names;
+    for (Bone& bone : bones) {
+        if (name && bone.name == *name) return std::move(bone);
+        names.push_back(bone.name);
+    }
+    if (!name)
+        throw Error(fmt::format("{}: holds {} bones ({}); name one of them: {}#{}", file.string(), bones.size(),
+                                fmt::join(names, ", "), file.string(), names.front()));
+    throw Error(fmt::format("{}: holds no bone '{}' but {}{}", file.string(), *name, fmt::join(names, ", "),
+                            did_you_mean(*name, names)));
+}
+
+std::filesystem::path file_of_bone(const std::filesystem::path& path) { return split(path).file; }
 
 }  // namespace tactus

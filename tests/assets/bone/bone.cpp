@@ -8,6 +8,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 
@@ -107,4 +108,65 @@ TEST_CASE("grids that do not match are refused") {
     bone = noisy_bone();
     bone.distance.values.pop_back();
     CHECK_THROWS_WITH(save_bone(bone, folder / "a.vdb"), Contains("as many values"));
+}
+
+TEST_CASE("several bones of one file come back in order, each with its own grid, colour and provenance") {
+    const TemporaryFolder folder;
+    std::vector<Bone> bones(2, noisy_bone());
+    bones[0].name = "main part";
+    bones[1].name = "fragment.distance";
+    bones[1].colour = {0.1, 0.5, 0.9};
+    bones[1].provenance["label"] = "2";
+    bones[1].distance.size = bones[1].density.size = {19, 11, 8};
+    bones[1].distance.origin.x = bones[1].density.origin.x = 1.0;
+    save_bones(bones, folder / "two.vdb");
+    const std::vector<Bone> back = load_bones(folder / "two.vdb");
+    REQUIRE(back.size() == 2);
+    for (std::size_t n = 0; n < 2; ++n) {
+        CHECK(same_bits(back[n].distance, bones[n].distance));
+        CHECK(same_bits(back[n].density, bones[n].density));
+        CHECK(back[n].name == bones[n].name);
+        CHECK(back[n].colour == bones[n].colour);
+        CHECK(back[n].provenance == bones[n].provenance);
+    }
+}
+
+TEST_CASE("a bone of several is loaded by name, and a name is asked for when it is missing or wrong") {
+    const TemporaryFolder folder;
+    std::vector<Bone> bones(2, noisy_bone());
+    bones[0].name = "main";
+    bones[1].name = "fragment";
+    bones[1].distance.values[0] = 42.0f;
+    save_bones(bones, folder / "two.vdb");
+    CHECK(load_bone(folder / "two.vdb#fragment").distance.values[0] == 42.0f);
+    CHECK_THROWS_WITH(load_bone(folder / "two.vdb"), Contains("2 bones (main, fragment)") && Contains("two.vdb#main"));
+    CHECK_THROWS_WITH(load_bone(folder / "two.vdb#fragmnt"), Contains("did you mean 'fragment'?"));
+    CHECK_THROWS_WITH(load_bone(folder / "two.vdb#"), Contains("no bone ''"));
+    CHECK_THROWS_WITH(load_bone(folder / "absent.vdb#main"), Contains("no such file"));
+    save_bone(bones[0], folder / "odd#name.vdb");
+    CHECK(load_bone(folder / "odd#name.vdb").name == "main");
+    CHECK(load_bone(folder / "odd#name.vdb#main").name == "main");
+    CHECK(file_of_bone(folder / "two.vdb#main") == folder / "two.vdb");
+}
+
+TEST_CASE("bones that cannot be told apart, and files without bones, are refused") {
+    const TemporaryFolder folder;
+    const std::vector<Bone> same(2, noisy_bone());
+    CHECK_THROWS_WITH(save_bones(same, folder / "a.vdb"), Contains("both called 'block'"));
+    CHECK_THROWS_WITH(save_bones({}, folder / "a.vdb"), Contains("at least one"));
+    std::vector<Bone> nameless(2, noisy_bone());
+    nameless[1].name = "";
+    CHECK_THROWS_WITH(save_bones(nameless, folder / "a.vdb"), Contains("cannot name"));
+    CHECK_FALSE(std::filesystem::exists(folder / "a.vdb"));
+}
+
+TEST_CASE("a file of the first format, one bone without colour, is still read") {
+    // Made by the first release's `tactus import` of a CT of 6 x 4 x 5 voxels.
+    const Bone bone = load_bone(std::filesystem::path(TACTUS_SOURCE_DIR) / "tests/assets/bone/data/format1.vdb");
+    CHECK(bone.name == "small");
+    CHECK(bone.provenance.at("source") == "small.nrrd");
+    CHECK(bone.distance.size == std::array<int, 3>{14, 12, 13});
+    CHECK(bone.distance.origin.x == Approx(1.0 - 4 * 0.7e-3));
+    CHECK(*std::max_element(bone.density.values.begin(), bone.density.values.end()) == Approx(1731.5f));
+    CHECK(*std::min_element(bone.distance.values.begin(), bone.distance.values.end()) < 0.0f);
 }
