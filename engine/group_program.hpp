@@ -5,6 +5,7 @@
 
 #include "dsp/core/hash.hpp"
 #include "dsp/core/signal_hash.hpp"
+#include "engine/device_guard.hpp"
 #include "engine/link.hpp"
 #include "graph/device.hpp"
 #include "graph/setup.hpp"
@@ -99,6 +100,9 @@ struct DeviceSlot {
     DevicePort port;
     int group = -1;
     int id = 0;  ///< within its group
+    Flicks period = 0;  ///< of that group
+    DeviceGuard guard;  ///< live runs
+    Wrench committed;  ///< of the last tick
 };
 
 struct GroupProgram {

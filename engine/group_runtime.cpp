@@ -2,6 +2,7 @@
 #include "engine/group_runtime.hpp"
 
 #include "dsp/core/realtime.hpp"
+#include "engine/clock.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -161,6 +162,7 @@ void GroupRuntime::acquire() noexcept {
         const TimingRecord* logged =
             replayed_at(TimingKind::device_sample, static_cast<std::uint16_t>(slot->id), next_);
         slot->port.sample = logged ? logged->sample : slot->device->acquire(seconds(elapsed));
+        if (!logged) slot->port.sample.taken = slot->guard.was_taken();
         note(TimingKind::device_sample, slot->id, 1, 0, &slot->port.sample);
     }
 }
@@ -307,7 +309,10 @@ int GroupRuntime::call(int frames, Pace pace) noexcept {
     }
     for (DeviceSlot* slot : program_->driven) {
         telemetry.force_N.store(glm::length(slot->port.wrench.force), std::memory_order_relaxed);
-        if (!replayed) slot->device->commit(slot->port.wrench);
+        slot->guard.note(slot->port.fault, next_, glm::length(slot->committed.force));
+        slot->committed = slot->port.wrench;
+        if (pace == Pace::live) slot->guard.commit(*slot->device, slot->port.wrench, steady_ns());
+        else if (!replayed) slot->device->commit(bearable(slot->port.wrench, slot->port.info));
     }
     telemetry.ticks.fetch_add(n, std::memory_order_relaxed);
     last_ = next_ + n - 1;
@@ -338,6 +343,8 @@ bool GroupRuntime::replay_skip() noexcept {
 void GroupRuntime::end_at(std::int64_t tick) noexcept {
     end.store(std::min(end.load(), tick));
     note(TimingKind::end, 0, 0, 0, nullptr);
+    if (!program_) return;
+    for (DeviceSlot* slot : program_->devices) slot->guard.retire();
 }
 
 }  // namespace tactus

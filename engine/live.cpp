@@ -4,10 +4,11 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/realtime.hpp"
+#include "engine/clock.hpp"
+#include "engine/watchdog.hpp"
 
 #include <pthread.h>
 #include <sys/mman.h>
-#include <time.h>
 
 #include <algorithm>
 #include <chrono>
@@ -22,19 +23,10 @@ namespace {
 constexpr std::int64_t spin_ns = 80'000;
 constexpr std::int64_t start_delay_ns = 20'000'000;
 
-std::int64_t now_ns() noexcept {
-    timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return t.tv_sec * 1'000'000'000LL + t.tv_nsec;
-}
-
 void wait_until(std::int64_t when_ns) noexcept {
     const std::int64_t sleep_to = when_ns - spin_ns;
-    if (now_ns() < sleep_to) {
-        const timespec t{sleep_to / 1'000'000'000, sleep_to % 1'000'000'000};
-        clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr);
-    }
-    while (now_ns() < when_ns) {
+    if (steady_ns() < sleep_to) sleep_until(sleep_to);
+    while (steady_ns() < when_ns) {
     }
 }
 
@@ -45,6 +37,12 @@ bool make_real_time(Flicks period) noexcept {
     const double octaves_above_1_hz = std::log2(rate_of(period));
     parameters.sched_priority = std::clamp(30 + static_cast<int>(3.0 * octaves_above_1_hz), 10, 80);
     return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
+}
+
+/// How old the last force may be before the watchdog fades it: 3 ms, or three ticks of a slower device.
+std::int64_t commit_limit_ns(const DeviceSlot& slot, double dilate) {
+    const double ticks = 3e9 / rate_of(slot.period);
+    return std::llround(std::max(3e6, ticks) * std::max(1.0, dilate));
 }
 
 }  // namespace
@@ -69,7 +67,7 @@ void Engine::live_worker(GroupRuntime& group) {
     while (!group.finished()) {
         const std::int64_t due = release_ns(group.next());
         wait_until(due);
-        const std::int64_t begin = now_ns();
+        const std::int64_t begin = steady_ns();
         group.telemetry.lateness.add(begin - due);
         const auto late = static_cast<std::int64_t>(static_cast<double>(begin - due) / period_ns);
         if (late > group.backlog()) {
@@ -78,7 +76,7 @@ void Engine::live_worker(GroupRuntime& group) {
         }
         group.take_changes(Pace::live);
         group.call(group.max_frames, Pace::live);
-        group.telemetry.execution.add(now_ns() - begin);
+        group.telemetry.execution.add(steady_ns() - begin);
     }
     group.end_at(group.next());
 }
@@ -101,8 +99,17 @@ void Engine::run_live(const LiveOptions& options) {
             "memory could not be locked: a page fault may delay a tick (run as root or raise RLIMIT_MEMLOCK)");
     LiveRun run;
     live_ = &run;
-    run.start_ns = now_ns() + start_delay_ns;
+    run.start_ns = steady_ns() + start_delay_ns;
     run.dilate = options.dilate;
+    Watchdog watchdog;
+    const auto watch_devices = [&] {
+        while (watchdog.watched() < outside_.devices.size()) {
+            DeviceSlot& slot = *outside_.devices[watchdog.watched()];
+            slot.guard.set_limit(commit_limit_ns(slot, run.dilate));
+            watchdog.watch(slot);
+        }
+    };
+    watch_devices();
     for (const auto& group : now_->groups) start_thread(*group);
     bool stopping = false;
     while (run.running.load() > 0) {
@@ -111,6 +118,7 @@ void Engine::run_live(const LiveOptions& options) {
             drain_log();
             drain_streams();
             tend_edits();
+            watch_devices();
             if (options.watch) options.watch();
         } catch (...) {
             fail(std::current_exception());

@@ -116,6 +116,7 @@ DevicePort& EngineOutside::device(const std::string& wanted, DeviceUse use, cons
     slot->port.info = slot->device->info();
     slot->port.sample = slot->device->acquire(0.0);
     slot->group = group_;
+    slot->period = period_;
     for (const auto* list : {&devices, &opened_.devices})
         for (const auto& other : *list) slot->id += other->group == group_;
     opened_.devices.push_back(std::move(slot));

@@ -22,6 +22,7 @@ struct DeviceSample {
     std::uint32_t buttons = 0;
     std::int64_t counter = 0;    ///< the driver's sample counter; a counter that stands still is stale input
     bool valid = false;          ///< false: the other members mean nothing
+    bool taken = false;  ///< set by the engine: ticks were late and the watchdog faded the force; it must come in anew
 };
 static_assert(std::is_trivially_destructible_v<DeviceSample>, "samples travel through rings");
 
@@ -52,6 +53,8 @@ public:
     virtual DeviceSample acquire(double elapsed_s) noexcept = 0;
 
     /// Sets the force on the hand, after the steps; it holds until the next call. Device frame, about the pose origin.
+    /// When the tick's thread hangs, even inside `acquire`, another thread calls this to fade the force; two calls never
+    /// run at the same time.
     virtual void commit(const Wrench& on_hand) noexcept = 0;
 };
 

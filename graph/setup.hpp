@@ -4,6 +4,7 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/time.hpp"
+#include "dsp/safety/force_limiter.hpp"
 #include "graph/device.hpp"
 
 #include <any>
@@ -36,6 +37,7 @@ struct DevicePort {
     DeviceInfo info;
     DeviceSample sample;
     Wrench wrench;
+    Fault fault = Fault::none;  ///< why the node that writes `wrench` gives no force
     bool hold_off = false;  ///< the engine is about to change the plan: fade the force to zero, ramp in when this ends
 };
 

@@ -34,7 +34,12 @@ std::string live_line(const Engine& engine) {
         text += fmt::format("| {} late {:.2f} ms, {} missed ", group->plan->name,
                             static_cast<double>(t.lateness.max_ns()) * 1e-6, t.misses.load() + t.skipped.load());
     }
-    return text + fmt::format("| {:.1f} N", force_of(engine));
+    text += fmt::format("| {:.1f} N", force_of(engine));
+    for (const auto& slot : engine.outside().devices)
+        if (const auto faults = slot->guard.faults(); !faults.empty())
+            text += fmt::format(" | {} at {:.1f} s: {}", slot->name, seconds(faults.back().tick * slot->period),
+                                describe(faults.back().reason));
+    return text;
 }
 
 }  // namespace

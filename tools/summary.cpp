@@ -61,6 +61,13 @@ std::string summary_json(const Engine& engine, const Report& report, double seco
     for (const auto& group : engine.groups()) json["groups"].push_back(group_json(*group, live));
     for (const auto& [section, values] : report.sections)
         for (const auto& [key, value] : values) json[section][key] = value_json(value);
+    json["faults"] = Json::array();
+    for (const auto& slot : engine.outside().devices)
+        for (const DeviceFault& fault : slot->guard.faults())
+            json["faults"].push_back({{"device", slot->name},
+                                      {"reason", describe(fault.reason)},
+                                      {"time_s", tactus::seconds(fault.tick * slot->period)},
+                                      {"force_N", fault.force_N}});
     json["signals"] = Json::array();
     Json all = Json::array();
     for (const auto& stream : engine.outside().streams) {
@@ -92,6 +99,10 @@ std::string summary_text(const Engine& engine, const Report& report, double seco
                             number(report, "contact", "max_penetration_mm"), number(report, "force", "thrust_mean_N"));
     if (report.sections.contains("carve"))
         text += fmt::format("  removed {:.1f} mm³\n", number(report, "carve", "removed_mm3"));
+    for (const auto& slot : engine.outside().devices)
+        for (const DeviceFault& fault : slot->guard.faults())
+            text += fmt::format("  fault of {} at {:.3f} s: {}; {:.2g} N faded to nothing\n", slot->name,
+                                tactus::seconds(fault.tick * slot->period), describe(fault.reason), fault.force_N);
     for (const std::string& notice : engine.outside().notices) text += fmt::format("  note: {}\n", notice);
     return text;
 }

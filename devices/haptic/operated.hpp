@@ -6,6 +6,7 @@
 #include "graph/device.hpp"
 #include "graph/options.hpp"
 
+#include <atomic>
 #include <utility>
 
 namespace tactus {
@@ -14,6 +15,27 @@ namespace tactus {
 /// angular_damping, max_force, max_torque.
 HandDynamics read_hand(Options& options);
 DeviceInfo read_device_info(Options& options, const HandDynamics& hand, std::string name);
+
+/// The force that a device was given last. A watchdog may give one while the device is read.
+class SharedWrench {
+    static_assert(std::atomic<double>::is_always_lock_free);
+
+public:
+    /// Wait-free for one writer.
+    void set(const Wrench& w) noexcept {
+        const double all[6] = {w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z};
+        for (int i = 0; i < 6; ++i) parts_[i].store(all[i], std::memory_order_relaxed);
+    }
+    /// Wait-free. While another thread sets it, some parts may be old ones.
+    Wrench get() const noexcept {
+        double all[6];
+        for (int i = 0; i < 6; ++i) all[i] = parts_[i].load(std::memory_order_relaxed);
+        return {{all[0], all[1], all[2]}, {all[3], all[4], all[5]}};
+    }
+
+private:
+    std::atomic<double> parts_[6] = {};
+};
 
 /// A device moved by a hand that `Operator` leads. Operator: the call of `advance` in dsp/operator/hand.hpp, `start()`
 /// and `buttons()`.
@@ -32,22 +54,22 @@ public:
         operator_ = initial_;
         hand_.pose = operator_.start();
         hand_.twist = {};
-        force_ = {};
+        force_.set({});
         counter_ = 0;
     }
 
     DeviceSample acquire(double elapsed_s) noexcept override {
-        advance(hand_, operator_, force_, elapsed_s);
+        advance(hand_, operator_, force_.get(), elapsed_s);
         return {hand_.pose, hand_.twist, operator_.buttons(), ++counter_, is_valid(hand_.pose)};
     }
 
-    void commit(const Wrench& on_hand) noexcept override { force_ = on_hand; }
+    void commit(const Wrench& on_hand) noexcept override { force_.set(on_hand); }
 
 private:
     DeviceInfo info_;
     Operator initial_, operator_;
     Hand hand_;
-    Wrench force_;
+    SharedWrench force_;
     std::int64_t counter_ = 0;
 };
 

@@ -33,15 +33,15 @@ public:
     }
 
     /// True when the caller must commit `out`: the last force, fading to zero. Nothing happens before the first commit.
-    /// Watchdog thread; wait-free.
-    bool poll(std::int64_t now_ns, Wrench& out) noexcept {
+    /// `at_once` does not wait for the limit: no commit is to come. Watchdog thread; wait-free.
+    bool poll(std::int64_t now_ns, Wrench& out, bool at_once = false) noexcept {
         if (owner_.load(std::memory_order_acquire) != taken) {
             const std::int64_t committed = committed_ns_.load(std::memory_order_relaxed);
-            if (committed == never || now_ns - committed <= limit_ns) return false;
+            if (committed == never || (!at_once && now_ns - committed <= limit_ns)) return false;
             int expected = idle;
             if (!owner_.compare_exchange_strong(expected, taken, std::memory_order_acq_rel)) return false;
             // A commit may have finished between the two looks; then the device goes straight back.
-            if (now_ns - committed_ns_.load(std::memory_order_relaxed) <= limit_ns) {
+            if (!at_once && now_ns - committed_ns_.load(std::memory_order_relaxed) <= limit_ns) {
                 owner_.store(idle, std::memory_order_release);
                 return false;
             }
@@ -57,6 +57,11 @@ public:
         committed_ns_.store(never, std::memory_order_relaxed);
         owner_.store(idle, std::memory_order_release);
     }
+
+    /// The device is taken and `poll` gave a force of zero at that time. Watchdog thread; wait-free.
+    bool has_faded(std::int64_t now_ns) const noexcept { return is_taken() && now_ns - taken_ns_ >= fade_ns; }
+    /// Some commit ended since the start or the last release. Any thread; wait-free.
+    bool has_committed() const noexcept { return committed_ns_.load(std::memory_order_relaxed) != never; }
 
     /// Any thread; wait-free.
     bool is_taken() const noexcept { return owner_.load(std::memory_order_acquire) == taken; }

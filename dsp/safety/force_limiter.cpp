@@ -41,6 +41,11 @@ void ForceLimiter::fail(Fault reason) noexcept {
     faded_s_ = 0.0;
 }
 
+void ForceLimiter::cut(Fault reason) noexcept {
+    fail(reason);
+    output_ = fade_from_ = {};
+}
+
 void ForceLimiter::hold_off(bool wanted) noexcept {
     if (wanted == held_off_) return;
     held_off_ = wanted;

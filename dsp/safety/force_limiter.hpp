@@ -53,6 +53,9 @@ public:
     /// Starts the fade for a reason found elsewhere. The first reason stays until `recover`.
     void fail(Fault reason) noexcept;
 
+    /// The same where someone else has faded the force already: from here the output is zero at once.
+    void cut(Fault reason) noexcept;
+
     /// While true, forces fade to zero and stay there; afterwards they ramp in. For changes that are meant.
     void hold_off(bool wanted) noexcept;
 

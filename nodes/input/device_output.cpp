@@ -24,6 +24,10 @@ struct DeviceOutput {
     Param max_torque{structural, "0.5 N m", "0 N m", "5 N m", "largest torque on the hand"};
     Param slew{structural, "1 N/ms", "0.01 N/ms", "100 N/ms", "fastest change of the force"};
     Param torque_slew{structural, "0.05 N m/ms", "0.001 N m/ms", "10 N m/ms", "fastest change of the torque"};
+    Param recover_after{
+        structural, "1 s", "0 s", "1 h",
+        "forces may come in again once ticks and samples were good for so long after a fault of theirs; "
+        "0 s: never. After a force that is not finite they never do"};
     Param engage_time{structural, "100 ms", "0 ms", "10 s", "forces come in over this time once they were small"};
 
     void prepare(const Setup& setup) {
@@ -40,9 +44,13 @@ struct DeviceOutput {
     void process(const Tick& tick) noexcept {
         const DeviceSample& s = port_->sample;
         limiter_.hold_off(port_->hold_off);
+        if (s.taken) limiter_.cut(Fault::late_commit);
         const Wrench out = limiter_.tick(wrench, s.counter, s.valid && is_valid(s.pose), tick.elapsed_seconds());
         applied = out;
         port_->wrench = out;
+        port_->fault = limiter_.fault();
+        if (limiter_.fault() != Fault::none) recover(tick);
+        counter_ = s.counter;
         engaged = limiter_.engaged();
         const double force = glm::length(out.force);
         largest_ = std::max(largest_, force);
@@ -60,15 +68,35 @@ struct DeviceOutput {
         report.set("force", "over_limit_ticks", static_cast<double>(s.force_limited));
         report.set("force", "slew_limited_ticks", static_cast<double>(s.slew_limited));
         report.set("contact", "limited_ticks", static_cast<double>(s.limited));
-        report.set("force", "fault", std::string(describe(limiter_.fault())));
+        report.set("force", "fault", std::string(describe(last_fault_)));
+        report.set("force", "faults", static_cast<double>(faults_));
     }
 
 private:
+    void recover(const Tick& tick) noexcept {
+        if (!in_fault_) {
+            in_fault_ = true;
+            last_fault_ = limiter_.fault();
+            ++faults_;
+            well_for_ = 0.0;
+        }
+        const DeviceSample& s = port_->sample;
+        const bool well = s.valid && is_valid(s.pose) && !s.taken && s.counter != counter_;
+        well_for_ = well ? well_for_ + tick.elapsed_seconds() : 0.0;
+        if (limiter_.fault() == Fault::not_finite || recover_after == 0.0 || well_for_ < recover_after) return;
+        limiter_.recover();
+        in_fault_ = false;
+    }
+
     DevicePort* port_ = nullptr;
     ForceLimiter limiter_;
-    double largest_ = 0.0, sum_ = 0.0;
+    double largest_ = 0.0, sum_ = 0.0, well_for_ = 0.0;
+    std::int64_t counter_ = 0, faults_ = 0;
+    Fault last_fault_ = Fault::none;
+    bool in_fault_ = false;
 };
 
-TACTUS_NODE(DeviceOutput, wrench, applied, engaged, device, max_force, max_torque, slew, torque_slew, engage_time)
+TACTUS_NODE(DeviceOutput, wrench, applied, engaged, device, max_force, max_torque, slew, torque_slew, engage_time,
+            recover_after)
 
 }  // namespace tactus::nodes

@@ -6,7 +6,9 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace tactus::test {
 
@@ -81,11 +83,39 @@ struct BatchSum {
 };
 TACTUS_NODE(BatchSum, path, sound, sum, count)
 
+/// Pulls to the origin with 1 N/mm and 2 N·m/rad, and does something bad at a tick.
+struct Planted {
+    static constexpr auto about = "A spring with a planted fault.";
+
+    In<Pose> pose{"of the hand", "m"};
+    Out<Wrench> wrench{"on the hand", "N, N m"};
+    Choice fault{{"none", "nan", "inf", "spike", "stall"}, "what happens"};
+    Param at{"500", "0", "1e6", "in which tick it happens"};
+    Param stall{"0 ms", "0 ms", "10 s", "how long the tick then lasts"};
+
+    void process(const Tick& tick) noexcept {
+        const Quat& q = pose->orientation;
+        Wrench w{-1000.0 * pose->position, Vec3(q.x, q.y, q.z) * (q.w < 0.0 ? 4.0 : -4.0)};
+        const auto now = static_cast<double>(tick.index);
+        if (now == at && fault.is("nan")) w.torque.y = std::numeric_limits<double>::quiet_NaN();
+        if (now == at && fault.is("inf")) w.force.z = -std::numeric_limits<double>::infinity();
+        if (now >= at && now < at + 3 && fault.is("spike")) w.force.x = 1000.0;
+        if (now == at && fault.is("stall")) {
+            const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(stall.value);
+            while (std::chrono::steady_clock::now() < end) {
+            }
+        }
+        wrench = w;
+    }
+};
+TACTUS_NODE(Planted, pose, wrench, fault, at, stall)
+
 Catalogue chaos_catalogue() {
     static const std::vector<const NodeType*> types = [] {
         const Catalogue all = catalogue();
         std::vector<const NodeType*> with(all.begin(), all.end());
-        for (const NodeType* type : {&node_type_Chaos(), &node_type_ChaosSignal(), &node_type_BatchSum()})
+        for (const NodeType* type :
+             {&node_type_Chaos(), &node_type_ChaosSignal(), &node_type_BatchSum(), &node_type_Planted()})
             with.push_back(type);
         return with;
     }();

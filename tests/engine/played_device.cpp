@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/engine/played_device.hpp"
 
+#include "devices/haptic/operated.hpp"
+
 #include <map>
 #include <memory>
 
@@ -15,17 +17,17 @@ public:
     const DeviceInfo& info() const override { return performance_.info; }
     void prepare(double) override {}
     DeviceSample acquire(double elapsed_s) noexcept override {
-        return performance_.acquire(count_++, elapsed_s, force_);
+        return performance_.acquire(count_++, elapsed_s, force_.get());
     }
     void commit(const Wrench& on_hand) noexcept override {
-        force_ = on_hand;
+        force_.set(on_hand);
         if (performance_.commit) performance_.commit(on_hand);
     }
 
 private:
     Performance& performance_;
     std::int64_t count_ = 0;
-    Wrench force_;
+    SharedWrench force_;
 };
 
 Performance* performances[2] = {};
