@@ -48,8 +48,16 @@ void Engine::tend_edits() {
     making_ = std::exchange(waiting_, std::nullopt);
     building_ = std::async(std::launch::async, [this] {
         Plan plan = making_->make();
-        outside_.begin(plan.patch);
-        return build_generation(std::move(plan), now_.get(), workshop_);
+        // A take numbers groups and links in the order in which plans were taken up: those that fail leave no gap.
+        const int group = workshop_.next_group, link = workshop_.next_link;
+        try {
+            outside_.begin(plan.patch);
+            return build_generation(std::move(plan), now_.get(), workshop_);
+        } catch (...) {
+            workshop_.next_group = group;
+            workshop_.next_link = link;
+            throw;
+        }
     });
 }
 

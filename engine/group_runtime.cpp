@@ -98,30 +98,40 @@ void GroupRuntime::take_over(GroupProgram& next) noexcept {
     generation_.store(next.generation, std::memory_order_release);
 }
 
-void GroupRuntime::take_changes(Pace pace) noexcept {
+bool GroupRuntime::take_changes(Pace pace) noexcept {
     const RealtimeScope scope;
-    if (finished()) return;
-    if (!upcoming_ && taken_ < scheduled.size()) upcoming_ = scheduled[taken_++];
-    if (!upcoming_) programs_.pop(upcoming_);
-    // What the log says belongs to the ticks of the program that was there then: the first one is not in it.
-    if (program_) apply_parameters();
-    if (!upcoming_) return;
+    bool took_over = false;
+    for (;;) {
+        if (finished()) return took_over;
+        if (!upcoming_ && taken_ < scheduled.size()) upcoming_ = scheduled[taken_++];
+        if (!upcoming_) programs_.pop(upcoming_);
+        if (program_) apply_parameters();
+        if (!upcoming_ || !switch_if_due(pace)) return took_over;
+        took_over = true;
+    }
+}
+
+bool GroupRuntime::switch_if_due(Pace pace) noexcept {
     const Flicks time = next_ * plan->period;
+    // The first program of a group is not in the log.
     const bool is_logged = replayed && program_;
-    const bool must_fade = is_logged ? replayed_at(TimingKind::fade, 0, next_) != nullptr
-                                     : program_ && !held_off_ && time >= upcoming_->fade_time &&
-                                           upcoming_->fade_time < upcoming_->switch_time;
     const TimingRecord* logged = is_logged ? replayed_at(TimingKind::plan, 0, next_) : nullptr;
     const bool must_switch =
         is_logged ? logged && logged->value == upcoming_->generation : time >= upcoming_->switch_time;
-    if (must_fade && !must_switch) {
+    if (must_switch) {
+        if (pace == Pace::live && program_) note(TimingKind::plan, 0, 0, upcoming_->generation, nullptr);
+        take_over(*upcoming_);
+        upcoming_ = nullptr;
+        return true;
+    }
+    const bool must_fade = is_logged ? replayed_at(TimingKind::fade, 0, next_) != nullptr
+                                     : program_ && !held_off_ && time >= upcoming_->fade_time &&
+                                           upcoming_->fade_time < upcoming_->switch_time;
+    if (must_fade) {
         hold_off(true);
         if (pace == Pace::live) note(TimingKind::fade, 0, 0, 0, nullptr);
     }
-    if (!must_switch) return;
-    if (pace == Pace::live && program_) note(TimingKind::plan, 0, 0, upcoming_->generation, nullptr);
-    take_over(*upcoming_);
-    upcoming_ = nullptr;
+    return false;
 }
 
 bool GroupRuntime::ready() const noexcept {

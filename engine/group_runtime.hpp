@@ -68,8 +68,9 @@ public:
     }
 
     // Own thread, before each call.
-    /// Applies the parameters and takes over the program that are due at the next activation. Wait-free.
-    void take_changes(Pace pace) noexcept;
+    /// Applies the parameters and takes over the program that are due at the next activation. True when it took one
+    /// over: then other groups may have become ready. Wait-free.
+    bool take_changes(Pace pace) noexcept;
     /// Offline: every value that the next call reads is there and its slots are free.
     bool ready() const noexcept;
     /// Runs one call and returns how many activations it covered. At most `frames` of them.
@@ -85,6 +86,7 @@ private:
     const TimingRecord* replayed_at(TimingKind kind, std::uint16_t source, std::int64_t tick) const noexcept;
     void apply_parameters() noexcept;
     void hold_off(bool wanted) noexcept;
+    bool switch_if_due(Pace pace) noexcept;
     void take_over(GroupProgram& next) noexcept;
     void read_links(int frames, Pace pace) noexcept;
     void acquire() noexcept;

@@ -25,7 +25,11 @@ void Engine::offline_worker(const std::vector<GroupRuntime*>& mine, std::uint64_
             while (!group->finished() && group->replay_skip()) {
             }
             if (group->finished()) continue;
-            group->take_changes(Pace::offline);
+            if (group->take_changes(Pace::offline)) {
+                // Room in channels of the plan before may have become free.
+                generation_.fetch_add(1, std::memory_order_release);
+                generation_.notify_all();
+            }
             all_finished = false;
             const auto release = [](const GroupRuntime* g) { return g->next() * g->plan->period; };
             if (group->ready() && (!earliest || release(group) < release(earliest))) earliest = group;

@@ -70,7 +70,8 @@ Json assets_json(const Patch& patch) {
     for (const PatchAsset& asset : patch.assets)
         assets.push_back({{"name", asset.name},
                           {"path", fs::absolute(asset.path).string()},
-                          {"hash", fmt::format("{:016x}", hash_of_file(asset.path))}});
+                          // A patch may name a file that nothing uses.
+                          {"hash", fmt::format("{:016x}", fs::exists(asset.path) ? hash_of_file(asset.path) : 0)}});
     return assets;
 }
 

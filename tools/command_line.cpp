@@ -125,6 +125,7 @@ int command_line(int argc, char** argv) {
     render_app->add_option("--threads", render.threads, "threads, 0: one per core")->check(CLI::Range(0, 64));
     render_app->add_option("--block", render.block, "most samples per call, or 'random'; the output is the same");
     render_app->add_option("--log", render.log, "repeat the timing decisions of a live run");
+    render_app->add_option("--record", render.record, "keep the run as a take, a folder that 'replay' repeats");
     render_app->add_flag("--json", render.json, "print the summary");
 
     RunChoice run;
@@ -134,7 +135,14 @@ int command_line(int argc, char** argv) {
     run_app->add_option("--dilate", run.dilate, "real seconds per logical second")->check(CLI::Range(0.01, 1000.0));
     run_app->add_option("--out", run.out, "folder for what comes out (default: PATCH-run)");
     run_app->add_option("--log", run.log, "write what timing decided, for 'render --log'");
+    run_app->add_option("--record", run.record, "keep the run as a take, a folder that 'replay' repeats");
     run_app->add_flag("--json", run.json, "print the summary as JSON and nothing else");
+
+    ReplayChoice replay;
+    CLI::App* replay_app = app.add_subcommand("replay", "repeat a take and compare every value, bit by bit");
+    replay_app->add_option("take", replay.take, "folder that --record made")->required();
+    replay_app->add_flag("--anyway", replay.anyway, "although assets have changed since");
+    replay_app->add_flag("--json", replay.json, "as JSON");
 
     PatchChoice check;
     CLI::App* check_app = app.add_subcommand("check", "find errors; list groups and latencies");
@@ -166,6 +174,7 @@ int command_line(int argc, char** argv) {
         app.parse(argc, argv);
         if (*render_app) return render_verb(render);
         if (*run_app) return run_verb(run);
+        if (*replay_app) return replay_verb(replay);
         if (*check_app) return check_verb(check);
         if (*draw_app) return draw_verb(draw, drawing);
         if (*nodes_app) return nodes_verb(type, nodes_json);

@@ -61,6 +61,15 @@ void throw_problems(const Problems& problems) {
     throw problems.list.back();
 }
 
+std::unique_ptr<TakeWriter> make_take(const PatchChoice& choice, const fs::path& folder, double seconds, bool live) {
+    TakeAbout about{find_patch(choice.patch), choice.overrides, choice.seed, seconds, live};
+    // A take is replayed from any folder.
+    for (std::string& asset : about.overrides.assets)
+        if (const auto equals = asset.find('='); equals != std::string::npos)
+            asset = asset.substr(0, equals + 1) + fs::absolute(asset.substr(equals + 1)).string();
+    return std::make_unique<TakeWriter>(folder, std::move(about));
+}
+
 void make_output_folder(const fs::path& folder) {
     std::error_code failure;
     fs::create_directories(folder, failure);

@@ -2,11 +2,13 @@
 // From what the command line says to a plan that is ready for an engine.
 #pragma once
 
+#include "engine/take_writer.hpp"
 #include "graph/load_assets.hpp"
 #include "graph/plan.hpp"
 #include "tools/verbs.hpp"
 
 #include <filesystem>
+#include <memory>
 
 namespace tactus {
 
@@ -24,6 +26,10 @@ Plan load_plan(const PatchChoice& choice, AssetCache& assets);
 
 /// Prints every problem but the last on standard error and throws the last; nothing when there are none.
 void throw_problems(const Problems& problems);
+
+/// A take of a run of that patch. Throws Error when the folder cannot be made or holds a take already.
+std::unique_ptr<TakeWriter> make_take(const PatchChoice& choice, const std::filesystem::path& folder, double seconds,
+                                      bool live);
 
 /// Makes `folder` and checks that files can be written to it. Throws Error.
 void make_output_folder(const std::filesystem::path& folder);

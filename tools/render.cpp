@@ -40,6 +40,11 @@ int render_verb(const RenderChoice& choice) {
     AssetCache assets;
     Plan plan = load_plan(choice, assets);
     make_output_folder(choice.out);
+    std::unique_ptr<TakeWriter> take;
+    if (!choice.record.empty()) {
+        take = make_take(choice, choice.record, options.seconds, false);
+        options.take = take.get();
+    }
     Engine engine(std::move(plan), options);
     const int threads =
         choice.threads > 0 ? choice.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));

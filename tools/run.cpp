@@ -54,6 +54,11 @@ int run_verb(const RunChoice& choice) {
     AssetCache assets;
     Plan plan = load_plan(choice, assets);
     make_output_folder(folder);
+    std::unique_ptr<TakeWriter> take;
+    if (!choice.record.empty()) {
+        take = make_take(choice, choice.record, options.seconds, true);
+        options.take = take.get();
+    }
     Engine engine(std::move(plan), options);
 
     LiveLine line;

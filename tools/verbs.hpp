@@ -27,13 +27,19 @@ struct RenderChoice : PatchChoice {
     std::filesystem::path out;
     int threads = 0;      ///< 0: one per core
     std::string block;    ///< "", a number, or "random"
-    std::filesystem::path log;
+    std::filesystem::path log, record;
 };
 
 struct RunChoice : PatchChoice {
     std::optional<double> seconds;
     double dilate = 1.0;
-    std::filesystem::path out, log;
+    std::filesystem::path out, log, record;
+};
+
+struct ReplayChoice {
+    std::filesystem::path take;
+    bool json = false;
+    bool anyway = false;  ///< although assets have changed
 };
 
 struct ImportChoice : ImportOptions {
@@ -71,6 +77,7 @@ int measure_verb(const MeasureChoice& choice);
 int equalise_verb(const EqualiseChoice& choice);
 int render_verb(const RenderChoice& choice);
 int run_verb(const RunChoice& choice);
+int replay_verb(const ReplayChoice& choice);
 int check_verb(const PatchChoice& choice);
 int draw_verb(const PatchChoice& choice, const std::filesystem::path& out);
 int nodes_verb(const std::string& type, bool json);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/engine/chaos.hpp"
+#include "tests/engine/repeat.hpp"
 
 #include <catch2/catch.hpp>
-
-#include <unistd.h>
 
 #include <filesystem>
 
@@ -20,10 +19,6 @@ std::uint64_t rendered(const std::string& toml, int threads, int block, bool ran
     Engine engine(compile_text(toml), options);
     engine.render(threads);
     return engine.output_hash();
-}
-
-std::filesystem::path scratch(const std::string& name) {
-    return std::filesystem::temp_directory_path() / ("tactus_" + std::to_string(::getpid()) + "_" + name);
 }
 
 }  // namespace

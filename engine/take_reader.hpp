@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading a take back, see engine/take_writer.hpp.
+#pragma once
+
+#include "engine/outside.hpp"
+#include "engine/take_stream.hpp"
+#include "engine/take_writer.hpp"
+#include "engine/timing_log.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace tactus {
+
+struct TakenAsset {
+    std::string name;
+    std::filesystem::path path;
+    std::uint64_t hash = 0;
+};
+/// A plan that took over while the run went on.
+struct TakenEdit {
+    std::int64_t number = 0;
+    Flicks when = 0;
+    std::string text;
+};
+/// A parameter set while the run went on.
+struct TakenChange {
+    std::int64_t id = 0;
+    std::string node, param;
+    double value = 0.0;
+};
+
+struct Take {
+    std::filesystem::path folder;
+    TakeAbout about;
+    std::string title, text, build, cpu;
+    std::vector<TakenAsset> assets;  ///< of all plans
+    std::vector<std::variant<TakenEdit, TakenChange>> events;  ///< in the order they happened
+    std::vector<RecordedDevice> devices;
+    std::vector<TakeStreamInfo> streams;
+    TimingLog log;
+    std::map<std::string, std::uint64_t> result;  ///< hash of every output, empty when the run was cut off
+
+    /// Throws Error when the folder is no take or is damaged. One that was cut off is read as far as it goes.
+    static Take load(const std::filesystem::path& folder);
+
+    /// What about this machine, this program or the files may make a repetition differ; empty: nothing.
+    std::vector<std::string> differences() const;
+    /// Assets that are gone or have changed since: a repetition must differ.
+    std::vector<std::string> changed_assets() const;
+};
+
+}  // namespace tactus

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Repeats a take of a patch that may use the chaotic types.
+#pragma once
+
+#include "engine/engine.hpp"
+#include "engine/take_compare.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace tactus::test {
+
+struct Repetition {
+    Engine::PortHashes hashes;
+    std::uint64_t compared = 0;
+    std::optional<TakeDifference> difference;
+    bool matches_result = false;  ///< all hashes are those in the take
+};
+
+Repetition repeat(const std::filesystem::path& take, int threads);
+
+/// A name in the temporary folder that nobody has used.
+std::filesystem::path scratch(const std::string& name);
+
+/// Patches made by random edits of `four_rates`: nodes and wires come, go and change, groups with them.
+std::string edited(std::uint64_t seed);
+
+}  // namespace tactus::test
