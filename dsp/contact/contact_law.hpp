@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Energy of one point of a pointshell as a function of its distance to another body.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+namespace tactus {
+
+/// Where the force of a point looks.
+enum class ForceDirection : std::uint8_t {
+    field_gradient,  ///< along the gradient of the interpolated distance: the exact derivative of the energy
+    shell_normal,  ///< along the point's inward normal (thesis 2.4.4). Not the derivative of any energy: for comparison
+};
+
+/// What lies between the samples of a voxmap.
+enum class Interpolation : std::uint8_t {
+    trilinear,  ///< 8 samples; the gradient steps at cell faces
+    quadratic,  ///< quadratic B-spline over 27 samples; continuous gradient, moves a surface of curvature κ by ~κh²/4
+};
+
+/// How deep is pushed back how hard. With depth s = −distance, a point of weight w has the energy k·w·φ(s) with
+///
+///     φ''(s) = ramp of width 2·blend about 0, from 0 to 1; then 1; then from 1 to 0 over the second half of `saturation`,
+///
+/// so that force and stiffness are continuous everywhere: φ = 0 up to blend outside of the surface, φ' = s once s is
+/// blend or more, and the force never exceeds k·w·saturation.
+struct ContactLaw {
+    double stiffness = 10e3;  ///< k: N/m per point; with by_area N/m per m² of surface
+    double blend = 0.03e-3;  ///< m, half the width of the blend about the surface; at least a nanometre counts
+    /// m: the force levels off at stiffness × this; must be over 2·blend. The default never saturates.
+    double saturation = 1e6;
+    bool by_area = false;  ///< the weight w of a point is its area (m²) instead of 1
+    ForceDirection direction = ForceDirection::field_gradient;
+    Interpolation interpolation = Interpolation::trilinear;
+};
+
+/// φ, dφ/ds and d²φ/ds² at depth s.
+template <class Real>
+struct DepthEnergy {
+    Real energy, force, stiffness;
+};
+
+/// The same law in the precision of Real, with what does not depend on the depth worked out.
+template <class Real>
+struct DepthLaw {
+    Real start, width, inverse_width;  // blend: from −start over width
+    Real level, level_width, level_inverse;  // saturation
+
+    explicit DepthLaw(const ContactLaw& law) noexcept {
+        const double blend = std::max(law.blend, 1e-9);
+        // No sensible depth reaches a metre times this; floats hold its square.
+        const double saturation = std::min(law.saturation, 1e9);
+        start = static_cast<Real>(blend);
+        width = static_cast<Real>(2.0 * blend);
+        inverse_width = static_cast<Real>(1.0 / (2.0 * blend));
+        level = static_cast<Real>(0.5 * saturation);
+        level_width = static_cast<Real>(saturation);
+        level_inverse = static_cast<Real>(1.0 / saturation);
+    }
+
+    DepthEnergy<Real> operator()(Real depth) const noexcept {
+        const DepthEnergy<Real> on = ramp(depth + start, width, inverse_width);
+        const DepthEnergy<Real> off = ramp(depth - level, level_width, level_inverse);
+        return {on.energy - off.energy, on.force - off.force, on.stiffness - off.stiffness};
+    }
+
+private:
+    /// Stiffness that rises from 0 at x = 0 to 1 at x = width, and its integrals.
+    static DepthEnergy<Real> ramp(Real x, Real width, Real inverse_width) noexcept {
+        const Real c = std::min(std::max(x, Real(0)), width), e = std::max(x - width, Real(0));
+        const Real share = c * inverse_width, half = Real(0.5) * c * share;
+        return {half * c * Real(1.0 / 3.0) + e * (Real(0.5) * (width + e)), half + e, share};
+    }
+};
+
+}  // namespace tactus

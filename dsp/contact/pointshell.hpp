@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// The surface of a body as points: what is tested against voxmaps.
+#pragma once
+
+#include "dsp/core/types.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace tactus {
+
+/// What a point of the surface is. Other values are free for the user's own marks.
+namespace surface_label {
+inline constexpr std::uint8_t none = 0, fracture = 1;
+}
+
+/// One point of a surface. Body frame, m.
+struct SurfacePoint {
+    Vec3 position{0.0, 0.0, 0.0};
+    Vec3 normal{0.0, 0.0, 1.0};  ///< unit length, out of the body
+    double area = 0.0;           ///< m² of surface that it stands for
+    std::uint8_t label = surface_label::none;
+};
+
+inline constexpr int chunk_points = 64;
+
+/// Up to 64 neighbouring points, as the vector kernel reads them: offsets from the chunk's centre, which are small, so
+/// that single precision loses nothing. Places without a point have weight 0.
+struct alignas(64) ShellChunk {
+    float x[chunk_points], y[chunk_points], z[chunk_points];  ///< m, body frame, from the node's centre
+    float nx[chunk_points], ny[chunk_points], nz[chunk_points];  ///< outward normals
+    float count[chunk_points];  ///< points that this one stands for: 1 in a leaf
+    float area[chunk_points];   ///< m² that it stands for
+};
+
+/// A node of the multiresolution tree. Its chunk holds all of its points if it is a leaf, else 64 points picked from
+/// its children's chunks, spread evenly, each standing for those nearest to it: a coarser shell nested in the finer.
+struct ShellNode {
+    Vec3 centre{0.0, 0.0, 0.0};   ///< one of its points, body frame, m
+    double radius = 0.0;          ///< greatest distance from the centre to any point below, m
+    std::uint32_t first_point = 0, points = 0;  ///< those below, adjacent in the shell's arrays
+    std::uint32_t first_child = 0, children = 0;  ///< at most 4, adjacent in `nodes`; none in a leaf
+    std::uint32_t held = 0;       ///< points in its chunk
+};
+
+/// Points of a surface in the order of a balanced k-d tree (Morton order with planes at medians), so that neighbours in
+/// space are neighbours in memory. Body frame, m. Made by make_pointshell; read only from then on.
+struct Pointshell {
+    static constexpr std::string_view wire_name = "pointshell";
+
+    std::vector<Vec3> position;
+    std::vector<Vec3> normal;  ///< unit, out of the body
+    std::vector<float> area;  ///< m²
+    std::vector<std::uint8_t> label;
+    std::vector<ShellNode> nodes;  ///< level by level, the root first; empty without points
+    std::vector<ShellChunk> chunks;  ///< one per node
+    double reach = 0.0;  ///< greatest distance of a point from the body's origin, m
+    Vec3 centroid{0.0, 0.0, 0.0};  ///< mean of the points
+    double gyration = 0.0;  ///< root mean square distance of the points from their centroid, m
+
+    std::size_t size() const noexcept { return position.size(); }
+    bool empty() const noexcept { return position.empty(); }
+    SurfacePoint point(std::size_t i) const { return {position[i], normal[i], static_cast<double>(area[i]), label[i]}; }
+};
+
+/// Orders the points and builds the tree. The same points give the same shell. Normals are made unit length; one of no
+/// length stays zero. Throws Error for positions, normals or areas that are not finite, and areas below zero.
+Pointshell make_pointshell(std::span<const SurfacePoint> points);
+
+}  // namespace tactus

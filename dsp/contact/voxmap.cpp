@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/contact/voxmap.hpp"
+
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+
+namespace tactus {
+
+namespace {
+
+// Where steps to the 26 neighbours are bounded by their length, a straight line is by this times its own:
+// √(1 + (√2 − 1)² + (√3 − √2)²).
+constexpr double lattice_factor = 1.1284;
+constexpr std::size_t most_samples = std::size_t(1) << 30;
+
+double steepness_of(const Grid& grid) {
+    struct Step {
+        int x, y, z;
+        double inverse_length;
+    };
+    std::array<Step, 13> steps;
+    std::size_t count = 0;
+    for (int z = 0; z <= 1; ++z)
+        for (int y = z ? -1 : 0; y <= 1; ++y)
+            for (int x = z || y ? -1 : 1; x <= 1; ++x)
+                steps[count++] = {x, y, z, 1.0 / glm::length(Vec3(x, y, z) * grid.spacing)};
+    float steepest[13] = {};
+    for (int k = 0; k < grid.size[2]; ++k)
+        for (int j = 0; j < grid.size[1]; ++j)
+            for (std::size_t s = 0; s < steps.size(); ++s) {
+                const Step& step = steps[s];
+                if (j + step.y < 0 || j + step.y >= grid.size[1] || k + step.z >= grid.size[2]) continue;
+                const int first = std::max(0, -step.x), end = grid.size[0] - std::max(0, step.x);
+                const float* here = &grid.values[grid.index(0, j, k)];
+                const float* there = &grid.values[grid.index(0, j + step.y, k + step.z)] + step.x;
+                float most = steepest[s];
+                for (int i = first; i < end; ++i) most = std::max(most, std::abs(there[i] - here[i]));
+                steepest[s] = most;
+            }
+    double most = 0.0;
+    for (std::size_t s = 0; s < steps.size(); ++s)
+        most = std::max(most, static_cast<double>(steepest[s]) * steps[s].inverse_length);
+    return most;
+}
+
+}  // namespace
+
+Voxmap make_voxmap(Grid distance) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (distance.size[axis] < 2) throw Error("a voxmap needs at least two samples along each axis");
+        const double spacing = distance.spacing[static_cast<int>(axis)];
+        if (!(spacing > 0.0) || !std::isfinite(spacing)) throw Error("a voxmap's spacing must be positive");
+    }
+    if (!is_finite(distance.origin)) throw Error("a voxmap's origin must be finite");
+    if (distance.count() > most_samples || distance.values.size() != distance.count())
+        throw Error(fmt::format("a voxmap of {} x {} x {} samples is too large (2^30 at most) or incomplete",
+                                distance.size[0], distance.size[1], distance.size[2]));
+    double most = 0.0;
+    for (const float d : distance.values) {
+        if (!std::isfinite(d)) throw Error("a voxmap's distances must be finite; is the body empty or the grid full?");
+        most = std::max(most, static_cast<double>(d));
+    }
+    Voxmap map;
+    const Vec3 extent = Vec3(distance.size[0] - 1, distance.size[1] - 1, distance.size[2] - 1) * distance.spacing;
+    map.far = most > 0.0 ? most : glm::length(extent);
+    map.steepness = std::max(1.0, lattice_factor * steepness_of(distance));
+    map.grid = std::move(distance);
+    return map;
+}
+
+Voxmap make_voxmap(const BoneSnapshot& bone) {
+    Grid grid = to_grid(bone);
+    // Bricks reach beyond the band; cut there, so that the field does not jump where none is stored.
+    const auto far = static_cast<float>(bone.layout().far);
+    for (float& d : grid.values) d = std::min(d, far);
+    Voxmap map = make_voxmap(std::move(grid));
+    map.far = bone.layout().far;
+    return map;
+}
+
+namespace {
+
+struct Cell {
+    int i = 0, j = 0, k = 0;
+    double fx = 0.0, fy = 0.0, fz = 0.0;
+    bool inside = false;
+};
+
+Cell find_cell(const Grid& grid, const Vec3& position) noexcept {
+    const double x = (position.x - grid.origin.x) / grid.spacing.x;
+    const double y = (position.y - grid.origin.y) / grid.spacing.y;
+    const double z = (position.z - grid.origin.z) / grid.spacing.z;
+    // Written so that a NaN is outside, and so is an empty grid.
+    if (!(x >= 0.0 && y >= 0.0 && z >= 0.0 && x <= grid.size[0] - 1 && y <= grid.size[1] - 1 && z <= grid.size[2] - 1))
+        return {};
+    const int i = std::min(static_cast<int>(x), grid.size[0] - 2), j = std::min(static_cast<int>(y), grid.size[1] - 2),
+              k = std::min(static_cast<int>(z), grid.size[2] - 2);
+    return {i, j, k, x - i, y - j, z - k, true};
+}
+
+double mix(double a, double b, double t) { return a + (b - a) * t; }
+
+}  // namespace
+
+Sample Voxmap::sample(const Vec3& position) const noexcept {
+    const Cell cell = find_cell(grid, position);
+    if (!cell.inside) return {far, Vec3(0.0), false};
+    const auto row = static_cast<std::size_t>(grid.size[0]), plane = row * static_cast<std::size_t>(grid.size[1]);
+    const float* p = &grid.values[grid.index(cell.i, cell.j, cell.k)];
+    const auto at = [p](std::size_t offset) { return static_cast<double>(p[offset]); };
+    const double c000 = at(0), c100 = at(1), c010 = at(row), c110 = at(row + 1);
+    const double c001 = at(plane), c101 = at(plane + 1), c011 = at(plane + row), c111 = at(plane + row + 1);
+    const double x00 = mix(c000, c100, cell.fx), x10 = mix(c010, c110, cell.fx);
+    const double x01 = mix(c001, c101, cell.fx), x11 = mix(c011, c111, cell.fx);
+    const double y0 = mix(x00, x10, cell.fy), y1 = mix(x01, x11, cell.fy);
+    const double dx = mix(mix(c100 - c000, c110 - c010, cell.fy), mix(c101 - c001, c111 - c011, cell.fy), cell.fz);
+    const double dy = mix(x10 - x00, x11 - x01, cell.fz);
+    return {mix(y0, y1, cell.fz), Vec3(dx, dy, y1 - y0) / grid.spacing, true};
+}
+
+Sample Voxmap::smooth_sample(const Vec3& position) const noexcept {
+    if (!find_cell(grid, position).inside) return {far, Vec3(0.0), false};
+    int index[3][3];
+    double weight[3][3], slope[3][3];
+    for (int axis = 0; axis < 3; ++axis) {
+        const double x = (position[axis] - grid.origin[axis]) / grid.spacing[axis];
+        const int nearest = static_cast<int>(x + 0.5);
+        const double t = x - nearest;
+        weight[axis][0] = 0.5 * (0.5 - t) * (0.5 - t);
+        weight[axis][1] = 0.75 - t * t;
+        weight[axis][2] = 0.5 * (0.5 + t) * (0.5 + t);
+        slope[axis][0] = t - 0.5;
+        slope[axis][1] = -2.0 * t;
+        slope[axis][2] = t + 0.5;
+        for (int n = 0; n < 3; ++n)
+            index[axis][n] = std::clamp(nearest + n - 1, 0, grid.size[static_cast<std::size_t>(axis)] - 1);
+    }
+    double value = 0.0;
+    Vec3 gradient(0.0);
+    for (int k = 0; k < 3; ++k)
+        for (int j = 0; j < 3; ++j) {
+            double along = 0.0, change = 0.0;
+            for (int i = 0; i < 3; ++i) {
+                const auto d = static_cast<double>(grid.at(index[0][i], index[1][j], index[2][k]));
+                along += weight[0][i] * d;
+                change += slope[0][i] * d;
+            }
+            value += weight[1][j] * weight[2][k] * along;
+            gradient.x += weight[1][j] * weight[2][k] * change;
+            gradient.y += slope[1][j] * weight[2][k] * along;
+            gradient.z += weight[1][j] * slope[2][k] * along;
+        }
+    return {value, gradient / grid.spacing, true};
+}
+
+double Voxmap::least_within(const Vec3& position, double radius) const noexcept {
+    if (grid.values.empty()) return far;
+    const Vec3 last = grid.origin + Vec3(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1) * grid.spacing;
+    const Vec3 nearest = glm::clamp(position, grid.origin, last);
+    const double outside2 = glm::dot(position - nearest, position - nearest), radius2 = radius * radius;
+    // What lies in the grid of a ball about a point outside lies in a smaller ball about the nearest point of the grid.
+    if (!(outside2 < radius2)) {
+        if (outside2 > 0.0) return far;
+        if (!(outside2 >= 0.0)) return far;  // not a number
+    }
+    // An interpolant is a mean of samples at most this far apart, in the mean square, from where it is read.
+    const double spread2 = 0.25 * glm::dot(grid.spacing, grid.spacing);
+    const double fall = steepness * (std::sqrt(radius2 - outside2 + spread2) + std::sqrt(spread2));
+    // Rounding may have put the point on the border outside.
+    const Sample here = sample(glm::clamp(nearest, grid.origin, last));
+    return here.inside ? std::min(far, here.value - fall) : -fall;
+}
+
+Grid chamfer_distance(const Grid& distance) {
+    const Vec3& h = distance.spacing;
+    const double size = h.x;
+    if (!(size > 0.0) || std::abs(h.y - size) > 1e-3 * size || std::abs(h.z - size) > 1e-3 * size)
+        throw Error("the 3-4-5 distance needs cubic cells; resample the body first");
+    if (distance.values.size() != distance.count()) throw Error("a distance grid is incomplete");
+    const auto [nx, ny, nz] = distance.size;
+    // Steps to the nearest sample of the other side, for both sides at once.
+    std::vector<std::int32_t> steps(distance.count(), 1 << 28);
+    const auto inside = [&](std::size_t n) { return distance.values[n] < 0.0f; };
+    const auto pass = [&](int direction) {
+        for (int c = 0; c < nz; ++c)
+            for (int b = 0; b < ny; ++b)
+                for (int a = 0; a < nx; ++a) {
+                    const int i = direction > 0 ? a : nx - 1 - a, j = direction > 0 ? b : ny - 1 - b,
+                              k = direction > 0 ? c : nz - 1 - c;
+                    const std::size_t here = distance.index(i, j, k);
+                    std::int32_t least = steps[here];
+                    for (int dz = -1; dz <= 0; ++dz)
+                        for (int dy = -1; dy <= (dz ? 1 : 0); ++dy)
+                            for (int dx = -1; dx <= (dz || dy ? 1 : -1); ++dx) {
+                                const int x = i + direction * dx, y = j + direction * dy, z = k + direction * dz;
+                                if (x < 0 || y < 0 || z < 0 || x >= nx || y >= ny || z >= nz) continue;
+                                const std::size_t there = distance.index(x, y, z);
+                                const int cost = 2 + std::abs(dx) + std::abs(dy) + std::abs(dz);
+                                least = std::min(least, inside(there) != inside(here) ? cost : steps[there] + cost);
+                            }
+                    steps[here] = least;
+                }
+    };
+    pass(1);
+    pass(-1);
+    Grid result = distance;
+    // The surface lies half a cell from the samples next to it.
+    for (std::size_t n = 0; n < steps.size(); ++n) {
+        const double d = (static_cast<double>(steps[n]) / 3.0 - 0.5) * size;
+        result.values[n] = static_cast<float>(inside(n) ? -d : d);
+    }
+    return result;
+}
+
+}  // namespace tactus
