@@ -100,6 +100,8 @@ public:
     const Plan& plan() const { return now_->plan; }
     /// Every group that ever ran, the first plan's first.
     const std::vector<std::shared_ptr<GroupRuntime>>& groups() const { return groups_; }
+    /// Those of the plan that runs. Control thread.
+    const std::vector<std::shared_ptr<LiveNode>>& nodes() const { return now_->nodes; }
     const EngineOutside& outside() const { return outside_; }
     std::uint64_t plan_hash() const { return plan_hash_; }
     std::int64_t edits() const { return now_->number; }

@@ -349,6 +349,7 @@ private:
             wires.drives.push_back({live(drive.param), drive.source ? live(drive.source) : nullptr, drive.glide});
         for (std::size_t k = 0; k < node.inputs.size(); ++k)
             if (node.inputs[k].port->type) wires.inputs.push_back(running.inputs[k]);
+        wires.time = &running.time;
         Step& step = program.steps.emplace_back();
         step.process = node.type->process;
         step.node = running.instance.get();

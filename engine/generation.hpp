@@ -24,6 +24,7 @@ struct LiveNode {
     NodeInstance instance{nullptr, nullptr};
     GroupRuntime* group = nullptr;
     std::string structure;  ///< what must be equal for a node to survive an edit
+    NodeTelemetry time;
     std::vector<Input*> inputs;
     std::vector<Output*> outputs;
     std::map<std::string, Param*> params;

@@ -7,6 +7,7 @@
 #include "dsp/core/signal_hash.hpp"
 #include "engine/device_guard.hpp"
 #include "engine/link.hpp"
+#include "engine/telemetry.hpp"
 #include "graph/device.hpp"
 #include "graph/setup.hpp"
 
@@ -67,6 +68,7 @@ struct Step {
 struct StepWires {
     std::vector<Drive> drives;
     std::vector<Input*> inputs;
+    NodeTelemetry* time = nullptr;
 };
 
 /// An output and the hash over all it gave. The values of a signal are there only until its last reader has run (see

@@ -190,6 +190,7 @@ void GroupRuntime::read_links(int frames, Pace pace) noexcept {
         // Past the producer's last activation there is nothing to miss.
         if (chosen < std::min(want, producer.end.load(std::memory_order_relaxed) - 1) && link.misses(want)) {
             missed = true;
+            producer.telemetry.awaited.fetch_add(1, std::memory_order_relaxed);
             if (pace == Pace::live) note(TimingKind::held_read, link.id, frames, chosen, nullptr);
         }
         link.read(chosen);
@@ -257,8 +258,9 @@ static void fetch_ahead(const Step* step, const Step* past) noexcept {
     __builtin_prefetch(node + 128);
 }
 
-template <bool hashed>
+template <bool hashed, bool timed>
 void GroupRuntime::run_each(const Tick& tick) noexcept {
+    [[maybe_unused]] std::int64_t began = timed ? steady_ns() : 0;
     const auto& steps = program_->steps;
     const auto& wires = program_->wires;
     const Step* const past = steps.data() + steps.size();
@@ -272,14 +274,21 @@ void GroupRuntime::run_each(const Tick& tick) noexcept {
         }
         if constexpr (hashed) hash_outputs(step, tick.frames);
         if (program_->records_outputs) record_outputs(step, tick.frames);
+        if constexpr (timed) {
+            const std::int64_t now_ns = steady_ns();
+            wires[static_cast<std::size_t>(&step - steps.data())].time->add(now_ns - began);
+            began = now_ns;
+        }
     }
 }
 
 void GroupRuntime::run_steps(int frames) noexcept {
     const Flicks elapsed = last_ < 0 ? plan->period : (next_ - last_) * plan->period;
     const Tick tick{next_, plan->period, elapsed, frames};
-    if (program_->hashes_outputs) run_each<true>(tick);
-    else run_each<false>(tick);
+    const bool timed = calls_++ % timed_every == 0 || closely_ > 0;
+    closely_ = std::max(closely_ - 1, 0);
+    if (program_->hashes_outputs) timed ? run_each<true, true>(tick) : run_each<true, false>(tick);
+    else timed ? run_each<false, true>(tick) : run_each<false, false>(tick);
     ran_ += frames;
 }
 

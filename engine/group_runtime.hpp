@@ -80,6 +80,8 @@ public:
     /// Repeats a logged skip that starts at the next activation; false when there is none.
     bool replay_skip() noexcept;
     void end_at(std::int64_t tick) noexcept;
+    /// Times the nodes of the next calls, all of them: the one before took too long.
+    void watch_closely() noexcept { closely_ = timed_every; }
 
 private:
     int cut(int frames) const noexcept;
@@ -91,7 +93,7 @@ private:
     void read_links(int frames, Pace pace) noexcept;
     void acquire() noexcept;
     void run_steps(int frames) noexcept;
-    template <bool hashed>
+    template <bool hashed, bool timed>
     void run_each(const Tick& tick) noexcept;
     void drive(const StepWires& step, int i) noexcept;
     void run_one_at_a_time(const Step& step, const StepWires& of, const Tick& all) noexcept;
@@ -99,6 +101,8 @@ private:
     void record_outputs(const Step& step, int frames) noexcept;
     void publish(int frames, Pace pace) noexcept;
     void note(TimingKind kind, int source, std::int64_t count, std::int64_t value, const DeviceSample* sample) noexcept;
+
+    static constexpr int timed_every = 64;  ///< nodes are timed in one call of so many
 
     PlanGroup description_;
     Ring<GroupProgram*> programs_{64};
@@ -109,6 +113,8 @@ private:
     bool has_change_ = false, held_off_ = false;
     std::size_t taken_ = 0;  ///< of `scheduled`
     std::int64_t next_ = 0, last_ = -1, ran_ = 0;
+    int closely_ = 0;  ///< calls still to be timed
+    std::uint64_t calls_ = 0;
     mutable std::size_t cursor_ = 0;  ///< replayed records before this one are past
     std::atomic<std::int64_t> generation_{-1};
     alignas(64) std::atomic<std::int64_t> done_{0};

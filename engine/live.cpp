@@ -64,19 +64,31 @@ void Engine::live_worker(GroupRuntime& group) {
         return start_ns + std::llround(static_cast<double>(nanoseconds(tick * group.plan->period)) * dilate);
     };
     const double period_ns = dilate * 1e9 / rate_of(group.plan->period);
+    GroupTelemetry& telemetry = group.telemetry;
+    std::int64_t busy_until = 0;
+    LateCause overrun = LateCause::woken_late;
     while (!group.finished()) {
         const std::int64_t due = release_ns(group.next());
         wait_until(due);
         const std::int64_t begin = steady_ns();
-        group.telemetry.lateness.add(begin - due);
+        telemetry.lateness.add(begin - due);
+        // Still at the call before when this one was due: what held that one up is to blame.
+        const LateCause started = busy_until > due ? overrun : LateCause::woken_late;
         const auto late = static_cast<std::int64_t>(static_cast<double>(begin - due) / period_ns);
         if (late > group.backlog()) {
-            group.skip_to(std::min(group.next() + late, group.end.load()));
+            const std::int64_t to = std::min(group.next() + late, group.end.load());
+            telemetry.skip_causes.add(started, to - group.next());
+            group.skip_to(to);
             continue;
         }
         group.take_changes(Pace::live);
+        const std::int64_t computed_before = thread_ns();
         group.call(group.max_frames, Pace::live);
-        group.telemetry.execution.add(steady_ns() - begin);
+        busy_until = steady_ns();
+        telemetry.execution.add(busy_until - begin);
+        overrun = blame(begin - due, started, busy_until - begin, thread_ns() - computed_before);
+        if (const std::int64_t missed = telemetry.awaited.exchange(0)) telemetry.withheld.add(overrun, missed);
+        if (busy_until - due > std::llround(period_ns * group.max_frames)) group.watch_closely();
     }
     group.end_at(group.next());
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/live_table.hpp"
 #include "tools/load_plan.hpp"
 #include "tools/results.hpp"
 #include "tools/summary.hpp"
@@ -20,28 +21,6 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 // Without --seconds the run lasts until Ctrl-C; a day is as good as for ever and keeps every index small.
 constexpr double for_ever = 86400.0;
 
-double force_of(const Engine& engine) {
-    double force = 0.0;
-    for (const auto& group : engine.groups())
-        force = std::max(force, group->telemetry.force_N.load(std::memory_order_relaxed));
-    return force;
-}
-
-std::string live_line(const Engine& engine) {
-    std::string text = fmt::format("{:6.1f} s ", engine.progress_seconds());
-    for (const auto& group : engine.groups()) {
-        const GroupTelemetry& t = group->telemetry;
-        text += fmt::format("| {} late {:.2f} ms, {} missed ", group->plan->name,
-                            static_cast<double>(t.lateness.max_ns()) * 1e-6, t.misses.load() + t.skipped.load());
-    }
-    text += fmt::format("| {:.1f} N", force_of(engine));
-    for (const auto& slot : engine.outside().devices)
-        if (const auto faults = slot->guard.faults(); !faults.empty())
-            text += fmt::format(" | {} at {:.1f} s: {}", slot->name, seconds(faults.back().tick * slot->period),
-                                describe(faults.back().reason));
-    return text;
-}
-
 }  // namespace
 
 int run_verb(const RunChoice& choice) {
@@ -62,12 +41,16 @@ int run_verb(const RunChoice& choice) {
     Engine engine(std::move(plan), options);
 
     LiveLine line;
+    auto next_table = std::chrono::steady_clock::now();
     LiveOptions live;
     live.dilate = choice.dilate;
     if (!choice.log.empty()) live.log = choice.log;
     live.stop = &interrupted;
     live.watch = [&] {
-        if (!choice.json) line.show(live_line(engine));
+        const auto now = std::chrono::steady_clock::now();
+        if (choice.json || !line.is_terminal() || now < next_table) return;
+        next_table = now + std::chrono::milliseconds(200);
+        line.show(live_table(engine));
     };
     std::signal(SIGINT, [](int) { interrupted = true; });
     std::signal(SIGTERM, [](int) { interrupted = true; });

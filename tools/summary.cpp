@@ -2,6 +2,7 @@
 #include "tools/summary.hpp"
 
 #include "dsp/core/error.hpp"
+#include "tools/live_table.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -29,10 +30,18 @@ Json group_json(const GroupRuntime& group, bool live) {
                {{"p50", t.execution.quantile_ns(0.5) * 1e-3},
                 {"p99", t.execution.quantile_ns(0.99) * 1e-3},
                 {"max", static_cast<double>(t.execution.max_ns()) * 1e-3}}}};
-    if (live)
+    if (live) {
+        const auto causes = [](const LateCounts& counts) {
+            return Json{{"woken_late", counts[LateCause::woken_late]},
+                        {"preempted", counts[LateCause::preempted]},
+                        {"ran_long", counts[LateCause::ran_long]}};
+        };
+        json["skipped_because"] = causes(t.skip_causes);
+        json["values_too_late_because"] = causes(t.withheld);
         json["lateness_us"] = {{"p50", t.lateness.quantile_ns(0.5) * 1e-3},
                                {"p99", t.lateness.quantile_ns(0.99) * 1e-3},
                                {"max", static_cast<double>(t.lateness.max_ns()) * 1e-3}};
+    }
     return json;
 }
 
@@ -61,6 +70,13 @@ std::string summary_json(const Engine& engine, const Report& report, double seco
     for (const auto& group : engine.groups()) json["groups"].push_back(group_json(*group, live));
     for (const auto& [section, values] : report.sections)
         for (const auto& [key, value] : values) json[section][key] = value_json(value);
+    json["slowest_nodes"] = Json::array();
+    for (const NodeTime& node : slowest_nodes(engine, 10))
+        json["slowest_nodes"].push_back({{"node", node.node},
+                                         {"group", node.group},
+                                         {"mean_us", node.mean_us},
+                                         {"max_us", node.max_us},
+                                         {"share", node.share}});
     json["faults"] = Json::array();
     for (const auto& slot : engine.outside().devices)
         for (const DeviceFault& fault : slot->guard.faults())
@@ -92,6 +108,8 @@ std::string summary_text(const Engine& engine, const Report& report, double seco
         text += fmt::format("  {:>8}: {} ticks, {} misses, {} skipped; a call takes {:.1f} µs (p99 {:.1f})\n",
                             group->plan->name, t.ticks.load(), t.misses.load(), t.skipped.load(),
                             t.execution.quantile_ns(0.5) * 1e-3, t.execution.quantile_ns(0.99) * 1e-3);
+        if (const std::string late = describe_lateness(*group); !late.empty())
+            text += fmt::format("            {}\n", late);
     }
     if (report.sections.contains("contact"))
         text += fmt::format("  contact {:.0f} % of the time, at most {:.2f} mm deep; thrust {:.2f} N mean\n",
