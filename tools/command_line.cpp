@@ -47,6 +47,30 @@ void add_import(CLI::App& app, ImportChoice& choice) {
     verb->add_flag("--json", choice.json, "print a summary as JSON");
 }
 
+void add_compare(CLI::App& app, CompareChoice& choice) {
+    CLI::App* verb = app.add_subcommand(
+        "compare", "is what the actuator plays what the saw did? Exit code 0: yes, 1: no");
+    verb->add_option("reference", choice.reference, "sound file of what was wanted")->required();
+    verb->add_option("output", choice.output, "sound file of what came out")->required();
+    verb->add_option("--thresholds", choice.thresholds, "TOML file of what must be reached; without: see README");
+    verb->add_option("--plot", choice.plot, "a figure, .svg or .png");
+    verb->add_option("--reference-scale", choice.reference_scale, "units per full scale, such as m/s^2")
+        ->capture_default_str();
+    verb->add_option("--output-scale", choice.output_scale, "of the output, in the same unit")->capture_default_str();
+    verb->add_option("--channel", choice.channel, "of both files, from 1; 0: the mean of all")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 1024));
+    verb->add_option("--actuator", choice.actuator, "state the level gap of this actuator at its limits, of m/s^2");
+    verb->add_option("--mass", choice.mass, "that the actuator shakes, kg")->capture_default_str();
+    verb->add_option("--touch", choice.touch, "what the threshold of touch is a threshold of")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"displacement", "acceleration", "none"}));
+    verb->add_option("--max-delay", choice.longest_delay, "greatest delay looked for, s")
+        ->capture_default_str()
+        ->check(CLI::Range(0.001, 100.0));
+    verb->add_flag("--json", choice.json, "as JSON");
+}
+
 void add_measure(CLI::App& app, MeasureChoice& choice) {
     CLI::App* verb = app.add_subcommand(
         "measure", "sweep through a patch or a sound card: response, resonance, distortion, latency");
@@ -165,6 +189,8 @@ int command_line(int argc, char** argv) {
 
     ImportChoice import;
     add_import(app, import);
+    CompareChoice compare;
+    add_compare(app, compare);
     MeasureChoice measure;
     add_measure(app, measure);
     EqualiseChoice equalise;
@@ -179,6 +205,7 @@ int command_line(int argc, char** argv) {
         if (*draw_app) return draw_verb(draw, drawing);
         if (*nodes_app) return nodes_verb(type, nodes_json);
         if (*devices_app) return devices_verb(devices_json);
+        if (app.got_subcommand("compare")) return compare_verb(compare);
         if (app.got_subcommand("measure")) return measure_verb(measure);
         if (app.got_subcommand("equalise")) return equalise_verb(equalise);
         return import_verb(import);

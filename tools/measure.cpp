@@ -156,12 +156,13 @@ int measure_verb(const MeasureChoice& choice) {
 
     constexpr const char* kinds[] = {"displacement", "velocity", "acceleration"};
     if (choice.json) {
-        Json json{{"resonance_hz", resonance.hz},
-                  {"damping_ratio", resonance.damping},
+        const auto found = [&](const auto& value) { return resonance.hz > 0.0 ? Json(value) : Json(); };
+        Json json{{"resonance_hz", found(resonance.hz)},
+                  {"damping_ratio", found(resonance.damping)},
                   {"latency_s", response.latency},
                   {"response_csv", choice.csv.string()},
                   {"thd", Json::array()},
-                  {"fit", {{"kind", kinds[resonance.order]}, {"error_db", resonance.error_db}}},
+                  {"fit", {{"kind", found(kinds[resonance.order])}, {"error_db", found(resonance.error_db)}}},
                   {"coherence_mean", coherence},
                   {"band_hz", {lowest, highest}},
                   {"unit", answer.unit}};
@@ -179,7 +180,9 @@ int measure_verb(const MeasureChoice& choice) {
         return done;
     }
     fmt::print("{}\n", answer.title);
-    fmt::print("  resonance   {:.1f} Hz, damping ratio {:.3f} ({} response, fit within {:.2f} dB)\n", resonance.hz,
+    if (!(resonance.hz > 0.0))
+        fmt::print("  resonance   none from {:.0f} to {:.0f} Hz\n", choice.fit_lowest, fit_highest);
+    else fmt::print("  resonance   {:.1f} Hz, damping ratio {:.3f} ({} response, fit within {:.2f} dB)\n", resonance.hz,
                resonance.damping, kinds[resonance.order], resonance.error_db);
     fmt::print("  latency     {:.3f} ms\n", 1e3 * response.latency);
     fmt::print("  coherence   {:.4f} on average from {:.0f} to {:.0f} Hz\n", coherence, lowest, highest);

@@ -73,6 +73,19 @@ struct EqualiseChoice {
     bool json = false;
 };
 
+struct CompareChoice {
+    std::filesystem::path reference, output, thresholds;
+    std::string plot;                                  ///< .svg or .png
+    std::string touch = "displacement";
+    std::string actuator;                              ///< whose limits decide the level gap
+    double mass = 0.3;                                 ///< that it shakes, kg
+    double reference_scale = 1.0, output_scale = 1.0;  ///< units per full scale
+    double longest_delay = 2.0;                        ///< s
+    int channel = 0;                                   ///< 0: the mean of all
+    bool json = false;
+};
+
+int compare_verb(const CompareChoice& choice);
 int measure_verb(const MeasureChoice& choice);
 int equalise_verb(const EqualiseChoice& choice);
 int render_verb(const RenderChoice& choice);

@@ -125,6 +125,17 @@ Resonance fit_resonance(const FrequencyResponse& response, double lowest, double
         for (std::size_t i = 0; i < points.size(); ++i) sum += points[i].weight * std::log1p(left[i] * left[i]);
         return sum;
     };
+    // rms of what a straight line over log frequency leaves.
+    const auto line_error = [&] {
+        double w = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
+        for (const Point& p : points) {
+            const double u = std::log(p.hz);
+            w += p.weight, x += p.weight * u, y += p.weight * p.db;
+            xx += p.weight * u * u, xy += p.weight * u * p.db, yy += p.weight * p.db * p.db;
+        }
+        const double vx = xx / w - x / w * x / w, vy = yy / w - y / w * y / w, c = xy / w - x / w * y / w;
+        return std::sqrt(std::max(0.0, vy - c * c / vx));
+    };
     Resonance best;
     double least = std::numeric_limits<double>::infinity(), log_f = 0.0, log_z = 0.0;
     const auto look = [&](double u, double v, int order) {
@@ -154,6 +165,7 @@ Resonance fit_resonance(const FrequencyResponse& response, double lowest, double
         weights += points[i].weight;
     }
     best.error_db = std::sqrt(square / weights);
+    if (const double line = line_error(); line < 0.5 || best.error_db > 0.7 * line) best.hz = best.damping = 0.0;
     return best;
 }
 

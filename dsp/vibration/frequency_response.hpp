@@ -30,14 +30,15 @@ std::vector<double> minimum_phase(std::span<const double> hz, std::span<const do
 
 /// A mass on a spring in a response: |H| ∝ f^order / |f0² − f² + 2jζ f0 f|.
 struct Resonance {
-    double hz = 0.0;        ///< f0 of the undamped system
+    double hz = 0.0;        ///< f0 of the undamped system; 0 when there is none
     double damping = 0.0;   ///< ζ, ratio to critical
     int order = 2;          ///< 0 displacement, 1 velocity, 2 acceleration per force
     double error_db = 0.0;  ///< rms of what the fit leaves, from `lowest` to `highest`
 };
 
 /// The resonance that explains the level between `lowest` and `highest` (Hz) best. Further modes disturb it little: a
-/// deviation counts by its logarithm once it exceeds 1 dB. Throws Error with fewer than 8 frequencies there. Allocates.
+/// deviation counts by its logarithm once it exceeds 1 dB. A level that a straight line over log frequency explains as
+/// well, or within 0.5 dB, has no resonance there. Throws Error with fewer than 8 frequencies there. Allocates.
 Resonance fit_resonance(const FrequencyResponse& response, double lowest, double highest);
 
 }  // namespace tactus

@@ -144,6 +144,18 @@ TEST_CASE("the fitted resonance is the actuator's, whatever modes the handle add
     CHECK(moved.damping == Approx(0.25).epsilon(0.005));
 }
 
+TEST_CASE("a straight wire and a mere slope have no resonance") {
+    const SweepRun run{{20.0, 2000.0, 2.0, 0.02}, 1.0, 0.5, 1};
+    CHECK(fit_resonance(identify(run, drive_of(run), rate).response, 30.0, 400.0).hz == 0.0);
+    FrequencyResponse slope;
+    for (double f = 20.0; f < 500.0; f *= 1.02) {
+        slope.hz.push_back(f);
+        slope.gain.push_back(f * f);
+    }
+    CHECK(fit_resonance(slope, 30.0, 400.0).hz == 0.0);
+    CHECK_THROWS_WITH(fit_resonance(slope, 30.0, 31.0), Contains("8 frequencies"));
+}
+
 TEST_CASE("minimum phase follows from the level alone") {
     const test::Plant plant;
     std::vector<double> hz, magnitude;

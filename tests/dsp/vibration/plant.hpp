@@ -75,7 +75,7 @@ inline std::vector<float> saw(double strokes, bool cutting, double duration, dou
                    std::sin(2.0 * std::numbers::pi * (static_cast<double>(k + 1) * cycles + phases.uniform(k)));
         if (cutting)
             sum += below(above(4.0 * random.normal(2 * i + 1) * std::abs(std::sin(2.0 * std::numbers::pi * cycles))));
-        out[i] = static_cast<float>(0.2 * sum);
+        out[i] = static_cast<float>(0.5 * sum);
     }
     return out;
 }

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Line drawings with text, as SVG for print and as pixels.
+#pragma once
+
+#include "devices/display/offscreen.hpp"
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace tactus {
+
+struct Colour {
+    std::uint8_t red = 0, green = 0, blue = 0;
+    double opacity = 1.0;
+};
+
+struct FigurePoint {
+    double x = 0.0, y = 0.0;  ///< units of the figure, y downwards
+};
+
+enum class TextAnchor { start, middle, end };
+
+/// What has been drawn, in order. One unit is a CSS pixel.
+class Figure {
+public:
+    Figure(double width, double height) : width_(width), height_(height) {}
+
+    /// An open line through the points; `dash` 0 is solid.
+    void line(std::vector<FigurePoint> points, Colour colour, double width, double dash = 0.0);
+    void fill(std::vector<FigurePoint> outline, Colour colour);
+    void rectangle(double x, double y, double width, double height, Colour colour);
+    /// `at` is on the base line. `turned`: reads upwards.
+    void text(FigurePoint at, std::string text, double size, Colour colour = {}, TextAnchor anchor = TextAnchor::start,
+              bool bold = false, bool turned = false);
+    /// Until `unclip`, nothing outside of this rectangle is drawn.
+    void clip(double x, double y, double width, double height);
+    void unclip();
+
+    /// A complete SVG file on a white ground.
+    std::string svg() const;
+    /// The same in pixels, `scale` of them per unit. Text uses a scalable font of the system, a plain one built in when
+    /// there is none. Throws Error beyond 16384 pixels.
+    Image image(double scale = 2.0) const;
+
+    double width() const { return width_; }
+    double height() const { return height_; }
+
+private:
+    struct Line {
+        std::vector<FigurePoint> points;
+        Colour colour;
+        double width, dash;
+    };
+    struct Fill {
+        std::vector<FigurePoint> outline;
+        Colour colour;
+    };
+    struct Text {
+        FigurePoint at;
+        std::string text;
+        double size;
+        Colour colour;
+        TextAnchor anchor;
+        bool bold, turned;
+    };
+    struct Clip {
+        double x, y, width, height;
+        bool on;
+    };
+    using Item = std::variant<Line, Fill, Text, Clip>;
+    friend class FigureRaster;
+
+    double width_, height_;
+    std::vector<Item> items_;
+};
+
+}  // namespace tactus

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+// Figures in pixels: every shape is filled on a grid three times as fine, then averaged.
+#include "devices/display/figure.hpp"
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <numbers>
+
+#define STB_TRUETYPE_IMPLEMENTATION
+#define STBTT_STATIC
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#include <stb/stb_easy_font.h>
+#include <stb/stb_truetype.h>
+#pragma GCC diagnostic pop
+
+namespace tactus {
+
+namespace {
+
+constexpr int fine = 3;
+
+/// A font file of the system, empty when none of the usual ones is installed.
+std::string font_bytes(bool bold) {
+    for (const char* name : {"dejavu/DejaVuSans", "liberation/LiberationSans", "noto/NotoSans", "freefont/FreeSans"}) {
+        const bool has_dash = std::string_view(name).find("Liberation") != std::string_view::npos ||
+                              std::string_view(name).find("Noto") != std::string_view::npos;
+        const std::string style = bold ? "-Bold" : has_dash ? "-Regular" : "";
+        std::ifstream file(fmt::format("/usr/share/fonts/truetype/{}{}.ttf", name, style), std::ios::binary);
+        if (file) return {std::istreambuf_iterator<char>(file), {}};
+    }
+    return {};
+}
+
+/// Next code point of UTF-8 text.
+int next_code(const std::string& text, std::size_t& at) {
+    const auto byte = static_cast<unsigned char>(text[at++]);
+    int more = byte >= 0xF0 ? 3 : byte >= 0xE0 ? 2 : byte >= 0xC0 ? 1 : 0;
+    int code = more == 3 ? byte & 7 : more == 2 ? byte & 15 : more == 1 ? byte & 31 : byte;
+    for (; more > 0 && at < text.size(); --more) code = code << 6 | (static_cast<unsigned char>(text[at++]) & 63);
+    return code;
+}
+
+class Font {
+public:
+    explicit Font(bool bold) : bytes_(font_bytes(bold)) {
+        const auto* data = reinterpret_cast<const unsigned char*>(bytes_.data());
+        good_ = !bytes_.empty() && stbtt_InitFont(&info_, data, stbtt_GetFontOffsetForIndex(data, 0)) != 0;
+    }
+
+    /// Outlines of a text whose base line begins at the origin, x to the right, y downwards; `width` becomes its width.
+    std::vector<std::vector<FigurePoint>> outlines(const std::string& text, double size, double& width) const {
+        return good_ ? scalable(text, size, width) : plain(text, size, width);
+    }
+
+private:
+    std::vector<std::vector<FigurePoint>> scalable(const std::string& text, double size, double& width) const {
+        std::vector<std::vector<FigurePoint>> shapes;
+        const double scale = static_cast<double>(stbtt_ScaleForMappingEmToPixels(&info_, static_cast<float>(size)));
+        width = 0.0;
+        for (std::size_t i = 0; i < text.size();) {
+            const int code = next_code(text, i);
+            stbtt_vertex* vertices = nullptr;
+            const int count = stbtt_GetCodepointShape(&info_, code, &vertices);
+            const auto at = [&](double x, double y) { return FigurePoint{width + x * scale, -y * scale}; };
+            for (int v = 0; v < count; ++v) {
+                const stbtt_vertex& to = vertices[v];
+                if (to.type == STBTT_vmove) shapes.emplace_back();
+                else if (to.type == STBTT_vcurve) {
+                    constexpr int pieces = 5;
+                    for (int p = 1; p < pieces; ++p) {
+                        const double t = static_cast<double>(p) / pieces, s = 1.0 - t;
+                        const stbtt_vertex& from = vertices[v - 1];
+                        shapes.back().push_back(at(s * s * from.x + 2.0 * s * t * to.cx + t * t * to.x,
+                                                   s * s * from.y + 2.0 * s * t * to.cy + t * t * to.y));
+                    }
+                }
+                shapes.back().push_back(at(to.x, to.y));
+            }
+            stbtt_FreeShape(&info_, vertices);
+            int advance = 0, bearing = 0;
+            stbtt_GetCodepointHMetrics(&info_, code, &advance, &bearing);
+            width += advance * scale;
+        }
+        return shapes;
+    }
+
+    static std::vector<std::vector<FigurePoint>> plain(const std::string& text, double size, double& width) {
+        struct Vertex {
+            float x, y, z;
+            unsigned char colour[4];
+        };
+        std::string copy;
+        for (std::size_t i = 0; i < text.size();) {
+            const int code = next_code(text, i);
+            copy += code >= 32 && code < 127 ? static_cast<char>(code) : '?';
+        }
+        std::vector<Vertex> quads(copy.size() * 80 + 4);
+        const int count = stb_easy_font_print(0.0f, 0.0f, copy.data(), nullptr, quads.data(),
+                                              static_cast<int>(quads.size() * sizeof(Vertex)));
+        const double scale = size / 10.0, base = 8.0;  // its letters are 7 high and stand on line 8
+        width = scale * stb_easy_font_width(copy.data());
+        std::vector<std::vector<FigurePoint>> shapes;
+        for (int q = 0; q < count; ++q) {
+            auto& shape = shapes.emplace_back();
+            for (int c = 0; c < 4; ++c) {
+                const Vertex& v = quads[static_cast<std::size_t>(4 * q + c)];
+                shape.push_back({scale * static_cast<double>(v.x), scale * (static_cast<double>(v.y) - base)});
+            }
+        }
+        return shapes;
+    }
+
+    std::string bytes_;
+    stbtt_fontinfo info_{};
+    bool good_ = false;
+};
+
+}  // namespace
+
+class FigureRaster {
+public:
+    FigureRaster(const Figure& figure, double scale) : figure_(figure), scale_(scale * fine) {
+        width_ = static_cast<int>(std::lround(figure.width_ * scale)) * fine;
+        height_ = static_cast<int>(std::lround(figure.height_ * scale)) * fine;
+        if (width_ < fine || height_ < fine || width_ > 16384 * fine || height_ > 16384 * fine)
+            throw Error("a picture is 1 to 16384 pixels wide and high");
+        pixels_.assign(3 * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 255);
+        unclip();
+    }
+
+    Image draw() {
+        for (const auto& item : figure_.items_) {
+            if (const auto* line = std::get_if<Figure::Line>(&item)) stroke(*line);
+            else if (const auto* shape = std::get_if<Figure::Fill>(&item)) fill({shape->outline}, shape->colour);
+            else if (const auto* text = std::get_if<Figure::Text>(&item)) write(*text);
+            else if (const auto* clip = std::get_if<Figure::Clip>(&item)) {
+                unclip();
+                if (!clip->on) continue;
+                left_ = std::max(0, static_cast<int>(clip->x * scale_));
+                top_ = std::max(0, static_cast<int>(clip->y * scale_));
+                right_ = std::min(width_, static_cast<int>((clip->x + clip->width) * scale_));
+                bottom_ = std::min(height_, static_cast<int>((clip->y + clip->height) * scale_));
+            }
+        }
+        return averaged();
+    }
+
+private:
+    using Shapes = std::vector<std::vector<FigurePoint>>;
+
+    void unclip() { left_ = 0, top_ = 0, right_ = width_, bottom_ = height_; }
+
+    /// Fills what lies inside by the non-zero rule, row by row.
+    void fill(const Shapes& shapes, const Colour& colour) {
+        struct Edge {
+            double x0, y0, x1, y1;
+            int turn;
+        };
+        std::vector<Edge> edges;
+        double low = 1e9, high = -1e9;
+        for (const auto& shape : shapes)
+            for (std::size_t i = 0; i < shape.size(); ++i) {
+                FigurePoint a = shape[i], b = shape[(i + 1) % shape.size()];
+                a = {a.x * scale_, a.y * scale_};
+                b = {b.x * scale_, b.y * scale_};
+                if (a.y == b.y) continue;
+                edges.push_back(a.y < b.y ? Edge{a.x, a.y, b.x, b.y, 1} : Edge{b.x, b.y, a.x, a.y, -1});
+                low = std::min(low, edges.back().y0);
+                high = std::max(high, edges.back().y1);
+            }
+        std::vector<std::pair<double, int>> crossings;
+        const int last = std::min(bottom_ - 1, static_cast<int>(std::min(high, 1e6)));
+        for (int y = std::max(top_, static_cast<int>(std::max(low, 0.0))); y <= last; ++y) {
+            crossings.clear();
+            const double middle = y + 0.5;
+            for (const Edge& e : edges)
+                if (e.y0 <= middle && middle < e.y1)
+                    crossings.emplace_back(e.x0 + (e.x1 - e.x0) * (middle - e.y0) / (e.y1 - e.y0), e.turn);
+            std::ranges::sort(crossings);
+            int turns = 0;
+            for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
+                turns += crossings[i].second;
+                if (turns != 0) span(y, crossings[i].first, crossings[i + 1].first, colour);
+            }
+        }
+    }
+
+    void span(int y, double from, double to, const Colour& colour) {
+        const int first = static_cast<int>(std::ceil(std::clamp(from, -1.0, 1e6) - 0.5));
+        const int end = static_cast<int>(std::ceil(std::clamp(to, -1.0, 1e6) - 0.5));
+        for (int x = std::max(first, left_); x < std::min(end, right_); ++x) {
+            std::uint8_t* pixel =
+                &pixels_[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x))];
+            const std::uint8_t ink[] = {colour.red, colour.green, colour.blue};
+            for (int c = 0; c < 3; ++c)
+                pixel[c] = static_cast<std::uint8_t>(std::lround(pixel[c] + colour.opacity * (ink[c] - pixel[c])));
+        }
+    }
+
+    /// Each piece of the line as a bar with round ends, all in one fill so that joints are not painted twice.
+    void stroke(const Figure::Line& line) {
+        Shapes bars;
+        double travelled = 0.0;
+        for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {
+            const FigurePoint a = line.points[i], b = line.points[i + 1];
+            const double dx = b.x - a.x, dy = b.y - a.y, length = std::hypot(dx, dy);
+            if (!(length > 0.0) || !std::isfinite(length)) continue;
+            if (line.dash <= 0.0) {
+                bar(bars, a, b, line.width);
+                continue;
+            }
+            for (double at = 0.0; at < length;) {
+                const double phase = std::fmod(travelled + at, 2.0 * line.dash);
+                const double next = std::min(length, at + (phase < line.dash ? line.dash : 2.0 * line.dash) - phase);
+                if (phase < line.dash)
+                    bar(bars, {a.x + dx * at / length, a.y + dy * at / length},
+                        {a.x + dx * next / length, a.y + dy * next / length}, line.width);
+                at = next + 1e-9;
+            }
+            travelled += length;
+        }
+        fill(bars, line.colour);
+    }
+
+    static void bar(Shapes& bars, FigurePoint a, FigurePoint b, double width) {
+        const double angle = std::atan2(b.y - a.y, b.x - a.x);
+        auto& shape = bars.emplace_back();
+        constexpr int pieces = 6;
+        for (int end = 0; end < 2; ++end)
+            for (int i = 0; i <= pieces; ++i) {
+                const double turn = angle + std::numbers::pi * (end + 0.5 + static_cast<double>(i) / pieces);
+                const FigurePoint& centre = end == 0 ? a : b;
+                shape.push_back({centre.x + 0.5 * width * std::cos(turn), centre.y + 0.5 * width * std::sin(turn)});
+            }
+    }
+
+    void write(const Figure::Text& text) {
+        const Font& font = text.bold ? bold_ : regular_;
+        double width = 0.0;
+        Shapes shapes = font.outlines(text.text, text.size, width);
+        const double shift = text.anchor == TextAnchor::start    ? 0.0
+                             : text.anchor == TextAnchor::middle ? -0.5 * width
+                                                                 : -width;
+        for (auto& shape : shapes)
+            for (FigurePoint& p : shape) {
+                const double x = p.x + shift, y = p.y;
+                p = text.turned ? FigurePoint{text.at.x + y, text.at.y - x} : FigurePoint{text.at.x + x, text.at.y + y};
+            }
+        fill(shapes, text.colour);
+    }
+
+    Image averaged() const {
+        Image image{width_ / fine, height_ / fine, {}};
+        image.rgb.resize(3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+        std::size_t out = 0;
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x)
+                for (std::size_t c = 0; c < 3; ++c) {
+                    int sum = 0;
+                    for (int v = 0; v < fine; ++v)
+                        for (int u = 0; u < fine; ++u)
+                            sum += pixels_[3 * (static_cast<std::size_t>(fine * y + v) * static_cast<std::size_t>(width_) +
+                                                static_cast<std::size_t>(fine * x + u)) +
+                                           c];
+                    image.rgb[out++] = static_cast<std::uint8_t>((sum + fine * fine / 2) / (fine * fine));
+                }
+        return image;
+    }
+
+    const Figure& figure_;
+    double scale_;
+    int width_ = 0, height_ = 0, left_ = 0, top_ = 0, right_ = 0, bottom_ = 0;
+    std::vector<std::uint8_t> pixels_;
+    Font regular_{false}, bold_{true};
+};
+
+Image Figure::image(double scale) const { return FigureRaster(*this, scale).draw(); }
+
+}  // namespace tactus

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole loop on a plant that is known: identify by a sweep, equalise, play saws that the sweep never was, at another
+// level, and compare what comes out with what was wanted.
+#include "dsp/core/error.hpp"
+#include "dsp/filter/fir.hpp"
+#include "dsp/spectrum/comparison.hpp"
+#include "dsp/vibration/equaliser.hpp"
+#include "dsp/vibration/identify.hpp"
+#include "tests/dsp/vibration/plant.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cstdlib>
+#include <string>
+
+using namespace tactus;
+
+namespace {
+
+constexpr double rate = 48000.0;
+
+const FrequencyResponse& response_of_the_plant() {
+    static const FrequencyResponse response = [] {
+        const SweepRun run{{20.0, 2000.0, 8.0, 0.02}, 0.3, 1.0, 1};
+        std::vector<float> drive;
+        for (std::size_t i = 0; i < 9 * 48000; ++i)
+            drive.push_back(static_cast<float>(run.amplitude * run.sweep(static_cast<double>(i) / rate)));
+        std::vector<float> heard = test::Plant{}(drive);
+        test::add_disturbance(heard, rate, -50.0, -80.0, 7);
+        return identify(run, heard, rate).response;
+    }();
+    return response;
+}
+
+std::vector<float> equalised(const std::vector<float>& wanted, EqualiserKind kind) {
+    Fir fir(design_equaliser(response_of_the_plant(), {.kind = kind}).taps);
+    std::vector<float> out;
+    for (const float x : wanted) out.push_back(fir(x));
+    return out;
+}
+
+/// Plays on a plant of a noisy bench and compares with what was wanted.
+Comparison played(const std::vector<float>& wanted, const std::vector<float>& drive, const test::Plant& plant) {
+    std::vector<float> heard = plant(drive);
+    test::add_disturbance(heard, rate, -50.0, -80.0, 11);
+    // The saw is running already: how it starts is another matter.
+    constexpr std::size_t settled = 24000;
+    return compare({std::span(wanted).subspan(settled), rate}, {std::span(heard).subspan(settled), rate});
+}
+
+struct Saw {
+    const char* name;
+    double strokes;
+    bool cutting;
+    std::vector<float> take() const { return test::saw(strokes, cutting, 8.0, rate, 21); }
+};
+
+const Saw saws[] = {{"idle at 233 Hz", 233.0, false}, {"cutting at 233 Hz", 233.0, true}, {"cutting at 150 Hz", 150.0, true}};
+
+void show(const std::string& name, const Comparison& c) {
+    if (std::getenv("TACTUS_SHOW") == nullptr) return;
+    WARN(name << ": LSD " << c.lsd_db << ", third octave " << c.third_octave_max_db << ", harmonic "
+              << c.harmonic_error_db.value_or(-1.0) << ", cosine " << c.cosine_500 << ", ST-SIM "
+              << c.st_sim.value_or(-1.0) << ", SPQI " << c.spqi.value_or(-1.0));
+}
+
+}  // namespace
+
+TEST_CASE("on the plant it was made for, an equaliser makes the saw's vibration out of the actuator's") {
+    for (const Saw& saw : saws) {
+        const std::vector<float> wanted = saw.take();
+        const Comparison before = played(wanted, wanted, {});
+        show(std::string(saw.name) + " before", before);
+        CHECK(before.harmonic_error_db.value() > 2.0);
+        CHECK(before.third_octave_max_db > 3.5);
+        for (const EqualiserKind kind : {EqualiserKind::minimum_phase, EqualiserKind::linear_phase}) {
+            const bool linear = kind == EqualiserKind::linear_phase;
+            INFO(saw.name << (linear ? ", linear phase" : ", minimum phase"));
+            const Comparison after = played(wanted, equalised(wanted, kind), {});
+            show(std::string(saw.name) + (linear ? " after, linear phase" : " after, minimum phase"), after);
+            CHECK(after.lsd_db < (saw.cutting ? 0.25 * before.lsd_db : 0.2));
+            CHECK(after.lsd_db < (saw.cutting ? 1.0 : 0.2));
+            CHECK(after.third_octave_max_db < 2.0);
+            CHECK(after.harmonic_error_db.value() < 0.5);
+            CHECK(after.cosine_500 > 0.999);
+            REQUIRE(after.alignment.significant);
+            if (!linear) continue;  // waveforms agree only when the phase is undone as well
+            CHECK(after.st_sim.value() > 0.95);
+            CHECK(after.spqi.value() > 0.95);
+        }
+    }
+}
+
+TEST_CASE("on a plant that has drifted since, an equaliser still improves every take") {
+    struct Drift {
+        const char* name;
+        double resonance, mode;
+    };
+    for (const Drift& drift : {Drift{"stiffer", 89.0, 180.0}, {"softer", 65.0, 180.0}, {"other handle", 75.0, 165.0}}) {
+        test::Plant plant;
+        plant.resonance = drift.resonance;
+        plant.mode = drift.mode;
+        for (const Saw& saw : saws) {
+            INFO(drift.name << ", " << saw.name);
+            const std::vector<float> wanted = saw.take();
+            const Comparison before = played(wanted, wanted, plant);
+            const Comparison after = played(wanted, equalised(wanted, EqualiserKind::linear_phase), plant);
+            show(std::string(drift.name) + ", " + saw.name + " before", before);
+            show(std::string(drift.name) + ", " + saw.name + " after", after);
+            CHECK(after.lsd_db < before.lsd_db);
+            CHECK(after.third_octave_max_db < 4.5);
+            if (drift.mode == 165.0 && saw.strokes == 150.0) {
+                // The saw's first order stands on the flank of the mode that moved: a 2.7 dB change that no filter
+                // designed before can know of. It must still be far better than without.
+                CHECK(after.lsd_db < 0.4 * before.lsd_db);
+                CHECK(after.harmonic_error_db.value() < 0.5 * before.harmonic_error_db.value());
+                continue;
+            }
+            CHECK(after.lsd_db < 1.5);
+            CHECK(after.harmonic_error_db.value() < 1.0);
+            CHECK(after.cosine_500 > 0.997);
+        }
+    }
+}
