@@ -16,5 +16,19 @@ add_custom_command(
   DEPENDS make_library
   COMMENT "Computing the bundled bone and saw"
   VERBATIM)
+
+# The equaliser of the bundled actuator, by the commands that a user has.
+set(equaliser ${CMAKE_BINARY_DIR}/library/equalisers/saw-vibration)
+add_custom_command(
+  OUTPUT ${equaliser}.toml
+  COMMAND ${CMAKE_COMMAND} -E make_directory ${CMAKE_BINARY_DIR}/library/equalisers
+  COMMAND ${CMAKE_COMMAND} -E env TSAN_OPTIONS=ignore_noninstrumented_modules=1 $<TARGET_FILE:tactus> measure
+          saw-vibration --in actuator.drive --out handle.out --amplitude 100 -o ${equaliser}.csv --json > ${equaliser}.json
+  COMMAND ${CMAKE_COMMAND} -E env TSAN_OPTIONS=ignore_noninstrumented_modules=1 $<TARGET_FILE:tactus> equalise
+          ${equaliser}.csv -o ${equaliser}.toml --kind linear --volts 0.004 --json >> ${equaliser}.json
+  DEPENDS tactus ${PROJECT_SOURCE_DIR}/assets/library/patches/saw-vibration.toml
+  COMMENT "Measuring the bundled actuator and making its equaliser"
+  VERBATIM)
+
 add_custom_target(bundled_library ALL
-  DEPENDS ${CMAKE_BINARY_DIR}/library/bones/mandible.vdb ${CMAKE_BINARY_DIR}/library/saw/reciprocating.toml)
+  DEPENDS ${CMAKE_BINARY_DIR}/library/bones/mandible.vdb ${CMAKE_BINARY_DIR}/library/saw/reciprocating.toml ${equaliser}.toml)

@@ -48,8 +48,8 @@ void add_import(CLI::App& app, ImportChoice& choice) {
 }
 
 void add_compare(CLI::App& app, CompareChoice& choice) {
-    CLI::App* verb = app.add_subcommand(
-        "compare", "is what the actuator plays what the saw did? Exit code 0: yes, 1: no");
+    CLI::App* verb =
+        app.add_subcommand("compare", "is what the actuator plays what the saw did? Exit code 0: yes, 1: no");
     verb->add_option("reference", choice.reference, "sound file of what was wanted")->required();
     verb->add_option("output", choice.output, "sound file of what came out")->required();
     verb->add_option("--thresholds", choice.thresholds, "TOML file of what must be reached; without: see README");

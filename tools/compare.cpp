@@ -46,8 +46,8 @@ LoadedTake load_take(const std::filesystem::path& file, const char* role, double
     if (channel == 0) take.samples = mix_to_mono(sound);
     else {
         if (channel > sound.channels)
-            throw Error(fmt::format("{}: has {} channels; channel {} does not exist", file.string(), sound.channels,
-                                    channel));
+            throw Error(
+                fmt::format("{}: has {} channels; channel {} does not exist", file.string(), sound.channels, channel));
         const auto channels = static_cast<std::size_t>(sound.channels);
         for (std::size_t i = 0; i < sound.frames; ++i)
             take.samples.push_back(sound.samples[i * channels + static_cast<std::size_t>(channel) - 1]);
@@ -98,7 +98,7 @@ Json lines_json(const std::vector<Line>& lines, double fundamental) {
 }
 
 const char* touch_unit(ThresholdUnit unit) {
-    return unit == ThresholdUnit::displacement ? "displacement"
+    return unit == ThresholdUnit::displacement   ? "displacement"
            : unit == ThresholdUnit::acceleration ? "acceleration"
                                                  : "none";
 }
@@ -171,8 +171,9 @@ void print(const Outcome& o, bool actuator_known) {
     const Comparison& c = o.comparison;
     fmt::print("{}: {} {} the vibration of {}{}\n", o.verdict.passed() ? "PASS" : "FAIL", o.output.file.string(),
                o.verdict.passed() ? "has" : "does not have", o.reference.file.string(),
-               std::abs(c.gain_db) < 0.5 ? "" : fmt::format(", {:.1f} dB {}", std::abs(c.gain_db),
-                                                            c.gain_db > 0.0 ? "softer" : "louder"));
+               std::abs(c.gain_db) < 0.5
+                   ? ""
+                   : fmt::format(", {:.1f} dB {}", std::abs(c.gain_db), c.gain_db > 0.0 ? "softer" : "louder"));
     for (const bool passed : {false, true})
         for (const Judged& score : o.verdict.scores)
             if (score.passed == passed)
@@ -184,15 +185,17 @@ void print(const Outcome& o, bool actuator_known) {
                    1e3 * std::abs(c.alignment.delay), c.alignment.delay < 0.0 ? "early" : "late",
                    c.alignment.correlation < 0.0 ? " and inverted" : "", *c.st_sim, *c.spqi, *c.coherence_mean);
     else
-        fmt::print("  two recordings     nothing shows that they were made together: ST-SIM, SPQI and coherence do not "
-                   "apply\n");
+        fmt::print(
+            "  two recordings     nothing shows that they were made together: ST-SIM, SPQI and coherence do not "
+            "apply\n");
     if (c.reference_hz > 0.0)
         fmt::print("  saw                {:.2f} Hz in the reference, {}{}\n", c.reference_hz,
                    c.output_hz > 0.0 ? fmt::format("{:.2f} Hz in the output", c.output_hz) : "not found in the output",
                    c.speed_ratio != 1.0 ? "; compared at equal orders" : "");
     fmt::print("  over time          spectrograms correlate by {:.3f}\n", c.spectrogram_similarity);
-    fmt::print("  as touched         shape {:.3f}; feels {:.1f} dB {} at equal power (threshold of {})\n", c.touch_cosine,
-               std::abs(c.touch_gap_db), c.touch_gap_db < 0.0 ? "weaker" : "stronger", touch_unit(o.touch));
+    fmt::print("  as touched         shape {:.3f}; feels {:.1f} dB {} at equal power (threshold of {})\n",
+               c.touch_cosine, std::abs(c.touch_gap_db), c.touch_gap_db < 0.0 ? "weaker" : "stronger",
+               touch_unit(o.touch));
     fmt::print("  level              {} {:.1f} dB\n",
                actuator_known ? "the actuator at its limit lacks" : "the output as it was played lacks",
                o.level_gap_db);

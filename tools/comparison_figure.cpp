@@ -65,8 +65,8 @@ void draw_spectra(Figure& figure, const Comparison& c, double y, double height) 
     for (const Line& line : c.lines.in_both) {
         const double x = panel.x_of(line.hz), level = level_at(r, c.step, line.hz);
         if (level < -45.0 || x < taken + 26.0 || x > left + panel_width - 12.0) continue;
-        figure.text({x, panel.y_of(std::max(level, level_at(d, c.step, line.hz))) - 5.0}, fmt::format("{:.0f}", line.hz),
-                    10.0, ink, TextAnchor::middle);
+        figure.text({x, panel.y_of(std::max(level, level_at(d, c.step, line.hz))) - 5.0},
+                    fmt::format("{:.0f}", line.hz), 10.0, ink, TextAnchor::middle);
         taken = x;
     }
     for (const Line& line : c.lines.only_in_reference) {
@@ -121,8 +121,8 @@ void draw_table(Figure& figure, const Comparison& c, const Verdict& verdict, dou
     };
     row("score", "value", "threshold", soft);
     for (const Judged& score : verdict.scores)
-        row(score.name, fmt::format("{:.3g}", score.value), fmt::format("{} {:g}", score.at_least ? "≥" : "≤", score.limit),
-            score.passed ? ink : added_colour);
+        row(score.name, fmt::format("{:.3g}", score.value),
+            fmt::format("{} {:g}", score.at_least ? "≥" : "≤", score.limit), score.passed ? ink : added_colour);
     y += 6.0;
     const auto extra = [&](const char* name, const std::optional<double>& value, const char* unit) {
         for (const Judged& score : verdict.scores)

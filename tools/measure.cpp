@@ -182,8 +182,9 @@ int measure_verb(const MeasureChoice& choice) {
     fmt::print("{}\n", answer.title);
     if (!(resonance.hz > 0.0))
         fmt::print("  resonance   none from {:.0f} to {:.0f} Hz\n", choice.fit_lowest, fit_highest);
-    else fmt::print("  resonance   {:.1f} Hz, damping ratio {:.3f} ({} response, fit within {:.2f} dB)\n", resonance.hz,
-               resonance.damping, kinds[resonance.order], resonance.error_db);
+    else
+        fmt::print("  resonance   {:.1f} Hz, damping ratio {:.3f} ({} response, fit within {:.2f} dB)\n", resonance.hz,
+                   resonance.damping, kinds[resonance.order], resonance.error_db);
     fmt::print("  latency     {:.3f} ms\n", 1e3 * response.latency);
     fmt::print("  coherence   {:.4f} on average from {:.0f} to {:.0f} Hz\n", coherence, lowest, highest);
     for (const OrderSummary& order : orders)

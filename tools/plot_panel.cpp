@@ -37,8 +37,8 @@ void PlotPanel::axes(double value_step, const std::string& unit, bool name_frequ
     const double first = std::ceil(value_.lowest / value_step - 1e-9) * value_step;
     for (double value = first; value <= value_.highest + 1e-9; value += value_step) {
         figure_.line({{x_, y_of(value)}, {right, y_of(value)}}, grid, 0.8);
-        figure_.text({x_ - 6.0, y_of(value) + 4.0}, fmt::format("{:g}", std::abs(value) < 1e-9 ? 0.0 : value), 11.0, ink,
-                     TextAnchor::end);
+        figure_.text({x_ - 6.0, y_of(value) + 4.0}, fmt::format("{:g}", std::abs(value) < 1e-9 ? 0.0 : value), 11.0,
+                     ink, TextAnchor::end);
     }
     figure_.line({{x_, y_}, {right, y_}, {right, bottom}, {x_, bottom}, {x_, y_}}, frame, 1.0);
     figure_.text({x_ - 38.0, y_ + 0.5 * height_}, unit, 11.0, ink, TextAnchor::middle, false, true);

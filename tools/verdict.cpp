@@ -44,8 +44,7 @@ Verdict judge(const Comparison& c, double level_gap_db, const Thresholds& limits
     add("cosine_40_500", c.cosine_500, limits.cosine_40_500, true, "shape of the spectrum, 40 to 500 Hz");
     add("cosine_40_1000", c.cosine_1000, limits.cosine_40_1000, true, "shape of the spectrum, 40 to 1000 Hz");
     add("harmonic_error_db", c.harmonic_error_db, limits.harmonic_error_db, false, "worst order of the saw, dB");
-    add("third_octave_max_db", c.third_octave_max_db, limits.third_octave_max_db, false,
-        "worst third-octave band, dB");
+    add("third_octave_max_db", c.third_octave_max_db, limits.third_octave_max_db, false, "worst third-octave band, dB");
     add("spectrogram_similarity", c.spectrogram_similarity, limits.spectrogram_similarity, true, "course over time");
     add("st_sim", c.st_sim, limits.st_sim, true, "ST-SIM");
     add("spqi", c.spqi, limits.spqi, true, "SPQI");
@@ -63,7 +62,8 @@ Verdict judge(const Comparison& c, double level_gap_db, const Thresholds& limits
     }
     if (limits.missing_line_db) {
         verdict.missing = stronger_than(c.lines.only_in_reference, strongest + *limits.missing_line_db);
-        add("only_in_reference", static_cast<double>(verdict.missing.size()), 0.0, false, "lines that the output lacks");
+        add("only_in_reference", static_cast<double>(verdict.missing.size()), 0.0, false,
+            "lines that the output lacks");
     }
     return verdict;
 }

@@ -37,7 +37,8 @@ const std::array<std::pair<const char*, Member>, 12> members{{
 
 Thresholds load_thresholds(const std::filesystem::path& path) {
     const auto at = [&](const toml::source_region& source) {
-        return SourceLocation{path.string(), static_cast<int>(source.begin.line), static_cast<int>(source.begin.column)};
+        return SourceLocation{path.string(), static_cast<int>(source.begin.line),
+                              static_cast<int>(source.begin.column)};
     };
     toml::table root;
     try {

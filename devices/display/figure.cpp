@@ -49,7 +49,9 @@ void Figure::text(FigurePoint at, std::string text, double size, Colour colour, 
     items_.emplace_back(Text{at, std::move(text), size, colour, anchor, bold, turned});
 }
 
-void Figure::clip(double x, double y, double width, double height) { items_.emplace_back(Clip{x, y, width, height, true}); }
+void Figure::clip(double x, double y, double width, double height) {
+    items_.emplace_back(Clip{x, y, width, height, true});
+}
 
 void Figure::unclip() { items_.emplace_back(Clip{0.0, 0.0, 0.0, 0.0, false}); }
 
@@ -62,32 +64,32 @@ std::string Figure::svg() const {
     int clips = 0;
     for (const Item& item : items_) {
         if (const auto* line = std::get_if<Line>(&item)) {
-            out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{:g}\"{}{} "
-                               "stroke-linejoin=\"round\"/>\n",
-                               path_of(line->points), hex(line->colour), line->width,
-                               opacity("stroke-opacity", line->colour),
-                               line->dash > 0.0 ? fmt::format(" stroke-dasharray=\"{:g}\"", line->dash) : "");
+            out += fmt::format(
+                "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{:g}\"{}{} "
+                "stroke-linejoin=\"round\"/>\n",
+                path_of(line->points), hex(line->colour), line->width, opacity("stroke-opacity", line->colour),
+                line->dash > 0.0 ? fmt::format(" stroke-dasharray=\"{:g}\"", line->dash) : "");
         } else if (const auto* fill = std::get_if<Fill>(&item)) {
             out += fmt::format("<path d=\"{}Z\" fill=\"{}\"{}/>\n", path_of(fill->outline), hex(fill->colour),
                                opacity("fill-opacity", fill->colour));
         } else if (const auto* text = std::get_if<Text>(&item)) {
             const char* anchors[] = {"start", "middle", "end"};
-            out += fmt::format("<text x=\"{0:.2f}\" y=\"{1:.2f}\" font-size=\"{2:g}\" fill=\"{3}\"{4}{5}{6}>{7}</text>\n",
-                               text->at.x, text->at.y, text->size, hex(text->colour),
-                               text->anchor == TextAnchor::start
-                                   ? ""
-                                   : fmt::format(" text-anchor=\"{}\"", anchors[static_cast<int>(text->anchor)]),
-                               text->bold ? " font-weight=\"bold\"" : "",
-                               text->turned
-                                   ? fmt::format(" transform=\"rotate(-90 {:.2f} {:.2f})\"", text->at.x, text->at.y)
-                                   : "",
-                               escaped(text->text));
+            out += fmt::format(
+                "<text x=\"{0:.2f}\" y=\"{1:.2f}\" font-size=\"{2:g}\" fill=\"{3}\"{4}{5}{6}>{7}</text>\n", text->at.x,
+                text->at.y, text->size, hex(text->colour),
+                text->anchor == TextAnchor::start
+                    ? ""
+                    : fmt::format(" text-anchor=\"{}\"", anchors[static_cast<int>(text->anchor)]),
+                text->bold ? " font-weight=\"bold\"" : "",
+                text->turned ? fmt::format(" transform=\"rotate(-90 {:.2f} {:.2f})\"", text->at.x, text->at.y) : "",
+                escaped(text->text));
         } else if (const auto* clip = std::get_if<Clip>(&item)) {
             if (!clip->on) out += "</g>\n";
             else {
-                out += fmt::format("<clipPath id=\"c{0}\"><rect x=\"{1:g}\" y=\"{2:g}\" width=\"{3:g}\" "
-                                   "height=\"{4:g}\"/></clipPath>\n<g clip-path=\"url(#c{0})\">\n",
-                                   clips, clip->x, clip->y, clip->width, clip->height);
+                out += fmt::format(
+                    "<clipPath id=\"c{0}\"><rect x=\"{1:g}\" y=\"{2:g}\" width=\"{3:g}\" "
+                    "height=\"{4:g}\"/></clipPath>\n<g clip-path=\"url(#c{0})\">\n",
+                    clips, clip->x, clip->y, clip->width, clip->height);
                 ++clips;
             }
         }

@@ -197,8 +197,8 @@ private:
         const int first = static_cast<int>(std::ceil(std::clamp(from, -1.0, 1e6) - 0.5));
         const int end = static_cast<int>(std::ceil(std::clamp(to, -1.0, 1e6) - 0.5));
         for (int x = std::max(first, left_); x < std::min(end, right_); ++x) {
-            std::uint8_t* pixel =
-                &pixels_[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x))];
+            std::uint8_t* pixel = &pixels_[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                                                static_cast<std::size_t>(x))];
             const std::uint8_t ink[] = {colour.red, colour.green, colour.blue};
             for (int c = 0; c < 3; ++c)
                 pixel[c] = static_cast<std::uint8_t>(std::lround(pixel[c] + colour.opacity * (ink[c] - pixel[c])));
@@ -267,9 +267,10 @@ private:
                     int sum = 0;
                     for (int v = 0; v < fine; ++v)
                         for (int u = 0; u < fine; ++u)
-                            sum += pixels_[3 * (static_cast<std::size_t>(fine * y + v) * static_cast<std::size_t>(width_) +
-                                                static_cast<std::size_t>(fine * x + u)) +
-                                           c];
+                            sum +=
+                                pixels_[3 * (static_cast<std::size_t>(fine * y + v) * static_cast<std::size_t>(width_) +
+                                             static_cast<std::size_t>(fine * x + u)) +
+                                        c];
                     image.rgb[out++] = static_cast<std::uint8_t>((sum + fine * fine / 2) / (fine * fine));
                 }
         return image;

@@ -164,8 +164,8 @@ Comparison compare(const Take& reference, const Take& output, const ComparisonOp
     const bool one_saw = std::abs(result.output_hz / result.reference_hz - 1.0) < speed_range;
     result.harmonic_error_db = harmonic_error(sharp_reference, result.reference_hz, sharp_output,
                                               one_saw ? result.output_hz : result.reference_hz, result.highest);
-    result.lines = match_lines(sharp_reference, sharp_output, std::pow(10.0, result.gain_db / 20.0),
-                               result.speed_ratio, result.lowest, result.highest);
+    result.lines = match_lines(sharp_reference, sharp_output, std::pow(10.0, result.gain_db / 20.0), result.speed_ratio,
+                               result.lowest, result.highest);
     return result;
 }
 

@@ -55,7 +55,8 @@ struct Saw {
     std::vector<float> take() const { return test::saw(strokes, cutting, 8.0, rate, 21); }
 };
 
-const Saw saws[] = {{"idle at 233 Hz", 233.0, false}, {"cutting at 233 Hz", 233.0, true}, {"cutting at 150 Hz", 150.0, true}};
+const Saw saws[] = {
+    {"idle at 233 Hz", 233.0, false}, {"cutting at 233 Hz", 233.0, true}, {"cutting at 150 Hz", 150.0, true}};
 
 void show(const std::string& name, const Comparison& c) {
     if (std::getenv("TACTUS_SHOW") == nullptr) return;
