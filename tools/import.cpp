@@ -2,6 +2,7 @@
 #include "assets/bone/bone.hpp"
 #include "tools/terminal.hpp"
 #include "tools/verbs.hpp"
+#include "tools/workers.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,8 +12,10 @@ namespace tactus {
 int import_verb(const ImportChoice& choice) {
     ImportSummary s;
     LiveLine line;
+    ImportOptions options = choice;
+    options.run = on_threads();
     const Bone bone = import_bone(
-        choice,
+        options,
         [&line](double part, std::string_view doing) { line.show(fmt::format("{:3.0f} %  {}", 100.0 * part, doing)); },
         &s);
     line.clear();

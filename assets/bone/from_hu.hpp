@@ -3,6 +3,7 @@
 #pragma once
 
 #include "assets/bone/bone.hpp"
+#include "dsp/core/jobs.hpp"
 
 #include <cstddef>
 #include <string>
@@ -26,9 +27,10 @@ struct HuBone {
     std::size_t components = 0;  ///< found above the threshold, before any were taken out
 };
 
-/// Builds distance and density on the samples of `hu` (LPS, m) with four more layers of air around it, so that a bone
-/// cut by the border ends in a flat face half a voxel outside its last samples. Grey values are smoothed to about
-/// 0.35 mm (not at all where voxels are coarser). Throws Error when nothing reaches the threshold.
-HuBone bone_from_hu(const Grid& hu, const BoneSurface& surface);
+/// Builds distance and density on those samples of `hu` (LPS, m) that lie around the bone, with five millimetres and six
+/// samples of room; outside of the volume four layers of air are added, so that a bone cut by its border ends in a flat
+/// face half a voxel outside the last samples. Grey values are smoothed to about 0.35 mm (not at all where voxels are
+/// coarser). Throws Error when nothing reaches the threshold. At most 20 bytes per sample of `hu` are in use at a time.
+HuBone bone_from_hu(Grid hu, const BoneSurface& surface, const RunJobs& run = run_in_turn);
 
 }  // namespace tactus

@@ -127,9 +127,9 @@ Bone import_ct(const ImportOptions& options, const Report& report, ImportSummary
     }
     const Grid layout = ct_layout(ct.grid, crop, options.spacing);
     report(0.2, "resampling");
-    const Grid hu = resampled(ct.grid, layout);
+    Grid hu = resampled(std::move(ct.grid), layout);
     report(0.4, "surface and distance");
-    HuBone made = bone_from_hu(hu, {static_cast<float>(options.threshold), keep, options.fill});
+    HuBone made = bone_from_hu(std::move(hu), {static_cast<float>(options.threshold), keep, options.fill}, options.run);
     summary.components = made.components;
     made.bone.provenance["encoding"] = ct.encoding;
     if (ct.resampled) made.bone.provenance["axes"] = "turned; resampled to LPS";

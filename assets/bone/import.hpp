@@ -3,6 +3,7 @@
 #pragma once
 
 #include "assets/bone/bone.hpp"
+#include "dsp/core/jobs.hpp"
 
 #include <array>
 #include <cstddef>
@@ -28,6 +29,7 @@ struct ImportOptions {
     std::optional<std::pair<double, double>> rescale;
     /// kg/m³ throughout a mesh; default: an assumed cortex of 1800 over the outer 2 mm and a core of 400.
     std::optional<double> mesh_density;
+    RunJobs run = run_in_turn;  ///< on which threads; the result has the same bits on any
 };
 
 /// What was imported, for people and programs.

@@ -4,16 +4,28 @@
 
 #include "dsp/volume/grid.hpp"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace tactus {
 
+/// Neighbouring samples of one row that belong together.
+struct SampleRun {
+    int begin, end;      ///< along x; end is behind the last
+    int j, k;            ///< the row
+    std::int32_t part;   ///< rank of its component, 0 is the largest
+};
+
 /// Parts of {grey ≥ iso}, joined through faces, edges and corners (26 neighbours), largest first; equal sizes in the
 /// order of their first sample.
 struct Components {
-    std::vector<std::int32_t> label;  ///< per sample: 0 outside, else 1 + rank by size
+    std::vector<SampleRun> runs;      ///< in the order of samples
     std::vector<std::size_t> voxels;  ///< samples of each, descending
+    struct Box {
+        std::array<int, 3> first, last;
+    };
+    std::vector<Box> boxes;  ///< samples at the ends of each, inclusive
 };
 Components components_above(const Grid& grey, float iso);
 

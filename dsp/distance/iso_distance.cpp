@@ -1,67 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/distance/iso_distance.hpp"
 
-#include "dsp/distance/closest_point.hpp"
-#include "dsp/distance/surface_distance.hpp"
+#include "dsp/distance/cubic_interpolant.hpp"
+#include "dsp/distance/nearest_points.hpp"
+
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 namespace tactus {
 
 namespace {
 
-struct Spline {
-    std::array<double, 4> weight, slope;
+// Points of the surface, about one per cell that it crosses, with normals.
+struct Points {
+    std::vector<glm::vec3> at;      // samples from the origin
+    std::vector<glm::vec3> normal;  // unit length in m, towards lower values
 };
 
-// Catmull and Rom's cubic: weights of four neighbours at t in [0, 1] between the middle two, and their derivatives.
-Spline catmull_rom(double t) {
-    const double t2 = t * t, t3 = t2 * t;
-    return {{-0.5 * t3 + t2 - 0.5 * t, 1.5 * t3 - 2.5 * t2 + 1.0, -1.5 * t3 + 2.0 * t2 + 0.5 * t, 0.5 * t3 - 0.5 * t2},
-            {-1.5 * t2 + 2.0 * t - 0.5, 4.5 * t2 - 5.0 * t, -4.5 * t2 + 4.0 * t + 0.5, 1.5 * t2 - t}};
-}
-
-struct Interpolant {
-    const Grid& grid;
-
-    struct Sample {
-        double value;
-        Vec3 gradient;  // per m
-    };
-
-    Sample operator()(const Vec3& at) const {
-        std::array<Spline, 3> spline{};
-        std::array<std::array<int, 4>, 3> index{};
-        for (int axis = 0; axis < 3; ++axis) {
-            const auto a = static_cast<std::size_t>(axis);
-            const int last = grid.size[a] - 1;
-            const double u = std::clamp((at[axis] - grid.origin[axis]) / grid.spacing[axis], 0.0, double(last));
-            const int cell = std::min(static_cast<int>(u), std::max(last - 1, 0));
-            spline[a] = catmull_rom(u - cell);
-            for (int n = 0; n < 4; ++n) index[a][static_cast<std::size_t>(n)] = std::clamp(cell - 1 + n, 0, last);
-        }
-        double value = 0.0, gx = 0.0, gy = 0.0, gz = 0.0;
-        for (std::size_t c = 0; c < 4; ++c)
-            for (std::size_t b = 0; b < 4; ++b) {
-                const float* row = &grid.values[grid.index(0, index[1][b], index[2][c])];
-                double along = 0.0, slope = 0.0;
-                for (std::size_t a = 0; a < 4; ++a) {
-                    const double sample = row[index[0][a]];
-                    along += spline[0].weight[a] * sample;
-                    slope += spline[0].slope[a] * sample;
-                }
-                value += spline[2].weight[c] * spline[1].weight[b] * along;
-                gx += spline[2].weight[c] * spline[1].weight[b] * slope;
-                gy += spline[2].weight[c] * spline[1].slope[b] * along;
-                gz += spline[2].slope[c] * spline[1].weight[b] * along;
-            }
-        return {value, Vec3(gx, gy, gz) / grid.spacing};
-    }
-};
-
-// A step along the gradient onto the surface, at most half a cell long so that a flat spot throws nothing away.
-Vec3 onto_surface(const Interpolant::Sample& f, double iso, double reach) {
+// A step along the gradient onto the surface, m, at most `reach` long so that a flat spot throws nothing away.
+Vec3 onto_surface(const CubicInterpolant::Sample& f, double iso, double reach) {
     const double steep = glm::dot(f.gradient, f.gradient);
     if (!(steep > 0.0)) return Vec3(0.0);
     const Vec3 step = f.gradient * ((iso - f.value) / steep);
@@ -69,84 +30,235 @@ Vec3 onto_surface(const Interpolant::Sample& f, double iso, double reach) {
     return length > reach ? step * (reach / length) : step;
 }
 
-// Corners of tetrahedra cut along diagonals lie beside the surface; two steps bring them onto it.
-void settle(TriangleSurface& surface, const Interpolant& f, double iso, double reach) {
-    for (Vec3& vertex : surface.vertices)
-        for (int step = 0; step < 2; ++step) vertex += onto_surface(f(vertex), iso, reach);
-}
+struct Finder {
+    const Grid& grey;
+    float iso;
+    CubicInterpolant f{grey};
+    double cell = std::min({grey.spacing.x, grey.spacing.y, grey.spacing.z});
+    double widest = std::max({grey.spacing.x, grey.spacing.y, grey.spacing.z});
+    glm::vec3 h{grey.spacing};
 
-// The point of the surface nearest to `at`, from a near guess: steps onto the surface, and along it towards `at`.
-// Returns the distance, or `start` when the steps do not settle.
-double refine(const Vec3& at, const Vec3& guess, const Interpolant& f, double iso, double cell, double start) {
-    Vec3 x = guess;
-    for (int step = 0; step < 4; ++step) {
-        const auto here = f(x);
-        const double steep = glm::dot(here.gradient, here.gradient);
-        if (!(steep > 0.0)) return start;
-        const Vec3 towards = at - x;
-        Vec3 along = towards - here.gradient * (glm::dot(towards, here.gradient) / steep);
-        const double length = glm::length(along);
-        if (length > 0.25 * cell) along *= 0.25 * cell / length;
-        const Vec3 move = onto_surface(here, iso, 0.5 * cell) + along;
-        x += move;
-        if (glm::length(move) < 1e-4 * cell) break;
-    }
-    const auto here = f(x);
-    const double steep = glm::length(here.gradient);
-    const double off = steep > 0.0 ? std::abs(here.value - iso) / steep : cell;
-    const double distance = glm::length(at - x);
-    // Settled: on the surface, and straight below `at`.
-    const bool foot = distance < 1e-3 * cell || std::abs(glm::dot(at - x, here.gradient)) > 0.995 * distance * steep;
-    return off < 0.01 * cell && foot && std::abs(distance - start) < 0.25 * cell ? distance : start;
-}
-
-void smooth_axis(const Grid& in, Grid& out, int axis) {
-    const auto& size = in.size;
-    for (int k = 0; k < size[2]; ++k)
-        for (int j = 0; j < size[1]; ++j)
-            for (int i = 0; i < size[0]; ++i) {
-                std::array<int, 3> low{i, j, k}, high{i, j, k};
-                const auto a = static_cast<std::size_t>(axis);
-                low[a] = std::max(low[a] - 1, 0);
-                high[a] = std::min(high[a] + 1, size[a] - 1);
-                out.at(i, j, k) =
-                    (in.at(low[0], low[1], low[2]) + 4.0f * in.at(i, j, k) + in.at(high[0], high[1], high[2])) / 6.0f;
+    // The mean of the places where the cell's edges cross iso, moved onto the surface.
+    std::optional<Vec3> point_in_cell(int i, int j, int k, const std::array<float, 8>& value) const {
+        Vec3 sum(0.0);
+        int count = 0;
+        for (int from = 0; from < 8; ++from)
+            for (int bit = 1; bit < 8; bit <<= 1) {
+                if (from & bit) continue;
+                const float a = value[static_cast<std::size_t>(from)], b = value[static_cast<std::size_t>(from | bit)];
+                if ((a >= iso) == (b >= iso)) continue;
+                const double t = (double(iso) - double(a)) / (double(b) - double(a));
+                Vec3 at(from & 1, from >> 1 & 1, from >> 2);
+                at[bit >> 1] += t;
+                sum += at;
+                ++count;
             }
+        if (count == 0) return {};
+        const Vec3 corner(i, j, k);
+        Vec3 at = corner + sum / double(count);
+        for (int step = 0; step < 2; ++step) at += onto_surface(f(at), iso, 0.5 * cell) / grey.spacing;
+        return glm::clamp(at, corner, corner + 1.0);
+    }
+
+    void points_of_layer(int k, Points& points) const {
+        const auto width = static_cast<std::size_t>(grey.size[0]), layer = grey.index(0, 0, 1);
+        for (int j = 0; j + 1 < grey.size[1]; ++j) {
+            const float* row = &grey.values[grey.index(0, j, k)];
+            for (int i = 0; i + 1 < grey.size[0]; ++i, ++row) {
+                const std::array<float, 8> value{
+                    row[0],     row[1],         row[width],         row[width + 1],
+                    row[layer], row[layer + 1], row[layer + width], row[layer + width + 1]};
+                int above = 0;
+                for (const float v : value) above += v >= iso;
+                if (above == 0 || above == 8) continue;
+                const auto at = point_in_cell(i, j, k, value);
+                const Vec3 slope = f(*at).gradient;
+                const double length = glm::length(slope);
+                points.at.push_back(glm::vec3(*at));
+                points.normal.push_back(glm::vec3(length > 0.0 ? -slope / length : Vec3(0.0)));
+            }
+        }
+    }
+
+    Points all_points(const RunJobs& run) const {
+        std::vector<Points> layers(static_cast<std::size_t>(std::max(grey.size[2] - 1, 0)));
+        run(static_cast<int>(layers.size()), [&](int k) { points_of_layer(k, layers[static_cast<std::size_t>(k)]); });
+        Points all;
+        for (const Points& layer : layers) {
+            all.at.insert(all.at.end(), layer.at.begin(), layer.at.end());
+            all.normal.insert(all.normal.end(), layer.normal.begin(), layer.normal.end());
+        }
+        return all;
+    }
+
+    // Distance to the point of the surface nearest to `at`, from a near guess: steps onto the surface, and along it
+    // towards `at`, as long as the curvature seen so far asks for. Infinite when no point of the surface was met.
+    double refined(const Vec3& at, const Vec3& guess) const {
+        Vec3 x = guess, moved(0.0), before(0.0);
+        double best = std::numeric_limits<double>::infinity(), stretch = 1.0;
+        for (int step = 0; step < 10; ++step) {
+            const auto here = f(x);
+            const double steep = glm::dot(here.gradient, here.gradient);
+            if (!(steep > 0.0)) break;
+            const Vec3 towards = (at - x) * grey.spacing;
+            const Vec3 along = towards - here.gradient * (glm::dot(towards, here.gradient) / steep);
+            const double off = std::abs(here.value - double(iso)) / std::sqrt(steep), aside = glm::length(along);
+            const double far = glm::length(towards);
+            if (off < 2e-3 * cell) {
+                best = std::min(best, far);
+                // Straight below `at`: what is left aside lengthens by its square only.
+                if (aside < 0.04 * far || aside < 2e-3 * cell) break;
+            }
+            // On a convex surface a full step overshoots, in a hollow it falls short.
+            if (const double length2 = glm::dot(moved, moved); length2 > 0.0)
+                stretch = std::clamp(length2 / std::max(glm::dot(before - along, moved), 1e-9 * length2), 0.2, 2.0);
+            moved = along * std::min(stretch, 0.6 * cell / std::max(aside, 1e-30));
+            before = along;
+            x += (onto_surface(here, iso, 0.5 * cell) + moved) / grey.spacing;
+        }
+        return best;
+    }
+};
+
+struct Field {
+    const Finder& finder;
+    const Points& points;
+    const std::vector<std::int32_t>& nearest;
+    float band = static_cast<float>(3.0 * finder.widest);
+    float around2 =
+        (band + 1.5f * static_cast<float>(finder.widest)) * (band + 1.5f * static_cast<float>(finder.widest));
+
+    float apart2(const glm::vec3& at, std::int32_t id) const {
+        const glm::vec3 d = (points.at[static_cast<std::size_t>(id)] - at) * finder.h;
+        return glm::dot(d, d);
+    }
+
+    // To the disc of half a cell's diagonal around a point, along its tangent plane.
+    float to_disc(const glm::vec3& at, std::int32_t id) const {
+        const glm::vec3 d = (at - points.at[static_cast<std::size_t>(id)]) * finder.h;
+        const float up = glm::dot(d, points.normal[static_cast<std::size_t>(id)]);
+        const float aside = std::sqrt(std::max(0.0f, glm::dot(d, d) - up * up));
+        const float over = std::max(0.0f, aside - 0.7f * static_cast<float>(finder.cell));
+        return std::sqrt(up * up + over * over);
+    }
+
+    // Points that may be nearest, the nearest first: what the sample, its neighbours and the places below it on the
+    // surface know.
+    struct Candidates {
+        std::array<std::int32_t, 3> id{-1, -1, -1};
+        std::array<float, 3> apart2{};
+    };
+
+    void offer(Candidates& found, const glm::vec3& at, int x, int y, int z) const {
+        const std::int32_t id = nearest[finder.grey.index(x, y, z)];
+        if (id == found.id[0] || id == found.id[1] || id == found.id[2]) return;
+        const float d = apart2(at, id);
+        for (std::size_t n = 0; n < 3; ++n)
+            if (found.id[n] < 0 || d < found.apart2[n]) {
+                for (std::size_t m = 2; m > n; --m)
+                    found.id[m] = found.id[m - 1], found.apart2[m] = found.apart2[m - 1];
+                found.id[n] = id, found.apart2[n] = d;
+                return;
+            }
+    }
+
+    Candidates candidates(int i, int j, int k) const {
+        const glm::vec3 at(i, j, k);
+        Candidates found;
+        offer(found, at, i, j, k);
+        if (found.apart2[0] < around2) neighbours(found, at, i, j, k);
+        walk(found, at);
+        return found;
+    }
+
+    void neighbours(Candidates& found, const glm::vec3& at, int i, int j, int k) const {
+        const auto& size = finder.grey.size;
+        if (i > 0) offer(found, at, i - 1, j, k);
+        if (j > 0) offer(found, at, i, j - 1, k);
+        if (k > 0) offer(found, at, i, j, k - 1);
+        if (i + 1 < size[0]) offer(found, at, i + 1, j, k);
+        if (j + 1 < size[1]) offer(found, at, i, j + 1, k);
+        if (k + 1 < size[2]) offer(found, at, i, j, k + 1);
+    }
+
+    void walk(Candidates& found, const glm::vec3& at) const {
+        const auto& size = finder.grey.size;
+        for (int step = 0; step < 3; ++step) {
+            const std::int32_t before = found.id[0];
+            const auto n = static_cast<std::size_t>(before);
+            const glm::vec3 d = (at - points.at[n]) * finder.h;
+            const glm::vec3 foot = at - points.normal[n] * glm::dot(d, points.normal[n]) / finder.h;
+            offer(found, at, std::clamp(static_cast<int>(foot.x + 0.5f), 0, size[0] - 1),
+                  std::clamp(static_cast<int>(foot.y + 0.5f), 0, size[1] - 1),
+                  std::clamp(static_cast<int>(foot.z + 0.5f), 0, size[2] - 1));
+            if (found.id[0] == before) break;
+        }
+    }
+
+    double exact(const glm::vec3& at, const Candidates& found) const {
+        const auto place = [&](std::size_t n) { return points.at[static_cast<std::size_t>(found.id[n])]; };
+        double least = finder.refined(Vec3(at), Vec3(place(0)));
+        for (std::size_t n = 1; n < 3 && found.id[n] >= 0; ++n) {
+            // Another part of the surface: not beside the first, and no farther than its cell's corners allow.
+            const glm::vec3 between = (place(n) - place(0)) * finder.h;
+            const auto aside = 1.0 * finder.widest;
+            if (glm::length(between) > 1.5f * static_cast<float>(finder.widest) &&
+                double(found.apart2[n]) < least * least + aside * aside)
+                least = std::min(least, finder.refined(Vec3(at), Vec3(place(n))));
+        }
+        return least;
+    }
+
+    void layer(int k, Grid& out) const {
+        const Grid& grid = finder.grey;
+        for (int j = 0; j < grid.size[1]; ++j)
+            for (int i = 0; i < grid.size[0]; ++i) {
+                const glm::vec3 at(i, j, k);
+                const Candidates found = candidates(i, j, k);
+                float value = to_disc(at, found.id[0]);
+                if (value < band)
+                    if (const double d = exact(at, found); std::isfinite(d)) value = static_cast<float>(d);
+                out.at(i, j, k) = grid.at(i, j, k) >= finder.iso ? -value : value;
+            }
+    }
+};
+
+void smooth_layer(const Grid& in, Grid& out, int axis, int k) {
+    const auto& size = in.size;
+    for (int j = 0; j < size[1]; ++j)
+        for (int i = 0; i < size[0]; ++i) {
+            std::array<int, 3> low{i, j, k}, high{i, j, k};
+            const auto a = static_cast<std::size_t>(axis);
+            low[a] = std::max(low[a] - 1, 0);
+            high[a] = std::min(high[a] + 1, size[a] - 1);
+            out.at(i, j, k) =
+                (in.at(low[0], low[1], low[2]) + 4.0f * in.at(i, j, k) + in.at(high[0], high[1], high[2])) / 6.0f;
+        }
 }
 
 }  // namespace
 
-Grid smoothed(const Grid& grid) {
+Grid smoothed(const Grid& grid, const RunJobs& run) {
     Grid a = grid, b = grid;
-    smooth_axis(grid, a, 0);
-    smooth_axis(a, b, 1);
-    smooth_axis(b, a, 2);
+    run(grid.size[2], [&](int k) { smooth_layer(grid, a, 0, k); });
+    run(grid.size[2], [&](int k) { smooth_layer(a, b, 1, k); });
+    run(grid.size[2], [&](int k) { smooth_layer(b, a, 2, k); });
     return a;
 }
 
-Grid distance_to_iso(const Grid& grey, float iso) {
-    const double cell = std::min({grey.spacing.x, grey.spacing.y, grey.spacing.z});
-    const double band = 3.0 * std::max({grey.spacing.x, grey.spacing.y, grey.spacing.z});
-    const Interpolant f{grey};
-    TriangleSurface surface = iso_surface(grey, iso, true);
-    settle(surface, f, iso, 0.5 * cell);
-    NearestTriangles nearest = nearest_triangles(grey, surface);
-    Grid out{grey.size, grey.origin, grey.spacing, std::move(nearest.distance)};
-    for (int k = 0; k < grey.size[2]; ++k)
-        for (int j = 0; j < grey.size[1]; ++j)
-            for (int i = 0; i < grey.size[0]; ++i) {
-                float& value = out.at(i, j, k);
-                const std::int32_t id = nearest.triangle[grey.index(i, j, k)];
-                if (id >= 0 && value < band) {
-                    const auto& t = surface.triangles[static_cast<std::size_t>(id)];
-                    const Vec3 at = grey.position(i, j, k);
-                    const Vec3 foot = closest_on_triangle(at, surface.vertices[static_cast<std::size_t>(t[0])],
-                                                          surface.vertices[static_cast<std::size_t>(t[1])],
-                                                          surface.vertices[static_cast<std::size_t>(t[2])]);
-                    value = static_cast<float>(refine(at, foot, f, iso, cell, value));
-                }
-                if (grey.at(i, j, k) >= iso) value = -value;
-            }
+Grid distance_to_iso(const Grid& grey, float iso, const RunJobs& run) {
+    const Finder finder{grey, iso};
+    const Points points = finder.all_points(run);
+    Grid out{grey.size, grey.origin, grey.spacing, {}};
+    if (points.at.empty()) {
+        const bool inside = !grey.values.empty() && grey.values.front() >= iso;
+        out.values.assign(grey.count(), std::numeric_limits<float>::infinity() * (inside ? -1.0f : 1.0f));
+        return out;
+    }
+    out.values.resize(grey.count());
+    const std::vector<std::int32_t> nearest = nearest_points(grey, points.at, run);
+    const Field field{finder, points, nearest};
+    run(grey.size[2], [&](int k) { field.layer(k, out); });
     return out;
 }
 

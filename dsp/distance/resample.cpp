@@ -64,10 +64,18 @@ Grid along(const Grid& in, const Grid& layout, int axis) {
     return out;
 }
 
+// Nothing to interpolate along this axis, and nothing to leave out.
+bool is_same(const Grid& grid, const Grid& layout, int axis) {
+    return grid.size[static_cast<std::size_t>(axis)] == layout.size[static_cast<std::size_t>(axis)] &&
+           grid.origin[axis] == layout.origin[axis] && grid.spacing[axis] == layout.spacing[axis];
+}
+
 }  // namespace
 
-Grid resampled(const Grid& grid, const Grid& layout) {
-    return along(along(along(grid, layout, 2), layout, 1), layout, 0);
+Grid resampled(Grid grid, const Grid& layout) {
+    for (const int axis : {2, 1, 0})
+        if (!is_same(grid, layout, axis)) grid = along(grid, layout, axis);
+    return grid;
 }
 
 }  // namespace tactus
