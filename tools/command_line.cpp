@@ -162,6 +162,13 @@ int command_line(int argc, char** argv) {
     run_app->add_option("--record", run.record, "keep the run as a take, a folder that 'replay' repeats");
     run_app->add_flag("--json", run.json, "print the summary as JSON and nothing else");
 
+    run_app->add_flag("!--no-edits", run.edits, "neither watch the patch file nor listen to 'set'");
+
+    SetChoice set;
+    CLI::App* set_app = app.add_subcommand("set", "change a parameter of a patch that runs");
+    set_app->add_option("setting", set.settings, "NODE.PARAM=VALUE, as in blade.stiffness=\"0.8 N/mm\"")->required();
+    set_app->add_option("--process", set.process, "number of the run's process, when there are several");
+
     ReplayChoice replay;
     CLI::App* replay_app = app.add_subcommand("replay", "repeat a take and compare every value, bit by bit");
     replay_app->add_option("take", replay.take, "folder that --record made")->required();
@@ -200,6 +207,7 @@ int command_line(int argc, char** argv) {
         app.parse(argc, argv);
         if (*render_app) return render_verb(render);
         if (*run_app) return run_verb(run);
+        if (*set_app) return set_verb(set);
         if (*replay_app) return replay_verb(replay);
         if (*check_app) return check_verb(check);
         if (*draw_app) return draw_verb(draw, drawing);

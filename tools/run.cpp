@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/live_control.hpp"
 #include "tools/live_table.hpp"
 #include "tools/load_plan.hpp"
 #include "tools/results.hpp"
@@ -46,7 +47,14 @@ int run_verb(const RunChoice& choice) {
     live.dilate = choice.dilate;
     if (!choice.log.empty()) live.log = choice.log;
     live.stop = &interrupted;
+    std::optional<LiveControl> control;
+    if (choice.edits)
+        control.emplace(engine, choice, assets, [&line](const std::string& said) {
+            line.clear();
+            fmt::print(stderr, "{}\n", said);
+        });
     live.watch = [&] {
+        if (control) control->tend();
         const auto now = std::chrono::steady_clock::now();
         if (choice.json || !line.is_terminal() || now < next_table) return;
         next_table = now + std::chrono::milliseconds(200);

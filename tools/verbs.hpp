@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tactus {
 
@@ -34,6 +35,12 @@ struct RunChoice : PatchChoice {
     std::optional<double> seconds;
     double dilate = 1.0;
     std::filesystem::path out, log, record;
+    bool edits = true;  ///< take over the patch file when it is saved, and listen to 'set'
+};
+
+struct SetChoice {
+    std::vector<std::string> settings;  ///< "node.param=value"
+    int process = 0;                    ///< 0: the only run there is
 };
 
 struct ReplayChoice {
@@ -90,6 +97,7 @@ int measure_verb(const MeasureChoice& choice);
 int equalise_verb(const EqualiseChoice& choice);
 int render_verb(const RenderChoice& choice);
 int run_verb(const RunChoice& choice);
+int set_verb(const SetChoice& choice);
 int replay_verb(const ReplayChoice& choice);
 int check_verb(const PatchChoice& choice);
 int draw_verb(const PatchChoice& choice, const std::filesystem::path& out);

@@ -49,6 +49,7 @@ void ForceLimiter::cut(Fault reason) noexcept {
 void ForceLimiter::hold_off(bool wanted) noexcept {
     if (wanted == held_off_) return;
     held_off_ = wanted;
+    small_ticks_ = 0;
     ramped_s_ = 0.0;
     if (!wanted || fault_ != Fault::none) return;
     fade_from_ = output_;

@@ -56,7 +56,8 @@ public:
     /// The same where someone else has faded the force already: from here the output is zero at once.
     void cut(Fault reason) noexcept;
 
-    /// While true, forces fade to zero and stay there; afterwards they ramp in. For changes that are meant.
+    /// While true, forces fade to zero and stay there; afterwards they come back through engagement: a hand that went
+    /// deep meanwhile is not thrown out. For changes that are meant.
     void hold_off(bool wanted) noexcept;
 
     /// Forgets the fault; forces come back through engagement.

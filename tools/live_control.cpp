@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/live_control.hpp"
+
+#include "dsp/core/error.hpp"
+#include "nodes/catalogue.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace tactus {
+
+LiveControl::LiveControl(Engine& engine, PatchChoice choice, AssetCache& assets,
+                         std::function<void(const std::string&)> say)
+    : engine_(engine),
+      choice_(std::move(choice)),
+      assets_(assets),
+      say_(std::move(say)),
+      file_(find_patch(choice_.patch)),
+      watch_(file_) {
+    if (!watch_.is_working())
+        say_(fmt::format("{} cannot be watched; edits take effect at the next start", file_.string()));
+    try {
+        socket_ = std::make_unique<ControlSocket>();
+    } catch (const Error& error) {
+        say_(fmt::format("'tactus set' cannot reach this run: {}", error.what()));
+    }
+}
+
+void LiveControl::tend() {
+    if (watch_.was_saved()) edit();
+    if (socket_) socket_->serve([this](const std::string& line) { return answer(line); });
+}
+
+void LiveControl::edit() {
+    // Read here: what the take keeps is what is compiled, even if the file changes again.
+    std::string text;
+    try {
+        Problems unread;
+        text = load_patch(file_, unread).text;
+    } catch (const Error& error) {
+        return say_(error.what());
+    }
+    if (text == engine_.plan().patch.text) return;
+    const auto make = [this, text] {
+        Problems problems;
+        Patch patch = read_patch(text, file_, problems);
+        apply_overrides(patch, choice_.overrides, problems);
+        if (choice_.seed) patch.seed = *choice_.seed;
+        std::optional<Plan> plan;
+        if (problems.empty()) plan = compile(patch, catalogue(), problems);
+        if (plan) assets_.load(*plan, problems);
+        if (problems.empty()) return std::move(*plan);
+        std::string all;
+        for (const Error& problem : problems.list) all += fmt::format("{}{}", all.empty() ? "" : "\n", problem.what());
+        throw Error(all);
+    };
+    engine_.edit(make, text, [this](const EditOutcome& outcome) {
+        if (outcome.error) say_(fmt::format("{}\nthe edit was not made; the patch runs on as it was", *outcome.error));
+        else
+            say_(fmt::format("edit {} takes over at {:.3f} s; {} of {} nodes go on", outcome.generation,
+                             seconds(outcome.when), outcome.kept, outcome.nodes));
+    });
+}
+
+std::string LiveControl::answer(const std::string& line) {
+    const std::size_t dot = line.find('.'), equals = line.find('=');
+    if (!line.starts_with("set ") || dot == std::string::npos || equals == std::string::npos || dot > equals)
+        return "error write NODE.PARAM=VALUE, as in blade.stiffness=\"0.8 N/mm\"";
+    try {
+        const Flicks when =
+            engine_.set(line.substr(4, dot - 4), line.substr(dot + 1, equals - dot - 1), line.substr(equals + 1));
+        return fmt::format("{} from {:.3f} s", line.substr(4), seconds(when));
+    } catch (const Error& error) {
+        return fmt::format("error {}", error.what());
+    }
+}
+
+}  // namespace tactus

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// What changes a patch while it runs: its file being saved, and lines on the control socket.
+#pragma once
+
+#include "engine/engine.hpp"
+#include "tools/control_socket.hpp"
+#include "tools/load_plan.hpp"
+#include "tools/patch_watch.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace tactus {
+
+class LiveControl {
+public:
+    /// `say` tells the user of edits and of why one was not made.
+    LiveControl(Engine& engine, PatchChoice choice, AssetCache& assets, std::function<void(const std::string&)> say);
+
+    /// From LiveOptions::watch.
+    void tend();
+
+private:
+    void edit();
+    std::string answer(const std::string& line);
+
+    Engine& engine_;
+    PatchChoice choice_;
+    AssetCache& assets_;
+    std::function<void(const std::string&)> say_;
+    std::filesystem::path file_;
+    PatchWatch watch_;
+    std::unique_ptr<ControlSocket> socket_;
+};
+
+}  // namespace tactus
