@@ -162,6 +162,7 @@ void fill_chunks(Pointshell& shell) {
             node.radius = std::max(node.radius, distance2(shell.position[node.first_point + i], node.centre));
         node.radius = std::sqrt(node.radius);
         node.held = static_cast<std::uint32_t>(held[n].index.size());
+        for (std::uint32_t c = 0; c < node.children; ++c) node.below += shell.nodes[node.first_child + c].held;
         shell.chunks[n] = chunk_of(held[n], shell, node.centre);
     }
 }

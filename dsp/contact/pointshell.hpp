@@ -43,7 +43,7 @@ struct ShellNode {
     double radius = 0.0;          ///< greatest distance from the centre to any point below, m
     std::uint32_t first_point = 0, points = 0;  ///< those below, adjacent in the shell's arrays
     std::uint32_t first_child = 0, children = 0;  ///< at most 4, adjacent in `nodes`; none in a leaf
-    std::uint32_t held = 0;       ///< points in its chunk
+    std::uint32_t held = 0, below = 0;  ///< points in its chunk, and in those of its children together
 };
 
 /// Points of a surface in the order of a balanced k-d tree (Morton order with planes at medians), so that neighbours in

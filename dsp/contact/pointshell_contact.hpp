@@ -41,7 +41,7 @@ struct ContactSum {
     double energy = 0.0;  ///< J
     std::array<double, 6> gradient{};  ///< ∂energy/∂ξ
     std::array<double, 36> stiffness{};  ///< row by row, both triangles filled
-    double total_force = 0.0;  ///< N, Σ |k w φ' n| over the points: the scale of rounding errors
+    double total_force = 0.0;  ///< N, Σ k w φ' over the points: the scale of rounding errors
     double penetration = 0.0;  ///< m, of the deepest point, 0 when none is inside
     std::size_t in_contact = 0;  ///< points with a force
     std::size_t evaluated = 0;  ///< points whose distance was looked up
@@ -64,11 +64,13 @@ enum class ContactParts : std::uint8_t { energy, all };
 /// same single-precision operations in the same order. Differs from the reference by less than 1e-5 of Σ|f|.
 class PointshellContact {
 public:
-    /// Room for the nodes of `shells` together; memory is taken here and not later.
-    explicit PointshellContact(std::span<const Pointshell* const> shells);
+    /// Room for `most_nodes` nodes: the sum of shell->nodes.size() over the pairs of a call. Memory is taken here and
+    /// not later; with less room the parts farthest apart stay coarse.
+    explicit PointshellContact(std::size_t most_nodes);
 
-    /// At most about `budget` points are evaluated (at least one chunk of 64 per pair near its map). When that is not
-    /// enough the tree is refined level by level, nearest parts first, and coarser points stand for the rest.
+    /// At most `budget` points are evaluated, but at least the coarsest chunk of each pair that may touch (64 points).
+    /// When the budget is too small the tree is refined level by level, nearest parts first, and where it is not, a
+    /// coarser point stands for those around it: forces are then approximate, and may step when the choice changes.
     ContactSum operator()(std::span<const ContactPair> pairs, const Vec3& about, const ContactLaw& law,
                           std::size_t budget = std::numeric_limits<std::size_t>::max(),
                           ContactParts parts = ContactParts::all) noexcept;
@@ -76,8 +78,11 @@ public:
 private:
     struct Entry {
         std::uint32_t pair, node;
-        float clearance;
+        double clearance;
     };
+
+    /// Fills chosen_ with the nodes to be evaluated; returns how many of them had to stay coarse.
+    std::size_t choose(std::span<const ContactPair> pairs, double blend, std::size_t budget) noexcept;
 
     std::vector<Entry> frontier_, next_, chosen_;
 };

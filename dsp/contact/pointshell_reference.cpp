@@ -15,7 +15,7 @@ void add(ContactSum& sum, double sign, const Vec3& n, const Vec3& r, double e, d
     const Vec3 moment = glm::cross(r, n);
     const double row[6] = {n.x, n.y, n.z, moment.x, moment.y, moment.z};
     sum.energy += e;
-    sum.total_force += f * glm::length(n);
+    sum.total_force += f;
     for (std::size_t i = 0; i < 6; ++i) {
         sum.gradient[i] -= sign * f * row[i];
         for (std::size_t j = 0; j <= i; ++j) sum.stiffness[6 * i + j] += c * row[i] * row[j];

@@ -2,6 +2,7 @@
 #include "dsp/contact/voxmap.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/large_pages.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -71,6 +72,11 @@ Voxmap make_voxmap(Grid distance) {
     const Vec3 extent = Vec3(distance.size[0] - 1, distance.size[1] - 1, distance.size[2] - 1) * distance.spacing;
     map.far = most > 0.0 ? most : glm::length(extent);
     map.steepness = std::max(1.0, lattice_factor * steepness_of(distance));
+    std::vector<float> values;
+    values.reserve(distance.values.size());
+    prefer_large_pages(values.data(), values.capacity() * sizeof(float));
+    values.assign(distance.values.begin(), distance.values.end());
+    distance.values.swap(values);
     map.grid = std::move(distance);
     return map;
 }
@@ -163,19 +169,23 @@ Sample Voxmap::smooth_sample(const Vec3& position) const noexcept {
 double Voxmap::least_within(const Vec3& position, double radius) const noexcept {
     if (grid.values.empty()) return far;
     const Vec3 last = grid.origin + Vec3(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1) * grid.spacing;
-    const Vec3 nearest = glm::clamp(position, grid.origin, last);
-    const double outside2 = glm::dot(position - nearest, position - nearest), radius2 = radius * radius;
-    // What lies in the grid of a ball about a point outside lies in a smaller ball about the nearest point of the grid.
-    if (!(outside2 < radius2)) {
-        if (outside2 > 0.0) return far;
-        if (!(outside2 >= 0.0)) return far;  // not a number
+    const Vec3 nearest = glm::clamp(position, grid.origin, last), away = position - nearest;
+    const double outside2 = glm::dot(away, away);
+    double radius2 = radius * radius;
+    if (outside2 != 0.0) {
+        // Written so that a NaN is far away.
+        if (!(outside2 < radius2)) return far;
+        // What the grid holds of a ball about a point outside is in a smaller ball about the nearest point of the grid.
+        radius2 -= outside2;
     }
-    // An interpolant is a mean of samples at most this far apart, in the mean square, from where it is read.
+    // An interpolant is a mean of samples that are this far from where it is read, in the mean square.
     const double spread2 = 0.25 * glm::dot(grid.spacing, grid.spacing);
-    const double fall = steepness * (std::sqrt(radius2 - outside2 + spread2) + std::sqrt(spread2));
-    // Rounding may have put the point on the border outside.
-    const Sample here = sample(glm::clamp(nearest, grid.origin, last));
-    return here.inside ? std::min(far, here.value - fall) : -fall;
+    const double fall = steepness * (std::sqrt(radius2 + spread2) + std::sqrt(spread2));
+    // The nearest sample is at most half of a diagonal away, which is the spread.
+    const Vec3 cell = (nearest - grid.origin) / grid.spacing;
+    const auto index = [](double x, int size) { return std::min(static_cast<int>(x + 0.5), size - 1); };
+    const float value = grid.at(index(cell.x, grid.size[0]), index(cell.y, grid.size[1]), index(cell.z, grid.size[2]));
+    return std::min(far, static_cast<double>(value) - fall);
 }
 
 Grid chamfer_distance(const Grid& distance) {

@@ -72,9 +72,9 @@ inline Pose moved(const Pose& pose, const Vec3& about, const Vec3& v, const Vec3
     return {about + v + turn * (pose.position - about), glm::normalize(turn * pose.orientation)};
 }
 
-/// True when xᵀKx ≥ 0 for every x, but for rounding: Cholesky's pivots of K + 1e-9·diag K are all positive.
-inline bool never_negative(std::array<double, 36> k) {
-    for (std::size_t i = 0; i < 6; ++i) k[7 * i] += 1e-9 * std::abs(k[7 * i]) + 1e-12;
+/// True when xᵀKx ≥ 0 for every x, but for rounding: Cholesky's pivots of K + rounding·diag K are all positive.
+inline bool never_negative(std::array<double, 36> k, double rounding) {
+    for (std::size_t i = 0; i < 6; ++i) k[7 * i] += rounding * std::abs(k[7 * i]) + 1e-12;
     for (std::size_t i = 0; i < 6; ++i) {
         if (!(k[7 * i] > 0.0)) return false;
         for (std::size_t j = i + 1; j < 6; ++j)

@@ -82,9 +82,9 @@ TEST_CASE("nothing within a radius reads less than the bound that culling uses")
             CHECK(least <= map->sample(q).value);
             CHECK(least <= map->smooth_sample(q).value);
         }
-        // And for a true distance it is worth something: within 1.13 times the radius and two cells of the value.
+        // And for a true distance it is worth something: within 1.13 times the radius and three cells of the value.
         const Sample here = plain.sample(p);
-        if (here.inside) CHECK(plain.least_within(p, radius) > here.value - 1.13 * radius - 2.1e-3);
+        if (here.inside) CHECK(plain.least_within(p, radius) > here.value - 1.13 * radius - 3.0e-3);
     }
 }
 
