@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bodies by formula: exact distance and evenly spread surface points. m, about the z axis or the origin.
+#pragma once
+
+#include "dsp/contact/pointshell.hpp"
+#include "dsp/core/types.hpp"
+
+#include <glm/vec2.hpp>
+
+#include <vector>
+
+namespace tactus {
+
+struct Ball {
+    double radius = 10e-3;
+
+    double distance(const Vec3& p) const;
+    std::vector<SurfacePoint> points(double spacing) const;
+    Vec3 low() const { return Vec3(-radius); }
+    Vec3 high() const { return Vec3(radius); }
+};
+
+/// About the origin.
+struct Box {
+    Vec3 size{20e-3};
+
+    double distance(const Vec3& p) const;
+    /// Also on edges and corners, where normals are means.
+    std::vector<SurfacePoint> points(double spacing) const;
+    Vec3 low() const { return -0.5 * size; }
+    Vec3 high() const { return 0.5 * size; }
+};
+
+/// A polygon in the half-plane (distance from the axis, height) turned about the z axis; counter-clockwise, with the
+/// height upwards and the solid to its left.
+struct Turned {
+    std::vector<glm::dvec2> profile;
+
+    double distance(const Vec3& p) const;
+    std::vector<SurfacePoint> points(double spacing) const;
+    Vec3 low() const;
+    Vec3 high() const;
+};
+
+/// Upright on z = 0, the lower rim bevelled by `bevel` at 45°.
+Turned make_cylinder(double diameter, double height, double bevel = 0.0);
+/// A round block below z = 0 with a hole through it along its axis, the mouth widened by `bevel` at 45°.
+Turned make_bushing(double bore, double diameter, double height, double bevel = 0.0);
+
+}  // namespace tactus

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Dynamic coupling: the held body has mass, springs and dampers pull it to the hand, contact pushes it.
+#pragma once
+
+#include "dsp/coupling/quasi_static.hpp"
+
+namespace tactus {
+
+struct DynamicSettings {
+    CouplingSprings springs;
+    double mass = 0.1;               ///< kg
+    double inertia = 1e-4;           ///< kg·m², the same about every axis through the handle
+    double damping = 10.0;           ///< N·s/m between hand and body
+    double angular_damping = 0.01;   ///< N·m·s/rad
+    double step = 0.5e-3, reach = 0.05;  ///< m, as in QuasiStaticSettings
+};
+
+struct DynamicState {
+    Pose proxy;
+    Twist twist;
+    Wrench wrench;  ///< on the hand: spring and damper
+    ContactSum contact;  ///< where the last step began
+    bool hand_is_valid = true;
+};
+
+/// Backward Euler, linearised once per tick: one contact evaluation and one 6 × 6 system. The stiffness of contact and
+/// springs enters implicitly, so that no stiffness and no step makes it blow up; fast motion is damped in exchange. The
+/// gyroscopic torque of a body with equal inertias is none.
+class DynamicCoupling {
+public:
+    DynamicSettings settings;
+
+    void reset(const Pose& hand) noexcept {
+        state_ = {};
+        state_.proxy = hand_ = is_valid(hand) ? hand : hand_;
+        turn_ = Vec3(0.0);
+    }
+    const DynamicState& state() const noexcept { return state_; }
+
+    /// `hand_twist` in m/s and rad/s, `h` s > 0.
+    template <HeldContactLike Contact>
+    const DynamicState& update(const Pose& hand, const Twist& hand_twist, double h, Contact&& contact) noexcept {
+        state_.hand_is_valid = is_valid(hand) && is_finite(hand_twist.linear) && is_finite(hand_twist.angular);
+        if (state_.hand_is_valid) hand_ = {hand.position, glm::normalize(hand.orientation)};
+        const Twist drive = state_.hand_is_valid ? hand_twist : Twist{};
+        const DynamicSettings& s = settings;
+        state_.contact = contact(state_.proxy, ContactParts::all);
+        turn_ = rotation_near(hand_.orientation, state_.proxy.orientation, turn_);
+        const auto linear = s.springs.linear(state_.proxy.position - hand_.position);
+        const auto angular = s.springs.angular(turn_);
+        // (M/h² + D/h + K) δ = M v/h + D v_hand − forces, for the way δ of this tick.
+        Matrix6 k = state_.contact.stiffness;
+        Vector6 push{}, way{};
+        for (int i = 0; i < 3; ++i) {
+            const auto n = static_cast<std::size_t>(i);
+            k[7 * n] += s.mass / (h * h) + s.damping / h + linear.curvature;
+            k[7 * (n + 3)] += s.inertia / (h * h) + s.angular_damping / h + angular.curvature;
+            push[n] = s.mass / h * state_.twist.linear[i] + s.damping * drive.linear[i] - linear.force[i] -
+                      state_.contact.gradient[n];
+            push[n + 3] = s.inertia / h * state_.twist.angular[i] + s.angular_damping * drive.angular[i] -
+                          angular.force[i] - state_.contact.gradient[n + 3];
+        }
+        if (!solve_symmetric6(k, push, way)) state_.twist = {};
+        const double length =
+            std::hypot(way[0], way[1], way[2]) + std::hypot(way[3], way[4], way[5]) * std::max(s.reach, 1e-6);
+        if (length > s.step) {
+            const double free = std::max(0.0, static_cast<double>(contact.clearance(state_.proxy)));
+            for (double& w : way) w *= std::min(1.0, (s.step + free) / length);
+        }
+        const Vec3 v(way[0], way[1], way[2]), w(way[3], way[4], way[5]);
+        state_.proxy.position += v;
+        state_.proxy.orientation = glm::normalize(rotation_by(w) * state_.proxy.orientation);
+        state_.twist = {v / h, w / h};
+        turn_ = rotation_near(hand_.orientation, state_.proxy.orientation, turn_);
+        state_.wrench = {s.springs.linear(state_.proxy.position - hand_.position).force +
+                             s.damping * (state_.twist.linear - drive.linear),
+                         s.springs.angular(turn_).force + s.angular_damping * (state_.twist.angular - drive.angular)};
+        if (!is_finite(state_.wrench)) reset(hand_);
+        return state_;
+    }
+
+private:
+    DynamicState state_;
+    Pose hand_;
+    Vec3 turn_{0.0};
+};
+
+}  // namespace tactus

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Gain and soft limit of a force: the direction stays, the size levels off without a corner.
+#pragma once
+
+#include "dsp/core/types.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+
+namespace tactus {
+
+/// Sizes up to `straight` pass; beyond, they approach `most` with a continuous slope. `most` ≤ `straight` cuts off there.
+inline double soft_limit(double size, double straight, double most) noexcept {
+    if (!(size > straight)) return size;
+    if (!(most > straight)) return most;
+    return most - (most - straight) * std::exp(-(size - straight) / (most - straight));
+}
+
+inline Vec3 soft_limit(const Vec3& v, double straight, double most) noexcept {
+    const double size = glm::length(v);
+    return size > 0.0 ? v * (soft_limit(size, straight, most) / size) : v;
+}
+
+}  // namespace tactus

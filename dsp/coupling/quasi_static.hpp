@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// Quasi-static coupling: a proxy of what the hand holds stands where the springs to the hand and the contact forces
+// balance. No mass, no time: every tick the energy
+//
+//     E(proxy) = contact energy + ψ(p − p_hand) + ψ(log(R R_handᵀ))
+//
+// is lowered by Gauss–Newton steps on rigid motions with Armijo's rule, from the proxy of the tick before. It may stop
+// after any iteration: the proxy is always a pose and its energy has never risen. After Wan and McNeely 2003 and Barbič
+// and James 2008, with the contact's own energy in the place of forces along normals.
+#pragma once
+
+#include "dsp/contact/pointshell_contact.hpp"
+#include "dsp/coupling/coupling_spring.hpp"
+#include "dsp/coupling/symmetric6.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus {
+
+/// What the solver sees: contact of the held body at a trial pose of the handle, about the handle's origin, and a lower
+/// bound of the way that every point may go from there before it can touch anything.
+template <class T>
+concept HeldContactLike = requires(T& contact, const Pose& handle) {
+    { contact(handle, ContactParts::all) } -> std::same_as<ContactSum>;
+    { contact.clearance(handle) } -> std::convertible_to<double>;
+};
+
+struct QuasiStaticSettings {
+    CouplingSprings springs;
+    int iterations = 4;
+    double tolerance = 1e-3;  ///< N: balanced when the residual is below
+    /// m: farthest that one iteration moves any point beyond what is surely free. Half of the thinnest wall plus the
+    /// thinnest held part at most, or they pass through each other.
+    double step = 0.5e-3;
+    double reach = 0.05;  ///< m, farthest point of the held body from the handle: what a turn moves
+    double gyration = 0.02;  ///< m: a torque counts as the force that makes it at this lever
+};
+
+struct QuasiStaticState {
+    Pose proxy;  ///< of the handle
+    Wrench wrench;  ///< on the hand, about its own origin; equals the contact's about the proxy when balanced
+    ContactSum contact;  ///< at the proxy
+    double residual = 0.0;  ///< N, of the balance
+    double energy = 0.0;  ///< J, of contact and springs
+    double energy_before = 0.0;  ///< J, of the last proxy under this tick's hand
+    int iterations = 0;  ///< steps taken
+    int evaluations = 0;  ///< of the contact
+    bool balanced = false;
+    bool hand_is_valid = true;  ///< false: its pose was no pose and the last good one holds
+};
+
+class QuasiStaticCoupling {
+public:
+    QuasiStaticSettings settings;
+
+    /// Takes hold: no force, the proxy at the hand.
+    void reset(const Pose& hand) noexcept {
+        state_ = {};
+        state_.proxy = hand_ = is_valid(hand) ? hand : hand_;
+        turn_ = Vec3(0.0);
+    }
+
+    const QuasiStaticState& state() const noexcept { return state_; }
+
+    template <HeldContactLike Contact>
+    const QuasiStaticState& update(const Pose& hand, Contact&& contact) noexcept {
+        state_.hand_is_valid = is_valid(hand);
+        if (state_.hand_is_valid) hand_ = {hand.position, glm::normalize(hand.orientation)};
+        state_.iterations = 0;
+        state_.evaluations = 0;
+        state_.balanced = false;
+        Balance now = balance(state_.proxy, contact);
+        state_.energy_before = now.energy;
+        while (std::isfinite(now.energy)) {
+            state_.balanced = residual(now) < settings.tolerance;
+            if (state_.balanced || state_.iterations >= settings.iterations || !improve(now, contact)) break;
+            ++state_.iterations;
+        }
+        state_.residual = residual(now);
+        state_.energy = now.energy;
+        state_.contact = now.contact;
+        turn_ = now.turn;
+        state_.wrench = {now.linear.force, now.angular.force};
+        // A scene that is no scene: better no force than a wrong one.
+        if (!std::isfinite(now.energy) || !is_finite(state_.wrench)) state_.wrench = {};
+        return state_;
+    }
+
+private:
+    struct Balance {
+        ContactSum contact;
+        SaturatedSpring::Value linear, angular;
+        Vec3 turn{0.0};
+        double energy = 0.0;
+        Vector6 gradient{};
+    };
+
+    template <class Contact>
+    Balance balance(const Pose& proxy, Contact& contact) noexcept {
+        Balance b;
+        b.contact = contact(proxy, ContactParts::all);
+        ++state_.evaluations;
+        b.turn = rotation_near(hand_.orientation, proxy.orientation, turn_);
+        b.linear = settings.springs.linear(proxy.position - hand_.position);
+        b.angular = settings.springs.angular(b.turn);
+        b.energy = b.contact.energy + b.linear.energy + b.angular.energy;
+        for (int i = 0; i < 3; ++i) {
+            const auto n = static_cast<std::size_t>(i);
+            b.gradient[n] = b.contact.gradient[n] + b.linear.force[i];
+            b.gradient[n + 3] = b.contact.gradient[n + 3] + b.angular.force[i];
+        }
+        return b;
+    }
+
+    double residual(const Balance& b) const noexcept {
+        const Vector6& g = b.gradient;
+        const double lever = std::max(settings.gyration, 1e-6);
+        return std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2] +
+                         (g[3] * g[3] + g[4] * g[4] + g[5] * g[5]) / (lever * lever));
+    }
+
+    /// One step downhill; false when none was found.
+    template <class Contact>
+    bool improve(Balance& now, Contact& contact) noexcept {
+        Matrix6 k = now.contact.stiffness;
+        Vector6 down{}, step{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            k[7 * i] += now.linear.curvature;
+            k[7 * (i + 3)] += now.angular.curvature;
+        }
+        for (std::size_t i = 0; i < 6; ++i) down[i] = -now.gradient[i];
+        if (!solve_symmetric6(k, down, step)) return false;
+        limit(step, contact);
+        double slope = 0.0;
+        for (std::size_t i = 0; i < 6; ++i) slope += now.gradient[i] * step[i];
+        if (!(slope < 0.0)) return false;
+        turn_ = now.turn;
+        for (int halving = 0; halving <= most_halvings; ++halving) {
+            const Pose trial = moved(state_.proxy, step);
+            const Balance there = balance(trial, contact);
+            if (there.energy <= now.energy + 1e-4 * slope) {
+                state_.proxy = trial;
+                now = there;
+                return true;
+            }
+            for (double& s : step) s *= 0.5;
+            slope *= 0.5;
+        }
+        return false;
+    }
+
+    template <class Contact>
+    void limit(Vector6& step, Contact& contact) const noexcept {
+        const double way = std::hypot(step[0], step[1], step[2]) +
+                           std::hypot(step[3], step[4], step[5]) * std::max(settings.reach, 1e-6);
+        if (!(way > settings.step)) return;
+        const double free = std::max(0.0, static_cast<double>(contact.clearance(state_.proxy)));
+        const double share = std::min(1.0, (settings.step + free) / way);
+        for (double& s : step) s *= share;
+    }
+
+    static Pose moved(const Pose& pose, const Vector6& step) noexcept {
+        return {pose.position + Vec3(step[0], step[1], step[2]),
+                glm::normalize(rotation_by(Vec3(step[3], step[4], step[5])) * pose.orientation)};
+    }
+
+    static constexpr int most_halvings = 6;
+    QuasiStaticState state_;
+    Pose hand_;
+    Vec3 turn_{0.0};
+};
+
+}  // namespace tactus

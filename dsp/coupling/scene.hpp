@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bodies and where they stand: what contact and coupling look at.
+#pragma once
+
+#include "dsp/contact/pointshell.hpp"
+#include "dsp/contact/voxmap.hpp"
+#include "dsp/core/hash.hpp"
+#include "dsp/core/types.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace tactus {
+
+class TriangleTree;
+
+/// What can touch: the surface as points, the distance around it, or its triangles; in one frame, any may be missing.
+/// A handle: whoever made it keeps what it points at.
+struct Body {
+    static constexpr std::string_view wire_name = "body";
+
+    const Pointshell* shell = nullptr;
+    const Voxmap* map = nullptr;
+    const TriangleTree* triangles = nullptr;
+    Pose home;  ///< where its file has it: the frame of the body in the frame of the file
+    std::int64_t version = 0;
+    std::uint64_t content_hash = 0;
+};
+
+struct SceneObject {
+    Body body;
+    Pose pose;
+};
+
+/// Up to eight bodies with their poses, by value: whoever holds a scene holds one moment of it.
+struct Scene {
+    static constexpr std::string_view wire_name = "scene";
+    static constexpr std::size_t most_objects = 8;
+
+    std::array<SceneObject, most_objects> objects;
+    std::size_t count = 0;
+    std::int64_t version = 0;
+    std::uint64_t content_hash = 0;
+};
+
+/// Over the bodies and poses of a scene.
+inline std::uint64_t hash_of(const Scene& scene) noexcept {
+    Hash hash;
+    hash.add_word(scene.count);
+    for (std::size_t i = 0; i < scene.count; ++i) {
+        hash.add_word(scene.objects[i].body.content_hash);
+        hash.add_bytes(&scene.objects[i].pose, sizeof(Pose));
+    }
+    return hash.state;
+}
+
+}  // namespace tactus
