@@ -196,9 +196,11 @@ void print(const Outcome& o, bool actuator_known) {
     fmt::print("  as touched         shape {:.3f}; feels {:.1f} dB {} at equal power (threshold of {})\n",
                c.touch_cosine, std::abs(c.touch_gap_db), c.touch_gap_db < 0.0 ? "weaker" : "stronger",
                touch_unit(o.touch));
-    fmt::print("  level              {} {:.1f} dB\n",
-               actuator_known ? "the actuator at its limit lacks" : "the output as it was played lacks",
-               o.level_gap_db);
+    const char* lacks = actuator_known ? "the actuator at its limit lacks" : "the output as it was played lacks";
+    if (o.level_gap_db > 0.0) fmt::print("  level              {} {:.1f} dB\n", lacks, o.level_gap_db);
+    else
+        fmt::print("  level              {}\n",
+                   actuator_known ? "the actuator can reach it" : "the output lacks nothing");
     print_lines("in both", c.lines.in_both, c.reference_hz);
     print_lines("only in reference", c.lines.only_in_reference, c.reference_hz);
     print_lines("only in output", c.lines.only_in_output, c.output_hz > 0.0 ? c.output_hz : c.reference_hz);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command as scripts see it: exit codes, one clear error, nothing half-written.
+#include "tests/tools/run_command.hpp"
+
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -14,45 +16,11 @@
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using tactus::test::Folder;
+using tactus::test::Outcome;
+using tactus::test::slurp;
 
 namespace {
-
-std::string slurp(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
-
-struct Outcome {
-    int code = -1;
-    std::string out, err;
-};
-
-class Folder {
-public:
-    Folder()
-        : path(fs::temp_directory_path() / ("tactus_" + std::to_string(::getpid()) + "_" + std::to_string(next++))) {
-        fs::create_directories(path);
-    }
-    ~Folder() { fs::remove_all(path); }
-
-    fs::path write(const std::string& name, const std::string& text) const {
-        std::ofstream(path / name, std::ios::binary) << text;
-        return path / name;
-    }
-    Outcome tactus(const std::string& arguments) const {
-        const std::string command = std::string(TACTUS_COMMAND) + " " + arguments + " >" + (path / "stdout").string() +
-                                    " 2>" + (path / "stderr").string();
-        const int status = std::system(command.c_str());
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(path / "stdout"), slurp(path / "stderr")};
-    }
-
-    fs::path path;
-
-private:
-    static inline int next = 0;
-};
 
 const std::string good = R"(title = "test"
 wires = [

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+// measure, equalise and compare as scripts call them: the loop from a sweep to a vibration that is the saw's.
+#include "tests/tools/run_command.hpp"
+
+#include <sndfile.h>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+using nlohmann::json;
+using tactus::test::Folder;
+using tactus::test::Outcome;
+using tactus::test::slurp;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct SoundShape {
+    int rate = 48000, channels = 1, format = SF_FORMAT_WAV | SF_FORMAT_FLOAT;
+    double seconds = 3.0;
+};
+
+fs::path sound(const Folder& folder, const std::string& name, const std::function<double(double)>& value,
+               const SoundShape& shape = {}) {
+    SF_INFO info{};
+    info.samplerate = shape.rate;
+    info.channels = shape.channels;
+    info.format = shape.format;
+    const fs::path path = folder.path / name;
+    SNDFILE* file = sf_open(path.c_str(), SFM_WRITE, &info);
+    REQUIRE(file != nullptr);
+    std::vector<float> samples;
+    for (int i = 0; i < static_cast<int>(shape.seconds * shape.rate); ++i)
+        for (int c = 0; c < shape.channels; ++c)
+            samples.push_back(static_cast<float>(value(static_cast<double>(i) / shape.rate)));
+    sf_writef_float(file, samples.data(), static_cast<sf_count_t>(samples.size()) / shape.channels);
+    sf_close(file);
+    return path;
+}
+
+/// A saw-like tone with a little noise that differs with `seed`.
+std::function<double(double)> saw(double hz, double level = 0.5, std::uint64_t seed = 1) {
+    return [=, state = seed](double t) mutable {
+        state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+        const double noise = static_cast<double>(state >> 11) * 0x1.0p-53 - 0.5;
+        double sum = 0.02 * noise;
+        for (int k = 1; k <= 4; ++k) sum += std::sin(2.0 * std::numbers::pi * k * hz * t + k * k) / k;
+        return level * sum;
+    };
+}
+
+json compared(const Folder& folder, const std::string& arguments, int code) {
+    const Outcome outcome = folder.tactus("compare --json " + arguments);
+    INFO(outcome.err);
+    REQUIRE(outcome.code == code);
+    return json::parse(outcome.out);
+}
+
+}  // namespace
+
+TEST_CASE("measure finds the actuator's resonance in a patch; equalise makes a filter of it that the patch can use") {
+    const Folder folder;
+    const std::string csv = (folder.path / "response.csv").string(), filter = (folder.path / "filter.toml").string();
+    const Outcome measured =
+        folder.tactus("measure saw-training --in saw.signal --out actuator.signal --amplitude 100 --json -o " + csv);
+    INFO(measured.err);
+    REQUIRE(measured.code == 0);
+    const json result = json::parse(measured.out);
+    CHECK(result["resonance_hz"].get<double>() == Approx(73.0).epsilon(0.01));
+    CHECK(result["damping_ratio"].get<double>() == Approx(0.33).epsilon(0.01));
+    CHECK(result["latency_s"].get<double>() == Approx(0.0).margin(1e-4));
+    CHECK(result["response_csv"] == csv);
+    REQUIRE(result["thd"].size() >= 2);
+    CHECK(result["thd"][0]["order"] == 2);
+    CHECK(result["thd"][0]["percent"] < 0.1);
+    CHECK(slurp(csv).find("frequency_hz,level_db,phase_deg,coherence") != std::string::npos);
+
+    for (const char* kind : {"minimum", "linear"}) {
+        const Outcome made =
+            folder.tactus("equalise " + csv + " -o " + filter + " --json --volts 0.008 --kind " + kind);
+        INFO(made.err);
+        REQUIRE(made.code == 0);
+        const json equaliser = json::parse(made.out);
+        CHECK(equaliser["deviation_after_db"].get<double>() < 1.0);
+        CHECK(equaliser["deviation_before_db"].get<double>() > 3.0);
+        CHECK(equaliser["delay_s"].get<double>() <= (std::string(kind) == "minimum" ? 0.002 : 0.0641));
+        CHECK(equaliser["voltage_limit_v"] == 3.0);
+        const Outcome used = folder.tactus("render saw-vibration --seconds 0.1 --asset equaliser=" + filter +
+                                           " --out " + (folder.path / "out").string());
+        INFO(used.err);
+        CHECK(used.code == 0);
+    }
+}
+
+TEST_CASE("a sweep that drives the actuator into its limit shows it as distortion of odd orders") {
+    const Folder folder;
+    const std::string csv = (folder.path / "response.csv").string();
+    const auto third_order = [&](const char* amplitude) {
+        const Outcome measured = folder.tactus(std::string("measure saw-training --in actuator.drive --out "
+                                                           "actuator.voltage --json --amplitude ") +
+                                               amplitude + " -o " + csv);
+        INFO(measured.err);
+        REQUIRE(measured.code == 0);
+        const json result = json::parse(measured.out);
+        CHECK(result["resonance_hz"].is_null());  // a voltage has none
+        CHECK(result["thd"][0]["percent"] < 0.5);
+        return result["thd"][1]["percent"].get<double>();
+    };
+    CHECK(third_order("300") < 0.1);   // 2.4 V
+    CHECK(third_order("750") > 10.0);  // 6 V where 3 V are the limit: 13.8 % by Fourier's integral
+}
+
+TEST_CASE("with its equaliser the bundled actuator plays what the saw did; without, it does not") {
+    const Folder folder;
+    const auto play = [&](const std::string& amount, int code) {
+        const std::string out = (folder.path / ("amount" + amount)).string();
+        const Outcome rendered =
+            folder.tactus("render saw-vibration --seconds 4 --set equaliser.amount=" + amount + " --out " + out);
+        INFO(rendered.err);
+        REQUIRE(rendered.code == 0);
+        return compared(folder, out + "/wanted.wav " + out + "/handle.wav --actuator haptuator_large", code);
+    };
+    const json before = play("0", 1), after = play("1", 0);
+    CHECK(before["verdict"] == "fail");
+    CHECK(before["lsd_db"] > 3.0);
+    CHECK(before["failed"].size() >= 2);
+    CHECK(after["verdict"] == "pass");
+    CHECK(after["failed"].empty());
+    CHECK(after["alignment"] == "correlation");
+    CHECK(after["delay_s"].get<double>() == Approx(0.064).margin(1e-4));
+    CHECK(after["lsd_db"] < 0.3);
+    CHECK(after["harmonic_error_db"] < 0.25);
+    CHECK(after["cosine_40_500"] > 0.9995);
+    CHECK(after["st_sim"] > 0.95);
+    CHECK(after["spqi"] > 0.95);
+    CHECK(after["level_gap_db"] > 20.0);
+}
+
+TEST_CASE("two takes of one saw pass with null where scores need one recording; another saw fails") {
+    const Folder folder;
+    const std::string reference = sound(folder, "a.wav", saw(233.0), {.seconds = 6.0}).string();
+    const std::string same = sound(folder, "b.wav", saw(233.4, 0.1, 77), {.rate = 44100, .seconds = 5.0}).string();
+    const json pass = compared(folder, reference + " " + same, 0);
+    CHECK(pass["alignment"] == "none");
+    for (const char* key : {"delay_s", "st_sim", "spqi", "coherence_mean"}) CHECK(pass[key].is_null());
+    CHECK(pass["verdict"] == "pass");
+    CHECK(pass["gain_db"].get<double>() == Approx(13.98).margin(0.1));
+    CHECK(pass["speed_ratio"].get<double>() == Approx(233.4 / 233.0).epsilon(1e-4));
+    for (const char* key :
+         {"lsd_db", "cosine_40_500", "cosine_40_1000", "harmonic_error_db", "third_octave", "third_octave_max_db",
+          "spectrogram_similarity", "only_in_reference", "only_in_output", "level_gap_db", "failed"})
+        CHECK(pass.contains(key));
+
+    const auto hummed = [hum = saw(233.0, 0.5, 5)](double t) mutable {
+        return hum(t) + 0.025 * std::sin(2.0 * std::numbers::pi * 50.0 * t);
+    };
+    const json fail = compared(folder, reference + " " + sound(folder, "c.wav", hummed).string(), 1);
+    CHECK(fail["verdict"] == "fail");
+    REQUIRE(fail["only_in_output"].size() == 1);
+    CHECK(fail["only_in_output"][0]["hz"].get<double>() == Approx(50.0).margin(0.1));
+    CHECK(fail["only_in_output"][0]["name"] == "mains hum, 50 Hz");
+    CHECK(std::ranges::find(fail["failed"], json("only_in_output")) != fail["failed"].end());
+    const std::string forgiving = folder.write("t.toml", "added_line_db = false\nlsd_db = false\n").string();
+    CHECK(compared(folder, reference + " " + (folder.path / "c.wav").string() + " --thresholds " + forgiving,
+                   0)["verdict"] == "pass");
+}
+
+TEST_CASE("a person reads the verdict first, then why; a figure is written as its name says") {
+    const Folder folder;
+    const std::string a = sound(folder, "a.wav", saw(233.0)).string(), b = sound(folder, "b.wav", saw(150.0)).string();
+    const std::string svg = (folder.path / "f.svg").string(), png = (folder.path / "f.png").string();
+    const Outcome text = folder.tactus("compare " + a + " " + b + " --plot " + svg);
+    CHECK(text.code == 1);
+    CHECK(text.out.starts_with("FAIL: "));
+    CHECK(text.out.find("FAIL lsd_db") < text.out.find("150.00 Hz in the output"));
+    CHECK(slurp(svg).starts_with("<svg"));
+    CHECK(slurp(svg).find("Not the same vibration") != std::string::npos);
+    CHECK(folder.tactus("compare " + a + " " + a + " --plot " + png).code == 0);
+    CHECK(slurp(png).substr(1, 3) == "PNG");
+    CHECK(folder.tactus("compare " + a + " " + a + " --plot f.gif").code == 2);
+}
+
+TEST_CASE("compare answers or says what is wrong with a file, once, and ends with exit code 2") {
+    const Folder folder;
+    const std::string good = sound(folder, "good.wav", saw(233.0)).string();
+    const auto against = [&](const fs::path& file) { return folder.tactus("compare " + good + " " + file.string()); };
+    const auto refused = [&](const fs::path& file, const std::string& why) {
+        const Outcome outcome = against(file);
+        INFO(file << ": " << outcome.err);
+        CHECK(outcome.code == 2);
+        CHECK(outcome.out.empty());
+        CHECK(outcome.err.find(why) != std::string::npos);
+        CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+    };
+    refused(folder.path / "none.wav", "no such sound file");
+    refused(folder.write("empty.wav", ""), "cannot be read as sound");
+    refused(folder.write("text.wav", std::string(1000, 'x')), "cannot be read as sound");
+    refused(folder.path, "folder");
+    refused(sound(folder, "silent.wav", [](double) { return 0.0; }), "output is silent");
+    refused(sound(folder, "constant.wav", [](double) { return 0.5; }), "output is silent");
+    refused(sound(folder, "one.wav", saw(233.0), {.seconds = 1.0 / 48000.0}), "shorter than 0.5 s");
+    refused(sound(folder, "nan.wav", [](double t) { return t > 1.0 ? std::numeric_limits<double>::quiet_NaN() : 0.1; }),
+            "NaN");
+    refused(sound(folder, "slow.wav", saw(30.0), {.rate = 200}), "too low");
+    const std::string bytes = slurp(good);
+    refused(folder.write("cut.wav", bytes.substr(0, bytes.size() / 2)), "cut short");
+
+    const auto passes = [&](const fs::path& file) {
+        INFO(file);
+        CHECK(against(file).code == 0);
+    };
+    passes(sound(folder, "loud.wav", saw(233.0, 5.0, 3)));
+    passes(sound(folder, "u8.wav", saw(233.0, 0.4, 3), {.format = SF_FORMAT_WAV | SF_FORMAT_PCM_U8}));
+    passes(sound(folder, "b24.flac", saw(233.0, 0.3, 3), {.format = SF_FORMAT_FLAC | SF_FORMAT_PCM_24}));
+    passes(sound(folder, "w64.w64", saw(233.0, 0.3, 3), {.format = SF_FORMAT_W64 | SF_FORMAT_FLOAT}));
+    passes(sound(folder, "k192.wav", saw(233.0, 0.3, 3), {.rate = 192000}));
+    passes(sound(folder, "k3.wav", saw(233.0, 0.3, 3), {.rate = 3000}));
+    const Outcome clipped = against(
+        sound(folder, "clipped.wav", [s = saw(233.0)](double t) mutable { return std::clamp(3.0 * s(t), -1.0, 1.0); }));
+    CHECK(clipped.code != 2);
+    CHECK(clipped.out.find("clipped") != std::string::npos);
+}
+
+TEST_CASE("measure and equalise refuse what makes no sense with one line") {
+    const Folder folder;
+    const std::string table = folder.write("t.csv", "20 0\n100 0\n2000 0\n").string();
+    const std::pair<std::string, std::string> slips[] = {
+        {"measure", "--device"},
+        {"measure saw-vibration", "--in NODE.PORT"},
+        {"measure saw-vibration --in actuator --out handle.out", "NODE.PORT"},
+        {"measure saw-vibration --in actuator.driv --out handle.out", "did you mean 'drive'?"},
+        {"measure saw-vibration --in actuatr.drive --out handle.out", "did you mean 'actuator'?"},
+        {"measure saw-vibration --in actuator.drive --out actuator.drive", "is an input"},
+        {"measure saw-vibration --in felt.in --out saw.signal", "no signal 'in'"},
+        {"measure saw-vibration --in speaker.signal --out handle.out", "no wires lead"},
+        {"measure saw-vibration --in actuator.drive --out handle.out --last 30000", "half the node's rate"},
+        {"measure saw-vibration --in actuator.drive --out handle.out --first 50 --last 20", "higher"},
+        {"measure none --in a.b --out c.d", "no patch 'none'"},
+        {"equalise " + (folder.path / "none.csv").string() + " -o f.toml", "none.csv"},
+        {"equalise " + folder.write("x.csv", "1 2\n").string() + " -o f.toml", "3 frequencies"},
+        {"equalise " + table + " -o f.toml --actuator none", "known are"},
+        {"equalise " + table + " -o f.toml --from 5", "covers"},
+        {"equalise " + table + " -o f.toml --rate 100", "too low"},
+        {"equalise " + table + " -o /nowhere/f.toml", "/nowhere"},
+    };
+    for (const auto& [arguments, why] : slips) {
+        const Outcome outcome = folder.tactus(arguments);
+        INFO(arguments << ": " << outcome.err);
+        CHECK(outcome.code == 2);
+        CHECK(outcome.err.find(why) != std::string::npos);
+    }
+}
+
+TEST_CASE("equalise says how much of a recording the actuator's limits cut") {
+    const Folder folder;
+    const std::string table = folder.write("t.csv", "20 0\n100 0\n200 0\n2000 0\n").string();
+    const std::string take = sound(folder, "a.wav", saw(233.0, 0.5)).string();
+    const auto headroom = [&](const char* volts) {
+        const Outcome made = folder.tactus("equalise " + table + " --json --signal " + take + " --volts " + volts +
+                                           " -o " + (folder.path / "f.toml").string());
+        INFO(made.err);
+        REQUIRE(made.code == 0);
+        return json::parse(made.out)["headroom"]["after"];
+    };
+    const json quiet = headroom("1"), loud = headroom("10");
+    CHECK(quiet["headroom_db"] > 0.0);
+    CHECK(quiet["limited_fraction"] == 0.0);
+    CHECK(loud["headroom_db"].get<double>() == Approx(quiet["headroom_db"].get<double>() - 20.0).margin(0.01));
+    CHECK(loud["limited_fraction"] > 0.05);
+    CHECK(loud["lost"].size() >= 1);
+}
