@@ -59,8 +59,9 @@ void draw_spectra(Figure& figure, const Comparison& c, double y, double height) 
         panel.upright(500.0, limit_colour, 4.0);
         figure.text({panel.x_of(500.0) + 4.0, y + height - 6.0}, "limit of touch", 10.0, soft);
     }
-    panel.curve(r, c.step, reference_colour, 1.8);
-    panel.curve(d, c.step, output_colour, 1.4);
+    // The reference is wider, so that it shows where both are one.
+    panel.curve(r, c.step, reference_colour, 3.2);
+    panel.curve(d, c.step, output_colour, 1.3);
     double taken = -1e9;
     for (const Line& line : c.lines.in_both) {
         const double x = panel.x_of(line.hz), level = level_at(r, c.step, line.hz);
@@ -107,9 +108,14 @@ void draw_bands(Figure& figure, const Comparison& c, const Thresholds& threshold
 }
 
 void draw_coherence(Figure& figure, const Comparison& c, double y, double height) {
-    const PlotPanel panel(figure, left, y, panel_width, height, {c.lowest, c.highest}, {0.0, 1.0});
+    const PlotPanel panel(figure, left, y, panel_width, height, {c.lowest, c.highest}, {0.0, 1.08});
     panel.axes(0.5, "coherence", true);
     panel.curve(c.coherence, c.coherence_step, soft, 1.4);
+}
+
+std::string number(double value) {
+    if (value == std::round(value) && std::abs(value) != 1.0) return fmt::format("{:g}", value);
+    return fmt::format("{:.{}f}", value, std::abs(value) < 10.0 ? 3 : 1);
 }
 
 void draw_table(Figure& figure, const Comparison& c, const Verdict& verdict, double x, double y) {
@@ -121,13 +127,13 @@ void draw_table(Figure& figure, const Comparison& c, const Verdict& verdict, dou
     };
     row("score", "value", "threshold", soft);
     for (const Judged& score : verdict.scores)
-        row(score.name, fmt::format("{:.3g}", score.value),
-            fmt::format("{} {:g}", score.at_least ? "≥" : "≤", score.limit), score.passed ? ink : added_colour);
+        row(score.name, number(score.value), fmt::format("{} {:g}", score.at_least ? "≥" : "≤", score.limit),
+            score.passed ? ink : added_colour);
     y += 6.0;
     const auto extra = [&](const char* name, const std::optional<double>& value, const char* unit) {
         for (const Judged& score : verdict.scores)
             if (score.name == name) return;
-        row(name, value ? fmt::format("{:.3g}{}", *value, unit) : "none", "", ink);
+        row(name, value ? number(*value) + unit : "none", "", ink);
     };
     extra("spectrogram_similarity", c.spectrogram_similarity, "");
     extra("st_sim", c.st_sim, "");
