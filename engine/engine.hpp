@@ -124,6 +124,7 @@ private:
     static void gather_hashes(const Generation& old, const Generation* next, PortHashes& parts);
     void drain_streams();
     void drain_log();
+    void complete_render();
     void offline_worker(const std::vector<GroupRuntime*>& mine, std::uint64_t seed);
     void live_worker(GroupRuntime& group);
     void start_thread(GroupRuntime& group);

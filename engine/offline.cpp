@@ -61,6 +61,10 @@ void Engine::render(int threads, const std::function<void(double)>& progress) {
     std::vector<std::vector<GroupRuntime*>> shares(count);
     for (std::size_t i = 0; i < groups_.size(); ++i)
         shares[std::min(groups_.size() - 1 - i, count - 1)].push_back(groups_[i].get());
+    if (count == 1 && !progress) {
+        offline_worker(shares.front(), mix(now_->plan.patch.seed));
+        return complete_render();
+    }
     std::atomic<std::size_t> running{count};
     std::vector<std::jthread> workers;
     for (std::size_t i = 0; i < count; ++i)
@@ -81,6 +85,10 @@ void Engine::render(int threads, const std::function<void(double)>& progress) {
     }
     workers.clear();
     if (failure_) std::rethrow_exception(failure_);
+    complete_render();
+}
+
+void Engine::complete_render() {
     for (const auto& group : groups_) group->end_at(group->next());
     drain_log();
     drain_streams();

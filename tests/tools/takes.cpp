@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+// Takes, replay, and changes to a patch that runs, as scripts use them.
+#include "tests/tools/run_command.hpp"
+
+#include <sndfile.h>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <signal.h>
+#include <unistd.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <fstream>
+#include <filesystem>
+#include <functional>
+#include <thread>
+
+namespace fs = std::filesystem;
+using namespace tactus::test;
+using nlohmann::json;
+
+namespace {
+
+const std::string touch = R"(title = "touch"
+wires = [
+  "hand.pose -> ball.pose",
+  "ball.wrench -> out.wrench",
+  "tone.signal -> loud.in",
+  "level.value -> loud.factor",
+]
+[nodes.hand]
+type = "device_input"
+rate = "1 kHz"
+device = "simulated"
+[nodes.ball]
+type = "sphere_contact"
+rate = "1 kHz"
+[nodes.out]
+type = "device_output"
+rate = "1 kHz"
+device = "simulated"
+[nodes.tone]
+type = "sine"
+rate = "48 kHz"
+[nodes.loud]
+type = "gain"
+rate = "48 kHz"
+[nodes.level]
+type = "constant"
+rate = "60 Hz"
+number = 0.5
+)";
+
+/// A run in the background.
+class Run {
+public:
+    Run(const Folder& folder, const std::string& arguments) {
+        process_ = ::fork();
+        if (process_ != 0) return;
+        const std::string command = "exec " + std::string(TACTUS_COMMAND) + " run " + arguments + " >" +
+                                    (folder.path / "run.out").string() + " 2>" + (folder.path / "run.err").string();
+        ::setenv("XDG_RUNTIME_DIR", folder.path.c_str(), 1);
+        ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+        ::_exit(127);
+    }
+    ~Run() {
+        if (process_ > 0) stop(SIGKILL);
+    }
+    int stop(int signal) {
+        int status = 0;
+        ::kill(process_, signal);
+        ::waitpid(process_, &status, 0);
+        process_ = -1;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+
+private:
+    pid_t process_ = -1;
+};
+
+bool wait_for(const std::function<bool()>& condition) {
+    for (int i = 0; i < 600; ++i) {
+        if (condition()) return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    return false;
+}
+
+void flip_byte(const fs::path& path, std::int64_t from_end) {
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekg(-from_end, std::ios::end);
+    const char byte = static_cast<char>(file.peek() ^ 0x10);
+    file.seekp(-from_end, std::ios::end);
+    file.put(byte);
+}
+
+}  // namespace
+
+TEST_CASE("a rendered take is repeated to the bit, and one whose values were changed is not") {
+    Folder folder;
+    folder.write("touch.toml", touch);
+    const std::string take = (folder.path / "take").string();
+    REQUIRE(folder
+                .tactus("render " + (folder.path / "touch.toml").string() + " --seconds 0.5 --out " +
+                        (folder.path / "out").string() + " --record " + take)
+                .code == 0);
+    const Outcome same = folder.tactus("replay " + take + " --json");
+    REQUIRE(same.code == 0);
+    const json report = json::parse(same.out);
+    CHECK(report["identical"] == true);
+    CHECK(report["first_difference"].is_null());
+    CHECK(report["compared_values"] > 48000);
+
+    SF_INFO info{};
+    SNDFILE* stream = sf_open((take + "/streams/hand.pose.wav").c_str(), SFM_READ, &info);
+    REQUIRE(stream);
+    sf_close(stream);
+    CHECK(info.channels == 7);
+    CHECK(info.samplerate == 1000);
+    CHECK(info.frames == 500);
+    CHECK((info.format & SF_FORMAT_SUBMASK) == SF_FORMAT_DOUBLE);
+
+    // The last sample of 500: 7 doubles from the end begins frame 499.
+    flip_byte(take + "/streams/hand.pose.wav", 7 * 8 * 100 - 2);
+    const Outcome changed = folder.tactus("replay " + take + " --json");
+    CHECK(changed.code == 1);
+    const json difference = json::parse(changed.out)["first_difference"];
+    CHECK(difference["port"] == "hand.pose");
+    CHECK(difference["tick"] == 400);
+    CHECK(difference["expected"] != difference["got"]);
+    const Outcome told = folder.tactus("replay " + take);
+    CHECK(told.code == 1);
+    CHECK(told.out.find("differs: hand.pose at tick 400") != std::string::npos);
+}
+
+TEST_CASE("what cannot be replayed says so before it runs") {
+    Folder folder;
+    folder.write("touch.toml", touch + "[assets]\nsound = \"sound.bin\"\n");
+    folder.write("sound.bin", "0123456789");
+    const std::string take = (folder.path / "take").string();
+    const std::string render = "render " + (folder.path / "touch.toml").string() + " --seconds 0.1 --out " +
+                               (folder.path / "out").string() + " --record " + take;
+    REQUIRE(folder.tactus(render).code == 0);
+    const Outcome again = folder.tactus(render);
+    CHECK(again.code == 2);
+    CHECK(again.err.find("there is a take already") != std::string::npos);
+
+    folder.write("sound.bin", "0123456788");
+    const Outcome changed = folder.tactus("replay " + take);
+    CHECK(changed.code == 2);
+    CHECK(changed.err.find("asset 'sound' has changed since") != std::string::npos);
+    CHECK(folder.tactus("replay " + take + " --anyway").code == 0);
+    folder.write("sound.bin", "0123456789");
+
+    json about = json::parse(slurp(take + "/take.json"));
+    about["build"] = "0000000000000000";
+    about["cpu"] = "another";
+    std::ofstream(take + "/take.json") << about.dump();
+    const Outcome foreign = folder.tactus("replay " + take);
+    CHECK(foreign.code == 0);
+    CHECK(foreign.err.find("made by another build") != std::string::npos);
+    CHECK(foreign.err.find("another kind of processor") != std::string::npos);
+
+    CHECK(folder.tactus("replay " + (folder.path / "nothing").string()).code == 2);
+    std::ofstream(take + "/take.json") << "{";
+    const Outcome damaged = folder.tactus("replay " + take);
+    CHECK(damaged.code == 2);
+    CHECK(damaged.err.find("take.json") != std::string::npos);
+}
+
+TEST_CASE("a run that is killed leaves a take that is repeated as far as it goes") {
+    Folder folder;
+    folder.write("touch.toml", touch);
+    const fs::path take = folder.path / "take";
+    {
+        Run run(folder, (folder.path / "touch.toml").string() + " --record " + take.string() + " --out " +
+                            (folder.path / "out").string());
+        REQUIRE(wait_for([&] {
+            std::error_code ignored;
+            const auto size = fs::file_size(take / "timing.log", ignored);
+            return !ignored && size > 150'000;  // a second of device samples
+        }));
+        run.stop(SIGKILL);
+    }
+    const Outcome replay = folder.tactus("replay " + take.string() + " --json");
+    INFO(replay.err);
+    REQUIRE(replay.code == 0);
+    const json report = json::parse(replay.out);
+    CHECK(report["identical"] == true);
+    CHECK(report["whole"] == false);
+    CHECK(report["seconds"] > 0.1);
+}
+
+TEST_CASE("a patch is edited and its parameters are set while it runs; the take repeats it all") {
+    Folder folder;
+    const fs::path patch = folder.write("touch.toml", touch), take = folder.path / "take";
+    Run run(folder, patch.string() + " --record " + take.string() + " --out " + (folder.path / "out").string());
+    REQUIRE(wait_for([&] { return fs::exists(folder.path / "tactus") && !fs::is_empty(folder.path / "tactus"); }));
+    ::setenv("XDG_RUNTIME_DIR", folder.path.c_str(), 1);
+    const auto err = [&] { return slurp(folder.path / "run.err"); };
+
+    const Outcome set = folder.tactus("set 'ball.stiffness=0.3 N/mm'");
+    INFO(set.err);
+    CHECK(set.code == 0);
+    const Outcome wrong = folder.tactus("set 'ball.stifness=0.3 N/mm'");
+    CHECK(wrong.code == 2);
+    CHECK(wrong.err.find("did you mean 'stiffness'") != std::string::npos);
+    CHECK(folder.tactus("set 'loud.factor=2'").err.find("driven by a wire") != std::string::npos);
+
+    // Written beside and renamed, as editors do.
+    std::string more = touch;
+    more.replace(more.find("wires = [\n"), 10, "wires = [\n  \"tone.signal -> ear.in\",\n");
+    fs::rename(folder.write("touch.new", more + "[nodes.ear]\ntype = \"probe\"\nrate = \"48 kHz\"\n"), patch);
+    REQUIRE(wait_for([&] { return err().find("edit 1 takes over") != std::string::npos; }));
+    folder.write("touch.toml", touch + "oops");
+    REQUIRE(wait_for([&] { return err().find("the edit was not made") != std::string::npos; }));
+    folder.write("touch.toml", touch);
+    REQUIRE(wait_for([&] { return err().find("edit 2 takes over") != std::string::npos; }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    INFO(err());
+    CHECK(run.stop(SIGINT) == 0);
+
+    const Outcome replay = folder.tactus("replay " + take.string() + " --json");
+    INFO(replay.out << replay.err);
+    REQUIRE(replay.code == 0);
+    CHECK(json::parse(replay.out)["edits"] == 2);
+    CHECK(folder.tactus("set 'ball.stiffness=0.3 N/mm'").err.find("no patch runs") != std::string::npos);
+    ::unsetenv("XDG_RUNTIME_DIR");
+}
