@@ -50,7 +50,7 @@ Engine::Engine(Plan plan, const EngineOptions& options)
     if (options_.tap) {
         workshop_.take = [this](const std::string& port, const ValueType& type,
                                 const GroupRuntime& group) -> RecordStream* {
-            const std::string name = port + " " + group.plan->name + " " + std::string(type.name);
+            const std::string name = fmt::format("{} {} {}", port, group.index, type.name);
             auto& stream = taps_[name];
             if (!stream) stream = options_.tap(port, type, group);
             return stream.get();

@@ -138,7 +138,7 @@ private:
     std::uint64_t plan_hash_ = 0;
     EngineOutside outside_;
     Workshop workshop_;
-    std::map<std::string, std::unique_ptr<Stream>> taps_;  // by output, group and type
+    std::map<std::string, std::unique_ptr<Stream>> taps_;  // by output, group and type: one writing thread each
     std::vector<Stream*> open_taps_;  // of the plans that ran so far
     std::vector<std::shared_ptr<GroupRuntime>> groups_;
     std::unique_ptr<Generation> now_, before_;

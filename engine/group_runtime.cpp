@@ -187,8 +187,11 @@ void GroupRuntime::read_links(int frames, Pace pace) noexcept {
         if (const TimingRecord* held = replayed_at(TimingKind::held_read, static_cast<std::uint16_t>(link.id), next_))
             chosen = held->value;
         else if (want > chosen) chosen = link.newest_available(want, producer.done());
-        // Past the producer's last activation there is nothing to miss.
-        if (chosen < std::min(want, producer.end.load(std::memory_order_relaxed) - 1) && link.misses(want)) {
+        // Past the producer's last activation there is nothing to miss. Live, its end may still be set behind where it
+        // is by then: only when it is over is it known which was the last.
+        std::int64_t last = producer.end.load(std::memory_order_relaxed) - 1;
+        if (pace == Pace::live) last = producer.is_over() ? producer.done() - 1 : Link::unknown;
+        if (chosen < std::min(want, last) && link.misses(want)) {
             missed = true;
             producer.telemetry.awaited.fetch_add(1, std::memory_order_relaxed);
             if (pace == Pace::live) note(TimingKind::held_read, link.id, frames, chosen, nullptr);
@@ -362,6 +365,7 @@ bool GroupRuntime::replay_skip() noexcept {
 void GroupRuntime::end_at(std::int64_t tick) noexcept {
     end.store(std::min(end.load(), tick));
     note(TimingKind::end, 0, 0, 0, nullptr);
+    over_.store(true, std::memory_order_release);
     if (!program_) return;
     for (DeviceSlot* slot : program_->devices) slot->guard.retire();
 }

@@ -47,8 +47,8 @@ public:
     /// Next activation to run. Own thread only.
     std::int64_t next() const { return next_; }
     bool finished() const { return next_ >= end.load(std::memory_order_relaxed); }
-    /// Its last activation is complete. Any thread.
-    bool is_over() const noexcept { return done() >= end.load(std::memory_order_acquire); }
+    /// Its last activation is complete, and `done` says how many there were. Any thread.
+    bool is_over() const noexcept { return over_.load(std::memory_order_acquire); }
     /// Activations that ran. Own thread, or after the run.
     std::int64_t ran() const { return ran_; }
     /// Activations before this one are complete; their values may be read. Any thread.
@@ -117,6 +117,7 @@ private:
     std::uint64_t calls_ = 0;
     mutable std::size_t cursor_ = 0;  ///< replayed records before this one are past
     std::atomic<std::int64_t> generation_{-1};
+    std::atomic<bool> over_{false};
     alignas(64) std::atomic<std::int64_t> done_{0};
 };
 

@@ -65,7 +65,7 @@ private:
 
 std::unique_ptr<Stream> TakeComparison::tap(const std::string& port, const ValueType& type, const GroupRuntime& group) {
     const auto info = std::ranges::find_if(take_.streams, [&](const TakeStreamInfo& stream) {
-        return stream.port == port && stream.group == group.plan->name && stream.type == type.name;
+        return stream.port == port && stream.group_number == group.index && stream.type == type.name;
     });
     if (info == take_.streams.end()) return nullptr;
     StreamFormat format;

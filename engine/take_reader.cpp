@@ -70,6 +70,7 @@ TakeStreamInfo read_stream(const Json& json) {
     info.file = json.at("stream");
     info.port = json.at("port");
     info.group = json.at("group");
+    info.group_number = json.at("group_number");
     info.type = json.at("type");
     info.period = json.at("period_flicks");
     info.start = json.at("start");

@@ -18,6 +18,7 @@ struct TakeStreamInfo {
     std::string file;       ///< within the take
     std::string port;       ///< "node.port"
     std::string group, type;
+    int group_number = 0;    ///< as in the timing log: an edit may end a group and begin another of that name
     Flicks period = 0;
     std::int64_t start = 0;  ///< activation of the file's first frame
 };

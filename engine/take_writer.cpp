@@ -187,6 +187,7 @@ std::unique_ptr<Stream> TakeWriter::stream(const std::string& port, const ValueT
     TakeStreamInfo info;
     info.port = port;
     info.group = group.plan->name;
+    info.group_number = group.index;
     info.type = type.name;
     info.period = group.plan->period;
     std::string stem = "streams/" + port;
@@ -202,6 +203,7 @@ std::unique_ptr<Stream> TakeWriter::stream(const std::string& port, const ValueT
         line(Json{{"stream", now.file},
                   {"port", now.port},
                   {"group", now.group},
+                  {"group_number", now.group_number},
                   {"type", now.type},
                   {"period_flicks", now.period},
                   {"rate_hz", rate_of(now.period)},
