@@ -230,7 +230,12 @@ void Engine::drain_log() {
 void Engine::finish() {
     for (const auto& stream : outside_.streams) stream->finish();
     for (Stream* tap : open_taps_) tap->finish();
-    if (options_.take) options_.take->finish(port_hashes());
+    if (!options_.take) return;
+    options_.take->finish(port_hashes());
+    for (const auto& [name, tap] : taps_)
+        if (tap && tap->dropped() > 0)
+            throw Error(fmt::format("the take is not whole: {} values of {} were lost because the disk was too slow",
+                                    tap->dropped(), name));
 }
 
 void Engine::fail(std::exception_ptr error) {
