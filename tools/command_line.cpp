@@ -44,6 +44,8 @@ void add_import(CLI::App& app, ImportChoice& choice) {
             choice.rescale = {slope, intercept};
         },
         "scanner numbers to HU: SLOPE,INTERCEPT");
+    verb->add_option("--label", choice.label, "the file is a label map: a label's number or name, or all; a bone each");
+    verb->add_option("--ct", choice.ct, "the CT a label map was drawn on: grey values for surface and density");
     verb->add_flag("--json", choice.json, "print a summary as JSON");
 }
 

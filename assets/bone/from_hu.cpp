@@ -86,8 +86,8 @@ Components moved_into(Components components, const Box& room) {
 }
 
 int smoothing_passes(const Vec3& spacing) {
-    const double voxel = std::max({spacing.x, spacing.y, spacing.z}), wanted = 0.35e-3;
-    return static_cast<int>(std::clamp(std::round(3.0 * wanted * wanted / (voxel * voxel)), 0.0, 3.0));
+    const double voxel = std::max({spacing.x, spacing.y, spacing.z}), wanted = 0.3e-3;
+    return static_cast<int>(std::clamp(std::floor(3.0 * wanted * wanted / (voxel * voxel)), 0.0, 3.0));
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/import.hpp"
 
+#include "assets/bone/assumed_density.hpp"
 #include "assets/bone/from_hu.hpp"
+#include "assets/bone/labels.hpp"
 #include "assets/bone/nrrd.hpp"
 #include "assets/bone/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
@@ -13,6 +15,7 @@
 #include <glm/common.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -187,11 +190,6 @@ Mesh largest_components(const Mesh& mesh, const MeshTopology& topology, std::siz
     return kept;
 }
 
-float assumed_density(double depth) {
-    const double core = std::clamp((depth - 2.0 * mm) / (1.0 * mm), 0.0, 1.0);
-    return depth < 0.0 ? 0.0f : static_cast<float>(1800.0 - 1400.0 * core * core * (3.0 - 2.0 * core));
-}
-
 Bone import_mesh(const ImportOptions& options, const Report& report, ImportSummary& summary) {
     if (!options.crop.empty()) throw Error("a crop box is for CT volumes; cut the mesh in a mesh editor");
     const std::size_t keep = parse_component(options.component);
@@ -220,17 +218,15 @@ Bone import_mesh(const ImportOptions& options, const Report& report, ImportSumma
     report(0.3, "distance");
     Bone bone;
     bone.distance = signed_distance(layout, mesh);
-    bone.density = Grid{layout.size, layout.origin, layout.spacing, {}};
-    bone.density.values.reserve(layout.count());
-    for (const float d : bone.distance.values)
-        bone.density.values.push_back(d > 0.0f ? 0.0f
-                                               : options.mesh_density ? static_cast<float>(*options.mesh_density)
-                                                                      : assumed_density(-double(d)));
+    bone.density = assumed_density(bone.distance);
+    if (options.mesh_density)
+        for (std::size_t n = 0; n < bone.density.values.size(); ++n)
+            bone.density.values[n] = bone.distance.values[n] > 0.0f ? 0.0f : static_cast<float>(*options.mesh_density);
     summary.hu = "none";
     summary.components = topology.components;
     bone.provenance["calibration"] =
         options.mesh_density ? fmt::format("assumed: density = {} kg/m3 throughout", *options.mesh_density)
-                             : "assumed: 1800 kg/m3 to 2 mm depth, falling to 400 at 3 mm";
+                             : assumed_density_law();
     bone.provenance["unit"] = fmt::format("{} m{}", unit, options.unit ? "" : " (assumed)");
     return bone;
 }
@@ -259,14 +255,91 @@ void measure(const Bone& bone, ImportSummary& summary) {
     summary.density.mean = sum / static_cast<double>(inside);
 }
 
-}  // namespace
+// What every bone of an import is told about where it came from.
+void add_provenance(Bone& bone, const ImportOptions& options, const ImportSummary& found, const std::string& source_hash) {
+    bone.provenance["source"] = options.input.filename().string();
+    bone.provenance["source_hash"] = source_hash;
+    bone.provenance["frame"] = found.frame;
+    bone.provenance["hu"] = found.hu;
+    if (options.spacing) bone.provenance["spacing"] = fmt::format("{} mm", *options.spacing / mm);
+}
 
-Bone import_bone(const ImportOptions& options, const ImportProgress& progress, ImportSummary* summary) {
+std::string hash_of_file(const std::filesystem::path& path) {
+    const std::string bytes = read_whole_file(path);
+    Hash hash;
+    hash.add_bytes(bytes.data(), bytes.size());
+    return fmt::format("{:016x}", hash.value());
+}
+
+void check(const ImportOptions& options) {
     if (options.spacing && !(*options.spacing >= 0.01 * mm && *options.spacing <= 100.0 * mm))
         throw Error("the spacing must be between 0.01 and 100 mm");
     if (!std::isfinite(options.threshold)) throw Error("the threshold must be a number of HU");
     if (options.mesh_density && !(*options.mesh_density > 0.0 && *options.mesh_density < 1e5))
         throw Error("the density of a mesh must be above 0 and below 100000 kg/m3");
+}
+
+// Those of the map that `wanted` means: "all", a number, or a name that the file gives.
+std::vector<Segment> choose_segments(const std::string& wanted, const std::vector<int>& labels,
+                                     const std::vector<Segment>& named, const std::string& file) {
+    if (labels.empty()) throw Error(fmt::format("{}: every voxel is 0; there is no label", file));
+    std::vector<Segment> all;
+    std::vector<std::string> names;
+    for (const int label : labels) {
+        const auto known = std::find_if(named.begin(), named.end(), [&](const Segment& s) { return s.label == label; });
+        all.push_back(known != named.end() ? *known : Segment{label, "", {}});
+        // A name that another label has already would not tell them apart.
+        if (all.back().name.empty() || std::count(names.begin(), names.end(), all.back().name) > 0)
+            all.back().name = fmt::format("label {}", label);
+        names.push_back(all.back().name);
+    }
+    if (wanted == "all") return all;
+    for (const Segment& segment : all)
+        if (wanted == std::to_string(segment.label) || wanted == segment.name) return {segment};
+    throw Error(fmt::format("{}: has no label '{}' but {}{}", file, wanted, fmt::join(labels, ", "),
+                            did_you_mean(wanted, names)));
+}
+
+}  // namespace
+
+std::vector<ImportedBone> import_labels(const ImportOptions& options, const ImportProgress& progress) {
+    check(options);
+    if (!options.crop.empty()) throw Error("a crop box is for CT volumes; a label map's bones are cut out already");
+    const Report report{progress};
+    report(0.0, "reading");
+    CtVolume map = load_nrrd(options.input);
+    if (map.resampled) throw Error(fmt::format("{}: a label map with turned axes; resample it to LPS", options.input.string()));
+    const std::vector<Segment> chosen =
+        choose_segments(options.label, labels_in(map.grid), {}, options.input.string());
+    LabelBone how;
+    how.spacing = options.spacing;
+    CtVolume ct;
+    std::string hu = "none";
+    if (!options.ct.empty()) {
+        ct = load_nrrd(options.ct);
+        hu = hu_kind(ct.grid, options.ct.string());
+        how.hu = &ct.grid;
+        how.hu_is_masked = hu == "masked";
+    }
+    const std::string source_hash = hash_of_file(options.input);
+    std::vector<ImportedBone> bones;
+    for (const Segment& segment : chosen) {
+        report(0.1 + 0.9 * static_cast<double>(bones.size()) / static_cast<double>(chosen.size()), segment.name);
+        ImportedBone made;
+        made.bone = bone_of_label(map.grid, segment, how, options.run);
+        made.summary.hu = hu;
+        made.summary.components = 1;
+        measure(made.bone, made.summary);
+        add_provenance(made.bone, options, made.summary, source_hash);
+        if (!options.ct.empty()) made.bone.provenance["ct"] = options.ct.filename().string();
+        bones.push_back(std::move(made));
+    }
+    report(1.0, "done");
+    return bones;
+}
+
+Bone import_bone(const ImportOptions& options, const ImportProgress& progress, ImportSummary* summary) {
+    check(options);
     const Report report{progress};
     ImportSummary found;
     const std::string kind = options.input.extension().string();
@@ -274,18 +347,11 @@ Bone import_bone(const ImportOptions& options, const ImportProgress& progress, I
     Bone bone = is_ct ? import_ct(options, report, found) : import_mesh(options, report, found);
     report(0.9, "measuring");
     measure(bone, found);
-    const std::string bytes = read_whole_file(options.input);
-    Hash hash;
-    hash.add_bytes(bytes.data(), bytes.size());
+    add_provenance(bone, options, found, hash_of_file(options.input));
     bone.name = options.input.stem().string();
-    bone.provenance["source"] = options.input.filename().string();
-    bone.provenance["source_hash"] = fmt::format("{:016x}", hash.value());
-    bone.provenance["frame"] = found.frame;
-    bone.provenance["hu"] = found.hu;
     bone.provenance["component"] = options.component;
     bone.provenance["fill"] = options.fill ? "true" : "false";
     if (!options.crop.empty()) bone.provenance["crop"] = options.crop + " mm";
-    if (options.spacing) bone.provenance["spacing"] = fmt::format("{} mm", *options.spacing / mm);
     if (summary) *summary = found;
     report(1.0, "done");
     return bone;

@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace tactus {
 
@@ -29,6 +30,8 @@ struct ImportOptions {
     std::optional<std::pair<double, double>> rescale;
     /// kg/m³ throughout a mesh; default: an assumed cortex of 1800 over the outer 2 mm and a core of 400.
     std::optional<double> mesh_density;
+    std::string label;          ///< a label map: "all", one label's number or its name
+    std::filesystem::path ct;   ///< the CT that a label map was drawn on, in the same frame; may be empty
     RunJobs run = run_in_turn;  ///< on which threads; the result has the same bits on any
 };
 
@@ -51,5 +54,13 @@ using ImportProgress = std::function<void(double, std::string_view)>;
 
 /// Reads, checks and converts. Throws Error for input that cannot be a bone, saying what to do. `summary` may be null.
 Bone import_bone(const ImportOptions& options, const ImportProgress& progress = {}, ImportSummary* summary = nullptr);
+
+struct ImportedBone {
+    Bone bone;
+    ImportSummary summary;
+};
+
+/// One bone per chosen label of a label map, in ascending order of labels, in one frame. Throws Error like import_bone.
+std::vector<ImportedBone> import_labels(const ImportOptions& options, const ImportProgress& progress = {});
 
 }  // namespace tactus

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tactus {
 
@@ -72,9 +73,15 @@ bool is_same(const Grid& grid, const Grid& layout, int axis) {
 
 }  // namespace
 
-Grid resampled(Grid grid, const Grid& layout) {
+Grid resampled(Grid&& grid, const Grid& layout) {
     for (const int axis : {2, 1, 0})
         if (!is_same(grid, layout, axis)) grid = along(grid, layout, axis);
+    return std::move(grid);
+}
+
+Grid resampled(const Grid& grid, const Grid& layout) {
+    for (const int axis : {2, 1, 0})
+        if (!is_same(grid, layout, axis)) return resampled(along(grid, layout, axis), layout);
     return grid;
 }
 

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/bone/labels.hpp"
+
+#include "assets/bone/from_hu.hpp"
+#include "assets/bone/import.hpp"
+#include "assets/bone/whole_file.hpp"
+#include "assets/mesh/mesh.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/random.hpp"
+#include "tests/assets/bone/temporary_folder.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+using namespace tactus;
+using Catch::Matchers::Contains;
+
+namespace {
+
+constexpr double mm = 1e-3;
+using Shape = std::function<double(const Vec3&)>;  // signed distance, m
+
+Grid layout(const Vec3& spacing, const Vec3& middle, const std::array<int, 3>& size) {
+    return {size, middle - 0.5 * Vec3(size[0] - 1, size[1] - 1, size[2] - 1) * spacing, spacing, {}};
+}
+
+Grid sampled(Grid grid, const std::function<double(const Vec3&)>& value) {
+    for (int k = 0; k < grid.size[2]; ++k)
+        for (int j = 0; j < grid.size[1]; ++j)
+            for (int i = 0; i < grid.size[0]; ++i)
+                grid.values.push_back(static_cast<float>(value(grid.position(i, j, k))));
+    return grid;
+}
+
+double voxel_volume(const Grid& grid) { return grid.spacing.x * grid.spacing.y * grid.spacing.z; }
+double count_of(const Grid& labels, float label) {
+    return static_cast<double>(std::count(labels.values.begin(), labels.values.end(), label));
+}
+
+struct Errors {
+    double median, p95;
+};
+
+// How far the true surface lies from the bone's, in shares of the smallest spacing, at the bone's vertices.
+Errors errors_of(const Bone& bone, const Shape& truth) {
+    std::vector<double> errors;
+    for (const Vec3& v : surface_of(bone.distance).vertices) errors.push_back(std::abs(truth(v)));
+    std::sort(errors.begin(), errors.end());
+    const double voxel = std::min({bone.distance.spacing.x, bone.distance.spacing.y, bone.distance.spacing.z});
+    return {errors[errors.size() / 2] / voxel, errors[errors.size() * 95 / 100] / voxel};
+}
+
+const Vec3 far_off(1.0, -0.8, 1.2);
+
+Shape ball(double radius) {
+    return [radius](const Vec3& p) { return glm::length(p - far_off) - radius; };
+}
+Shape ring(double wide, double thick) {
+    return [=](const Vec3& at) {
+        const Vec3 p = at - far_off;
+        return std::hypot(std::hypot(p.x, p.y) - wide, p.z) - thick;
+    };
+}
+// A wall of so many samples across a ball, slanted to all axes.
+Shape wall(double thick) {
+    return [thick](const Vec3& at) {
+        const Vec3 p = at - far_off;
+        return std::max(std::abs(glm::dot(p, glm::normalize(Vec3(1.0, 0.6, 0.4)))) - 0.5 * thick,
+                        glm::length(p) - 9.0 * mm);
+    };
+}
+
+Grid labelled(const Shape& shape, const Vec3& spacing, int size = 48) {
+    return sampled(layout(spacing, far_off, {size, size, size}),
+                   [&](const Vec3& p) { return shape(p) < 0.0 ? 1.0 : 0.0; });
+}
+
+std::string nrrd_of(const Grid& grid, const std::string& extra = "") {
+    std::string text = fmt::format(
+        "NRRD0005\ntype: uchar\ndimension: 3\nspace: left-posterior-superior\nsizes: {} {} {}\nspace directions: "
+        "({},0,0) "
+        "(0,{},0) (0,0,{})\nspace origin: ({},{},{})\nencoding: raw\n{}\n",
+        grid.size[0], grid.size[1], grid.size[2], grid.spacing.x / mm, grid.spacing.y / mm, grid.spacing.z / mm,
+        grid.origin.x / mm, grid.origin.y / mm, grid.origin.z / mm, extra);
+    for (const float value : grid.values) text += static_cast<char>(static_cast<unsigned char>(value));
+    return text;
+}
+
+}  // namespace
+
+TEST_CASE("a label's surface has no staircase and its voxels' volume; 1 m from the origin as anywhere") {
+    const Vec3 spacing(0.5 * mm);
+    for (const auto& [shape, limit] :
+         {std::pair{ball(5.2 * mm), 0.17}, {ball(9.0 * mm), 0.15}, {ring(6.0 * mm, 2.5 * mm), 0.16}}) {
+        const Grid labels = labelled(shape, spacing);
+        const Bone bone = bone_of_label(labels, {1, "part", {}}, {});
+        const Errors errors = errors_of(bone, shape);
+        CAPTURE(errors.median, errors.p95);
+        // The nearest samples are right to half a voxel; a staircase would show as 0.25 at the median.
+        CHECK(errors.median < 0.08);
+        CHECK(errors.p95 < limit);
+        CHECK(volume_of(surface_of(bone.distance)) ==
+              Approx(count_of(labels, 1.0f) * voxel_volume(labels)).epsilon(0.01));
+        CHECK(bone.name == "part");
+        CHECK(bone.provenance.at("label") == "1");
+    }
+}
+
+TEST_CASE("a slanted wall little more than one voxel thick stays a wall without holes") {
+    const Shape truth = wall(0.7 * mm);
+    const Grid labels = labelled(truth, Vec3(0.5 * mm));
+    const Bone bone = bone_of_label(labels, {}, {});
+    CHECK(volume_of(surface_of(bone.distance)) == Approx(count_of(labels, 1.0f) * voxel_volume(labels)).epsilon(0.1));
+    // Along the middle of the wall everything is inside.
+    const Vec3 n = glm::normalize(Vec3(1.0, 0.6, 0.4)), u = glm::normalize(glm::cross(n, Vec3(0, 0, 1))),
+               v = glm::cross(n, u);
+    int outside = 0;
+    for (int a = -6; a <= 6; ++a)
+        for (int b = -6; b <= 6; ++b) {
+            const Vec3 q =
+                (far_off + 1.0 * mm * (u * double(a) + v * double(b)) - bone.distance.origin) / bone.distance.spacing;
+            double least = 1.0;
+            for (int c = 0; c < 8; ++c)
+                least = std::min(
+                    least, double(bone.distance.at(int(q.x) + (c & 1), int(q.y) + (c >> 1 & 1), int(q.z) + (c >> 2))));
+            outside += least >= 0.0;
+        }
+    CHECK(outside == 0);
+}
+
+TEST_CASE("with a CT the surface goes to its grey values, also through noise and blur on uneven voxels") {
+    const Vec3 spacing(0.35 * mm, 0.35 * mm, 0.6 * mm);
+    const Random random{11};
+    for (const Shape& shape : {ball(6.0 * mm), ring(5.0 * mm, 1.8 * mm)}) {
+        std::uint64_t n = 0;
+        // An edge of 0.4 mm standard deviation between 40 and 1240 HU.
+        const Grid hu = sampled(layout(spacing, far_off, {56, 56, 34}), [&](const Vec3& p) {
+            return 640.0 - 600.0 * std::erf(shape(p) / (std::sqrt(2.0) * 0.4 * mm)) + 15.0 * random.normal(n++);
+        });
+        Grid labels = hu;
+        for (float& value : labels.values) value = value >= 640.0f ? 3.0f : 0.0f;
+        const Bone plain = bone_of_label(labels, {3, "", {}}, {});
+        const Bone seen = bone_of_label(labels, {3, "", {}}, {{}, &hu, false});
+        const Errors before = errors_of(plain, shape), after = errors_of(seen, shape);
+        CAPTURE(before.p95, after.median, after.p95, seen.provenance.at("surface"));
+        CHECK(after.p95 < 0.15);
+        CHECK(after.p95 < 0.7 * before.p95);
+        CHECK_THAT(seen.provenance.at("surface"), Contains("grey values"));
+        CHECK_THAT(seen.provenance.at("calibration"), Contains("uncalibrated"));
+        CHECK(seen.name == "label 3");
+        // The same CT taken by its threshold.
+        const Bone direct = bone_from_hu(hu, {640.0f, 1, true}).bone;
+        CHECK(volume_of(surface_of(seen.distance)) == Approx(volume_of(surface_of(direct.distance))).epsilon(0.01));
+    }
+}
+
+TEST_CASE("between two labels grey values are not asked: each ends where the other begins") {
+    const Vec3 spacing(0.5 * mm);
+    const Shape whole = ball(8.0 * mm);
+    const auto half = [](const Vec3& p) { return p.x - far_off.x + 0.3 * (p.y - far_off.y); };
+    const Grid labels = sampled(layout(spacing, far_off, {44, 44, 44}), [&](const Vec3& p) {
+        return whole(p) >= 0.0 ? 0.0 : half(p) < 0.0 ? 1.0 : 2.0;
+    });
+    const Grid hu = sampled(layout(spacing, far_off, {44, 44, 44}),
+                            [&](const Vec3& p) { return std::clamp(300.0 - 1e6 * whole(p), -1000.0, 1400.0); });
+    double volume = 0.0;
+    for (const int label : {1, 2}) {
+        const Bone bone = bone_of_label(labels, {label, "", {}}, {{}, &hu, false});
+        volume += volume_of(surface_of(bone.distance));
+        std::vector<double> face;
+        for (const Vec3& v : surface_of(bone.distance).vertices)
+            if (whole(v) < -1.5 * mm) face.push_back(std::abs(half(v)) / std::hypot(1.0, 0.3) / spacing.x);
+        std::sort(face.begin(), face.end());
+        REQUIRE(face.size() > 100);
+        CHECK(face[face.size() * 95 / 100] < 0.35);
+    }
+    CHECK(volume == Approx(4.0 / 3.0 * std::numbers::pi * std::pow(8.0 * mm, 3)).epsilon(0.02));
+}
+
+TEST_CASE("a label at the border of its map, of one voxel, or in parts becomes a closed bone of its volume") {
+    const Vec3 spacing(1.0 * mm, 1.0 * mm, 2.0 * mm);
+    Grid labels = sampled(layout(spacing, Vec3(0.0), {9, 8, 7}), [](const Vec3&) { return 0.0; });
+    labels.at(4, 4, 3) = 1.0f;
+    for (int k = 0; k < 7; ++k)
+        for (int j = 0; j < 8; ++j) labels.at(0, j, k) = labels.at(1, j, k) = 2.0f;
+    labels.at(8, 0, 0) = labels.at(8, 7, 6) = 2.0f;
+    labels.at(7, 1, 1) = 2.0f;  // touches the one before at a corner
+    for (const int label : {1, 2}) {
+        std::size_t voxels = 0;
+        const Bone bone = bone_of_label(labels, {label, "", {}}, {}, run_in_turn, &voxels);
+        CHECK(double(voxels) == count_of(labels, static_cast<float>(label)));
+        const Mesh surface = surface_of(bone.distance);
+        CHECK(topology_of(surface).is_watertight());
+        CHECK(volume_of(surface) == Approx(double(voxels) * 2e-9).epsilon(label == 1 ? 0.3 : 0.05));
+    }
+    CHECK_THROWS_WITH(bone_of_label(labels, {7, "", {}}, {}), Contains("no voxel has label 7"));
+}
+
+TEST_CASE("what is no label map is refused in one sentence") {
+    Grid grid = layout(Vec3(1.0 * mm), Vec3(0.0), {40, 40, 1});
+    for (int n = 0; n < 1600; ++n) grid.values.push_back(float(n));
+    CHECK_THROWS_WITH(labels_in(grid), Contains("1599 different values"));
+    grid.values[5] = 0.5f;
+    CHECK_THROWS_WITH(labels_in(grid), Contains("0.5 is no label"));
+    grid.values[5] = -1000.0f;
+    CHECK_THROWS_WITH(labels_in(grid), Contains("-1000 is no label"));
+    grid.values.assign(1600, 0.0f);
+    CHECK(labels_in(grid).empty());
+}
+
+TEST_CASE("a label map's file becomes one file of bones in its frame; labels are chosen by number") {
+    const TemporaryFolder folder;
+    Grid labels = labelled(ball(3.0 * mm), Vec3(0.5 * mm), 24);
+    for (int k = 0; k < 24; ++k)
+        for (int j = 0; j < 24; ++j)
+            for (int i = 0; i < 24; ++i)
+                if (labels.at(i, j, k) > 0.0f && i > 12) labels.at(i, j, k) = 5.0f;
+    ImportOptions options;
+    options.input = folder / "two.nrrd";
+    options.label = "all";
+    write_whole_file(options.input, nrrd_of(labels));
+    const std::vector<ImportedBone> both = import_labels(options);
+    REQUIRE(both.size() == 2);
+    CHECK(both[0].bone.name == "label 1");
+    CHECK(both[1].bone.name == "label 5");
+    CHECK(both[0].bone.colour != both[1].bone.colour);
+    CHECK(both[0].summary.bone_volume_mm3 == Approx(count_of(labels, 1.0f) * 0.125).epsilon(0.02));
+    CHECK(both[1].summary.bone_volume_mm3 == Approx(count_of(labels, 5.0f) * 0.125).epsilon(0.02));
+    CHECK(both[0].bone.provenance.at("source") == "two.nrrd");
+    options.label = "5";
+    CHECK(import_labels(options).front().bone.distance.values == both[1].bone.distance.values);
+    options.label = "2";
+    CHECK_THROWS_WITH(import_labels(options), Contains("no label '2' but 1, 5"));
+    options.label = "1";
+    options.crop = "0:1,0:1,0:1";
+    CHECK_THROWS_WITH(import_labels(options), Contains("crop"));
+}
