@@ -135,6 +135,17 @@ void add_equalise(CLI::App& app, EqualiseChoice& choice) {
     verb->add_flag("--json", choice.json, "as JSON");
 }
 
+void add_export(CLI::App& app, ExportChoice& choice) {
+    CLI::App* verb = app.add_subcommand("export", "write a bone, cut or not, as a mesh or a volume");
+    verb->add_option("bone", choice.input, "bone file; FILE.vdb#NAME for one of several")->required();
+    verb->add_option("-o,--out", choice.out, ".stl or .ply: the surface; .nrrd, .nii or .nii.gz: a volume")->required();
+    verb->add_option("--bone", choice.bone, "one of several bones (default: all)");
+    verb->add_option("--quantity", choice.quantity, "what a volume holds")
+        ->check(CLI::IsMember({"hu", "density", "distance"}))
+        ->capture_default_str();
+    verb->add_flag("--json", choice.json, "print a summary as JSON");
+}
+
 }  // namespace
 
 int command_line(int argc, char** argv) {
@@ -198,6 +209,8 @@ int command_line(int argc, char** argv) {
 
     ImportChoice import;
     add_import(app, import);
+    ExportChoice bone_export;
+    add_export(app, bone_export);
     CompareChoice compare;
     add_compare(app, compare);
     MeasureChoice measure;
@@ -218,6 +231,7 @@ int command_line(int argc, char** argv) {
         if (app.got_subcommand("compare")) return compare_verb(compare);
         if (app.got_subcommand("measure")) return measure_verb(measure);
         if (app.got_subcommand("equalise")) return equalise_verb(equalise);
+        if (app.got_subcommand("export")) return export_verb(bone_export);
         return import_verb(import);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? done : bad_input;

@@ -60,6 +60,7 @@ int render_verb(const RenderChoice& choice) {
     engine.finish();
     const Report report = engine.report();
     std::vector<std::string> files = write_pictures(report, choice.out);
+    for (std::string& file : write_bones(report, choice.out)) files.push_back(std::move(file));
     files.push_back("summary.json");
     const std::string summary = summary_json(engine, report, options.seconds, false, files);
     write_text(choice.out / "summary.json", summary);

@@ -114,4 +114,15 @@ std::vector<std::string> write_pictures(const Report& report, const std::filesys
     return files;
 }
 
+std::vector<std::string> write_bones(const Report& report, const std::filesystem::path& folder) {
+    std::vector<std::string> files;
+    for (const auto& [name, result] : report.results) {
+        const auto* bone = std::any_cast<std::shared_ptr<const Bone>>(&result);
+        if (!bone) continue;
+        save_bone(**bone, folder / (name + ".vdb"));
+        files.push_back(name + ".vdb");
+    }
+    return files;
+}
+
 }  // namespace tactus

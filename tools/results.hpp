@@ -14,4 +14,7 @@ namespace tactus {
 /// machine that cannot draw is told on standard error.
 std::vector<std::string> write_pictures(const Report& report, const std::filesystem::path& folder);
 
+/// The bones of the report as they were cut, one bone file each. Returns the names of the files written.
+std::vector<std::string> write_bones(const Report& report, const std::filesystem::path& folder);
+
 }  // namespace tactus

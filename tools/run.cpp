@@ -72,6 +72,7 @@ int run_verb(const RunChoice& choice) {
     engine.finish();
     const Report report = engine.report();
     std::vector<std::string> files = write_pictures(report, folder);
+    for (std::string& file : write_bones(report, folder)) files.push_back(std::move(file));
     files.push_back("summary.json");
     const double ran = engine.progress_seconds();
     const std::string summary = summary_json(engine, report, ran, true, files);

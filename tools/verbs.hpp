@@ -95,6 +95,13 @@ struct CompareChoice {
 int compare_verb(const CompareChoice& choice);
 int measure_verb(const MeasureChoice& choice);
 int equalise_verb(const EqualiseChoice& choice);
+struct ExportChoice {
+    std::filesystem::path input, out;
+    std::string bone;             ///< empty: all of the file
+    std::string quantity = "hu";  ///< of a volume: "hu", "density" or "distance"
+    bool json = false;
+};
+
 int render_verb(const RenderChoice& choice);
 int run_verb(const RunChoice& choice);
 int set_verb(const SetChoice& choice);
@@ -104,6 +111,7 @@ int draw_verb(const PatchChoice& choice, const std::filesystem::path& out);
 int nodes_verb(const std::string& type, bool json);
 int devices_verb(bool json);
 int import_verb(const ImportChoice& choice);
+int export_verb(const ExportChoice& choice);
 
 /// Parses the command line and runs the verb.
 int command_line(int argc, char** argv);

@@ -96,6 +96,10 @@ float density_of_hu(float hu) {
     return std::max(0.0f, static_cast<float>(density_slope * static_cast<double>(hu) + density_offset));
 }
 
+float hu_of_density(float density) {
+    return static_cast<float>((static_cast<double>(density) - density_offset) / density_slope);
+}
+
 std::string density_calibration() {
     return fmt::format(
         "uncalibrated: density = {} * HU + {} kg/m3 (mg/cm3), at least 0; line of Rho, Hobatho and Ashman "

@@ -19,6 +19,8 @@ struct BoneSurface {
 
 /// kg/m³ from HU by the default line, never below 0. Uncalibrated: no density phantom was in the scan.
 float density_of_hu(float hu);
+/// HU from kg/m³ by the same line.
+float hu_of_density(float density);
 /// The same line in words, with its source.
 std::string density_calibration();
 

@@ -189,6 +189,8 @@ void keep_volume(Grid& distance, const Grid& mask, double voxels) {
 
 }  // namespace
 
+Vec3 label_colour(int label) { return colours[static_cast<std::size_t>(std::max(label - 1, 0)) % colours.size()]; }
+
 std::vector<int> labels_in(const Grid& labels) {
     std::vector<char> seen(65536, 0);
     float last = 0.0f;
@@ -247,9 +249,8 @@ Bone bone_of_label(const Grid& labels, const Segment& segment, const LabelBone& 
         bone.density = assumed_density(bone.distance);
         bone.provenance["calibration"] = assumed_density_law();
     }
-    const auto number = static_cast<std::size_t>(segment.label - 1);
     bone.name = segment.name.empty() ? fmt::format("label {}", segment.label) : segment.name;
-    bone.colour = segment.colour.value_or(colours[number % colours.size()]);
+    bone.colour = segment.colour.value_or(label_colour(segment.label));
     bone.provenance["frame"] = "LPS";
     bone.provenance["label"] = std::to_string(segment.label);
     bone.provenance["surface"] = surface;

@@ -18,6 +18,9 @@ struct Segment {
     std::optional<Vec3> colour{};  ///< sRGB, 0 to 1; else one of a set of colours that are told apart easily
 };
 
+/// The colour of a label that has none of its own, sRGB.
+Vec3 label_colour(int label);
+
 /// How the bones of a label map get their surface, density and grid.
 struct LabelBone {
     std::optional<double> spacing{};  ///< m, all axes; default: the label map's own

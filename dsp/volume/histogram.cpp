@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/volume/histogram.hpp"
+
+#include <algorithm>
+
+namespace tactus {
+
+Histogram histogram_of(std::span<const float> values, std::size_t bins) {
+    Histogram histogram;
+    histogram.counts.assign(bins, 0);
+    if (values.empty()) return histogram;
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    histogram.low = double(*low);
+    histogram.high = double(*high);
+    const double scale =
+        histogram.high > histogram.low ? static_cast<double>(bins) / (histogram.high - histogram.low) : 0.0;
+    for (const float value : values)
+        ++histogram.counts[std::min(bins - 1, static_cast<std::size_t>((double(value) - histogram.low) * scale))];
+    return histogram;
+}
+
+std::size_t otsu(const Histogram& histogram, std::size_t first) {
+    double all = 0.0, sum = 0.0;
+    for (std::size_t n = first; n < histogram.counts.size(); ++n) {
+        all += static_cast<double>(histogram.counts[n]);
+        sum += static_cast<double>(histogram.counts[n]) * histogram.middle(n);
+    }
+    double below = 0.0, sum_below = 0.0, best = -1.0;
+    std::size_t border = first;
+    for (std::size_t n = first; n + 1 < histogram.counts.size(); ++n) {
+        below += static_cast<double>(histogram.counts[n]);
+        sum_below += static_cast<double>(histogram.counts[n]) * histogram.middle(n);
+        const double above = all - below;
+        if (below <= 0.0 || above <= 0.0) continue;
+        const double apart = sum_below / below - (sum - sum_below) / above;
+        const double between = below * above * apart * apart;
+        if (between > best) best = between, border = n + 1;
+    }
+    return border;
+}
+
+double suggested_threshold(std::span<const float> values, bool masked) {
+    const Histogram histogram = histogram_of(values, 2048);
+    if (!masked) {
+        const std::size_t border = otsu(histogram, otsu(histogram));
+        return histogram.low + static_cast<double>(border) * histogram.width();
+    }
+    std::uint64_t above = 0, seen = 0;
+    for (std::size_t n = 0; n < histogram.counts.size(); ++n)
+        if (histogram.middle(n) > histogram.width()) above += histogram.counts[n];
+    for (std::size_t n = 0; n < histogram.counts.size(); ++n) {
+        if (histogram.middle(n) <= histogram.width()) continue;
+        seen += histogram.counts[n];
+        if (2 * seen >= above && above > 0) return 0.5 * histogram.middle(n);
+    }
+    return histogram.high;
+}
+
+}  // namespace tactus

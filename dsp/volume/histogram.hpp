@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// How often values occur, and where a histogram parts into two groups.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tactus {
+
+/// Counts of values in bins of equal width between the least and the greatest.
+struct Histogram {
+    double low = 0.0, high = 0.0;
+    std::vector<std::uint64_t> counts;
+
+    double width() const { return (high - low) / static_cast<double>(counts.size()); }
+    double middle(std::size_t bin) const { return low + (static_cast<double>(bin) + 0.5) * width(); }
+};
+Histogram histogram_of(std::span<const float> values, std::size_t bins);
+
+/// Otsu's threshold (1979) among the bins from `first` on: the border that leaves the least variance within both groups.
+/// The index of the first bin above it; `first` when all values are in one bin.
+std::size_t otsu(const Histogram& histogram, std::size_t first = 0);
+
+/// A value that parts bone from the rest of a CT: Otsu's method twice, once to take off the air and once more to split
+/// what is above. In a masked volume (zeros around the bone) half the median of what is above zero.
+double suggested_threshold(std::span<const float> values, bool masked);
+
+}  // namespace tactus

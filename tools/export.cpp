@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/bone/export.hpp"
+#include "assets/mesh/mesh.hpp"
+#include "assets/mesh/write_mesh.hpp"
+#include "assets/volume/write_volume.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/verbs.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace tactus {
+
+namespace {
+
+std::vector<Bone> chosen_bones(const ExportChoice& choice) {
+    if (choice.bone.empty() && file_of_bone(choice.input) == choice.input) return load_bones(choice.input);
+    std::vector<Bone> one;
+    const std::string path = choice.input.string();
+    one.push_back(load_bone(choice.bone.empty() ? path : path + "#" + choice.bone));
+    return one;
+}
+
+BoneQuantity quantity_of(const std::string& text) {
+    return text == "density" ? BoneQuantity::density : text == "distance" ? BoneQuantity::distance : BoneQuantity::hu;
+}
+
+nlohmann::ordered_json export_mesh(const std::vector<Bone>& bones, const std::filesystem::path& out) {
+    std::vector<ColouredSurface> surfaces;
+    double volume = 0.0;
+    std::size_t triangles = 0;
+    for (const Bone& bone : bones) {
+        surfaces.push_back({export_surface(bone.distance), bone.colour});
+        volume += volume_of(surfaces.back().surface);
+        triangles += surfaces.back().surface.triangles.size();
+    }
+    write_mesh(surfaces, out);
+    return {{"triangles", triangles}, {"volume_mm3", volume * 1e9}};
+}
+
+nlohmann::ordered_json export_volume(const std::vector<Bone>& bones, const ExportChoice& choice) {
+    const BoneQuantity quantity = quantity_of(choice.quantity);
+    const Grid volume = volume_of_bones(bones, quantity);
+    write_volume(volume, quantity == BoneQuantity::hu ? SampleType::int16 : SampleType::float32, choice.out);
+    const Vec3 h = volume.spacing * 1e3;
+    return {{"quantity", choice.quantity}, {"size", volume.size}, {"spacing_mm", {h.x, h.y, h.z}}};
+}
+
+}  // namespace
+
+int export_verb(const ExportChoice& choice) {
+    const std::string kind = choice.out.extension().string();
+    const bool is_mesh = kind == ".stl" || kind == ".ply";
+    if (!is_mesh && kind != ".nrrd" && kind != ".nii" && !choice.out.string().ends_with(".nii.gz"))
+        throw Error(fmt::format("{}: export writes .stl and .ply (the surface), .nrrd, .nii and .nii.gz (a volume)",
+                                choice.out.string()));
+    const std::vector<Bone> bones = chosen_bones(choice);
+    nlohmann::ordered_json json = is_mesh ? export_mesh(bones, choice.out) : export_volume(bones, choice);
+    std::vector<std::string> names;
+    for (const Bone& bone : bones) names.push_back(bone.name);
+    json["bones"] = names;
+    json["file"] = choice.out.string();
+    if (choice.json) fmt::print("{}\n", json.dump(2));
+    else if (is_mesh)
+        fmt::print("{}: {} triangles around {:.0f} mm³, LPS, mm\n", choice.out.string(),
+                   json["triangles"].get<std::size_t>(), json["volume_mm3"].get<double>());
+    else
+        fmt::print("{}: {} on {} x {} x {} samples\n", choice.out.string(), choice.quantity, json["size"][0].get<int>(),
+                   json["size"][1].get<int>(), json["size"][2].get<int>());
+    return done;
+}
+
+}  // namespace tactus
