@@ -96,6 +96,7 @@ void Engine::adopt_groups(const Generation& generation, Flicks when) {
             groups_.push_back(generation.groups[g]);
             group.start_at(ceil_div(when, group.plan->period));
             set_end(group);
+            group.times_nodes = options_.time_nodes;
             if (options_.take || log_) add_log(group);
         }
     }

@@ -34,6 +34,7 @@ struct EngineOptions {
     TakeWriter* take = nullptr;  ///< records the run
     bool live = false;
     bool hash = true;  ///< keep `output_hash`; costs about as much per sample of a signal as a trivial node
+    bool time_nodes = true;  ///< keep the time of each node, from one call in 64
     /// Where every value of an output goes; used by replay, which compares. Null results: nowhere.
     std::function<std::unique_ptr<Stream>(const std::string& port, const ValueType&, const GroupRuntime&)> tap;
 };

@@ -261,25 +261,28 @@ static void fetch_ahead(const Step* step, const Step* past) noexcept {
     __builtin_prefetch(node + 128);
 }
 
-template <bool hashed, bool timed>
-void GroupRuntime::run_each(const Tick& tick) noexcept {
-    [[maybe_unused]] std::int64_t began = timed ? steady_ns() : 0;
-    const auto& steps = program_->steps;
-    const auto& wires = program_->wires;
-    const Step* const past = steps.data() + steps.size();
-    for (const Step& step : steps) {
+template <bool watched>
+void GroupRuntime::run_each(const Tick& tick, bool timed) noexcept {
+    const GroupProgram& program = *program_;
+    const Step* const past = program.steps.data() + program.steps.size();
+    [[maybe_unused]] std::int64_t began = watched && timed ? steady_ns() : 0;
+    for (const Step& step : program.steps) {
         fetch_ahead(&step, past);
-        if (step.one_at_a_time && tick.frames > 1) {
-            run_one_at_a_time(step, wires[static_cast<std::size_t>(&step - steps.data())], tick);
-        } else {
-            if (step.driven) drive(wires[static_cast<std::size_t>(&step - steps.data())], 0);
+        if (!step.driven && !(step.one_at_a_time && tick.frames > 1)) {
             step.process(step.node, tick);
+        } else if (const StepWires& of = program.wires[static_cast<std::size_t>(&step - program.steps.data())];
+                   tick.frames == 1) {
+            drive(of, 0);
+            step.process(step.node, tick);
+        } else {
+            run_one_at_a_time(step, of, tick);
         }
-        if constexpr (hashed) hash_outputs(step, tick.frames);
-        if (program_->records_outputs) record_outputs(step, tick.frames);
-        if constexpr (timed) {
+        if constexpr (watched) {
+            if (program.hashes_outputs) hash_outputs(step, tick.frames);
+            if (program.records_outputs) record_outputs(step, tick.frames);
+            if (!timed) continue;
             const std::int64_t now_ns = steady_ns();
-            wires[static_cast<std::size_t>(&step - steps.data())].time->add(now_ns - began);
+            program.wires[static_cast<std::size_t>(&step - program.steps.data())].time->add(now_ns - began);
             began = now_ns;
         }
     }
@@ -288,10 +291,10 @@ void GroupRuntime::run_each(const Tick& tick) noexcept {
 void GroupRuntime::run_steps(int frames) noexcept {
     const Flicks elapsed = last_ < 0 ? plan->period : (next_ - last_) * plan->period;
     const Tick tick{next_, plan->period, elapsed, frames};
-    const bool timed = calls_++ % timed_every == 0 || closely_ > 0;
+    const bool timed = times_nodes && (calls_++ % timed_every == 0 || closely_ > 0);
     closely_ = std::max(closely_ - 1, 0);
-    if (program_->hashes_outputs) timed ? run_each<true, true>(tick) : run_each<true, false>(tick);
-    else timed ? run_each<false, true>(tick) : run_each<false, false>(tick);
+    if (timed || program_->hashes_outputs || program_->records_outputs) run_each<true>(tick, timed);
+    else run_each<false>(tick, false);
     ran_ += frames;
 }
 

@@ -40,6 +40,7 @@ public:
     const std::vector<ParameterChange>* replayed_changes = nullptr;  ///< by id
     Ring<TimingRecord>* log = nullptr;                    ///< where live decisions go, or null
     std::vector<GroupProgram*> scheduled;  ///< programs known before the run, in order
+    bool times_nodes = true;
     Flicks now = 0;  ///< logical time of the call that runs
     GroupTelemetry telemetry;
     std::atomic<bool> log_overflow{false};
@@ -93,8 +94,9 @@ private:
     void read_links(int frames, Pace pace) noexcept;
     void acquire() noexcept;
     void run_steps(int frames) noexcept;
-    template <bool hashed, bool timed>
-    void run_each(const Tick& tick) noexcept;
+    /// `watched`: what the steps give is hashed or recorded, or they are timed.
+    template <bool watched>
+    void run_each(const Tick& tick, bool timed) noexcept;
     void drive(const StepWires& step, int i) noexcept;
     void run_one_at_a_time(const Step& step, const StepWires& of, const Tick& all) noexcept;
     void hash_outputs(const Step& step, int frames) noexcept;

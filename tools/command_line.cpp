@@ -218,6 +218,17 @@ int command_line(int argc, char** argv) {
     EqualiseChoice equalise;
     add_equalise(app, equalise);
 
+    BenchChoice bench;
+    CLI::App* bench_app =
+        app.add_subcommand("bench", "figures of this machine, beside other programs where they are installed");
+    bench_app->require_subcommand(1);
+    CLI::App* bench_engine_app =
+        bench_app->add_subcommand("engine", "time of a node in a chain, beside Pure Data and scsynth; compile time");
+    bench_engine_app->add_option("--rounds", bench.rounds, "the best of so many counts")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 1000));
+    bench_engine_app->add_flag("--json", bench.json, "as JSON");
+
     try {
         app.parse(argc, argv);
         if (*render_app) return render_verb(render);
@@ -227,6 +238,7 @@ int command_line(int argc, char** argv) {
         if (*check_app) return check_verb(check);
         if (*draw_app) return draw_verb(draw, drawing);
         if (*nodes_app) return nodes_verb(type, nodes_json);
+        if (*bench_engine_app) return bench_engine_verb(bench);
         if (*devices_app) return devices_verb(devices_json);
         if (app.got_subcommand("compare")) return compare_verb(compare);
         if (app.got_subcommand("measure")) return measure_verb(measure);

@@ -95,10 +95,16 @@ struct CompareChoice {
 int compare_verb(const CompareChoice& choice);
 int measure_verb(const MeasureChoice& choice);
 int equalise_verb(const EqualiseChoice& choice);
+
 struct ExportChoice {
     std::filesystem::path input, out;
     std::string bone;             ///< empty: all of the file
     std::string quantity = "hu";  ///< of a volume: "hu", "density" or "distance"
+    bool json = false;
+};
+
+struct BenchChoice {
+    int rounds = 3;  ///< the best of so many counts
     bool json = false;
 };
 
@@ -112,6 +118,8 @@ int nodes_verb(const std::string& type, bool json);
 int devices_verb(bool json);
 int import_verb(const ImportChoice& choice);
 int export_verb(const ExportChoice& choice);
+
+int bench_engine_verb(const BenchChoice& choice);
 
 /// Parses the command line and runs the verb.
 int command_line(int argc, char** argv);

@@ -17,6 +17,7 @@ std::string RealtimeViolations::describe() const {
     add(releases, "release");
     add(locks, "lock");
     add(waits, "wait");
+    add(prints, "print");
     add(system_calls, "system call");
     if (system_calls != 0) text += fmt::format(" (last: number {})", system_call);
     return text.empty() ? "none" : text;

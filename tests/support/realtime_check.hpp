@@ -16,12 +16,13 @@ namespace tactus {
 struct RealtimeViolations {
     std::int64_t allocations = 0;  ///< malloc, calloc, realloc, aligned_alloc, posix_memalign
     std::int64_t releases = 0;     ///< free of a non-null pointer
-    std::int64_t locks = 0;        ///< pthread_mutex_lock
-    std::int64_t waits = 0;        ///< condition variables, nanosleep, usleep, clock_nanosleep
+    std::int64_t locks = 0;        ///< mutexes, read-write locks, the guard of a local static that is used first
+    std::int64_t waits = 0;        ///< condition variables and semaphores, nanosleep, usleep, clock_nanosleep
+    std::int64_t prints = 0;       ///< printf and its kin, fwrite, fputs, puts: also those that only fill a buffer
     std::int64_t system_calls = 0;
     std::int64_t system_call = -1;  ///< number of the last one
 
-    bool none() const { return allocations + releases + locks + waits + system_calls == 0; }
+    bool none() const { return allocations + releases + locks + waits + prints + system_calls == 0; }
     /// "2 allocations, 1 system call (last: number 1)", or "none".
     std::string describe() const;
 };

@@ -5,10 +5,13 @@
 
 #include <dlfcn.h>
 #include <pthread.h>
+#include <semaphore.h>
 #include <unistd.h>
 #include <atomic>
 #include <cerrno>
+#include <cstdarg>
 #include <cstddef>
+#include <cstdio>
 #include <ctime>
 
 #if defined(__SANITIZE_THREAD__)
@@ -33,7 +36,7 @@ namespace tactus {
 namespace {
 
 struct Counters {
-    std::atomic<std::int64_t> allocations, releases, locks, waits, system_calls, system_call;
+    std::atomic<std::int64_t> allocations, releases, locks, waits, prints, system_calls, system_call;
 };
 constinit Counters counters{};
 
@@ -49,15 +52,15 @@ void start_counting() {
         [](const volatile void*, std::size_t) { count(counters.allocations); },
         [](const volatile void*) { count(counters.releases); });
 #endif
-    for (auto* counter :
-         {&counters.allocations, &counters.releases, &counters.locks, &counters.waits, &counters.system_calls})
+    for (auto* counter : {&counters.allocations, &counters.releases, &counters.locks, &counters.waits, &counters.prints,
+                          &counters.system_calls})
         *counter = 0;
     counters.system_call = -1;
 }
 
 RealtimeViolations counted() {
-    return {counters.allocations, counters.releases,     counters.locks,
-            counters.waits,       counters.system_calls, counters.system_call};
+    return {counters.allocations, counters.releases,     counters.locks,      counters.waits,
+            counters.prints,      counters.system_calls, counters.system_call};
 }
 
 void count_system_call(std::int64_t number) noexcept {
@@ -151,6 +154,44 @@ int clock_nanosleep(clockid_t clock, int flags, const timespec* duration, timesp
 }
 
 int usleep(useconds_t duration) { TACTUS_PASS_ON(usleep, waits, duration); }
+
+int pthread_mutex_trylock(pthread_mutex_t* mutex) noexcept { TACTUS_PASS_ON(pthread_mutex_trylock, locks, mutex); }
+int pthread_rwlock_rdlock(pthread_rwlock_t* lock) noexcept { TACTUS_PASS_ON(pthread_rwlock_rdlock, locks, lock); }
+int pthread_rwlock_wrlock(pthread_rwlock_t* lock) noexcept { TACTUS_PASS_ON(pthread_rwlock_wrlock, locks, lock); }
+int pthread_cond_signal(pthread_cond_t* condition) noexcept { TACTUS_PASS_ON(pthread_cond_signal, waits, condition); }
+int pthread_cond_broadcast(pthread_cond_t* condition) noexcept {
+    TACTUS_PASS_ON(pthread_cond_broadcast, waits, condition);
+}
+int sem_wait(sem_t* semaphore) { TACTUS_PASS_ON(sem_wait, waits, semaphore); }
+
+// The guard of a local static, asked for until it is initialised: no other function tells of the first use when the
+// initialiser itself is harmless.
+int __cxa_guard_acquire(long long* guard) { TACTUS_PASS_ON(__cxa_guard_acquire, locks, guard); }
+
+int puts(const char* text) { TACTUS_PASS_ON(puts, prints, text); }
+int putchar(int character) { TACTUS_PASS_ON(putchar, prints, character); }
+int fputc(int character, FILE* file) { TACTUS_PASS_ON(fputc, prints, character, file); }
+int fputs(const char* text, FILE* file) { TACTUS_PASS_ON(fputs, prints, text, file); }
+std::size_t fwrite(const void* data, std::size_t size, std::size_t n, FILE* file) {
+    TACTUS_PASS_ON(fwrite, prints, data, size, n, file);
+}
+int vfprintf(FILE* file, const char* format, va_list arguments) {
+    TACTUS_PASS_ON(vfprintf, prints, file, format, arguments);
+}
+int printf(const char* format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    const int written = vfprintf(stdout, format, arguments);
+    va_end(arguments);
+    return written;
+}
+int fprintf(FILE* file, const char* format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    const int written = vfprintf(file, format, arguments);
+    va_end(arguments);
+    return written;
+}
 
 #endif
 }
