@@ -208,8 +208,7 @@ void WelchStream<T>::push(std::span<const T> samples) {
         if (held_ < waiting_.size()) return;
         take(lanes);
         const std::size_t used = lanes * settings_.step();
-        std::copy(waiting_.begin() + static_cast<std::ptrdiff_t>(used), waiting_.end(),
-                  waiting_.begin());
+        std::copy(waiting_.begin() + static_cast<std::ptrdiff_t>(used), waiting_.end(), waiting_.begin());
         held_ -= used;
     }
 }
@@ -234,16 +233,23 @@ void WelchStream<T>::take(std::size_t count) {
         return;
     }
     fold_segments<T>(settings_.averaging, group_, spectrum, count);
+    const std::size_t group = segments_ / group_segments;
     segments_ += count;
-    if (segments_ % group_segments != 0) return;
+    if (segments_ / group_segments == group) return;
     for (std::size_t k = 0; k < group_.size(); ++k) fold(settings_.averaging, total_[k], group_[k]);
     std::fill(group_.begin(), group_.end(), start_of(settings_.averaging));
 }
 
 template <class T>
+void WelchStream<T>::forget_waiting() {
+    if (held_ >= settings_.segment) take((held_ - settings_.segment) / settings_.step() + 1);
+    held_ = 0;
+}
+
+template <class T>
 Spectrum WelchStream<T>::spectrum() const {
     WelchStream end = *this;
-    if (held_ >= settings_.segment) end.take((held_ - settings_.segment) / settings_.step() + 1);
+    end.forget_waiting();
     if (end.segments_ == 0) return scaled<T>({}, transform_.window(), settings_, 0, 0);
     if (settings_.averaging == Averaging::median)
         return scaled<T>(median_over(end.kept_, transform_.bins()), transform_.window(), settings_, end.segments_,

@@ -79,6 +79,8 @@ public:
 
     /// Any number of samples. Allocates only for the median.
     void push(std::span<const T> samples);
+    /// What is pushed next does not continue what came before: no segment spans the place.
+    void forget_waiting();
     std::size_t segments() const noexcept { return segments_; }
     /// The spectrum of what was pushed so far. Allocates. Without a whole segment: no bins.
     Spectrum spectrum() const;

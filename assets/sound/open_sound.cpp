@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/sound/open_sound.hpp"
+
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+
+namespace tactus {
+
+namespace {
+
+/// libsndfile plays a RIFF file that lost its tail as if it had been made that short.
+void check_riff_length(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    unsigned char head[8] = {};
+    if (!file.read(reinterpret_cast<char*>(head), sizeof head) || std::memcmp(head, "RIFF", 4) != 0) return;
+    const std::uintmax_t promised =
+        8u + (head[4] | head[5] << 8 | head[6] << 16 | static_cast<std::uintmax_t>(head[7]) << 24);
+    const std::uintmax_t present = std::filesystem::file_size(path);
+    // Programs that stream leave the length at its largest value.
+    if (promised < 0xFFFFFF00u && present < promised)
+        throw Error(
+            fmt::format("{}: the sound is cut short: {} of {} bytes are there", path.string(), present, promised));
+}
+
+}  // namespace
+
+SoundHandle open_sound(const std::filesystem::path& path, SF_INFO& info) {
+    const auto fail = [&path](const std::string& why) { throw Error(fmt::format("{}: {}", path.string(), why)); };
+    if (!std::filesystem::exists(path)) fail("no such sound file");
+    if (std::filesystem::is_directory(path)) fail("is a folder, not a sound file");
+    SoundHandle file(sf_open(path.c_str(), SFM_READ, &info));
+    if (!file) fail(fmt::format("cannot be read as sound: {}", sf_strerror(nullptr)));
+    check_riff_length(path);
+    if (info.frames <= 0) fail("the sound is empty");
+    if (info.samplerate <= 0 || info.channels <= 0) fail("the sound's header is damaged");
+    return file;
+}
+
+}  // namespace tactus

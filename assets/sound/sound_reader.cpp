@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/sound/sound_reader.hpp"
+
+#include "assets/sound/open_sound.hpp"
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace tactus {
+
+struct SoundReader::File {
+    std::filesystem::path path;
+    SF_INFO info{};
+    SoundHandle handle;
+    std::size_t done = 0;
+};
+
+SoundReader::SoundReader(std::filesystem::path path) : file_(std::make_unique<File>()) {
+    file_->path = std::move(path);
+    file_->handle = open_sound(file_->path, file_->info);
+}
+
+SoundReader::~SoundReader() = default;
+SoundReader::SoundReader(SoundReader&&) noexcept = default;
+SoundReader& SoundReader::operator=(SoundReader&&) noexcept = default;
+
+double SoundReader::rate() const noexcept { return file_->info.samplerate; }
+std::size_t SoundReader::channels() const noexcept { return static_cast<std::size_t>(file_->info.channels); }
+std::size_t SoundReader::frames() const noexcept { return static_cast<std::size_t>(file_->info.frames); }
+
+std::size_t SoundReader::read(double* samples, std::size_t frames) {
+    const sf_count_t got = sf_readf_double(file_->handle.get(), samples, static_cast<sf_count_t>(frames));
+    const auto fail = [this](const std::string& why) { throw Error(fmt::format("{}: {}", file_->path.string(), why)); };
+    if (sf_error(file_->handle.get()) != SF_ERR_NO_ERROR)
+        fail(fmt::format("the sound is damaged: {}", sf_strerror(file_->handle.get())));
+    const auto count = static_cast<std::size_t>(std::max<sf_count_t>(got, 0));
+    for (std::size_t i = 0; i < count * channels(); ++i)
+        if (!std::isfinite(samples[i]))
+            fail(fmt::format("the sound holds a NaN or an infinity at {:.6g} s",
+                             static_cast<double>(file_->done + i / channels()) / rate()));
+    file_->done += count;
+    // A length that libsndfile does not know is given as its largest number.
+    constexpr std::size_t unknown = std::size_t{1} << 62;
+    if (count == 0 && file_->done < this->frames() && this->frames() < unknown)
+        fail(fmt::format("the sound is cut short: {} of {} samples are there", file_->done, this->frames()));
+    return count;
+}
+
+}  // namespace tactus

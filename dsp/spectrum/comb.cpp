@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/spectrum/comb.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus {
+
+namespace {
+
+constexpr int most_teeth = 10;
+
+struct Weighted {
+    double frequency, weight;
+};
+
+/// The teeth fitted to the lines near them, weighted by prominence; twice, as the fit moves the far teeth.
+CombFit fit(std::span<const Weighted> lines, double frequency, double df) {
+    CombFit comb{frequency, 0.0, 0.0};
+    double total = 0.0, explained = 0.0, chance = 0.0;
+    double teeth[most_teeth + 1] = {};
+    for (int round = 0; round < 2; ++round) {
+        double products = 0.0, squares = 0.0;
+        total = explained = chance = 0.0;
+        std::fill(std::begin(teeth), std::end(teeth), 0.0);
+        for (const Weighted& line : lines) {
+            const double order = std::round(line.frequency / comb.frequency);
+            const double reach = std::min(0.75 * df + 0.004 * line.frequency, 0.25 * comb.frequency);
+            total += line.weight;
+            chance += line.weight * std::min(1.0, 2.0 * reach / comb.frequency);
+            if (order < 1.0 || std::abs(line.frequency - order * comb.frequency) > reach) continue;
+            explained += line.weight;
+            products += line.weight * order * line.frequency;
+            squares += line.weight * order * order;
+            if (order <= most_teeth) teeth[static_cast<int>(order)] += line.weight;
+        }
+        if (squares > 0.0) comb.frequency = products / squares;
+    }
+    chance /= std::max(total, 1e-30);
+    comb.explained = std::max(0.0, (explained / std::max(total, 1e-30) - chance) / std::max(1.0 - chance, 1e-3));
+    int last = 0;
+    for (int i = 1; i <= most_teeth; ++i)
+        if (teeth[i] > 0.0) last = i;
+    double there = 0.0, wanted = 0.0;
+    for (int i = 1; i <= last; ++i) {
+        // A low tooth that is missing says more than a high one.
+        const double weight = 1.0 / std::sqrt(i);
+        wanted += weight;
+        if (teeth[i] > 0.0) there += weight;
+    }
+    comb.complete = wanted > 0.0 ? there / wanted : 0.0;
+    return comb;
+}
+
+}  // namespace
+
+Comb fit_comb(const Spectrum& spectrum, double lowest, double highest) {
+    Comb out;
+    const double top = std::min(most_teeth * highest, spectrum.df * static_cast<double>(spectrum.power.size()));
+    std::vector<Weighted> lines;
+    for (const SpectralLine& line : find_lines(spectrum, std::max(0.7 * lowest, 3.0 * spectrum.df), top, 8.0))
+        lines.push_back({line.frequency, std::sqrt(line.power)});
+    if (lines.empty()) return out;
+    // Amplitudes: what is felt and what a fault of the rate would move; the weakest of many lines are clutter.
+    std::sort(lines.begin(), lines.end(), [](const Weighted& a, const Weighted& b) { return a.weight > b.weight; });
+    if (lines.size() > 24) lines.resize(24);
+    std::vector<CombFit> fits;
+    for (const Weighted& line : lines)
+        for (int order = 1; order <= most_teeth; ++order) {
+            const double frequency = line.frequency / order;
+            if (frequency < lowest || frequency > highest) continue;
+            const CombFit one = fit(lines, frequency, spectrum.df);
+            if (one.frequency >= lowest && one.frequency <= highest && one.score() > 0.0) fits.push_back(one);
+        }
+    std::sort(fits.begin(), fits.end(), [](const CombFit& a, const CombFit& b) {
+        return a.score() != b.score() ? a.score() > b.score() : a.frequency > b.frequency;
+    });
+    if (fits.empty()) return out;
+    out.best = fits.front();
+    std::vector<CombFit> apart{out.best};
+    for (const CombFit& one : fits) {
+        const bool is_new = std::none_of(apart.begin(), apart.end(), [&](const CombFit& other) {
+            return std::abs(one.frequency / other.frequency - 1.0) < 0.02;
+        });
+        if (is_new && apart.size() < 4) apart.push_back(one);
+    }
+    out.others.assign(apart.begin() + 1, apart.end());
+    const double rival = out.others.empty() ? 0.0 : out.others.front().score() / out.best.score();
+    out.confidence = std::clamp(out.best.score() * (1.0 - 0.5 * rival), 0.0, 1.0);
+    return out;
+}
+
+}  // namespace tactus

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rate of a machine from the lines of its spectrum: the comb that explains most of them with fewest teeth missing.
+#pragma once
+
+#include "dsp/spectrum/lines.hpp"
+
+namespace tactus {
+
+struct CombFit {
+    double frequency = 0.0;   ///< Hz; 0: no line was found
+    double explained = 0.0;   ///< share of the lines' prominence that lies on the comb, less what chance explains
+    double complete = 0.0;    ///< share of the comb's low teeth that are there
+    double score() const { return explained * complete; }
+};
+
+struct Comb {
+    CombFit best;
+    std::vector<CombFit> others;  ///< rivals, best first: no neighbours of the best
+    /// 0 … 1: the score of the best, halved when a rival does as well.
+    double confidence = 0.0;
+};
+
+/// Fits combs with fundamentals from `lowest` to `highest` Hz. A comb and its subharmonic explain the same lines; the
+/// subharmonic has more teeth missing, so it wins only when lines between speak for it. Allocates.
+Comb fit_comb(const Spectrum& spectrum, double lowest, double highest);
+
+}  // namespace tactus
