@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
+#include "tools/analysis_options.hpp"
 #include "tools/verbs.hpp"
 
 #include <fmt/format.h>
@@ -217,6 +218,8 @@ int command_line(int argc, char** argv) {
     add_measure(app, measure);
     EqualiseChoice equalise;
     add_equalise(app, equalise);
+    AnalysisChoices analysis;
+    add_analysis_verbs(app, analysis);
 
     BenchChoice bench;
     CLI::App* bench_app =
@@ -240,6 +243,9 @@ int command_line(int argc, char** argv) {
         if (*nodes_app) return nodes_verb(type, nodes_json);
         if (*bench_engine_app) return bench_engine_verb(bench);
         if (*devices_app) return devices_verb(devices_json);
+        if (app.got_subcommand("spectrum")) return spectrum_verb(analysis.spectrum);
+        if (app.got_subcommand("orders")) return orders_verb(analysis.orders);
+        if (app.got_subcommand("exposure")) return exposure_verb(analysis.exposure);
         if (app.got_subcommand("compare")) return compare_verb(compare);
         if (app.got_subcommand("measure")) return measure_verb(measure);
         if (app.got_subcommand("equalise")) return equalise_verb(equalise);

@@ -5,6 +5,7 @@
 
 #include "assets/bone/import.hpp"
 #include "graph/patch.hpp"
+#include "tools/record_options.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -92,6 +93,33 @@ struct CompareChoice {
     bool json = false;
 };
 
+struct SpectrumChoice : RecordOptions {
+    std::string window = "hann", detrend = "constant", average = "mean", scaling = "density";
+    std::string envelope;         ///< LOW:HIGH in Hz
+    std::string rate = "20:500";  ///< LOW:HIGH in Hz: where the fundamental may lie
+    std::optional<std::size_t> segment;
+    std::optional<double> overlap;  ///< share of the segment
+    int orders = 10, jobs = 1;
+    std::filesystem::path csv, plot, table;
+};
+
+struct OrdersChoice : RecordOptions {
+    int tacho = 0;                      ///< channel from 1; 0: none
+    double pulses = 1.0;                ///< of the tachometer, per revolution
+    std::optional<double> fixed;        ///< Hz
+    std::string range = "20:400";       ///< LOW:HIGH in Hz: where a tracked rate may lie
+    int highest = 10;
+    std::filesystem::path csv;
+};
+
+struct ExposureChoice : RecordOptions {
+    std::vector<std::string> durations;  ///< quantities of time; a bare number is hours
+    bool uncalibrated = false;           ///< take values of a record without calibration as m/s²
+};
+
+int spectrum_verb(const SpectrumChoice& choice);
+int orders_verb(const OrdersChoice& choice);
+int exposure_verb(const ExposureChoice& choice);
 int compare_verb(const CompareChoice& choice);
 int measure_verb(const MeasureChoice& choice);
 int equalise_verb(const EqualiseChoice& choice);

@@ -12,10 +12,10 @@ namespace tactus {
 
 /// Moves the middle of a band to 0 Hz, keeps ± half its width (8th-order Butterworth) and takes the magnitude: the
 /// amplitude of what lies in the band, at a lower rate.
-class Envelope {
+class BandEnvelope {
 public:
     /// Band edges and rate in Hz, 0 < low < high < rate/2. Values come every `step()` samples.
-    Envelope(double low, double high, double rate) noexcept
+    BandEnvelope(double low, double high, double rate) noexcept
         : step_(static_cast<std::size_t>(std::max(1.0, std::floor(rate / (2.56 * (high - low)))))),
           turn_(std::polar(1.0, -std::numbers::pi * (low + high) / rate)),
           rate_(rate) {

@@ -23,9 +23,9 @@ WelchSettings hann(double rate, std::size_t segment, std::size_t overlap) {
     return settings;
 }
 
-/// About a second, in segments short enough to average a few and long enough to part the lines of a saw.
+/// Half a second, in segments short enough that a wavering line stays one and long enough to part the lines of a saw.
 WelchSettings block_settings(double rate) {
-    const std::size_t segment = std::bit_floor(static_cast<std::size_t>(std::max(64.0, 0.4 * rate)));
+    const std::size_t segment = std::bit_floor(static_cast<std::size_t>(std::max(64.0, 0.25 * rate)));
     return hann(rate, segment, segment * 3 / 4);
 }
 
@@ -55,7 +55,7 @@ VibrationAnalysis::VibrationAnalysis(const AnalysisSettings& settings, std::size
                   suggested_segment(settings.psd.rate, frames) / 2)),
       block_(block_settings(settings.psd.rate)),
       fresh_block_(block_),
-      block_length_(static_cast<std::size_t>(std::ceil(settings.psd.rate))) {
+      block_length_(static_cast<std::size_t>(std::ceil(0.5 * settings.psd.rate))) {
     const std::size_t segment = suggested_segment(settings.psd.rate, frames);
     if (!same(settings.psd, hann(settings.psd.rate, segment, segment / 2))) psd_.emplace(settings.psd);
     if (settings.envelope) {
@@ -88,6 +88,11 @@ void VibrationAnalysis::push(std::span<const double> samples) {
     while (!samples.empty()) {
         const std::size_t part = std::min(samples.size(), block_length_ - in_block_);
         block_.push(samples.first(part));
+        for (std::size_t i = 0; i < part; ++i) {
+            const double step = samples[i] - last_;
+            movement_[(in_block_ + i) * movement_.size() / block_length_] += step * step;
+            last_ = samples[i];
+        }
         samples = samples.subspan(part);
         in_block_ += part;
         if (in_block_ == block_length_) end_block();
@@ -98,11 +103,15 @@ void VibrationAnalysis::end_block() {
     const Spectrum spectrum = block_.spectrum();
     if (!spectrum.power.empty()) {
         const Comb comb = fit_comb(spectrum, settings_.lowest, settings_.highest);
-        if (comb.confidence > 0.1) seconds_.push_back({comb.best.frequency, comb.confidence});
+        // A blow rings at many frequencies at once: ripples of its spectrum are no lines.
+        double all = 1e-300, most = 0.0;
+        for (const double movement : movement_) all += movement, most = std::max(most, movement);
+        if (comb.confidence > 0.1 && most < 0.4 * all) seconds_.push_back({comb.best.frequency, comb.confidence});
         else seconds_.push_back({0.0, 0.0});
     }
     block_ = fresh_block_;
     in_block_ = 0;
+    movement_.fill(0.0);
 }
 
 void VibrationAnalysis::gap() {
@@ -110,6 +119,7 @@ void VibrationAnalysis::gap() {
     if (psd_) psd_->forget_waiting();
     block_ = fresh_block_;
     in_block_ = 0;
+    movement_.fill(0.0);
 }
 
 FundamentalEstimate VibrationAnalysis::fundamental(const Spectrum& lines) const {

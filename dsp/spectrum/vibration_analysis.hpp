@@ -9,6 +9,7 @@
 #include "dsp/spectrum/lines.hpp"
 #include "dsp/spectrum/spectrogram.hpp"
 
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -30,7 +31,7 @@ struct FundamentalEstimate {
     double frequency = 0.0;   ///< Hz; 0: nothing repeats
     double confidence = 0.0;  ///< 0 … 1
     bool steady = false;      ///< one rate throughout; otherwise `frequency` is the one in the middle of its path
-    double low = 0.0, high = 0.0;      ///< Hz: the middle 80 % of the path, by seconds
+    double low = 0.0, high = 0.0;      ///< Hz: the middle 80 % of the path, by half seconds
     std::vector<CombFit> rivals;       ///< other rates that explain the lines nearly as well
 };
 
@@ -70,7 +71,9 @@ private:
         double frequency, confidence;
     };
     std::vector<Second> seconds_;
-    std::optional<Envelope> envelope_;
+    std::array<double, 8> movement_{};  // squared steps in the eighths of a block
+    double last_ = 0.0;
+    std::optional<BandEnvelope> envelope_;
     std::optional<WelchStream<double>> envelope_spectrum_;
     std::optional<Spectrogram> spectrogram_;
     std::vector<double> envelope_values_;
