@@ -156,7 +156,8 @@ FundamentalEstimate VibrationAnalysis::fundamental(const Spectrum& lines) const 
         sum += second.confidence;
     }
     out.steady = false;
-    out.confidence = trust * share_near(out.frequency, 0.1);
+    const double heard_share = static_cast<double>(heard.size()) / static_cast<double>(seconds_.size());
+    out.confidence = trust * share_near(out.frequency, 0.1) * heard_share;
     if (comb.best.frequency > 0.0 && std::abs(comb.best.frequency / out.frequency - 1.0) > 0.02)
         out.rivals.insert(out.rivals.begin(), comb.best);
     return out;
