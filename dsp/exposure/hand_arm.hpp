@@ -31,7 +31,8 @@ private:
     std::array<Biquad, 3> sections_;
 };
 
-/// Root mean square weighted acceleration out of an acceleration density spectrum ((m/s²)²/Hz).
+/// Root mean square weighted acceleration out of an acceleration density spectrum ((m/s²)²/Hz) that was
+/// taken with a Hann window.
 double weighted_acceleration(const Spectrum& density);
 
 inline constexpr double reference_day = 8.0 * 3600.0;  ///< s

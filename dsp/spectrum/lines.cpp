@@ -51,6 +51,7 @@ SpectralLine line_at(const Spectrum& spectrum, std::size_t k) {
         const double angle = std::numbers::pi * shift;
         const double loss = std::sin(angle) / (angle * (1.0 - shift * shift));
         line.power /= loss * loss;
+        line.snr_db -= decibels(loss * loss);
     }
     return line;
 }
@@ -73,7 +74,8 @@ double detection_threshold_db(const Spectrum& spectrum) {
     // Quantile 1 − 10⁻⁶ of the mean of K exponential powers over their median (Wilson and Hilferty 1931).
     const double part = 1.0 / (9.0 * std::max(1.0, spectrum.effective_segments));
     const double tail = std::pow(1.0 - part + 4.75 * std::sqrt(part), 3.0), median = std::pow(1.0 - part, 3.0);
-    return std::max(10.0, decibels(tail / median));
+    // A line between two bins counts for up to 1.42 dB more than its stronger bin.
+    return std::max(10.0, decibels(tail / median) + 1.42);
 }
 
 std::vector<SpectralLine> find_lines(const Spectrum& spectrum, double lowest, double highest, double snr_db) {

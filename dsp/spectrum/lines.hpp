@@ -9,7 +9,7 @@ namespace tactus {
 struct SpectralLine {
     double frequency = 0.0;  ///< Hz
     double power = 0.0;      ///< mean square, unit²: half the squared amplitude
-    double snr_db = 0.0;     ///< strongest bin over the median of the bins 4 to 16 away on both sides
+    double snr_db = 0.0;     ///< its top over the median of the bins 4 to 16 away on both sides
 };
 
 /// All of these take a Hann spectrum (density scaling): the ratio of two neighbouring bins of a Hann window tells exactly
