@@ -100,7 +100,9 @@ Ridge track_ridge(std::span<const double> record, double rate, const RidgeSettin
         sorted.assign(power.begin() + 1, power.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(top, 3)));
         const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
         std::nth_element(sorted.begin(), middle, sorted.end());
-        return std::max(*middle, 1e-300);
+        // Without noise, the window's own skirts must not count as orders.
+        const double strongest = *std::max_element(sorted.begin(), sorted.end());
+        return std::max({*middle, 1e-4 * strongest, 1e-300});
     };
     for (std::size_t i = 0; i < frames; ++i) {
         const double floor = power_of(i);

@@ -14,7 +14,7 @@ struct Weighted {
     double frequency, weight;
 };
 
-/// The teeth fitted to the lines near them, weighted by prominence; twice, as the fit moves the far teeth.
+/// The teeth fitted to the lines near them, weighted by amplitude (strongest first); twice, as the fit moves the far teeth.
 CombFit fit(std::span<const Weighted> lines, double frequency, double df) {
     CombFit comb{frequency, 0.0, 0.0};
     double total = 0.0, explained = 0.0, chance = 0.0;
@@ -41,12 +41,14 @@ CombFit fit(std::span<const Weighted> lines, double frequency, double df) {
     int last = 0;
     for (int i = 1; i <= most_teeth; ++i)
         if (teeth[i] > 0.0) last = i;
+    // Thirty decibels below the strongest line a tooth is there, much weaker it is an accident.
+    const double whole = 0.03 * lines.front().weight;
     double there = 0.0, wanted = 0.0;
     for (int i = 1; i <= last; ++i) {
         // A low tooth that is missing says more than a high one.
         const double weight = 1.0 / std::sqrt(i);
         wanted += weight;
-        if (teeth[i] > 0.0) there += weight;
+        there += weight * std::min(1.0, teeth[i] / whole);
     }
     comb.complete = wanted > 0.0 ? there / wanted : 0.0;
     return comb;
@@ -64,6 +66,7 @@ Comb fit_comb(const Spectrum& spectrum, double lowest, double highest) {
     // Amplitudes: what is felt and what a fault of the rate would move; the weakest of many lines are clutter.
     std::sort(lines.begin(), lines.end(), [](const Weighted& a, const Weighted& b) { return a.weight > b.weight; });
     if (lines.size() > 24) lines.resize(24);
+    while (lines.back().weight < 1e-3 * lines.front().weight) lines.pop_back();
     std::vector<CombFit> fits;
     for (const Weighted& line : lines)
         for (int order = 1; order <= most_teeth; ++order) {

@@ -8,7 +8,7 @@ namespace tactus {
 
 struct CombFit {
     double frequency = 0.0;   ///< Hz; 0: no line was found
-    double explained = 0.0;   ///< share of the lines' prominence that lies on the comb, less what chance explains
+    double explained = 0.0;   ///< share of the lines' amplitude that lies on the comb, less what chance explains
     double complete = 0.0;    ///< share of the comb's low teeth that are there
     double score() const { return explained * complete; }
 };

@@ -20,7 +20,7 @@ TEST_CASE("a log's time column and axes are found by their names, milliseconds "
   const SampleLog log = read("# logger "
                              "2\ntimestamp_ms,global_ms,accel_x,accel_y,temp_"
                              "c\n3,100,1,-2,24\n9,106,3,4.5,24\n");
-  CHECK(log.times == std::vector{0.003, 0.009});
+  CHECK(log.times == std::vector{3.0 * 1e-3, 9.0 * 1e-3});
   CHECK(log.names == std::vector<std::string>{"accel_x", "accel_y"});
   CHECK(log.columns[1] == std::vector{-2.0, 4.5});
   CHECK(log.time_name == "timestamp_ms");

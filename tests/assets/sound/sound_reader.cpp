@@ -82,7 +82,7 @@ TEST_CASE("sounds of every container, width, rate and number of channels are "
     double worst = 0.0;
     for (std::size_t i = 0; i < got.size(); ++i)
       worst = std::max(worst, std::abs(got[i] - samples[i]));
-    CHECK(worst <= step);
+    CHECK(worst <= 2.0 * step);
   }
 }
 
