@@ -171,6 +171,8 @@ VibrationReport VibrationAnalysis::report() const {
     out.spectrogram = spectrogram_;
     if (out.lines.power.size() < 8) return out;
     out.fundamental = fundamental(out.lines);
+    // Less trust than this is what noise gets.
+    if (out.fundamental.confidence < 0.1) out.fundamental.frequency = 0.0;
     out.harmonics = harmonic_table(out.lines, out.fundamental.frequency, settings_.orders);
     out.peaks = strongest(find_lines(out.lines, 2.0 * out.lines.df, settings_.psd.rate));
     out.hum = find_hum(out.lines, out.fundamental.frequency);
