@@ -22,6 +22,7 @@ namespace {
 // The scheduler wakes a sleeper late by tens of microseconds; the last stretch is spun instead, never more.
 constexpr std::int64_t spin_ns = 80'000;
 constexpr std::int64_t start_delay_ns = 20'000'000;
+constexpr std::int64_t poll_start_ns = 200'000;
 
 void wait_until(std::int64_t when_ns) noexcept {
     const std::int64_t sleep_to = when_ns - spin_ns;
@@ -49,7 +50,8 @@ std::int64_t commit_limit_ns(const DeviceSlot& slot, double dilate) {
 
 /// What the threads of a live run share.
 struct Engine::LiveRun {
-    std::int64_t start_ns = 0;
+    std::atomic<std::int64_t> start_ns{0};  // 0: not before every thread is there, whatever making them takes
+    std::atomic<std::size_t> ready{0};      // threads that wait for the start
     double dilate = 1.0;
     std::atomic<std::size_t> running{0};
     std::atomic<bool> refused{false};  // real-time priority
@@ -58,7 +60,7 @@ struct Engine::LiveRun {
 
 void Engine::live_worker(GroupRuntime& group) {
     flush_denormals_to_zero();
-    const std::int64_t start_ns = live_->start_ns;
+    const std::int64_t start_ns = live_->start_ns.load();
     const double dilate = live_->dilate;
     const auto release_ns = [&](std::int64_t tick) {
         return start_ns + std::llround(static_cast<double>(nanoseconds(tick * group.plan->period)) * dilate);
@@ -97,6 +99,8 @@ void Engine::start_thread(GroupRuntime& group) {
     ++live_->running;
     live_->threads.emplace_back([this, &group] {
         if (!make_real_time(group.plan->period)) live_->refused = true;
+        ++live_->ready;
+        while (live_->start_ns.load() == 0) sleep_until(steady_ns() + poll_start_ns);
         live_worker(group);
         --live_->running;
     });
@@ -111,7 +115,6 @@ void Engine::run_live(const LiveOptions& options) {
             "memory could not be locked: a page fault may delay a tick (run as root or raise RLIMIT_MEMLOCK)");
     LiveRun run;
     live_ = &run;
-    run.start_ns = steady_ns() + start_delay_ns;
     run.dilate = options.dilate;
     Watchdog watchdog;
     const auto watch_devices = [&] {
@@ -123,6 +126,8 @@ void Engine::run_live(const LiveOptions& options) {
     };
     watch_devices();
     for (const auto& group : now_->groups) start_thread(*group);
+    while (run.ready.load() < now_->groups.size()) sleep_until(steady_ns() + poll_start_ns);
+    run.start_ns = steady_ns() + start_delay_ns;
     bool stopping = false;
     while (run.running.load() > 0) {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
