@@ -23,7 +23,6 @@ constexpr double silence = 1e-5;  // of the peak
 // Segments for distance and cosine, coherence, bands, lines.
 constexpr std::size_t coarse = 1024, middle = 2048, fine = 4096, sharp = 8192;
 constexpr double speed_range = 0.03;
-constexpr double line_gap_db = 6.0;  // a line is missing when the other take is that much softer there
 
 double decibel(double power_ratio) { return 10.0 * std::log10(power_ratio); }
 
