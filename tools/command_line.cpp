@@ -24,8 +24,8 @@ void add_patch_options(CLI::App& verb, PatchChoice& choice) {
 }
 
 void add_import(CLI::App& app, ImportChoice& choice) {
-    CLI::App* verb =
-        app.add_subcommand("import", "make a bone from a CT volume (NRRD) or a closed mesh (STL, PLY, OBJ)");
+    CLI::App* verb = app.add_subcommand(
+        "import", "make a bone from a CT (DICOM, NRRD, NIfTI, InVesalius) or a closed mesh (STL, PLY, OBJ)");
     verb->add_option("input", choice.input, "the file")->required();
     verb->add_option("-o,--out", choice.out, "the bone, an OpenVDB file")->required();
     verb->add_option("--threshold", choice.threshold, "CT number from which on there is bone, HU")
@@ -35,7 +35,19 @@ void add_import(CLI::App& app, ImportChoice& choice) {
         ->capture_default_str();
     verb->add_option("--unit", choice.unit, "unit of a mesh: mm, cm or m")->check(CLI::IsMember({"mm", "cm", "m"}));
     verb->add_option_function<double>(
-        "--spacing", [&choice](const double& mm) { choice.spacing = mm * 1e-3; }, "resample to this grid spacing, mm");
+        "--spacing,--isotropic", [&choice](const double& mm) { choice.spacing = mm * 1e-3; },
+        "resample to this grid spacing, mm");
+    verb->add_option("--series", choice.series, "DICOM: the series to take, by its UID or the end of it");
+    verb->add_option_function<std::string>(
+        "--hu-calibration",
+        [&choice](const std::string& text) {
+            double a = 0.0, b = 0.0, c = 0.0, d = 0.0;
+            if (std::sscanf(text.c_str(), "%lf:%lf,%lf:%lf", &a, &b, &c, &d) != 4 || a == c || b == d)
+                throw Error("--hu-calibration takes two points VALUE:HU, as in --hu-calibration 60:-1000,1084:0");
+            const double slope = (d - b) / (c - a);
+            choice.rescale = {slope, b - slope * a};
+        },
+        "scanner numbers to HU by two points: VALUE:HU,VALUE:HU");
     verb->add_option_function<std::string>(
         "--rescale",
         [&choice](const std::string& text) {

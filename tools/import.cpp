@@ -20,17 +20,20 @@ nlohmann::ordered_json json_of(const ImportSummary& s) {
             {"bone_volume_mm3", s.bone_volume_mm3},
             {"surface_area_mm2", s.surface_area_mm2},
             {"density", {{"min", s.density.min}, {"max", s.density.max}, {"mean", s.density.mean}}},
-            {"components", s.components}};
+            {"components", s.components},
+            {"notes", s.notes}};
 }
 
 std::string text_of(const ImportSummary& s) {
-    return fmt::format(
+    std::string text = fmt::format(
         "{} x {} x {} voxels of {:.3g} x {:.3g} x {:.3g} mm\n  {:.0f} mm³ of bone, {:.0f} mm² of surface, {} "
         "component{} "
         "found\n  density {:.0f} … {:.0f}, mean {:.0f} kg/m³ ({})\n",
         s.size[0], s.size[1], s.size[2], s.voxel_mm[0], s.voxel_mm[1], s.voxel_mm[2], s.bone_volume_mm3,
         s.surface_area_mm2, s.components, s.components == 1 ? "" : "s", s.density.min, s.density.max, s.density.mean,
         s.hu);
+    for (const std::string& note : s.notes) text += fmt::format("  {}\n", note);
+    return text;
 }
 
 int import_label_map(const ImportChoice& choice, const ImportOptions& options, const ImportProgress& progress,

@@ -19,7 +19,7 @@ struct Bone {
     std::string name;  ///< what people call it, e.g. "mandible"
     Vec3 colour{0.90, 0.86, 0.76};  ///< sRGB, 0 to 1; what it is drawn in where nothing else decides
 
-    /// Where it came from, as text: source, hash, options, calibration, frame ("LPS"), hu ("HU", "masked", ...).
+    /// Where it came from, as text: source, hash, options, calibration, frame ("LPS"), hu ("calibrated", "masked", ...).
     std::map<std::string, std::string> provenance;
 };
 

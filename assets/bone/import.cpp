@@ -4,9 +4,10 @@
 #include "assets/bone/assumed_density.hpp"
 #include "assets/bone/from_hu.hpp"
 #include "assets/bone/labels.hpp"
-#include "assets/bone/nrrd.hpp"
 #include "assets/bone/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
+#include "assets/mesh/repair.hpp"
+#include "assets/volume/scan_volume.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
 #include "dsp/distance/resample.hpp"
@@ -62,8 +63,9 @@ void check_layout(const Grid& layout) {
     double count = 1.0;
     for (const int n : layout.size) count *= n;
     if (count > most_voxels)
-        throw Error(fmt::format("{:.0f} voxels at {:.3g} mm are too many (at most {:.0f}); use a larger spacing or a crop box",
-                                count, layout.spacing.x / mm, most_voxels));
+        throw Error(
+            fmt::format("{:.0f} voxels at {:.3g} mm are too many (at most {:.0f}); use a larger spacing or a crop box",
+                        count, layout.spacing.x / mm, most_voxels));
 }
 
 // Samples of the result: the file's own within the box, or new ones at `spacing`.
@@ -88,25 +90,20 @@ Grid ct_layout(const Grid& ct, const Range& crop, std::optional<double> spacing)
     return layout;
 }
 
-// Decides whether values can be HU. Air at about -1000 shows that they are; a volume that was masked has exact zeros
-// all around and in most places instead.
-std::string hu_kind(const Grid& ct, const std::string& file) {
-    const auto [low, high] = std::minmax_element(ct.values.begin(), ct.values.end());
-    if (*low <= -500.0f) return "HU";
-    std::size_t zeros = 0, border = 0, border_zeros = 0;
-    std::size_t n = 0;
-    for (int k = 0; k < ct.size[2]; ++k)
-        for (int j = 0; j < ct.size[1]; ++j)
-            for (int i = 0; i < ct.size[0]; ++i, ++n) {
-                const bool zero = ct.values[n] == 0.0f;
-                zeros += zero;
-                if (i == 0 || j == 0 || k == 0 || i == ct.size[0] - 1 || j == ct.size[1] - 1 || k == ct.size[2] - 1)
-                    ++border, border_zeros += zero;
-            }
-    if (zeros * 2 > ct.values.size() && border_zeros * 100 >= border * 99) return "masked";
-    throw Error(fmt::format("{}: values {:g} to {:g} are not HU (no air near -1000): scanner numbers. Give the slope and "
-                            "intercept of the scanner's rescale, or convert the file to HU first",
-                            file, *low, *high));
+// Turns scanner numbers to HU where a line is given. Throws Error when the numbers cannot be HU and none is.
+void require_hu(ScanVolume& volume, const ImportOptions& options, const std::filesystem::path& file) {
+    if (options.rescale) {
+        for (float& value : volume.values)
+            value = static_cast<float>(options.rescale->first * double(value) + options.rescale->second);
+        volume.hu = HuKind::calibrated;
+    }
+    if (volume.hu != HuKind::scanner) return;
+    const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
+    throw Error(
+        fmt::format("{}: values {:g} to {:g} are not HU (no air near -1000): scanner numbers. Say which of them are "
+                    "which HU, as in --hu-calibration 60:-1000,1100:40 (air and water or muscle), or convert the "
+                    "file first",
+                    file.string(), *low, *high));
 }
 
 struct Report {
@@ -120,24 +117,26 @@ Bone import_ct(const ImportOptions& options, const Report& report, ImportSummary
     const Range crop = parse_crop(options.crop);
     const std::size_t keep = parse_component(options.component);
     report(0.0, "reading");
-    CtVolume ct = load_nrrd(options.input);
-    if (options.rescale) {
-        for (float& value : ct.grid.values)
-            value = static_cast<float>(options.rescale->first * double(value) + options.rescale->second);
-        summary.hu = "rescaled";
-    } else {
-        summary.hu = hu_kind(ct.grid, options.input.string());
-    }
-    const Grid layout = ct_layout(ct.grid, crop, options.spacing);
+    ScanVolume volume = read_volume(options.input, {options.series});
+    require_hu(volume, options, options.input);
+    summary.hu = name_of(volume.hu);
+    summary.notes = volume.notes;
+    const Frame file_frame = volume.file_frame;
+    const std::string encoding = volume.encoding;
+    const bool turned = is_turned(volume);
+    Grid ct = lps_grid(std::move(volume));
+    const Grid layout = ct_layout(ct, crop, options.spacing);
     report(0.2, "resampling");
-    Grid hu = resampled(std::move(ct.grid), layout);
+    Grid hu = resampled(std::move(ct), layout);
     report(0.4, "surface and distance");
     HuBone made = bone_from_hu(std::move(hu), {static_cast<float>(options.threshold), keep, options.fill}, options.run);
     summary.components = made.components;
-    made.bone.provenance["encoding"] = ct.encoding;
-    if (ct.resampled) made.bone.provenance["axes"] = "turned; resampled to LPS";
+    made.bone.provenance["encoding"] = encoding;
+    made.bone.provenance["file_frame"] = name_of(file_frame);
+    if (turned) made.bone.provenance["axes"] = "turned; resampled to LPS";
     if (options.rescale)
-        made.bone.provenance["rescale"] = fmt::format("HU = {} * value + {}", options.rescale->first, options.rescale->second);
+        made.bone.provenance["rescale"] =
+            fmt::format("HU = {} * value + {}", options.rescale->first, options.rescale->second);
     return std::move(made.bone);
 }
 
@@ -148,21 +147,17 @@ double unit_of(const ImportOptions& options, double extent) {
         if (*options.unit == "m") return 1.0;
         throw Error(fmt::format("unit '{}' is not mm, cm or m", *options.unit));
     }
-    if (extent < 5.0 || extent > 2000.0)
-        throw Error(fmt::format("{}: {:.3g} across cannot be mm for a bone; say what its coordinates are with --unit mm, cm or m",
-                                options.input.string(), extent));
+    if (extent < 5.0 || extent > 2000.0) {
+        const std::string_view likely = extent < 0.005 ? "" : extent <= 2.0 ? "m" : extent < 5.0 ? "cm" : "";
+        throw Error(
+            fmt::format("{}: {:.3g} across cannot be mm for a bone; say what its coordinates are with --unit mm, cm "
+                        "or m{}",
+                        options.input.string(), extent,
+                        likely.empty() ? ""
+                                       : fmt::format(" (--unit {} would make it {:.0f} mm)", likely,
+                                                     extent * (likely == "m" ? 1000.0 : 10.0))));
+    }
     return mm;
-}
-
-void require_watertight(const MeshTopology& topology, const std::string& file) {
-    if (topology.boundary_edges > 0)
-        throw Error(fmt::format("{}: the mesh is open: {} boundary edges; close its holes first", file, topology.boundary_edges));
-    if (topology.non_manifold_edges > 0)
-        throw Error(fmt::format("{}: {} edges belong to more than two triangles (non-manifold); repair the mesh first", file,
-                                topology.non_manifold_edges));
-    if (topology.flipped_edges > 0)
-        throw Error(fmt::format("{}: {} edges join triangles of opposite orientation; make the normals consistent first",
-                                file, topology.flipped_edges));
 }
 
 // Keeps the components of largest enclosed volume, each turned to look outwards.
@@ -194,14 +189,18 @@ Bone import_mesh(const ImportOptions& options, const Report& report, ImportSumma
     if (!options.crop.empty()) throw Error("a crop box is for CT volumes; cut the mesh in a mesh editor");
     const std::size_t keep = parse_component(options.component);
     report(0.0, "reading");
-    Mesh mesh = load_mesh(options.input);
+    MeshOrigin origin;
+    Mesh mesh = load_mesh(options.input, 1.0, &origin);
     Vec3 low = mesh.vertices.front(), high = low;
     for (const Vec3& v : mesh.vertices) low = glm::min(low, v), high = glm::max(high, v);
     const auto widest = [](const Vec3& v) { return std::max({v.x, v.y, v.z}); };
     const double unit = unit_of(options, widest(high - low));
     for (Vec3& v : mesh.vertices) v *= unit;
+    const MeshRepair repaired = repair(mesh, options.input.string());
+    if (!repaired.is_clean()) summary.notes.push_back(repaired.describe());
+    if (origin.without_area > 0)
+        summary.notes.push_back(fmt::format("{} triangles without area dropped", origin.without_area));
     const MeshTopology topology = topology_of(mesh);
-    require_watertight(topology, options.input.string());
     mesh = largest_components(mesh, topology, keep);
     const auto corner = [&](const auto& t, std::size_t c) { return mesh.vertices[static_cast<std::size_t>(t[c])]; };
     low = high = corner(mesh.triangles.front(), 0);
@@ -224,9 +223,10 @@ Bone import_mesh(const ImportOptions& options, const Report& report, ImportSumma
             bone.density.values[n] = bone.distance.values[n] > 0.0f ? 0.0f : static_cast<float>(*options.mesh_density);
     summary.hu = "none";
     summary.components = topology.components;
-    bone.provenance["calibration"] =
-        options.mesh_density ? fmt::format("assumed: density = {} kg/m3 throughout", *options.mesh_density)
-                             : assumed_density_law();
+    bone.provenance["calibration"] = options.mesh_density
+                                         ? fmt::format("assumed: density = {} kg/m3 throughout", *options.mesh_density)
+                                         : assumed_density_law();
+    bone.provenance["file_frame"] = fmt::format("{}{}", name_of(origin.frame), origin.frame_stated ? "" : " (assumed)");
     bone.provenance["unit"] = fmt::format("{} m{}", unit, options.unit ? "" : " (assumed)");
     return bone;
 }
@@ -256,18 +256,38 @@ void measure(const Bone& bone, ImportSummary& summary) {
 }
 
 // What every bone of an import is told about where it came from.
-void add_provenance(Bone& bone, const ImportOptions& options, const ImportSummary& found, const std::string& source_hash) {
+void add_provenance(Bone& bone, const ImportOptions& options, const ImportSummary& found,
+                    const std::string& source_hash) {
     bone.provenance["source"] = options.input.filename().string();
     bone.provenance["source_hash"] = source_hash;
     bone.provenance["frame"] = found.frame;
     bone.provenance["hu"] = found.hu;
+    for (std::size_t n = 0; n < found.notes.size(); ++n) bone.provenance[fmt::format("note{}", n + 1)] = found.notes[n];
     if (options.spacing) bone.provenance["spacing"] = fmt::format("{} mm", *options.spacing / mm);
 }
 
+// A file, or all files of a folder by their names.
+std::vector<std::filesystem::path> source_files(const std::filesystem::path& input) {
+    if (!std::filesystem::is_directory(input)) return {input};
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(input))
+        if (entry.is_regular_file()) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+// "jaw" of jaw.nii.gz and of the folder jaw/.
+std::string bone_name(const std::filesystem::path& input) {
+    const std::filesystem::path last = input.filename().empty() ? input.parent_path().filename() : input.filename();
+    return (last.extension() == ".gz" ? last.stem() : last).stem().string();
+}
+
 std::string hash_of_file(const std::filesystem::path& path) {
-    const std::string bytes = read_whole_file(path);
     Hash hash;
-    hash.add_bytes(bytes.data(), bytes.size());
+    for (const std::filesystem::path& file : source_files(path)) {
+        const std::string bytes = read_whole_file(file);
+        hash.add_bytes(bytes.data(), bytes.size());
+    }
     return fmt::format("{:016x}", hash.value());
 }
 
@@ -307,27 +327,32 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
     if (!options.crop.empty()) throw Error("a crop box is for CT volumes; a label map's bones are cut out already");
     const Report report{progress};
     report(0.0, "reading");
-    CtVolume map = load_nrrd(options.input);
-    if (map.resampled) throw Error(fmt::format("{}: a label map with turned axes; resample it to LPS", options.input.string()));
-    const std::vector<Segment> chosen =
-        choose_segments(options.label, labels_in(map.grid), {}, options.input.string());
+    ScanVolume volume = read_volume(options.input, {options.series});
+    volume.kind = VolumeKind::labels;
+    const std::vector<Segment> named = volume.segments;
+    const std::vector<std::string> notes = volume.notes;
+    const Grid map = lps_grid(std::move(volume));
+    const std::vector<Segment> chosen = choose_segments(options.label, labels_in(map), named, options.input.string());
     LabelBone how;
     how.spacing = options.spacing;
-    CtVolume ct;
-    std::string hu = "none";
+    Grid ct;
+    HuKind hu = HuKind::none;
     if (!options.ct.empty()) {
-        ct = load_nrrd(options.ct);
-        hu = hu_kind(ct.grid, options.ct.string());
-        how.hu = &ct.grid;
-        how.hu_is_masked = hu == "masked";
+        ScanVolume grey = read_volume(options.ct);
+        require_hu(grey, options, options.ct);
+        hu = grey.hu;
+        ct = lps_grid(std::move(grey));
+        how.hu = &ct;
+        how.hu_is_masked = hu == HuKind::masked;
     }
     const std::string source_hash = hash_of_file(options.input);
     std::vector<ImportedBone> bones;
     for (const Segment& segment : chosen) {
         report(0.1 + 0.9 * static_cast<double>(bones.size()) / static_cast<double>(chosen.size()), segment.name);
         ImportedBone made;
-        made.bone = bone_of_label(map.grid, segment, how, options.run);
-        made.summary.hu = hu;
+        made.bone = bone_of_label(map, segment, how, options.run);
+        made.summary.hu = name_of(hu);
+        made.summary.notes = notes;
         made.summary.components = 1;
         measure(made.bone, made.summary);
         add_provenance(made.bone, options, made.summary, source_hash);
@@ -342,13 +367,11 @@ Bone import_bone(const ImportOptions& options, const ImportProgress& progress, I
     check(options);
     const Report report{progress};
     ImportSummary found;
-    const std::string kind = options.input.extension().string();
-    const bool is_ct = kind == ".nrrd" || kind == ".nhdr";
-    Bone bone = is_ct ? import_ct(options, report, found) : import_mesh(options, report, found);
+    Bone bone = is_volume_file(options.input) ? import_ct(options, report, found) : import_mesh(options, report, found);
     report(0.9, "measuring");
     measure(bone, found);
     add_provenance(bone, options, found, hash_of_file(options.input));
-    bone.name = options.input.stem().string();
+    bone.name = bone_name(options.input);
     bone.provenance["component"] = options.component;
     bone.provenance["fill"] = options.fill ? "true" : "false";
     if (!options.crop.empty()) bone.provenance["crop"] = options.crop + " mm";

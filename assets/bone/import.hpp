@@ -19,13 +19,16 @@ namespace tactus {
 
 /// What to import and how. Files are LPS and in mm.
 struct ImportOptions {
-    std::filesystem::path input;        ///< .nrrd, .nhdr, .stl, .ply or .obj
-    double threshold = 300.0;           ///< HU; bone is what lies at or above. 300 is common for cortex and dense cores
-    std::string crop;                   ///< "x0:x1,y0:y1,z0:z1" in mm, LPS; empty for everything
+    /// A volume that read_volume takes (NRRD, NIfTI, a DICOM folder or file, InVesalius), or .stl, .ply, .obj.
+    std::filesystem::path input;
+    std::string series;                 ///< DICOM: which, by its UID or the end of it
+    double threshold = 300.0;  ///< HU; bone is what lies at or above. 300 is common for cortex and dense cores
+    std::string crop;  ///< "x0:x1,y0:y1,z0:z1" in mm, LPS; empty for everything
     std::string component = "largest";  ///< "largest", "all", or how many of the largest
-    std::optional<std::string> unit;    ///< of a mesh's coordinates: "mm", "cm" or "m"; mm is assumed when it is plausible
-    std::optional<double> spacing;      ///< m, all axes; default: the CT's own; for meshes 0.4 mm or 1/400 of the extent
-    bool fill = true;                   ///< closed hollows below the threshold are inside the bone
+    std::optional<std::string>
+        unit;  ///< of a mesh's coordinates: "mm", "cm" or "m"; mm is assumed when it is plausible
+    std::optional<double> spacing;  ///< m, all axes; default: the CT's own; for meshes 0.4 mm or 1/400 of the extent
+    bool fill = true;  ///< closed hollows below the threshold are inside the bone
     /// HU = first · value + second, for volumes of scanner numbers.
     std::optional<std::pair<double, double>> rescale;
     /// kg/m³ throughout a mesh; default: an assumed cortex of 1800 over the outer 2 mm and a core of 400.
@@ -37,16 +40,17 @@ struct ImportOptions {
 
 /// What was imported, for people and programs.
 struct ImportSummary {
-    std::string frame;                ///< "LPS"
-    std::string hu;                   ///< "HU", "masked" (0 instead of air), "rescaled" or "none" (a mesh)
+    std::string frame;  ///< "LPS"
+    std::string hu;  ///< "calibrated", "masked" (0 instead of air) or "none" (a mesh)
     std::array<double, 3> voxel_mm{};
     std::array<int, 3> size{};
-    double bone_volume_mm3 = 0.0;     ///< enclosed by the surface
+    double bone_volume_mm3 = 0.0;  ///< enclosed by the surface
     double surface_area_mm2 = 0.0;
     struct {
         double min = 0.0, max = 0.0, mean = 0.0;
-    } density;                        ///< kg/m³ over the samples inside
-    std::size_t components = 0;       ///< found, before any were left out
+    } density;  ///< kg/m³ over the samples inside
+    std::size_t components = 0;  ///< found, before any were left out
+    std::vector<std::string> notes;  ///< what was set right or assumed, one sentence each
 };
 
 /// Called with the share done in [0, 1] and what is being done.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "assets/bone/bone.hpp"
+#include "assets/volume/scan_volume.hpp"
 #include "dsp/core/jobs.hpp"
 
 #include <optional>
@@ -10,13 +11,6 @@
 #include <vector>
 
 namespace tactus {
-
-/// A label and what people call it.
-struct Segment {
-    int label = 1;
-    std::string name;              ///< empty: "label N"
-    std::optional<Vec3> colour{};  ///< sRGB, 0 to 1; else one of a set of colours that are told apart easily
-};
 
 /// The colour of a label that has none of its own, sRGB.
 Vec3 label_colour(int label);

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
+#include "assets/mesh/mesh_readers.hpp"
 #include "dsp/core/error.hpp"
-
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-#include <assimp/Importer.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
+#include <charconv>
 #include <numeric>
 #include <tuple>
 
@@ -24,37 +21,18 @@ std::string lower_extension(const std::filesystem::path& path) {
     return text.empty() ? text : text.substr(1);
 }
 
-// A binary STL says how many triangles follow; a file that is shorter would be read past its end or half.
-void check_stl(const std::string& bytes, const std::string& file) {
-    const bool text =
-        bytes.starts_with("solid") && bytes.find("facet") != std::string::npos && bytes.find('\0') == std::string::npos;
-    if (text) {
-        if (bytes.find("endsolid") == std::string::npos)
-            throw Error(fmt::format("{}: cut short: no 'endsolid'; copy the file again", file));
-        return;
-    }
-    std::uint32_t triangles = 0;
-    if (bytes.size() >= 84) std::memcpy(&triangles, bytes.data() + 80, 4);
-    if (bytes.size() < 84 || bytes.size() < 84 + std::uint64_t{50} * triangles)
-        throw Error(fmt::format("{}: cut short or no STL: its header asks for {} triangles, {} bytes are there", file,
-                                triangles, bytes.size()));
+void check_numbers(const TriangleSurface& mesh, const std::string& file) {
+    for (const Vec3& v : mesh.vertices)
+        if (!is_finite(v) || std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) > 1e9)
+            throw Error(fmt::format("{}: a point's coordinates are not numbers; repair the mesh first", file));
+    for (const auto& t : mesh.triangles)
+        for (const int v : t)
+            if (v < 0 || static_cast<std::size_t>(v) >= mesh.vertices.size())
+                throw Error(fmt::format("{}: a triangle names a point that is not there", file));
 }
 
-// A PLY header that claims more elements than the file has bytes is refused before anything is made for them.
-void check_ply(const std::string& bytes, const std::string& file) {
-    const std::string_view header = std::string_view(bytes).substr(0, std::min<std::size_t>(bytes.size(), 65536));
-    if (!header.starts_with("ply") || header.find("end_header") == std::string_view::npos)
-        throw Error(fmt::format("{}: no PLY header", file));
-    for (std::size_t at = header.find("element "); at != std::string_view::npos; at = header.find("element ", at + 1)) {
-        const std::size_t number = header.find(' ', at + 8);
-        if (number == std::string_view::npos) break;
-        const double count = std::strtod(std::string(header.substr(number + 1, 24)).c_str(), nullptr);
-        if (!(count >= 0.0) || count > static_cast<double>(bytes.size()))
-            throw Error(fmt::format("{}: cut short: its header asks for more elements than the file has bytes", file));
-    }
-}
-
-void join_equal_points(Mesh& mesh) {
+// Returns how many triangles had no area and were dropped.
+std::size_t join_equal_points(TriangleSurface& mesh) {
     std::vector<int> order(mesh.vertices.size());
     std::iota(order.begin(), order.end(), 0);
     const auto key = [&mesh](int n) {
@@ -72,45 +50,54 @@ void join_equal_points(Mesh& mesh) {
     mesh.vertices = std::move(kept);
     for (auto& t : mesh.triangles)
         for (int& v : t) v = renamed[static_cast<std::size_t>(v)];
-    std::erase_if(mesh.triangles, [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+    return std::erase_if(mesh.triangles, [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
 }
 
 }  // namespace
 
-Mesh load_mesh(const std::filesystem::path& path, double scale) {
+std::optional<Frame> stated_frame(std::string_view text) {
+    if (text.find("SPACE=RAS") != std::string_view::npos) return Frame::ras;
+    if (text.find("SPACE=LPS") != std::string_view::npos) return Frame::lps;
+    return {};
+}
+
+std::string_view Words::next() {
+    constexpr std::string_view blanks = " \t\r\n\v\f";
+    at_ = std::min(text_.find_first_not_of(blanks, at_), text_.size());
+    const std::size_t end = std::min(text_.find_first_of(blanks, at_), text_.size());
+    const std::string_view word = text_.substr(at_, end - at_);
+    at_ = end;
+    return word;
+}
+
+double Words::number(const std::string& file) {
+    std::string_view word = next();
+    if (word.starts_with('+')) word.remove_prefix(1);
+    double value = 0.0;
+    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (code == std::errc::result_out_of_range) return value;
+    if (word.empty()) throw Error(fmt::format("{}: cut short; copy the file again", file));
+    if (code != std::errc{} || end != word.data() + word.size())
+        throw Error(fmt::format("{}: '{}' is no number", file, word.substr(0, 40)));
+    return value;
+}
+
+Mesh load_mesh(const std::filesystem::path& path, double scale, MeshOrigin* origin) {
     const std::string file = path.string(), kind = lower_extension(path);
     if (kind != "stl" && kind != "ply" && kind != "obj")
         throw Error(fmt::format("{}: a mesh is read from .stl, .ply or .obj", file));
     const std::string bytes = read_whole_file(path);
-    if (kind == "stl") check_stl(bytes, file);
-    if (kind == "ply") check_ply(bytes, file);
-    Assimp::Importer importer;
-    const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, kind.c_str());
-    if (!scene) throw Error(fmt::format("{}: cannot be read: {}", file, importer.GetErrorString()));
+    MeshText text = kind == "stl"   ? read_stl(bytes, file)
+                    : kind == "ply" ? read_ply(bytes, file)
+                                    : read_obj(bytes, file);
+    check_numbers(text.surface, file);
+    MeshOrigin found{text.frame.value_or(Frame::lps), text.frame.has_value(), 0};
+    for (Vec3& v : text.surface.vertices) v = (found.frame == Frame::ras ? turned_about_z(v) : v) * scale;
+    found.without_area = join_equal_points(text.surface);
+    if (text.surface.triangles.empty()) throw Error(fmt::format("{}: holds no triangles", file));
+    if (origin) *origin = found;
     Mesh mesh;
-    for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
-        const aiMesh& part = *scene->mMeshes[m];
-        const int first = static_cast<int>(mesh.vertices.size());
-        for (unsigned v = 0; v < part.mNumVertices; ++v) {
-            const aiVector3D& p = part.mVertices[v];
-            mesh.vertices.push_back(Vec3(p.x, p.y, p.z) * scale);
-            if (!is_finite(mesh.vertices.back()))
-                throw Error(fmt::format("{}: a point's coordinates are not numbers; repair the mesh first", file));
-        }
-        for (unsigned f = 0; f < part.mNumFaces; ++f) {
-            const aiFace& face = part.mFaces[f];
-            if (face.mNumIndices != 3) continue;
-            std::array<int, 3> t{};
-            for (unsigned c = 0; c < 3; ++c) {
-                if (face.mIndices[c] >= part.mNumVertices)
-                    throw Error(fmt::format("{}: a triangle names a point that is not there", file));
-                t[c] = first + static_cast<int>(face.mIndices[c]);
-            }
-            mesh.triangles.push_back(t);
-        }
-    }
-    join_equal_points(mesh);
-    if (mesh.triangles.empty()) throw Error(fmt::format("{}: holds no triangles", file));
+    static_cast<TriangleSurface&>(mesh) = std::move(text.surface);
     return mesh;
 }
 

@@ -2,6 +2,7 @@
 // Triangle meshes: from files, from a distance grid, and what can be measured on them.
 #pragma once
 
+#include "assets/volume/patient_frame.hpp"
 #include "dsp/distance/iso_surface.hpp"
 
 #include <cstddef>
@@ -14,9 +15,17 @@ struct Mesh : TriangleSurface {
     std::vector<Vec3> normals;  ///< empty or one per vertex
 };
 
-/// STL (binary, text), PLY or OBJ. Coordinates as in the file, times `scale`; equal points are joined, triangles
-/// without area dropped. Throws Error for damaged files, coordinates that are no numbers and files without triangles.
-Mesh load_mesh(const std::filesystem::path& path, double scale = 1.0);
+/// What load_mesh found in a file besides its triangles.
+struct MeshOrigin {
+    Frame frame = Frame::lps;       ///< what the coordinates were in
+    bool frame_stated = false;      ///< by "SPACE=RAS" or "SPACE=LPS" in a header or comment; else LPS is assumed
+    std::size_t without_area = 0;   ///< triangles dropped, for two of their corners are one point
+};
+
+/// STL (binary, text), PLY or OBJ. Coordinates in LPS, times `scale`, in double precision as they stand in the file;
+/// equal points are joined, triangles without area dropped. Throws Error for damaged files, coordinates that are no
+/// numbers and files without triangles. `origin` may be null.
+Mesh load_mesh(const std::filesystem::path& path, double scale = 1.0, MeshOrigin* origin = nullptr);
 
 /// The zero surface of a signed distance (m, negative inside) with normals from its gradient.
 Mesh surface_of(const Grid& distance);

@@ -60,8 +60,7 @@ TEST_CASE("the bundled saw shakes as hard as saws are known to, and its noise sw
     CHECK(rms(find(set, 233.0, 12.0)) == Approx(182.0).epsilon(0.01));
     // A stroke of constant length: acceleration goes with the square of the rate.
     CHECK(rms(find(set, 150.0, 0.0)) == Approx(90.5 * std::pow(150.0 / 233.0, 2)).epsilon(0.01));
-    for (const double rate : {150.0, 190.0, 233.0})
-        CHECK(rms(find(set, rate, 3.0)) < rms(find(set, rate, 7.0)));
+    for (const double rate : {150.0, 190.0, 233.0}) CHECK(rms(find(set, rate, 3.0)) < rms(find(set, rate, 7.0)));
 
     // Power of the sound above 400 Hz by place in the cycle: great at mid-stroke, small at the ends.
     const Recording& loud = find(set, 150.0, 12.0);

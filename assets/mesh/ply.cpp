@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/mesh/mesh_readers.hpp"
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+namespace tactus {
+
+namespace {
+
+enum class Coding { text, little, big };
+
+struct Property {
+    std::string name;
+    std::string type;
+    std::string count_type;  // of a list; empty for one number
+};
+
+struct Element {
+    std::string name;
+    double count = 0.0;
+    std::vector<Property> properties;
+};
+
+struct Header {
+    Coding coding = Coding::text;
+    std::vector<Element> elements;
+    std::size_t size = 0;
+};
+
+// Numbers in the body, in whichever coding.
+class Body {
+public:
+    Body(std::string_view bytes, Coding coding, const std::string& file)
+        : bytes_(bytes), words_(bytes), coding_(coding), file_(file) {}
+
+    double number(std::string_view type) {
+        if (coding_ == Coding::text) return words_.number(file_);
+        if (type == "char" || type == "int8") return take<std::int8_t>();
+        if (type == "uchar" || type == "uint8") return take<std::uint8_t>();
+        if (type == "short" || type == "int16") return take<std::int16_t>();
+        if (type == "ushort" || type == "uint16") return take<std::uint16_t>();
+        if (type == "int" || type == "int32") return take<std::int32_t>();
+        if (type == "uint" || type == "uint32") return take<std::uint32_t>();
+        if (type == "float" || type == "float32") return static_cast<double>(take<float>());
+        if (type == "double" || type == "float64") return take<double>();
+        throw Error(fmt::format("{}: numbers of PLY type '{}' are not known", file_, type));
+    }
+
+private:
+    template <typename T>
+    T take() {
+        if (bytes_.size() - at_ < sizeof(T)) throw Error(fmt::format("{}: cut short; copy the file again", file_));
+        std::array<char, sizeof(T)> raw;
+        std::memcpy(raw.data(), bytes_.data() + at_, sizeof(T));
+        at_ += sizeof(T);
+        if ((coding_ == Coding::big) != (std::endian::native == std::endian::big)) std::reverse(raw.begin(), raw.end());
+        return std::bit_cast<T>(raw);
+    }
+
+    std::string_view bytes_;
+    Words words_;
+    Coding coding_;
+    const std::string& file_;
+    std::size_t at_ = 0;
+};
+
+std::string_view line_at(std::string_view bytes, std::size_t& at) {
+    const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
+    std::string_view line = bytes.substr(at, end - at);
+    at = std::min(end + 1, bytes.size());
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    return line;
+}
+
+Header header_of(std::string_view bytes, const std::string& file, std::optional<Frame>& frame) {
+    Header header;
+    std::size_t at = 0;
+    bool has_coding = false;
+    if (line_at(bytes, at) != "ply") throw Error(fmt::format("{}: no PLY header", file));
+    while (at < bytes.size() && at < 65536) {
+        const std::string_view line = line_at(bytes, at);
+        Words words(line);
+        const std::string_view first = words.next();
+        if (first == "end_header") {
+            if (!has_coding) throw Error(fmt::format("{}: no 'format' line in its PLY header", file));
+            header.size = at;
+            return header;
+        }
+        if (first == "comment" || first == "obj_info") {
+            if (const auto stated = stated_frame(line)) frame = stated;
+        } else if (first == "format") {
+            const std::string_view name = words.next();
+            if (name != "ascii" && name != "binary_little_endian" && name != "binary_big_endian")
+                throw Error(fmt::format("{}: PLY format '{}' is not known", file, name));
+            header.coding = name == "ascii" ? Coding::text : name == "binary_big_endian" ? Coding::big : Coding::little;
+            has_coding = true;
+        } else if (first == "element") {
+            Element& element = header.elements.emplace_back();
+            element.name = words.next();
+            element.count = words.number(file);
+            if (!(element.count >= 0.0 && element.count <= static_cast<double>(bytes.size())))
+                throw Error(
+                    fmt::format("{}: cut short: its header asks for more elements than the file has bytes", file));
+        } else if (first == "property") {
+            if (header.elements.empty())
+                throw Error(fmt::format("{}: a property of no element in its PLY header", file));
+            Property property;
+            property.type = words.next();
+            if (property.type == "list") {
+                property.count_type = words.next();
+                property.type = words.next();
+            }
+            property.name = words.next();
+            header.elements.back().properties.push_back(property);
+        }
+    }
+    throw Error(fmt::format("{}: no end of its PLY header", file));
+}
+
+void read_element(Body& body, const Element& element, const std::string& file, TriangleSurface& surface) {
+    const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
+    if (element.properties.empty()) return;
+    for (double n = 0.0; n < element.count; n += 1.0) {
+        Vec3 point(0.0);
+        for (const Property& property : element.properties) {
+            if (property.count_type.empty()) {
+                const double value = body.number(property.type);
+                if (is_vertex && property.name == "x") point.x = value;
+                if (is_vertex && property.name == "y") point.y = value;
+                if (is_vertex && property.name == "z") point.z = value;
+                continue;
+            }
+            const double count = body.number(property.count_type);
+            const bool corners = is_face && (property.name == "vertex_indices" || property.name == "vertex_index");
+            int first = 0, last = 0;
+            for (double c = 0.0; c < count; c += 1.0) {
+                const double value = body.number(property.type);
+                if (!corners) continue;
+                if (!(value >= 0.0 && value < 2147483647.0))
+                    throw Error(fmt::format("{}: a triangle names a point that is not there", file));
+                const int index = static_cast<int>(value);
+                if (c == 0.0) first = index;
+                if (c >= 2.0) surface.triangles.push_back({first, last, index});
+                last = index;
+            }
+        }
+        if (is_vertex) surface.vertices.push_back(point);
+    }
+}
+
+}  // namespace
+
+MeshText read_ply(const std::string& bytes, const std::string& file) {
+    MeshText mesh;
+    const Header header = header_of(bytes, file, mesh.frame);
+    Body body(std::string_view(bytes).substr(header.size), header.coding, file);
+    for (const Element& element : header.elements) read_element(body, element, file, mesh.surface);
+    return mesh;
+}
+
+}  // namespace tactus

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The images in a DICOM file: what their headers say, and their samples.
+#pragma once
+
+#include "dsp/core/types.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus {
+
+/// One image: a file, or one frame of a multi-frame file. Lengths in mm, LPS, as in the standard.
+struct DicomImage {
+    std::filesystem::path file;
+    int frame = 0;                      ///< from 0
+    std::string instance, series, description, modality, rescale_type, syntax;
+    int rows = 0, columns = 0;
+    std::optional<Vec3> position;       ///< centre of the first sample
+    Vec3 along_row{0.0}, along_column{0.0};  ///< unit vectors; zero when not given
+    double row_spacing = 0.0, column_spacing = 0.0;  ///< between rows, between columns; 0 when not given
+    double slope = 1.0, intercept = 0.0;
+    bool has_rescale = false;
+    bool is_localizer = false;
+    bool is_inverted = false;  ///< MONOCHROME1: shown with low values bright; the values themselves mean the same
+};
+
+/// The images of a file, in the order of its frames; none when it holds no pictures (reports, DICOMDIR). Throws Error
+/// for pictures that claim more samples than the file can hold, or are not grey.
+std::vector<DicomImage> dicom_images(const std::filesystem::path& file);
+
+/// The samples of all frames of a file, rescaled by each frame's slope and intercept. Throws Error when they cannot be
+/// decoded. `images` are those of the file, as dicom_images gave them.
+std::vector<float> dicom_samples(const std::vector<DicomImage>& images);
+
+}  // namespace tactus

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// InVesalius projects: a gzip'ed tar of a property list, raw samples, and masks and surfaces, which are not read.
+#include "assets/volume/packed_file.hpp"
+#include "assets/volume/readers.hpp"
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <optional>
+
+namespace tactus {
+
+namespace {
+
+struct Entry {
+    std::string name;  // without folders
+    std::uint64_t size = 0;
+};
+
+// The next file of a tar archive, which is then read or skipped by entry.size rounded up to 512 bytes; none at its end.
+std::optional<Entry> next_entry(PackedFile& file, const std::string& name) {
+    std::array<char, 512> block;
+    if (file.read_some(block) != block.size()) return {};
+    if (block[0] == '\0') return {};
+    int sum = 0;
+    for (std::size_t n = 0; n < block.size(); ++n)
+        sum += n >= 148 && n < 156 ? ' ' : static_cast<unsigned char>(block[n]);
+    const std::string stated(&block[148], 8);
+    if (std::strtol(stated.c_str(), nullptr, 8) != sum)
+        throw Error(fmt::format("{}: no InVesalius project: what it packs is no tar archive", name));
+    Entry entry;
+    entry.name = std::string(block.data(), std::find(block.data(), block.data() + 100, '\0'));
+    entry.name = entry.name.substr(entry.name.rfind('/') + 1);
+    const char* first = std::find_if(&block[124], &block[136], [](char c) { return c != ' '; });
+    if (std::from_chars(first, &block[136], entry.size, 8).ec != std::errc{})
+        throw Error(fmt::format("{}: no InVesalius project: a file in it has no size", name));
+    return entry;
+}
+
+std::uint64_t padded(std::uint64_t size) { return (size + 511) / 512 * 512; }
+
+// Moves on to the file called `wanted`; returns its size.
+std::optional<std::uint64_t> find(PackedFile& file, const std::string& wanted, const std::string& name) {
+    while (const auto entry = next_entry(file, name)) {
+        if (entry->name == wanted) return entry->size;
+        if (static_cast<double>(entry->size) > file.most_bytes())
+            throw Error(fmt::format("{}: cut short: {} bytes in it cannot be there", name, entry->size));
+        file.skip(padded(entry->size));
+    }
+    return {};
+}
+
+// What stands between <tag> and </tag> behind <key>…</key>, whichever tag that is; "" when there is none.
+std::string_view value_of(std::string_view list, std::string_view key) {
+    const std::string marked = fmt::format("<key>{}</key>", key);
+    std::size_t at = list.find(marked);
+    if (at == std::string_view::npos) return {};
+    at = list.find('<', at + marked.size());
+    const std::size_t end = at == std::string_view::npos ? at : list.find('>', at);
+    if (end == std::string_view::npos) return {};
+    const std::string closing = fmt::format("</{}>", list.substr(at + 1, end - at - 1));
+    const std::size_t close = list.find(closing, end);
+    return close == std::string_view::npos ? std::string_view{} : list.substr(end + 1, close - end - 1);
+}
+
+// The numbers of an array, each in a tag of its own.
+std::vector<double> numbers_in(std::string_view text) {
+    std::vector<double> numbers;
+    for (std::size_t at = text.find('>'); at != std::string_view::npos; at = text.find('>', at + 1)) {
+        const std::string word(text.substr(at + 1, std::min<std::size_t>(text.find('<', at + 1) - at - 1, 40)));
+        char* end = nullptr;
+        const double number = std::strtod(word.c_str(), &end);
+        if (end != word.c_str()) numbers.push_back(number);
+    }
+    return numbers;
+}
+
+SampleType type_of(std::string_view dtype, const std::string& name) {
+    constexpr std::array<std::pair<std::string_view, SampleType::Kind>, 8> known{{{"int16", SampleType::int16},
+                                                                                  {"uint16", SampleType::uint16},
+                                                                                  {"uint8", SampleType::uint8},
+                                                                                  {"int8", SampleType::int8},
+                                                                                  {"int32", SampleType::int32},
+                                                                                  {"uint32", SampleType::uint32},
+                                                                                  {"float32", SampleType::float32},
+                                                                                  {"float64", SampleType::float64}}};
+    for (const auto& [word, kind] : known)
+        if (dtype == word) return {kind};
+    throw Error(fmt::format("{}: samples of type '{}' are not known", name, dtype));
+}
+
+std::string property_list(const std::filesystem::path& path) {
+    const std::string name = path.string();
+    PackedFile file(path);
+    if (!file.is_packed()) throw Error(fmt::format("{}: no InVesalius project: not packed with gzip", name));
+    const auto size = find(file, "main.plist", name);
+    if (!size || *size > 1'000'000)
+        throw Error(fmt::format("{}: no InVesalius project: main.plist is missing or too long", name));
+    std::string list(*size, '\0');
+    file.read(list);
+    return list;
+}
+
+}  // namespace
+
+ScanVolume read_inv3(const std::filesystem::path& path) {
+    const std::string name = path.string(), list = property_list(path);
+    const std::string_view matrix = value_of(list, "matrix");
+    const std::vector<double> shape = numbers_in(value_of(matrix, "shape")),
+                              spacing = numbers_in(value_of(list, "spacing"));
+    if (shape.size() != 3 || spacing.size() != 3)
+        throw Error(
+            fmt::format("{}: main.plist does not give the matrix's shape and the spacing, three numbers each", name));
+    for (const double n : shape)
+        if (!(n >= 1.0 && n <= 1e6)) throw Error(fmt::format("{}: {:g} samples along an axis cannot be", name, n));
+    const SampleType type = type_of(value_of(matrix, "dtype"), name);
+
+    ScanVolume volume;
+    volume.format = "InVesalius";
+    volume.source = path.filename().string();
+    volume.encoding = "gzip";
+    // The shape counts slices, rows, columns. Rows run from back to front, slices from the feet up.
+    for (std::size_t n = 0; n < 3; ++n) volume.size[n] = static_cast<int>(shape[2 - n]);
+    const std::size_t count = checked_count({volume.size[0], volume.size[1], volume.size[2]}, name);
+    volume.map.step = Mat3(0.0);
+    for (int axis = 0; axis < 3; ++axis)
+        volume.map.step[axis][axis] = spacing[static_cast<std::size_t>(axis)] * (axis == 1 ? -1e-3 : 1e-3);
+    check_map(volume.map, name);
+    volume.notes.push_back("the project does not say where the patient lay; its first voxel is the origin");
+
+    PackedFile file(path);
+    const auto size = find(file, std::string(value_of(matrix, "filename")), name);
+    if (!size) throw Error(fmt::format("{}: the matrix's file is missing in it", name));
+    if (*size != count * type.bytes() || static_cast<double>(*size) > file.most_bytes())
+        throw Error(fmt::format("{}: cut short: its shape asks for {} voxels, {} bytes are there", name, count, *size));
+    volume.values.resize(count);
+    read_samples(file, type, false, volume.values);
+    file.finish();
+    settle_meaning(volume, type.is_integer());
+    return volume;
+}
+
+}  // namespace tactus

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+// NIfTI-1 and NIfTI-2, one file with header and samples. Layout of the headers: nifti1.h and nifti2.h of the NIfTI
+// Data Format Working Group.
+#include "assets/volume/packed_file.hpp"
+#include "assets/volume/readers.hpp"
+#include "dsp/core/error.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+namespace tactus {
+
+namespace {
+
+constexpr int label_intent = 1002;
+
+// Numbers at fixed places of a header in either byte order.
+struct Fields {
+    std::vector<char> bytes;
+    bool swapped = false;
+
+    template <typename T>
+    T get(std::size_t at) const {
+        std::array<char, sizeof(T)> raw;
+        std::memcpy(raw.data(), bytes.data() + at, sizeof(T));
+        if (swapped) std::reverse(raw.begin(), raw.end());
+        T value;
+        std::memcpy(&value, raw.data(), sizeof(T));
+        return value;
+    }
+};
+
+// What both versions say, in one shape.
+struct Header {
+    std::array<std::int64_t, 8> dim{};
+    std::array<double, 8> pixdim{};
+    std::array<double, 3> quatern{}, offset{};
+    std::array<std::array<double, 4>, 3> rows{};
+    double vox_offset = 0.0, slope = 0.0, intercept = 0.0;
+    int datatype = 0, qform = 0, sform = 0, intent = 0, units = 0;
+};
+
+template <typename Whole, typename Real, typename Code>
+Header take(const Fields& f, std::array<std::size_t, 11> at) {
+    Header h;
+    const std::size_t real = sizeof(Real);
+    for (std::size_t n = 0; n < 8; ++n) h.dim[n] = f.get<Whole>(at[0] + n * sizeof(Whole));
+    for (std::size_t n = 0; n < 8; ++n) h.pixdim[n] = f.get<Real>(at[1] + n * real);
+    for (std::size_t n = 0; n < 3; ++n) {
+        h.quatern[n] = f.get<Real>(at[2] + n * real);
+        h.offset[n] = f.get<Real>(at[3] + n * real);
+        for (std::size_t c = 0; c < 4; ++c) h.rows[n][c] = f.get<Real>(at[4] + (4 * n + c) * real);
+    }
+    h.slope = f.get<Real>(at[5]);
+    h.intercept = f.get<Real>(at[6]);
+    h.datatype = f.get<std::int16_t>(at[7]);
+    h.qform = f.get<Code>(at[8]);
+    h.sform = f.get<Code>(at[9]);
+    h.intent = f.get<Code>(at[10]);
+    return h;
+}
+
+Header header_of(PackedFile& file, Fields& fields, const std::string& name) {
+    fields.bytes.resize(348);
+    file.read(fields.bytes);
+    const auto is_size = [&fields](std::int32_t size) {
+        fields.swapped = false;
+        if (fields.get<std::int32_t>(0) == size) return true;
+        fields.swapped = true;
+        return fields.get<std::int32_t>(0) == size;
+    };
+    if (is_size(348)) {
+        if (std::memcmp(&fields.bytes[344], "ni1", 4) == 0)
+            throw Error(
+                fmt::format("{}: the samples are in another file (.img); write one .nii file of the pair", name));
+        if (std::memcmp(&fields.bytes[344], "n+1", 4) != 0)
+            throw Error(
+                fmt::format("{}: no NIfTI but an older Analyze file, which does not say left from right", name));
+        Header h = take<std::int16_t, float, std::int16_t>(fields, {40, 76, 256, 268, 280, 112, 116, 70, 252, 254, 68});
+        h.vox_offset = fields.get<float>(108);
+        h.units = fields.bytes[123];
+        return h;
+    }
+    if (!is_size(540)) throw Error(fmt::format("{}: no NIfTI header", name));
+    fields.bytes.resize(540);
+    file.read(std::span(fields.bytes).subspan(348));
+    if (std::memcmp(&fields.bytes[4], "n+2", 4) != 0)
+        throw Error(fmt::format("{}: no NIfTI-2 file with header and samples in one", name));
+    Header h = take<std::int64_t, double, std::int32_t>(fields, {16, 104, 352, 376, 400, 176, 184, 12, 344, 348, 504});
+    h.vox_offset = static_cast<double>(fields.get<std::int64_t>(168));
+    h.units = fields.get<std::int32_t>(500);
+    return h;
+}
+
+SampleType type_of(int datatype, const std::string& name) {
+    switch (datatype) {
+        case 2: return {SampleType::uint8};
+        case 4: return {SampleType::int16};
+        case 8: return {SampleType::int32};
+        case 16: return {SampleType::float32};
+        case 64: return {SampleType::float64};
+        case 256: return {SampleType::int8};
+        case 512: return {SampleType::uint16};
+        case 768: return {SampleType::uint32};
+        case 1024: return {SampleType::int64};
+        case 1280: return {SampleType::uint64};
+        default: throw Error(fmt::format("{}: samples of NIfTI type {} are no plain numbers", name, datatype));
+    }
+}
+
+SampleMap<Frame::ras> from_rows(const Header& h, double unit) {
+    SampleMap<Frame::ras> map;
+    for (int n = 0; n < 3; ++n) {
+        const auto& row = h.rows[static_cast<std::size_t>(n)];
+        for (int axis = 0; axis < 3; ++axis) map.step[axis][n] = row[static_cast<std::size_t>(axis)] * unit;
+        map.origin[n] = row[3] * unit;
+    }
+    return map;
+}
+
+SampleMap<Frame::ras> from_quaternion(const Header& h, double unit) {
+    const double b = h.quatern[0], c = h.quatern[1], d = h.quatern[2];
+    const double a = std::sqrt(std::max(0.0, 1.0 - (b * b + c * c + d * d)));
+    const Mat3 rotation = glm::mat3_cast(glm::normalize(Quat(a, b, c, d)));
+    SampleMap<Frame::ras> map;
+    for (int axis = 0; axis < 3; ++axis) {
+        // The sign of pixdim[0] says whether the third axis is mirrored.
+        const double flip = axis == 2 && h.pixdim[0] < 0.0 ? -unit : unit;
+        map.step[axis] = rotation[axis] * (h.pixdim[static_cast<std::size_t>(axis) + 1] * flip);
+        map.origin[axis] = h.offset[static_cast<std::size_t>(axis)] * unit;
+    }
+    return map;
+}
+
+void read_geometry(const Header& h, ScanVolume& volume, const std::string& name) {
+    const int code = h.units & 7;
+    const double unit = code == 1 ? 1.0 : code == 3 ? 1e-6 : 1e-3;
+    if (h.sform <= 0 && h.qform <= 0)
+        throw Error(
+            fmt::format("{}: has neither sform nor qform, so nobody knows left from right; set one where the file "
+                        "was made",
+                        name));
+    const SampleMap<Frame::ras> map = h.sform > 0 ? from_rows(h, unit) : from_quaternion(h, unit);
+    volume.map = to_lps(map);
+    volume.file_frame = Frame::ras;
+    check_map(volume.map, name);
+    if (h.sform > 0 && h.qform > 0) {
+        const SampleMap<Frame::ras> other = from_quaternion(h, unit);
+        const Vec3 last(volume.size[0] - 1, volume.size[1] - 1, volume.size[2] - 1);
+        const double apart = std::max(glm::length(map(last) - other(last)), glm::length(map.origin - other.origin));
+        if (!(apart < 1e-4))
+            volume.notes.push_back(
+                fmt::format("sform and qform differ by {:.3g} mm; the sform was taken", apart * 1e3));
+    }
+}
+
+}  // namespace
+
+ScanVolume read_nifti(const std::filesystem::path& path) {
+    const std::string name = path.string();
+    PackedFile file(path);
+    Fields fields;
+    const Header h = header_of(file, fields, name);
+    if (h.dim[0] < 3 || h.dim[0] > 7) throw Error(fmt::format("{}: has {} axes, a volume has 3", name, h.dim[0]));
+    for (std::size_t n = 4; n <= static_cast<std::size_t>(h.dim[0]); ++n)
+        if (h.dim[n] != 1)
+            throw Error(fmt::format("{}: holds a series of {} volumes; take one of them out first", name, h.dim[n]));
+    const SampleType type = type_of(h.datatype, name);
+    const std::size_t count = checked_count({h.dim[1], h.dim[2], h.dim[3]}, name);
+    const auto header_size = static_cast<double>(fields.bytes.size());
+    if (!(h.vox_offset >= header_size && h.vox_offset <= 1e8))
+        throw Error(fmt::format("{}: the samples cannot start at byte {:g}", name, h.vox_offset));
+    if (h.vox_offset + static_cast<double>(count * type.bytes()) > file.most_bytes())
+        throw Error(
+            fmt::format("{}: cut short: its header asks for {} voxels, more than the file can hold", name, count));
+
+    ScanVolume volume;
+    volume.format = "NIfTI";
+    volume.source = path.filename().string();
+    volume.encoding = file.is_packed() ? "gzip" : "raw";
+    for (std::size_t n = 0; n < 3; ++n) volume.size[n] = static_cast<int>(h.dim[n + 1]);
+    read_geometry(h, volume, name);
+    file.skip(static_cast<std::uint64_t>(h.vox_offset) - fields.bytes.size());
+    volume.values.resize(count);
+    read_samples(file, type, fields.swapped, volume.values);
+    file.finish();
+    const bool scaled = std::isfinite(h.slope) && h.slope != 0.0 && (h.slope != 1.0 || h.intercept != 0.0);
+    if (scaled)
+        for (float& value : volume.values) value = static_cast<float>(h.slope * double(value) + h.intercept);
+    if (h.intent == label_intent) volume.kind = VolumeKind::labels;
+    settle_meaning(volume, type.is_integer() && !scaled);
+    return volume;
+}
+
+}  // namespace tactus

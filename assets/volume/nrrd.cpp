@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/volume/readers.hpp"
+#include "dsp/core/error.hpp"
+
+#include <teem/nrrd.h>
+
+#include <fmt/format.h>
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+
+namespace tactus {
+
+namespace {
+
+using NrrdPointer = std::unique_ptr<Nrrd, Nrrd* (*)(Nrrd*)>;
+using IoPointer = std::unique_ptr<NrrdIoState, NrrdIoState* (*)(NrrdIoState*)>;
+
+std::string teem_message() {
+    char* text = biffGetDone(NRRD);
+    std::string message = text ? text : "";
+    std::free(text);
+    while (!message.empty() && message.back() == '\n') message.pop_back();
+    return message.substr(message.rfind('\n') == std::string::npos ? 0 : message.rfind('\n') + 1);
+}
+
+// Bytes that hold samples, over all data files of the header.
+double bytes_on_disk(const std::filesystem::path& path, const NrrdIoState& io) {
+    std::error_code failure;
+    double sum = 0.0;
+    const auto add = [&](const std::filesystem::path& file) {
+        const auto size = std::filesystem::file_size(file, failure);
+        if (failure) throw Error(fmt::format("{}: its data file {} is not there", path.string(), file.string()));
+        sum += static_cast<double>(size);
+    };
+    if (io.dataFNFormat)
+        throw Error(fmt::format("{}: numbered data files are not read; join them with 'unu'", path.string()));
+    if (io.dataFNArr && io.dataFNArr->len > 0)
+        for (unsigned n = 0; n < io.dataFNArr->len; ++n) add(path.parent_path() / io.dataFN[n]);
+    else add(path);
+    return sum;
+}
+
+// The least number of file bytes per sample that an encoding can need; deflate cannot pack better than 1032 to 1.
+double least_bytes(const Nrrd& nrrd, const NrrdIoState& io) {
+    const double size = static_cast<double>(nrrdTypeSize[nrrd.type]);
+    if (io.encoding == nrrdEncodingGzip) return size / 1032.0;
+    if (io.encoding == nrrdEncodingRaw) return size;
+    if (io.encoding == nrrdEncodingAscii) return 1.5;
+    if (io.encoding == nrrdEncodingHex) return 2.0 * size;
+    return size / 10000.0;
+}
+
+// `first` is the first of the three axes of space; before it stands the axis of a segmentation's layers, if any.
+void read_geometry(const Nrrd& nrrd, unsigned first, ScanVolume& volume, const std::string& file) {
+    const bool is_ras = nrrd.space == nrrdSpaceRightAnteriorSuperior;
+    if (!is_ras && nrrd.space != nrrdSpaceLeftPosteriorSuperior && nrrd.space != nrrdSpaceLeftAnteriorSuperior)
+        throw Error(
+            fmt::format("{}: no usable 'space' (spacing and directions of the patient are unknown); write "
+                        "'space: left-posterior-superior', 'space directions' and 'space origin' into the header",
+                        file));
+    for (unsigned n = 0; n < 3; ++n)
+        if (nrrd.spaceUnits[n] && *nrrd.spaceUnits[n] && std::string_view(nrrd.spaceUnits[n]) != "mm")
+            throw Error(
+                fmt::format("{}: space units '{}' are not mm; rewrite the header in mm", file, nrrd.spaceUnits[n]));
+    SampleMap<Frame::lps> map;
+    for (unsigned n = 0; n < 3; ++n) {
+        const double flip = nrrd.space == nrrdSpaceLeftAnteriorSuperior && n == 1 ? -1e-3 : 1e-3;
+        const auto row = static_cast<int>(n);
+        for (unsigned axis = 0; axis < 3; ++axis)
+            map.step[static_cast<int>(axis)][row] = nrrd.axis[first + axis].spaceDirection[n] * flip;
+        map.origin[row] = nrrd.spaceOrigin[n] * flip;
+    }
+    if (!is_finite(map.origin)) map.origin = Vec3(0.0);  // none given
+    volume.map = is_ras ? to_lps(SampleMap<Frame::ras>{map.step, map.origin}) : map;
+    volume.file_frame = is_ras ? Frame::ras : Frame::lps;
+    check_map(volume.map, file);
+}
+
+std::string value_of(const Nrrd& nrrd, const std::string& key) {
+    char* text = nrrdKeyValueGet(&nrrd, key.c_str());
+    std::string value = text ? text : "";
+    std::free(text);
+    return value;
+}
+
+struct Layered {
+    Segment segment;
+    int layer = 0;
+};
+
+// What 3D Slicer says about the structures of a .seg.nrrd: Segment0_Name, Segment0_LabelValue, Segment0_Color, ...
+std::vector<Layered> segments_of(const Nrrd& nrrd) {
+    std::vector<Layered> found;
+    for (int n = 0; n < 100000; ++n) {
+        const std::string prefix = fmt::format("Segment{}_", n), label = value_of(nrrd, prefix + "LabelValue");
+        if (label.empty() && value_of(nrrd, prefix + "ID").empty()) break;
+        Layered& entry = found.emplace_back();
+        entry.segment.label = label.empty() ? n + 1 : std::atoi(label.c_str());
+        entry.layer = std::atoi(value_of(nrrd, prefix + "Layer").c_str());
+        entry.segment.name = value_of(nrrd, prefix + "Name");
+        Vec3 c;
+        if (std::sscanf(value_of(nrrd, prefix + "Color").c_str(), "%lf %lf %lf", &c.x, &c.y, &c.z) == 3 && is_finite(c))
+            entry.segment.colour = glm::clamp(c, 0.0, 1.0);
+    }
+    return found;
+}
+
+// Segments that overlap are stored in layers; in one label map each gets a number of its own, later ones on top.
+void flatten(const std::vector<float>& layered, std::size_t layers, std::vector<Layered>& segments,
+             ScanVolume& volume) {
+    volume.values.assign(volume.count(), 0.0f);
+    std::size_t covered = 0;
+    for (std::size_t s = 0; s < segments.size(); ++s) {
+        const float label = static_cast<float>(segments[s].segment.label);
+        const auto layer = static_cast<std::size_t>(segments[s].layer);
+        if (segments[s].layer < 0 || layer >= layers)
+            throw Error(fmt::format("{}: segment {} is in layer {}, but there are {}", volume.source, s,
+                                    segments[s].layer, layers));
+        for (std::size_t n = 0; n < volume.values.size(); ++n)
+            if (layered[n * layers + layer] == label) {
+                covered += volume.values[n] != 0.0f;
+                volume.values[n] = static_cast<float>(s + 1);
+            }
+        segments[s].segment.label = static_cast<int>(s) + 1;
+    }
+    volume.notes.push_back(fmt::format("{} layers of segments became one label map, numbered from 1", layers));
+    if (covered > 0)
+        volume.notes.push_back(fmt::format("{} voxels lie in several segments; the last one has them", covered));
+}
+
+void check_header(const Nrrd& header, const NrrdIoState& io, const std::filesystem::path& path, unsigned first) {
+    const std::string file = path.string();
+    if (nrrdTypeBlock == header.type) throw Error(fmt::format("{}: holds blocks, not numbers", file));
+    std::array<std::int64_t, 3> size{};
+    for (unsigned axis = 0; axis < 3; ++axis)
+        size[axis] = static_cast<std::int64_t>(std::min<std::size_t>(header.axis[first + axis].size, 1u << 30));
+    double count = 1.0;
+    for (unsigned axis = 0; axis < header.dim; ++axis) count *= static_cast<double>(header.axis[axis].size);
+    if (count * least_bytes(header, io) > bytes_on_disk(path, io) + 64.0)
+        throw Error(
+            fmt::format("{}: cut short: its header asks for {:.0f} voxels, more than the file can hold", file, count));
+    checked_count(size, file);
+    if (count > 2e9) throw Error(fmt::format("{}: {:.0f} samples in its layers are too many", file, count));
+}
+
+}  // namespace
+
+ScanVolume read_nrrd(const std::filesystem::path& path) {
+    const std::string file = path.string();
+    std::error_code failure;
+    if (!std::filesystem::is_regular_file(path, failure)) throw Error(fmt::format("{}: no such file", file));
+    const auto refuse = [&] { throw Error(fmt::format("{}: cannot be read as NRRD: {}", file, teem_message())); };
+
+    const NrrdPointer header(nrrdNew(), nrrdNuke);
+    const IoPointer io(nrrdIoStateNew(), nrrdIoStateNix);
+    nrrdIoStateSet(io.get(), nrrdIoStateSkipData, 1);
+    if (nrrdLoad(header.get(), file.c_str(), io.get())) refuse();
+    std::vector<Layered> segments = segments_of(*header);
+    const unsigned first = header->dim == 4 && !segments.empty() ? 1 : 0;
+    if (header->dim != 3 + first)
+        throw Error(
+            fmt::format("{}: has {} axes, a CT volume has 3 (take one frame with 'unu slice')", file, header->dim));
+    ScanVolume volume;
+    volume.format = "NRRD";
+    volume.source = path.filename().string();
+    volume.encoding = io->encoding->name;
+    read_geometry(*header, first, volume, file);
+    check_header(*header, *io, path, first);
+
+    const NrrdPointer nrrd(nrrdNew(), nrrdNuke);
+    if (nrrdLoad(nrrd.get(), file.c_str(), nullptr)) refuse();
+    for (unsigned axis = 0; axis < 3; ++axis) volume.size[axis] = static_cast<int>(nrrd->axis[first + axis].size);
+    const std::size_t layers = first == 1 ? nrrd->axis[0].size : 1;
+    std::vector<float> values(volume.count() * layers);
+    const auto lookup = nrrdFLookup[nrrd->type];
+    for (std::size_t n = 0; n < values.size(); ++n) values[n] = lookup(nrrd->data, n);
+    if (layers > 1 && first == 1) flatten(values, layers, segments, volume);
+    else volume.values = std::move(values);
+    for (const Layered& entry : segments) volume.segments.push_back(entry.segment);
+    settle_meaning(volume, nrrdTypeIsIntegral[nrrd->type] != 0);
+    return volume;
+}
+
+}  // namespace tactus

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/volume/packed_file.hpp"
+
+#include "dsp/core/error.hpp"
+
+#include <zlib.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <vector>
+
+namespace tactus {
+
+namespace {
+
+gzFile handle(void* file) { return static_cast<gzFile>(file); }
+
+template <typename T>
+void unpack(std::span<const char> bytes, bool swapped, std::span<float> values) {
+    for (std::size_t n = 0; n < values.size(); ++n) {
+        std::array<char, sizeof(T)> raw;
+        std::memcpy(raw.data(), bytes.data() + n * sizeof(T), sizeof(T));
+        if (swapped) std::reverse(raw.begin(), raw.end());
+        T value;
+        std::memcpy(&value, raw.data(), sizeof(T));
+        values[n] = static_cast<float>(value);
+    }
+}
+
+void unpack(std::span<const char> bytes, SampleType type, bool swapped, std::span<float> values) {
+    switch (type.kind) {
+        case SampleType::uint8: return unpack<std::uint8_t>(bytes, swapped, values);
+        case SampleType::int8: return unpack<std::int8_t>(bytes, swapped, values);
+        case SampleType::uint16: return unpack<std::uint16_t>(bytes, swapped, values);
+        case SampleType::int16: return unpack<std::int16_t>(bytes, swapped, values);
+        case SampleType::uint32: return unpack<std::uint32_t>(bytes, swapped, values);
+        case SampleType::int32: return unpack<std::int32_t>(bytes, swapped, values);
+        case SampleType::uint64: return unpack<std::uint64_t>(bytes, swapped, values);
+        case SampleType::int64: return unpack<std::int64_t>(bytes, swapped, values);
+        case SampleType::float32: return unpack<float>(bytes, swapped, values);
+        case SampleType::float64: return unpack<double>(bytes, swapped, values);
+    }
+}
+
+}  // namespace
+
+PackedFile::PackedFile(const std::filesystem::path& path) : name_(path.string()) {
+    std::error_code failure;
+    if (!std::filesystem::is_regular_file(path, failure)) throw Error(fmt::format("{}: no such file", name_));
+    size_ = static_cast<double>(std::filesystem::file_size(path, failure));
+    file_ = gzopen(name_.c_str(), "rb");
+    if (failure || !file_) throw Error(fmt::format("{}: cannot be read", name_));
+    gzbuffer(handle(file_), 1u << 18);
+    gzdirect(handle(file_));  // looks at the first bytes
+}
+
+PackedFile::~PackedFile() { gzclose_r(handle(file_)); }
+
+bool PackedFile::is_packed() const { return gzdirect(handle(file_)) == 0; }
+
+double PackedFile::most_bytes() const { return is_packed() ? size_ * 1032.0 : size_; }
+
+std::size_t PackedFile::read_some(std::span<char> out) {
+    std::size_t done = 0;
+    while (done < out.size()) {
+        const auto part = static_cast<unsigned>(std::min<std::size_t>(out.size() - done, 1u << 26));
+        const int got = gzread(handle(file_), out.data() + done, part);
+        if (got < 0) throw Error(fmt::format("{}: its packing is damaged; copy the file again", name_));
+        if (got == 0) break;
+        done += static_cast<std::size_t>(got);
+    }
+    return done;
+}
+
+void PackedFile::read(std::span<char> out) {
+    if (read_some(out) != out.size()) throw Error(fmt::format("{}: cut short; copy the file again", name_));
+}
+
+void PackedFile::skip(std::uint64_t bytes) {
+    std::array<char, 1 << 16> rest;
+    while (bytes > 0) {
+        const auto part = static_cast<std::size_t>(std::min<std::uint64_t>(bytes, rest.size()));
+        read(std::span(rest).first(part));
+        bytes -= part;
+    }
+}
+
+void PackedFile::finish() {
+    std::array<char, 1 << 16> rest;
+    while (is_packed() && read_some(rest) > 0) {
+    }
+    int code = Z_OK;
+    gzerror(handle(file_), &code);
+    if (code != Z_OK && code != Z_STREAM_END) throw Error(fmt::format("{}: cut short; copy the file again", name_));
+}
+
+std::size_t SampleType::bytes() const {
+    constexpr std::array<std::size_t, 10> sizes{1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
+    return sizes[static_cast<std::size_t>(kind)];
+}
+
+void read_samples(PackedFile& file, SampleType type, bool swapped, std::span<float> values) {
+    constexpr std::size_t at_once = 1 << 16;
+    std::vector<char> bytes(at_once * type.bytes());
+    for (std::size_t done = 0; done < values.size(); done += at_once) {
+        const std::size_t count = std::min(at_once, values.size() - done);
+        const auto part = std::span(bytes).first(count * type.bytes());
+        file.read(part);
+        unpack(part, type, swapped, values.subspan(done, count));
+    }
+}
+
+}  // namespace tactus

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/volume/readers.hpp"
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <fstream>
+
+namespace tactus {
+
+namespace {
+
+enum class Format { nrrd, nifti, inv3, dicom, none };
+
+bool ends_with(const std::filesystem::path& path, std::string_view ending) {
+    std::string name = path.filename().string();
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return name.ends_with(ending);
+}
+
+// The first bytes tell NRRD and DICOM; gzip'ed files and NIfTI go by their names.
+Format format_of(const std::filesystem::path& path) {
+    if (std::filesystem::is_directory(path)) return Format::dicom;
+    if (ends_with(path, ".nrrd") || ends_with(path, ".nhdr")) return Format::nrrd;
+    if (ends_with(path, ".nii") || ends_with(path, ".nii.gz")) return Format::nifti;
+    if (ends_with(path, ".inv3")) return Format::inv3;
+    if (ends_with(path, ".dcm") || ends_with(path, ".ima") || is_dicom_file(path)) return Format::dicom;
+    std::array<char, 7> mark{};
+    std::ifstream(path, std::ios::binary).read(mark.data(), mark.size());
+    return std::string_view(mark.data(), mark.size()) == "NRRD000" ? Format::nrrd : Format::none;
+}
+
+}  // namespace
+
+bool is_volume_file(const std::filesystem::path& path) { return format_of(path) != Format::none; }
+
+ScanVolume read_volume(const std::filesystem::path& path, const ReadOptions& options) {
+    if (!std::filesystem::exists(path)) throw Error(fmt::format("{}: no such file", path.string()));
+    switch (format_of(path)) {
+        case Format::nrrd: return read_nrrd(path);
+        case Format::nifti: return read_nifti(path);
+        case Format::inv3: return read_inv3(path);
+        case Format::dicom: return read_dicom(path, options);
+        case Format::none: break;
+    }
+    throw Error(fmt::format(
+        "{}: no volume that can be read: a DICOM folder or file, .nrrd, .nhdr, .nii, .nii.gz or .inv3", path.string()));
+}
+
+}  // namespace tactus

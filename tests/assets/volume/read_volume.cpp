@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/volume/scan_volume.hpp"
+
+#include "assets/bone/whole_file.hpp"
+#include "dsp/core/error.hpp"
+#include "tests/assets/bone/temporary_folder.hpp"
+#include "tests/assets/volume/written_volume.hpp"
+
+#include <zlib.h>
+#include <glm/geometric.hpp>
+
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+using namespace tactus;
+using Catch::Matchers::Contains;
+
+namespace {
+
+// Even HU that differ at each sample, none of them symmetric: a wrong order or direction shows.
+WrittenVolume ramp() {
+    WrittenVolume v;
+    v.size = {7, 6, 5};
+    v.step = Mat3(Vec3(0.5, 0.0, 0.0), Vec3(0.0, 0.6, 0.0), Vec3(0.0, 0.0, 1.5));
+    v.origin = {-3.0, 20.0, -100.0};
+    v.fill([](const Vec3& p) {
+        return -1000.0 + 2.0 * std::round(20.0 * (p.x + 3.0) + 3.0 * (p.y - 20.0) + p.z + 100.0);
+    });
+    return v;
+}
+
+void check_same(const ScanVolume& read, const WrittenVolume& v) {
+    const Grid grid = lps_grid(read);
+    REQUIRE(grid.size == v.size);
+    for (int k = 0; k < v.size[2]; ++k)
+        for (int j = 0; j < v.size[1]; ++j)
+            for (int i = 0; i < v.size[0]; ++i) REQUIRE(grid.at(i, j, k) == float(v.hu[grid.index(i, j, k)]));
+    CHECK(glm::length(grid.origin * 1e3 - v.origin) < 1e-4);
+    CHECK(glm::length(grid.position(6, 5, 4) * 1e3 - v.position(6, 5, 4)) < 1e-4);
+}
+
+struct Place {
+    TemporaryFolder folder;
+    std::filesystem::path write(const std::string& name, const std::string& bytes) const {
+        write_whole_file(folder / name, bytes);
+        return folder / name;
+    }
+    std::filesystem::path pack(const std::string& name, const std::string& bytes) const {
+        const gzFile file = gzopen((folder / name).c_str(), "wb");
+        gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size()));
+        gzclose(file);
+        return folder / name;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("the same samples lie at the same places in NRRD, NIfTI and DICOM") {
+    const Place place;
+    const WrittenVolume v = ramp();
+    check_same(read_volume(place.write("v.nrrd", nrrd_bytes(v))), v);
+    for (const bool second : {false, true})
+        for (const bool swapped : {false, true})
+            for (const bool quaternion : {false, true}) {
+                CAPTURE(second, swapped, quaternion);
+                const ScanVolume read =
+                    read_volume(place.pack("v.nii.gz", nifti_bytes(v, {second, swapped, quaternion})));
+                CHECK(read.file_frame == Frame::ras);
+                check_same(read, v);
+            }
+    check_same(read_volume(place.write("v.nii", nifti_bytes(v))), v);
+    write_dicom_folder(v, place.folder / "series");
+    const ScanVolume dicom = read_volume(place.folder / "series");
+    CHECK(dicom.hu == HuKind::calibrated);
+    CHECK(dicom.uniform);
+    check_same(dicom, v);
+    check_same(read_volume(place.folder / "series/000.dcm"), v);
+    check_same(read_volume(place.write("enhanced.dcm", enhanced_dicom_bytes(v))), v);
+}
+
+TEST_CASE("an InVesalius project has rows from back to front") {
+    const Place place;
+    const WrittenVolume v = ramp();
+    const ScanVolume read = read_volume(place.pack("v.inv3", inv3_tar(v)));
+    CHECK(read.values[7] == float(v.hu[7]));
+    CHECK(read.map.step[1].y == Approx(-0.6e-3));
+    const Grid grid = lps_grid(read);
+    CHECK(grid.at(0, 5, 0) == float(v.hu[0]));
+}
+
+TEST_CASE("rescale counts per slice, and inverted display changes no value") {
+    const Place place;
+    const WrittenVolume v = ramp();
+    for (int k = 0; k < v.size[2]; ++k) {
+        SliceStyle style;
+        style.photometric = "MONOCHROME1";
+        style.slope = k % 2 ? 2.0 : 1.0;
+        style.intercept = -1000.0 - 2.0 * k;
+        write_whole_file(place.folder / fmt::format("{}.dcm", k), dicom_bytes(v, k, style));
+    }
+    check_same(read_volume(place.folder.path), v);
+}
+
+TEST_CASE("a folder of several series asks which, and takes the one that is named") {
+    const Place place;
+    const WrittenVolume v = ramp();
+    SliceStyle other;
+    other.series = "9.8.7";
+    write_dicom_folder(v, place.folder / "a");
+    write_dicom_folder(v, place.folder / "b", other);
+    CHECK_THROWS_WITH(read_volume(place.folder.path), Contains("2 series") && Contains("--series") &&
+                                                          Contains("9.8.7  5 images") && Contains("1.2.3.4"));
+    check_same(read_volume(place.folder.path, {"9.8.7"}), v);
+    CHECK_THROWS_WITH(read_volume(place.folder.path, {"5.5"}), Contains("names 0"));
+    other.image_type = "ORIGINAL\\PRIMARY\\LOCALIZER";
+    std::filesystem::remove_all(place.folder / "b");
+    write_dicom_folder(v, place.folder / "b", other);
+    check_same(read_volume(place.folder.path), v);
+}
+
+TEST_CASE("duplicate slices count once; a slice that is missing, strange or elsewhere is named") {
+    const Place place;
+    const WrittenVolume v = ramp();
+    const auto folder = place.folder.path;
+    const auto put = [&](const std::string& name, const WrittenVolume& from, int k, const SliceStyle& style = {}) {
+        write_whole_file(folder / name, dicom_bytes(from, k, style));
+    };
+    write_dicom_folder(v, folder);
+    put("copy.dcm", v, 2);
+    const ScanVolume read = read_volume(folder);
+    check_same(read, v);
+    CHECK_THAT(read.notes.at(0), Contains("twice"));
+    WrittenVolume changed = v;
+    for (auto& value : changed.hu) value = static_cast<std::int16_t>(value + 10);
+    put("copy.dcm", changed, 2);
+    CHECK_THROWS_WITH(read_volume(folder), Contains("one place"));
+    std::filesystem::remove(folder / "copy.dcm");
+    std::filesystem::remove(folder / "740.dcm");
+    CHECK_THROWS_WITH(read_volume(folder), Contains("missing in 1 place") && Contains("3.00 mm apart"));
+    WrittenVolume small = v;
+    small.size[0] = 6;
+    put("740.dcm", small, 2);
+    CHECK_THROWS_WITH(read_volume(folder), Contains("different size"));
+    SliceStyle beside;
+    beside.shift = {0.7, 0.0, 0.0};
+    put("740.dcm", v, 2, beside);
+    CHECK_THROWS_WITH(read_volume(folder), Contains("0.70 mm beside"));
+}
+
+TEST_CASE("unevenly spaced slices are interpolated to even ones") {
+    const Place place;
+    WrittenVolume v = ramp();
+    v.size = {4, 4, 9};
+    v.fill([](const Vec3& p) { return -1000.0 + 20.0 * (p.z + 100.0); });
+    for (int k = 0; k < 9; ++k) {
+        // 1.5 mm in the lower half, 2.5 mm above.
+        const double z = k < 5 ? 0.0 : 1.0 * (k - 4);
+        WrittenVolume moved = v;
+        moved.origin.z += z;
+        moved.fill([](const Vec3& p) { return -1000.0 + 20.0 * (p.z + 100.0); });
+        write_whole_file(place.folder / fmt::format("{}.dcm", k), dicom_bytes(moved, k));
+    }
+    const ScanVolume read = read_volume(place.folder.path);
+    CHECK_FALSE(read.uniform);
+    CHECK_THAT(read.notes.at(0), Contains("interpolated"));
+    const Grid grid = lps_grid(read);
+    for (int k = 0; k < grid.size[2]; ++k) {
+        const double z = grid.position(0, 0, k).z * 1e3;
+        CHECK(grid.at(1, 1, k) == Approx(-1000.0 + 20.0 * (z + 100.0)).margin(0.1));
+    }
+    CHECK(grid.position(0, 0, grid.size[2] - 1).z * 1e3 == Approx(-100.0 + 16.0));
+}
+
+TEST_CASE("numbers that a scanner did not turn to HU are told apart") {
+    const Place place;
+    WrittenVolume v = ramp();
+    SliceStyle style;
+    style.rescale_type = "US";
+    write_dicom_folder(v, place.folder / "us", style);
+    CHECK(read_volume(place.folder / "us").hu == HuKind::scanner);
+    for (auto& value : v.hu) value = static_cast<std::int16_t>(value + 1000);
+    CHECK(read_volume(place.write("scanner.nrrd", nrrd_bytes(v))).hu == HuKind::scanner);
+    std::fill(v.hu.begin(), v.hu.end(), std::int16_t{0});
+    v.hu[100] = 3;
+    v.hu[101] = 1;
+    const ScanVolume labels = read_volume(place.write("labels.nrrd", nrrd_bytes(v)));
+    CHECK(labels.kind == VolumeKind::labels);
+    CHECK(labels.hu == HuKind::none);
+}
+
+TEST_CASE("a segmentation brings the names and colours of its segments, in one layer or several") {
+    const Place place;
+    const std::string fields =
+        "Segment0_ID:=a\nSegment0_Name:=Mandible\nSegment0_LabelValue:=1\nSegment0_Layer:=0\nSegment0_Color:=0.5 0.25 "
+        "1\n"
+        "Segment1_ID:=b\nSegment1_Name:=Teeth\nSegment1_LabelValue:=1\nSegment1_Layer:=1\n";
+    const std::string bytes =
+        "NRRD0004\ntype: unsigned char\ndimension: 4\nsizes: 2 2 2 2\nspace: left-posterior-superior\n"
+        "kinds: list domain domain domain\nspace directions: none (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n"
+        "encoding: raw\n" +
+        fields + "\n" + std::string("\1\0\1\1\0\1\0\0\0\0\0\0\0\0\0\0", 16);
+    const ScanVolume read = read_volume(place.write("s.seg.nrrd", bytes));
+    CHECK(read.kind == VolumeKind::labels);
+    REQUIRE(read.segments.size() == 2);
+    CHECK(read.segments[0].name == "Mandible");
+    CHECK(read.segments[0].colour->z == 1.0);
+    CHECK(read.segments[1].label == 2);
+    CHECK(read.values == std::vector<float>{1, 2, 2, 0, 0, 0, 0, 0});
+    CHECK_THAT(read.notes.back(), Contains("1 voxels lie in several"));
+}
+
+TEST_CASE("files cut anywhere, empty ones and headers that claim too much give one error") {
+    const Place place;
+    const WrittenVolume v = ramp();
+    const auto refuses = [&](const std::string& name, const std::string& bytes) {
+        CAPTURE(name, bytes.size());
+        CHECK_THROWS_AS(read_volume(place.write(name, bytes)), Error);
+    };
+    std::string packed;
+    {
+        place.pack("v.inv3", inv3_tar(v));
+        packed = read_whole_file(place.folder / "v.inv3");
+    }
+    const std::pair<std::string, std::string> files[] = {
+        {"c.nrrd", nrrd_bytes(v)}, {"c.nii", nifti_bytes(v)}, {"c.inv3", packed}, {"c.dcm", enhanced_dicom_bytes(v)}};
+    for (const auto& [name, whole] : files)
+        for (std::size_t length = 0; length < whole.size() - 1; length += 1 + whole.size() / 23)
+            refuses(name, whole.substr(0, length));
+    std::string huge = nifti_bytes(v);
+    for (const std::size_t at : {42, 44, 46}) huge.replace(at, 2, "\xe8\x03");  // 1000 along each axis
+    refuses("huge.nii", huge);
+    place.pack("huge.nii.gz", huge);
+    CHECK_THROWS_WITH(read_volume(place.folder / "huge.nii.gz"), Contains("1000000000 voxels"));
+    std::string wide = dicom_bytes(v, 0);
+    const std::string rows("\x28\0\x10\0US\2\0", 8);
+    wide.replace(wide.find(rows) + 8, 2, "\xff\x7f");
+    refuses("wide.dcm", wide);
+    CHECK_THROWS_WITH(read_volume(place.folder / "nothing.nii"), Contains("no such file"));
+    refuses("text.txt", "some text");
+}
