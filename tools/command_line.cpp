@@ -148,6 +148,14 @@ void add_equalise(CLI::App& app, EqualiseChoice& choice) {
     verb->add_flag("--json", choice.json, "as JSON");
 }
 
+void add_info(CLI::App& app, InfoChoice& choice) {
+    CLI::App* verb = app.add_subcommand("info", "what is in a CT, label map, mesh or bone file");
+    verb->add_option("file", choice.input, "the file")->required();
+    verb->add_option("--series", choice.series, "DICOM: the series to look at, by its UID or the end of it");
+    verb->add_option("-o,--out", choice.out, "a PNG of three slices and the surface: a file, or a folder to put it in");
+    verb->add_flag("--json", choice.json, "as JSON");
+}
+
 void add_export(CLI::App& app, ExportChoice& choice) {
     CLI::App* verb = app.add_subcommand("export", "write a bone, cut or not, as a mesh or a volume");
     verb->add_option("bone", choice.input, "bone file; FILE.vdb#NAME for one of several")->required();
@@ -222,6 +230,8 @@ int command_line(int argc, char** argv) {
 
     ImportChoice import;
     add_import(app, import);
+    InfoChoice info;
+    add_info(app, info);
     ExportChoice bone_export;
     add_export(app, bone_export);
     CompareChoice compare;
@@ -261,6 +271,7 @@ int command_line(int argc, char** argv) {
         if (app.got_subcommand("compare")) return compare_verb(compare);
         if (app.got_subcommand("measure")) return measure_verb(measure);
         if (app.got_subcommand("equalise")) return equalise_verb(equalise);
+        if (app.got_subcommand("info")) return info_verb(info);
         if (app.got_subcommand("export")) return export_verb(bone_export);
         return import_verb(import);
     } catch (const CLI::ParseError& error) {

@@ -136,6 +136,13 @@ struct BenchChoice {
     bool json = false;
 };
 
+struct InfoChoice {
+    std::filesystem::path input;
+    std::filesystem::path out;  ///< of the picture: a file, or a folder for INPUT.png; empty: none
+    std::string series;         ///< of a DICOM folder
+    bool json = false;
+};
+
 int render_verb(const RenderChoice& choice);
 int run_verb(const RunChoice& choice);
 int set_verb(const SetChoice& choice);
@@ -146,6 +153,7 @@ int nodes_verb(const std::string& type, bool json);
 int devices_verb(bool json);
 int import_verb(const ImportChoice& choice);
 int export_verb(const ExportChoice& choice);
+int info_verb(const InfoChoice& choice);
 
 int bench_engine_verb(const BenchChoice& choice);
 

@@ -12,10 +12,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <optional>
 #include <sstream>
+#include <streambuf>
 
 namespace tactus {
 
@@ -116,7 +119,94 @@ void add_text(openvdb::MetaMap& meta, const std::string& key, const std::string&
     meta.insertMeta(key, openvdb::StringMetadata(value));
 }
 
-std::string serialise(std::span<const Bone> bones) {
+// One that is made from the content keeps equal bones equal as files; OpenVDB draws a random one.
+std::string identifier_of(std::span<const Bone> bones) {
+    Hash hash;
+    for (const Bone& bone : bones) {
+        hash.add_text(bone.name);
+        for (const Grid* grid : {&bone.distance, &bone.density}) {
+            hash.add_bytes(grid->size.data(), sizeof grid->size);
+            hash.add_bytes(&grid->origin, sizeof grid->origin);
+            hash.add_bytes(&grid->spacing, sizeof grid->spacing);
+            hash.add_bytes(grid->values.data(), grid->values.size() * sizeof(float));
+        }
+    }
+    const std::uint64_t content = hash.value();
+    return fmt::format("{:08x}-{:04x}-4000-8000-{:012x}", content >> 32, content & 0xffff, content >> 16);
+}
+
+// Takes what OpenVDB writes to `path` + ".part" in blocks, so that a large bone is not in memory once more, with another
+// identifier and with the seal behind it. The file appears under its name by seal().
+class SealedFile final : public std::streambuf {
+public:
+    SealedFile(const std::filesystem::path& path, std::string identifier)
+        : path_(path), part_(path.string() + ".part"), identifier_(std::move(identifier)), block_(block_size, 0) {
+        errno = 0;
+        file_.open(part_, std::ios::binary | std::ios::trunc);
+        if (!file_) throw Error(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
+        setp(block_.data(), block_.data() + block_.size());
+    }
+    ~SealedFile() override {
+        std::error_code ignored;
+        if (!sealed_) std::filesystem::remove(part_, ignored);
+    }
+    SealedFile(const SealedFile&) = delete;
+    SealedFile& operator=(const SealedFile&) = delete;
+
+    void seal() {
+        flush_block();
+        const std::uint64_t hash = hash_.value();
+        file_ << seal_mark;
+        file_.write(reinterpret_cast<const char*>(&hash), sizeof hash);
+        file_.close();
+        if (!file_) fail();
+        if (std::rename(part_.c_str(), path_.c_str()) != 0) fail();
+        sealed_ = true;
+    }
+
+protected:
+    int_type overflow(int_type next) override {
+        flush_block();
+        if (!traits_type::eq_int_type(next, traits_type::eof())) sputc(traits_type::to_char_type(next));
+        return traits_type::not_eof(next);
+    }
+    // OpenVDB asks where it is; it goes nowhere else in a stream.
+    pos_type seekoff(off_type by, std::ios_base::seekdir from, std::ios_base::openmode) override {
+        if (by != 0 || from != std::ios_base::cur) return pos_type(off_type(-1));
+        return pos_type(static_cast<off_type>(written_ + static_cast<std::size_t>(pptr() - pbase())));
+    }
+
+private:
+    static constexpr std::size_t block_size = 1 << 20;  // whole words, so that the hash does not depend on it
+
+    [[noreturn]] void fail() const {
+        throw Error(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
+    }
+
+    void flush_block() {
+        const auto count = static_cast<std::size_t>(pptr() - pbase());
+        if (written_ == 0) {
+            if (count < identifier_offset + identifier_size) throw Error("OpenVDB wrote no header");
+            std::copy(identifier_.begin(), identifier_.end(), block_.begin() + identifier_offset);
+        }
+        hash_.add_bytes(block_.data(), count);
+        errno = 0;
+        file_.write(block_.data(), static_cast<std::streamsize>(count));
+        if (!file_.flush()) fail();
+        written_ += count;
+        setp(block_.data(), block_.data() + block_.size());
+    }
+
+    std::filesystem::path path_, part_;
+    std::string identifier_;
+    std::vector<char> block_;
+    std::ofstream file_;
+    Hash hash_;
+    std::size_t written_ = 0;
+    bool sealed_ = false;
+};
+
+void serialise(std::span<const Bone> bones, std::ostream& out) {
     openvdb::GridPtrVec grids;
     for (const Bone& bone : bones) {
         const std::string prefix = bones.size() > 1 ? bone.name + "." : "";
@@ -134,16 +224,7 @@ std::string serialise(std::span<const Bone> bones) {
     }
     openvdb::MetaMap meta;
     meta.insertMeta(format_key, openvdb::Int32Metadata(newest_format));
-    std::ostringstream out(std::ios::binary);
     openvdb::io::Stream(out).write(grids, meta);
-    std::string bytes = std::move(out).str();
-    // OpenVDB draws a random identifier per file; one made from the content keeps equal bones equal as files.
-    if (bytes.size() < identifier_offset + identifier_size) throw Error("OpenVDB wrote no header");
-    bytes.replace(identifier_offset, identifier_size, identifier_size, '0');
-    const std::uint64_t content = hash_of(bytes);
-    bytes.replace(identifier_offset, identifier_size,
-                  fmt::format("{:08x}-{:04x}-4000-8000-{:012x}", content >> 32, content & 0xffff, content >> 16));
-    return bytes;
 }
 
 std::string text_of(const openvdb::MetaMap& meta, const std::string& key) {
@@ -220,11 +301,12 @@ BonePath split(const std::filesystem::path& path) {
 void save_bones(std::span<const Bone> bones, const std::filesystem::path& path) {
     check(bones);
     openvdb::initialize();
-    std::string bytes = serialise(bones);
-    const std::uint64_t hash = hash_of(bytes);
-    bytes += seal_mark;
-    bytes.append(reinterpret_cast<const char*>(&hash), sizeof hash);
-    write_whole_file(path, bytes);
+    SealedFile file(path, identifier_of(bones));
+    std::ostream out(&file);
+    // What the file throws must reach the caller.
+    out.exceptions(std::ios::badbit);
+    serialise(bones, out);
+    file.seal();
 }
 
 void save_bone(const Bone& bone, const std::filesystem::path& path) { save_bones({&bone, 1}, path); }

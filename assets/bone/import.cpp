@@ -29,7 +29,7 @@ namespace tactus {
 namespace {
 
 constexpr double mm = 1e-3;
-constexpr double most_voxels = 2.5e8;
+constexpr double most_voxels = 4e8;
 
 struct Range {
     Vec3 low{-std::numeric_limits<double>::infinity()}, high{std::numeric_limits<double>::infinity()};  // m

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bones through the command: what is in a file, label maps in, meshes and volumes out.
+#include "assets/bone/bone.hpp"
+#include "assets/volume/write_volume.hpp"
+
+#include <catch2/catch.hpp>
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+namespace fs = std::filesystem;
+using namespace tactus;
+using nlohmann::json;
+
+namespace {
+
+struct Folder {
+    fs::path path = fs::temp_directory_path() / ("tactus_bones_" + std::to_string(::getpid()));
+    Folder() { fs::create_directories(path); }
+    ~Folder() { fs::remove_all(path); }
+
+    std::string operator/(const std::string& name) const { return (path / name).string(); }
+    static std::string slurp(const fs::path& file) {
+        std::ostringstream text;
+        text << std::ifstream(file, std::ios::binary).rdbuf();
+        return text.str();
+    }
+    struct Outcome {
+        int code;
+        std::string out, err;
+    };
+    Outcome tactus(const std::string& arguments) const {
+        const std::string command =
+            std::string(TACTUS_COMMAND) + " " + arguments + " >" + *this / "stdout" + " 2>" + *this / "stderr";
+        const int status = std::system(command.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(*this / "stdout"), slurp(*this / "stderr")};
+    }
+    json answer(const std::string& arguments) const {
+        const Outcome done = tactus(arguments);
+        INFO(arguments << "\n" << done.err);
+        REQUIRE(done.code == 0);
+        return json::parse(done.out);
+    }
+};
+
+constexpr double mm = 1e-3;
+
+// Two balls of 6 and 4 mm radius, far from the origin: HU, or labels 1 and 2.
+Grid two_balls(bool labels) {
+    Grid grid{{60, 36, 34}, Vec3(0.9, -0.2, 1.1), Vec3(0.5 * mm, 0.5 * mm, 0.6 * mm), {}};
+    for (int k = 0; k < 34; ++k)
+        for (int j = 0; j < 36; ++j)
+            for (int i = 0; i < 60; ++i) {
+                const Vec3 p = grid.position(i, j, k) - grid.origin;
+                const double a = glm::length(p - Vec3(8.5, 9.0, 10.0) * mm) - 6.0 * mm;
+                const double b = glm::length(p - Vec3(22.0, 9.0, 10.0) * mm) - 4.0 * mm;
+                const double tissue = k < 2 ? -1000.0 : 40.0;
+                const double hu = std::clamp(700.0 - 2e7 * std::min(a, b), tissue, 1400.0);
+                grid.values.push_back(static_cast<float>(labels ? (a < 0.0 ? 1.0 : b < 0.0 ? 2.0 : 0.0) : hu));
+            }
+    return grid;
+}
+
+double ball_mm3(double radius) { return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius; }
+
+}  // namespace
+
+TEST_CASE("info answers the same questions for a CT and a label map and a mesh and bones") {
+    const Folder folder;
+    write_volume(two_balls(false), SampleType::int16, folder / "ct.nrrd");
+    write_volume(two_balls(true), SampleType::int16, folder / "labels.nrrd");
+    REQUIRE(folder
+                .tactus("import " + folder / "labels.nrrd" + " --label all --ct " + folder / "ct.nrrd" + " -o " +
+                        folder / "two.vdb")
+                .code == 0);
+    REQUIRE(folder.tactus("export " + folder / "two.vdb" + " -o " + folder / "two.stl").code == 0);
+    const char* keys[] = {"kind",     "frame", "size",  "spacing_mm",          "uniform",
+                          "tilt_deg", "hu",    "range", "suggested_threshold", "components"};
+    for (const auto& [file, kind] : {std::pair<std::string, std::string>{"ct.nrrd", "ct"},
+                                     {"labels.nrrd", "labels"},
+                                     {"two.stl", "mesh"},
+                                     {"two.vdb", "bone"}}) {
+        const json found = folder.answer("info " + folder / file + " --json -o " + folder / "picture.png");
+        INFO(found.dump(2));
+        CHECK(found.size() == std::size(keys));
+        for (const char* key : keys) CHECK(found.contains(key));
+        CHECK(found["kind"] == kind);
+        CHECK(found["frame"] == "LPS");
+        REQUIRE(found["components"].size() == 2);
+        for (std::size_t n = 0; n < 2; ++n) {
+            const json& part = found["components"][n];
+            const double radius = n == 0 ? 6.0 : 4.0;
+            CHECK(part["volume_mm3"].get<double>() == Approx(ball_mm3(radius)).epsilon(0.04));
+            const json& x = part["bounds_mm"][0];
+            CHECK(x[1].get<double>() - x[0].get<double>() == Approx(2.0 * radius).margin(0.6));
+            CHECK(0.5 * (x[1].get<double>() + x[0].get<double>()) == Approx(n == 0 ? 908.5 : 922.0).margin(0.5));
+        }
+        CHECK(Folder::slurp(folder / "picture.png").substr(1, 3) == "PNG");
+        fs::remove(folder / "picture.png");
+    }
+    const json ct = folder.answer("info " + folder / "ct.nrrd --json");
+    CHECK(ct["size"] == json{60, 36, 34});
+    CHECK(ct["spacing_mm"][2].get<double>() == Approx(0.6));
+    CHECK(ct["hu"] == "calibrated");
+    CHECK(ct["suggested_threshold"].get<double>() > -500.0);
+    CHECK(ct["suggested_threshold"].get<double>() < 1300.0);
+}
+
+TEST_CASE("a label map goes in and comes out: import, load by name, export, import again") {
+    const Folder folder;
+    write_volume(two_balls(true), SampleType::int16, folder / "labels.nrrd");
+    const json made = folder.answer("import " + folder / "labels.nrrd --label all --json -o " + folder / "two.vdb");
+    REQUIRE(made["bones"].size() == 2);
+    CHECK(made["bones"][1]["label"] == 2);
+    CHECK(load_bone(folder / "two.vdb#label 2").provenance.at("label") == "2");
+    const json one = folder.answer("export " + folder / "two.vdb --bone 'label 2' --json -o " + folder / "b.ply");
+    CHECK(one["volume_mm3"].get<double>() == Approx(ball_mm3(4.0)).epsilon(0.04));
+    const json again = folder.answer("import " + folder / "b.ply --json -o " + folder / "b.vdb");
+    CHECK(again["bone_volume_mm3"].get<double>() == Approx(one["volume_mm3"].get<double>()).epsilon(0.02));
+    for (const char* refused : {"two.vdb -o x.obj", "two.vdb --bone 'label 7' -o x.stl", "absent.vdb -o x.stl"}) {
+        const std::string line = "export " + folder / refused;
+        CHECK(folder.tactus(line.substr(0, line.find(" -o ") + 4) + folder / line.substr(line.find(" -o ") + 4)).code ==
+              2);
+    }
+    CHECK(folder.tactus("import " + folder / "labels.nrrd --label 3 -o " + folder / "x.vdb").code == 2);
+    CHECK(
+        folder.tactus("import " + folder / "labels.nrrd --ct " + folder / "labels.nrrd -o " + folder / "x.vdb").code ==
+        2);
+    CHECK(folder.tactus("info " + folder / "absent.nrrd").code == 2);
+    CHECK_FALSE(fs::exists(folder / "x.vdb"));
+}
+
+TEST_CASE("a render leaves the cut bone; it is smaller and goes out as a mesh") {
+    const Folder folder;
+    REQUIRE(folder.tactus("render saw-training --seconds 3 --out " + folder / "saw").code == 0);
+    const Bone cut = load_bone(folder / "saw/bone.vdb");
+    const json mesh = folder.answer("export " + folder / "saw/bone.vdb --json -o " + folder / "cut.stl");
+    const json summary = json::parse(Folder::slurp(folder / "saw/summary.json"));
+    CHECK(mesh["volume_mm3"].get<double>() > 1000.0);
+    CHECK(summary["carve"]["removed_mm3"] > 20.0);
+    CHECK(std::count(summary["files"].begin(), summary["files"].end(), "bone.vdb") == 1);
+}
