@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/bone.hpp"
 
+#include "assets/bone/point_bytes.hpp"
 #include "assets/bone/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
@@ -30,6 +31,7 @@ constexpr std::string_view provenance_prefix = "provenance.";
 // Files without this number hold one bone whose name and provenance stand in the file's own metadata.
 constexpr const char* format_key = "tactus_format";
 constexpr std::int32_t newest_format = 2;
+constexpr const char* points_key = "points";
 // Magic (8), file version (4), library version (8) and one flag stand before OpenVDB's identifier.
 constexpr std::size_t identifier_offset = 21, identifier_size = 36;
 
@@ -217,6 +219,7 @@ void serialise(std::span<const Bone> bones, std::ostream& out) {
         add_text(*density, "quantity", "density");
         for (const auto& grid : {distance, density}) add_text(*grid, "bone", bone.name);
         distance->insertMeta("colour", openvdb::Vec3DMetadata({bone.colour.x, bone.colour.y, bone.colour.z}));
+        if (!bone.points.empty()) add_text(*distance, points_key, to_bytes(bone.points));
         for (const auto& [key, value] : bone.provenance)
             add_text(*distance, std::string(provenance_prefix) + key, value);
         grids.push_back(distance);
@@ -274,6 +277,8 @@ std::vector<Bone> deserialise(std::string bytes, const std::string& file) {
         read_provenance(version == 1 ? *meta : *parts.distance, bone);
         if (const auto colour = parts.distance->getMetadata<openvdb::Vec3DMetadata>("colour"))
             bone.colour = {colour->value().x(), colour->value().y(), colour->value().z()};
+        if (const std::string points = text_of(*parts.distance, points_key); !points.empty())
+            bone.points = points_from(points, file);
         bone.distance = from_vdb(*parts.distance, file);
         parts.distance.reset();
         bone.density = from_vdb(*parts.density, file);

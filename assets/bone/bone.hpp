@@ -2,6 +2,7 @@
 // What a bone is: a signed distance and a density on one grid, and where they came from; files of one or several bones.
 #pragma once
 
+#include "dsp/contact/pointshell.hpp"
 #include "dsp/volume/grid.hpp"
 
 #include <filesystem>
@@ -21,10 +22,13 @@ struct Bone {
 
     /// Where it came from, as text: source, hash, options, calibration, frame ("LPS"), hu ("calibrated", "masked", ...).
     std::map<std::string, std::string> provenance;
+
+    /// Points of its surface for contact, with outward normals, areas and labels; often none. Frame as the grids'.
+    std::vector<SurfacePoint> points;
 };
 
 /// Writes one OpenVDB file. A single bone's float grids are called "distance" and "density", those of several
-/// "NAME.distance" and "NAME.density"; colour and provenance are metadata of the distance grid. All bones of a file
+/// "NAME.distance" and "NAME.density"; colour, provenance and surface points are metadata of the distance grid. All bones of a file
 /// share one frame; their grids may differ. The same bones give the same bytes. A checksum follows the OpenVDB data;
 /// other programs do not read that far. The file appears whole or not at all. Throws Error when a bone's grids do not
 /// match, when two bones have the same name, when there is none, or when the file cannot be written.

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/bone/point_bytes.hpp"
+
+#include "assets/bone/bone.hpp"
+#include "dsp/core/error.hpp"
+#include "tests/assets/bone/temporary_folder.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+using namespace tactus;
+using Catch::Matchers::Contains;
+
+namespace {
+
+std::vector<SurfacePoint> some_points(int count) {
+    std::vector<SurfacePoint> points;
+    for (int i = 0; i < count; ++i)
+        points.push_back({Vec3(i / 3.0, -1e-3 * i, 0.1), Vec3(0.6, std::sqrt(0.64), 0.0), 1e-7 / (i + 1),
+                          static_cast<std::uint8_t>(i % 3)});
+    return points;
+}
+
+bool same(const std::vector<SurfacePoint>& a, const std::vector<SurfacePoint>& b) {
+    if (a.size() != b.size()) return false;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        if (a[i].position != b[i].position || a[i].normal != b[i].normal || a[i].area != b[i].area ||
+            a[i].label != b[i].label)
+            return false;
+    return true;
+}
+
+}  // namespace
+
+TEST_CASE("surface points are saved with their bone, and come back bit for bit") {
+    const TemporaryFolder folder;
+    Bone bone;
+    bone.name = "block";
+    bone.distance = {{2, 3, 2}, Vec3(0.0), Vec3(1e-3), std::vector<float>(12, 1e-3f)};
+    bone.density = bone.distance;
+    bone.points = some_points(1000);
+    Bone other = bone;
+    other.name = "bare";
+    other.points.clear();
+    save_bones(std::vector{bone, other}, folder / "two.vdb");
+    const auto back = load_bones(folder / "two.vdb");
+    REQUIRE(back.size() == 2);
+    CHECK(same(back[0].points, bone.points));
+    CHECK(back[1].points.empty());
+}
+
+TEST_CASE("surface points that are damaged, too few, too many or of another format are refused") {
+    const std::string whole = to_bytes(some_points(5));
+    CHECK(same(points_from(whole, "f"), some_points(5)));
+    CHECK(points_from(to_bytes({}), "f").empty());
+    for (std::size_t length = 0; length < whole.size(); ++length)
+        CHECK_THROWS_AS(points_from(std::string_view(whole).substr(0, length), "f"), Error);
+    CHECK_THROWS_AS(points_from(whole + "x", "f"), Error);
+    std::string later = whole;
+    later[15] = '9';
+    CHECK_THROWS_WITH(points_from(later, "f.vdb"), Contains("f.vdb") && Contains("format"));
+    // A count of 2⁶³ takes no memory.
+    std::string many = whole;
+    many[23] = static_cast<char>(0x80);
+    CHECK_THROWS_AS(points_from(many, "f"), Error);
+    auto broken = some_points(3);
+    broken[1].area = std::nan("");
+    CHECK_THROWS_AS(points_from(to_bytes(broken), "f"), Error);
+}
