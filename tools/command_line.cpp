@@ -254,6 +254,13 @@ int command_line(int argc, char** argv) {
         ->check(CLI::Range(1, 1000));
     bench_engine_app->add_flag("--json", bench.json, "as JSON");
 
+    CLI::App* bench_contact_app =
+        bench_app->add_subcommand("contact", "time of a pointshell's point against a voxmap, beside OpenVDB");
+    bench_contact_app->add_option("--rounds", bench.rounds, "more rounds, steadier figures")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 1000));
+    bench_contact_app->add_flag("--json", bench.json, "as JSON");
+
     try {
         app.parse(argc, argv);
         if (*render_app) return render_verb(render);
@@ -264,6 +271,7 @@ int command_line(int argc, char** argv) {
         if (*draw_app) return draw_verb(draw, drawing);
         if (*nodes_app) return nodes_verb(type, nodes_json);
         if (*bench_engine_app) return bench_engine_verb(bench);
+        if (*bench_contact_app) return bench_contact_verb(bench);
         if (*devices_app) return devices_verb(devices_json);
         if (app.got_subcommand("spectrum")) return spectrum_verb(analysis.spectrum);
         if (app.got_subcommand("orders")) return orders_verb(analysis.orders);

@@ -156,6 +156,7 @@ int export_verb(const ExportChoice& choice);
 int info_verb(const InfoChoice& choice);
 
 int bench_engine_verb(const BenchChoice& choice);
+int bench_contact_verb(const BenchChoice& choice);
 
 /// Parses the command line and runs the verb.
 int command_line(int argc, char** argv);
