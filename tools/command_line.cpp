@@ -57,6 +57,10 @@ void add_import(CLI::App& app, ImportChoice& choice) {
             choice.rescale = {slope, intercept};
         },
         "scanner numbers to HU: SLOPE,INTERCEPT");
+    verb->add_option_function<double>(
+        "--pointshell", [&choice](const double& mm) { choice.pointshell = mm * 1e-3; },
+        "also spread points over the surface for contact, this far apart, mm");
+    verb->add_flag("--by-curvature", choice.pointshell_by_curvature, "points closer together where the surface turns");
     verb->add_option("--label", choice.label, "the file is a label map: a label's number or name, or all; a bone each");
     verb->add_option("--ct", choice.ct, "the CT a label map was drawn on: grey values for surface and density");
     verb->add_flag("--json", choice.json, "print a summary as JSON");

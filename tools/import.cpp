@@ -21,6 +21,7 @@ nlohmann::ordered_json json_of(const ImportSummary& s) {
             {"surface_area_mm2", s.surface_area_mm2},
             {"density", {{"min", s.density.min}, {"max", s.density.max}, {"mean", s.density.mean}}},
             {"components", s.components},
+            {"points", s.points},
             {"notes", s.notes}};
 }
 
@@ -28,10 +29,10 @@ std::string text_of(const ImportSummary& s) {
     std::string text = fmt::format(
         "{} x {} x {} voxels of {:.3g} x {:.3g} x {:.3g} mm\n  {:.0f} mm³ of bone, {:.0f} mm² of surface, {} "
         "component{} "
-        "found\n  density {:.0f} … {:.0f}, mean {:.0f} kg/m³ ({})\n",
+        "found\n  density {:.0f} … {:.0f}, mean {:.0f} kg/m³ ({})\n{}",
         s.size[0], s.size[1], s.size[2], s.voxel_mm[0], s.voxel_mm[1], s.voxel_mm[2], s.bone_volume_mm3,
         s.surface_area_mm2, s.components, s.components == 1 ? "" : "s", s.density.min, s.density.max, s.density.mean,
-        s.hu);
+        s.hu, s.points ? fmt::format("  {} points on the surface\n", s.points) : "");
     for (const std::string& note : s.notes) text += fmt::format("  {}\n", note);
     return text;
 }

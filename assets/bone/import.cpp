@@ -8,6 +8,7 @@
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/repair.hpp"
 #include "assets/volume/scan_volume.hpp"
+#include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
 #include "dsp/distance/resample.hpp"
@@ -231,6 +232,15 @@ Bone import_mesh(const ImportOptions& options, const Report& report, ImportSumma
     return bone;
 }
 
+void add_points(Bone& bone, const ImportOptions& options, ImportSummary& summary) {
+    if (!options.pointshell) return;
+    bone.points = sample_surface(
+        bone.distance, {.spacing = *options.pointshell, .follow_curvature = options.pointshell_by_curvature});
+    bone.provenance["pointshell"] =
+        fmt::format("{} mm{}", *options.pointshell / mm, options.pointshell_by_curvature ? ", by curvature" : "");
+    summary.points = bone.points.size();
+}
+
 void measure(const Bone& bone, ImportSummary& summary) {
     const TriangleSurface surface = iso_surface(bone.distance, 0.0f, false);
     summary.frame = "LPS";
@@ -355,6 +365,7 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
         made.summary.notes = notes;
         made.summary.components = 1;
         measure(made.bone, made.summary);
+        add_points(made.bone, options, made.summary);
         add_provenance(made.bone, options, made.summary, source_hash);
         if (!options.ct.empty()) made.bone.provenance["ct"] = options.ct.filename().string();
         bones.push_back(std::move(made));
@@ -370,6 +381,7 @@ Bone import_bone(const ImportOptions& options, const ImportProgress& progress, I
     Bone bone = is_volume_file(options.input) ? import_ct(options, report, found) : import_mesh(options, report, found);
     report(0.9, "measuring");
     measure(bone, found);
+    add_points(bone, options, found);
     add_provenance(bone, options, found, hash_of_file(options.input));
     bone.name = bone_name(options.input);
     bone.provenance["component"] = options.component;

@@ -35,6 +35,8 @@ struct ImportOptions {
     std::optional<double> mesh_density;
     std::string label;          ///< a label map: "all", one label's number or its name
     std::filesystem::path ct;   ///< the CT that a label map was drawn on, in the same frame; may be empty
+    std::optional<double> pointshell;  ///< m: also spread points over the surface, about one per spacing²
+    bool pointshell_by_curvature = false;  ///< closer together where the surface turns
     RunJobs run = run_in_turn;  ///< on which threads; the result has the same bits on any
 };
 
@@ -50,6 +52,7 @@ struct ImportSummary {
         double min = 0.0, max = 0.0, mean = 0.0;
     } density;  ///< kg/m³ over the samples inside
     std::size_t components = 0;  ///< found, before any were left out
+    std::size_t points = 0;      ///< of the pointshell
     std::vector<std::string> notes;  ///< what was set right or assumed, one sentence each
 };
 

@@ -138,6 +138,18 @@ TEST_CASE("a CT sphere becomes a bone of its volume, area and density") {
     CHECK_THAT(ball.bone.provenance.at("calibration"), Contains("uncalibrated"));
 }
 
+TEST_CASE("asked for, an import has points spread over its surface") {
+    ImportOptions options;
+    options.pointshell = 0.5e-3;
+    const Imported ball = import_of(Ct{}, options);
+    CHECK(ball.summary.points == ball.bone.points.size());
+    CHECK(static_cast<double>(ball.summary.points) == Approx(4.0 * std::numbers::pi * 36.0 / 0.25).epsilon(0.12));
+    double area = 0.0;
+    for (const SurfacePoint& p : ball.bone.points) area += p.area;
+    CHECK(area * 1e6 == Approx(ball.summary.surface_area_mm2).epsilon(0.01));
+    CHECK(import_of(Ct{}).bone.points.empty());
+}
+
 TEST_CASE("sample type and byte order do not change a bone") {
     const Imported plain = import_of(Ct{});
     for (const std::string type : {"short", "float", "double"})
