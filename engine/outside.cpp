@@ -84,6 +84,11 @@ DevicePort& EngineOutside::use_device(DeviceSlot& slot, DeviceUse use, const Sou
                                        "while the patch runs",
                                        slot.name));
     uses_->emplace_back(&slot, use);
+    if (use == DeviceUse::drive && !slot.port.info.actuates_torque) {
+        std::string notice =
+            fmt::format("device '{}' gives forces only: torques that the patch computes for it are dropped", slot.name);
+        if (std::ranges::find(notices, notice) == notices.end()) opened_.notices.push_back(std::move(notice));
+    }
     return slot.port;
 }
 

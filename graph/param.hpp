@@ -21,6 +21,10 @@ inline constexpr Optional optional{};
 struct Structural {};
 inline constexpr Structural structural{};
 
+/// Marks a stiffness that a hand does not feel as such, because a coupling stands between.
+struct Internal {};
+inline constexpr Internal internal{};
+
 /// A quantity with unit and range. Its unit is that of the default; a number wire may drive it unless structural.
 struct Param {
     Param(std::string_view default_text, std::string_view min_text, std::string_view max_text,
@@ -29,6 +33,11 @@ struct Param {
           std::string_view about_ = {})
         : Param(default_text, min_text, max_text, about_) {
         is_structural = true;
+    }
+    Param(Internal, std::string_view default_text, std::string_view min_text, std::string_view max_text,
+          std::string_view about_ = {})
+        : Param(default_text, min_text, max_text, about_) {
+        is_internal = true;
     }
     Param(const Param&) = delete;
     Param& operator=(const Param&) = delete;
@@ -46,6 +55,7 @@ struct Param {
     std::string unit;        ///< as in the default, "N/mm"
     std::string_view about;
     bool is_structural = false;
+    bool is_internal = false;
 };
 
 /// One of several words.

@@ -27,7 +27,7 @@ std::optional<DeclaredStiffness> stiffest(const Plan& plan, const PlanNode& node
     static const Dimension force_per_distance = parse_unit("N/m").dimension;
     std::optional<DeclaredStiffness> found;
     for (const auto& [name, param] : node.params) {
-        if (parse_unit(param->unit).dimension != force_per_distance) continue;
+        if (param->is_internal || parse_unit(param->unit).dimension != force_per_distance) continue;
         const double value = largest(plan, *param);
         if (!found || value > found->newton_per_metre) found = {node.name + "." + name, value};
     }

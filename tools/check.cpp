@@ -103,6 +103,7 @@ int check_verb(const PatchChoice& choice) {
         if (problems.empty()) {
             const Engine engine(std::move(*plan), EngineOptions{});
             json["paths"] = paths_json(engine.plan(), force_loops(engine.plan(), damping_of(engine.outside())));
+            json["warnings"] = engine.outside().notices;
         }
     } catch (const Error& error) {
         problems.list.push_back(error);
@@ -114,6 +115,8 @@ int check_verb(const PatchChoice& choice) {
     else {
         for (const Error& error : problems.list) fmt::print(stderr, "{}\n", error.what());
         print_check(json);
+        if (json.contains("warnings"))
+            for (const Json& warning : json["warnings"]) fmt::print("warning: {}\n", warning.get<std::string>());
         if (problems.empty()) fmt::print("no errors\n");
     }
     return problems.empty() ? done : bad_input;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// make_library OUT_DIR: computes the bundled bone and the bundled saw, which are not kept in the repository.
+// make_library OUT_DIR: computes the bundled bones and the bundled saw, which are not kept in the repository.
+#include "assets/library/fragments.hpp"
 #include "assets/library/mandible.hpp"
 #include "assets/library/saw_recordings.hpp"
 #include "dsp/core/error.hpp"
@@ -24,6 +25,9 @@ void make_library(const fs::path& folder) {
         throw tactus::Error(fmt::format("{}: cannot be made: {}", bone.parent_path().string(), failure.message()));
     tactus::save_bone(tactus::make_mandible(), bone);
     fmt::print("{}\n", bone.string());
+    const fs::path fragments = folder / "bones" / "fragments.vdb";
+    tactus::save_bones(tactus::make_fragments(), fragments);
+    fmt::print("{}\n", fragments.string());
     tactus::make_saw_recordings(saw);
     std::set<std::string> written;
     for (const auto& entry : fs::directory_iterator(saw)) written.insert(entry.path().string());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/haptic/catalogue.hpp"
 
+#include "devices/haptic/scripted.hpp"
 #include "devices/haptic/simulated.hpp"
 
 #include <fmt/format.h>
@@ -17,6 +18,8 @@ std::vector<HapticDriver>& drivers() {
     static std::vector<HapticDriver> all{
         {"simulated", "a hand that presses a blade with a set thrust and saws",
          [](Options& options, const PathResolver&) { return open_simulated(options); }},
+        {"scripted", "a hand that goes to given places at given times and yields to force",
+         [](Options& options, const PathResolver&) { return open_scripted(options); }},
         {"replay", "a recorded movement led through a hand that yields to force", open_replay},
     };
     return all;

@@ -21,7 +21,7 @@ DeviceInfo read_device_info(Options& options, const HandDynamics& hand, std::str
     info.max_torque = options.quantity("max_torque", "1 N m", "0.001 N m", "20 N m");
     info.damping = hand.damping;
     info.max_stiffness = 5000.0;  // what makers state for grounded desktop devices at 1 kHz
-    info.actuates_torque = true;
+    info.actuates_torque = options.flag("torque", true);
     info.senses_rotation = true;
     return info;
 }

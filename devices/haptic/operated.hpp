@@ -12,7 +12,8 @@
 namespace tactus {
 
 /// Reads the options of the hand and of what the device can do: mass, inertia, stiffness, damping, angular_stiffness,
-/// angular_damping, max_force, max_torque.
+/// angular_damping, max_force, max_torque, torque (false: a
+/// device of three degrees of freedom, that gives none).
 HandDynamics read_hand(Options& options);
 DeviceInfo read_device_info(Options& options, const HandDynamics& hand, std::string name);
 

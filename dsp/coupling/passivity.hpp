@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tactus {
 
@@ -30,7 +31,8 @@ public:
             if (started_) {
                 way = hand.position - last_.position;
                 const Vec3 turn = rotation_between(last_.orientation, hand.orientation);
-                energy_ -= glm::dot(held_.force, way) + glm::dot(held_.torque, turn);
+                const double energy = energy_ - glm::dot(held_.force, way) - glm::dot(held_.torque, turn);
+                if (std::isfinite(energy)) energy_ = energy;
             }
             last_ = hand;
             started_ = true;

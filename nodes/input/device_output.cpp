@@ -19,6 +19,7 @@ struct DeviceOutput {
     In<Wrench> wrench{"on the hand about the handle, device frame", "N, N m"};
     Out<Wrench> applied{"what the device is given", "N, N m"};
     Out<bool> engaged{"forces pass"};
+    Out<bool> torque_dropped{"the device gives no torque and was asked for one"};
     Text device{"", "name of an entry of [devices]; empty: the only one"};
     Param max_force{structural, "10 N", "0 N", "50 N", "largest force on the hand"};
     Param max_torque{structural, "0.5 N m", "0 N m", "5 N m", "largest torque on the hand"};
@@ -45,7 +46,7 @@ struct DeviceOutput {
         const DeviceSample& s = port_->sample;
         limiter_.hold_off(port_->hold_off);
         if (s.taken) limiter_.cut(Fault::late_commit);
-        const Wrench out = limiter_.tick(wrench, s.counter, s.valid && is_valid(s.pose), tick.elapsed_seconds());
+        const Wrench out = limiter_.tick(givable(), s.counter, s.valid && is_valid(s.pose), tick.elapsed_seconds());
         applied = out;
         port_->wrench = out;
         port_->fault = limiter_.fault();
@@ -68,11 +69,29 @@ struct DeviceOutput {
         report.set("force", "over_limit_ticks", static_cast<double>(s.force_limited));
         report.set("force", "slew_limited_ticks", static_cast<double>(s.slew_limited));
         report.set("contact", "limited_ticks", static_cast<double>(s.limited));
+        if (!port_->info.actuates_torque) {
+            report.set("force", "torque_dropped_max_Nm", most_dropped_);
+            report.set("force", "torque_dropped_ticks", static_cast<double>(ticks_dropped_));
+        }
         report.set("force", "fault", std::string(describe(last_fault_)));
         report.set("force", "faults", static_cast<double>(faults_));
     }
 
 private:
+    /// What the device can give of the wrench. One that is not finite stays so, for the limiter to see.
+    Wrench givable() noexcept {
+        Wrench asked = wrench.get();
+        torque_dropped = false;
+        if (port_->info.actuates_torque || !is_finite(asked)) return asked;
+        const double torque = glm::length(asked.torque);
+        asked.torque = Vec3(0.0);
+        if (!(torque > 0.0)) return asked;
+        torque_dropped = true;
+        most_dropped_ = std::max(most_dropped_, torque);
+        ++ticks_dropped_;
+        return asked;
+    }
+
     void recover(const Tick& tick) noexcept {
         if (!in_fault_) {
             in_fault_ = true;
@@ -90,13 +109,13 @@ private:
 
     DevicePort* port_ = nullptr;
     ForceLimiter limiter_;
-    double largest_ = 0.0, sum_ = 0.0, well_for_ = 0.0;
-    std::int64_t counter_ = 0, faults_ = 0;
+    double largest_ = 0.0, sum_ = 0.0, well_for_ = 0.0, most_dropped_ = 0.0;
+    std::int64_t counter_ = 0, faults_ = 0, ticks_dropped_ = 0;
     Fault last_fault_ = Fault::none;
     bool in_fault_ = false;
 };
 
-TACTUS_NODE(DeviceOutput, wrench, applied, engaged, device, max_force, max_torque, slew, torque_slew, engage_time,
-            recover_after)
+TACTUS_NODE(DeviceOutput, wrench, applied, engaged, torque_dropped, device, max_force, max_torque, slew, torque_slew,
+            engage_time, recover_after)
 
 }  // namespace tactus::nodes

@@ -12,7 +12,7 @@ namespace tactus::test {
 
 /// What a played device does. Lives in the test; a device refers to it.
 struct Performance {
-    DeviceInfo info{.name = "played", .max_force = 20.0, .max_torque = 1.0, .damping = 2.0};
+    DeviceInfo info{.name = "played", .max_force = 20.0, .max_torque = 1.0, .damping = 2.0, .actuates_torque = true};
     /// The sample of the `count`-th acquire, after `elapsed_s` under `force`.
     std::function<DeviceSample(std::int64_t count, double elapsed_s, const Wrench& force)> acquire;
     std::function<void(const Wrench&)> commit;  ///< may be empty

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/node_values.hpp"
 
+#include "dsp/contact/shape.hpp"
+#include "dsp/coupling/scene.hpp"
+#include "dsp/coupling/triangle_tree.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -76,6 +80,26 @@ const BoneEditor& sample_bone() {
 
 }  // namespace
 
+/// A ball of bone on a table, the same for every activation.
+const Scene& sample_scene() {
+    static const Pointshell shell = make_pointshell(Ball{5e-3}.points(1e-3));
+    static const Voxmap map = sample_voxmap({{31, 31, 31}, Vec3(-15e-3), Vec3(1e-3), {}},
+                                            [](const Vec3& p) { return Ball{5e-3}.distance(p); });
+    static const TriangleTree triangles(iso_surface(map.grid, 0.0f, false));
+    static const Scene scene = [] {
+        Scene made;
+        made.count = 2;
+        for (std::size_t i = 0; i < 2; ++i) {
+            made.objects[i].body = {&shell, &map, &triangles, {}, 1, 7};
+            made.objects[i].pose.position.x = 9e-3 * static_cast<double>(i);
+        }
+        made.version = 1;
+        made.content_hash = hash_of(made);
+        return made;
+    }();
+    return scene;
+}
+
 void sample_value(const ValueType& type, const Random& random, std::int64_t k, Feed feed, void* out) {
     Draw draw = draw_at(random, k, feed);
     if (&type == &value::pose) put(out, draw.pose());
@@ -93,6 +117,8 @@ void sample_value(const ValueType& type, const Random& random, std::int64_t k, F
         const double largest = std::numeric_limits<float>::max();
         put(out, std::isfinite(v) && std::abs(v) > largest ? std::numeric_limits<float>::max() : static_cast<float>(v));
     } else if (&type == &value::snapshot<BoneSnapshot>) put(out, sample_bone().current());
+    else if (&type == &value::snapshot<Body>) put(out, sample_scene().objects[0].body);
+    else if (&type == &value::snapshot<Scene>) put(out, sample_scene());
     else throw Error("no sample values for a " + std::string(type.name));
 }
 

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Driver "scripted": a hand that means to be at given places at given times, and yields to force on the way.
+#pragma once
+
+#include "graph/device.hpp"
+#include "graph/options.hpp"
+
+#include <memory>
+
+namespace tactus {
+
+/// Options: targets ("0 s: 0 0 0 mm; 2 s: 0 0 -30 mm, 0 0 15 deg": times, positions, and turns about x, y, z if any),
+/// wiggle, wiggle_turn, wiggle_rate, trigger_on, trigger_off, and those of HandDynamics. Throws Error.
+std::unique_ptr<HapticDevice> open_scripted(Options& options);
+
+}  // namespace tactus

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/coupling/held_contact.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus {
+
+namespace {
+
+// A balanced tree of four children per node has a third more nodes than leaves, of which some are not full.
+std::size_t nodes_of(std::size_t points) { return 2 * (points / chunk_points + 1) + 64; }
+
+/// The way that no point of the shell can touch the map within. The upper levels of the shell's tree stand for it.
+double clearance_of(const ContactPair& pair, double enough) noexcept {
+    constexpr std::size_t most_nodes = 96;
+    const Pose into_map = pair.map_pose.inverse() * pair.shell_pose;
+    const auto& nodes = pair.shell->nodes;
+    const std::size_t count = std::min(nodes.size(), most_nodes);
+    double least = enough;
+    for (std::size_t n = 0; n < count && least > 0.0; ++n) {
+        const ShellNode& node = nodes[n];
+        if (node.children > 0 && node.first_child + node.children <= count) continue;
+        least = std::min(least, pair.map->least_within(into_map.apply(node.centre), node.radius) / pair.map->steepness);
+    }
+    return std::max(least, 0.0);
+}
+
+}  // namespace
+
+HeldContact::HeldContact(std::size_t most_points) : kernel_(nodes_of(most_points)) {}
+
+void HeldContact::set(const Scene& scene, int held, const Pose& grip, const ContactLaw& law, bool both_ways,
+                      std::size_t budget) noexcept {
+    law_ = law;
+    budget_ = budget;
+    grip_ = grip;
+    count_ = 0;
+    held_shell_ = nullptr;
+    if (held < 0 || static_cast<std::size_t>(held) >= scene.count) return;
+    const SceneObject& mine = scene.objects[static_cast<std::size_t>(held)];
+    held_shell_ = mine.body.shell;
+    for (std::size_t i = 0; i < scene.count; ++i) {
+        const SceneObject& other = scene.objects[i];
+        if (i == static_cast<std::size_t>(held) || !is_valid(other.pose)) continue;
+        if (mine.body.shell && other.body.map)
+            pairs_[count_++] = {mine.body.shell, {}, other.body.map, other.pose, true};
+        if (both_ways && other.body.shell && mine.body.map)
+            pairs_[count_++] = {other.body.shell, other.pose, mine.body.map, {}, false};
+    }
+}
+
+std::span<const ContactPair> HeldContact::place(const Pose& handle) noexcept {
+    const Pose body = handle * grip_;
+    for (std::size_t i = 0; i < count_; ++i) (pairs_[i].shell_moves ? pairs_[i].shell_pose : pairs_[i].map_pose) = body;
+    return std::span(pairs_).first(count_);
+}
+
+ContactSum HeldContact::operator()(const Pose& handle, ContactParts parts) noexcept {
+    return kernel_(place(handle), handle.position, law_, budget_, parts);
+}
+
+double HeldContact::clearance(const Pose& handle) const noexcept {
+    const Pose body = handle * grip_;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < count_; ++i) {
+        ContactPair pair = pairs_[i];
+        (pair.shell_moves ? pair.shell_pose : pair.map_pose) = body;
+        least = std::min(least, clearance_of(pair, least));
+        if (!(least > 0.0)) return 0.0;
+    }
+    return least;
+}
+
+double HeldContact::reach() const noexcept {
+    return held_shell_ ? held_shell_->reach + glm::length(grip_.position) : 0.0;
+}
+
+double HeldContact::gyration() const noexcept {
+    if (!held_shell_) return 0.0;
+    const Vec3 arm = grip_.apply(held_shell_->centroid);
+    return std::sqrt(held_shell_->gyration * held_shell_->gyration + glm::dot(arm, arm));
+}
+
+}  // namespace tactus

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contact of the body in the hand with everything else of a scene, as the couplings ask for it.
+#pragma once
+
+#include "dsp/contact/pointshell_contact.hpp"
+#include "dsp/coupling/scene.hpp"
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+namespace tactus {
+
+class HeldContact {
+public:
+    /// Room for pointshells of together `most_points` points; memory is taken here and not later.
+    explicit HeldContact(std::size_t most_points);
+
+    /// From now on: body `held` of `scene` (which must live meanwhile), standing at handle ∘ `grip`, against all others.
+    /// `both_ways`: the points of the others are tried against the held body's distance too. A `held` that is no place
+    /// in the scene is not there and touches nothing.
+    void set(const Scene& scene, int held, const Pose& grip, const ContactLaw& law, bool both_ways,
+             std::size_t budget = std::numeric_limits<std::size_t>::max()) noexcept;
+
+    ContactSum operator()(const Pose& handle, ContactParts parts) noexcept;
+    /// m; see HeldContactLike. 0 when something may be touching.
+    double clearance(const Pose& handle) const noexcept;
+    /// Farthest point of the held body from the handle and root mean square distance, m; 0 without points.
+    double reach() const noexcept;
+    double gyration() const noexcept;
+
+private:
+    std::span<const ContactPair> place(const Pose& handle) noexcept;
+
+    PointshellContact kernel_;
+    ContactLaw law_;
+    std::array<ContactPair, 2 * Scene::most_objects> pairs_;
+    std::size_t count_ = 0, budget_ = 0;
+    const Pointshell* held_shell_ = nullptr;
+    Pose grip_;
+};
+
+}  // namespace tactus

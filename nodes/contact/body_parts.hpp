@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a node that makes a body keeps of it.
+#pragma once
+
+#include "dsp/contact/pointshell.hpp"
+#include "dsp/contact/voxmap.hpp"
+#include "dsp/core/hash.hpp"
+#include "dsp/coupling/scene.hpp"
+#include "dsp/coupling/triangle_tree.hpp"
+#include "dsp/distance/iso_surface.hpp"
+
+#include <optional>
+
+namespace tactus::nodes {
+
+/// Points and distances of one body, and if wanted the triangles of the field's zero surface.
+struct BodyParts {
+    Pointshell shell;
+    Voxmap map;
+    std::optional<TriangleTree> triangles;
+    Pose home;
+    std::uint64_t content_hash = 0;
+
+    BodyParts(Pointshell points, Voxmap field, const Pose& at, bool with_triangles)
+        : shell(std::move(points)), map(std::move(field)), home(at) {
+        if (with_triangles) triangles.emplace(iso_surface(map.grid, 0.0f, false));
+        Hash hash;
+        hash.add_bytes(shell.position.data(), shell.position.size() * sizeof(Vec3));
+        hash.add_bytes(map.grid.values.data(), map.grid.values.size() * sizeof(float));
+        hash.add_bytes(&home, sizeof home);
+        hash.add_word(with_triangles ? 1 : 0);
+        content_hash = hash.state;
+    }
+    Body body() const noexcept { return {&shell, &map, triangles ? &*triangles : nullptr, home, 1, content_hash}; }
+};
+
+}  // namespace tactus::nodes

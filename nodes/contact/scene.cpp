@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/coupling/scene.hpp"
+
+#include "dsp/coupling/placement.hpp"
+#include "graph/node.hpp"
+
+#include <cmath>
+
+namespace tactus::nodes {
+
+struct Scene {
+    static constexpr auto about =
+        "Bodies and where they stand, as one value: place 0 is body 'a', place 1 body 'b', and so on. A body stands "
+        "where "
+        "its file has it, moved by its vector, unless a wire gives its pose or it was moved by a hand.";
+
+    In<Body> a{"place 0"};
+    In<Body> b{optional, "place 1"};
+    In<Body> c{optional, "place 2"};
+    In<Body> d{optional, "place 3"};
+    In<Pose> a_pose{optional, "of body a, the whole time", "m"};
+    In<Pose> b_pose{optional, "of body b, the whole time", "m"};
+    In<Pose> c_pose{optional, "of body c, the whole time", "m"};
+    In<Pose> d_pose{optional, "of body d, the whole time", "m"};
+    In<Pose> moved{optional, "where a hand has put the body at place 'which'; it stays there", "m"};
+    In<double> which{optional, "place of the body that 'moved' speaks of; -1: of none"};
+    Out<tactus::Scene> scene{"for contact, couplings and grasp"};
+    Param middle{"-1", "-1", "3", "place of the body whose middle is the origin of the scene; -1: that of the files"};
+    Vector a_at{"0 mm, 0 mm, 0 mm", "body a is moved by"};
+    Vector b_at{"0 mm, 0 mm, 0 mm", "body b is moved by"};
+    Vector c_at{"0 mm, 0 mm, 0 mm", "body c is moved by"};
+    Vector d_at{"0 mm, 0 mm, 0 mm", "body d is moved by"};
+    Vector a_turn{"0 deg, 0 deg, 0 deg", "body a is turned by, in place: about x first, then y, then z"};
+    Vector b_turn{"0 deg, 0 deg, 0 deg", "body b is turned by, in place: about x first, then y, then z"};
+    Vector c_turn{"0 deg, 0 deg, 0 deg", "body c is turned by, in place: about x first, then y, then z"};
+    Vector d_turn{"0 deg, 0 deg, 0 deg", "body d is turned by, in place: about x first, then y, then z"};
+
+    void process(const Tick&) noexcept {
+        tactus::Scene now;
+        Vec3 origin(0.0);
+        const In<Body>* bodies[] = {&a, &b, &c, &d};
+        const In<Pose>* poses[] = {&a_pose, &b_pose, &c_pose, &d_pose};
+        const Vec3 at[] = {a_at, b_at, c_at, d_at}, turn[] = {a_turn, b_turn, c_turn, d_turn};
+        const double first = middle;
+        if (first >= 0.0 && bodies[static_cast<std::size_t>(first)]->connected)
+            origin = bodies[static_cast<std::size_t>(first)]->get().home.position;
+        // What is missing between others keeps its place, empty.
+        for (std::size_t i = 0; i < places; ++i) {
+            if (!bodies[i]->connected && i > 0) continue;
+            now.count = i + 1;
+            SceneObject& object = now.objects[i];
+            object.body = bodies[i]->get();
+            if (!put_[i].is_put) {
+                const Pose& home = object.body.home;
+                object.pose = {home.position - origin + at[i],
+                               glm::normalize(rotation_xyz(turn[i]) * home.orientation)};
+            } else object.pose = put_[i].pose;
+            if (poses[i]->connected && is_valid(poses[i]->get())) object.pose = poses[i]->get();
+        }
+        if (moved.connected && which.connected && is_valid(moved.get())) {
+            const double place = which.get();
+            if (place >= 0.0 && place < static_cast<double>(now.count)) {
+                const auto i = static_cast<std::size_t>(place);
+                put_[i] = {true, moved.get()};
+                now.objects[i].pose = moved.get();
+            }
+        }
+        now.version = ++version_;
+        now.content_hash = hash_of(now);
+        scene = now;
+    }
+
+private:
+    static constexpr std::size_t places = 4;
+    struct Put {
+        bool is_put = false;
+        Pose pose;
+    };
+    Put put_[places];
+    std::int64_t version_ = 0;
+};
+
+TACTUS_NODE(Scene, a, b, c, d, a_pose, b_pose, c_pose, d_pose, moved, which, scene, middle, a_at, b_at, c_at, d_at,
+            a_turn, b_turn, c_turn, d_turn)
+
+}  // namespace tactus::nodes

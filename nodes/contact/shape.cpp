@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/contact/shape.hpp"
+
+#include "dsp/coupling/scene.hpp"
+#include "dsp/coupling/triangle_tree.hpp"
+#include "graph/node.hpp"
+#include "nodes/contact/body_parts.hpp"
+
+#include <algorithm>
+#include <memory>
+
+namespace tactus::nodes {
+
+struct Shape {
+    static constexpr auto about =
+        "A body by formula: a ball, a box, an upright cylinder, or a round "
+        "block "
+        "with a hole.";
+
+    Out<Body> body{"for a scene"};
+    Choice kind{{"ball", "box", "cylinder", "hole"},
+                "ball and box about their middle, a cylinder up from z = 0, a hole down from z = 0 in a round block"};
+    Vector size{"20 mm, 20 mm, 20 mm", "of a box"};
+    Param diameter{structural, "20 mm", "0.1 mm", "1 m", "of a ball or cylinder, or of what is to fit into the hole"};
+    Param height{structural, "20 mm", "0.1 mm", "1 m", "of a cylinder, or of the block with the hole"};
+    Param clearance{structural, "0.3 mm", "-5 mm", "50 mm", "by which a hole's diameter is larger than 'diameter'"};
+    Param wall{structural, "10 mm", "0.1 mm", "1 m", "of the block around the hole"};
+    Param bevel{structural, "0 mm", "0 mm", "50 mm", "of a cylinder's lower rim and of a hole's mouth, at 45 deg"};
+    Param spacing{structural, "0.42 mm", "0.01 mm", "20 mm", "of the points"};
+    Param voxel{structural, "0.25 mm", "0.01 mm", "20 mm", "of the distance field"};
+    Param margin{structural, "3 mm", "0.1 mm", "100 mm", "of the distance field around the body"};
+    Flag triangles{false, "make the triangles of its surface too, for point_proxy and sphere_proxy"};
+
+    void prepare(const Setup& setup) {
+        try {
+            if (kind.is("ball")) make(Ball{0.5 * diameter});
+            else if (kind.is("box")) make(Box{size});
+            else if (kind.is("cylinder")) make(make_cylinder(diameter, height, bevel));
+            else make(make_bushing(bore(setup), bore(setup) + 2.0 * wall, height, bevel));
+        } catch (const Error& error) {
+            setup.fail(error.message());
+        }
+        body = parts_->body();
+    }
+    void process(const Tick&) noexcept { body = parts_->body(); }
+
+private:
+    double bore(const Setup& setup) const {
+        if (!(diameter + clearance > 0.0)) setup.fail("with that clearance nothing is left of the hole");
+        return diameter + clearance;
+    }
+
+    template <class S>
+    void make(const S& shape) {
+        const Vec3 low = shape.low() - Vec3(margin), extent = shape.high() + Vec3(margin) - low;
+        if (!(extent.x * extent.y * extent.z / (voxel * voxel * voxel) < 2e8))
+            throw Error("the distance field would have over 200 million samples; raise 'voxel'");
+        if (!(extent.x * extent.y + extent.y * extent.z + extent.z * extent.x < 1e7 * spacing * spacing))
+            throw Error("the surface would have over 10 million points; raise 'spacing'");
+        Grid grid;
+        for (int axis = 0; axis < 3; ++axis)
+            grid.size[static_cast<std::size_t>(axis)] = static_cast<int>(std::ceil(extent[axis] / voxel)) + 1;
+        grid.origin = low;
+        grid.spacing = Vec3(voxel);
+        parts_ = std::make_shared<const BodyParts>(
+            make_pointshell(shape.points(spacing)),
+            sample_voxmap(std::move(grid), [&](const Vec3& p) { return shape.distance(p); }), Pose{}, triangles);
+    }
+
+    std::shared_ptr<const BodyParts> parts_;
+};
+
+TACTUS_NODE(Shape, body, kind, size, diameter, height, clearance, wall, bevel, spacing, voxel, margin, triangles)
+
+}  // namespace tactus::nodes

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/coupling/dynamic_coupling.hpp"
+
+#include "graph/node.hpp"
+#include "nodes/contact/contact_params.hpp"
+#include "nodes/coupling/held_body.hpp"
+
+#include <algorithm>
+#include <optional>
+
+namespace tactus::nodes {
+
+struct DynamicCoupling {
+    static constexpr auto about =
+        "Holds a body of a scene by springs and dampers; the body has mass, and contact pushes it. One implicit step "
+        "per "
+        "tick.";
+
+    In<Pose> device{"the hand in the scene", "m"};
+    In<tactus::Scene> scene{"everything that can be touched, and the body that is held"};
+    In<Twist> device_twist{optional, "velocity of the hand in the scene; unconnected: what the damper feels is at rest",
+                           "m/s, rad/s"};
+    In<Pose> grip{optional, "held body in the frame of the hand; unconnected: 'grip_at'", "m"};
+    In<bool> holding{optional, "false: the body stays where it was let go; unconnected: held all the time"};
+    In<double> strength{optional, "share of the force that is felt, 0 to 1; unconnected: all of it"};
+    Out<Wrench> wrench{"on the hand, about its origin", "N, N m"};
+    Out<Pose> pose{"of the held body", "m"};
+    Out<double> place{"of the held body in the scene, -1 when there is none"};
+    Out<double> penetration{"of the deepest point", "m"};
+    Out<bool> in_contact{"some point has a force"};
+    Param held{"0", "-1", "7", "place of the held body in the scene; grasp drives it"};
+    Vector grip_at{"0 mm, 0 mm, 0 mm", "origin of the held body in the frame of the hand"};
+    Param mass{"100 g", "0.1 g", "100 kg", "of the body"};
+    Param inertia{"1e-4 kg m^2", "1e-9 kg m^2", "100 kg m^2", "of the body, about every axis through the hand"};
+    Param stiffness{"1 N/mm", "0 N/mm", "20 N/mm", "of the spring to the hand"};
+    Param damping{"10 N s/m", "0 N s/m", "500 N s/m", "of the damper to the hand"};
+    Param angular_stiffness{"1 N m/rad", "0 N m/rad", "100 N m/rad", "of the spring that turns"};
+    Param angular_damping{"0.01 N m s/rad", "0 N m s/rad", "10 N m s/rad", "of the damper that turns"};
+    Param max_force{"10 N", "0 N", "100 N", "the spring pulls no harder"};
+    Param max_torque{"0.5 N m", "0 N m", "20 N m", "the spring turns no harder"};
+    Param step{"0.5 mm", "0.001 mm", "20 mm", "farthest that a tick may move a point beyond what is free"};
+    Flag both_ways{false, "the others' points are tried against the held body's field too"};
+    Param point_stiffness{internal, "10 N/mm", "0 N/mm", "1e6 N/mm", "of the contact, for each point of the surface"};
+    Param area_stiffness{internal, "0 N/m^3", "0 N/m^3", "1e15 N/m^3",
+                         "of the contact, for each area of the surface; if not 0 it holds instead"};
+    Param blend{"0.03 mm", "0 mm", "10 mm", "half the width within which the contact sets in"};
+    Param saturation{"0 mm", "0 mm", "1 m", "depth at which the force of a point levels off; 0: never"};
+    Choice interpolation{{"trilinear", "quadratic"}, "of the distance; quadratic suits stiff contact"};
+    Choice direction{{"field_gradient", "shell_normal"}, "of the forces; shell_normal is that of the thesis"};
+    Param points{structural, "1000000", "1000", "20000000", "of all surfaces together; memory is taken for so many"};
+    Param budget{"1e9", "64", "1e9", "most points that one evaluation looks at"};
+
+    void prepare(const Setup&) {
+        contact_.emplace(static_cast<std::size_t>(points));
+        place = -1.0;
+    }
+
+    void process(const Tick& tick) noexcept {
+        hold_.update(scene, held, holding, strength);
+        const Pose in_hand = grip.connected && is_valid(grip.get()) ? grip.get() : Pose{grip_at, {1.0, 0.0, 0.0, 0.0}};
+        contact_->set(scene, hold_.place, in_hand,
+                      contact_law(point_stiffness, area_stiffness, blend, saturation, interpolation, direction),
+                      both_ways, static_cast<std::size_t>(budget));
+        solver_.settings = {{{stiffness, max_force}, {angular_stiffness, max_torque}},
+                            mass,
+                            inertia,
+                            damping,
+                            angular_damping,
+                            step,
+                            contact_->reach()};
+        if (hold_.taken) solver_.reset(device);
+        place = hold_.place;
+        if (!hold_.holds) {
+            wrench = last_ * hold_.strength;
+            in_contact = false;
+            penetration = 0.0;
+            return;
+        }
+        const Twist velocity = device_twist.connected ? device_twist.get() : Twist{};
+        const DynamicState& now = solver_.update(device, velocity, seconds(tick.period), *contact_);
+        last_ = now.wrench;
+        wrench = now.wrench * hold_.strength;
+        pose = now.proxy * in_hand;
+        penetration = now.contact.penetration;
+        in_contact = now.contact.in_contact > 0;
+        deepest_ = std::max(deepest_, now.contact.penetration);
+    }
+
+    void report(Report& report) const { report.set("coupling", "penetration_max_mm", deepest_ * 1e3); }
+
+private:
+    std::optional<HeldContact> contact_;
+    tactus::DynamicCoupling solver_;
+    Hold hold_;
+    Wrench last_;
+    double deepest_ = 0.0;
+};
+
+TACTUS_NODE(DynamicCoupling, device, scene, device_twist, grip, holding, strength, wrench, pose, place, penetration,
+            in_contact, held, grip_at, mass, inertia, stiffness, damping, angular_stiffness, angular_damping, max_force,
+            max_torque, step, both_ways, point_stiffness, area_stiffness, blend, saturation, interpolation, direction,
+            points, budget)
+
+}  // namespace tactus::nodes

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/coupling/quantile.hpp"
+#include "dsp/coupling/quasi_static.hpp"
+#include "graph/node.hpp"
+#include "nodes/contact/contact_params.hpp"
+#include "nodes/coupling/held_body.hpp"
+
+#include <algorithm>
+#include <optional>
+
+namespace tactus::nodes {
+
+struct QuasiStaticCoupling {
+    static constexpr auto about =
+        "Holds a body of a scene by two springs: every tick it stands where springs and contact forces balance, solved "
+        "within the tick, and the hand feels the springs, in six degrees of freedom.";
+
+    In<Pose> device{"the hand in the scene", "m"};
+    In<tactus::Scene> scene{"everything that can be touched, and the body that is held"};
+    In<Pose> grip{optional, "held body in the frame of the hand; unconnected: 'grip_at'", "m"};
+    In<bool> holding{optional, "false: the body stays where it was let go; unconnected: held all the time"};
+    In<double> strength{optional, "share of the force that is felt, 0 to 1; unconnected: all of it"};
+    Out<Wrench> wrench{"on the hand, about its origin", "N, N m"};
+    Out<Pose> pose{"of the held body: the proxy", "m"};
+    Out<double> place{"of the held body in the scene, -1 when there is none"};
+    Out<double> penetration{"of the deepest point", "m"};
+    Out<double> residual{"of the balance", "N"};
+    Out<bool> in_contact{"some point has a force"};
+    Param held{"0", "-1", "7", "place of the held body in the scene; grasp drives it"};
+    Vector grip_at{"0 mm, 0 mm, 0 mm", "origin of the held body in the frame of the hand"};
+    Param stiffness{"1 N/mm", "0 N/mm", "20 N/mm", "of the spring to the hand"};
+    Param angular_stiffness{"1 N m/rad", "0 N m/rad", "100 N m/rad", "of the spring that turns"};
+    Param max_force{"10 N", "0 N", "100 N", "the spring pulls no harder"};
+    Param max_torque{"0.5 N m", "0 N m", "20 N m", "the spring turns no harder"};
+    Param iterations{"4", "1", "50", "most steps of the solver in one tick"};
+    Param tolerance{"0.001 N", "0 N", "1 N", "residual that counts as balanced"};
+    Param step{"0.5 mm", "0.001 mm", "20 mm",
+               "farthest that one step may move a point beyond what is free; at most half of the thinnest walls"};
+    Flag both_ways{false, "the others' points are tried against the held body's field too"};
+    Param point_stiffness{internal, "10 N/mm", "0 N/mm", "1e6 N/mm", "of the contact, for each point of the surface"};
+    Param area_stiffness{internal, "0 N/m^3", "0 N/m^3", "1e15 N/m^3",
+                         "of the contact, for each area of the surface; if not 0 it holds instead"};
+    Param blend{"0.03 mm", "0 mm", "10 mm", "half the width within which the contact sets in"};
+    Param saturation{"0 mm", "0 mm", "1 m", "depth at which the force of a point levels off; 0: never"};
+    Choice interpolation{{"trilinear", "quadratic"}, "of the distance; quadratic suits stiff contact"};
+    Choice direction{{"field_gradient", "shell_normal"}, "of the forces; shell_normal is that of the thesis"};
+    Param points{structural, "1000000", "1000", "20000000", "of all surfaces together; memory is taken for so many"};
+    Param budget{"1e9", "64", "1e9", "most points that one evaluation looks at"};
+
+    void prepare(const Setup&) {
+        contact_.emplace(static_cast<std::size_t>(points));
+        place = -1.0;
+    }
+
+    void process(const Tick&) noexcept {
+        hold_.update(scene, held, holding, strength);
+        const Pose in_hand = grip.connected && is_valid(grip.get()) ? grip.get() : Pose{grip_at, {1.0, 0.0, 0.0, 0.0}};
+        contact_->set(scene, hold_.place, in_hand,
+                      contact_law(point_stiffness, area_stiffness, blend, saturation, interpolation, direction),
+                      both_ways, static_cast<std::size_t>(budget));
+        set_up();
+        if (hold_.taken) solver_.reset(device);
+        if (hold_.holds) solve(in_hand);
+        else let_go();
+        place = hold_.place;
+    }
+
+    void report(Report& report) const {
+        const auto share = [](double part, std::uint64_t whole) {
+            return whole > 0 ? part / static_cast<double>(whole) : 0.0;
+        };
+        report.set("coupling", "residual_p99_N", residuals_.quantile(0.99));
+        report.set("coupling", "residual_max_N", residuals_.greatest());
+        report.set("coupling", "balanced", share(balanced_, residuals_.total()));
+        report.set("coupling", "penetration_max_mm", deepest_ * 1e3);
+        report.set("coupling", "iterations_mean", share(iterations_, residuals_.total()));
+        report.set("coupling", "evaluations_mean", share(evaluations_, residuals_.total()));
+        report.set("coupling", "points_in_contact_max", most_points_);
+        report.set("coupling", "in_contact", share(touching_, residuals_.total()));
+        report.set("coupling", "over_budget_ticks", reduced_);
+    }
+
+private:
+    void set_up() noexcept {
+        QuasiStaticSettings& s = solver_.settings;
+        s.springs = {{stiffness, max_force}, {angular_stiffness, max_torque}};
+        s.iterations = static_cast<int>(iterations);
+        s.tolerance = tolerance;
+        s.step = step;
+        s.reach = contact_->reach();
+        s.gyration = contact_->gyration();
+    }
+
+    void solve(const Pose& in_hand) noexcept {
+        const QuasiStaticState& now = solver_.update(device, *contact_);
+        wrench = now.wrench * hold_.strength;
+        pose = now.proxy * in_hand;
+        penetration = now.contact.penetration;
+        residual = now.residual;
+        in_contact = now.contact.in_contact > 0;
+        last_ = now.wrench;
+        residuals_.add(now.residual);
+        deepest_ = std::max(deepest_, now.contact.penetration);
+        most_points_ = std::max(most_points_, static_cast<double>(now.contact.in_contact));
+        balanced_ += now.balanced ? 1.0 : 0.0;
+        iterations_ += now.iterations;
+        evaluations_ += now.evaluations;
+        touching_ += now.contact.in_contact > 0 ? 1.0 : 0.0;
+        reduced_ += now.contact.reduced ? 1.0 : 0.0;
+    }
+
+    /// The body stays; its last force fades with the strength.
+    void let_go() noexcept {
+        wrench = last_ * hold_.strength;
+        penetration = 0.0;
+        residual = 0.0;
+        in_contact = false;
+        if (hold_.strength == 0.0) last_ = {};
+    }
+
+    std::optional<HeldContact> contact_;
+    tactus::QuasiStaticCoupling solver_;
+    Hold hold_;
+    Wrench last_;
+    SizeCounts residuals_;
+    double deepest_ = 0.0, balanced_ = 0.0, iterations_ = 0.0, evaluations_ = 0.0, touching_ = 0.0, most_points_ = 0.0,
+           reduced_ = 0.0;
+};
+
+TACTUS_NODE(QuasiStaticCoupling, device, scene, grip, holding, strength, wrench, pose, place, penetration, residual,
+            in_contact, held, grip_at, stiffness, angular_stiffness, max_force, max_torque, iterations, tolerance, step,
+            both_ways, point_stiffness, area_stiffness, blend, saturation, interpolation, direction, points, budget)
+
+}  // namespace tactus::nodes

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/coupling/passivity.hpp"
+
+#include "dsp/coupling/force_shape.hpp"
+#include "dsp/coupling/quantile.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+using namespace tactus;
+
+namespace {
+
+/// A mass of 0.1 kg falls on a sampled wall of `stiffness`; returns the observer's least energy and the last speed.
+std::pair<double, double> on_a_wall(double stiffness, bool control) {
+    PassivityObserver observer;
+    double z = 1e-3, v = 0.0, least = 0.0, peak = 0.0;
+    Wrench force;
+    for (int n = 0; n < 3000; ++n) {
+        for (int sub = 0; sub < 10; ++sub) {
+            v += (force.force.z - 2.0 - 0.5 * v) / 0.1 * 1e-4;
+            z += v * 1e-4;
+        }
+        const Wrench wall{{0.0, 0.0, z < 0.0 ? -stiffness * z : 0.0}, {}};
+        const auto now = observer(wall, {{0.0, 0.0, z}, {1, 0, 0, 0}}, 1e-3, control, 100.0);
+        force = now.wrench;
+        least = std::min(least, now.energy);
+        if (n > 2500) peak = std::max(peak, std::abs(v));
+    }
+    return {least, peak};
+}
+
+}  // namespace
+
+TEST_CASE("a wall too stiff for its device gives energy away, and the brake takes it back") {
+    const auto [free, free_speed] = on_a_wall(3000.0, false);
+    const auto [braked, braked_speed] = on_a_wall(3000.0, true);
+    CHECK(free < -1e-3);
+    CHECK(braked > 0.2 * free);
+    CHECK(braked_speed < 0.5 * free_speed);
+    // A soft spring with friction around it stays passive but for what sampling gives away in each bounce.
+    CHECK(on_a_wall(100.0, false).first > -1e-3);
+}
+
+TEST_CASE("a soft limit passes small forces, never exceeds its end and has no corner") {
+    CHECK(soft_limit(3.0, 6.0, 10.0) == 3.0);
+    CHECK(soft_limit(1e6, 6.0, 10.0) <= 10.0);
+    CHECK(soft_limit(12.0, 6.0, 6.0) == 6.0);
+    const double h = 1e-6;
+    CHECK((soft_limit(6.0 + h, 6.0, 10.0) - 6.0) / h == Approx(1.0).epsilon(1e-3));
+    const Vec3 v = soft_limit(Vec3(30.0, 40.0, 0.0), 6.0, 10.0);
+    CHECK(v.y / v.x == Approx(4.0 / 3.0));
+}
+
+TEST_CASE("quantiles of counted sizes are within a class of the true ones") {
+    SizeCounts counts;
+    CHECK(counts.quantile(0.99) == 0.0);
+    for (int n = 1; n <= 1000; ++n) counts.add(1e-4 * n);
+    CHECK(counts.quantile(0.5) == Approx(0.05).epsilon(0.04));
+    CHECK(counts.quantile(0.99) == Approx(0.099).epsilon(0.04));
+    CHECK(counts.quantile(1.0) == Approx(0.1));
+}

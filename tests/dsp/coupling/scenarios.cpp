@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pegs, thin plates and broken bones: the couplings where they are hard.
+#include "assets/library/fragments.hpp"
+#include "dsp/coupling/held_contact.hpp"
+#include "dsp/coupling/quantile.hpp"
+#include "tests/dsp/coupling/held.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+using namespace tactus;
+
+namespace {
+
+constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
+
+struct Part {
+    Pointshell shell;
+    Voxmap map;
+};
+
+template <class Shape>
+Part part_of(const Shape& shape, double spacing, double voxel) {
+    return {test::shell_of(shape, spacing), test::map_of(shape, voxel)};
+}
+
+/// Place 0 stands, place 1 is held.
+Scene scene_of(const Part& still, const Part& held) {
+    Scene scene;
+    scene.count = 2;
+    scene.objects[0].body = {&still.shell, &still.map, nullptr, {}, 1, 1};
+    scene.objects[1].body = {&held.shell, &held.map, nullptr, {}, 1, 2};
+    return scene;
+}
+
+struct Rig {
+    Scene scene;
+    HeldContact contact{200000};
+    QuasiStaticCoupling coupling;
+    SizeCounts residuals;
+    double balanced = 0.0, deepest = 0.0;
+
+    Rig(const Part& still, const Part& held, const Pose& grip, const ContactLaw& law, const Pose& start)
+        : scene(scene_of(still, held)) {
+        contact.set(scene, 1, grip, law, false);
+        coupling.settings.reach = contact.reach();
+        coupling.settings.gyration = contact.gyration();
+        coupling.settings.springs = {{1000.0, 60.0}, {1.0, 5.0}};
+        coupling.reset(start);
+    }
+    const QuasiStaticState& update(const Pose& hand) {
+        const QuasiStaticState& now = coupling.update(hand, contact);
+        residuals.add(now.residual);
+        balanced += now.balanced ? 1.0 : 0.0;
+        deepest = std::max(deepest, now.contact.penetration);
+        return now;
+    }
+    double share() const { return balanced / static_cast<double>(residuals.total()); }
+};
+
+ContactLaw stiff() {
+    ContactLaw law;
+    law.stiffness = 100e3;
+    law.interpolation = Interpolation::quadratic;
+    law.blend = 0.01 * mm;
+    return law;
+}
+
+struct Insertion {
+    double depth = 0.0, end = 0.0, axial = 0.0, lateral = 0.0;
+};
+
+/// A peg of 10 mm goes 20 mm down and comes up again under a hand that shakes by 0.8 mm and 2 degrees.
+Insertion insert(double clearance) {
+    const Part hole =
+        part_of(make_bushing(10.0 * mm + clearance, 26.0 * mm, 30.0 * mm, 1.0 * mm), 0.42 * mm, 0.25 * mm);
+    const Part peg = part_of(make_cylinder(10.0 * mm, 30.0 * mm, 0.5 * mm), 0.42 * mm, 0.25 * mm);
+    const Pose grip{{0.0, 0.0, -30.0 * mm}, {1, 0, 0, 0}};
+    Rig rig(hole, peg, grip, stiff(), {{0.0, 0.0, 33.0 * mm}, {1, 0, 0, 0}});
+    rig.coupling.settings.iterations = 10;
+    rig.coupling.settings.springs.linear.limit = 15.0;
+    Insertion result{-1.0, 0.0, 0.0, 0.0};
+    for (int n = 0; n < 3000; ++n) {
+        const double t = n * 1e-3, w = 2.0 * std::numbers::pi * 1.5;
+        const double depth = n < 1500 ? -3.0 * mm + 24.0 * mm * t / 1.5 : 21.0 * mm - 24.0 * mm * (t - 1.5) / 1.5;
+        const Vec3 shake = 0.8 * mm * Vec3(std::sin(w * t), std::sin(1.3 * w * t), 0.0);
+        const Vec3 nod = 2.0 * degree * Vec3(std::sin(1.3 * w * t), std::sin(w * t), 0.0);
+        const QuasiStaticState& now = rig.update({Vec3(0.0, 0.0, 30.0 * mm - depth) + shake, rotation_by(nod)});
+        REQUIRE(is_finite(now.wrench));
+        const Vec3 tip = (now.proxy * grip).position;
+        result.depth = std::max(result.depth, -tip.z);
+        result.axial = std::max(result.axial, std::abs(now.wrench.force.z));
+        if (-tip.z > 2.0 * mm) result.lateral = std::max(result.lateral, std::hypot(tip.x, tip.y));
+        result.end = -tip.z;
+    }
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("a peg goes in and comes out at 0.3, 0.1 and 0.0 mm of clearance, and not at -0.1 mm") {
+    for (const double clearance : {0.3 * mm, 0.1 * mm, 0.0}) {
+        const Insertion peg = insert(clearance);
+        CAPTURE(clearance, peg.depth, peg.axial, peg.lateral, peg.end);
+        CHECK(peg.depth >= 20.0 * mm - 0.1 * mm);
+        CHECK(peg.axial <= 10.0);
+        CHECK(peg.lateral <= clearance + 0.02 * mm);
+        CHECK(peg.end < 0.0);
+    }
+    const Insertion tight = insert(-0.1 * mm);
+    CAPTURE(tight.depth, tight.axial);
+    CHECK(tight.depth < 10.0 * mm);
+}
+
+TEST_CASE("no corner pops through a thin plate below the documented force, no face at all") {
+    const Part block = part_of(Box{{6.0 * mm, 6.0 * mm, 6.0 * mm}}, 0.42 * mm, 0.35 * mm);
+    const Quat on_corner = rotation_by(Vec3(0.0, -std::acos(1.0 / std::sqrt(3.0)), 0.0)) *
+                           rotation_by(Vec3(0.0, 0.0, -0.25 * std::numbers::pi));
+    for (const double wall : {2.0 * mm, 1.0 * mm, 0.7 * mm})
+        for (const bool corner : {false, true}) {
+            const Part plate = part_of(Box{{24.0 * mm, 24.0 * mm, wall}}, 1.0 * mm, 0.175 * mm);
+            ContactLaw law;
+            law.blend = 0.0;
+            const Quat turn = corner ? glm::conjugate(on_corner) : Quat(1, 0, 0, 0);
+            Rig rig(plate, block, {}, law, {{0.1 * mm, 0.2 * mm, 12.0 * mm}, turn});
+            rig.coupling.settings.step = 0.25 * mm;
+            rig.coupling.settings.springs.linear.limit = corner ? 0.9 * law.stiffness * wall / 2.0 : 40.0;
+            rig.coupling.settings.springs.angular = {100.0, 100.0};
+            for (int n = 0; n < 4000; ++n) rig.update({{0.1 * mm, 0.2 * mm, 12.0 * mm - 0.015 * mm * n}, turn});
+            CAPTURE(wall, corner, rig.deepest);
+            CHECK(rig.coupling.state().proxy.position.z > 0.5 * wall);
+            CHECK(rig.coupling.state().contact.in_contact > 0);
+        }
+}
+
+TEST_CASE("a plate of 1 mm does not go through a plate of 1 mm at any speed up to 2 m/s") {
+    const Part still = part_of(Box{{24.0 * mm, 24.0 * mm, 1.0 * mm}}, 0.5 * mm, 0.25 * mm);
+    const Part held = part_of(Box{{12.0 * mm, 12.0 * mm, 1.0 * mm}}, 0.5 * mm, 0.25 * mm);
+    for (const double speed : {0.2, 0.5, 1.0, 2.0}) {
+        Rig rig(still, held, {}, stiff(), {{0.0, 0.0, 20.0 * mm}, {1, 0, 0, 0}});
+        rig.coupling.settings.springs.linear.limit = 20.0;
+        const int ticks = static_cast<int>(40.0 * mm / speed / 1e-3) + 200;
+        for (int n = 0; n < ticks; ++n)
+            rig.update({{0.0, 0.0, std::max(-20.0 * mm, 20.0 * mm - speed * 1e-3 * n)}, {1, 0, 0, 0}});
+        CAPTURE(speed);
+        CHECK(rig.coupling.state().proxy.position.z > 0.8 * mm);
+    }
+}
+
+namespace {
+
+/// The two halves of the bundled fracture, about their middles.
+struct Halves {
+    Part left, right;
+    Pose left_at, right_at;
+
+    Halves() {
+        std::vector<Bone> bones = make_fragments();
+        take(bones[0], left, left_at);
+        take(bones[1], right, right_at);
+    }
+    static void take(Bone& bone, Part& part, Pose& at) {
+        Vec3 middle(0.0);
+        for (const SurfacePoint& p : bone.points) middle += p.position;
+        middle /= static_cast<double>(bone.points.size());
+        for (SurfacePoint& p : bone.points) p.position -= middle;
+        bone.distance.origin -= middle;
+        part = {make_pointshell(bone.points), make_voxmap(std::move(bone.distance))};
+        at.position = middle;
+    }
+};
+
+const Halves& halves() {
+    static const Halves both;
+    return both;
+}
+
+Rig fragment_rig(const ContactLaw& law, int iterations) {
+    const Halves& h = halves();
+    Rig rig(h.left, h.right, {}, law, {h.right_at.position + Vec3(3.0 * mm, 0, 0), {1, 0, 0, 0}});
+    rig.scene.objects[0].pose = h.left_at;
+    rig.contact.set(rig.scene, 1, {}, law, false);
+    rig.coupling.settings.iterations = iterations;
+    return rig;
+}
+
+}  // namespace
+
+TEST_CASE("a jump of 15 mm and 14 degrees leaves a fragment on its side") {
+    Rig rig = fragment_rig({}, 4);
+    const Vec3 fit = halves().right_at.position;
+    for (int n = 0; n < 20; ++n) rig.update({fit, {1, 0, 0, 0}});
+    const Pose deep{fit - Vec3(15.0 * mm, 0.0, 0.0), rotation_by({0.0, 0.14, 0.2})};
+    for (int n = 0; n < 100; ++n) rig.update(deep);
+    CHECK(rig.coupling.state().proxy.position.x > fit.x - 3.0 * mm);
+    CHECK(rig.coupling.state().wrench.force.x > 5.0);
+}

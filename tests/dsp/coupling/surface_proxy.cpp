@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/coupling/surface_proxy.hpp"
+
+#include "dsp/core/random.hpp"
+#include "dsp/distance/closest_point.hpp"
+#include "tests/dsp/coupling/held.hpp"
+#include "tests/support/realtime_check.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+using namespace tactus;
+
+namespace {
+
+constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
+
+const Voxmap& ball_map() {
+    static const Voxmap map = test::map_of(Ball{25.0 * mm}, 0.35 * mm);
+    return map;
+}
+const Voxmap& plate_map() {
+    static const Voxmap map = test::map_of(Box{{20.0 * mm, 20.0 * mm, 2.0 * mm}}, 0.25 * mm);
+    return map;
+}
+const TriangleTree& plate_triangles() {
+    static const TriangleTree tree(iso_surface(plate_map().grid, 0.0f, false));
+    return tree;
+}
+
+/// Field and triangles of one body.
+std::array<ProxySurface, 2> both(const Voxmap& map, const TriangleTree& tree) {
+    return {ProxySurface{&map, nullptr, {}}, ProxySurface{nullptr, &tree, {}}};
+}
+
+}  // namespace
+
+TEST_CASE("a tree of triangles finds what looking at each of them finds") {
+    TriangleSurface surface;
+    const Random random{11};
+    for (std::uint64_t t = 0; t < 300; ++t) {
+        const Vec3 at(random.uniform(10 * t), random.uniform(10 * t + 1), random.uniform(10 * t + 2));
+        for (std::uint64_t c = 0; c < 3; ++c) {
+            const std::uint64_t n = 10 * t + 3 * c + 5000;
+            surface.vertices.push_back(at +
+                                       0.2 * Vec3(random.uniform(n), random.uniform(n + 1), random.uniform(n + 2)));
+        }
+        const int v = static_cast<int>(3 * t);
+        surface.triangles.push_back({v, v + 1, v + 2});
+    }
+    const TriangleTree tree(surface);
+    for (std::uint64_t q = 0; q < 300; ++q) {
+        const Vec3 p =
+            1.4 * Vec3(random.uniform(90000 + 7 * q), random.uniform(90001 + 7 * q), random.uniform(90002 + 7 * q));
+        double least = std::numeric_limits<double>::infinity();
+        for (const auto& t : surface.triangles) {
+            const Vec3* v = surface.vertices.data();
+            least = std::min(least, glm::length(p - closest_on_triangle(p, v[t[0]], v[t[1]], v[t[2]])));
+        }
+        CHECK(tree.nearest(p).distance == Approx(least));
+        CHECK(tree.nearest(p, 0.5 * least).distance == std::numeric_limits<double>::infinity());
+        // A ray to a corner's neighbourhood meets something no later than there.
+        const Vec3 inside = (surface.vertices[0] + surface.vertices[1] + surface.vertices[2]) / 3.0;
+        CHECK(tree.cast(p, p + 2.0 * (inside - p)) <= 0.5 + 1e-9);
+    }
+    CHECK(tree.cast({2, 2, 2}, {3, 3, 3}) == 1.0);
+    CHECK(TriangleTree({}).nearest({0, 0, 0}).distance == std::numeric_limits<double>::infinity());
+}
+
+TEST_CASE("the nearest place within half-spaces is on faces, in edges and in corners") {
+    const ProxyPlane x{{1, 0, 0}, 0.0}, y{{0, 1, 0}, 0.0}, z{{0, 0, 1}, 0.5};
+    const std::array all{x, y, z};
+    CHECK(nearest_within({1, 1, 1}, {0, 0, 0}, all) == Vec3(1, 1, 1));
+    CHECK(glm::length(nearest_within({-1, 1, 1}, {0, 0, 0}, all) - Vec3(0, 1, 1)) < 1e-12);
+    CHECK(glm::length(nearest_within({-1, -2, 1}, {0, 0, 0}, all) - Vec3(0, 0, 1)) < 1e-12);
+    CHECK(glm::length(nearest_within({-1, -2, -3}, {0, 0, 0}, all) - Vec3(0, 0, -0.5)) < 1e-12);
+}
+
+TEST_CASE("sliding over a ball, field or triangles: the force is the spring's along the normal") {
+    for (const ProxySurface& surface : {ProxySurface{&ball_map(), nullptr, {}}})
+        for (const double radius : {0.0, 2.0 * mm}) {
+            SurfaceProxy proxy;
+            proxy.settings.radius = radius;
+            const double out = 25.0 * mm + radius, depth = 2.0 * mm;
+            proxy.reset({0.0, 0.0, out + mm});
+            double worst_angle = 0.0, worst_size = 0.0;
+            for (int n = 0; n < 1200; ++n) {
+                const double a = 1e-3 * n, deep = std::min(depth, 0.01 * mm * n);
+                const Vec3 normal(std::sin(a) * std::cos(0.7), std::sin(a) * std::sin(0.7), std::cos(a));
+                const ProxyState& now = proxy.update(normal * (out - deep), {&surface, 1});
+                if (n < 250) continue;
+                const double size = glm::length(now.force);
+                worst_angle = std::max(worst_angle, std::acos(std::min(1.0, glm::dot(now.force / size, normal))));
+                worst_size = std::max(worst_size, std::abs(size / (1000.0 * depth) - 1.0));
+            }
+            CAPTURE(surface.triangles != nullptr, radius, worst_angle / degree, worst_size);
+            // A point on flat triangles of half a millimetre on a ball of 25 mm: they are up to 0.6 deg off its normal.
+            CHECK(worst_angle < (surface.triangles && radius == 0.0 ? 1.5 : 0.5) * degree);
+            CHECK(worst_size < 0.01);
+        }
+}
+
+TEST_CASE("friction holds within its cone, slides outside of it with the dynamic force") {
+    const ProxySurface surface{&plate_map(), nullptr, {}};
+    SurfaceProxy proxy;
+    proxy.settings.static_friction = 0.6;
+    proxy.settings.dynamic_friction = 0.4;
+    proxy.reset({0.0, 0.0, 2.0 * mm});
+    for (int n = 0; n < 100; ++n) proxy.update({0.0, 0.0, (2.0 - 0.02 * n) * mm}, {&surface, 1});
+    const double depth = (1.0 - (2.0 - 0.02 * 99)) * mm;
+    const Vec3 anchor = proxy.state().proxy;
+    // Up to 0.6 of the depth it sticks.
+    for (int n = 0; n < 50; ++n) {
+        const double x = 0.55 * depth * n / 50.0;
+        const ProxyState& now = proxy.update({x, 0.0, 1.0 * mm - depth}, {&surface, 1});
+        REQUIRE(now.sticks);
+        REQUIRE(glm::length(now.proxy - anchor) < 0.01 * mm);
+    }
+    for (int n = 0; n < 300; ++n) {
+        const double x = 0.55 * depth + 0.01 * mm * n;
+        const ProxyState& now = proxy.update({x, 0.0, 1.0 * mm - depth}, {&surface, 1});
+        if (n < 100 || now.sticks) continue;
+        REQUIRE(-now.force.x / now.force.z == Approx(0.4).epsilon(0.05));
+    }
+    CHECK(proxy.state().proxy.x > 2.0 * mm);
+}
+
+TEST_CASE("texture makes the force of an even slide wave by the length of its waves") {
+    const ProxySurface surface{&plate_map(), nullptr, {}};
+    SurfaceProxy proxy;
+    proxy.settings.texture_height = 0.1 * mm;
+    proxy.settings.texture_length = 2.0 * mm;
+    proxy.reset({-5.0 * mm, 0.0, 2.0 * mm});
+    double least = 1e9, greatest = 0.0, first = 0.0;
+    for (int n = 0; n < 400; ++n) {
+        const double x = -5.0 * mm + 0.02 * mm * std::max(0, n - 100);
+        const double z = std::max(0.0, 2.0 - 0.02 * n) * mm;
+        const ProxyState& now = proxy.update({x, 0.0, z}, {&surface, 1});
+        if (n < 150) continue;
+        if (n == 200) first = now.force.z;
+        if (n == 300) CHECK(now.force.z == Approx(first).margin(0.02));
+        least = std::min(least, now.force.z);
+        greatest = std::max(greatest, now.force.z);
+    }
+    CHECK(greatest - least > 0.04);
+    CHECK(greatest - least < 0.09);
+}
+
+TEST_CASE("a proxy allocates nothing") {
+    const auto surfaces = both(plate_map(), plate_triangles());
+    SurfaceProxy proxy;
+    proxy.settings.static_friction = 0.3;
+    const RealtimeViolations seen = watch([&] {
+        for (int n = 0; n < 50; ++n) proxy.update({0.1 * mm * n, 0.0, (3.0 - 0.1 * n) * mm}, surfaces);
+    });
+    CHECK(seen.none());
+}

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/contact/shape.hpp"
+#include "dsp/coupling/scene.hpp"
+#include "dsp/coupling/triangle_tree.hpp"
+#include "dsp/operator/hand.hpp"
+#include "tests/support/node_harness.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace tactus;
+using test::NodeHarness;
+
+namespace {
+
+constexpr double mm = 1e-3;
+constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
+
+/// Place 0: a table of 40 × 40 × 10 mm, top at z = 0. Place 1: a box of 10 mm that floats 1 mm above it.
+const Scene& table_and_box() {
+    const auto part = [](const Box& box, double spacing, double voxel) {
+        Grid grid{{0, 0, 0}, box.low() - Vec3(3.0 * mm), Vec3(voxel), {}};
+        for (int axis = 0; axis < 3; ++axis)
+            grid.size[static_cast<std::size_t>(axis)] =
+                static_cast<int>(std::ceil((box.size[axis] + 6.0 * mm) / voxel)) + 1;
+        return std::pair(make_pointshell(box.points(spacing)),
+                         sample_voxmap(grid, [&](const Vec3& p) { return box.distance(p); }));
+    };
+    static const auto table = part({Vec3(40.0, 40.0, 10.0) * mm}, 2.0 * mm, 0.5 * mm);
+    static const auto box = part({Vec3(10.0 * mm)}, 1.0 * mm, 0.5 * mm);
+    static const TriangleTree top(iso_surface(table.second.grid, 0.0f, false));
+    static const Scene scene = [] {
+        Scene made;
+        made.count = 2;
+        made.objects[0] = {{&table.first, &table.second, &top, {}, 1, 1}, {{0.0, 0.0, -5.0 * mm}, {1, 0, 0, 0}}};
+        made.objects[1] = {{&box.first, &box.second, nullptr, {}, 1, 2}, {{0.0, 0.0, 6.0 * mm}, {1, 0, 0, 0}}};
+        made.version = 1;
+        made.content_hash = hash_of(made);
+        return made;
+    }();
+    return scene;
+}
+
+}  // namespace
+
+TEST_CASE("a held box set down on a table is felt with the coupling's stiffness, and the box stands on it") {
+    NodeHarness node("quasi_static_coupling", servo);
+    node.set("held", "1").set("grip_at", "0 mm, 0 mm, -20 mm");
+    node.feed("scene", table_and_box());
+    node.feed<Pose>("device", [](std::int64_t k) {
+        return Pose{{0.0, 0.0, std::max(25.0 * mm - 0.05 * mm * static_cast<double>(k), 22.0 * mm)}, {1, 0, 0, 0}};
+    });
+    node.disconnect_optional();
+    node.prepare();
+    node.run(200);
+    // 3 mm deep, in series with 121 points of 10 N/mm.
+    const Wrench w = node.last<Wrench>("wrench");
+    CHECK(w.force.z == Approx(3.0).epsilon(0.01));
+    CHECK(std::hypot(w.force.x, w.force.y) < 1e-3);
+    CHECK(node.last<Pose>("pose").position.z == Approx(5.0 * mm).margin(0.05 * mm));
+    CHECK(node.last<bool>("in_contact"));
+    const Report report = node.report();
+    CHECK(std::get<double>(report.sections.at("coupling").at("residual_p99_N")) < 2e-3);
+    CHECK(std::get<double>(report.sections.at("coupling").at("penetration_max_mm")) < 0.1);
+}
+
+TEST_CASE("a body is taken and let go at any point without a jump in force") {
+    NodeHarness grasp("grasp", servo), coupling("quasi_static_coupling", servo);
+    // Taken at a corner, carried down on the table, pressed, and let go while pressed.
+    const auto hand = [](std::int64_t k) {
+        const double down = std::clamp(0.02 * mm * static_cast<double>(k - 300), 0.0, 4.0 * mm);
+        return Pose{{4.0 * mm, 3.0 * mm, 12.0 * mm - down}, rotation_by({0.3, -0.2, 1.0})};
+    };
+    grasp.feed<Pose>("hand", hand);
+    grasp.feed("scene", table_and_box());
+    grasp.feed<bool>("trigger", [](std::int64_t k) { return k >= 100 && k < 900; });
+    grasp.prepare();
+    grasp.run(1200);
+    const auto held = grasp.values<double>("held");
+    const auto grips = grasp.values<Pose>("grip");
+    const auto holding = grasp.values<bool>("holding");
+    const auto strength = grasp.values<double>("strength");
+    CHECK(held[50] == -1.0);
+    CHECK(held[101] == 1.0);
+    CHECK(held[1100] == -1.0);
+    const Pose there = hand(100) * grips[100];
+    CHECK(glm::length(there.position - table_and_box().objects[1].pose.position) < 1e-12);
+
+    const auto at = [](std::int64_t k) { return static_cast<std::size_t>(k); };
+    coupling.feed<Pose>("device", hand);
+    coupling.feed("scene", table_and_box());
+    coupling.feed<Pose>("grip", [&](std::int64_t k) { return grips[at(k)]; });
+    coupling.feed<bool>("holding", [&](std::int64_t k) { return bool(holding[at(k)]); });
+    coupling.feed<double>("strength", [&](std::int64_t k) { return strength[at(k)]; });
+    // A number cannot be fed to a parameter here: the place is held from the first tick on, but not the body.
+    coupling.set("held", "1");
+    coupling.prepare();
+    coupling.run(1200);
+    const auto felt = coupling.values<Wrench>("wrench");
+    double step = 0.0, most = 0.0;
+    for (std::size_t k = 1; k < felt.size(); ++k) {
+        step = std::max(step, glm::length(felt[k].force - felt[k - 1].force));
+        most = std::max(most, glm::length(felt[k].force));
+    }
+    CHECK(most > 2.0);
+    CHECK(step < 0.1);
+    CHECK(glm::length(felt.back().force) == 0.0);
+    CHECK(glm::length(felt[100].force) < 1e-3);
+    // It stays where it was let go.
+    const auto pose = coupling.values<Pose>("pose");
+    CHECK(pose[1199].position == pose[900].position);
+}
+
+TEST_CASE("a scene keeps a body where a hand has put it") {
+    NodeHarness node("scene", servo);
+    const Scene& sample = table_and_box();
+    node.feed("a", sample.objects[0].body);
+    node.feed("b", sample.objects[1].body);
+    node.disconnect("c").disconnect("d").disconnect("a_pose").disconnect("b_pose").disconnect("c_pose");
+    node.disconnect("d_pose");
+    node.set("b_at", "0 mm, 0 mm, 6 mm");
+    node.feed<double>("which", [](std::int64_t k) { return k >= 10 && k < 20 ? 1.0 : -1.0; });
+    node.feed("moved", Pose{{0.01, 0.02, 0.03}, {1, 0, 0, 0}});
+    node.prepare();
+    node.run(30);
+    const auto scenes = node.values<Scene>("scene");
+    CHECK(scenes[5].count == 2);
+    CHECK(scenes[5].objects[1].pose.position == Vec3(0.0, 0.0, 6.0 * mm));
+    CHECK(scenes[29].objects[1].pose.position == Vec3(0.01, 0.02, 0.03));
+    CHECK(scenes[29].objects[0].pose.position == Vec3(0.0));
+    CHECK(scenes[29].content_hash != scenes[5].content_hash);
+}
+
+TEST_CASE("direct rendering scales all points together to what the hand can feel") {
+    NodeHarness contact("voxmap_contact", servo), direct("direct_coupling", servo);
+    contact.set("held", "1");
+    contact.feed("scene", table_and_box());
+    contact.feed("pose", Pose{{0.0, 0.0, 4.5 * mm}, {1, 0, 0, 0}});
+    contact.prepare();
+    contact.run(1);
+    const Wrench raw = contact.last<Wrench>("wrench");
+    CHECK(raw.force.z == Approx(121 * 10e3 * 0.5 * mm).epsilon(0.01));
+    direct.feed("contact", raw);
+    direct.feed("contact_stiffness", contact.last<double>("stiffness"));
+    direct.set("stiffness", "0.8 N/mm");
+    direct.prepare();
+    direct.run(1);
+    CHECK(direct.last<Wrench>("wrench").force.z == Approx(0.4).epsilon(0.02));
+}
+
+TEST_CASE("a proxy node stops at the table, on its field and on its triangles") {
+    for (const char* type : {"point_proxy", "sphere_proxy"})
+        for (const char* surface : {"field", "triangles"}) {
+            NodeHarness node(type, servo);
+            node.set("surface", surface);
+            Scene only = table_and_box();
+            only.count = 1;
+            node.feed("scene", only);
+            node.feed<Pose>("device", [](std::int64_t k) {
+                return Pose{{1.0 * mm, 2.0 * mm, 5.0 * mm - 0.05 * mm * static_cast<double>(k)}, {1, 0, 0, 0}};
+            });
+            node.prepare();
+            node.run(141);
+            const double radius = type[0] == 's' ? 2.0 * mm : 0.0;
+            CAPTURE(type, surface);
+            CHECK(node.last<Wrench>("wrench").force.z == Approx(1000.0 * (2.0 * mm + radius)).epsilon(0.01));
+            CHECK(node.last<bool>("in_contact"));
+        }
+}
+
+TEST_CASE("a body with mass comes to rest on the table under the hand's springs") {
+    NodeHarness node("dynamic_coupling", servo);
+    node.set("held", "1");
+    node.feed("scene", table_and_box());
+    node.feed<Pose>("device", [](std::int64_t k) {
+        return Pose{{0.0, 0.0, std::max(6.0 * mm - 0.02 * mm * static_cast<double>(k), 3.0 * mm)}, {1, 0, 0, 0}};
+    });
+    node.disconnect_optional();
+    node.prepare();
+    node.run(1500);
+    CHECK(node.last<Wrench>("wrench").force.z == Approx(2.0).epsilon(0.02));
+}
+
+TEST_CASE("a shaped wrench stays below its limits and keeps its direction") {
+    NodeHarness node("force_shaping", servo);
+    node.feed("in", Wrench{{30.0, 40.0, 0.0}, {0.0, 0.0, 3.0}});
+    node.prepare();
+    node.run(1);
+    const Wrench w = node.last<Wrench>("wrench");
+    CHECK(glm::length(w.force) < 10.0);
+    CHECK(glm::length(w.force) > 9.9);
+    CHECK(w.force.y / w.force.x == Approx(4.0 / 3.0));
+    CHECK(w.torque.z <= 0.5);
+}
+
+TEST_CASE("a device of three degrees of freedom is given no torque and says so") {
+    NodeHarness node("device_output", servo);
+    DevicePort& port = node.outside.device("", DeviceUse::drive, {});
+    port.info.actuates_torque = false;
+    node.feed<Wrench>("wrench",
+                      [](std::int64_t k) { return k < 200 ? Wrench{} : Wrench{{0.0, 0.0, 1.0}, {0.0, 0.2, 0.0}}; });
+    node.device_feed = [](std::int64_t k, DevicePort& p) {
+        p.sample = {};
+        p.sample.counter = k;
+        p.sample.valid = true;
+    };
+    node.prepare();
+    node.run(600);
+    CHECK(node.last<Wrench>("applied").force.z == Approx(1.0));
+    CHECK(node.last<Wrench>("applied").torque == Vec3(0.0));
+    CHECK(node.last<bool>("torque_dropped"));
+    CHECK_FALSE(node.values<bool>("torque_dropped")[100]);
+    CHECK(std::get<double>(node.report().sections.at("force").at("torque_dropped_max_Nm")) == Approx(0.2));
+}
