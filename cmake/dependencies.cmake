@@ -17,6 +17,7 @@ pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
 find_package(ZLIB REQUIRED)
 find_package(OpenGL REQUIRED COMPONENTS OpenGL EGL)
 pkg_check_modules(PORTAUDIO REQUIRED IMPORTED_TARGET portaudio-2.0)
+pkg_check_modules(JACK REQUIRED IMPORTED_TARGET jack)
 pkg_check_modules(SNDFILE REQUIRED IMPORTED_TARGET sndfile)
 
 # Debian's teem has neither a CMake nor a pkg-config file.

@@ -45,6 +45,12 @@ public:
     /// Takes the device when its time has come, fades the force, gives the device back once the force is zero and the
     /// tick's thread asks for it again.
     void poll(HapticDevice& device, std::int64_t now_ns) noexcept;
+    /// The force is to fade and come in anew, for a reason outside of the device. Any thread; wait-free.
+    void ask_fade() noexcept { fade_asked_.store(true, std::memory_order_relaxed); }
+    /// True once after `ask_fade`. Thread of the tick; wait-free.
+    bool is_asked_to_fade() noexcept {
+        return fade_asked_.load(std::memory_order_relaxed) && fade_asked_.exchange(false, std::memory_order_relaxed);
+    }
     /// Retired, and no force is left.
     bool is_at_rest() const noexcept { return at_rest_.load(std::memory_order_acquire); }
 
@@ -56,7 +62,7 @@ public:
 private:
     CommitGuard guard_;
     std::atomic<std::int64_t> asked_ns_{0};  // when the tick's thread was last refused
-    std::atomic<bool> retired_{false}, at_rest_{false};
+    std::atomic<bool> retired_{false}, at_rest_{false}, fade_asked_{false};
     bool refused_ = false;  // thread of the tick
     Fault last_ = Fault::none;
     std::array<DeviceFault, 64> faults_;

@@ -40,7 +40,7 @@ std::uint64_t hash_of(const Patch& patch) {
 Engine::Engine(Plan plan, const EngineOptions& options)
     : options_(options),
       plan_hash_(hash_of(plan.patch)),
-      outside_(options.folder, options.live),
+      outside_(options.folder, options.live, options.audio),
       workshop_{.outside = outside_, .block = options.block, .hash = options.hash, .constants = {}, .take = {}} {
     if (options_.devices) outside_.imitate(*options_.devices);
     if (options_.take && !options_.tap)
@@ -231,6 +231,7 @@ void Engine::drain_log() {
 void Engine::finish() {
     for (const auto& stream : outside_.streams) stream->finish();
     for (Stream* tap : open_taps_) tap->finish();
+    for (const auto& card : outside_.cards) card->close();
     if (!options_.take) return;
     options_.take->finish(port_hashes());
     for (const auto& [name, tap] : taps_)

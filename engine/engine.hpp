@@ -33,6 +33,7 @@ struct EngineOptions {
     const std::vector<RecordedDevice>* devices = nullptr;  ///< stand-ins for the devices of the run that is repeated
     TakeWriter* take = nullptr;  ///< records the run
     bool live = false;
+    AudioChoice audio;  ///< live only
     bool hash = true;  ///< keep `output_hash`; costs about as much per sample of a signal as a trivial node
     bool time_nodes = true;  ///< keep the time of each node, from one call in 64
     /// Where every value of an output goes; used by replay, which compares. Null results: nowhere.
@@ -124,6 +125,7 @@ private:
     std::int64_t tick_at(double time, Flicks period) const;
     static void gather_hashes(const Generation& old, const Generation* next, PortHashes& parts);
     void drain_streams();
+    void tend_cards();
     void drain_log();
     void complete_render();
     void offline_worker(const std::vector<GroupRuntime*>& mine, std::uint64_t seed);

@@ -172,7 +172,10 @@ void GroupRuntime::acquire() noexcept {
         const TimingRecord* logged =
             replayed_at(TimingKind::device_sample, static_cast<std::uint16_t>(slot->id), next_);
         slot->port.sample = logged ? logged->sample : slot->device->acquire(seconds(elapsed));
-        if (!logged) slot->port.sample.taken = slot->guard.was_taken();
+        if (!logged) {
+            slot->port.sample.taken = slot->guard.was_taken();
+            slot->port.sample.sound_lost = slot->guard.is_asked_to_fade();
+        }
         note(TimingKind::device_sample, slot->id, 1, 0, &slot->port.sample);
     }
 }

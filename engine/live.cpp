@@ -5,8 +5,10 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/realtime.hpp"
 #include "engine/clock.hpp"
+#include "engine/run_clock.hpp"
 #include "engine/watchdog.hpp"
 
+#include <fmt/format.h>
 #include <pthread.h>
 #include <sys/mman.h>
 
@@ -50,8 +52,10 @@ std::int64_t commit_limit_ns(const DeviceSlot& slot, double dilate) {
 
 /// What the threads of a live run share.
 struct Engine::LiveRun {
-    std::atomic<std::int64_t> start_ns{0};  // 0: not before every thread is there, whatever making them takes
-    std::atomic<std::size_t> ready{0};      // threads that wait for the start
+    TrimmedClock line;  // control thread
+    RunClock clock;
+    std::atomic<bool> started{false};   // not before every thread is there, whatever making them takes
+    std::atomic<std::size_t> ready{0};  // threads that wait for the start
     double dilate = 1.0;
     std::atomic<std::size_t> running{0};
     std::atomic<bool> refused{false};  // real-time priority
@@ -60,12 +64,12 @@ struct Engine::LiveRun {
 
 void Engine::live_worker(GroupRuntime& group) {
     flush_denormals_to_zero();
-    const std::int64_t start_ns = live_->start_ns.load();
-    const double dilate = live_->dilate;
+    TrimmedClock line;
     const auto release_ns = [&](std::int64_t tick) {
-        return start_ns + std::llround(static_cast<double>(nanoseconds(tick * group.plan->period)) * dilate);
+        line = live_->clock.get(line);
+        return line.when(tick * group.plan->period);
     };
-    const double period_ns = dilate * 1e9 / rate_of(group.plan->period);
+    const double period_ns = live_->dilate * 1e9 / rate_of(group.plan->period);
     GroupTelemetry& telemetry = group.telemetry;
     std::int64_t busy_until = 0;
     LateCause overrun = LateCause::woken_late;
@@ -100,10 +104,28 @@ void Engine::start_thread(GroupRuntime& group) {
     live_->threads.emplace_back([this, &group] {
         if (!make_real_time(group.plan->period)) live_->refused = true;
         ++live_->ready;
-        while (live_->start_ns.load() == 0) sleep_until(steady_ns() + poll_start_ns);
+        while (!live_->started.load()) sleep_until(steady_ns() + poll_start_ns);
         live_worker(group);
         --live_->running;
     });
+}
+
+/// The clock follows the first card that is there. When one is lost, all hands are let go of once.
+void Engine::tend_cards() {
+    bool follows = false;
+    for (const auto& card : outside_.cards) {
+        // Sound at another pace than that of its card cannot be followed.
+        TrimmedClock* const line = follows || live_->dilate != 1.0 ? nullptr : &live_->line;
+        if (card->tend(steady_ns(), furthest(), line)) {
+            for (const auto& slot : outside_.devices) slot->guard.ask_fade();
+            outside_.notices.push_back(
+                fmt::format("{} was lost at {:.1f} s: no callback came for {} ms; forces faded "
+                            "once and the run went on silent",
+                            card->name(), seconds(furthest()), SoundCard::longest_silence_ns / 1'000'000));
+        }
+        follows = follows || !card->is_lost();
+    }
+    live_->clock.set(live_->line);
 }
 
 void Engine::run_live(const LiveOptions& options) {
@@ -127,7 +149,9 @@ void Engine::run_live(const LiveOptions& options) {
     watch_devices();
     for (const auto& group : now_->groups) start_thread(*group);
     while (run.ready.load() < now_->groups.size()) sleep_until(steady_ns() + poll_start_ns);
-    run.start_ns = steady_ns() + start_delay_ns;
+    run.line = {0, steady_ns() + start_delay_ns, options.dilate};
+    run.clock.set(run.line);
+    run.started = true;
     bool stopping = false;
     while (run.running.load() > 0) {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -136,6 +160,7 @@ void Engine::run_live(const LiveOptions& options) {
             drain_streams();
             tend_edits();
             watch_devices();
+            tend_cards();
             if (options.watch) options.watch();
         } catch (...) {
             fail(std::current_exception());

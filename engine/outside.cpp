@@ -38,8 +38,8 @@ bool same_settings(const std::vector<OptionText>& a, const std::vector<OptionTex
 
 }  // namespace
 
-EngineOutside::EngineOutside(std::optional<std::filesystem::path> folder, bool live)
-    : folder_(std::move(folder)), live_(live) {}
+EngineOutside::EngineOutside(std::optional<std::filesystem::path> folder, bool live, AudioChoice audio)
+    : folder_(std::move(folder)), live_(live), audio_(std::move(audio)) {}
 
 void EngineOutside::begin(const Patch& patch) {
     patch_ = patch;
@@ -57,6 +57,7 @@ void EngineOutside::keep() {
         devices.push_back(std::move(slot));
     }
     for (auto& stream : opened_.streams) streams.push_back(std::move(stream));
+    for (auto& card : opened_.cards) cards.push_back(std::move(card));
     for (auto& notice : opened_.notices) notices.push_back(std::move(notice));
     opened_ = {};
 }
@@ -157,20 +158,24 @@ RecordStream& EngineOutside::record(const StreamFormat& wanted, const SourceLoca
 }
 
 RecordStream& EngineOutside::audio(const StreamFormat& format, const SourceLocation& where) {
-    if (live_) {
-        try {
-            std::unique_ptr<AudioSink> sink = make_portaudio_sink();
-            sink->prepare(rate_of(format.period), 1);
-            opened_.notices.push_back(fmt::format("playing on {}", sink->name()));
-            sinks_.push_back(std::move(sink));
-            StreamFormat played = format;
-            played.file.clear();
-            opened_.streams.push_back(std::make_unique<Stream>(played, make_audio_end(*sinks_.back())));
-            return *opened_.streams.back();
-        } catch (const Error& error) {
-            opened_.notices.push_back(
-                fmt::format("no sound card ({}); the sound goes to {}", error.message(), format.file));
-        }
+    if (!live_ || audio_.device == "file") return record(format, where);
+    if (audio_.device == "none") {
+        StreamFormat unheard = format;
+        unheard.file.clear();
+        opened_.streams.push_back(std::make_unique<Stream>(unheard, std::make_unique<NowhereEnd>()));
+        return *opened_.streams.back();
+    }
+    try {
+        std::unique_ptr<AudioSink> sink =
+            make_portaudio_sink(audio_.device == "default" ? "" : audio_.device, audio_.margin_s);
+        sink->prepare(rate_of(format.period), 1);
+        opened_.notices.push_back(fmt::format("playing on {}", sink->name()));
+        opened_.cards.push_back(std::make_unique<SoundCard>(std::move(sink), format.period, audio_.margin_s));
+        return *opened_.cards.back();
+    } catch (const Error& error) {
+        if (audio_.is_required()) throw Error(where, error.message());
+        opened_.notices.push_back(
+            fmt::format("no sound card ({}); the sound goes to {}", error.message(), format.file));
     }
     return record(format, where);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/group_program.hpp"
+#include "engine/sound_card.hpp"
 #include "engine/streams.hpp"
 #include "graph/patch.hpp"
 
@@ -25,10 +26,19 @@ struct RecordedDevice {
 /// Devices that a node asked for.
 using DeviceUses = std::vector<std::pair<DeviceSlot*, DeviceUse>>;
 
+/// Where sound goes in a live run.
+struct AudioChoice {
+    std::string
+        device;  ///< "": the default card, a file when there is none; "file"; "none"; "default" or part of a name
+    double margin_s = 0.01;  ///< sound that waits for the card in case a thread is late, s
+
+    bool is_required() const { return !device.empty() && device != "file" && device != "none"; }
+};
+
 class EngineOutside : public Outside {
 public:
     /// Without a folder nothing is written: streams end nowhere. `live` allows real devices and sound cards.
-    EngineOutside(std::optional<std::filesystem::path> folder, bool live);
+    EngineOutside(std::optional<std::filesystem::path> folder, bool live, AudioChoice audio = {});
 
     DevicePort& device(const std::string& name, DeviceUse use, const SourceLocation& where) override;
     RecordStream& record(const StreamFormat& format, const SourceLocation& where) override;
@@ -53,6 +63,7 @@ public:
     // Of the run; control thread.
     std::vector<std::unique_ptr<DeviceSlot>> devices;
     std::vector<std::unique_ptr<Stream>> streams;
+    std::vector<std::unique_ptr<SoundCard>> cards;
     std::vector<std::string> notices;  ///< what the user should know once: "no sound card: …"
 
 private:
@@ -64,6 +75,7 @@ private:
     struct Opened {
         std::vector<std::unique_ptr<DeviceSlot>> devices;
         std::vector<std::unique_ptr<Stream>> streams;
+        std::vector<std::unique_ptr<SoundCard>> cards;
         std::vector<std::string> notices;
     };
 
@@ -74,9 +86,9 @@ private:
     std::vector<std::pair<std::string, std::vector<OptionText>>> device_settings_;
     std::optional<std::filesystem::path> folder_;
     bool live_;
+    AudioChoice audio_;
     int group_ = -1;
     Flicks period_ = 0;
-    std::vector<std::unique_ptr<AudioSink>> sinks_;
 };
 
 }  // namespace tactus

@@ -90,19 +90,6 @@ private:
     Flicks period_;
 };
 
-class AudioEnd : public StreamEnd {
-public:
-    explicit AudioEnd(AudioSink& sink) : sink_(sink) {}
-    void take(std::int64_t, const std::byte* values, std::size_t count) override {
-        // What the card's buffer has no room for is lost there and counted by it; the port's values are untouched.
-        sink_.write(reinterpret_cast<const float*>(values), count);
-    }
-    void finish() override { sink_.close(); }
-
-private:
-    AudioSink& sink_;
-};
-
 }  // namespace
 
 std::unique_ptr<StreamEnd> make_sound_end(const std::filesystem::path& path, const StreamFormat& format) {
@@ -111,7 +98,6 @@ std::unique_ptr<StreamEnd> make_sound_end(const std::filesystem::path& path, con
 std::unique_ptr<StreamEnd> make_csv_end(const std::filesystem::path& path, const StreamFormat& format) {
     return std::make_unique<CsvEnd>(path, format);
 }
-std::unique_ptr<StreamEnd> make_audio_end(AudioSink& sink) { return std::make_unique<AudioEnd>(sink); }
 
 Stream::Stream(StreamFormat format, std::unique_ptr<StreamEnd> end)
     : format_(std::move(format)),

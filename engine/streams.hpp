@@ -31,8 +31,6 @@ public:
 std::unique_ptr<StreamEnd> make_sound_end(const std::filesystem::path& path, const StreamFormat& format);
 /// A CSV file: a line of column names with units, then time in s and the values.
 std::unique_ptr<StreamEnd> make_csv_end(const std::filesystem::path& path, const StreamFormat& format);
-/// A device that plays.
-std::unique_ptr<StreamEnd> make_audio_end(AudioSink& sink);
 
 class Stream : public RecordStream {
 public:

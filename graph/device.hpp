@@ -23,15 +23,16 @@ struct DeviceSample {
     std::int64_t counter = 0;    ///< the driver's sample counter; a counter that stands still is stale input
     bool valid = false;          ///< false: the other members mean nothing
     bool taken = false;  ///< set by the engine: ticks were late and the watchdog faded the force; it must come in anew
+    bool sound_lost = false;  ///< set by the engine once when a sound card is gone: the force fades and comes in anew
 };
 static_assert(std::is_trivially_destructible_v<DeviceSample>, "samples travel through rings");
 
 /// What a device can do. Zero means none or unknown.
 struct DeviceInfo {
     std::string name;
-    double max_force = 0.0;      ///< N
-    double max_torque = 0.0;     ///< N·m
-    double damping = 0.0;        ///< N·s/m, of the mechanism and the hand on it; bounds the stiffness that is stable
+    double max_force = 0.0;  ///< N
+    double max_torque = 0.0;  ///< N·m
+    double damping = 0.0;  ///< N·s/m, of the mechanism and the hand on it; bounds the stiffness that is stable
     double max_stiffness = 0.0;  ///< N/m, as the maker states it
     bool actuates_torque = false;
     bool senses_rotation = false;
@@ -64,13 +65,17 @@ struct AudioStatistics {
     std::uint64_t frames_dropped = 0;  ///< refused by `write` because the buffer was full
     std::uint64_t frames_underflowed = 0;  ///< played as silence because nothing had been written
     std::uint64_t underflows = 0;  ///< times the card ran dry
+    std::uint64_t frames_left_out = 0;  ///< accepted, but never played: too much had gathered
 };
 
 /// How far the card's clock has come: `frames` were asked for at `steady_ns` of std::chrono::steady_clock.
-/// Frames 0 and time 0 mean that the output has no clock of its own.
+/// Frames 0 and time 0 mean that the card has not asked yet.
 struct AudioProgress {
     std::int64_t frames = 0;
     std::int64_t steady_ns = 0;
+    std::int64_t taken = 0;  ///< frames that left the buffer, played or left out
+    std::int64_t largest = 0;  ///< most frames asked for at once
+    bool waits = false;  ///< the card waits for the engine at the moment (JACK in freewheel) and keeps no time
 };
 
 /// An audio output.
@@ -93,8 +98,11 @@ public:
     virtual AudioStatistics statistics() const noexcept = 0;
     virtual AudioProgress progress() const noexcept = 0;
 
-    /// Ends the output and releases the card or completes the file. Called by the control thread only, never while
-    /// another thread is inside `write`. Throws Error when a file cannot be completed.
+    /// So many frames are not to be played but thrown away, as soon as they are there. Any thread.
+    virtual void leave_out(std::int64_t frames) noexcept = 0;
+
+    /// Plays what is left, then releases the card. Called by the control thread only, never while another thread is
+    /// inside `write`. Takes at most a few seconds, however dead the card is.
     virtual void close() = 0;
 };
 

@@ -195,6 +195,12 @@ int command_line(int argc, char** argv) {
     add_patch_options(*run_app, run);
     run_app->add_option("--seconds", run.seconds, "stop after so much logical time, s")->check(CLI::Range(1e-3, 1e6));
     run_app->add_option("--dilate", run.dilate, "real seconds per logical second")->check(CLI::Range(0.01, 1000.0));
+    run_app->add_option(
+        "--audio", run.audio,
+        "where sound goes: part of a card's name, default, file or none (else: a card if there is one)");
+    run_app->add_option("--audio-margin", run.audio_margin, "sound that waits for the card when a thread is late, ms")
+        ->capture_default_str()
+        ->check(CLI::Range(1.0, 2000.0));
     run_app->add_option("--out", run.out, "folder for what comes out (default: PATCH-run)");
     run_app->add_option("--log", run.log, "write what timing decided, for 'render --log'");
     run_app->add_option("--record", run.record, "keep the run as a take, a folder that 'replay' repeats");

@@ -17,7 +17,11 @@ int devices_verb(bool json) {
     std::string no_sound = "none";
     try {
         for (const AudioOutput& output : list_audio_outputs())
-            list["audio"].push_back({{"name", output.name}, {"channels", output.channels}, {"rate_hz", output.rate}});
+            list["audio"].push_back({{"name", output.name},
+                                     {"channels", output.channels},
+                                     {"rate_hz", output.rate},
+                                     {"latency_ms", 1e3 * output.latency},
+                                     {"default", output.is_default}});
     } catch (const Error& error) {
         no_sound = error.what();
     }
@@ -30,8 +34,9 @@ int devices_verb(bool json) {
         fmt::print("  {:<12} {}\n", driver["driver"].get<std::string>(), driver["about"].get<std::string>());
     fmt::print("sound outputs{}\n", list["audio"].empty() ? ": " + no_sound : "");
     for (const auto& output : list["audio"])
-        fmt::print("  {} ({} channels, {:.0f} Hz)\n", output["name"].get<std::string>(), output["channels"].get<int>(),
-                   output["rate_hz"].get<double>());
+        fmt::print("  {} ({} channels, {:.0f} Hz, {:.1f} ms{})\n", output["name"].get<std::string>(),
+                   output["channels"].get<int>(), output["rate_hz"].get<double>(), output["latency_ms"].get<double>(),
+                   output["default"].get<bool>() ? ", default" : "");
     return done;
 }
 

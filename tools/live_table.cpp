@@ -62,12 +62,20 @@ std::string describe_lateness(const GroupRuntime& group) {
     return skipped + (skipped.empty() || late.empty() ? "" : ", ") + late;
 }
 
+std::string describe_sound(const SoundCard& card) {
+    const AudioStatistics s = card.statistics();
+    return fmt::format("{}{:+.0f} ppm, {} underflows ({} frames of silence), {} frames dropped, {} left out",
+                       card.is_lost() ? "LOST, " : "", 1e6 * card.follower().loop().rate_error(), s.underflows,
+                       s.frames_underflowed, s.frames_dropped, s.frames_left_out);
+}
+
 std::string live_table(const Engine& engine) {
     std::string text = fmt::format("{:.1f} s, {:.1f} N on the hand", engine.progress_seconds(), force_of(engine));
     for (const auto& slot : engine.outside().devices)
         if (const auto faults = slot->guard.faults(); !faults.empty())
             text += fmt::format("; fault of {} at {:.1f} s: {}", slot->name, seconds(faults.back().tick * slot->period),
                                 describe(faults.back().reason));
+    for (const auto& card : engine.outside().cards) text += "; sound " + describe_sound(*card);
     text += fmt::format("\n{:>10} {:>9} {:>10} {:>7} {:>9} {:>9} {:>9} {:>9} {:>6}", "group", "Hz", "ticks", "missed",
                         "late ms", "p50 µs", "p99 µs", "max µs", "load %");
     for (const auto& group : engine.groups()) text += group_row(*group);

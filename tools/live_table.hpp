@@ -22,6 +22,9 @@ std::vector<NodeTime> slowest_nodes(const Engine& engine, std::size_t count);
 /// "3 skipped (2 woken late, 1 preempted)", or "" when there is nothing.
 std::string describe_lateness(const GroupRuntime& group);
 
+/// "+12 ppm, 0 underflows (0 frames of silence), 0 frames dropped, 0 left out".
+std::string describe_sound(const SoundCard& card);
+
 /// Several lines without a line end behind the last: time, force, faults, a row per group and the slowest nodes.
 std::string live_table(const Engine& engine);
 

@@ -28,6 +28,12 @@ int run_verb(const RunChoice& choice) {
     EngineOptions options;
     options.seconds = choice.seconds.value_or(for_ever);
     options.live = true;
+    options.audio = {choice.audio, choice.audio_margin * 1e-3};
+    if (choice.dilate != 1.0) {
+        if (options.audio.is_required())
+            throw Error("a card plays at its own pace: --dilate needs --audio file or none");
+        if (choice.audio.empty()) options.audio.device = "file";
+    }
     std::filesystem::path folder = choice.out;
     if (folder.empty()) folder = std::filesystem::path(choice.patch).stem().string() + "-run";
     options.folder = folder;

@@ -45,6 +45,22 @@ Json group_json(const GroupRuntime& group, bool live) {
     return json;
 }
 
+Json card_json(const SoundCard& card) {
+    const AudioStatistics s = card.statistics();
+    Json json{{"card", card.name()},
+              {"rate_hz", card.rate()},
+              {"largest_callback", card.largest_callback()},
+              {"frames_written", s.frames_written},
+              {"underflows", s.underflows},
+              {"frames_underflowed", s.frames_underflowed},
+              {"frames_dropped", s.frames_dropped},
+              {"frames_left_out", s.frames_left_out},
+              {"runs_fast_ppm", 1e6 * card.follower().loop().rate_error()},
+              {"losses", card.losses()}};
+    if (card.lost_at()) json["lost_at_s"] = tactus::seconds(*card.lost_at());
+    return json;
+}
+
 Json value_json(const Report::Value& value) {
     return std::visit([](const auto& v) { return Json(v); }, value);
 }
@@ -77,6 +93,8 @@ std::string summary_json(const Engine& engine, const Report& report, double seco
                                          {"mean_us", node.mean_us},
                                          {"max_us", node.max_us},
                                          {"share", node.share}});
+    json["sound"] = Json::array();
+    for (const auto& card : engine.outside().cards) json["sound"].push_back(card_json(*card));
     json["faults"] = Json::array();
     for (const auto& slot : engine.outside().devices)
         for (const DeviceFault& fault : slot->guard.faults())
@@ -117,6 +135,8 @@ std::string summary_text(const Engine& engine, const Report& report, double seco
                             number(report, "contact", "max_penetration_mm"), number(report, "force", "thrust_mean_N"));
     if (report.sections.contains("carve"))
         text += fmt::format("  removed {:.1f} mm³\n", number(report, "carve", "removed_mm3"));
+    for (const auto& card : engine.outside().cards)
+        text += fmt::format("  sound on {}: {}\n", card->name(), describe_sound(*card));
     for (const auto& slot : engine.outside().devices)
         for (const DeviceFault& fault : slot->guard.faults())
             text += fmt::format("  fault of {} at {:.3f} s: {}; {:.2g} N faded to nothing\n", slot->name,

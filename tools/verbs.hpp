@@ -35,6 +35,8 @@ struct RenderChoice : PatchChoice {
 struct RunChoice : PatchChoice {
     std::optional<double> seconds;
     double dilate = 1.0;
+    std::string audio;         ///< "", "file", "none", "default" or part of a card's name
+    double audio_margin = 10;  ///< ms
     std::filesystem::path out, log, record;
     bool edits = true;  ///< take over the patch file when it is saved, and listen to 'set'
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/audio/portaudio.hpp"
 
+#include "devices/audio/jack_watch.hpp"
 #include "devices/audio/portaudio_session.hpp"
 #include "devices/audio/quiet.hpp"
 #include "devices/audio/stream_state.hpp"
@@ -11,10 +12,14 @@
 
 #include <chrono>
 #include <cmath>
+#include <future>
+#include <memory>
 #include <thread>
 
 namespace tactus {
 namespace {
+
+using namespace std::chrono_literals;
 
 /// The default of JACK when it runs, since it then owns the card, otherwise the system's.
 PaDeviceIndex default_output() {
@@ -40,111 +45,143 @@ PaDeviceIndex find_output(const std::string& wanted) {
     return index;
 }
 
+/// All that a stream's callback may touch, and the stream. It outlives the sink when the card does not let go.
+struct OpenStream {
+    OpenStream(int channels, std::size_t frames, std::size_t start) : state(channels, frames, start) {}
+
+    PortAudioSession session;
+    StreamState state;
+    std::unique_ptr<JackWatch> jack;
+    PaStream* stream = nullptr;
+};
+
+std::int64_t steady_now_ns() {
+    return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// A server in freewheel waits for its clients: the engine's sound is worth waiting for, though not for ever.
+void wait_for_sound(const StreamState& state, unsigned long frames) {
+    for (int i = 0; i < 5000 && !state.can_feed(frames); ++i) std::this_thread::sleep_for(200us);
+}
+
 int feed_card(const void*, void* output, unsigned long frames, const PaStreamCallbackTimeInfo*, PaStreamCallbackFlags,
-              void* state) {
-    const std::chrono::nanoseconds now = std::chrono::steady_clock::now().time_since_epoch();
-    static_cast<StreamState*>(state)->feed(static_cast<float*>(output), frames, now.count());
+              void* opened) {
+    auto& open = *static_cast<OpenStream*>(opened);
+    if (open.jack && open.jack->freewheels()) wait_for_sound(open.state, frames);
+    open.state.feed(static_cast<float*>(output), frames, steady_now_ns());
     return paContinue;
 }
 
 class PortAudioSink final : public AudioSink {
 public:
-    PortAudioSink(std::string device, double buffer_s) : device_(std::move(device)), buffer_s_(buffer_s) {}
+    PortAudioSink(std::string device, double lead_s) : device_(std::move(device)), lead_s_(lead_s) {}
     ~PortAudioSink() override { release(); }
 
     const std::string& name() const override { return name_; }
 
     void prepare(double rate, int channels) override {
         release();
-        session_ = std::make_unique<PortAudioSession>();
         try {
             open(rate, channels);
         } catch (...) {
-            release();
+            open_.reset();
             throw;
         }
     }
 
     std::size_t write(const float* interleaved, std::size_t frames) noexcept override {
-        return state_ ? state_->write(interleaved, frames) : 0;
+        return open_ ? open_->state.write(interleaved, frames) : 0;
     }
-    std::size_t writable() const noexcept override { return state_ ? state_->writable() : 0; }
-    AudioStatistics statistics() const noexcept override { return state_ ? state_->statistics() : AudioStatistics{}; }
-    AudioProgress progress() const noexcept override { return state_ ? state_->progress() : AudioProgress{}; }
+    std::size_t writable() const noexcept override { return open_ ? open_->state.writable() : 0; }
+    AudioStatistics statistics() const noexcept override { return open_ ? open_->state.statistics() : last_; }
+    AudioProgress progress() const noexcept override {
+        if (!open_) return {};
+        AudioProgress progress = open_->state.progress();
+        progress.waits = open_->jack && open_->jack->freewheels();
+        return progress;
+    }
+    void leave_out(std::int64_t frames) noexcept override {
+        if (open_) open_->state.leave_out(frames);
+    }
     void close() override { release(); }
 
 private:
     void open(double rate, int channels) {
         const QuietStderr quiet;
+        const auto start = static_cast<std::size_t>(std::lround(lead_s_ * rate));
+        // Room for a card or an engine that stands still a while, and for the largest buffers of cards.
+        open_ = std::make_shared<OpenStream>(channels, 4 * start + 16384, start);
         PaStreamParameters parameters{};
         parameters.device = find_output(device_);
         const PaDeviceInfo& info = *Pa_GetDeviceInfo(parameters.device);
         name_ = audio_device_name(parameters.device);
         if (channels < 1 || channels > info.maxOutputChannels)
             throw Error(fmt::format("'{}' has {} channels, {} are needed", name_, info.maxOutputChannels, channels));
+        if (info.hostApi == Pa_HostApiTypeIdToHostApiIndex(paJACK)) open_->jack = std::make_unique<JackWatch>();
         parameters.channelCount = channels;
         parameters.sampleFormat = paFloat32;
         parameters.suggestedLatency = info.defaultLowOutputLatency;
-        state_ = std::make_unique<StreamState>(channels, static_cast<std::size_t>(std::ceil(buffer_s_ * rate)));
-        PaError error = Pa_OpenStream(&stream_, nullptr, &parameters, rate, paFramesPerBufferUnspecified, paNoFlag,
-                                      feed_card, state_.get());
-        if (error == paNoError) error = Pa_StartStream(stream_);
+        PaError error = Pa_OpenStream(&open_->stream, nullptr, &parameters, rate, paFramesPerBufferUnspecified,
+                                      paNoFlag, feed_card, open_.get());
+        if (error == paNoError) error = Pa_StartStream(open_->stream);
         if (error == paNoError) return;
-        if (stream_ != nullptr) Pa_CloseStream(stream_);
-        stream_ = nullptr;
-        throw Error(
-            fmt::format("'{}' cannot play {} channels at {} Hz: {}", name_, channels, rate, Pa_GetErrorText(error)));
+        if (open_->stream != nullptr) Pa_CloseStream(open_->stream);
+        throw Error(fmt::format("'{}' cannot play {} channels at {:g} Hz: {}; it prefers {:g} Hz", name_, channels,
+                                rate, Pa_GetErrorText(error), info.defaultSampleRate));
     }
 
-    /// True when the card still asks for sound. Stopping a stream whose server died would block for ever.
-    bool is_alive() const {
-        if (Pa_IsStreamActive(stream_) != 1) return false;
-        const std::int64_t before = state_->progress().frames;
-        for (int i = 0; i < 50; ++i) {
-            if (state_->progress().frames != before) return true;
-            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    /// Until all is played, or the card asks no more.
+    void play_out() const {
+        open_->state.end();
+        std::int64_t frames = open_->state.progress().frames;
+        for (int idle = 0; idle < 50 && !open_->state.is_empty();) {
+            std::this_thread::sleep_for(10ms);
+            const std::int64_t now = open_->state.progress().frames;
+            idle = now == frames ? idle + 1 : 0;
+            frames = now;
         }
-        return false;
     }
 
+    /// Stopping a stream whose server died blocks for ever: that is left to a thread that nobody waits for longer than
+    /// a living card needs, together with all that the stream may still touch.
     void release() {
-        if (stream_ != nullptr && !is_alive()) {
-            // A dead stream may still hold our pointers: it is left, with all it uses, to the end of the process.
-            static_cast<void>(state_.release());
-            static_cast<void>(session_.release());
-            stream_ = nullptr;
-            return;
-        }
-        if (stream_ != nullptr) {
-            const QuietStderr quiet;
-            Pa_StopStream(stream_);
-            Pa_CloseStream(stream_);
-            stream_ = nullptr;
-        }
-        state_.reset();
-        session_.reset();
+        if (!open_) return;
+        play_out();
+        last_ = open_->state.statistics();
+        std::promise<void> done;
+        std::future<void> closed = done.get_future();
+        std::thread([opened = std::move(open_), promise = std::move(done)]() mutable {
+            if (opened->jack && opened->jack->is_gone()) std::this_thread::sleep_for(std::chrono::hours(24 * 365));
+            Pa_StopStream(opened->stream);
+            Pa_CloseStream(opened->stream);
+            opened.reset();
+            promise.set_value();
+        }).detach();
+        const QuietStderr quiet;
+        closed.wait_for(2s);
     }
 
     std::string device_, name_ = "sound card";
-    double buffer_s_;
-    std::unique_ptr<PortAudioSession> session_;
-    std::unique_ptr<StreamState> state_;
-    PaStream* stream_ = nullptr;
+    double lead_s_;
+    std::shared_ptr<OpenStream> open_;
+    AudioStatistics last_;
 };
 
 }  // namespace
 
 std::vector<AudioOutput> list_audio_outputs() {
     const PortAudioSession session;
+    const PaDeviceIndex preferred = default_output();
     std::vector<AudioOutput> outputs;
     for (PaDeviceIndex i = 0; i < Pa_GetDeviceCount(); ++i)
         if (const PaDeviceInfo& info = *Pa_GetDeviceInfo(i); info.maxOutputChannels > 0)
-            outputs.push_back({audio_device_name(i), info.maxOutputChannels, info.defaultSampleRate});
+            outputs.push_back({audio_device_name(i), info.maxOutputChannels, info.defaultSampleRate,
+                               info.defaultLowOutputLatency, i == preferred});
     return outputs;
 }
 
-std::unique_ptr<AudioSink> make_portaudio_sink(std::string device, double buffer_s) {
-    return std::make_unique<PortAudioSink>(std::move(device), buffer_s);
+std::unique_ptr<AudioSink> make_portaudio_sink(std::string device, double lead_s) {
+    return std::make_unique<PortAudioSink>(std::move(device), lead_s);
 }
 
 }  // namespace tactus

@@ -24,6 +24,7 @@ const char* describe(Fault fault) noexcept {
         case Fault::stale_input: return "the device stopped delivering samples";
         case Fault::invalid_input: return "the device delivered an invalid sample";
         case Fault::late_commit: return "no force arrived in time";
+        case Fault::sound_lost: return "the sound card was lost";
     }
     return "unknown fault";
 }

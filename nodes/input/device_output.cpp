@@ -45,6 +45,7 @@ struct DeviceOutput {
     void process(const Tick& tick) noexcept {
         const DeviceSample& s = port_->sample;
         limiter_.hold_off(port_->hold_off);
+        if (s.sound_lost) limiter_.fail(Fault::sound_lost);
         if (s.taken) limiter_.cut(Fault::late_commit);
         const Wrench out = limiter_.tick(givable(), s.counter, s.valid && is_valid(s.pose), tick.elapsed_seconds());
         applied = out;

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// The clock that all threads of a live run read, and one trims.
+#pragma once
+
+#include "dsp/clock/trimmed_clock.hpp"
+
+#include <atomic>
+#include <cstdint>
+
+namespace tactus {
+
+class RunClock {
+    static_assert(std::atomic<std::int64_t>::is_always_lock_free && std::atomic<double>::is_always_lock_free);
+
+public:
+    /// One thread only; wait-free.
+    void set(const TrimmedClock& clock) noexcept {
+        const std::uint64_t version = version_.load(std::memory_order_relaxed);
+        version_.store(version + 1, std::memory_order_relaxed);
+        logical_.store(clock.logical, std::memory_order_release);
+        steady_ns_.store(clock.steady_ns, std::memory_order_release);
+        slope_.store(clock.slope, std::memory_order_release);
+        version_.store(version + 2, std::memory_order_release);
+    }
+
+    /// Any thread. A reader that is unlucky takes the line it read last: between two lines lie microseconds. Wait-free.
+    TrimmedClock get(const TrimmedClock& last) const noexcept {
+        const std::uint64_t version = version_.load(std::memory_order_acquire);
+        const TrimmedClock now{logical_.load(std::memory_order_acquire), steady_ns_.load(std::memory_order_acquire),
+                               slope_.load(std::memory_order_acquire)};
+        return version % 2 == 0 && version_.load(std::memory_order_relaxed) == version ? now : last;
+    }
+
+private:
+    std::atomic<std::uint64_t> version_{0};
+    std::atomic<Flicks> logical_{0};
+    std::atomic<std::int64_t> steady_ns_{0};
+    std::atomic<double> slope_{1.0};
+};
+
+}  // namespace tactus
