@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+// A JACK server without hardware; a second client records what the command plays.
+#include "assets/sound/sound.hpp"
+#include "tests/tools/run_command.hpp"
+
+#include <jack/jack.h>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <future>
+#include <memory>
+#include <thread>
+#include <vector>
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+using tactus::test::Folder;
+using tactus::test::Outcome;
+using tactus::test::slurp;
+
+namespace {
+
+const std::string tone = R"(title = "tone"
+wires = [ "tone.signal -> speaker.signal" ]
+[nodes.tone]
+type = "sine"
+rate = "48 kHz"
+frequency = "441.7 Hz"
+[nodes.speaker]
+type = "audio_output"
+rate = "48 kHz"
+)";
+
+/// A server of our own. Nothing of it is left behind.
+class Server {
+public:
+    Server(const Folder& folder, int period) : name("tactus_test_" + std::to_string(::getpid())) {
+        folder.write("asound.conf", "pcm.!default { type null }\n");
+        ::setenv("JACK_DEFAULT_SERVER", name.c_str(), 1);
+        ::setenv("JACK_NO_START_SERVER", "1", 1);
+        ::setenv("JACK_NO_AUDIO_RESERVATION", "1", 1);
+        ::setenv("ALSA_CONFIG_PATH", (folder.path / "asound.conf").c_str(), 1);
+        jack_set_error_function([](const char*) {});
+        jack_set_info_function([](const char*) {});
+        const std::string log = (folder.path / "jackd.log").string(), frames = std::to_string(period);
+        pid_ = ::fork();
+        if (pid_ == 0) {
+            if (!std::freopen(log.c_str(), "w", stdout) || !std::freopen(log.c_str(), "w", stderr)) ::_exit(1);
+            // Synchronous: the server waits for late clients instead of leaving them out.
+            ::execlp("jackd", "jackd", "-n", name.c_str(), "-S", "-r", "-m", "-t", "5000", "-d", "dummy", "-r", "48000",
+                     "-p", frames.c_str(), "-C", "2", "-P", "2", nullptr);
+            ::_exit(1);
+        }
+    }
+    ~Server() {
+        end(SIGTERM);
+        static_cast<void>(std::system(("rm -f /dev/shm/jack_sem.*_" + name + "_*").c_str()));
+    }
+    void end(int how) {
+        if (pid_ <= 0) return;
+        ::kill(pid_, how);
+        ::waitpid(pid_, nullptr, 0);
+        pid_ = 0;
+    }
+
+    std::string name;
+
+private:
+    pid_t pid_ = 0;
+};
+
+class Recorder {
+public:
+    Recorder() : heard_(48000 * 20) {
+        for (int i = 0; i < 200 && client_ == nullptr; ++i) {
+            client_ = jack_client_open("recorder", JackNoStartServer, nullptr);
+            if (client_ == nullptr) std::this_thread::sleep_for(50ms);
+        }
+        if (client_ == nullptr) return;
+        port_ = jack_port_register(client_, "in", JACK_DEFAULT_AUDIO_TYPE, JackPortIsInput, 0);
+        jack_set_process_callback(
+            client_, [](jack_nframes_t n, void* self) { return static_cast<Recorder*>(self)->hear(n); }, this);
+        jack_activate(client_);
+    }
+    ~Recorder() {
+        if (client_ != nullptr) jack_client_close(client_);
+    }
+    bool is_there() const { return client_ != nullptr; }
+    bool listen_to(const char* port) {
+        for (int i = 0; i < 4000; ++i, std::this_thread::sleep_for(5ms))
+            if (jack_port_by_name(client_, port) != nullptr)
+                return jack_connect(client_, port, jack_port_name(port_)) == 0;
+        return false;
+    }
+    void freewheel(bool on) { jack_set_freewheel(client_, on ? 1 : 0); }
+    /// From the first sound on. After the player ended.
+    std::vector<float> heard() const {
+        return {heard_.begin(), heard_.begin() + static_cast<std::ptrdiff_t>(count_.load())};
+    }
+
+private:
+    int hear(jack_nframes_t n) {
+        const auto* in = static_cast<const float*>(jack_port_get_buffer(port_, n));
+        std::size_t count = count_.load(std::memory_order_relaxed);
+        for (jack_nframes_t i = 0; i < n; ++i)
+            if ((count > 0 || in[i] != 0.0F) && count < heard_.size()) heard_[count++] = in[i];
+        count_.store(count, std::memory_order_release);
+        return 0;
+    }
+
+    jack_client_t* client_ = nullptr;
+    jack_port_t* port_ = nullptr;
+    std::vector<float> heard_;
+    std::atomic<std::size_t> count_{0};
+};
+
+bool has_server() {
+    if (std::system("command -v jackd >/dev/null") == 0) return true;
+    WARN("skipped: no JACK server (apt-get install jackd2)");
+    return false;
+}
+
+std::vector<float> rendered(const Folder& folder, const std::string& patch) {
+    const Outcome done = folder.tactus("render " + patch + " --seconds 1.5 --out " + (folder.path / "r").string());
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    const tactus::Sound sound = tactus::load_sound(folder.path / "r/speaker.wav");
+    std::vector<float> samples(sound.samples.begin(), sound.samples.end());
+    return {std::ranges::find_if(samples, [](float x) { return x != 0.0F; }), samples.end()};
+}
+
+/// Plays while the recorder listens; false when this machine was too busy to play without a gap.
+bool plays_the_same(const Folder& folder, int period, bool freewheel, const std::vector<float>& wanted) {
+    Server server(folder, period);
+    Recorder recorder;
+    REQUIRE(recorder.is_there());
+    const std::string out = (folder.path / "live").string();
+    auto playing = std::async(std::launch::async, [&] {
+        return folder.tactus("run " + (folder.path / "tone.toml").string() +
+                             " --seconds 1.5 --audio default --audio-margin 500 --out " + out);
+    });
+    const bool listens = recorder.listen_to("PortAudio:out_0");
+    if (listens && freewheel) recorder.freewheel(true);
+    const Outcome outcome = playing.get();
+    if (freewheel) recorder.freewheel(false);
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    REQUIRE(listens);
+    const json summary = json::parse(slurp(folder.path / "live/summary.json")), sound = summary["sound"][0];
+    INFO(sound.dump());
+    if (sound["underflows"] > 0 || sound["frames_dropped"] > 0 || sound["frames_left_out"] > 0 ||
+        summary["groups"][0]["skipped"] > 0)
+        return false;
+    CHECK(sound["largest_callback"] == period);
+    std::vector<float> heard = recorder.heard();
+    REQUIRE(heard.size() >= wanted.size());
+    heard.resize(wanted.size());
+    CHECK(heard == wanted);
+    return true;
+}
+
+void check_playing(bool freewheel, std::initializer_list<int> periods) {
+    if (!has_server()) return;
+    const Folder folder;
+    const std::vector<float> wanted = rendered(folder, folder.write("tone.toml", tone).string());
+    REQUIRE(wanted.size() > 70'000);
+    for (const int period : periods) {
+        INFO("period " << period);
+        bool played = false;
+        for (int attempt = 0; attempt < 3 && !played; ++attempt)
+            played = plays_the_same(folder, period, freewheel, wanted);
+        if (!played) WARN("this machine was too busy to play without gaps, period " << period);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("what a second client records of a live run is the offline render, sample by sample") {
+    check_playing(false, {16, 64, 100, 256, 1024});
+}
+
+TEST_CASE("a server in freewheel gets every sample, too") { check_playing(true, {64, 1024}); }
+
+TEST_CASE("a server that dies leaves a run that ends by itself, silent, with faded forces and a whole take") {
+    if (!has_server()) return;
+    const Folder folder;
+    Server server(folder, 256);
+    {
+        const Recorder there;
+        REQUIRE(there.is_there());
+    }
+    const std::string out = (folder.path / "live").string(), take = (folder.path / "take").string();
+    auto playing = std::async(std::launch::async, [&] {
+        return folder.tactus("run saw-training --seconds 3 --audio default --out " + out + " --record " + take);
+    });
+    std::this_thread::sleep_for(1500ms);
+    server.end(SIGKILL);
+    const Outcome outcome = playing.get();
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    const json summary = json::parse(slurp(folder.path / "live/summary.json"));
+    INFO(summary["sound"].dump() << summary["notices"].dump());
+    CHECK(summary["sound"][0]["losses"] == 1);
+    CHECK(summary["notices"].dump().find("was lost") != std::string::npos);
+    CHECK(summary["faults"].dump().find("the sound card was lost") != std::string::npos);
+    const Outcome again = folder.tactus("replay " + take);
+    INFO(again.out << again.err);
+    CHECK(again.code == 0);
+}
+
+TEST_CASE("a card that is not there, or cannot go at the asked pace, is an error that says so") {
+    const Folder folder;
+    const std::string patch = folder.write("tone.toml", tone).string(), out = (folder.path / "live").string();
+    const Outcome missing = folder.tactus("run " + patch + " --seconds 0.1 --audio nobody-has-this --out " + out);
+    CHECK(missing.code == 2);
+    CHECK(missing.err.find("sound output") != std::string::npos);
+    const Outcome slow = folder.tactus("run " + patch + " --seconds 0.1 --audio default --dilate 2 --out " + out);
+    CHECK(slow.code == 2);
+    CHECK(slow.err.find("--dilate") != std::string::npos);
+}
+
+TEST_CASE("sound goes to a file or nowhere when asked to") {
+    const Folder folder;
+    const std::string patch = folder.write("tone.toml", tone).string();
+    for (const char* where : {"file", "none"}) {
+        const std::string out = (folder.path / where).string();
+        const Outcome outcome = folder.tactus("run " + patch + " --seconds 0.1 --audio " + where + " --out " + out);
+        INFO(outcome.err);
+        CHECK(outcome.code == 0);
+        CHECK(std::filesystem::exists(folder.path / where / "speaker.wav") == (std::string(where) == "file"));
+    }
+}
