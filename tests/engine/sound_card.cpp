@@ -87,7 +87,7 @@ TEST_CASE("a card that asks for nothing is lost after half a second, once, and f
     bench.sink->ask(64, 10 * ms);
     CHECK_FALSE(bench.card->tend(11 * ms, 0, &clock));
     CHECK_FALSE(bench.card->tend(509 * ms, 0, &clock));
-    CHECK(bench.card->tend(511 * ms, 77, &clock));
+    CHECK(bench.card->tend(512 * ms, 77, &clock));
     CHECK(bench.card->is_lost());
     CHECK(bench.card->lost_at() == 77);
     CHECK(clock.slope == 1.0);

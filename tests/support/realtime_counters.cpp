@@ -147,6 +147,10 @@ int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_t* mutex, co
     TACTUS_PASS_ON(pthread_cond_timedwait, waits, condition, mutex, until);
 }
 
+int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock, const timespec* until) {
+    TACTUS_PASS_ON(pthread_cond_clockwait, waits, condition, mutex, clock, until);
+}
+
 int nanosleep(const timespec* duration, timespec* left) { TACTUS_PASS_ON(nanosleep, waits, duration, left); }
 
 int clock_nanosleep(clockid_t clock, int flags, const timespec* duration, timespec* left) {

@@ -70,6 +70,12 @@ TEST_CASE("check warns of a device that gives no torque") {
     const json checked = json::parse(o.out);
     REQUIRE(checked["warnings"].size() == 1);
     CHECK(checked["warnings"][0].get<std::string>().find("gives forces only") != std::string::npos);
-    CHECK(checked["paths"][0]["ok"] == true);
+    bool has_loop = false;
+    for (const json& path : checked["paths"])
+        if (path.contains("ok")) {
+            has_loop = true;
+            CHECK(path["ok"] == true);
+        }
+    CHECK(has_loop);
     CHECK(json::parse(folder.tactus("check touch-sphere --json").out)["warnings"].empty());
 }

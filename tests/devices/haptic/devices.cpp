@@ -126,7 +126,7 @@ TEST_CASE("the trigger of a replayed hand can start late or never") {
 
 TEST_CASE("an unknown driver, a missing file name and a missing file are refused with what to do") {
     CHECK_THROWS_WITH(open("simulatd", {}), Contains("saw.toml:4:10") && Contains("did you mean 'simulated'") &&
-                                                Contains("simulated, replay"));
+                                                Contains("simulated, scripted, replay"));
     CHECK_THROWS_WITH(open("replay", {}), Contains("saw.toml:3:1") && Contains("'file'"));
     CHECK_THROWS_WITH(open("replay", {{"file", "/nowhere.csv", {}}}), Contains("/nowhere.csv"));
 }
