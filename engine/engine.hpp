@@ -40,8 +40,6 @@ struct EngineOptions {
     std::function<std::unique_ptr<Stream>(const std::string& port, const ValueType&, const GroupRuntime&)> tap;
 };
 
-class Engine;
-
 struct LiveOptions {
     double dilate = 1.0;  ///< real seconds per logical second
     std::optional<std::filesystem::path> log;  ///< where timing decisions are written

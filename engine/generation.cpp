@@ -2,10 +2,9 @@
 #include "engine/generation.hpp"
 
 #include "dsp/core/realtime.hpp"
+#include "engine/force_path.hpp"
 #include "engine/survival.hpp"
 #include "graph/layout.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstring>
@@ -385,7 +384,7 @@ private:
             if (made_->survived[i]) rewire(i);
             assign_devices(i);
         }
-        if (!before_ || !changes_force_path()) return;
+        if (!before_ || !changes_force_path(*before_, *made_)) return;
         for (const auto& program : made_->programs) program->changes_force = !program->driven.empty();
     }
 
@@ -403,55 +402,6 @@ private:
         // Late ticks are never run back to back against a hand.
         if (!program.devices.empty() && !plan().groups[static_cast<std::size_t>(node.group)].backlog_given)
             program.backlog = 0;
-    }
-
-    /// Nodes from which values reach a device, in any group: a force may depend on them.
-    static std::vector<bool> force_path(const Generation& generation) {
-        std::vector<bool> on_path;
-        for (const auto& node : generation.nodes)
-            on_path.push_back(
-                std::ranges::any_of(node->devices, [](const auto& use) { return use.second == DeviceUse::drive; }));
-        for (bool grows = true; grows;) {
-            grows = false;
-            for (const PlanWire& wire : generation.plan.wires) {
-                if (wire.from_node < 0 || !on_path[static_cast<std::size_t>(wire.to_node)]) continue;
-                auto from = on_path[static_cast<std::size_t>(wire.from_node)];
-                grows = grows || !from;
-                from = true;
-            }
-        }
-        return on_path;
-    }
-
-    /// The nodes and wires of the force path, as text.
-    static std::vector<std::string> describe_force_path(const Generation& generation) {
-        const std::vector<bool> on_path = force_path(generation);
-        std::vector<std::string> parts;
-        for (std::size_t i = 0; i < generation.nodes.size(); ++i)
-            if (on_path[i]) parts.push_back(generation.nodes[i]->name);
-        for (const PlanWire& wire : generation.plan.wires) {
-            const auto to = static_cast<std::size_t>(wire.to_node);
-            if (!on_path[to]) continue;
-            std::string from = wire.asset, target;
-            if (wire.from_node >= 0) {
-                const PlanNode& node = generation.plan.nodes[static_cast<std::size_t>(wire.from_node)];
-                from = node.name + "." + node.outputs[static_cast<std::size_t>(wire.from_output)].name;
-            }
-            for (const auto& [name, param] : generation.plan.nodes[to].params)
-                if (wire.to_input < 0 && param == wire.param) target = name;
-            parts.push_back(fmt::format("{} {} {} {} {} {}", from, generation.nodes[to]->name, wire.to_input, target,
-                                        static_cast<int>(wire.mode), wire.delay));
-        }
-        std::ranges::sort(parts);
-        return parts;
-    }
-
-    /// Nodes or wires of the force path come, go or are made anew.
-    bool changes_force_path() const {
-        const std::vector<bool> on_path = force_path(*made_);
-        for (std::size_t i = 0; i < made_->nodes.size(); ++i)
-            if (on_path[i] && !made_->survived[i]) return true;
-        return describe_force_path(*before_) != describe_force_path(*made_);
     }
 
     void finish_program(std::size_t g) {

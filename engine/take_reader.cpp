@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/take_reader.hpp"
 
+#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -8,10 +9,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
-#include <fstream>
 #include <sstream>
 
 namespace tactus {
@@ -20,14 +18,6 @@ using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string read_text(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw Error(fmt::format("{}: cannot read: {}", path.string(), std::strerror(errno)));
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
 
 std::uint64_t bits_of(const Json& json) {
     const auto& text = json.get_ref<const std::string&>();
@@ -86,7 +76,7 @@ void read_event(const Json& json, Take& take) {
         TakenEdit edit;
         edit.number = json.at("plan");
         edit.when = json.at("when_flicks");
-        edit.text = read_text(take.folder / fmt::format("patch-{}.toml", edit.number));
+        edit.text = read_whole_file(take.folder / fmt::format("patch-{}.toml", edit.number));
         read_assets(json.at("assets"), take.assets);
         take.events.emplace_back(std::move(edit));
     } else if (json.contains("set")) {
@@ -105,7 +95,7 @@ Take Take::load(const fs::path& folder) {
     fs::path reading = folder / "take.json";
     int line_number = 0;
     try {
-        const Json json = Json::parse(read_text(reading));
+        const Json json = Json::parse(read_whole_file(reading));
         if (json.at("format") != 1) throw Error("written by another version of tactus");
         take.about.patch_file = json.at("patch").get<std::string>();
         take.about.overrides.settings = json.at("settings");
@@ -117,10 +107,10 @@ Take Take::load(const fs::path& folder) {
         take.build = json.at("build");
         take.cpu = json.at("cpu");
         read_assets(json.at("assets"), take.assets);
-        take.text = read_text(folder / "patch-0.toml");
+        take.text = read_whole_file(folder / "patch-0.toml");
 
         reading = folder / "events.jsonl";
-        std::istringstream events(read_text(reading));
+        std::istringstream events(read_whole_file(reading));
         for (std::string line; std::getline(events, line);) {
             ++line_number;
             // The last line may have been cut off; it was never promised.
@@ -130,7 +120,7 @@ Take Take::load(const fs::path& folder) {
         line_number = 0;
         reading = folder / "result.json";
         if (fs::exists(reading)) {
-            const Json result = Json::parse(read_text(reading));
+            const Json result = Json::parse(read_whole_file(reading));
             for (const auto& [port, hash] : result.at("ports").items()) take.result[port] = bits_of(hash);
         }
     } catch (const nlohmann::json::exception& error) {
@@ -159,7 +149,7 @@ std::vector<std::string> Take::changed_assets() const {
         if (asset.hash == 0) continue;
         if (!fs::exists(asset.path))
             found.push_back(fmt::format("asset '{}' is gone: {}", asset.name, asset.path.string()));
-        else if (hash_of_file(asset.path) != asset.hash)
+        else if (hash_of_asset(asset.path) != asset.hash)
             found.push_back(fmt::format("asset '{}' has changed since: {}", asset.name, asset.path.string()));
     }
     return found;

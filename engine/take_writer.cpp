@@ -2,6 +2,7 @@
 #include "engine/take_writer.hpp"
 
 #include "assets/bone/bone.hpp"
+#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/group_runtime.hpp"
 
@@ -56,22 +57,13 @@ private:
     std::chrono::steady_clock::time_point updated_ = std::chrono::steady_clock::now();
 };
 
-void write_whole(const fs::path& path, const std::string& text) {
-    const fs::path part = path.string() + ".part";
-    std::ofstream file(part, std::ios::binary);
-    file << text;
-    file.close();
-    if (!file) throw Error(fmt::format("{}: cannot write: {}", path.string(), std::strerror(errno)));
-    fs::rename(part, path);
-}
-
 Json assets_json(const Patch& patch) {
     Json assets = Json::array();
     for (const PatchAsset& asset : patch.assets)
         assets.push_back({{"name", asset.name},
                           {"path", fs::absolute(asset.path).string()},
                           // A patch may name a file that nothing uses.
-                          {"hash", fmt::format("{:016x}", fs::exists(asset.path) ? hash_of_file(asset.path) : 0)}});
+                          {"hash", fmt::format("{:016x}", fs::exists(asset.path) ? hash_of_asset(asset.path) : 0)}});
     return assets;
 }
 
@@ -88,18 +80,14 @@ Json sample_json(const DeviceSample& s) {
 
 }  // namespace
 
-std::uint64_t hash_of_file(const fs::path& path) {
-    std::ifstream file(file_of_bone(path), std::ios::binary);
-    if (!file) throw Error(fmt::format("{}: cannot read: {}", path.string(), std::strerror(errno)));
+std::uint64_t hash_of_asset(const fs::path& path) {
     Hash hash;
-    std::string text;
-    const bool is_text = path.extension() == ".toml";
-    std::vector<char> block(1 << 16);
-    while (file.read(block.data(), static_cast<std::streamsize>(block.size())), file.gcount() > 0) {
-        hash.add_bytes(block.data(), static_cast<std::size_t>(file.gcount()));
-        if (is_text) text.append(block.data(), static_cast<std::size_t>(file.gcount()));
+    if (path.extension() != ".toml") {
+        add_file(hash, file_of_bone(path));
+        return hash.value();
     }
-    if (!is_text) return hash.value();
+    const std::string text = read_whole_file(path);
+    hash.add_bytes(text.data(), text.size());
     // A recording set is a text that names its sounds.
     std::vector<fs::path> beside;
     std::error_code ignored;
@@ -108,12 +96,16 @@ std::uint64_t hash_of_file(const fs::path& path) {
             beside.push_back(entry.path());
     std::ranges::sort(beside);
     for (const fs::path& other : beside)
-        if (other.extension() != ".toml") hash.add_word(hash_of_file(other));
+        if (other.extension() != ".toml") hash.add_word(hash_of_asset(other));
     return hash.value();
 }
 
 std::string build_identity() {
-    static const std::string identity = fmt::format("{:016x}", hash_of_file("/proc/self/exe"));
+    static const std::string identity = [] {
+        Hash hash;
+        add_file(hash, "/proc/self/exe");
+        return fmt::format("{:016x}", hash.value());
+    }();
     return identity;
 }
 
@@ -144,7 +136,7 @@ TakeWriter::~TakeWriter() {
 }
 
 void TakeWriter::begin(const Patch& patch, std::uint64_t plan_hash) {
-    write_whole(folder_ / "patch-0.toml", patch.text);
+    write_whole_file(folder_ / "patch-0.toml", patch.text);
     Json json{{"format", 1},
               {"patch", fs::absolute(about_.patch_file).string()},
               {"title", patch.title},
@@ -159,7 +151,7 @@ void TakeWriter::begin(const Patch& patch, std::uint64_t plan_hash) {
     log_ = std::make_unique<TimingLogWriter>(folder_ / "timing.log", plan_hash, about_.seconds,
                                              TimingLogWriter::Name::at_once);
     log_->flush();
-    write_whole(folder_ / "take.json", json.dump(2) + "\n");
+    write_whole_file(folder_ / "take.json", json.dump(2) + "\n");
 }
 
 void TakeWriter::line(const std::string& json) {
@@ -216,7 +208,7 @@ std::unique_ptr<Stream> TakeWriter::stream(const std::string& port, const ValueT
 
 void TakeWriter::edit(std::int64_t number, Flicks when, const std::string& text, const Patch& patch) {
     const std::string file = fmt::format("patch-{}.toml", number);
-    write_whole(folder_ / file, text);
+    write_whole_file(folder_ / file, text);
     line(Json{{"plan", number}, {"file", file}, {"when_flicks", when}, {"assets", assets_json(patch)}}.dump());
 }
 
@@ -250,7 +242,7 @@ void TakeWriter::finish(const std::vector<std::pair<std::string, std::uint64_t>>
     log_->finish();
     Json json{{"ports", Json::object()}};
     for (const auto& [name, hash] : port_hashes) json["ports"][name] = fmt::format("{:016x}", hash);
-    write_whole(folder_ / "result.json", json.dump(2) + "\n");
+    write_whole_file(folder_ / "result.json", json.dump(2) + "\n");
 }
 
 }  // namespace tactus

@@ -78,7 +78,7 @@ private:
 };
 
 /// Hash of a file's bytes; of a text that names other files beside it, theirs too. Throws Error.
-std::uint64_t hash_of_file(const std::filesystem::path& path);
+std::uint64_t hash_of_asset(const std::filesystem::path& path);
 /// Of the running program.
 std::string build_identity();
 /// Vendor, family and model of the processor, as far as they may change rounding.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/file/whole_file.hpp"
 #include "graph/draw.hpp"
 #include "graph/latency.hpp"
 #include "graph/stiffness.hpp"
@@ -132,7 +133,7 @@ int draw_verb(const PatchChoice& choice, const std::filesystem::path& out) {
     }
     const std::string svg = draw_svg(*plan);
     if (out.empty()) fmt::print("{}", svg);
-    else write_text(out, svg);
+    else write_whole_file(out, svg);
     return done;
 }
 

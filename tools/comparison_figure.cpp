@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/comparison_figure.hpp"
 
-#include "assets/bone/whole_file.hpp"
+#include "assets/file/whole_file.hpp"
 #include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/plot_panel.hpp"

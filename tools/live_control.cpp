@@ -2,7 +2,6 @@
 #include "tools/live_control.hpp"
 
 #include "dsp/core/error.hpp"
-#include "nodes/catalogue.hpp"
 
 #include <fmt/format.h>
 
@@ -44,12 +43,8 @@ void LiveControl::edit() {
     if (text == engine_.plan().patch.text) return;
     const auto make = [this, text] {
         Problems problems;
-        Patch patch = read_patch(text, file_, problems);
-        apply_overrides(patch, choice_.overrides, problems);
-        if (choice_.seed) patch.seed = *choice_.seed;
-        std::optional<Plan> plan;
-        if (problems.empty()) plan = compile(patch, catalogue(), problems);
-        if (plan) assets_.load(*plan, problems);
+        std::optional<Plan> plan =
+            plan_of(read_patch(text, file_, problems), choice_.overrides, choice_.seed, &assets_, problems);
         if (problems.empty()) return std::move(*plan);
         std::string all;
         for (const Error& problem : problems.list) all += fmt::format("{}{}", all.empty() ? "" : "\n", problem.what());

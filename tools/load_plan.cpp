@@ -37,19 +37,25 @@ fs::path find_patch(const std::string& name) {
                             list.empty() ? "which is empty; build first" : list, did_you_mean(name, names)));
 }
 
-std::optional<Plan> read_plan(const PatchChoice& choice, Problems& problems) {
-    Patch patch = load_patch(find_patch(choice.patch), problems);
-    apply_overrides(patch, choice.overrides, problems);
-    if (choice.seed) patch.seed = *choice.seed;
+std::optional<Plan> plan_of(Patch patch, const PatchOverrides& overrides, std::optional<std::uint64_t> seed,
+                            AssetCache* assets, Problems& problems) {
+    apply_overrides(patch, overrides, problems);
+    if (seed) patch.seed = *seed;
     // Without a sound text, what the compiler would say is mostly echo.
     if (!problems.empty()) return std::nullopt;
-    return compile(patch, catalogue(), problems);
+    std::optional<Plan> plan = compile(patch, catalogue(), problems);
+    if (plan && assets) assets->load(*plan, problems);
+    return plan;
+}
+
+std::optional<Plan> read_plan(const PatchChoice& choice, Problems& problems) {
+    return plan_of(load_patch(find_patch(choice.patch), problems), choice.overrides, choice.seed, nullptr, problems);
 }
 
 Plan load_plan(const PatchChoice& choice, AssetCache& assets) {
     Problems problems;
-    std::optional<Plan> plan = read_plan(choice, problems);
-    if (plan) assets.load(*plan, problems);
+    std::optional<Plan> plan =
+        plan_of(load_patch(find_patch(choice.patch), problems), choice.overrides, choice.seed, &assets, problems);
     throw_problems(problems);
     return std::move(*plan);
 }

@@ -18,7 +18,12 @@ std::filesystem::path library_folder();
 /// File of a patch given by path, or by name in the library. Throws Error listing what the library has.
 std::filesystem::path find_patch(const std::string& name);
 
-/// Reads and compiles. Problems are collected.
+/// The plan of a patch: what the command line overrides, `seed` when given, compiled; with its assets when there is a
+/// cache. Problems are collected, those of reading among them; with any, there may be no plan.
+std::optional<Plan> plan_of(Patch patch, const PatchOverrides& overrides, std::optional<std::uint64_t> seed,
+                            AssetCache* assets, Problems& problems);
+
+/// Reads and compiles, without assets. Problems are collected.
 std::optional<Plan> read_plan(const PatchChoice& choice, Problems& problems);
 
 /// Reads, compiles and loads assets. Prints every problem on standard error and throws the last when there are any.

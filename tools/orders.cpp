@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Levels of the orders of a machine whose rate changes.
+#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/order/order_spectrum.hpp"
 #include "tools/summary.hpp"
@@ -110,7 +111,7 @@ int orders_verb(const OrdersChoice& choice) {
                 for (const OrderSpectrum& spectrum : spectra) csv += fmt::format(",{}", spectrum.amplitude[k]);
                 csv += '\n';
             }
-            write_text(choice.csv, csv);
+            write_whole_file(choice.csv, csv);
         }
         fmt::print("{}", choice.json ? json.dump(2) + "\n" : text);
     } catch (const Error& error) {

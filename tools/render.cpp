@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/file/whole_file.hpp"
 #include "tools/load_plan.hpp"
 #include "tools/results.hpp"
 #include "tools/summary.hpp"
@@ -63,7 +64,7 @@ int render_verb(const RenderChoice& choice) {
     for (std::string& file : write_bones(report, choice.out)) files.push_back(std::move(file));
     files.push_back("summary.json");
     const std::string summary = summary_json(engine, report, options.seconds, false, files);
-    write_text(choice.out / "summary.json", summary);
+    write_whole_file(choice.out / "summary.json", summary);
     fmt::print("{}", choice.json ? summary : summary_text(engine, report, options.seconds, wall));
     return done;
 }

@@ -2,7 +2,6 @@
 #include "dsp/core/error.hpp"
 #include "engine/engine.hpp"
 #include "engine/take_compare.hpp"
-#include "nodes/catalogue.hpp"
 #include "tools/load_plan.hpp"
 #include "tools/terminal.hpp"
 
@@ -19,14 +18,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Plan plan_of(const Take& take, const std::string& text, AssetCache& assets) {
+Plan plan_in(const Take& take, const std::string& text, AssetCache& assets) {
     Problems problems;
-    Patch patch = read_patch(text, take.about.patch_file, problems);
-    apply_overrides(patch, take.about.overrides, problems);
-    if (take.about.seed) patch.seed = *take.about.seed;
-    std::optional<Plan> plan;
-    if (problems.empty()) plan = compile(patch, catalogue(), problems);
-    if (plan) assets.load(*plan, problems);
+    std::optional<Plan> plan = plan_of(read_patch(text, take.about.patch_file, problems), take.about.overrides,
+                                       take.about.seed, &assets, problems);
     if (!problems.empty()) throw problems.list.front();
     return std::move(*plan);
 }
@@ -67,10 +62,10 @@ int replay_verb(const ReplayChoice& choice) {
     options.tap = [&comparison](const std::string& port, const ValueType& type, const GroupRuntime& group) {
         return comparison.tap(port, type, group);
     };
-    Engine engine(plan_of(take, take.text, assets), options);
+    Engine engine(plan_in(take, take.text, assets), options);
     for (const auto& event : take.events) {
         if (const auto* edit = std::get_if<TakenEdit>(&event))
-            engine.schedule(plan_of(take, edit->text, assets), edit->when);
+            engine.schedule(plan_in(take, edit->text, assets), edit->when);
         if (const auto* change = std::get_if<TakenChange>(&event))
             engine.schedule_change(change->id, change->node, change->param, change->value);
     }

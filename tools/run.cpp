@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/file/whole_file.hpp"
 #include "tools/live_control.hpp"
 #include "tools/live_table.hpp"
 #include "tools/load_plan.hpp"
@@ -82,7 +83,7 @@ int run_verb(const RunChoice& choice) {
     files.push_back("summary.json");
     const double ran = engine.progress_seconds();
     const std::string summary = summary_json(engine, report, ran, true, files);
-    write_text(folder / "summary.json", summary);
+    write_whole_file(folder / "summary.json", summary);
     if (choice.json) fmt::print("{}", summary);
     else fmt::print("{}  results in {}/\n", summary_text(engine, report, ran, wall), folder.string());
     return done;

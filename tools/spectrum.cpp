@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What vibrates in a record, or in each of many.
+#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/comparison_figure.hpp"
 #include "tools/spectrum_analysis.hpp"
@@ -51,7 +52,7 @@ Outcome analyse(const std::filesystem::path& path, const SpectrumChoice& choice,
     const auto output = [&](const std::filesystem::path& wanted, const char* ending) {
         return many ? wanted / (path.filename().string() + ending) : wanted;
     };
-    if (!choice.csv.empty()) write_text(output(choice.csv, ".csv"), analysis_csv(file));
+    if (!choice.csv.empty()) write_whole_file(output(choice.csv, ".csv"), analysis_csv(file));
     if (!choice.plot.empty()) write_figure(draw_spectrum(file), output(choice.plot, ".svg"));
     return {choice.json ? analysis_json(file, choice) : analysis_text(file), "", table_rows(file)};
 }
@@ -124,7 +125,7 @@ int spectrum_verb(const SpectrumChoice& choice) {
             table += outcomes[i].error.empty()
                          ? outcomes[i].table
                          : fmt::format("{},,,,,,,,,,,{}\n", csv_field(files[i].string()), csv_field(outcomes[i].error));
-        write_text(choice.table, table);
+        write_whole_file(choice.table, table);
     }
     return bad ? bad_input : done;
 }

@@ -7,10 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 
 namespace tactus {
 
@@ -143,20 +140,6 @@ std::string summary_text(const Engine& engine, const Report& report, double seco
                                 tactus::seconds(fault.tick * slot->period), describe(fault.reason), fault.force_N);
     for (const std::string& notice : engine.outside().notices) text += fmt::format("  note: {}\n", notice);
     return text;
-}
-
-void write_text(const std::filesystem::path& path, const std::string& text) {
-    const std::filesystem::path part = path.string() + ".part";
-    std::FILE* file = std::fopen(part.c_str(), "w");
-    const bool written = file && std::fwrite(text.data(), 1, text.size(), file) == text.size();
-    const bool closed = file && std::fclose(file) == 0;
-    if (!written || !closed) {
-        const int why = errno;
-        std::error_code ignored;
-        std::filesystem::remove(part, ignored);
-        throw Error(fmt::format("{}: cannot write: {}", path.string(), std::strerror(why)));
-    }
-    std::filesystem::rename(part, path);
 }
 
 }  // namespace tactus

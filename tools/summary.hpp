@@ -16,7 +16,4 @@ std::string summary_json(const Engine& engine, const Report& report, double seco
 /// The same in a few lines.
 std::string summary_text(const Engine& engine, const Report& report, double seconds, double wall_seconds);
 
-/// Writes text beside the file and renames it. Throws Error.
-void write_text(const std::filesystem::path& path, const std::string& text);
-
 }  // namespace tactus

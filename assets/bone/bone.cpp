@@ -2,7 +2,7 @@
 #include "assets/bone/bone.hpp"
 
 #include "assets/bone/point_bytes.hpp"
-#include "assets/bone/whole_file.hpp"
+#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
 

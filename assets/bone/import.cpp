@@ -4,7 +4,7 @@
 #include "assets/bone/assumed_density.hpp"
 #include "assets/bone/from_hu.hpp"
 #include "assets/bone/labels.hpp"
-#include "assets/bone/whole_file.hpp"
+#include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/repair.hpp"
 #include "assets/volume/scan_volume.hpp"
@@ -234,8 +234,8 @@ Bone import_mesh(const ImportOptions& options, const Report& report, ImportSumma
 
 void add_points(Bone& bone, const ImportOptions& options, ImportSummary& summary) {
     if (!options.pointshell) return;
-    bone.points = sample_surface(
-        bone.distance, {.spacing = *options.pointshell, .follow_curvature = options.pointshell_by_curvature});
+    bone.points = sample_surface(bone.distance,
+                                 {.spacing = *options.pointshell, .follow_curvature = options.pointshell_by_curvature});
     bone.provenance["pointshell"] =
         fmt::format("{} mm{}", *options.pointshell / mm, options.pointshell_by_curvature ? ", by curvature" : "");
     summary.points = bone.points.size();
@@ -292,12 +292,9 @@ std::string bone_name(const std::filesystem::path& input) {
     return (last.extension() == ".gz" ? last.stem() : last).stem().string();
 }
 
-std::string hash_of_file(const std::filesystem::path& path) {
+std::string hash_of_source(const std::filesystem::path& path) {
     Hash hash;
-    for (const std::filesystem::path& file : source_files(path)) {
-        const std::string bytes = read_whole_file(file);
-        hash.add_bytes(bytes.data(), bytes.size());
-    }
+    for (const std::filesystem::path& file : source_files(path)) add_file(hash, file);
     return fmt::format("{:016x}", hash.value());
 }
 
@@ -355,7 +352,7 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
         how.hu = &ct;
         how.hu_is_masked = hu == HuKind::masked;
     }
-    const std::string source_hash = hash_of_file(options.input);
+    const std::string source_hash = hash_of_source(options.input);
     std::vector<ImportedBone> bones;
     for (const Segment& segment : chosen) {
         report(0.1 + 0.9 * static_cast<double>(bones.size()) / static_cast<double>(chosen.size()), segment.name);
@@ -382,7 +379,7 @@ Bone import_bone(const ImportOptions& options, const ImportProgress& progress, I
     report(0.9, "measuring");
     measure(bone, found);
     add_points(bone, options, found);
-    add_provenance(bone, options, found, hash_of_file(options.input));
+    add_provenance(bone, options, found, hash_of_source(options.input));
     bone.name = bone_name(options.input);
     bone.provenance["component"] = options.component;
     bone.provenance["fill"] = options.fill ? "true" : "false";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/library/saw_recordings.hpp"
 
-#include "assets/bone/whole_file.hpp"
+#include "assets/file/whole_file.hpp"
 #include "assets/sound/sound.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
@@ -72,8 +72,7 @@ Signal chips(double rate, const Random& random) {
     Biquad above{highpass(300.0, sample_rate)}, below{lowpass(1500.0, sample_rate)};
     // Once round to settle, once to keep: the end then runs into the start.
     for (int round = 0; round < 2; ++round)
-        for (std::size_t i = 0; i < count; ++i)
-            out[i] = below(above(noise[i] * std::abs(std::sin(angle(i, rate)))));
+        for (std::size_t i = 0; i < count; ++i) out[i] = below(above(noise[i] * std::abs(std::sin(angle(i, rate)))));
     return out;
 }
 
@@ -100,8 +99,8 @@ std::vector<float> synthesise(double rate, double load, std::uint64_t seed) {
     const double speed = rate / greatest_rate;
     // The stroke stays the same, so the blade's acceleration goes with the square of the rate.
     const double blade = free_air_level * speed * speed;
-    const double cut = std::sqrt(cutting_level * cutting_level - free_air_level * free_air_level) *
-                       (load / greatest_load) * speed;
+    const double cut =
+        std::sqrt(cutting_level * cutting_level - free_air_level * free_air_level) * (load / greatest_load) * speed;
     Signal parts(count), sum(count);
     add(parts, drive(rate, random), blade);
     if (load > 0.0) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "assets/bone/whole_file.hpp"
+#include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/mesh_readers.hpp"
 #include "dsp/core/error.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/mesh/write_mesh.hpp"
 
-#include "assets/bone/whole_file.hpp"
+#include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/distance/cubic_interpolant.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/recording/recording_set.hpp"
 
-#include "assets/bone/whole_file.hpp"
+#include "assets/file/whole_file.hpp"
 #include "assets/sound/sound.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
@@ -58,8 +58,8 @@ void settle_rate(Recording& r) {
     }
     const double cycles = static_cast<double>(part.end - part.begin) / r.sample_rate * r.rate;
     if (cycles < static_cast<double>(CycleLoop::fewest_cycles))
-        throw Error(fmt::format("'{}' holds only {:.1f} cycles at {:.4g} Hz; {} are needed",
-                                r.file.filename().string(), cycles, r.rate, CycleLoop::fewest_cycles));
+        throw Error(fmt::format("'{}' holds only {:.1f} cycles at {:.4g} Hz; {} are needed", r.file.filename().string(),
+                                cycles, r.rate, CycleLoop::fewest_cycles));
 }
 
 class SetReader {
@@ -152,9 +152,8 @@ private:
         r.file = path_.parent_path() / text(*file, "file");
         const std::string word = text(*state, "state");
         if (std::find(states.begin(), states.end(), word) == states.end())
-            throw Error(location(state->source()),
-                        fmt::format("unknown state '{}'; a saw is cutting or free_air{}", word,
-                                    did_you_mean(word, states)));
+            throw Error(location(state->source()), fmt::format("unknown state '{}'; a saw is cutting or free_air{}",
+                                                               word, did_you_mean(word, states)));
         r.cutting = word == "cutting";
         r.note = text_of(*table, "note");
         r.sensor = table->contains("sensor") ? text_of(*table, "sensor") : sensor_;

@@ -2,7 +2,7 @@
 #include "assets/bone/export.hpp"
 
 #include "assets/bone/from_hu.hpp"
-#include "assets/bone/whole_file.hpp"
+#include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "assets/volume/write_volume.hpp"

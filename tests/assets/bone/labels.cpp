@@ -3,7 +3,7 @@
 
 #include "assets/bone/from_hu.hpp"
 #include "assets/bone/import.hpp"
-#include "assets/bone/whole_file.hpp"
+#include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"

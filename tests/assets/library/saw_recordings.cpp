@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/library/saw_recordings.hpp"
 
-#include "assets/bone/whole_file.hpp"
+#include "assets/file/whole_file.hpp"
 #include "assets/recording/recording_set.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/filter/biquad.hpp"

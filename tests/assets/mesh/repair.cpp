@@ -2,7 +2,7 @@
 #include "assets/mesh/repair.hpp"
 
 #include "assets/bone/import.hpp"
-#include "assets/bone/whole_file.hpp"
+#include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A CT of shapes that are known by formula: what comes back as a bone is compared with them.
 #include "assets/bone/import.hpp"
-#include "assets/bone/whole_file.hpp"
+#include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "dsp/core/random.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"

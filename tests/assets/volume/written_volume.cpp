@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/assets/volume/written_volume.hpp"
 
-#include "assets/bone/whole_file.hpp"
+#include "assets/file/whole_file.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>

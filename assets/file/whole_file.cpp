@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "assets/bone/whole_file.hpp"
+#include "assets/file/whole_file.hpp"
 
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <utility>
+#include <vector>
 
 namespace tactus {
 
@@ -16,20 +19,38 @@ namespace {
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-}  // namespace
-
-std::string read_whole_file(const std::filesystem::path& path) {
+// A file and its size in bytes.
+std::pair<File, std::uintmax_t> open_regular(const std::filesystem::path& path) {
     std::error_code failure;
-    if (!std::filesystem::is_regular_file(path, failure))
-        throw Error(fmt::format("{}: no such file", path.string()));
+    if (!std::filesystem::is_regular_file(path, failure)) throw Error(fmt::format("{}: no such file", path.string()));
     const auto size = std::filesystem::file_size(path, failure);
     if (failure) throw Error(fmt::format("{}: cannot be read: {}", path.string(), failure.message()));
     File file(std::fopen(path.c_str(), "rb"), std::fclose);
     if (!file) throw Error(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
+    return {std::move(file), size};
+}
+
+}  // namespace
+
+std::string read_whole_file(const std::filesystem::path& path) {
+    const auto [file, size] = open_regular(path);
     std::string bytes(size, '\0');
     if (std::fread(bytes.data(), 1, size, file.get()) != size)
         throw Error(fmt::format("{}: cannot be read to its end", path.string()));
     return bytes;
+}
+
+void add_file(Hash& hash, const std::filesystem::path& path) {
+    const auto [file, size] = open_regular(path);
+    // A multiple of the hash's words: only the last block may end within one.
+    std::vector<char> block(std::size_t{1} << 16);
+    for (std::uintmax_t left = size; left > 0;) {
+        const auto wanted = static_cast<std::size_t>(std::min<std::uintmax_t>(left, block.size()));
+        if (std::fread(block.data(), 1, wanted, file.get()) != wanted)
+            throw Error(fmt::format("{}: cannot be read to its end", path.string()));
+        hash.add_bytes(block.data(), wanted);
+        left -= wanted;
+    }
 }
 
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes) {

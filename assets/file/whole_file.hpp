@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole files as bytes: read at once, written beside and renamed.
+// Whole files as bytes: read at once, hashed in blocks, written beside and renamed.
 #pragma once
+
+#include "dsp/core/hash.hpp"
 
 #include <filesystem>
 #include <string>
@@ -10,6 +12,9 @@ namespace tactus {
 
 /// All bytes of a regular file. Throws Error.
 std::string read_whole_file(const std::filesystem::path& path);
+
+/// Adds the bytes of a file of any size to `hash`, as one add_bytes would. Throws Error.
+void add_file(Hash& hash, const std::filesystem::path& path);
 
 /// Writes `bytes` to `path` + ".part" and renames it. On failure nothing is left behind and Error is thrown.
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/force_path.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace tactus {
+
+namespace {
+
+/// Nodes from which values reach a device, in any group: a force may depend on them.
+std::vector<bool> force_path(const Generation& generation) {
+    std::vector<bool> on_path;
+    for (const auto& node : generation.nodes)
+        on_path.push_back(
+            std::ranges::any_of(node->devices, [](const auto& use) { return use.second == DeviceUse::drive; }));
+    for (bool grows = true; grows;) {
+        grows = false;
+        for (const PlanWire& wire : generation.plan.wires) {
+            if (wire.from_node < 0 || !on_path[static_cast<std::size_t>(wire.to_node)]) continue;
+            auto from = on_path[static_cast<std::size_t>(wire.from_node)];
+            grows = grows || !from;
+            from = true;
+        }
+    }
+    return on_path;
+}
+
+/// The nodes and wires of the force path, as text.
+std::vector<std::string> describe_force_path(const Generation& generation) {
+    const std::vector<bool> on_path = force_path(generation);
+    std::vector<std::string> parts;
+    for (std::size_t i = 0; i < generation.nodes.size(); ++i)
+        if (on_path[i]) parts.push_back(generation.nodes[i]->name);
+    for (const PlanWire& wire : generation.plan.wires) {
+        const auto to = static_cast<std::size_t>(wire.to_node);
+        if (!on_path[to]) continue;
+        std::string from = wire.asset, target;
+        if (wire.from_node >= 0) {
+            const PlanNode& node = generation.plan.nodes[static_cast<std::size_t>(wire.from_node)];
+            from = node.name + "." + node.outputs[static_cast<std::size_t>(wire.from_output)].name;
+        }
+        for (const auto& [name, param] : generation.plan.nodes[to].params)
+            if (wire.to_input < 0 && param == wire.param) target = name;
+        parts.push_back(fmt::format("{} {} {} {} {} {}", from, generation.nodes[to]->name, wire.to_input, target,
+                                    static_cast<int>(wire.mode), wire.delay));
+    }
+    std::ranges::sort(parts);
+    return parts;
+}
+
+}  // namespace
+
+bool changes_force_path(const Generation& before, const Generation& now) {
+    const std::vector<bool> on_path = force_path(now);
+    for (std::size_t i = 0; i < now.nodes.size(); ++i)
+        if (on_path[i] && !now.survived[i]) return true;
+    return describe_force_path(before) != describe_force_path(now);
+}
+
+}  // namespace tactus
