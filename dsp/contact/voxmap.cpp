@@ -3,6 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/large_pages.hpp"
+#include "dsp/volume/interpolation.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -91,79 +92,21 @@ Voxmap make_voxmap(const BoneSnapshot& bone) {
     return map;
 }
 
-namespace {
-
-struct Cell {
-    int i = 0, j = 0, k = 0;
-    double fx = 0.0, fy = 0.0, fz = 0.0;
-    bool inside = false;
-};
-
-Cell find_cell(const Grid& grid, const Vec3& position) noexcept {
-    const double x = (position.x - grid.origin.x) / grid.spacing.x;
-    const double y = (position.y - grid.origin.y) / grid.spacing.y;
-    const double z = (position.z - grid.origin.z) / grid.spacing.z;
-    // Written so that a NaN is outside, and so is an empty grid.
-    if (!(x >= 0.0 && y >= 0.0 && z >= 0.0 && x <= grid.size[0] - 1 && y <= grid.size[1] - 1 && z <= grid.size[2] - 1))
-        return {};
-    const int i = std::min(static_cast<int>(x), grid.size[0] - 2), j = std::min(static_cast<int>(y), grid.size[1] - 2),
-              k = std::min(static_cast<int>(z), grid.size[2] - 2);
-    return {i, j, k, x - i, y - j, z - k, true};
-}
-
-double mix(double a, double b, double t) { return a + (b - a) * t; }
-
-}  // namespace
-
 Sample Voxmap::sample(const Vec3& position) const noexcept {
-    const Cell cell = find_cell(grid, position);
+    const GridCell cell = find_grid_cell(grid.origin, grid.spacing, grid.size, position);
     if (!cell.inside) return {far, Vec3(0.0), false};
     const auto row = static_cast<std::size_t>(grid.size[0]), plane = row * static_cast<std::size_t>(grid.size[1]);
-    const float* p = &grid.values[grid.index(cell.i, cell.j, cell.k)];
-    const auto at = [p](std::size_t offset) { return static_cast<double>(p[offset]); };
-    const double c000 = at(0), c100 = at(1), c010 = at(row), c110 = at(row + 1);
-    const double c001 = at(plane), c101 = at(plane + 1), c011 = at(plane + row), c111 = at(plane + row + 1);
-    const double x00 = mix(c000, c100, cell.fx), x10 = mix(c010, c110, cell.fx);
-    const double x01 = mix(c001, c101, cell.fx), x11 = mix(c011, c111, cell.fx);
-    const double y0 = mix(x00, x10, cell.fy), y1 = mix(x01, x11, cell.fy);
-    const double dx = mix(mix(c100 - c000, c110 - c010, cell.fy), mix(c101 - c001, c111 - c011, cell.fy), cell.fz);
-    const double dy = mix(x10 - x00, x11 - x01, cell.fz);
-    return {mix(y0, y1, cell.fz), Vec3(dx, dy, y1 - y0) / grid.spacing, true};
+    const Interpolated at = Trilinear(&grid.values[grid.index(cell.i, cell.j, cell.k)], row, plane)(cell);
+    return {at.value, at.slope / grid.spacing, true};
 }
 
 Sample Voxmap::smooth_sample(const Vec3& position) const noexcept {
-    if (!find_cell(grid, position).inside) return {far, Vec3(0.0), false};
-    int index[3][3];
-    double weight[3][3], slope[3][3];
-    for (int axis = 0; axis < 3; ++axis) {
-        const double x = (position[axis] - grid.origin[axis]) / grid.spacing[axis];
-        const int nearest = static_cast<int>(x + 0.5);
-        const double t = x - nearest;
-        weight[axis][0] = 0.5 * (0.5 - t) * (0.5 - t);
-        weight[axis][1] = 0.75 - t * t;
-        weight[axis][2] = 0.5 * (0.5 + t) * (0.5 + t);
-        slope[axis][0] = t - 0.5;
-        slope[axis][1] = -2.0 * t;
-        slope[axis][2] = t + 0.5;
-        for (int n = 0; n < 3; ++n)
-            index[axis][n] = std::clamp(nearest + n - 1, 0, grid.size[static_cast<std::size_t>(axis)] - 1);
-    }
-    double value = 0.0;
-    Vec3 gradient(0.0);
-    for (int k = 0; k < 3; ++k)
-        for (int j = 0; j < 3; ++j) {
-            double along = 0.0, change = 0.0;
-            for (int i = 0; i < 3; ++i) {
-                const auto d = static_cast<double>(grid.at(index[0][i], index[1][j], index[2][k]));
-                along += weight[0][i] * d;
-                change += slope[0][i] * d;
-            }
-            value += weight[1][j] * weight[2][k] * along;
-            gradient.x += weight[1][j] * weight[2][k] * change;
-            gradient.y += slope[1][j] * weight[2][k] * along;
-            gradient.z += weight[1][j] * slope[2][k] * along;
-        }
-    return {value, gradient / grid.spacing, true};
+    if (!find_grid_cell(grid.origin, grid.spacing, grid.size, position).inside) return {far, Vec3(0.0), false};
+    const QuadraticSpline spline(grid.origin, grid.spacing, grid.size, position);
+    const Interpolated at = spline([&](int i, int j, int k) {
+        return static_cast<double>(grid.at(spline.index[0][i], spline.index[1][j], spline.index[2][k]));
+    });
+    return {at.value, at.slope / grid.spacing, true};
 }
 
 double Voxmap::least_within(const Vec3& position, double radius) const noexcept {

@@ -2,6 +2,7 @@
 #include "dsp/volume/bricks.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/volume/interpolation.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -11,48 +12,19 @@ namespace tactus {
 
 namespace {
 
-/// The cell that holds a position, and where in it.
-struct Cell {
-    const float* corner = nullptr;  // sample at the cell's low corner, or null
-    double fx = 0.0, fy = 0.0, fz = 0.0;
+/// The cell that holds a position, where in it, and its sample at the low corner, or null where none is stored.
+struct BrickCell : GridCell {
+    const float* corner = nullptr;
+
+    Trilinear trilinear() const noexcept { return {corner, brick_side, brick_side * brick_side}; }
 };
 
-Cell find_cell(const BrickLayout& layout, const std::vector<const float*>& table, const Vec3& position) noexcept {
-    const double x = (position.x - layout.origin.x) / layout.spacing.x;
-    const double y = (position.y - layout.origin.y) / layout.spacing.y;
-    const double z = (position.z - layout.origin.z) / layout.spacing.z;
-    // Written so that a NaN is outside.
-    if (!(x >= 0.0 && y >= 0.0 && z >= 0.0 && x <= layout.size[0] - 1 && y <= layout.size[1] - 1 &&
-          z <= layout.size[2] - 1))
-        return {};
-    const int i = std::min(static_cast<int>(x), layout.size[0] - 2);
-    const int j = std::min(static_cast<int>(y), layout.size[1] - 2);
-    const int k = std::min(static_cast<int>(z), layout.size[2] - 2);
+BrickCell find_cell(const BrickLayout& layout, const std::vector<const float*>& table, const Vec3& position) noexcept {
+    const GridCell cell = find_grid_cell(layout.origin, layout.spacing, layout.size, position);
+    if (!cell.inside) return {};
+    const auto [i, j, k] = std::array{cell.i, cell.j, cell.k};
     const float* brick = table[static_cast<std::size_t>(layout.brick_index(i >> 3, j >> 3, k >> 3))];
-    if (!brick) return {};
-    return {brick + BrickLayout::sample_index(i & 7, j & 7, k & 7), x - i, y - j, z - k};
-}
-
-struct Corners {
-    double c000, c100, c010, c110, c001, c101, c011, c111;
-
-    explicit Corners(const float* p) noexcept
-        : c000(static_cast<double>(p[0])),
-          c100(static_cast<double>(p[1])),
-          c010(static_cast<double>(p[brick_side])),
-          c110(static_cast<double>(p[brick_side + 1])),
-          c001(static_cast<double>(p[brick_side * brick_side])),
-          c101(static_cast<double>(p[brick_side * brick_side + 1])),
-          c011(static_cast<double>(p[brick_side * brick_side + brick_side])),
-          c111(static_cast<double>(p[brick_side * brick_side + brick_side + 1])) {}
-};
-
-double mix(double a, double b, double t) { return a + (b - a) * t; }
-
-double interpolate(const Cell& cell) noexcept {
-    const Corners c(cell.corner);
-    return mix(mix(mix(c.c000, c.c100, cell.fx), mix(c.c010, c.c110, cell.fx), cell.fy),
-               mix(mix(c.c001, c.c101, cell.fx), mix(c.c011, c.c111, cell.fx), cell.fy), cell.fz);
+    return {cell, brick ? brick + BrickLayout::sample_index(i & 7, j & 7, k & 7) : nullptr};
 }
 
 }  // namespace
@@ -63,72 +35,41 @@ const BoneRoot empty_bone{&empty_layout, {}, {}};
 
 Sample BoneSnapshot::sample(const Vec3& position) const noexcept {
     const BrickLayout& grid = *root->layout;
-    const Cell cell = find_cell(grid, root->distance, position);
+    const BrickCell cell = find_cell(grid, root->distance, position);
     if (!cell.corner) return {grid.far, Vec3(0.0), false};
-    const Corners c(cell.corner);
-    const double x00 = mix(c.c000, c.c100, cell.fx), x10 = mix(c.c010, c.c110, cell.fx);
-    const double x01 = mix(c.c001, c.c101, cell.fx), x11 = mix(c.c011, c.c111, cell.fx);
-    const double y0 = mix(x00, x10, cell.fy), y1 = mix(x01, x11, cell.fy);
-    const double dx =
-        mix(mix(c.c100 - c.c000, c.c110 - c.c010, cell.fy), mix(c.c101 - c.c001, c.c111 - c.c011, cell.fy), cell.fz);
-    const double dy = mix(x10 - x00, x11 - x01, cell.fz);
-    return {mix(y0, y1, cell.fz), Vec3(dx / grid.spacing.x, dy / grid.spacing.y, (y1 - y0) / grid.spacing.z), true};
+    const Interpolated at = cell.trilinear()(cell);
+    return {at.value, at.slope / grid.spacing, true};
 }
 
 Sample BoneSnapshot::smooth_sample(const Vec3& position) const noexcept {
     const BrickLayout& grid = *root->layout;
     if (!find_cell(grid, root->distance, position).corner) return {grid.far, Vec3(0.0), false};
-    // Per axis: brick and place within it of the three samples around the nearest one, their weights and slopes.
+    const QuadraticSpline spline(grid.origin, grid.spacing, grid.size, position);
+    // Per axis: brick and place within it of the three samples.
     int brick[3][3], within[3][3];
-    double weight[3][3], slope[3][3];
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        const double x = (position[axis] - grid.origin[axis]) / grid.spacing[axis];
-        const int nearest = static_cast<int>(x + 0.5);
-        const double t = x - nearest;
-        weight[axis][0] = 0.5 * (0.5 - t) * (0.5 - t);
-        weight[axis][1] = 0.75 - t * t;
-        weight[axis][2] = 0.5 * (0.5 + t) * (0.5 + t);
-        slope[axis][0] = t - 0.5;
-        slope[axis][1] = -2.0 * t;
-        slope[axis][2] = t + 0.5;
+    for (std::size_t axis = 0; axis < 3; ++axis)
         for (int n = 0; n < 3; ++n) {
-            const int index = std::clamp(nearest + n - 1, 0, grid.size[a] - 1);
-            brick[axis][n] = std::min(index >> 3, grid.bricks[a] - 1);
+            const int index = spline.index[axis][n];
+            brick[axis][n] = std::min(index >> 3, grid.bricks[axis] - 1);
             within[axis][n] = index - 8 * brick[axis][n];
         }
-    }
-    double value = 0.0;
-    Vec3 gradient(0.0);
-    for (int k = 0; k < 3; ++k)
-        for (int j = 0; j < 3; ++j) {
-            double along = 0.0, change = 0.0;
-            for (int i = 0; i < 3; ++i) {
-                const float* samples =
-                    root->distance[static_cast<std::size_t>(grid.brick_index(brick[0][i], brick[1][j], brick[2][k]))];
-                const double d = samples
-                                     ? static_cast<double>(
-                                           samples[BrickLayout::sample_index(within[0][i], within[1][j], within[2][k])])
-                                     : grid.far;
-                along += weight[0][i] * d;
-                change += slope[0][i] * d;
-            }
-            value += weight[1][j] * weight[2][k] * along;
-            gradient.x += weight[1][j] * weight[2][k] * change;
-            gradient.y += slope[1][j] * weight[2][k] * along;
-            gradient.z += weight[1][j] * slope[2][k] * along;
-        }
-    return {value, gradient / grid.spacing, true};
+    const Interpolated at = spline([&](int i, int j, int k) {
+        const auto b = static_cast<std::size_t>(grid.brick_index(brick[0][i], brick[1][j], brick[2][k]));
+        const float* samples = root->distance[b];
+        if (!samples) return grid.far;
+        return static_cast<double>(samples[BrickLayout::sample_index(within[0][i], within[1][j], within[2][k])]);
+    });
+    return {at.value, at.slope / grid.spacing, true};
 }
 
 double BoneSnapshot::value(const Vec3& position) const noexcept {
-    const Cell cell = find_cell(*root->layout, root->distance, position);
-    return cell.corner ? interpolate(cell) : root->layout->far;
+    const BrickCell cell = find_cell(*root->layout, root->distance, position);
+    return cell.corner ? cell.trilinear().value(cell) : root->layout->far;
 }
 
 double BoneSnapshot::density(const Vec3& position) const noexcept {
-    const Cell cell = find_cell(*root->layout, root->density, position);
-    return cell.corner ? interpolate(cell) : 0.0;
+    const BrickCell cell = find_cell(*root->layout, root->density, position);
+    return cell.corner ? cell.trilinear().value(cell) : 0.0;
 }
 
 BoneEditor::BoneEditor(const Grid& distance, const Grid& density, const BoneEditorOptions& options)
