@@ -12,6 +12,15 @@
 //     };
 //     TACTUS_NODE(Gain, in, out, gain)
 //
+// Parameters that several types share are a struct of their own with a TACTUS_GROUP line, which any node may hold as a
+// member and list like one; in a patch they stand among the node's own:
+//
+//     struct WaveParameters {
+//         Param height{"0 mm", "0 mm", "2 mm", "of the waves"};
+//         Param length{"2 mm", "0.1 mm", "100 mm", "of one wave"};
+//         TACTUS_GROUP(height, length)
+//     };
+//
 // Optional members: `void prepare(const Setup&)` may allocate and throw Error, and sets the initial value of each
 // output; `void report(Report&) const` speaks after the run.
 #pragma once
@@ -26,7 +35,13 @@
 
 namespace tactus {
 
-/// Receives every declared member of a node, in the order of the TACTUS_NODE line.
+class MemberVisitor;
+
+/// Ports and parameters that are declared together, by TACTUS_GROUP.
+template <class G>
+concept MemberGroup = requires(G& group, MemberVisitor& visitor) { group.each(visitor); };
+
+/// Receives every declared member of a node, in the order of the TACTUS_NODE line; those of a group one by one.
 class MemberVisitor {
 public:
     virtual ~MemberVisitor() = default;
@@ -41,7 +56,8 @@ public:
 
     template <class M>
     void member(std::string_view name, M& m) {
-        if constexpr (std::derived_from<M, Input>) input(name, m);
+        if constexpr (MemberGroup<M>) m.each(*this);
+        else if constexpr (std::derived_from<M, Input>) input(name, m);
         else if constexpr (std::derived_from<M, Output>) output(name, m);
         else if constexpr (std::derived_from<M, AssetParam>) asset(name, m);
         else if constexpr (std::same_as<M, Param>) param(name, m);
@@ -49,7 +65,7 @@ public:
         else if constexpr (std::same_as<M, Text>) text(name, m);
         else if constexpr (std::same_as<M, Flag>) flag(name, m);
         else {
-            static_assert(std::same_as<M, Vector>, "a listed member must be a port or a parameter");
+            static_assert(std::same_as<M, Vector>, "a listed member must be a port, a parameter or a group");
             vector(name, m);
         }
     }
@@ -113,4 +129,11 @@ NodeType make_node_type(std::string_view struct_name, void (*visit)(void*, Membe
                 TACTUS_EACH(TACTUS_VISIT_MEMBER, __VA_ARGS__)                                                      \
             });                                                                                                    \
         return type;                                                                                               \
+    }
+
+/// Within a struct: declares the listed members as a group.
+#define TACTUS_GROUP(...)                             \
+    void each(::tactus::MemberVisitor& visitor) {     \
+        auto& node = *this;                           \
+        TACTUS_EACH(TACTUS_VISIT_MEMBER, __VA_ARGS__) \
     }

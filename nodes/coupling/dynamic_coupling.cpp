@@ -2,7 +2,7 @@
 #include "dsp/coupling/dynamic_coupling.hpp"
 
 #include "graph/node.hpp"
-#include "nodes/contact/contact_params.hpp"
+#include "nodes/contact/contact_parameters.hpp"
 #include "nodes/coupling/held_body.hpp"
 
 #include <algorithm>
@@ -13,8 +13,7 @@ namespace tactus::nodes {
 struct DynamicCoupling {
     static constexpr auto about =
         "Holds a body of a scene by springs and dampers; the body has mass, and contact pushes it. One implicit step "
-        "per "
-        "tick.";
+        "per tick.";
 
     In<Pose> device{"the hand in the scene", "m"};
     In<tactus::Scene> scene{"everything that can be touched, and the body that is held"};
@@ -39,28 +38,17 @@ struct DynamicCoupling {
     Param max_force{"10 N", "0 N", "100 N", "the spring pulls no harder"};
     Param max_torque{"0.5 N m", "0 N m", "20 N m", "the spring turns no harder"};
     Param step{"0.5 mm", "0.001 mm", "20 mm", "farthest that a tick may move a point beyond what is free"};
-    Flag both_ways{false, "the others' points are tried against the held body's field too"};
-    Param point_stiffness{internal, "10 N/mm", "0 N/mm", "1e6 N/mm", "of the contact, for each point of the surface"};
-    Param area_stiffness{internal, "0 N/m^3", "0 N/m^3", "1e15 N/m^3",
-                         "of the contact, for each area of the surface; if not 0 it holds instead"};
-    Param blend{"0.03 mm", "0 mm", "10 mm", "half the width within which the contact sets in"};
-    Param saturation{"0 mm", "0 mm", "1 m", "depth at which the force of a point levels off; 0: never"};
-    Choice interpolation{{"trilinear", "quadratic"}, "of the distance; quadratic suits stiff contact"};
-    Choice direction{{"field_gradient", "shell_normal"}, "of the forces; shell_normal is that of the thesis"};
-    Param points{structural, "1000000", "1000", "20000000", "of all surfaces together; memory is taken for so many"};
-    Param budget{"1e9", "64", "1e9", "most points that one evaluation looks at"};
+    ContactParameters contact;
 
     void prepare(const Setup&) {
-        contact_.emplace(static_cast<std::size_t>(points));
+        contact_.emplace(contact.make());
         place = -1.0;
     }
 
     void process(const Tick& tick) noexcept {
         hold_.update(scene, held, holding, strength);
         const Pose in_hand = grip.connected && is_valid(grip.get()) ? grip.get() : Pose{grip_at, {1.0, 0.0, 0.0, 0.0}};
-        contact_->set(scene, hold_.place, in_hand,
-                      contact_law(point_stiffness, area_stiffness, blend, saturation, interpolation, direction),
-                      both_ways, static_cast<std::size_t>(budget));
+        contact.set(*contact_, scene, hold_.place, in_hand);
         solver_.settings = {{{stiffness, max_force}, {angular_stiffness, max_torque}},
                             mass,
                             inertia,
@@ -98,7 +86,6 @@ private:
 
 TACTUS_NODE(DynamicCoupling, device, scene, device_twist, grip, holding, strength, wrench, pose, place, penetration,
             in_contact, held, grip_at, mass, inertia, stiffness, damping, angular_stiffness, angular_damping, max_force,
-            max_torque, step, both_ways, point_stiffness, area_stiffness, blend, saturation, interpolation, direction,
-            points, budget)
+            max_torque, step, contact)
 
 }  // namespace tactus::nodes
