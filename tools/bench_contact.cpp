@@ -2,6 +2,7 @@
 // What a point of a pointshell costs against a voxmap, beside OpenVDB reading the same places.
 #include "dsp/contact/pointshell_contact.hpp"
 #include "dsp/contact/pointshell_kernel.hpp"
+#include "dsp/contact/shape.hpp"
 #include "dsp/core/random.hpp"
 #include "tools/bench_contact_peer.hpp"
 #include "tools/verbs.hpp"
@@ -14,7 +15,6 @@
 #include <time.h>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -35,20 +35,7 @@ double thread_seconds() {
 }
 
 Voxmap ball(double radius) {
-    return sample_voxmap({{grid_size, grid_size, grid_size}, Vec3(-0.5 * (grid_size - 1) * voxel), Vec3(voxel), {}},
-                         [radius](const Vec3& p) { return glm::length(p) - radius; });
-}
-
-/// Points evenly spread over a sphere.
-Pointshell sphere(int count, double radius) {
-    std::vector<SurfacePoint> points;
-    const double turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
-    for (int i = 0; i < count; ++i) {
-        const double z = 1.0 - (2.0 * i + 1.0) / count, ring = std::sqrt(1.0 - z * z);
-        const Vec3 n(ring * std::cos(turn * i), ring * std::sin(turn * i), z);
-        points.push_back({radius * n, n, 4.0 * std::numbers::pi * radius * radius / count, surface_label::none});
-    }
-    return make_pointshell(points);
+    return sample_voxmap(centred_layout(grid_size, voxel), [=](const Vec3& p) { return Ball{radius}.distance(p); });
 }
 
 struct Case {
@@ -88,7 +75,7 @@ double percentile(std::vector<double> values, double share) {
 }
 
 Json measure(const Case& c, int rounds) {
-    const Pointshell shell = sphere(c.points, c.radius * voxel);
+    const Pointshell shell = make_pointshell(spread_over_ball(c.points, c.radius * voxel));
     const Voxmap map = ball(c.radius * voxel + (c.apart > 0.0 ? 0.0 : 0.3e-3));
     ContactLaw law;
     law.interpolation = c.interpolation;

@@ -17,20 +17,37 @@ int parts(double length, double spacing) { return std::max(1, static_cast<int>(s
 
 }  // namespace
 
-double Ball::distance(const Vec3& p) const { return glm::length(p) - radius; }
+Grid centred_layout(int samples_per_side, double spacing) {
+    const int n = samples_per_side;
+    return {{n, n, n}, Vec3(-0.5 * (n - 1) * spacing), Vec3(spacing), {}};
+}
 
-std::vector<SurfacePoint> Ball::points(double spacing) const {
-    // A spiral of the golden angle; points of a triangular lattice stand for √3/2 of their spacing squared.
-    const double area = 4.0 * std::numbers::pi * radius * radius;
-    const int count = std::max(4, static_cast<int>(area / (0.866 * spacing * spacing)));
+Grid layout_around(const Vec3& low, const Vec3& high, double spacing, double margin) {
+    Grid grid{{}, low - Vec3(margin), Vec3(spacing), {}};
+    const Vec3 extent = high + Vec3(margin) - grid.origin;
+    for (int axis = 0; axis < 3; ++axis)
+        grid.size[static_cast<std::size_t>(axis)] = static_cast<int>(std::ceil(extent[axis] / spacing)) + 1;
+    return grid;
+}
+
+std::vector<SurfacePoint> spread_over_ball(int count, double radius) {
+    std::vector<SurfacePoint> points;
     const double turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
-    std::vector<SurfacePoint> all;
+    const double area = 4.0 * std::numbers::pi * radius * radius / count;
     for (int i = 0; i < count; ++i) {
         const double z = 1.0 - (2.0 * i + 1.0) / count, ring = std::sqrt(1.0 - z * z);
         const Vec3 n(ring * std::cos(turn * i), ring * std::sin(turn * i), z);
-        all.push_back({radius * n, n, area / count, surface_label::none});
+        points.push_back({radius * n, n, area, surface_label::none});
     }
-    return all;
+    return points;
+}
+
+double Ball::distance(const Vec3& p) const { return glm::length(p) - radius; }
+
+std::vector<SurfacePoint> Ball::points(double spacing) const {
+    // Points of a triangular lattice stand for √3/2 of their spacing squared.
+    const double area = 4.0 * std::numbers::pi * radius * radius;
+    return spread_over_ball(std::max(4, static_cast<int>(area / (0.866 * spacing * spacing))), radius);
 }
 
 double Box::distance(const Vec3& p) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
+#include "dsp/contact/voxmap.hpp"
 #include "dsp/core/types.hpp"
 
 #include <glm/vec2.hpp>
@@ -10,6 +11,14 @@
 #include <vector>
 
 namespace tactus {
+
+/// A cube of samples about the origin, m; values are left to whoever fills them.
+Grid centred_layout(int samples_per_side, double spacing);
+/// A box of samples `spacing` apart that holds all from `low` to `high` and `margin` around it, m.
+Grid layout_around(const Vec3& low, const Vec3& high, double spacing, double margin);
+
+/// `count` points on a ball about the origin, evenly spread along a spiral of the golden angle.
+std::vector<SurfacePoint> spread_over_ball(int count, double radius);
 
 struct Ball {
     double radius = 10e-3;
@@ -46,5 +55,12 @@ struct Turned {
 Turned make_cylinder(double diameter, double height, double bevel = 0.0);
 /// A round block below z = 0 with a hole through it along its axis, the mouth widened by `bevel` at 45°.
 Turned make_bushing(double bore, double diameter, double height, double bevel = 0.0);
+
+/// The distance field of a shape and `margin` m around it.
+template <class Shape>
+Voxmap voxmap_of(const Shape& shape, double spacing, double margin) {
+    return sample_voxmap(layout_around(shape.low(), shape.high(), spacing, margin),
+                         [&](const Vec3& p) { return shape.distance(p); });
+}
 
 }  // namespace tactus

@@ -57,14 +57,8 @@ private:
             throw Error("the distance field would have over 200 million samples; raise 'voxel'");
         if (!(extent.x * extent.y + extent.y * extent.z + extent.z * extent.x < 1e7 * spacing * spacing))
             throw Error("the surface would have over 10 million points; raise 'spacing'");
-        Grid grid;
-        for (int axis = 0; axis < 3; ++axis)
-            grid.size[static_cast<std::size_t>(axis)] = static_cast<int>(std::ceil(extent[axis] / voxel)) + 1;
-        grid.origin = low;
-        grid.spacing = Vec3(voxel);
-        parts_ = std::make_shared<const BodyParts>(
-            make_pointshell(shape.points(spacing)),
-            sample_voxmap(std::move(grid), [&](const Vec3& p) { return shape.distance(p); }), Pose{}, triangles);
+        parts_ = std::make_shared<const BodyParts>(make_pointshell(shape.points(spacing)),
+                                                   voxmap_of(shape, voxel, margin), Pose{}, triangles);
     }
 
     std::shared_ptr<const BodyParts> parts_;

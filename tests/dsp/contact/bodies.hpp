@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
+#include "dsp/contact/shape.hpp"
 #include "dsp/contact/voxmap.hpp"
 #include "dsp/core/random.hpp"
 
@@ -12,22 +13,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 namespace tactus::bodies {
-
-/// `count` points on a sphere about the origin, evenly spread (spiral of the golden angle).
-inline std::vector<SurfacePoint> sphere_points(int count, double radius) {
-    std::vector<SurfacePoint> points;
-    const double turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
-    for (int i = 0; i < count; ++i) {
-        const double z = 1.0 - (2.0 * i + 1.0) / count, ring = std::sqrt(1.0 - z * z);
-        const Vec3 n(ring * std::cos(turn * i), ring * std::sin(turn * i), z);
-        points.push_back({radius * n, n, 4.0 * std::numbers::pi * radius * radius / count, surface_label::none});
-    }
-    return points;
-}
 
 /// Points on a square of the given side in the plane z = 0 that look towards −z: a flat foot that stands on things.
 inline std::vector<SurfacePoint> foot_points(int per_side, double side) {
@@ -40,18 +28,14 @@ inline std::vector<SurfacePoint> foot_points(int per_side, double side) {
     return points;
 }
 
-/// A cube of samples about the origin.
-inline Grid cube(int size, double spacing) {
-    return {{size, size, size}, Vec3(-0.5 * (size - 1) * spacing), Vec3(spacing), {}};
-}
-
 inline Voxmap ball(int size, double spacing, double radius) {
-    return sample_voxmap(cube(size, spacing), [radius](const Vec3& p) { return glm::length(p) - radius; });
+    return sample_voxmap(centred_layout(size, spacing),
+                         [ball = Ball{radius}](const Vec3& p) { return ball.distance(p); });
 }
 
 /// A ball with waves on it: gradients in every direction. |∇| stays near 1.
 inline Voxmap rough_ball(int size, double spacing, double radius) {
-    return sample_voxmap(cube(size, spacing), [=](const Vec3& p) {
+    return sample_voxmap(centred_layout(size, spacing), [=](const Vec3& p) {
         return glm::length(p) - radius +
                0.1 * radius * std::sin(4.0 * p.x / radius) * std::cos(3.0 * p.y / radius + p.z / radius);
     });

@@ -21,7 +21,7 @@ Place place(const Vec3& p) { return {p.x, p.y, p.z}; }
 }  // namespace
 
 TEST_CASE("a pointshell keeps every point, in an order where neighbours stand together") {
-    auto points = bodies::sphere_points(5000, 0.02);
+    auto points = spread_over_ball(5000, 0.02);
     points[7].label = surface_label::fracture;
     const Pointshell shell = make_pointshell(points);
     REQUIRE(shell.size() == 5000);
@@ -42,7 +42,7 @@ TEST_CASE("a pointshell keeps every point, in an order where neighbours stand to
 
 TEST_CASE("each node of the tree holds what lies below within its radius, nested from coarse to fine") {
     for (const int count : {1, 63, 64, 65, 300, 4096, 10007}) {
-        const Pointshell shell = make_pointshell(bodies::sphere_points(count, 0.02));
+        const Pointshell shell = make_pointshell(spread_over_ball(count, 0.02));
         REQUIRE(shell.nodes.size() == shell.chunks.size());
         const double area = std::accumulate(shell.area.begin(), shell.area.end(), 0.0);
         std::size_t leaves = 0;
@@ -82,7 +82,7 @@ TEST_CASE("each node of the tree holds what lies below within its radius, nested
 }
 
 TEST_CASE("the same points in any order give the same set of chunks, and the same order the same shell") {
-    auto points = bodies::sphere_points(3000, 0.02);
+    auto points = spread_over_ball(3000, 0.02);
     const Pointshell a = make_pointshell(points), b = make_pointshell(points);
     CHECK(a.position == b.position);
     std::reverse(points.begin(), points.end());
@@ -97,7 +97,7 @@ TEST_CASE("the same points in any order give the same set of chunks, and the sam
 TEST_CASE("no points make an empty shell; points that are no numbers are refused") {
     CHECK(make_pointshell({}).empty());
     CHECK(make_pointshell({}).nodes.empty());
-    auto points = bodies::sphere_points(10, 0.02);
+    auto points = spread_over_ball(10, 0.02);
     points[3].position.y = std::numeric_limits<double>::quiet_NaN();
     CHECK_THROWS_AS(make_pointshell(points), Error);
     points[3].position.y = 0.0;

@@ -36,7 +36,7 @@ double apart(const ContactSum& a, const ContactSum& b) {
 
 /// A rough body pressed into another in several ways: free, touching, deep, over the border of the grid.
 struct Scene {
-    Pointshell shell = make_pointshell(bodies::sphere_points(3000, 0.006));
+    Pointshell shell = make_pointshell(spread_over_ball(3000, 0.006));
     Voxmap map = bodies::rough_ball(48, 1e-3, 0.012);
     Random random{11};
 
@@ -140,7 +140,7 @@ TEST_CASE("contact allocates nothing, locks nothing and calls no system") {
 }
 
 TEST_CASE("what is culled could not touch: light contact of many points looks at few and gives the same sums") {
-    const Pointshell shell = make_pointshell(bodies::sphere_points(100000, 0.02));
+    const Pointshell shell = make_pointshell(spread_over_ball(100000, 0.02));
     const Voxmap map = bodies::ball(64, 1e-3, 0.02);
     PointshellContact contact(shell.nodes.size());
     for (const double depth : {-3e-3, -0.1e-3, 0.0, 0.05e-3, 0.4e-3, 39.5e-3}) {
@@ -158,7 +158,7 @@ TEST_CASE("what is culled could not touch: light contact of many points looks at
 }
 
 TEST_CASE("a budget bounds the points, the nearest are kept whole and the rest are stood for") {
-    const Pointshell shell = make_pointshell(bodies::sphere_points(40000, 0.018));
+    const Pointshell shell = make_pointshell(spread_over_ball(40000, 0.018));
     const Voxmap map = bodies::ball(64, 1e-3, 0.02);
     PointshellContact contact(shell.nodes.size());
     // All around: the shell lies 2 mm deep in the ball, a little to one side.
@@ -188,8 +188,8 @@ TEST_CASE("a budget bounds the points, the nearest are kept whole and the rest a
 
 TEST_CASE("several pairs under one budget: as one after the other when it is enough, and shared when it is not") {
     const Scene scene;
-    const Pointshell small = make_pointshell(bodies::sphere_points(700, 0.004));
-    const Voxmap floor = sample_voxmap(bodies::cube(40, 1e-3), [](const Vec3& p) { return p.z; });
+    const Pointshell small = make_pointshell(spread_over_ball(700, 0.004));
+    const Voxmap floor = sample_voxmap(centred_layout(40, 1e-3), [](const Vec3& p) { return p.z; });
     const Pose pose{Vec3(0.003, 0.001, 0.002), glm::angleAxis(0.5, glm::normalize(Vec3(1, 1, 0)))};
     const ContactPair pairs[3] = {{&scene.shell, pose, &floor, {}, true},
                                   {&small, {Vec3(0.012, 0.003, 0.0), Quat(1, 0, 0, 0)}, &scene.map, pose, false},
@@ -238,7 +238,7 @@ TEST_CASE("what is no scene is nothing to the vectorised form either") {
     CHECK(exact.in_contact > 100);
     CHECK(fast.in_contact == exact.in_contact);
     CHECK(apart(exact, fast) < 1e-5 * exact.total_force);
-    const Voxmap flat = sample_voxmap(bodies::cube(20, 1e-3), [](const Vec3&) { return -1e-3; });
+    const Voxmap flat = sample_voxmap(centred_layout(20, 1e-3), [](const Vec3&) { return -1e-3; });
     const ContactPair plateau{&scene.shell, {}, &flat, {}, true};
     const ContactSum level = contact({&plateau, 1}, Vec3(0.0), {});
     CHECK(level.in_contact == 3000);

@@ -37,7 +37,7 @@ double slope_along(std::span<const ContactPair> pairs, const Vec3& about, const 
 }  // namespace
 
 TEST_CASE("gradient is the derivative of the energy to 1e-6, at a thousand poses, whichever body moves") {
-    const Pointshell shell = make_pointshell(bodies::sphere_points(60, 0.006));
+    const Pointshell shell = make_pointshell(spread_over_ball(60, 0.006));
     const Voxmap rough = bodies::rough_ball(48, 1e-3, 0.012);
     const Random random{1};
     int tried = 0;
@@ -78,7 +78,7 @@ TEST_CASE("gradient is the derivative of the energy to 1e-6, at a thousand poses
 
 TEST_CASE("stiffness is symmetric and never negative, and on a plane the derivative of the gradient") {
     const Pointshell shell = make_pointshell(bodies::foot_points(12, 0.01));
-    const Voxmap floor = sample_voxmap(bodies::cube(40, 1e-3), [](const Vec3& p) { return p.z; });
+    const Voxmap floor = sample_voxmap(centred_layout(40, 1e-3), [](const Vec3& p) { return p.z; });
     const Voxmap rough = bodies::rough_ball(48, 1e-3, 0.012);
     const Random random{2};
     for (std::uint64_t n = 0; n < 200; ++n) {
@@ -114,7 +114,7 @@ TEST_CASE("stiffness is symmetric and never negative, and on a plane the derivat
 }
 
 TEST_CASE("the wrench on one body about a point is opposite to that on the other") {
-    const Pointshell shell = make_pointshell(bodies::sphere_points(500, 0.006));
+    const Pointshell shell = make_pointshell(spread_over_ball(500, 0.006));
     const Voxmap rough = bodies::rough_ball(48, 1e-3, 0.012);
     const Pose pose{Vec3(0.01, 0.012, 0.004), glm::angleAxis(0.4, glm::normalize(Vec3(1, 2, 3)))};
     const Vec3 about(0.003, 0.001, -0.02);
@@ -129,7 +129,7 @@ TEST_CASE("the wrench on one body about a point is opposite to that on the other
 }
 
 TEST_CASE("both bodies moved together feel the same in their own frame") {
-    const Pointshell shell = make_pointshell(bodies::sphere_points(500, 0.006));
+    const Pointshell shell = make_pointshell(spread_over_ball(500, 0.006));
     const Voxmap rough = bodies::rough_ball(48, 1e-3, 0.012);
     const Pose pose{Vec3(0.01, 0.012, 0.004), glm::angleAxis(0.4, glm::normalize(Vec3(1, 2, 3)))};
     const Pose scene{Vec3(1.0, -2.0, 3.0), glm::angleAxis(2.1, glm::normalize(Vec3(-1, 1, 0.3)))};
@@ -143,7 +143,7 @@ TEST_CASE("both bodies moved together feel the same in their own frame") {
 
 TEST_CASE("one point feels its law: nothing outside the blend, k·s beyond it, at most k·saturation") {
     const Pointshell shell = make_pointshell(std::vector<SurfacePoint>{{Vec3(0.0), Vec3(0, 0, -1), 2e-6}});
-    const Voxmap floor = sample_voxmap(bodies::cube(40, 1e-3), [](const Vec3& p) { return p.z; });
+    const Voxmap floor = sample_voxmap(centred_layout(40, 1e-3), [](const Vec3& p) { return p.z; });
     const auto force = [&](double depth, const ContactLaw& law) {
         const ContactPair pair{&shell, {Vec3(0.0, 0.0, -depth), Quat(1, 0, 0, 0)}, &floor, {}, true};
         return contact_reference({&pair, 1}, Vec3(0.0), law).wrench().force.z;
@@ -162,7 +162,7 @@ TEST_CASE("one point feels its law: nothing outside the blend, k·s beyond it, a
 }
 
 TEST_CASE("what is no scene feels nothing") {
-    const Pointshell shell = make_pointshell(bodies::sphere_points(50, 0.006)), none;
+    const Pointshell shell = make_pointshell(spread_over_ball(50, 0.006)), none;
     const Voxmap ball = bodies::ball(30, 1e-3, 0.012);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const ContactPair empty{&none, {}, &ball, {}, true}, no_map{&shell, {}, nullptr, {}, true};

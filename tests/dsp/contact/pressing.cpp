@@ -5,6 +5,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <numbers>
+
 using namespace tactus;
 
 namespace {
@@ -19,10 +21,10 @@ double degrees(const Vec3& a, const Vec3& b) {
 
 TEST_CASE("sliding on a ball of 70 voxels and on a plane, direction is true to 0.5° and magnitude to 1 %") {
     const double radius = 70.0 * h, finger = 9.0 * h;
-    const Pointshell shell = make_pointshell(bodies::sphere_points(1000, finger));
+    const Pointshell shell = make_pointshell(spread_over_ball(1000, finger));
     const Voxmap ball = bodies::ball(176, h, radius);
     const Vec3 up = glm::normalize(Vec3(0.2, -0.3, 1.0));
-    const Voxmap plane = sample_voxmap(bodies::cube(96, h), [&](const Vec3& p) { return glm::dot(p, up); });
+    const Voxmap plane = sample_voxmap(centred_layout(96, h), [&](const Vec3& p) { return glm::dot(p, up); });
     PointshellContact contact(shell.nodes.size());
     for (const Interpolation interpolation : {Interpolation::trilinear, Interpolation::quadratic}) {
         const ContactLaw law{.interpolation = interpolation};
@@ -60,8 +62,9 @@ TEST_CASE("a wall of thickness t withstands k·(t/2 − h) on one point, whereve
     for (const double thickness : {2e-3, 1e-3, 0.7e-3, 0.35e-3}) {
         for (const double offset : {0.0, 0.25, 0.5, 0.8}) {
             const double fine = 0.1e-3;
-            const Voxmap wall = sample_voxmap(
-                bodies::cube(50, fine), [&](const Vec3& p) { return std::abs(p.z - offset * fine) - 0.5 * thickness; });
+            const Voxmap wall = sample_voxmap(centred_layout(50, fine), [&](const Vec3& p) {
+                return std::abs(p.z - offset * fine) - 0.5 * thickness;
+            });
             const ContactLaw law{.stiffness = 1e4, .blend = 0.01e-3};
             double most = 0.0;
             for (int step = 0; step < 400; ++step) {
@@ -78,7 +81,7 @@ TEST_CASE("a wall of thickness t withstands k·(t/2 − h) on one point, whereve
 
 TEST_CASE("the force is continuous through the surface, at the blend and where it saturates") {
     const Pointshell shell = make_pointshell(bodies::foot_points(8, 4e-3));
-    const Voxmap floor = sample_voxmap(bodies::cube(40, 1e-3), [](const Vec3& p) { return p.z; });
+    const Voxmap floor = sample_voxmap(centred_layout(40, 1e-3), [](const Vec3& p) { return p.z; });
     PointshellContact contact(shell.nodes.size());
     const ContactLaw law{.stiffness = 1e4, .saturation = 0.5e-3};
     double last = 0.0;

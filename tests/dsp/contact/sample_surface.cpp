@@ -16,7 +16,7 @@ constexpr double pi = std::numbers::pi;
 
 /// Distance to a box of half sides `half` with sharp edges.
 Grid box(int size, double spacing, const Vec3& half) {
-    return sample_voxmap(bodies::cube(size, spacing),
+    return sample_voxmap(centred_layout(size, spacing),
                          [half](const Vec3& p) {
                              const Vec3 q = glm::abs(p) - half;
                              const double outside = glm::length(glm::max(q, Vec3(0.0)));
@@ -116,7 +116,7 @@ TEST_CASE("sampling refuses what it cannot do and gives nothing where nothing is
     CHECK_THROWS_AS(sample_surface(grid, {.spacing = 1e-7}), Error);
     CHECK_THROWS_AS(sample_surface(grid, {.spacing = 0.5e-3, .most_points = 10}), Error);
     CHECK(sample_surface(TriangleSurface{}, {}).empty());
-    CHECK(sample_surface(sample_voxmap(bodies::cube(8, 1e-3), [](const Vec3&) { return 1.0; }).grid, {}).empty());
+    CHECK(sample_surface(sample_voxmap(centred_layout(8, 1e-3), [](const Vec3&) { return 1.0; }).grid, {}).empty());
 }
 
 TEST_CASE("points that face another body are labelled, those that look away are not") {

@@ -102,7 +102,7 @@ TEST_CASE("the 3-4-5 distance of a ball errs as its weights say, near the surfac
     CHECK(most < h);
     // Along an axis steps are exact to the half cell.
     CHECK(static_cast<double>(chamfer.at(47, 23, 23)) == Approx(23.5e-3 - radius).margin(0.6 * h));
-    Grid oblong = bodies::cube(8, h);
+    Grid oblong = centred_layout(8, h);
     oblong.spacing.z *= 1.5;
     oblong.values.resize(oblong.count());
     CHECK_THROWS_AS(chamfer_distance(oblong), Error);

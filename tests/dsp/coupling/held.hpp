@@ -12,16 +12,10 @@
 
 namespace tactus::test {
 
-/// A voxmap around anything that has a distance and a box, with a margin of `margin` m.
+/// A voxmap of a shape with room around it for points that are pressed in.
 template <class Shape>
 Voxmap map_of(const Shape& shape, double voxel, double margin = 3e-3) {
-    const Vec3 low = shape.low() - Vec3(margin), extent = shape.high() + Vec3(margin) - low;
-    Grid grid;
-    for (int axis = 0; axis < 3; ++axis)
-        grid.size[static_cast<std::size_t>(axis)] = static_cast<int>(std::ceil(extent[axis] / voxel)) + 1;
-    grid.origin = low;
-    grid.spacing = Vec3(voxel);
-    return sample_voxmap(std::move(grid), [&](const Vec3& p) { return shape.distance(p); });
+    return voxmap_of(shape, voxel, margin);
 }
 
 template <class Shape>

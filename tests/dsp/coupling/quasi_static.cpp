@@ -180,7 +180,7 @@ TEST_CASE("bodies and springs at the edge of sense give finite forces") {
     const Pointshell one = make_pointshell(std::vector<SurfacePoint>{{Vec3(0.0), Vec3(0, 0, -1), 1e-6, 0}});
     const Pointshell inside = test::shell_of(Ball{3.0 * mm}, 1.0 * mm);
     const Pointshell same = test::shell_of(Ball{25.0 * mm}, 2.0 * mm);
-    const Voxmap flat = sample_voxmap(bodies::cube(21, 1.0 * mm), [](const Vec3&) { return -1.0 * mm; });
+    const Voxmap flat = sample_voxmap(centred_layout(21, 1.0 * mm), [](const Vec3&) { return -1.0 * mm; });
     const auto run = [](const Pointshell& shell, const Voxmap& map, const Pose& hand, auto&& change) {
         Held held(shell, {&map});
         QuasiStaticCoupling coupling = test::coupling_for(held, hand);
@@ -226,7 +226,7 @@ TEST_CASE("bodies and springs at the edge of sense give finite forces") {
 TEST_CASE("sliding over a plane at any slope: the force is the spring's along the normal") {
     const Pointshell foot = make_pointshell(bodies::foot_points(5, 4.0 * mm));
     const Vec3 normal = glm::normalize(Vec3(0.3, -0.2, 1.0)), along = glm::normalize(glm::cross(normal, Vec3(0, 1, 0)));
-    const Voxmap plane = sample_voxmap(bodies::cube(81, 0.35 * mm), [&](const Vec3& p) { return glm::dot(p, normal); });
+    const Voxmap plane = sample_voxmap(centred_layout(81, 0.35 * mm), [&](const Vec3& p) { return glm::dot(p, normal); });
     const Quat flat = glm::angleAxis(std::acos(normal.z), glm::normalize(glm::cross(Vec3(0, 0, 1), normal)));
     Held held(foot, {&plane});
     QuasiStaticCoupling coupling = test::coupling_for(held, {normal * mm, flat});
