@@ -5,201 +5,133 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 namespace tactus {
 
 namespace {
 
-constexpr double skin = 1e-6;   // m: how far off a surface a point is held
-constexpr double touch = 2e-6;  // m: what is nearer counts as touched
-constexpr int most_moves = 24;
-
-/// Lagrange multipliers of the projection on the planes where all `count` gaps become zero; false when they depend on
-/// each other or one would have to pull.
-bool corner(const Vec3& goal, const Vec3& from, const ProxyPlane* const* active, int count, Vec3& point) {
-    double a[3][3], b[3], x[3] = {};
-    for (int i = 0; i < count; ++i) {
-        b[i] = -active[i]->gap - glm::dot(active[i]->normal, goal - from);
-        for (int j = 0; j < count; ++j) a[i][j] = glm::dot(active[i]->normal, active[j]->normal);
-    }
-    for (int j = 0; j < count; ++j) {
-        if (!(a[j][j] > 1e-9)) return false;
-        for (int i = j + 1; i < count; ++i) {
-            const double l = a[i][j] / a[j][j];
-            for (int n = j; n < count; ++n) a[i][n] -= l * a[j][n];
-            b[i] -= l * b[j];
-        }
-    }
-    for (int i = count - 1; i >= 0; --i) {
-        x[i] = b[i];
-        for (int n = i + 1; n < count; ++n) x[i] -= a[i][n] * x[n];
-        x[i] /= a[i][i];
-        if (!(x[i] >= 0.0)) return false;
-    }
-    point = goal;
-    for (int i = 0; i < count; ++i) point += x[i] * active[i]->normal;
-    return true;
-}
+constexpr double point_radius = 1e-6;  // m
+constexpr double settled = 1e-9;  // m: a move that is shorter is none
+constexpr int most_moves = 200;
 
 }  // namespace
-
-Vec3 nearest_within(const Vec3& goal, const Vec3& from, std::span<const ProxyPlane> planes) noexcept {
-    const std::size_t count = std::min<std::size_t>(planes.size(), 8);
-    const auto allowed = [&](const Vec3& x) {
-        for (std::size_t i = 0; i < count; ++i)
-            if (glm::dot(planes[i].normal, x - from) < -planes[i].gap - 1e-12) return false;
-        return true;
-    };
-    if (allowed(goal)) return goal;
-    Vec3 best = from, point;
-    double least = std::numeric_limits<double>::infinity();
-    const auto consider = [&](std::initializer_list<std::size_t> which) {
-        const ProxyPlane* active[3];
-        int n = 0;
-        for (const std::size_t i : which) active[n++] = &planes[i];
-        if (!corner(goal, from, active, n, point) || !allowed(point)) return;
-        const double d2 = glm::dot(point - goal, point - goal);
-        if (d2 < least) least = d2, best = point;
-    };
-    for (std::size_t i = 0; i < count; ++i) {
-        consider({i});
-        for (std::size_t j = 0; j < i; ++j) {
-            consider({i, j});
-            for (std::size_t k = 0; k < j; ++k) consider({i, j, k});
-        }
-    }
-    return best;
-}
-
-void SurfaceProxy::Planes::add(const ProxyPlane& one) noexcept {
-    // Neighbouring triangles of a flat face are one plane.
-    for (std::size_t i = 0; i < count; ++i)
-        if (glm::dot(plane[i].normal, one.normal) > 1.0 - 1e-10) {
-            plane[i].gap = std::min(plane[i].gap, one.gap);
-            return;
-        }
-    if (count < most_planes) plane[count++] = one;
-}
 
 void SurfaceProxy::reset(const Vec3& at) noexcept {
     state_ = {};
     state_.proxy = at;
     started_ = true;
+    seen_count_ = 0;
 }
 
-double SurfaceProxy::radius() const noexcept { return std::max(settings.radius, skin); }
-
-ProxyPlane SurfaceProxy::textured(const ProxySurface& surface, const Vec3& point, ProxyPlane plane) const noexcept {
-    if (!(settings.texture_height > 0.0)) return plane;
-    const double k = 2.0 * std::numbers::pi / settings.texture_length;
-    const Vec3 at = surface.pose.inverse().apply(point) * k;
-    const double height = settings.texture_height / 3.0;
-    plane.gap -= height * (std::sin(at.x) + std::sin(at.y) + std::sin(at.z));
-    const Vec3 slope = surface.pose.rotate(height * k * Vec3(std::cos(at.x), std::cos(at.y), std::cos(at.z)));
-    plane.normal = glm::normalize(plane.normal - (slope - plane.normal * glm::dot(plane.normal, slope)));
-    return plane;
-}
-
-SurfaceProxy::Planes SurfaceProxy::touched(const Vec3& at, std::span<const ProxySurface> surfaces) const noexcept {
-    Planes planes;
-    const double r = radius(), wave = settings.texture_height;
-    for (const ProxySurface& surface : surfaces) {
-        const Vec3 local = surface.pose.inverse().apply(at);
-        if (surface.triangles) {
-            std::array<TriangleTree::Near, 32> near;
-            const std::size_t count = surface.triangles->all_near(local, r + wave + touch, near);
-            for (std::size_t i = 0; i < count; ++i) {
-                if (!(near[i].distance > 0.0)) continue;
-                const Vec3 normal = surface.pose.rotate((local - near[i].point) / near[i].distance);
-                const ProxyPlane plane =
-                    textured(surface, surface.pose.apply(near[i].point), {normal, near[i].distance - r});
-                if (plane.gap < touch) planes.add(plane);
-            }
-        } else if (surface.map) {
-            const Sample sample = surface.map->smooth_sample(local);
-            const double steep = glm::length(sample.gradient);
-            // In the middle of a wall there is no way out to be seen.
-            if (!sample.inside || !(steep > 0.05)) continue;
-            const Vec3 normal = surface.pose.rotate(sample.gradient / steep);
-            const double distance = sample.value / steep;
-            const ProxyPlane plane = textured(surface, at - normal * distance, {normal, distance - r});
-            if (plane.gap < touch) planes.add(plane);
-        }
-    }
-    return planes;
-}
-
-double SurfaceProxy::free_way(const Vec3& at, const Vec3& way, double length,
-                              std::span<const ProxySurface> surfaces) const noexcept {
-    const double r = radius();
-    double least = length;
-    for (const ProxySurface& surface : surfaces) {
-        const Pose back = surface.pose.inverse();
-        if (surface.triangles && r <= 50.0 * skin) {
-            // A point: what its path meets, less what keeps it off there.
-            const Vec3 from = back.apply(at), to = back.apply(at + way * least);
-            const double share = surface.triangles->cast(from, to);
-            if (share < 1.0) least = std::max(0.0, least * share - r);
+SurfaceProxy::View SurfaceProxy::look(const Vec3& at, std::span<const ProxySurface> surfaces) const noexcept {
+    View view;
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        if (surfaces[i].is_exact(shape_)) {
+            surfaces[i].touched(at, shape_, view.planes);
             continue;
         }
-        // On from sphere to sphere of what is free; where that ends, a step so short that the way back is sure.
-        double gone = 0.0;
-        for (int n = 0; n < 32 && gone < least; ++n) {
-            const Vec3 here = back.apply(at + way * gone);
-            const double distance =
-                surface.triangles
-                    ? surface.triangles->nearest(here, r + settings.texture_height + least - gone).distance
-                : surface.map ? surface.map->smooth_sample(here).value / surface.map->steepness
-                              : length + r;
-            const double room = distance - r - settings.texture_height;
-            if (room < touch) break;
-            gone += room;
-        }
-        least = std::min(least, gone + (surface.triangles ? std::min(0.5 * r, settings.step) : settings.step));
+        view.levels[i] = surfaces[i].level(at, shape_);
+        if (view.levels[i].seen && view.levels[i].plane.gap < proxy_touch) view.planes.add(view.levels[i].plane);
     }
-    return least;
+    for (const ProxyPlane& plane : view.planes.all()) view.deepest = std::max(view.deepest, -plane.gap);
+    return view;
+}
+
+Vec3 SurfaceProxy::settle(Vec3 at, std::span<const ProxySurface> surfaces) const noexcept {
+    for (int round = 0; round < 8; ++round) {
+        bool moved = false;
+        for (const ProxySurface& surface : surfaces) {
+            if (surface.is_exact(shape_)) continue;
+            const ProxySurface::Level level = surface.level(at, shape_);
+            if (!level.seen || level.plane.gap > -0.5 * proxy_hover) continue;
+            const Vec3 out = level.plane.normal * -level.plane.gap;
+            const double length = glm::length(out);
+            double free = length;
+            for (const ProxySurface& other : surfaces)
+                if (other.triangles) free = other.free_way(at, out / length, free, shape_);
+            at += out * (free / length);
+            moved = true;
+        }
+        if (!moved) break;
+    }
+    return at;
+}
+
+bool SurfaceProxy::is_open(const Vec3& a, const View& from, const Vec3& b, const View& to,
+                           std::span<const ProxySurface> surfaces) const noexcept {
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        if (surfaces[i].triangles || !surfaces[i].map) continue;
+        const ProxySurface::Level &here = from.levels[i], &there = to.levels[i];
+        if (here.room > glm::length(b - a)) continue;
+        if (here.seen && there.seen && glm::dot(here.plane.normal, there.plane.normal) > 0.0) continue;
+        // Two walls face each other, or two sides of one lie back to back: in the middle the field tells which.
+        const double middle = surfaces[i].level(0.5 * (a + b), shape_).room;
+        if (middle < std::min(here.room, there.room)) return false;
+    }
+    return true;
 }
 
 Vec3 SurfaceProxy::lead(Vec3 from, const Vec3& goal, std::span<const ProxySurface> surfaces) const noexcept {
-    // Planes of the last places hold too: in a notch the field shows one wall at a time.
-    std::array<ProxyPlane, 2> last;
-    std::size_t remembered = 0;
+    View here = look(from, surfaces);
+    double share = 1.0;  // of the way that is tried: less where a move has led nowhere
     for (int move = 0; move < most_moves; ++move) {
-        Planes planes = touched(from, surfaces);
-        for (std::size_t i = 0; i < remembered; ++i) planes.add(last[i]);
-        const Vec3 target = nearest_within(goal, from, std::span(planes.plane).first(planes.count));
+        Vec3 wanted = goal;
+        if (settings.shading) wanted = nearest_within(goal, from, here.planes.shaded().all());
+        const Vec3 target = nearest_within(wanted, from, here.planes.all());
         const double length = glm::length(target - from);
-        if (!(length > 1e-9)) break;
+        if (!(length > settled)) break;
         const Vec3 way = (target - from) / length;
-        const double free = free_way(from, way, length, surfaces);
-        if (!(free > 1e-10)) break;
-        from += way * free;
-        remembered = std::min<std::size_t>(planes.count, last.size());
-        for (std::size_t i = 0; i < remembered; ++i) {
-            last[i] = planes.plane[i];
-            last[i].gap += glm::dot(last[i].normal, way * free);
+        double free = length * share;
+        for (std::size_t i = 0; i < surfaces.size(); ++i) {
+            if (!surfaces[i].is_exact(shape_))
+                free = std::min(free, std::max(here.levels[i].room, share * surfaces[i].stride(shape_)));
+            if (surfaces[i].triangles) free = surfaces[i].free_way(from, way, free, shape_);
         }
-        // They are guesses at any distance: only a notch that is still touched counts.
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < remembered; ++i)
-            if (last[i].gap < touch && free < settings.step) last[kept++] = last[i];
-        remembered = kept;
+        const Vec3 next = settle(from + way * free, surfaces);
+        const View there = look(next, surfaces);
+        const bool gets_out = here.deepest > proxy_touch && there.deepest < here.deepest;
+        const bool gets_near = glm::length(next - wanted) < glm::length(from - wanted) - 1e-3 * settled;
+        if (!(gets_out || (gets_near && there.deepest < proxy_touch)) || !is_open(from, here, next, there, surfaces)) {
+            share *= 0.5;
+            if (share * length < settled) break;
+            continue;
+        }
+        from = next;
+        here = there;
+        share = std::min(1.0, 2.0 * share);
     }
     return from;
+}
+
+void SurfaceProxy::follow(std::span<const ProxySurface> surfaces) noexcept {
+    if (surfaces.size() == seen_count_)
+        for (std::size_t i = 0; i < surfaces.size(); ++i) {
+            const ProxySurface &now = surfaces[i], &then = seen_[i];
+            if (now.map != then.map || now.triangles != then.triangles) continue;
+            if (now.pose.position == then.pose.position && now.pose.orientation == then.pose.orientation) continue;
+            // Seen from the surface it is the proxy that moves.
+            const ProxySurface at_rest{now.map, now.triangles, {}};
+            const Vec3 from = then.pose.inverse().apply(state_.proxy), to = now.pose.inverse().apply(state_.proxy);
+            state_.proxy = now.pose.apply(lead(from, to, {&at_rest, 1}));
+        }
+    seen_count_ = surfaces.size();
+    std::ranges::copy(surfaces, seen_.begin());
 }
 
 const ProxyState& SurfaceProxy::update(const Vec3& goal, std::span<const ProxySurface> surfaces) noexcept {
     // Farther than any room: a fault, not a place.
     if (!is_finite(goal) || !(glm::length(goal) < 1e3)) return state_;
     if (!started_) reset(goal);
+    surfaces = surfaces.first(std::min(surfaces.size(), most_surfaces));
+    shape_ = settings.shape;
+    shape_.radius = std::max(shape_.radius, point_radius);
+    follow(surfaces);
     const Vec3 before = state_.proxy;
     Vec3 smooth = lead(before, goal, surfaces);
     const double depth = glm::length(smooth - goal);
-    state_.in_contact = depth > 10.0 * touch;
+    state_.in_contact = depth > proxy_touch;
     state_.sticks = false;
-    state_.normal = depth > 0.0 ? (smooth - goal) / depth : Vec3(0.0);
+    state_.normal = state_.in_contact ? (smooth - goal) / depth : Vec3(0.0);
     if (state_.in_contact && settings.static_friction > 0.0) {
         const Vec3 lag = before - smooth - state_.normal * glm::dot(before - smooth, state_.normal);
         const double behind = glm::length(lag);
@@ -208,8 +140,9 @@ const ProxyState& SurfaceProxy::update(const Vec3& goal, std::span<const ProxySu
         const Vec3 back = state_.sticks ? lag : lag * (dynamic * depth / behind);
         // Back along the plane, then down on the surface again.
         const Vec3 held = smooth + back;
-        smooth = lead(lead(smooth, held + state_.normal * touch, surfaces), held - state_.normal * touch, surfaces);
-    } else if (!state_.in_contact) state_.normal = Vec3(0.0);
+        smooth = lead(lead(smooth, held + state_.normal * proxy_touch, surfaces), held - state_.normal * proxy_touch,
+                      surfaces);
+    }
     state_.proxy = smooth;
     Vec3 force = settings.stiffness * (smooth - goal);
     const double size = glm::length(force);

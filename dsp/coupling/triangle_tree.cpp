@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/coupling/triangle_tree.hpp"
 
+#include "dsp/coupling/ball_sweep.hpp"
 #include "dsp/distance/closest_point.hpp"
 
 #include <glm/common.hpp>
@@ -38,15 +39,60 @@ bool meets(const Vec3& a, const Vec3& way, double most, const Vec3& low, const V
     return from <= to;
 }
 
-/// Möller and Trumbore 1997; the border belongs to the triangle, so that a segment slips through no edge.
-double meets_at(const Vec3& a, const Vec3& way, const Vec3* t) {
-    const Vec3 u = t[1] - t[0], v = t[2] - t[0], n = glm::cross(way, v);
-    const double det = glm::dot(u, n);
-    if (std::abs(det) < 1e-30) return 2.0;
-    const Vec3 s = a - t[0], q = glm::cross(s, u);
-    const double x = glm::dot(s, n) / det, y = glm::dot(way, q) / det, at = glm::dot(v, q) / det;
-    constexpr double border = -1e-9;
-    return x >= border && y >= border && x + y <= 1.0 - border && at >= 0.0 ? at : 2.0;
+/// Facets that meet at a smaller angle than this one are meant to be round.
+constexpr double round_cosine = 0.94;
+/// Edges and areas below this part of the usual ones are left-overs, whose directions are those of rounding errors.
+constexpr double sliver = 0.1;
+
+/// For each vertex one that stands for it and for all that are joined to it by edges shorter than `length`.
+std::vector<std::size_t> joined(const TriangleSurface& surface, double length) {
+    std::vector<std::size_t> of(surface.vertices.size());
+    std::iota(of.begin(), of.end(), std::size_t(0));
+    const auto root = [&of](std::size_t v) {
+        while (of[v] != v) v = of[v] = of[of[v]];
+        return v;
+    };
+    for (const auto& t : surface.triangles)
+        for (std::size_t e = 0; e < 3; ++e) {
+            const auto a = static_cast<std::size_t>(t[e]), b = static_cast<std::size_t>(t[(e + 1) % 3]);
+            if (!(glm::length(surface.vertices[a] - surface.vertices[b]) < length)) continue;
+            const std::size_t x = root(a), y = root(b);
+            of[std::max(x, y)] = std::min(x, y);
+        }
+    for (std::size_t v = 0; v < of.size(); ++v) of[v] = root(v);
+    return of;
+}
+
+/// Unit normals at the corners of all triangles: the mean of those that meet there, by area, or zero where one of them
+/// stands off too far. Corners that all but coincide, as iso surfaces have them, count as one, and what slivers say does
+/// not count.
+std::vector<Vec3> corner_normals(const TriangleSurface& surface) {
+    const auto at = [&](int v) { return surface.vertices[static_cast<std::size_t>(v)]; };
+    std::vector<Vec3> face;
+    double area2 = 0.0;
+    for (const auto& t : surface.triangles) {
+        face.push_back(glm::cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0])));
+        area2 += glm::length(face.back()) / static_cast<double>(surface.triangles.size());
+    }
+    const std::vector<std::size_t> of = joined(surface, sliver * std::sqrt(area2));
+    const auto corner = [&](std::size_t t, std::size_t c) {
+        return of[static_cast<std::size_t>(surface.triangles[t][c])];
+    };
+    std::vector<Vec3> mean(of.size(), Vec3(0.0));
+    for (std::size_t t = 0; t < face.size(); ++t)
+        for (std::size_t c = 0; c < 3; ++c) mean[corner(t, c)] += face[t];
+    for (Vec3& n : mean) n = n == Vec3(0.0) ? n : glm::normalize(n);
+    std::vector<std::uint8_t> is_sharp(of.size());
+    for (std::size_t t = 0; t < face.size(); ++t) {
+        const double size = glm::length(face[t]);
+        for (std::size_t c = 0; c < 3; ++c)
+            if (size > sliver * area2 && glm::dot(face[t], mean[corner(t, c)]) < round_cosine * size)
+                is_sharp[corner(t, c)] = 1;
+    }
+    std::vector<Vec3> normals;
+    for (std::size_t t = 0; t < face.size(); ++t)
+        for (std::size_t c = 0; c < 3; ++c) normals.push_back(is_sharp[corner(t, c)] ? Vec3(0.0) : mean[corner(t, c)]);
+    return normals;
 }
 
 }  // namespace
@@ -59,8 +105,12 @@ TriangleTree::TriangleTree(const TriangleSurface& surface) {
     std::vector<std::uint32_t> order(corners.size() / 3);
     std::iota(order.begin(), order.end(), 0u);
     build(order, corners, 0);
+    const std::vector<Vec3> normals = corner_normals(surface);
     for (const std::uint32_t t : order)
-        for (std::size_t c = 0; c < 3; ++c) corners_.push_back(corners[3 * t + c]);
+        for (std::size_t c = 0; c < 3; ++c) {
+            corners_.push_back(corners[3 * t + c]);
+            normals_.push_back(normals[3 * t + c]);
+        }
 }
 
 std::uint32_t TriangleTree::build(std::span<std::uint32_t> order, const std::vector<Vec3>& corners,
@@ -94,10 +144,25 @@ std::uint32_t TriangleTree::build(std::span<std::uint32_t> order, const std::vec
     return at;
 }
 
+TriangleTree::Near TriangleTree::near_on(std::size_t triangle, const Vec3& p) const noexcept {
+    const Vec3 *c = &corners_[3 * triangle], *n = &normals_[3 * triangle];
+    const Vec3 point = closest_on_triangle(p, c[0], c[1], c[2]);
+    Near near{point, glm::length(p - point), Vec3(0.0)};
+    const Vec3 face = glm::cross(c[1] - c[0], c[2] - c[0]);
+    const double area2 = glm::dot(face, face);
+    if (n[0] == Vec3(0.0) || n[1] == Vec3(0.0) || n[2] == Vec3(0.0) || !(area2 > 0.0)) return near;
+    const double v = glm::dot(glm::cross(point - c[0], c[2] - c[0]), face) / area2,
+                 w = glm::dot(glm::cross(c[1] - c[0], point - c[0]), face) / area2;
+    const Vec3 mean = (1.0 - v - w) * n[0] + v * n[1] + w * n[2];
+    const double length = glm::length(mean);
+    if (length > 0.5 && length < 2.0) near.normal = mean / length;
+    return near;
+}
+
 TriangleTree::Near TriangleTree::nearest(const Vec3& p, double within) const noexcept {
-    Near best;
-    if (nodes_.empty()) return best;
+    if (nodes_.empty()) return {};
     double least2 = within * within;
+    std::size_t best = size();
     std::uint32_t stack[most_levels];
     std::size_t depth = 0;
     stack[depth++] = 0;
@@ -109,7 +174,7 @@ TriangleTree::Near TriangleTree::nearest(const Vec3& p, double within) const noe
             const Vec3* c = &corners_[3 * std::size_t(t)];
             const Vec3 point = closest_on_triangle(p, c[0], c[1], c[2]);
             const double d2 = glm::dot(p - point, p - point);
-            if (d2 < least2) least2 = d2, best = {point, std::sqrt(d2)};
+            if (d2 < least2) least2 = d2, best = t;
         }
         if (node.count > 0) continue;
         // The nearer child is looked at first.
@@ -118,7 +183,7 @@ TriangleTree::Near TriangleTree::nearest(const Vec3& p, double within) const noe
         stack[depth++] = a;
         stack[depth++] = b;
     }
-    return best;
+    return best < size() ? near_on(best, p) : Near{};
 }
 
 std::size_t TriangleTree::all_near(const Vec3& p, double within, std::span<Near> found) const noexcept {
@@ -131,10 +196,8 @@ std::size_t TriangleTree::all_near(const Vec3& p, double within, std::span<Near>
         const Node& node = nodes_[at];
         if (!(distance2(p, node.low, node.high) < within * within)) continue;
         for (std::uint32_t t = node.first; t < node.first + node.count && count < found.size(); ++t) {
-            const Vec3* c = &corners_[3 * std::size_t(t)];
-            const Vec3 point = closest_on_triangle(p, c[0], c[1], c[2]);
-            const double distance = glm::length(p - point);
-            if (distance < within) found[count++] = {point, distance};
+            const Near near = near_on(t, p);
+            if (near.distance < within) found[count++] = near;
         }
         if (node.count > 0) continue;
         stack[depth++] = node.first;
@@ -143,19 +206,20 @@ std::size_t TriangleTree::all_near(const Vec3& p, double within, std::span<Near>
     return count;
 }
 
-double TriangleTree::cast(const Vec3& a, const Vec3& b) const noexcept {
+double TriangleTree::sweep(const Vec3& from, const Vec3& way, double radius) const noexcept {
     double first = 1.0;
     if (nodes_.empty()) return first;
-    const Vec3 way = b - a;
     std::uint32_t stack[most_levels];
     std::size_t depth = 0;
     stack[depth++] = 0;
     while (depth > 0) {
         const std::uint32_t at = stack[--depth];
         const Node& node = nodes_[at];
-        if (!meets(a, way, first, node.low, node.high)) continue;
-        for (std::uint32_t t = node.first; t < node.first + node.count; ++t)
-            first = std::min(first, meets_at(a, way, &corners_[3 * std::size_t(t)]));
+        if (!meets(from, way, first, node.low - Vec3(radius), node.high + Vec3(radius))) continue;
+        for (std::uint32_t t = node.first; t < node.first + node.count; ++t) {
+            const Vec3* c = &corners_[3 * std::size_t(t)];
+            first = std::min(first, ball_meets(from, way, radius, c[0], c[1], c[2]));
+        }
         if (node.count > 0) continue;
         stack[depth++] = node.first;
         stack[depth++] = at + 1;

@@ -35,16 +35,24 @@ struct ProxyParameters {
     Param max_force{"10 N", "0 N", "100 N", "the spring pulls no harder"};
     Param static_friction{"0", "0", "2", "coefficient of friction while it sticks"};
     Param dynamic_friction{"0", "0", "2", "coefficient while it slides; at most the static one"};
-    Param texture_height{"0 mm", "0 mm", "2 mm", "of waves on the surface, from their mean to the top"};
+    Param texture_height{"0 mm", "0 mm", "2 mm", "of waves that stand on the surface, from their mean to the top"};
     Param texture_length{"2 mm", "0.1 mm", "100 mm", "of a wave, along each axis of a body"};
-    Param step{"0.25 mm", "0.001 mm", "10 mm", "at most half of the thinnest wall of a field"};
-    TACTUS_GROUP(surface, stiffness, max_force, static_friction, dynamic_friction, texture_height, texture_length, step)
+    Param step{
+        "0.25 mm", "0.001 mm", "10 mm",
+        "farthest move along a field at a time; at most half of its thinnest wall, and half a voxel in any case"};
+    Flag shading{true, "forces over round triangle meshes are those of a round surface, not of its facets"};
+    TACTUS_GROUP(surface, stiffness, max_force, static_friction, dynamic_friction, texture_height, texture_length, step,
+                 shading)
 
     /// One tick of a proxy of that radius, m: towards the place of `device` as far as the scene lets it.
     const ProxyState& update(SurfaceProxy& proxy, double radius, const Pose& device,
                              const Scene& scene) const noexcept {
-        proxy.settings = {radius,           stiffness,      max_force,      static_friction,
-                          dynamic_friction, texture_height, texture_length, step};
+        proxy.settings = {{radius, texture_height, texture_length, step},
+                          stiffness,
+                          max_force,
+                          static_friction,
+                          dynamic_friction,
+                          shading};
         return proxy.update(device.position, ProxySurfaces(scene, surface.index == 1).span());
     }
 };

@@ -22,6 +22,10 @@ const Voxmap& ball_map() {
     static const Voxmap map = test::map_of(Ball{25.0 * mm}, 0.35 * mm);
     return map;
 }
+const TriangleTree& ball_triangles() {
+    static const TriangleTree tree(iso_surface(ball_map().grid, 0.0f, false));
+    return tree;
+}
 const Voxmap& plate_map() {
     static const Voxmap map = test::map_of(Box{{20.0 * mm, 20.0 * mm, 2.0 * mm}}, 0.25 * mm);
     return map;
@@ -62,11 +66,14 @@ TEST_CASE("a tree of triangles finds what looking at each of them finds") {
         }
         CHECK(tree.nearest(p).distance == Approx(least));
         CHECK(tree.nearest(p, 0.5 * least).distance == std::numeric_limits<double>::infinity());
-        // A ray to a corner's neighbourhood meets something no later than there.
+        // A small ball on its way through a triangle meets something no later than there.
         const Vec3 inside = (surface.vertices[0] + surface.vertices[1] + surface.vertices[2]) / 3.0;
-        CHECK(tree.cast(p, p + 2.0 * (inside - p)) <= 0.5 + 1e-9);
+        const Vec3 way = 2.0 * (inside - p);
+        const double share = tree.sweep(p, way, 1e-6);
+        CHECK(share <= 0.5 + 1e-9);
+        CHECK(tree.nearest(p + share * way).distance == Approx(least < 1e-6 ? least : 1e-6));
     }
-    CHECK(tree.cast({2, 2, 2}, {3, 3, 3}) == 1.0);
+    CHECK(tree.sweep({2, 2, 2}, {1, 1, 1}, 1e-6) == 1.0);
     CHECK(TriangleTree({}).nearest({0, 0, 0}).distance == std::numeric_limits<double>::infinity());
 }
 
@@ -80,10 +87,10 @@ TEST_CASE("the nearest place within half-spaces is on faces, in edges and in cor
 }
 
 TEST_CASE("sliding over a ball, field or triangles: the force is the spring's along the normal") {
-    for (const ProxySurface& surface : {ProxySurface{&ball_map(), nullptr, {}}})
+    for (const ProxySurface& surface : both(ball_map(), ball_triangles()))
         for (const double radius : {0.0, 2.0 * mm}) {
             SurfaceProxy proxy;
-            proxy.settings.radius = radius;
+            proxy.settings.shape.radius = radius;
             const double out = 25.0 * mm + radius, depth = 2.0 * mm;
             proxy.reset({0.0, 0.0, out + mm});
             double worst_angle = 0.0, worst_size = 0.0;
@@ -101,6 +108,26 @@ TEST_CASE("sliding over a ball, field or triangles: the force is the spring's al
             CHECK(worst_angle < (surface.triangles && radius == 0.0 ? 1.5 : 0.5) * degree);
             CHECK(worst_size < 0.01);
         }
+}
+
+TEST_CASE("pushed through a thin plate the proxy stays on top, and the force keeps its direction") {
+    for (const ProxySurface& surface : both(plate_map(), plate_triangles()))
+        for (const double radius : {0.0, 0.5 * mm})
+            for (const double speed : {0.002, 0.2, 2.0}) {
+                SurfaceProxy proxy;
+                proxy.settings.shape.radius = radius;
+                proxy.settings.max_force = 1e3;
+                proxy.reset({2.1 * mm, 1.3 * mm, 5.0 * mm});
+                const int ticks = static_cast<int>(15.0 * mm / speed / 1e-3) + 2;
+                for (int n = 0; n < ticks; ++n) {
+                    const double z = std::max(-10.0 * mm, 5.0 * mm - speed * 1e-3 * n);
+                    const ProxyState& now = proxy.update({2.1 * mm, 1.3 * mm, z}, {&surface, 1});
+                    REQUIRE(now.proxy.z > 1.0 * mm + radius - 0.01 * mm);
+                    REQUIRE(now.force.z >= 0.0);
+                }
+                CAPTURE(surface.triangles != nullptr, radius, speed);
+                CHECK(proxy.state().force.z == Approx(1000.0 * (11.0 * mm + radius)).epsilon(0.01));
+            }
 }
 
 TEST_CASE("friction holds within its cone, slides outside of it with the dynamic force") {
@@ -131,8 +158,8 @@ TEST_CASE("friction holds within its cone, slides outside of it with the dynamic
 TEST_CASE("texture makes the force of an even slide wave by the length of its waves") {
     const ProxySurface surface{&plate_map(), nullptr, {}};
     SurfaceProxy proxy;
-    proxy.settings.texture_height = 0.1 * mm;
-    proxy.settings.texture_length = 2.0 * mm;
+    proxy.settings.shape.texture_height = 0.1 * mm;
+    proxy.settings.shape.texture_length = 2.0 * mm;
     proxy.reset({-5.0 * mm, 0.0, 2.0 * mm});
     double least = 1e9, greatest = 0.0, first = 0.0;
     for (int n = 0; n < 400; ++n) {
@@ -147,6 +174,28 @@ TEST_CASE("texture makes the force of an even slide wave by the length of its wa
     }
     CHECK(greatest - least > 0.04);
     CHECK(greatest - least < 0.09);
+}
+
+TEST_CASE("a proxy keeps its head: no surface, nowhere, inside of a body, far jumps") {
+    const ProxySurface surface{&ball_map(), nullptr, {}};
+    SurfaceProxy proxy;
+    CHECK(proxy.update({1.0, 2.0, 3.0}, {}).proxy == Vec3(1.0, 2.0, 3.0));
+    proxy.reset({0.0, 0.0, 30.0 * mm});
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    proxy.update({nan, 0.0, 0.0}, {&surface, 1});
+    CHECK(proxy.state().proxy.z == 30.0 * mm);
+    for (int n = 0; n < 50; ++n) proxy.update({0.0, 0.0, 15.0 * mm}, {&surface, 1});
+    CHECK(proxy.state().proxy.z == Approx(25.0 * mm).margin(0.02 * mm));
+    // Through to the other side at once: it stays on this one, or goes round, but never in.
+    for (int n = 0; n < 200; ++n) {
+        proxy.update({0.3 * mm, 0.0, -60.0 * mm}, {&surface, 1});
+        REQUIRE(glm::length(proxy.state().proxy) > 24.9 * mm);
+        REQUIRE(is_finite(proxy.state().force));
+    }
+    // A proxy that finds itself inside is let out.
+    proxy.reset({0.0, 0.0, 24.0 * mm});
+    for (int n = 0; n < 50; ++n) proxy.update({0.0, 0.0, 24.0 * mm}, {&surface, 1});
+    CHECK(proxy.state().proxy.z == Approx(25.0 * mm).margin(0.02 * mm));
 }
 
 TEST_CASE("a proxy allocates nothing") {

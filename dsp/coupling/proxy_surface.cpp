@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/coupling/proxy_surface.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace tactus {
+
+namespace {
+
+struct Reading {
+    double value = 0.0;  // m
+    Vec3 gradient{0.0};
+};
+
+/// Outside of its grid a field goes on as the distance to the surface point next to where the grid ends, so that a ball
+/// may be larger than the margin of the field.
+Reading read(const Voxmap& map, const Vec3& at) noexcept {
+    const Sample inside = map.smooth_sample(at);
+    if (inside.inside || map.grid.values.empty()) return {inside.value, inside.gradient};
+    const Grid& grid = map.grid;
+    const Vec3 last(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1), skin = 1e-9 * grid.spacing;
+    const Vec3 border = glm::clamp(at, grid.origin + skin, grid.origin + last * grid.spacing - skin);
+    const Sample sample = map.smooth_sample(border);
+    const double slope2 = glm::dot(sample.gradient, sample.gradient);
+    // A body that reaches the border ends there.
+    if (!sample.inside || sample.value <= 0.0) return {map.far, Vec3(0.0)};
+    if (slope2 < 0.25) return {std::max(sample.value, glm::length(at - border)), Vec3(0.0)};
+    const Vec3 away = at - (border - sample.gradient * (sample.value / slope2));
+    const double distance = glm::length(away);
+    return {distance, away / distance};
+}
+
+struct Wave {
+    double lift = 0.0;  // m
+    Vec3 slope{0.0};
+};
+
+Wave wave_at(const Vec3& point, const ProxyShape& shape) noexcept {
+    if (!(shape.texture_height > 0.0)) return {};
+    const double k = 2.0 * std::numbers::pi / shape.texture_length, height = shape.texture_height / 3.0;
+    const Vec3 a = point * k;
+    return {shape.texture_height + height * (std::sin(a.x) + std::sin(a.y) + std::sin(a.z)),
+            height * k * Vec3(std::cos(a.x), std::cos(a.y), std::cos(a.z))};
+}
+
+}  // namespace
+
+ProxySurface::Level ProxySurface::level(const Vec3& at, const ProxyShape& shape) const noexcept {
+    const Vec3 local = pose.inverse().apply(at);
+    Reading reading;
+    double steepness = 1.0;
+    if (triangles) {
+        const TriangleTree::Near near = triangles->nearest(local);
+        reading.value = near.distance;
+        if (near.distance > 0.0 && std::isfinite(near.distance))
+            reading.gradient = (local - near.point) / near.distance;
+    } else if (map) {
+        reading = read(*map, local);
+        steepness = map->steepness;
+    } else return {false, {}, 1e3};
+    const double above = reading.value - shape.radius;
+    Level level;
+    level.room = (above - 2.0 * shape.texture_height) / steepness;
+    const double steep = glm::length(reading.gradient);
+    // In the middle of a wall there is no way out to be seen.
+    if (!(steep > 0.05)) return level;
+    level.seen = true;
+    const Vec3 normal = reading.gradient / steep;
+    const Wave wave = wave_at(local - normal * reading.value, shape);
+    const Vec3 slope = wave.slope - normal * glm::dot(wave.slope, normal);
+    level.plane.normal = pose.rotate(glm::normalize(normal - slope));
+    level.plane.gap = (above - wave.lift) / steep / std::sqrt(1.0 + glm::dot(slope, slope)) - proxy_hover;
+    return level;
+}
+
+double ProxySurface::stride(const ProxyShape& shape) const noexcept {
+    double most = shape.step;
+    if (map && !triangles)
+        most = std::min(most, 0.5 * std::min({map->grid.spacing.x, map->grid.spacing.y, map->grid.spacing.z}));
+    if (shape.texture_height > 0.0) most = std::min(most, 0.125 * shape.texture_length);
+    return most;
+}
+
+void ProxySurface::touched(const Vec3& at, const ProxyShape& shape, ProxyPlanes& into) const noexcept {
+    const Vec3 local = pose.inverse().apply(at);
+    std::array<TriangleTree::Near, 32> near;
+    const std::size_t count = triangles->all_near(local, shape.radius + proxy_hover + proxy_touch, near);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!(near[i].distance > 0.0)) continue;
+        const Vec3 out = (local - near[i].point) / near[i].distance;
+        Vec3 shaded = near[i].normal;
+        if (glm::dot(shaded, out) < 0.0) shaded = -shaded;
+        into.add({pose.rotate(out), near[i].distance - shape.radius - proxy_hover, pose.rotate(shaded)});
+    }
+}
+
+double ProxySurface::free_way(const Vec3& at, const Vec3& way, double length, const ProxyShape& shape) const noexcept {
+    const Pose back = pose.inverse();
+    const Vec3 from = back.apply(at), along = back.rotate(way) * length;
+    const double share = triangles->sweep(from, along, shape.radius);
+    if (!(share < 1.0)) return length;
+    // A little less, so that the next move does not begin within reach; never less than half.
+    const Vec3 there = from + share * along;
+    const TriangleTree::Near near = triangles->nearest(there, 2.0 * shape.radius);
+    const double approach = -glm::dot(along, there - near.point) / (length * std::max(near.distance, 1e-12));
+    return share * length - std::min(0.5 * share * length, proxy_hover / std::max(approach, 1e-3));
+}
+
+}  // namespace tactus
