@@ -23,7 +23,9 @@ fs::path library_folder() {
 }
 
 fs::path find_patch(const std::string& name) {
-    if (fs::exists(name)) return name;
+    // A folder may well have a patch's name: that of its results.
+    const bool is_folder = fs::is_directory(name);
+    if (fs::exists(name) && !is_folder) return name;
     const fs::path folder = library_folder() / "patches";
     if (const fs::path bundled = folder / (name + ".toml"); fs::exists(bundled)) return bundled;
     std::vector<std::string> names;
@@ -33,7 +35,8 @@ fs::path find_patch(const std::string& name) {
     std::ranges::sort(names);
     std::string list;
     for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
-    throw Error(fmt::format("no patch '{}': neither a file nor one of the library ({}){}", name,
+    throw Error(fmt::format("no patch '{}': {} one of the library ({}){}", name,
+                            is_folder ? "a folder, and not" : "neither a file nor",
                             list.empty() ? "which is empty; build first" : list, did_you_mean(name, names)));
 }
 

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <string>
 
 using nlohmann::json;
@@ -78,4 +79,18 @@ TEST_CASE("check warns of a device that gives no torque") {
         }
     CHECK(has_loop);
     CHECK(json::parse(folder.tactus("check touch-sphere --json").out)["warnings"].empty());
+}
+
+TEST_CASE("a folder that is named like a patch does not hide the one of the library") {
+    const Folder folder;
+    const std::filesystem::path before = std::filesystem::current_path();
+    std::filesystem::create_directory(folder.path / "touch-sphere");
+    std::filesystem::create_directory(folder.path / "nothing");
+    std::filesystem::current_path(folder.path);
+    const Outcome found = folder.tactus("check touch-sphere"), missing = folder.tactus("check nothing");
+    std::filesystem::current_path(before);
+    INFO(found.err);
+    CHECK(found.code == 0);
+    CHECK(missing.code == 2);
+    CHECK(missing.err.find("'nothing': a folder, and not one of the library") != std::string::npos);
 }
