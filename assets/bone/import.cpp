@@ -217,7 +217,7 @@ Bone import_mesh(const ImportOptions& options, const Report& report, ImportSumma
     check_layout(layout);
     report(0.3, "distance");
     Bone bone;
-    bone.distance = signed_distance(layout, mesh);
+    bone.distance = signed_distance(layout, mesh, options.run);
     bone.density = assumed_density(bone.distance);
     if (options.mesh_density)
         for (std::size_t n = 0; n < bone.density.values.size(); ++n)

@@ -239,7 +239,7 @@ Bone bone_of_label(const Grid& labels, const Segment& segment, const LabelBone& 
             layout.size[static_cast<std::size_t>(a)] = static_cast<int>(steps);
         }
     }
-    bone.distance = signed_distance(layout, net);
+    bone.distance = signed_distance(layout, net, run);
     if (!from_grey) keep_volume(bone.distance, mask, static_cast<double>(count));
     if (how.hu) {
         bone.density = resampled(*how.hu, layout);

