@@ -24,6 +24,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <set>
 
 namespace tactus {
 
@@ -107,6 +108,23 @@ void require_hu(ScanVolume& volume, const ImportOptions& options, const std::fil
                     file.string(), *low, *high));
 }
 
+// "1 (femur), 2": what the structures of a label map are called.
+std::string list_of_labels(const ScanVolume& volume) {
+    std::set<int> found;
+    for (const float value : volume.values)
+        if (value > 0.0f && value <= 65535.0f) found.insert(static_cast<int>(value));
+    std::vector<std::string> words;
+    for (const int label : found) {
+        const auto named = std::find_if(volume.segments.begin(), volume.segments.end(),
+                                        [&](const Segment& s) { return s.label == label && !s.name.empty(); });
+        words.push_back(named == volume.segments.end() ? std::to_string(label)
+                                                       : fmt::format("{} ({})", label, named->name));
+        if (words.size() == 12) break;
+    }
+    return words.empty() ? "it holds none"
+                         : fmt::format("it holds {}{}", fmt::join(words, ", "), found.size() > 12 ? ", ..." : "");
+}
+
 struct Report {
     const ImportProgress& progress;
     void operator()(double share, std::string_view what) const {
@@ -119,6 +137,11 @@ Bone import_ct(const ImportOptions& options, const Report& report, ImportSummary
     const std::size_t keep = parse_component(options.component);
     report(0.0, "reading");
     ScanVolume volume = read_volume(options.input, {options.series});
+    if (volume.kind == VolumeKind::labels && !options.rescale)
+        throw Error(
+            fmt::format("{}: a label map, not a CT: its values are numbers of structures. Say which of them is the "
+                        "bone with --label N or its name, or --label all for one bone each ({})",
+                        options.input.string(), list_of_labels(volume)));
     require_hu(volume, options, options.input);
     summary.hu = name_of(volume.hu);
     summary.notes = volume.notes;

@@ -102,6 +102,8 @@ private:
                 if (to_mark && e.number == 0xe00d && e.length == 0) return;
                 fail("an item where none can be");
             }
+            // The element's own head may reach beyond what holds it.
+            if (at_ > end) fail("cut short: an element reaches beyond its sequence");
             const bool is_pixels = e.group == 0x7fe0 && e.number == 0x10;
             if (e.length == undefined || e.kind == "SQ") {
                 if (e.length != undefined && e.length > end - at_) fail("a sequence reaches beyond the file");
@@ -117,6 +119,7 @@ private:
     void items(std::size_t end, int depth, bool to_mark, bool are_fragments) {
         while (at_ < end) {
             const Element e = element();
+            if (at_ > end) fail("cut short: an item reaches beyond its sequence");
             if (e.group != 0xfffe) fail("something else than an item in a sequence");
             if (e.number == 0xe0dd && to_mark) return;
             if (e.number != 0xe000) fail("something else than an item in a sequence");

@@ -78,6 +78,13 @@ std::vector<double> numbers_in(std::string_view text) {
     return numbers;
 }
 
+// How many keys stand in a dictionary.
+std::size_t entries_of(std::string_view text) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find("<key>"); at != std::string_view::npos; at = text.find("<key>", at + 1)) ++count;
+    return count;
+}
+
 SampleType type_of(std::string_view dtype, const std::string& name) {
     constexpr std::array<std::pair<std::string_view, SampleType::Kind>, 8> known{{{"int16", SampleType::int16},
                                                                                   {"uint16", SampleType::uint16},
@@ -130,6 +137,12 @@ ScanVolume read_inv3(const std::filesystem::path& path) {
         volume.map.step[axis][axis] = spacing[static_cast<std::size_t>(axis)] * (axis == 1 ? -1e-3 : 1e-3);
     check_map(volume.map, name);
     volume.notes.push_back("the project does not say where the patient lay; its first voxel is the origin");
+    const std::size_t masks = entries_of(value_of(list, "masks")), surfaces = entries_of(value_of(list, "surfaces"));
+    if (masks + surfaces > 0)
+        volume.notes.push_back(
+            fmt::format("its {} masks and {} surfaces are not read, only the scan; export a mask from InVesalius as "
+                        "NIfTI and import that with --label 1",
+                        masks, surfaces));
 
     PackedFile file(path);
     const auto size = find(file, std::string(value_of(matrix, "filename")), name);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/volume/packed_file.hpp"
 #include "assets/volume/readers.hpp"
 #include "dsp/core/error.hpp"
 
@@ -11,7 +12,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <memory>
+#include <optional>
 
 namespace tactus {
 
@@ -148,6 +151,50 @@ void check_header(const Nrrd& header, const NrrdIoState& io, const std::filesyst
     if (count > 2e9) throw Error(fmt::format("{}: {:.0f} samples in its layers are too many", file, count));
 }
 
+// Where samples begin in a file with header and samples: behind the first empty line.
+std::uint64_t end_of_header(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string line;
+    std::uint64_t at = 0;
+    while (std::getline(file, line)) {
+        at += line.size() + 1;
+        if (line.empty() || line == "\r") return at;
+    }
+    throw Error(fmt::format("{}: cut short: its header has no end", path.string()));
+}
+
+std::optional<SampleType> type_of(int type) {
+    switch (type) {
+        case nrrdTypeChar: return SampleType{SampleType::int8};
+        case nrrdTypeUChar: return SampleType{SampleType::uint8};
+        case nrrdTypeShort: return SampleType{SampleType::int16};
+        case nrrdTypeUShort: return SampleType{SampleType::uint16};
+        case nrrdTypeInt: return SampleType{SampleType::int32};
+        case nrrdTypeUInt: return SampleType{SampleType::uint32};
+        case nrrdTypeLLong: return SampleType{SampleType::int64};
+        case nrrdTypeULLong: return SampleType{SampleType::uint64};
+        case nrrdTypeFloat: return SampleType{SampleType::float32};
+        case nrrdTypeDouble: return SampleType{SampleType::float64};
+        default: return {};
+    }
+}
+
+// Samples of a plain or gzip'ed file, in blocks: teem would hold the whole file beside them. False for what only teem reads.
+bool read_in_blocks(const Nrrd& header, const NrrdIoState& io, const std::filesystem::path& path,
+                    std::vector<float>& values) {
+    const bool is_gzip = io.encoding == nrrdEncodingGzip;
+    const std::optional<SampleType> type = type_of(header.type);
+    const bool is_apart = io.dataFNArr && io.dataFNArr->len > 0;
+    if (!type || (!is_gzip && io.encoding != nrrdEncodingRaw) || io.lineSkip != 0 || io.byteSkip != 0 ||
+        (is_apart && io.dataFNArr->len != 1))
+        return false;
+    PackedFile file(is_apart ? path.parent_path() / io.dataFN[0] : path, is_apart ? 0 : end_of_header(path), is_gzip);
+    const bool swapped = io.endian != airEndianUnknown && io.endian != airMyEndian();
+    read_samples(file, *type, swapped && type->bytes() > 1, values);
+    file.finish();
+    return true;
+}
+
 }  // namespace
 
 ScanVolume read_nrrd(const std::filesystem::path& path) {
@@ -172,17 +219,19 @@ ScanVolume read_nrrd(const std::filesystem::path& path) {
     read_geometry(*header, first, volume, file);
     check_header(*header, *io, path, first);
 
-    const NrrdPointer nrrd(nrrdNew(), nrrdNuke);
-    if (nrrdLoad(nrrd.get(), file.c_str(), nullptr)) refuse();
-    for (unsigned axis = 0; axis < 3; ++axis) volume.size[axis] = static_cast<int>(nrrd->axis[first + axis].size);
-    const std::size_t layers = first == 1 ? nrrd->axis[0].size : 1;
+    for (unsigned axis = 0; axis < 3; ++axis) volume.size[axis] = static_cast<int>(header->axis[first + axis].size);
+    const std::size_t layers = first == 1 ? header->axis[0].size : 1;
     std::vector<float> values(volume.count() * layers);
-    const auto lookup = nrrdFLookup[nrrd->type];
-    for (std::size_t n = 0; n < values.size(); ++n) values[n] = lookup(nrrd->data, n);
+    if (!read_in_blocks(*header, *io, path, values)) {
+        const NrrdPointer nrrd(nrrdNew(), nrrdNuke);
+        if (nrrdLoad(nrrd.get(), file.c_str(), nullptr)) refuse();
+        const auto lookup = nrrdFLookup[nrrd->type];
+        for (std::size_t n = 0; n < values.size(); ++n) values[n] = lookup(nrrd->data, n);
+    }
     if (layers > 1 && first == 1) flatten(values, layers, segments, volume);
     else volume.values = std::move(values);
     for (const Layered& entry : segments) volume.segments.push_back(entry.segment);
-    settle_meaning(volume, nrrdTypeIsIntegral[nrrd->type] != 0);
+    settle_meaning(volume, nrrdTypeIsIntegral[header->type] != 0);
     return volume;
 }
 

@@ -3,6 +3,8 @@
 
 #include "dsp/core/error.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
 #include <zlib.h>
 
 #include <fmt/format.h>
@@ -47,23 +49,43 @@ void unpack(std::span<const char> bytes, SampleType type, bool swapped, std::spa
 
 }  // namespace
 
-PackedFile::PackedFile(const std::filesystem::path& path) : name_(path.string()) {
+PackedFile::PackedFile(const std::filesystem::path& path, std::uint64_t start, bool may_be_packed)
+    : name_(path.string()) {
     std::error_code failure;
     if (!std::filesystem::is_regular_file(path, failure)) throw Error(fmt::format("{}: no such file", name_));
-    size_ = static_cast<double>(std::filesystem::file_size(path, failure));
-    file_ = gzopen(name_.c_str(), "rb");
-    if (failure || !file_) throw Error(fmt::format("{}: cannot be read", name_));
+    const std::uintmax_t size = std::filesystem::file_size(path, failure);
+    if (!failure && start > size) throw Error(fmt::format("{}: cut short; copy the file again", name_));
+    size_ = static_cast<double>(size - start);
+    if (!may_be_packed) {
+        plain_.open(path, std::ios::binary);
+        plain_.seekg(static_cast<std::streamoff>(start));
+        if (failure || !plain_) throw Error(fmt::format("{}: cannot be read", name_));
+        return;
+    }
+    const int descriptor = open(name_.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor >= 0 && lseek(descriptor, static_cast<off_t>(start), SEEK_SET) >= 0)
+        file_ = gzdopen(descriptor, "rb");
+    if (failure || !file_) {
+        if (descriptor >= 0 && !file_) close(descriptor);
+        throw Error(fmt::format("{}: cannot be read", name_));
+    }
     gzbuffer(handle(file_), 1u << 18);
     gzdirect(handle(file_));  // looks at the first bytes
 }
 
-PackedFile::~PackedFile() { gzclose_r(handle(file_)); }
+PackedFile::~PackedFile() {
+    if (file_) gzclose_r(handle(file_));
+}
 
-bool PackedFile::is_packed() const { return gzdirect(handle(file_)) == 0; }
+bool PackedFile::is_packed() const { return file_ && gzdirect(handle(file_)) == 0; }
 
 double PackedFile::most_bytes() const { return is_packed() ? size_ * 1032.0 : size_; }
 
 std::size_t PackedFile::read_some(std::span<char> out) {
+    if (!file_) {
+        plain_.read(out.data(), static_cast<std::streamsize>(out.size()));
+        return static_cast<std::size_t>(plain_.gcount());
+    }
     std::size_t done = 0;
     while (done < out.size()) {
         const auto part = static_cast<unsigned>(std::min<std::size_t>(out.size() - done, 1u << 26));
@@ -89,6 +111,7 @@ void PackedFile::skip(std::uint64_t bytes) {
 }
 
 void PackedFile::finish() {
+    if (!file_) return;
     std::array<char, 1 << 16> rest;
     while (is_packed() && read_some(rest) > 0) {
     }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <span>
 #include <string>
 
@@ -12,8 +13,9 @@ namespace tactus {
 
 class PackedFile {
 public:
+    /// Begins at byte `start` of the file. Without `may_be_packed` bytes are taken as they are, whatever they look like.
     /// Throws Error when it cannot be opened.
-    explicit PackedFile(const std::filesystem::path& path);
+    explicit PackedFile(const std::filesystem::path& path, std::uint64_t start = 0, bool may_be_packed = true);
     ~PackedFile();
     PackedFile(const PackedFile&) = delete;
     PackedFile& operator=(const PackedFile&) = delete;
@@ -33,7 +35,8 @@ public:
 private:
     std::string name_;
     double size_ = 0.0;
-    void* file_ = nullptr;  // zlib's gzFile
+    void* file_ = nullptr;  // zlib's gzFile; null for a plain file
+    std::ifstream plain_;
 };
 
 /// How samples of `type` are stored in a file: "int16" and so on.

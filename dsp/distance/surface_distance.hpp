@@ -13,8 +13,8 @@ namespace tactus {
 /// Distance (m) of every sample of `layout` (its size, origin and spacing; values are not read) from the surface. Exact
 /// within one and a half of the widest cells. Farther away each sample starts from the triangles in the cell that holds
 /// the nearest point of the surface, one point per cell, and then takes over what its neighbours know until nothing
-/// becomes nearer by a ten-thousandth: within a tenth of a sample of brute force where tested. Infinite when no triangle reaches the grid. 24 bytes per sample. The result does not depend on how jobs are
-/// run.
+/// becomes nearer by a ten-thousandth: within a tenth of a sample of brute force where tested. Infinite when no triangle
+/// reaches the grid. Uses 24 bytes per sample. The result does not depend on how jobs are run.
 std::vector<float> surface_distance(const Grid& layout, const TriangleSurface& surface,
                                     const RunJobs& run = run_in_turn);
 

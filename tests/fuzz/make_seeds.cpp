@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // make_seeds FOLDER: small valid files of every format, in FOLDER/<target>/, from which the fuzzers of assets start.
 #include "assets/bone/bone.hpp"
-#include "assets/bone/whole_file.hpp"
+#include "assets/file/whole_file.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "assets/volume/write_volume.hpp"
 #include "tests/assets/volume/written_volume.hpp"

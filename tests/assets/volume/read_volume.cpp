@@ -241,3 +241,32 @@ TEST_CASE("files cut anywhere, empty ones and headers that claim too much give o
     CHECK_THROWS_WITH(read_volume(place.folder / "nothing.nii"), Contains("no such file"));
     refuses("text.txt", "some text");
 }
+
+TEST_CASE("a DICOM element whose head reaches beyond its item asks for no memory but is refused") {
+    const Place place;
+    std::string bytes = enhanced_dicom_bytes(ramp());
+    // The last element of the shared item, "LO" of two letters, becomes "OL": its length now lies in the next element.
+    const std::size_t at = bytes.find(std::string("\x28\0\x54\x10LO", 6));
+    REQUIRE(at != std::string::npos);
+    bytes.replace(at + 4, 2, "OL");
+    CHECK_THROWS_WITH(read_volume(place.write("v.dcm", bytes)), Contains("reaches beyond"));
+}
+
+TEST_CASE("raw samples that look like gzip, big-endian ones and those in a file apart are read as they are") {
+    const Place place;
+    WrittenVolume v = ramp();
+    v.hu[0] = static_cast<std::int16_t>(0x8b1f);
+    std::string bytes = nrrd_bytes(v);
+    const Grid read = lps_grid(read_volume(place.write("v.nrrd", bytes)));
+    for (std::size_t n = 0; n < v.hu.size(); ++n) REQUIRE(read.values[n] == float(v.hu[n]));
+
+    const std::size_t end = bytes.find("\n\n") + 1;
+    std::string samples = bytes.substr(end + 1), header = bytes.substr(0, end);
+    for (std::size_t n = 0; n < samples.size(); n += 2) std::swap(samples[n], samples[n + 1]);
+    header.replace(header.find("little"), 6, "big");
+    place.write("samples.raw", samples);
+    const Grid apart = lps_grid(read_volume(place.write("v.nhdr", header + "data file: samples.raw\n")));
+    CHECK(apart.values == read.values);
+    CHECK(lps_grid(read_volume(place.write("big.nrrd", header + "\n" + samples))).values == read.values);
+    CHECK_THROWS_WITH(read_volume(place.write("cut.nrrd", header + "\n" + samples.substr(2))), Contains("cut short"));
+}
