@@ -87,11 +87,11 @@ Json or_null(const std::optional<T>& value) {
     return value ? Json(*value) : Json();
 }
 
-Json lines_json(const std::vector<Line>& lines, double fundamental) {
+Json lines_json(const std::vector<SpectralLine>& lines, double fundamental) {
     Json list = Json::array();
-    for (const Line& line : lines) {
-        Json entry{{"hz", line.hz}, {"db", line.db}, {"snr_db", line.snr_db}};
-        if (const std::string name = name_of_line(line.hz, fundamental); !name.empty()) entry["name"] = name;
+    for (const SpectralLine& line : lines) {
+        Json entry{{"hz", line.frequency}, {"db", level_db(line)}, {"snr_db", line.snr_db}};
+        if (const std::string name = name_of_line(line.frequency, fundamental); !name.empty()) entry["name"] = name;
         list.push_back(std::move(entry));
     }
     return list;
@@ -153,12 +153,12 @@ Json to_json(const Outcome& o, bool actuator_known) {
     return json;
 }
 
-void print_lines(const char* what, const std::vector<Line>& lines, double fundamental) {
+void print_lines(const char* what, const std::vector<SpectralLine>& lines, double fundamental) {
     if (lines.empty()) return;
     std::vector<std::string> names;
-    for (const Line& line : lines) {
-        const std::string name = name_of_line(line.hz, fundamental);
-        names.push_back(fmt::format("{:.1f} Hz{}", line.hz, name.empty() ? "" : " (" + name + ")"));
+    for (const SpectralLine& line : lines) {
+        const std::string name = name_of_line(line.frequency, fundamental);
+        names.push_back(fmt::format("{:.1f} Hz{}", line.frequency, name.empty() ? "" : " (" + name + ")"));
         if (names.size() == 8 && lines.size() > 8) {
             names.push_back(fmt::format("and {} more", lines.size() - 8));
             break;

@@ -63,23 +63,24 @@ void draw_spectra(Figure& figure, const Comparison& c, double y, double height) 
     panel.curve(r, c.step, reference_colour, 3.2);
     panel.curve(d, c.step, output_colour, 1.3);
     double taken = -1e9;
-    for (const Line& line : c.lines.in_both) {
-        const double x = panel.x_of(line.hz), level = level_at(r, c.step, line.hz);
+    for (const SpectralLine& line : c.lines.in_both) {
+        const double x = panel.x_of(line.frequency), level = level_at(r, c.step, line.frequency);
         if (level < -45.0 || x < taken + 26.0 || x > left + panel_width - 12.0) continue;
-        figure.text({x, panel.y_of(std::max(level, level_at(d, c.step, line.hz))) - 5.0},
-                    fmt::format("{:.0f}", line.hz), 10.0, ink, TextAnchor::middle);
+        figure.text({x, panel.y_of(std::max(level, level_at(d, c.step, line.frequency))) - 5.0},
+                    fmt::format("{:.0f}", line.frequency), 10.0, ink, TextAnchor::middle);
         taken = x;
     }
-    for (const Line& line : c.lines.only_in_reference) {
-        const double x = panel.x_of(line.hz), at = panel.y_of(level_at(r, c.step, line.hz)) - 3.0;
+    for (const SpectralLine& line : c.lines.only_in_reference) {
+        const double x = panel.x_of(line.frequency), at = panel.y_of(level_at(r, c.step, line.frequency)) - 3.0;
         mark(figure, x, at, reference_colour, true);
-        figure.text({x, at - 11.0}, fmt::format("{:.0f} missing", line.hz), 10.0, reference_colour, TextAnchor::middle);
+        figure.text({x, at - 11.0}, fmt::format("{:.0f} missing", line.frequency), 10.0, reference_colour,
+                    TextAnchor::middle);
     }
-    for (const Line& line : c.lines.only_in_output) {
-        const double hz = line.hz * (1.0 / c.speed_ratio), x = std::max(panel.x_of(hz), left + 4.0);
+    for (const SpectralLine& line : c.lines.only_in_output) {
+        const double hz = line.frequency * (1.0 / c.speed_ratio), x = std::max(panel.x_of(hz), left + 4.0);
         const double at = panel.y_of(level_at(d, c.step, hz)) - 3.0;
         mark(figure, x, at, added_colour, true);
-        figure.text({x, at - 11.0}, fmt::format("{:.0f} added", line.hz), 10.0, added_colour,
+        figure.text({x, at - 11.0}, fmt::format("{:.0f} added", line.frequency), 10.0, added_colour,
                     x < left + 30.0 ? TextAnchor::start : TextAnchor::middle);
     }
 }

@@ -10,10 +10,10 @@ namespace tactus {
 
 namespace {
 
-std::vector<Line> stronger_than(const std::vector<Line>& lines, double level_db) {
-    std::vector<Line> out;
-    for (const Line& line : lines)
-        if (line.db >= level_db) out.push_back(line);
+std::vector<SpectralLine> stronger_than(const std::vector<SpectralLine>& lines, double least_db) {
+    std::vector<SpectralLine> out;
+    for (const SpectralLine& line : lines)
+        if (level_db(line) >= least_db) out.push_back(line);
     return out;
 }
 
@@ -53,7 +53,7 @@ Verdict judge(const Comparison& c, double level_gap_db, const Thresholds& limits
 
     double strongest = -1e9;
     for (const auto* lines : {&c.lines.in_both, &c.lines.only_in_reference})
-        for (const Line& line : *lines) strongest = std::max(strongest, line.db);
+        for (const SpectralLine& line : *lines) strongest = std::max(strongest, level_db(line));
     // Without a line in the reference, its whole power stands for the strongest.
     if (strongest < -1e8) strongest = 20.0 * std::log10(std::sqrt(2.0) * c.reference_rms);
     if (limits.added_line_db) {

@@ -20,7 +20,7 @@ struct Judged {
 struct Verdict {
     std::vector<Judged> scores;                 ///< those that have a threshold and a value
     std::vector<std::string> not_judged;        ///< those with a threshold but no value
-    std::vector<Line> added, missing;           ///< lines that count against it
+    std::vector<SpectralLine> added, missing;           ///< lines that count against it
 
     bool passed() const;
     std::vector<std::string> failed() const;

@@ -3,6 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/filter/resample.hpp"
+#include "dsp/spectrum/comb.hpp"
 #include "dsp/spectrum/cross.hpp"
 #include "dsp/spectrum/welch.hpp"
 
@@ -23,6 +24,7 @@ constexpr double silence = 1e-5;  // of the peak
 // Segments for distance and cosine, coherence, bands, lines.
 constexpr std::size_t coarse = 1024, middle = 2048, fine = 4096, sharp = 8192;
 constexpr double speed_range = 0.03;
+constexpr double lowest_rate = 60.0, highest_rate = 400.0, least_confidence = 0.3;  // of a saw, Hz
 
 double decibel(double power_ratio) { return 10.0 * std::log10(power_ratio); }
 
@@ -58,6 +60,12 @@ struct Takes {
     Spectrum of_reference(std::size_t segment) const { return welch<double>(reference, settings(segment)); }
     Spectrum of_output(std::size_t segment) const { return welch<double>(output, settings(segment)); }
 };
+
+/// Hz; 0 when the lines are of no one rate.
+double rate_of_strokes(const Spectrum& density) {
+    const Comb comb = fit_comb(density, lowest_rate, highest_rate);
+    return comb.confidence >= least_confidence ? comb.best.frequency : 0.0;
+}
 
 /// The output at the reference's rate of strokes, when both are known and near each other.
 std::vector<double> at_equal_speed(std::span<const double> samples, Comparison& result) {
@@ -153,8 +161,8 @@ Comparison compare(const Take& reference, const Take& output, const ComparisonOp
     if (result.alignment.significant) cut_to_common(r, raw, result.alignment);
     const Takes takes{r, raw};
     const Spectrum sharp_reference = takes.of_reference(sharp), sharp_output = takes.of_output(sharp);
-    result.reference_hz = fundamental_of(find_lines(sharp_reference, result.lowest, result.highest), result.highest);
-    result.output_hz = fundamental_of(find_lines(sharp_output, result.lowest, result.highest), result.highest);
+    result.reference_hz = rate_of_strokes(sharp_reference);
+    result.output_hz = rate_of_strokes(sharp_output);
     const std::vector<double> d = at_equal_speed(raw, result);
     score_spectra({r, d}, options, result);
     result.spectrogram_similarity = spectrogram_similarity(r, d, rate, result.lowest, result.highest);

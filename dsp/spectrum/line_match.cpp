@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace tactus {
 
 namespace {
 
-constexpr double least_snr_db = 10.0, deepest_db = 60.0, missing_db = 6.0, order_snr_db = 6.0;
-constexpr double lowest_rate = 60.0, highest_rate = 400.0;  // Hz
+constexpr double deepest_db = 60.0, missing_db = 6.0, order_snr_db = 6.0;
 constexpr int fewest_orders = 2, most_orders = 10;
 
 double decibel(double power_ratio) { return 10.0 * std::log10(std::max(power_ratio, 1e-30)); }
@@ -30,28 +28,13 @@ double neighbourhood(const std::vector<double>& power, std::size_t bin) {
     return *middle;
 }
 
-/// Where the line around the highest bin lies and how high it is, from the ratio of the two highest bins (Hann window).
-Line line_at(const Spectrum& density, std::size_t bin) {
-    const std::vector<double>& p = density.power;
-    const bool right = p[bin + 1] > p[bin - 1];
-    const double ratio = std::sqrt(std::max(p[right ? bin + 1 : bin - 1], 0.0) / p[bin]);
-    const double shift = std::clamp((2.0 * ratio - 1.0) / (ratio + 1.0), 0.0, 0.5);
-    const double x = std::numbers::pi * shift;
-    const double scallop = shift > 1e-9 ? x * (1.0 - shift * shift) / std::sin(x) : 1.0;
-    const double amplitude = std::sqrt(2.0 * p[bin] * density.noise_bandwidth) * scallop;
-    Line line;
-    line.hz = (static_cast<double>(bin) + (right ? shift : -shift)) * density.df;
-    line.db = 20.0 * std::log10(std::max(amplitude, 1e-30));
-    line.snr_db = std::min(200.0, decibel(p[bin] / std::max(neighbourhood(p, bin), 1e-30)));
-    return line;
-}
-
 double tolerance(const Spectrum& density, double hz) { return std::max(0.003 * hz, 2.0 * density.df); }
 
-const Line* nearest(const std::vector<Line>& lines, double hz, double within) {
-    const Line* best = nullptr;
-    for (const Line& line : lines)
-        if (std::abs(line.hz - hz) <= within && (!best || std::abs(line.hz - hz) < std::abs(best->hz - hz)))
+const SpectralLine* nearest(const std::vector<SpectralLine>& lines, double hz, double within) {
+    const SpectralLine* best = nullptr;
+    for (const SpectralLine& line : lines)
+        if (std::abs(line.frequency - hz) <= within &&
+            (!best || std::abs(line.frequency - hz) < std::abs(best->frequency - hz)))
             best = &line;
     return best;
 }
@@ -68,63 +51,18 @@ double level_near(const Spectrum& density, double hz) {
     return decibel(2.0 * band_power(density.power, density.df, hz - within, hz + within));
 }
 
-}  // namespace
-
-std::vector<Line> find_lines(const Spectrum& density, double lowest, double highest) {
-    std::vector<Line> lines;
-    double strongest = -1e9;
-    const std::vector<double>& p = density.power;
-    for (std::size_t k = 1; k + 1 < p.size(); ++k) {
-        const double f = density.frequency(k);
-        if (f < lowest || f > highest || p[k] <= p[k - 1] || p[k] < p[k + 1] || !(p[k] > 0.0)) continue;
-        const Line line = line_at(density, k);
-        if (line.snr_db < least_snr_db) continue;
-        lines.push_back(line);
-        strongest = std::max(strongest, line.db);
-    }
-    std::erase_if(lines, [&](const Line& line) { return line.db < strongest - deepest_db; });
+std::vector<SpectralLine> strong_lines(const Spectrum& density, double lowest, double highest) {
+    std::vector<SpectralLine> lines = find_lines(density, lowest, highest);
+    double strongest = 0.0;
+    for (const SpectralLine& line : lines) strongest = std::max(strongest, line.power);
+    std::erase_if(lines,
+                  [&](const SpectralLine& line) { return line.power < strongest * std::pow(10.0, -0.1 * deepest_db); });
     return lines;
 }
 
-double fundamental_of(const std::vector<Line>& lines, double highest) {
-    double strongest = -1e9;
-    for (const Line& line : lines) strongest = std::max(strongest, line.db);
-    // How far the orders of a rate rise above −60 dB of the strongest line, on average.
-    const auto strength = [&](double rate, double& refined) {
-        double sum = 0.0, weights = 0.0, places = 0.0;
-        const int orders = std::min(most_orders, static_cast<int>(highest / rate));
-        int found = 0;
-        for (int k = 1; k <= orders; ++k) {
-            const Line* line = nearest(lines, k * rate, std::max(0.01 * rate, 1.5));
-            if (!line) continue;
-            ++found;
-            const double height = line->db - strongest + deepest_db;
-            sum += height;
-            weights += height * k;
-            places += height * k * line->hz / k;
-        }
-        if (found < fewest_orders) return 0.0;
-        refined = places / weights;
-        return sum / orders;
-    };
-    struct Candidate {
-        double rate, strength;
-    };
-    std::vector<Candidate> candidates;
-    double best = 0.0;
-    for (const Line& line : lines)
-        for (int k = 1; k <= 4; ++k) {
-            double refined = line.hz / k;
-            if (refined < lowest_rate || refined > highest_rate) continue;
-            const double value = strength(refined, refined);
-            if (value > 0.0) candidates.push_back({refined, value});
-            best = std::max(best, value);
-        }
-    double lowest = 0.0;
-    for (const Candidate& candidate : candidates)
-        if (candidate.strength >= 0.8 * best && (lowest == 0.0 || candidate.rate < lowest)) lowest = candidate.rate;
-    return lowest;
-}
+}  // namespace
+
+double level_db(const SpectralLine& line) { return decibel(2.0 * line.power); }
 
 std::optional<double> harmonic_error(const Spectrum& reference, double reference_hz, const Spectrum& output,
                                      double output_hz, double highest) {
@@ -147,19 +85,22 @@ std::optional<double> harmonic_error(const Spectrum& reference, double reference
 
 MatchedLines match_lines(const Spectrum& reference, const Spectrum& output, double gain, double speed_ratio,
                          double lowest, double highest) {
-    const std::vector<Line> r = find_lines(reference, lowest, highest), d = find_lines(output, lowest, highest);
+    const std::vector<SpectralLine> r = strong_lines(reference, lowest, highest),
+                                    d = strong_lines(output, lowest, highest);
     const double gain_db = 20.0 * std::log10(gain);
     MatchedLines matched;
-    for (const Line& line : r) {
-        const double within = tolerance(reference, line.hz), moved = line.hz * speed_ratio;
-        if (nearest(d, line.hz, within) || nearest(d, moved, within)) matched.in_both.push_back(line);
-        else if (std::max(level_near(output, line.hz), level_near(output, moved)) + gain_db < line.db - missing_db)
+    for (const SpectralLine& line : r) {
+        const double within = tolerance(reference, line.frequency), moved = line.frequency * speed_ratio;
+        if (nearest(d, line.frequency, within) || nearest(d, moved, within)) matched.in_both.push_back(line);
+        else if (std::max(level_near(output, line.frequency), level_near(output, moved)) + gain_db <
+                 level_db(line) - missing_db)
             matched.only_in_reference.push_back(line);
     }
-    for (const Line& line : d) {
-        const double within = tolerance(output, line.hz), moved = line.hz / speed_ratio;
-        if (nearest(r, line.hz, within) || nearest(r, moved, within)) continue;
-        if (std::max(level_near(reference, line.hz), level_near(reference, moved)) < line.db + gain_db - missing_db)
+    for (const SpectralLine& line : d) {
+        const double within = tolerance(output, line.frequency), moved = line.frequency / speed_ratio;
+        if (nearest(r, line.frequency, within) || nearest(r, moved, within)) continue;
+        if (std::max(level_near(reference, line.frequency), level_near(reference, moved)) <
+            level_db(line) + gain_db - missing_db)
             matched.only_in_output.push_back(line);
     }
     return matched;

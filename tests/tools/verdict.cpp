@@ -3,16 +3,21 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
+
 using namespace tactus;
 
 namespace {
+
+/// Of that amplitude in dB.
+SpectralLine line(double hz, double db) { return {hz, 0.5 * std::pow(10.0, db / 10.0), 20.0}; }
 
 Comparison good() {
     Comparison c;
     c.cosine_500 = c.cosine_1000 = 1.0;
     c.reference_rms = c.output_rms = 1.0;
     c.harmonic_error_db = 0.1;
-    c.lines.in_both = {{200.0, 0.0, 40.0}};
+    c.lines.in_both = {line(200.0, 0.0)};
     return c;
 }
 
@@ -43,13 +48,13 @@ TEST_CASE("a score that does not exist is not judged, and said to be so") {
 TEST_CASE("a line that only one has counts by its level beside the reference's strongest, at equal power") {
     Comparison c = good();
     c.gain_db = 20.0;
-    c.lines.only_in_output = {{50.0, -49.0, 20.0}};  // −29 dB with the gain
+    c.lines.only_in_output = {line(50.0, -49.0)};  // −29 dB with the gain
     CHECK(judge(c, 0.0, {}).failed() == std::vector<std::string>{"only_in_output"});
-    c.lines.only_in_output[0].db = -51.0;
+    c.lines.only_in_output = {line(50.0, -51.0)};
     CHECK(judge(c, 0.0, {}).passed());
-    c.lines.only_in_reference = {{400.0, -19.0, 20.0}};
+    c.lines.only_in_reference = {line(400.0, -19.0)};
     CHECK(judge(c, 0.0, {}).failed() == std::vector<std::string>{"only_in_reference"});
-    c.lines.only_in_reference[0].db = -21.0;
+    c.lines.only_in_reference = {line(400.0, -21.0)};
     CHECK(judge(c, 0.0, {}).passed());
 }
 

@@ -102,11 +102,11 @@ TEST_CASE("mains hum that only the output has is found, and named by its frequen
     test::add_disturbance(hummed, rate, -40.0, -80.0, 5);
     const Comparison found = compare({take, rate}, {hummed, rate});
     REQUIRE(found.lines.only_in_output.size() == 1);
-    CHECK(found.lines.only_in_output[0].hz == Approx(50.0).margin(0.05));
-    CHECK(found.lines.only_in_output[0].db == Approx(-40.0).margin(0.2));
+    CHECK(found.lines.only_in_output[0].frequency == Approx(50.0).margin(0.05));
+    CHECK(level_db(found.lines.only_in_output[0]) == Approx(-40.0).margin(0.2));
     const Comparison turned = compare({hummed, rate}, {take, rate});
     REQUIRE(turned.lines.only_in_reference.size() == 1);
-    CHECK(turned.lines.only_in_reference[0].hz == Approx(50.0).margin(0.05));
+    CHECK(turned.lines.only_in_reference[0].frequency == Approx(50.0).margin(0.05));
 }
 
 TEST_CASE("a slow sensor is compared as far as it goes") {
