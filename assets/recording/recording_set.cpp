@@ -5,7 +5,7 @@
 #include "assets/sound/sound.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
-#include "dsp/vibration/fundamental.hpp"
+#include "dsp/spectrum/comb.hpp"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -19,7 +19,7 @@ namespace tactus {
 namespace {
 
 constexpr double lowest_rate = 5.0, highest_rate = 1000.0;  // Hz
-constexpr double least_periodicity = 0.15;                  // below it a sound says nothing about a rate
+constexpr double lowest_heard = 60.0, highest_heard = 400.0; // Hz: where a rate that nobody stated is looked for
 constexpr double usual_load = 7.0;                          // N: thrust of a hand on a bone saw
 
 const std::array<std::string, 7> set_keys{"title",  "note",       "licence",  "synthesised",
@@ -48,12 +48,12 @@ void load_samples(Recording& r) {
 void settle_rate(Recording& r) {
     const Part part = part_of(r);
     if (r.rate == 0.0) {
-        const Fundamental heard =
-            estimate_fundamental(std::span(r.samples).subspan(part.begin, part.end - part.begin), r.sample_rate);
-        if (!(heard.rate > 0.0) || heard.periodicity < least_periodicity)
+        const auto part_used = std::span(r.samples).subspan(part.begin, part.end - part.begin);
+        const Comb heard = fit_comb(part_used, r.sample_rate, lowest_heard, highest_heard);
+        if (heard.confidence < sure_of_comb)
             throw Error(fmt::format("no rate of reciprocation can be heard in '{}'; state it, rate = \"233 Hz\"",
                                     r.file.filename().string()));
-        r.rate = heard.rate;
+        r.rate = heard.best.frequency;
         r.rate_estimated = true;
     }
     const double cycles = static_cast<double>(part.end - part.begin) / r.sample_rate * r.rate;

@@ -6,17 +6,20 @@
 
 namespace tactus {
 
-double band_power(const Spectrum& density, double low, double high) {
-    if (density.power.empty()) return 0.0;
-    const double last = static_cast<double>(density.power.size() - 1);
-    const double from = std::clamp(low / density.df, -0.5, last + 0.5),
-                 to = std::clamp(high / density.df, -0.5, last + 0.5);
+double band_power(std::span<const double> density, double df, double low, double high) {
+    if (density.empty()) return 0.0;
+    const double last = static_cast<double>(density.size() - 1);
+    const double from = std::clamp(low / df, -0.5, last + 0.5), to = std::clamp(high / df, -0.5, last + 0.5);
     double sum = 0.0;
     for (double bin = std::floor(from + 0.5); bin - 0.5 < to && bin <= last; ++bin) {
         const double share = std::min(to, bin + 0.5) - std::max(from, bin - 0.5);
-        if (share > 0.0) sum += share * density.power[static_cast<std::size_t>(bin)];
+        if (share > 0.0) sum += share * density[static_cast<std::size_t>(bin)];
     }
-    return sum * density.df;
+    return sum * df;
+}
+
+double band_power(const Spectrum& density, double low, double high) {
+    return band_power(density.power, density.df, low, high);
 }
 
 std::vector<Band> third_octaves(const Spectrum& density) {

@@ -15,7 +15,9 @@ struct Band {
 /// their width inside the band. Bands narrower than two bins or reaching beyond the spectrum are left out.
 std::vector<Band> third_octaves(const Spectrum& density);
 
-/// Mean square between two frequencies (Hz), bins by share.
+/// Mean square between two frequencies (Hz) of a density with bin k at k × `df` Hz; a bin that straddles a border counts by
+/// its share.
+double band_power(std::span<const double> density, double df, double low, double high);
 double band_power(const Spectrum& density, double low, double high);
 
 }  // namespace tactus

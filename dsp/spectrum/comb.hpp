@@ -24,4 +24,11 @@ struct Comb {
 /// subharmonic has more teeth missing, so it wins only when lines between speak for it. Allocates.
 Comb fit_comb(const Spectrum& spectrum, double lowest, double highest);
 
+/// The same of a record at `rate` Hz that is in memory, by its spectrum in segments of the suggested length. No comb when
+/// the record has fewer than two of them. Allocates.
+Comb fit_comb(std::span<const float> record, double rate, double lowest, double highest);
+
+/// From this confidence on a rate is taken for the machine's; noise stays far below.
+inline constexpr double sure_of_comb = 0.3;
+
 }  // namespace tactus

@@ -3,6 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/filter/resample.hpp"
+#include "dsp/spectrum/bands.hpp"
 #include "dsp/spectrum/comb.hpp"
 #include "dsp/spectrum/cross.hpp"
 #include "dsp/spectrum/welch.hpp"
@@ -24,7 +25,7 @@ constexpr double silence = 1e-5;  // of the peak
 // Segments for distance and cosine, coherence, bands, lines.
 constexpr std::size_t coarse = 1024, middle = 2048, fine = 4096, sharp = 8192;
 constexpr double speed_range = 0.03;
-constexpr double lowest_rate = 60.0, highest_rate = 400.0, least_confidence = 0.3;  // of a saw, Hz
+constexpr double lowest_rate = 60.0, highest_rate = 400.0;  // of a saw, Hz
 
 double decibel(double power_ratio) { return 10.0 * std::log10(power_ratio); }
 
@@ -39,7 +40,7 @@ double power_in_band(std::span<const double> samples, const Spectrum& density, c
                      const char* name) {
     double peak = 0.0;
     for (const double x : samples) peak = std::max(peak, std::abs(x));
-    const double power = band_power(density.power, density.df, result.lowest, result.highest);
+    const double power = band_power(density, result.lowest, result.highest);
     if (!(std::sqrt(power) > silence * peak))
         throw Error(fmt::format("the {} is silent from {:g} to {:g} Hz", name, result.lowest, result.highest));
     return power;
@@ -64,7 +65,7 @@ struct Takes {
 /// Hz; 0 when the lines are of no one rate.
 double rate_of_strokes(const Spectrum& density) {
     const Comb comb = fit_comb(density, lowest_rate, highest_rate);
-    return comb.confidence >= least_confidence ? comb.best.frequency : 0.0;
+    return comb.confidence >= sure_of_comb ? comb.best.frequency : 0.0;
 }
 
 /// The output at the reference's rate of strokes, when both are known and near each other.

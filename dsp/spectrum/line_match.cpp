@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/spectrum/line_match.hpp"
 
-#include "dsp/spectrum/similarity.hpp"
+#include "dsp/spectrum/bands.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,19 +14,6 @@ constexpr double deepest_db = 60.0, missing_db = 6.0, order_snr_db = 6.0;
 constexpr int fewest_orders = 2, most_orders = 10;
 
 double decibel(double power_ratio) { return 10.0 * std::log10(std::max(power_ratio, 1e-30)); }
-
-/// Median power of the bins 4 to 16 away on both sides.
-double neighbourhood(const std::vector<double>& power, std::size_t bin) {
-    std::vector<double> around;
-    for (std::size_t away = 4; away <= 16; ++away) {
-        if (bin >= away + 1) around.push_back(power[bin - away]);
-        if (bin + away < power.size()) around.push_back(power[bin + away]);
-    }
-    if (around.empty()) return 0.0;
-    const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
-    std::nth_element(around.begin(), middle, around.end());
-    return *middle;
-}
 
 double tolerance(const Spectrum& density, double hz) { return std::max(0.003 * hz, 2.0 * density.df); }
 
@@ -42,13 +29,13 @@ const SpectralLine* nearest(const std::vector<SpectralLine>& lines, double hz, d
 /// Power of an order: within a hundredth of its frequency, at least three bins to each side.
 double order_power(const Spectrum& density, double hz) {
     const double reach = std::max(0.01 * hz, 3.0 * density.df);
-    return band_power(density.power, density.df, hz - reach, hz + reach);
+    return band_power(density, hz - reach, hz + reach);
 }
 
 /// Level of the spectrum around a frequency as if it were one line, dB of amplitude.
 double level_near(const Spectrum& density, double hz) {
     const double within = tolerance(density, hz);
-    return decibel(2.0 * band_power(density.power, density.df, hz - within, hz + within));
+    return decibel(2.0 * band_power(density, hz - within, hz + within));
 }
 
 std::vector<SpectralLine> strong_lines(const Spectrum& density, double lowest, double highest) {
@@ -69,10 +56,9 @@ std::optional<double> harmonic_error(const Spectrum& reference, double reference
     if (!(reference_hz > 0.0 && output_hz > 0.0)) return std::nullopt;
     std::vector<double> differences;
     for (int k = 1; k <= most_orders && k * reference_hz <= highest; ++k) {
-        const auto bin = static_cast<std::size_t>(std::llround(k * reference_hz / reference.df));
-        if (bin < 1 || bin + 1 >= reference.power.size()) break;
-        const double top = std::max({reference.power[bin - 1], reference.power[bin], reference.power[bin + 1]});
-        if (decibel(top / std::max(neighbourhood(reference.power, bin), 1e-30)) < order_snr_db) continue;
+        const SpectralLine line = line_near(reference, k * reference_hz, reference.df);
+        if (!(line.power > 0.0)) break;
+        if (line.snr_db < order_snr_db) continue;
         differences.push_back(decibel(std::max(order_power(output, k * output_hz), 1e-30) /
                                       std::max(order_power(reference, k * reference_hz), 1e-30)));
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/spectrum/similarity.hpp"
 
+#include "dsp/spectrum/bands.hpp"
 #include "dsp/spectrum/transform.hpp"
 
 #include <algorithm>
@@ -98,16 +99,6 @@ double likeness(const Block& reference, const Block& output) {
 }
 
 }  // namespace
-
-double band_power(std::span<const double> spectrum, double step, double lowest, double highest) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < spectrum.size(); ++k) {
-        const double middle = static_cast<double>(k) * step;
-        const double share = std::min(middle + 0.5 * step, highest) - std::max(middle - 0.5 * step, lowest);
-        if (share > 0.0) sum += spectrum[k] * share;
-    }
-    return sum;
-}
 
 double log_spectral_distance(const SpectrumPair& pair, double lowest, double highest, double gain) {
     const Bins bins = bins_of(pair, lowest, highest);

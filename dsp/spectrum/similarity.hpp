@@ -17,10 +17,6 @@ struct SpectrumPair {
     double step = 1.0;  ///< Hz
 };
 
-/// Power between `lowest` and `highest` Hz; a bin that straddles a border counts by its share. The unit is that of the
-/// spectrum times Hz.
-double band_power(std::span<const double> spectrum, double step, double lowest, double highest);
-
 /// Root mean square of the level differences from `lowest` to `highest` Hz, dB, both levels cut 40 dB below the
 /// strongest bin of the reference there, the output multiplied by `gain` before.
 double log_spectral_distance(const SpectrumPair& pair, double lowest, double highest, double gain = 1.0);

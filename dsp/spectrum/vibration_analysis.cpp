@@ -43,12 +43,6 @@ bool same(const WelchSettings& a, const WelchSettings& b) {
 
 }  // namespace
 
-std::size_t suggested_segment(double rate, std::size_t frames) {
-    const double longest = std::min(0.75 * rate, static_cast<double>(frames) / 4.5);
-    const auto segment = std::bit_floor(static_cast<std::size_t>(std::max(64.0, longest)));
-    return std::min(segment, std::max<std::size_t>(1, frames));
-}
-
 VibrationAnalysis::VibrationAnalysis(const AnalysisSettings& settings, std::size_t frames)
     : settings_(settings),
       lines_(hann(settings.psd.rate, suggested_segment(settings.psd.rate, frames),

@@ -23,10 +23,6 @@ struct AnalysisSettings {
     bool spectrogram = false;
 };
 
-/// The longest power of two within 0.75 s that leaves at least eight half-overlapping segments of `frames`, but at
-/// least 64; the whole record when that is shorter still.
-std::size_t suggested_segment(double rate, std::size_t frames);
-
 struct FundamentalEstimate {
     double frequency = 0.0;   ///< Hz; 0: nothing repeats
     double confidence = 0.0;  ///< 0 … 1

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -130,6 +131,12 @@ double median_bias(std::size_t segments) {
     for (std::size_t i = 2; i + 1 <= segments; i += 2)
         bias += 1.0 / static_cast<double>(i + 1) - 1.0 / static_cast<double>(i);
     return bias;
+}
+
+std::size_t suggested_segment(double rate, std::size_t frames) {
+    const double longest = std::min(0.75 * rate, static_cast<double>(frames) / 4.5);
+    const auto segment = std::bit_floor(static_cast<std::size_t>(std::max(64.0, longest)));
+    return std::min(segment, std::max<std::size_t>(1, frames));
 }
 
 void check(const WelchSettings& settings) {

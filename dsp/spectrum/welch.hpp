@@ -58,6 +58,10 @@ double effective_segments(std::span<const double> window, std::size_t step, std:
 /// scipy's correction: the mean over the median of `segments` powers of noise.
 double median_bias(std::size_t segments);
 
+/// The longest power of two within 0.75 s that leaves at least eight half-overlapping segments of `frames`, but at
+/// least 64; the whole record when that is shorter still.
+std::size_t suggested_segment(double rate, std::size_t frames);
+
 /// Runs a function for 0 … count−1, in any order or at once.
 using ForEach = std::function<void(std::size_t count, const std::function<void(std::size_t)>&)>;
 

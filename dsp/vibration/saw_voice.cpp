@@ -3,7 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/filter/one_pole.hpp"
-#include "dsp/vibration/fundamental.hpp"
+#include "dsp/vibration/refine_rate.hpp"
 
 #include <fmt/format.h>
 
@@ -74,9 +74,9 @@ void SawVoice::make_groups() {
         for (const Layer& layer : layers_)
             if (layer.cutting == cutting) groups.push_back({layer.rate, 0.0, {}});
         std::sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) { return a.rate < b.rate; });
-        groups.erase(std::unique(groups.begin(), groups.end(),
-                                 [](const Group& a, const Group& b) { return a.rate == b.rate; }),
-                     groups.end());
+        groups.erase(
+            std::unique(groups.begin(), groups.end(), [](const Group& a, const Group& b) { return a.rate == b.rate; }),
+            groups.end());
         for (std::size_t i = 0; i < groups.size(); ++i) {
             if (i + 1 < groups.size()) groups[i].border = groups[i].rate * groups[i + 1].rate;
             for (std::size_t k = 0; k < layers_.size(); ++k)

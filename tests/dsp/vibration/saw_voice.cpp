@@ -3,7 +3,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/vibration/actuator.hpp"
-#include "dsp/vibration/fundamental.hpp"
+#include "dsp/vibration/refine_rate.hpp"
 #include "tests/support/realtime_check.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/vibration/fundamental.hpp"
+#include "dsp/vibration/refine_rate.hpp"
 
 #include "dsp/core/random.hpp"
+#include "dsp/spectrum/comb.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -32,18 +33,21 @@ TEST_CASE("the rate of a buzz is heard to 0.05 Hz, whatever the sample rate, in 
         for (const double frequency : {75.0, 150.3, 233.0, 333.3})
             for (const double noise : {0.0, 0.1}) {
                 INFO(sample_rate << " Hz, " << frequency << " Hz, noise " << noise);
-                const Fundamental heard = estimate_fundamental(buzz(frequency, noise, sample_rate), sample_rate);
-                CHECK(heard.rate == Approx(frequency).margin(0.05));
-                CHECK(heard.periodicity > 0.5);
+                const Comb heard = fit_comb(buzz(frequency, noise, sample_rate), sample_rate, 60.0, 400.0);
+                CHECK(heard.best.frequency == Approx(frequency).margin(0.05));
+                CHECK(heard.confidence > sure_of_comb);
             }
 }
 
-TEST_CASE("noise and silence have no rate worth the name") {
-    std::vector<float> noise(48000), silence(48000);
-    for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = static_cast<float>(Random{9}.normal(i));
-    CHECK(estimate_fundamental(noise, 48000.0).periodicity < 0.15);
-    CHECK(estimate_fundamental(silence, 48000.0).rate == 0.0);
-    CHECK(estimate_fundamental(std::vector<float>(100, 0.5f), 48000.0).rate == 0.0);
+TEST_CASE("noise, silence and a constant have no rate worth the name") {
+    std::vector<float> noise(48000);
+    for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+        for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = static_cast<float>(Random{seed}.normal(i));
+        CHECK(fit_comb(noise, 48000.0, 60.0, 400.0).confidence < sure_of_comb);
+    }
+    for (const std::vector<float>& quiet : {std::vector<float>(48000), std::vector<float>(48000, 0.5f),
+                                            std::vector<float>(50, 0.5f), std::vector<float>()})
+        CHECK(fit_comb(quiet, 48000.0, 60.0, 400.0).confidence == 0.0);
 }
 
 TEST_CASE("a rate stated 2 % off is corrected from the sound to 0.02 Hz") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/vibration/fundamental.hpp"
+#include "dsp/vibration/refine_rate.hpp"
 
 #include "dsp/filter/biquad.hpp"
 
@@ -41,36 +41,6 @@ double line_power(std::span<const double> samples, double cycles_per_sample) {
 }
 
 }  // namespace
-
-Fundamental estimate_fundamental(std::span<const float> samples, double sample_rate, double lowest, double highest) {
-    const Decimated low = decimate(samples, sample_rate, 6000.0, 1500.0);
-    const auto shortest = static_cast<std::size_t>(std::max(2.0, std::floor(low.rate / highest)));
-    const auto longest = static_cast<std::size_t>(std::ceil(low.rate / lowest));
-    const std::size_t count = low.samples.size();
-    if (count < 8 * longest) return {};
-    std::vector<double> likeness(longest + 2);
-    for (std::size_t lag = shortest - 1; lag <= longest + 1; ++lag) {
-        double product = 0.0, power = 0.0;
-        for (std::size_t i = 0; i + lag < count; ++i) {
-            const double a = low.samples[i], b = low.samples[i + lag];
-            product += a * b;
-            power += a * a + b * b;
-        }
-        likeness[lag] = power > 0.0 ? 2.0 * product / power : 0.0;
-    }
-    double best = 0.0;
-    for (std::size_t lag = shortest; lag <= longest; ++lag) best = std::max(best, likeness[lag]);
-    if (!(best > 0.0)) return {};
-    for (std::size_t lag = shortest; lag <= longest; ++lag) {
-        const double left = likeness[lag - 1], mid = likeness[lag], right = likeness[lag + 1];
-        if (mid < 0.85 * best || mid < left || mid < right) continue;
-        const double bend = left - 2.0 * mid + right;
-        const double shift = bend < 0.0 ? 0.5 * (left - right) / bend : 0.0;
-        const double rate = low.rate / (static_cast<double>(lag) + shift);
-        return {refine_rate(samples, sample_rate, rate, 0.02), mid};
-    }
-    return {};
-}
 
 double refine_rate(std::span<const float> samples, double sample_rate, double rate, double range, int orders) {
     if (!(static_cast<double>(samples.size()) * rate / sample_rate >= 8.0)) return rate;
