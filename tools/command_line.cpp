@@ -69,8 +69,8 @@ void add_import(CLI::App& app, ImportChoice& choice) {
 void add_compare(CLI::App& app, CompareChoice& choice) {
     CLI::App* verb =
         app.add_subcommand("compare", "is what the actuator plays what the saw did? Exit code 0: yes, 1: no");
-    verb->add_option("reference", choice.reference, "sound file of what was wanted")->required();
-    verb->add_option("output", choice.output, "sound file of what came out")->required();
+    verb->add_option("reference", choice.reference, "sound file or CSV log of what was wanted")->required();
+    verb->add_option("output", choice.output, "sound file or CSV log of what came out")->required();
     verb->add_option("--thresholds", choice.thresholds, "TOML file of what must be reached; without: see README");
     verb->add_option("--plot", choice.plot, "a figure, .svg or .png");
     verb->add_option("--reference-scale", choice.reference_scale, "units per full scale, such as m/s^2")
@@ -79,6 +79,16 @@ void add_compare(CLI::App& app, CompareChoice& choice) {
     verb->add_option("--channel", choice.channel, "of both files, from 1; 0: the mean of all")
         ->capture_default_str()
         ->check(CLI::Range(0, 1024));
+    verb->add_option("--time-column", choice.time_columns, "of CSV logs: name or number, of both files or of each")
+        ->delimiter(',')
+        ->expected(1, 2)
+        ->allow_extra_args(false);
+    verb->add_option("--column", choice.columns, "of CSV logs: name or number of what is compared, of both or of each")
+        ->delimiter(',')
+        ->expected(1, 2)
+        ->allow_extra_args(false);
+    verb->add_option("--time-unit", choice.time_unit, "of CSV logs: s, ms, us or ns")
+        ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
     verb->add_option("--actuator", choice.actuator, "state the level gap of this actuator at its limits, of m/s^2");
     verb->add_option("--mass", choice.mass, "that the actuator shakes, kg")->capture_default_str();
     verb->add_option("--touch", choice.touch, "what the threshold of touch is a threshold of")

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether what the actuator plays is what the saw did.
-#include "assets/sound/sound.hpp"
 #include "dsp/vibration/actuator.hpp"
 #include "dsp/vibration/headroom.hpp"
 #include "tools/comparison_figure.hpp"
+#include "tools/take_file.hpp"
 #include "tools/verbs.hpp"
 #include "tools/verdict.hpp"
 
@@ -21,52 +21,21 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-struct LoadedTake {
-    std::filesystem::path file;
-    std::vector<float> samples;
-    double rate = 0.0, peak = 0.0;
-    std::vector<std::string> notes;
-};
-
-/// Share of the samples in runs of three or more that stand at the record's extremes: what a limiter leaves.
-double clipped_share(const std::vector<float>& samples, double peak) {
-    std::size_t clipped = 0, run = 0;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        const bool at_peak = std::abs(static_cast<double>(samples[i])) >= 0.99999 * peak;
-        run = at_peak && i > 0 && samples[i] == samples[i - 1] ? run + 1 : at_peak ? 1 : 0;
-        if (run >= 3) clipped += run == 3 ? 3 : 1;
-    }
-    return samples.empty() ? 0.0 : static_cast<double>(clipped) / static_cast<double>(samples.size());
-}
-
-LoadedTake load_take(const std::filesystem::path& file, const char* role, double scale, int channel) {
-    if (!(scale > 0.0) || !std::isfinite(scale)) throw Error(fmt::format("the scale of the {} must be above 0", role));
-    const Sound sound = load_sound(file);
-    LoadedTake take{file, {}, static_cast<double>(sound.rate), 0.0, {}};
-    if (channel == 0) take.samples = mix_to_mono(sound);
-    else {
-        if (channel > sound.channels)
-            throw Error(
-                fmt::format("{}: has {} channels; channel {} does not exist", file.string(), sound.channels, channel));
-        const auto channels = static_cast<std::size_t>(sound.channels);
-        for (std::size_t i = 0; i < sound.frames; ++i)
-            take.samples.push_back(sound.samples[i * channels + static_cast<std::size_t>(channel) - 1]);
-    }
-    for (float& x : take.samples) {
-        x = static_cast<float>(x * scale);
-        take.peak = std::max(take.peak, std::abs(static_cast<double>(x)));
-    }
-    if (channel == 0 && sound.channels > 1)
-        take.notes.push_back(fmt::format("the {} is the mean of {} channels", role, sound.channels));
-    if (const double share = clipped_share(take.samples, take.peak); take.peak > 0.0 && share > 1e-4)
-        take.notes.push_back(
-            fmt::format("the {} is clipped: {:.2g} % of its samples stand at its peak", role, 100.0 * share));
-    return take;
+/// Column names are for both files, or the first for the reference and the second for the output.
+LogSelection selection_for(const CompareChoice& choice, std::size_t file) {
+    const auto pick = [file](const std::vector<std::string>& names) {
+        return names.empty() ? std::string() : names[std::min(file, names.size() - 1)];
+    };
+    LogSelection selection;
+    selection.time_column = pick(choice.time_columns);
+    if (!choice.columns.empty()) selection.columns = {pick(choice.columns)};
+    selection.time_unit = choice.time_unit;
+    return selection;
 }
 
 /// How much of the level stays missing, dB: of the reference's spectrum, what the actuator at its limit cannot reach;
 /// without an actuator, what was missing as it was played.
-double level_gap(const CompareChoice& choice, const Comparison& c, const LoadedTake& reference) {
+double level_gap(const CompareChoice& choice, const Comparison& c, double peak) {
     if (choice.actuator.empty()) return c.gain_db;
     const ActuatorModel& model = find_actuator(choice.actuator);
     const Actuator actuator(model, choice.mass, 48000.0);
@@ -77,7 +46,7 @@ double level_gap(const CompareChoice& choice, const Comparison& c, const LoadedT
         square += c.reference_density[k] * c.step / std::pow(actuator.gain(f), 2);
     }
     // As peaked as the reference itself.
-    const double needed = std::sqrt(square) * reference.peak / c.reference_rms;
+    const double needed = std::sqrt(square) * peak / c.reference_rms;
     const double limit = voltage_within(model.voltage_limit, model.current_limit, model.resistance);
     return std::max(0.0, 20.0 * std::log10(needed / limit));
 }
@@ -104,7 +73,7 @@ const char* touch_unit(ThresholdUnit unit) {
 }
 
 struct Outcome {
-    LoadedTake reference, output;
+    std::filesystem::path reference, output;
     Comparison comparison;
     Verdict verdict;
     ThresholdUnit touch;
@@ -169,8 +138,8 @@ void print_lines(const char* what, const std::vector<SpectralLine>& lines, doubl
 
 void print(const Outcome& o, bool actuator_known) {
     const Comparison& c = o.comparison;
-    fmt::print("{}: {} {} the vibration of {}{}\n", o.verdict.passed() ? "PASS" : "FAIL", o.output.file.string(),
-               o.verdict.passed() ? "has" : "does not have", o.reference.file.string(),
+    fmt::print("{}: {} {} the vibration of {}{}\n", o.verdict.passed() ? "PASS" : "FAIL", o.output.string(),
+               o.verdict.passed() ? "has" : "does not have", o.reference.string(),
                std::abs(c.gain_db) < 0.5
                    ? ""
                    : fmt::format(", {:.1f} dB {}", std::abs(c.gain_db), c.gain_db > 0.0 ? "softer" : "louder"));
@@ -217,21 +186,24 @@ int compare_verb(const CompareChoice& choice) {
     o.touch = choice.touch == "none"           ? ThresholdUnit::none
               : choice.touch == "acceleration" ? ThresholdUnit::acceleration
                                                : ThresholdUnit::displacement;
-    o.reference = load_take(choice.reference, "reference", choice.reference_scale, choice.channel);
-    o.output = load_take(choice.output, "output", choice.output_scale, choice.channel);
+    o.reference = choice.reference;
+    o.output = choice.output;
+    const TakeFile reference(
+        {choice.reference, "reference", selection_for(choice, 0), choice.reference_scale, choice.channel});
+    const TakeFile output({choice.output, "output", selection_for(choice, 1), choice.output_scale, choice.channel});
     try {
-        o.comparison = compare({o.reference.samples, o.reference.rate}, {o.output.samples, o.output.rate},
-                               {.touch = o.touch, .longest_delay = choice.longest_delay});
+        o.comparison =
+            compare(reference.take(), output.take(), {.touch = o.touch, .longest_delay = choice.longest_delay});
     } catch (const Error& error) {
         throw Error(fmt::format("{} and {}: {}", choice.reference.string(), choice.output.string(), error.message()));
     }
-    for (const LoadedTake* take : {&o.reference, &o.output})
-        o.notes.insert(o.notes.end(), take->notes.begin(), take->notes.end());
-    if (o.reference.rate != o.output.rate)
-        o.notes.push_back(fmt::format("sampled at {:g} and {:g} Hz", o.reference.rate, o.output.rate));
+    for (const TakeFile* take : {&reference, &output})
+        o.notes.insert(o.notes.end(), take->notes().begin(), take->notes().end());
+    if (reference.rate() != output.rate())
+        o.notes.push_back(fmt::format("sampled at {:.6g} and {:.6g} Hz", reference.rate(), output.rate()));
     if (o.comparison.highest < 1000.0)
         o.notes.push_back(fmt::format("the slower recording carries no more than {:.0f} Hz", o.comparison.highest));
-    o.level_gap_db = level_gap(choice, o.comparison, o.reference);
+    o.level_gap_db = level_gap(choice, o.comparison, reference.peak());
     o.verdict = judge(o.comparison, o.level_gap_db, thresholds);
     if (!choice.plot.empty())
         write_figure(draw_comparison(o.comparison, o.verdict, thresholds, choice.reference.filename().string(),

@@ -92,6 +92,8 @@ struct CompareChoice {
     double reference_scale = 1.0, output_scale = 1.0;  ///< units per full scale
     double longest_delay = 2.0;                        ///< s
     int channel = 0;                                   ///< 0: the mean of all
+    std::vector<std::string> time_columns, columns;    ///< of CSV logs: of both files, or of each
+    std::string time_unit;
     bool json = false;
 };
 

@@ -46,6 +46,7 @@ Calibration parse_calibration(const std::string& text) {
 }
 
 struct RecordReader::Source {
+    std::filesystem::path path;
     std::optional<SoundReader> sound;
     EvenRecord even;
     std::size_t piece = 0, at = 0, frames = 0;
@@ -59,6 +60,7 @@ struct RecordReader::Source {
 RecordReader::RecordReader(const std::filesystem::path& path, const LogSelection& selection,
                            const std::optional<Calibration>& calibration)
     : source_(std::make_unique<Source>()) {
+    source_->path = path;
     if (!is_log(path)) {
         source_->sound.emplace(path);
         source_->rate = source_->sound->rate();
@@ -91,6 +93,11 @@ std::size_t RecordReader::frames() const noexcept { return source_->frames; }
 const std::vector<std::string>& RecordReader::channels() const noexcept { return source_->names; }
 const Calibration& RecordReader::calibration() const noexcept { return source_->calibration; }
 const std::optional<LogFacts>& RecordReader::log() const noexcept { return source_->log; }
+
+void RecordReader::rewind() {
+    if (source_->sound) source_->sound.emplace(source_->path);
+    source_->piece = source_->at = 0;
+}
 
 bool RecordReader::next(RecordBlock& block) {
     Source& source = *source_;

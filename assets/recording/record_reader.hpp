@@ -59,6 +59,8 @@ public:
 
     /// At most 65536 values per channel; false at the end. Throws Error when the file is damaged.
     bool next(RecordBlock& block);
+    /// Back to the start. Throws Error when the file has gone.
+    void rewind();
 
 private:
     struct Source;

@@ -7,15 +7,27 @@
 #include "dsp/spectrum/perception.hpp"
 #include "dsp/spectrum/similarity.hpp"
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace tactus {
 
+/// A record that can be read from its start as often as needed, in pieces: it need not fit in memory.
 struct Take {
-    std::span<const float> samples;
-    double rate = 48000.0;  ///< Hz
+    /// The next samples, of any number; none at the end. Good until the next call.
+    using Blocks = std::function<std::span<const double>()>;
+
+    double rate = 48000.0;    ///< Hz
+    std::size_t frames = 0;   ///< samples in all
+    std::function<Blocks()> open;
+
+    Take(double sample_rate, std::size_t count, std::function<Blocks()> opener)
+        : rate(sample_rate), frames(count), open(std::move(opener)) {}
+    /// Of samples in memory, which must stay there.
+    Take(std::span<const float> samples, double sample_rate);
+    Take(std::span<const double> samples, double sample_rate);
 };
 
 struct ComparisonOptions {
@@ -46,7 +58,8 @@ struct Comparison {
     double step = 0.0, coherence_step = 0.0;      ///< Hz
 };
 
-/// Compares two takes of any rates and lengths, 0.5 s or longer. Takes that do not belong together are compared by
+/// Compares two takes of any rates and lengths, 0.5 s or longer, in memory that does not grow with them; each is read up to
+/// four times. Whether they belong together is judged from their loudest minute. Takes that do not belong together are compared by
 /// their spectra only; when both are one saw at rates within 3 % of each other, they are compared at equal orders.
 /// Throws Error when a take is too short, too slow or silent. Allocates.
 Comparison compare(const Take& reference, const Take& output, const ComparisonOptions& options = {});

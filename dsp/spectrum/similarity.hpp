@@ -4,12 +4,23 @@
 #pragma once
 
 #include "dsp/spectrum/perception.hpp"
+#include "dsp/spectrum/segment_fft.hpp"
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
 
 namespace tactus {
+
+/// Correlation coefficient of what is added to it.
+struct Pearson {
+    double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
+
+    void add(double a, double b) { n += 1.0, x += a, y += b, xx += a * a, yy += b * b, xy += a * b; }
+    /// 0 when one of the two never changes.
+    double value() const;
+};
 
 /// Power per bin of two spectra of equal length, bin k at k × `step` Hz.
 struct SpectrumPair {
@@ -35,19 +46,70 @@ struct BandError {
 /// strongest band there), the output multiplied by `gain` before. A band without output errs by −60 dB at most.
 std::vector<BandError> third_octave_errors(const SpectrumPair& pair, double lowest, double highest, double gain = 1.0);
 
-/// Spectral-temporal similarity of two aligned takes at 8 kHz: blocks of 512 samples, orthonormal cosine transform,
-/// levels above the threshold of touch through a normal distribution of 12 dB; temporal^(2/3) × spectral^(1/3). 1 when
-/// they are the same, 0 when the temporal part is negative. The shorter one counts. Allocates.
+/// Scores of two takes that were aligned, both at 8 kHz, in pieces and in memory that does not grow.
+class WaveformSimilarity {
+public:
+    WaveformSimilarity();
+
+    /// As many samples of each.
+    void push(std::span<const double> reference, std::span<const double> output);
+
+    /// Spectral-temporal similarity: blocks of 512 samples, orthonormal cosine transform, levels above the threshold of
+    /// touch through a normal distribution of 12 dB; temporal^(2/3) × spectral^(1/3). 1 when they are the same, 0 when
+    /// the temporal part is negative.
+    double st_sim() const;
+    /// Spectral perceptual quality index on the same blocks, 0 to 1.
+    double spqi() const;
+    /// 10 log10 of the power of the reference over that of the difference.
+    double signal_to_noise_db() const;
+
+private:
+    static constexpr std::size_t block = 512;
+    using Block = std::array<double, block>;
+    void take_block();
+    Block perceived(const Block& samples) const;
+
+    Block threshold_, reference_{}, output_{};
+    std::size_t held_ = 0, blocks_ = 0;
+    double spectral_ = 0.0, temporal_ = 0.0, quality_ = 0.0, signal_ = 0.0, noise_ = 0.0;
+};
+
+/// The same of takes in memory; the shorter one counts. Allocate.
 double st_sim(std::span<const double> reference, std::span<const double> output);
-
-/// Spectral perceptual quality index of two takes at 8 kHz, 0 to 1, on the same blocks. Allocates.
 double spqi(std::span<const double> reference, std::span<const double> output);
-
-/// 10 log10 of the power of the reference over that of the difference; aligned takes.
 double signal_to_noise_db(std::span<const double> reference, std::span<const double> output);
 
-/// Correlation coefficient of the two spectrograms in dB from `lowest` to `highest` Hz, each cut 40 dB below its
-/// strongest point: Hann windows of 21 ms, a quarter apart, over the common length. Allocates.
+/// Correlation coefficient of two spectrograms in dB, each cut 40 dB below its strongest point: Hann windows of 21 ms, a
+/// quarter apart. The takes come in pieces, twice, as the strongest points must be known before.
+class SpectrogramSimilarity {
+public:
+    /// Of takes at `rate` Hz, from `lowest` to `highest` Hz.
+    SpectrogramSimilarity(double rate, double lowest, double highest);
+
+    /// As many samples of each.
+    void push(std::span<const double> reference, std::span<const double> output);
+    /// To be called when all of both came, the first and the second time.
+    void end_of_pass();
+    double value() const { return pearson_.value(); }
+
+private:
+    /// Columns of one take: the powers of the bins in the band.
+    struct Columns {
+        SegmentFft<double> transform;
+        std::vector<double> waiting, powers;
+        std::size_t held = 0;
+        double greatest = 0.0;
+    };
+    void take(Columns& columns, std::size_t count);
+    void compare_columns();
+
+    std::size_t quarter_, first_, end_;
+    Columns reference_, output_;
+    bool second_ = false;
+    Pearson pearson_;
+};
+
+/// The same of takes in memory, over their common length. Allocates.
 double spectrogram_similarity(std::span<const double> reference, std::span<const double> output, double rate,
                               double lowest, double highest);
 

@@ -51,6 +51,23 @@ TEST_CASE("what the lower rate cannot carry is gone and not folded back") {
     for (std::size_t i = 200; i < 1400; ++i) CHECK(std::abs(high[i]) < 2e-4);
 }
 
+TEST_CASE("a record in pieces is resampled to the same bits as in one") {
+    const std::vector<double> record = tone(700.0, 44100.0, 30000);
+    for (const double to : {8000.0, 8123.4, 48000.0, 44100.0})
+        for (const double start : {0.0, 0.1234567, -0.01}) {
+            const std::vector<double> whole = resample(record, 44100.0, to, start);
+            for (const std::size_t piece : {std::size_t{1}, std::size_t{997}, std::size_t{29999}}) {
+                INFO(to << " Hz from " << start << " s in pieces of " << piece);
+                ResamplingStream stream(record.size(), 44100.0, to, start);
+                std::vector<double> out;
+                for (std::size_t i = 0; i < record.size(); i += piece)
+                    stream.push(std::span(record).subspan(i, std::min(piece, record.size() - i)), out);
+                CHECK(stream.frames() == out.size());
+                CHECK(out == whole);
+            }
+        }
+}
+
 TEST_CASE("resampling refuses rates that mean nothing and gives nothing of nothing") {
     CHECK_THROWS_AS(resample(tone(1.0, 8.0, 10), 0.0, 8000.0), Error);
     CHECK(resample(std::vector<double>{}, 48000.0, 8000.0).empty());

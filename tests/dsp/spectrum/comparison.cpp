@@ -123,7 +123,7 @@ TEST_CASE("silence, and takes too short to tell, are refused by name") {
     CHECK_THROWS_WITH(compare({silent, rate}, {take, rate}), Contains("reference is silent"));
     CHECK_THROWS_WITH(compare({take, rate}, {silent, rate}), Contains("output is silent"));
     CHECK_THROWS_WITH(compare({bit, rate}, {take, rate}), Contains("reference is shorter"));
-    CHECK_THROWS_WITH(compare({take, rate}, {{}, rate}), Contains("output is shorter"));
+    CHECK_THROWS_WITH(compare({take, rate}, {std::vector<float>(), rate}), Contains("output is shorter"));
     const std::vector<float> direct(96000, 0.5f);
     CHECK_THROWS_WITH(compare({take, rate}, {direct, rate}), Contains("output is silent"));
 }

@@ -2,6 +2,7 @@
 #include "dsp/spectrum/similarity.hpp"
 
 #include "dsp/core/random.hpp"
+#include "dsp/spectrum/bands.hpp"
 
 #include <catch2/catch.hpp>
 
