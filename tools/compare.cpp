@@ -199,7 +199,7 @@ int compare_verb(const CompareChoice& choice) {
     }
     for (const TakeFile* take : {&reference, &output})
         o.notes.insert(o.notes.end(), take->notes().begin(), take->notes().end());
-    if (reference.rate() != output.rate())
+    if (std::abs(reference.rate() / output.rate() - 1.0) > 1e-3)
         o.notes.push_back(fmt::format("sampled at {:.6g} and {:.6g} Hz", reference.rate(), output.rate()));
     if (o.comparison.highest < 1000.0)
         o.notes.push_back(fmt::format("the slower recording carries no more than {:.0f} Hz", o.comparison.highest));

@@ -70,7 +70,7 @@ Operation analyse(const std::filesystem::path& file, const ExposureChoice& choic
     settings.overlap = settings.segment / 2;
     std::vector<WelchStream<double>> spectra(chosen.size(), WelchStream<double>(settings));
     std::vector<HandArmFilter> filters(chosen.size(), HandArmFilter(out.rate));
-    std::vector<double> squares(chosen.size()), scaled;
+    std::vector<double> squares(chosen.size()), offsets(chosen.size()), scaled;
     std::vector<Level> levels(chosen.size());
     std::size_t count = 0;
     RecordBlock block;
@@ -81,8 +81,10 @@ Operation analyse(const std::filesystem::path& file, const ExposureChoice& choic
             levels[i].push(scaled);
             if (block.after_gap) spectra[i].forget_waiting();
             spectra[i].push(scaled);
+            // A constant is no vibration: the filter must not hear it begin.
+            if (count == 0) offsets[i] = scaled.front();
             for (const double x : scaled) {
-                const double y = filters[i](x);
+                const double y = filters[i](x - offsets[i]);
                 squares[i] += y * y;
             }
         }
@@ -115,6 +117,11 @@ Operation analyse(const std::filesystem::path& file, const ExposureChoice& choic
 Json minutes_json(double value, double acceleration) {
     const double minutes = time_to_reach(value, acceleration) / 60.0;
     return std::isfinite(minutes) ? Json(minutes) : Json(nullptr);
+}
+
+std::string reached(double value, double acceleration) {
+    const double minutes = time_to_reach(value, acceleration) / 60.0;
+    return minutes <= 1440.0 ? fmt::format("after {:.0f} min", minutes) : "not within a day";
 }
 
 Json operation_json(const Operation& one) {
@@ -167,8 +174,8 @@ int exposure_verb(const ExposureChoice& choice) {
             fmt::print("  axis {}: a_hw {:.3g} m/s^2 (by filter {:.3g})\n", one.axes[i], one.weighted[i],
                        one.filtered[i]);
         if (one.three_axes) fmt::print("  a_hv {:.3g} m/s^2\n", one.total());
-        fmt::print("  action value after {:.0f} min, limit value after {:.0f} min\n",
-                   time_to_reach(action_value, one.total()) / 60.0, time_to_reach(limit_value, one.total()) / 60.0);
+        fmt::print("  action value {}, limit value {}\n", reached(action_value, one.total()),
+                   reached(limit_value, one.total()));
         for (const std::string& note : one.notes) fmt::print("  {}\n", note);
     }
     fmt::print("A(8) {:.3g} m/s^2: {}\n", a8,

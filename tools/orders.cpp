@@ -18,6 +18,8 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
+constexpr double least_prominence_db = 6.0;  // noise alone comes to 5
+
 struct Rates {
     double low = 0.0, high = 0.0, mean = 0.0;  // Hz
 };
@@ -68,6 +70,8 @@ int orders_verb(const OrdersChoice& choice) {
         std::tie(settings.lowest, settings.highest) = parse_band(choice.range, "--range");
         const Ridge ridge = track_ridge(record.channels.front(), record.rate, settings);
         prominence = ridge.prominence_db;
+        if (prominence < least_prominence_db)
+            throw Error("no rate can be followed in the record; state it with --rate, or give a --tacho channel");
         return ridge.rotation(seconds);
     };
     try {

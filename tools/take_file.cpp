@@ -46,10 +46,10 @@ TakeFile::TakeFile(const TakeChoice& choice)
     if (choice.channel == 0 && channels > 1)
         notes_.push_back(fmt::format("the {} is the mean of {} channels", role, channels));
     if (pieces.size() > 1)
-        notes_.push_back(fmt::format("the {} has {} gaps: of its pieces the longest is compared, {:.3g} s", role,
-                                     pieces.size() - 1, static_cast<double>(frames_) / rate()));
+        notes_.push_back(fmt::format("the {} has gaps: the longest of its {} pieces is compared, {:.3g} s", role,
+                                     pieces.size(), static_cast<double>(frames_) / rate()));
     if (reader_->log())
-        notes_.push_back(fmt::format("the {} is a log of {:.4g} rows a second, faithful to about {:.3g} Hz", role,
+        notes_.push_back(fmt::format("the {} is a log of {:.4g} rows a second, faithful to about {:.0f} Hz", role,
                                      rate(), reader_->log()->usable));
     const double share =
         static_cast<double>(longest.clipped()) / static_cast<double>(std::max<std::size_t>(1, frames_));

@@ -23,16 +23,17 @@ double between(std::span<const double> power, double bin) {
     return (1.0 - share) * power[k] + share * power[k + 1];
 }
 
-/// Mean over the orders of the level above the frame's floor: one missing order costs as much as others bring.
+/// Mean over the orders of the level above the frame's floor: one missing order costs as much as others bring. A low
+/// order counts for more than a high one, or half the rate would explain the same lines as well.
 double salience(std::span<const double> power, double floor, double bins_per_hz, double frequency, int orders) {
-    double sum = 0.0;
-    int count = 0;
-    for (int k = 1; k <= orders; ++k, ++count) {
+    double sum = 0.0, weights = 0.0;
+    for (int k = 1; k <= orders; ++k) weights += 1.0 / std::sqrt(k);
+    for (int k = 1; k <= orders; ++k) {
         const double bin = k * frequency * bins_per_hz;
         if (bin + 1.0 >= static_cast<double>(power.size())) break;
-        sum += std::log10(1.0 + between(power, bin) / floor);
+        sum += std::log10(1.0 + between(power, bin) / floor) / std::sqrt(k);
     }
-    return count > 0 ? sum / orders : 0.0;
+    return sum / weights;
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace tactus {
 
 namespace {
 
-constexpr double deepest_db = 60.0, missing_db = 6.0, order_snr_db = 6.0;
+constexpr double deepest_db = 60.0, missing_db = 6.0, order_snr_db = 6.0, order_depth_db = 40.0;
 constexpr int fewest_orders = 2, most_orders = 10;
 
 double decibel(double power_ratio) { return 10.0 * std::log10(std::max(power_ratio, 1e-30)); }
@@ -54,14 +54,17 @@ double level_db(const SpectralLine& line) { return decibel(2.0 * line.power); }
 std::optional<double> harmonic_error(const Spectrum& reference, double reference_hz, const Spectrum& output,
                                      double output_hz, double highest) {
     if (!(reference_hz > 0.0 && output_hz > 0.0)) return std::nullopt;
-    std::vector<double> differences;
+    std::vector<double> levels, differences;
+    double strongest = -300.0;
     for (int k = 1; k <= most_orders && k * reference_hz <= highest; ++k) {
         const SpectralLine line = line_near(reference, k * reference_hz, reference.df);
         if (!(line.power > 0.0)) break;
-        if (line.snr_db < order_snr_db) continue;
-        differences.push_back(decibel(std::max(order_power(output, k * output_hz), 1e-30) /
-                                      std::max(order_power(reference, k * reference_hz), 1e-30)));
+        levels.push_back(line.snr_db < order_snr_db ? -300.0 : decibel(order_power(reference, k * reference_hz)));
+        strongest = std::max(strongest, levels.back());
     }
+    for (std::size_t i = 0; i < levels.size(); ++i)
+        if (levels[i] > -300.0 && levels[i] >= strongest - order_depth_db)
+            differences.push_back(decibel(order_power(output, static_cast<double>(i + 1) * output_hz)) - levels[i]);
     if (differences.size() < fewest_orders) return std::nullopt;
     double mean = 0.0, worst = 0.0;
     for (const double difference : differences) mean += difference / static_cast<double>(differences.size());

@@ -1,351 +1,342 @@
 // SPDX-License-Identifier: Apache-2.0
 // The verbs that analyse records, as scripts call them.
-#include <catch2/catch.hpp>
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-#include <sndfile.h>
+#include "tests/tools/run_command.hpp"
 
-#include <sys/wait.h>
-#include <unistd.h>
+#include <fmt/format.h>
+#include <sndfile.h>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <numbers>
 #include <string>
 #include <vector>
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using tactus::test::slurp;
 
 namespace {
 
-std::string slurp(const fs::path &path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-struct Outcome {
-  int code;
-  std::string out, err;
-  json answer() const { return json::parse(out); }
+struct Outcome : tactus::test::Outcome {
+    json answer() const { return json::parse(out); }
 };
 
-class Folder {
-public:
-  Folder()
-      : path(fs::temp_directory_path() /
-             fmt::format("tactus_analysis_{}_{}", ::getpid(), next++)) {
-    fs::create_directories(path);
-  }
-  ~Folder() { fs::remove_all(path); }
-
-  fs::path sound(const char *name, const std::vector<double> &samples,
-                 int channels = 1, int rate = 48000,
-                 int format = SF_FORMAT_WAV | SF_FORMAT_DOUBLE) const {
-    SF_INFO info{};
-    info.format = format;
-    info.channels = channels;
-    info.samplerate = rate;
-    SNDFILE *file = sf_open((path / name).c_str(), SFM_WRITE, &info);
-    REQUIRE(file);
-    sf_writef_double(file, samples.data(),
-                     static_cast<sf_count_t>(samples.size()) / channels);
-    sf_close(file);
-    return path / name;
-  }
-  fs::path text(const char *name, const std::string &content) const {
-    std::ofstream(path / name, std::ios::binary) << content;
-    return path / name;
-  }
-  Outcome tactus(const std::string &arguments) const {
-    const std::string command =
-        fmt::format("cd {} && {} {} >stdout 2>stderr", path.string(),
-                    TACTUS_COMMAND, arguments);
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
-            slurp(path / "stdout"), slurp(path / "stderr")};
-  }
-
-  fs::path path;
-
-private:
-  static inline int next = 0;
+struct Folder : tactus::test::Folder {
+    fs::path sound(const char* name, const std::vector<double>& samples, int channels = 1, int rate = 48000,
+                   int format = SF_FORMAT_WAV | SF_FORMAT_DOUBLE) const {
+        SF_INFO info{};
+        info.format = format;
+        info.channels = channels;
+        info.samplerate = rate;
+        SNDFILE* file = sf_open((path / name).c_str(), SFM_WRITE, &info);
+        REQUIRE(file);
+        sf_writef_double(file, samples.data(), static_cast<sf_count_t>(samples.size()) / channels);
+        sf_close(file);
+        return path / name;
+    }
+    fs::path text(const char* name, const std::string& content) const { return write(name, content); }
+  /// The command, run in the folder.
+    Outcome tactus(const std::string& arguments) const {
+        const std::string command =
+            fmt::format("cd {} && {} {} >stdout 2>stderr", path.string(), TACTUS_COMMAND, arguments);
+        const int status = std::system(command.c_str());
+        return {{WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(path / "stdout"), slurp(path / "stderr")}};
+    }
 };
 
-std::vector<double> tones(std::initializer_list<std::pair<double, double>> list,
-                          double seconds, double rate = 48000.0) {
-  std::vector<double> x(static_cast<std::size_t>(seconds * rate));
-  for (const auto &[hz, amplitude] : list)
-    for (std::size_t i = 0; i < x.size(); ++i)
-      x[i] += amplitude * std::sin(2.0 * std::numbers::pi * hz *
-                                   static_cast<double>(i) / rate);
-  return x;
+std::vector<double> tones(std::initializer_list<std::pair<double, double>> list, double seconds,
+                          double rate = 48000.0) {
+    std::vector<double> x(static_cast<std::size_t>(seconds * rate));
+    for (const auto& [hz, amplitude] : list)
+        for (std::size_t i = 0; i < x.size(); ++i)
+            x[i] += amplitude * std::sin(2.0 * std::numbers::pi * hz * static_cast<double>(i) / rate);
+    return x;
 }
 
 /// Noise that every machine makes alike.
-void add_noise(std::vector<double> &x, double amplitude) {
-  unsigned state = 1;
-  for (double &v : x) {
-    state = state * 1664525u + 1013904223u;
-    v += amplitude * (static_cast<double>(state >> 8) / 8388608.0 - 1.0);
-  }
+void add_noise(std::vector<double>& x, double amplitude) {
+    unsigned state = 1;
+    for (double& v : x) {
+        state = state * 1664525u + 1013904223u;
+        v += amplitude * (static_cast<double>(state >> 8) / 8388608.0 - 1.0);
+    }
 }
 
 } // namespace
 
 TEST_CASE("spectrum reports what its contract names, in calibrated units") {
-  const Folder folder;
-  std::vector<double> x =
-      tones({{233.0, 0.5}, {466.0, 0.25}, {699.0, 0.1}, {50.0, 0.02}}, 6.0);
-  add_noise(x, 0.005);
-  folder.sound("saw.wav", x);
-  const Outcome outcome =
-      folder.tactus("spectrum saw.wav --json --full-scale '20 m/s^2' --csv "
-                    "psd.csv --envelope 200:700");
-  REQUIRE(outcome.code == 0);
-  const json answer = outcome.answer();
-  CHECK(answer["sample_rate_hz"] == 48000.0);
-  CHECK(answer["duration_s"] == 6.0);
-  CHECK(answer["psd"]["units"] == "(m/s^2)^2/Hz");
-  CHECK(answer["psd"]["enbw_hz"].get<double>() ==
-        Approx(1.5 * answer["psd"]["df_hz"].get<double>()));
-  const json &channel = answer["channels"][0];
-  CHECK(channel["unit"] == "m/s^2");
-  CHECK(channel["calibrated"] == true);
-  CHECK(channel["fundamental_hz"].get<double>() == Approx(233.0).margin(0.05));
-  CHECK(channel["confidence"].get<double>() > 0.6);
-  CHECK(channel["harmonics"][1]["hz"].get<double>() ==
-        Approx(466.0).margin(0.05));
-  CHECK(channel["harmonics"][0]["db"].get<double>() ==
-        Approx(20.0 * std::log10(10.0 / std::sqrt(2.0))).margin(0.1));
-  CHECK(channel["harmonics"][2]["db_re_first"].get<double>() ==
-        Approx(20.0 * std::log10(0.2)).margin(0.1));
-  REQUIRE(channel["hum"].size() == 1);
-  CHECK(channel["hum"][0]["hz"].get<double>() == Approx(50.0).margin(0.05));
+    const Folder folder;
+    std::vector<double> x = tones({{233.0, 0.5}, {466.0, 0.25}, {699.0, 0.1}, {50.0, 0.02}}, 6.0);
+    add_noise(x, 0.005);
+    folder.sound("saw.wav", x);
+    const Outcome outcome = folder.tactus(
+        "spectrum saw.wav --json --full-scale '20 m/s^2' --csv "
+        "psd.csv --envelope 200:700");
+    REQUIRE(outcome.code == 0);
+    const json answer = outcome.answer();
+    CHECK(answer["sample_rate_hz"] == 48000.0);
+    CHECK(answer["duration_s"] == 6.0);
+    CHECK(answer["psd"]["units"] == "(m/s^2)^2/Hz");
+    CHECK(answer["psd"]["enbw_hz"].get<double>() == Approx(1.5 * answer["psd"]["df_hz"].get<double>()));
+    const json& channel = answer["channels"][0];
+    CHECK(channel["unit"] == "m/s^2");
+    CHECK(channel["calibrated"] == true);
+    CHECK(channel["fundamental_hz"].get<double>() == Approx(233.0).margin(0.05));
+    CHECK(channel["confidence"].get<double>() > 0.6);
+    CHECK(channel["harmonics"][1]["hz"].get<double>() == Approx(466.0).margin(0.05));
+    CHECK(channel["harmonics"][0]["db"].get<double>() == Approx(20.0 * std::log10(10.0 / std::sqrt(2.0))).margin(0.1));
+    CHECK(channel["harmonics"][2]["db_re_first"].get<double>() == Approx(20.0 * std::log10(0.2)).margin(0.1));
+    REQUIRE(channel["hum"].size() == 1);
+    CHECK(channel["hum"][0]["hz"].get<double>() == Approx(50.0).margin(0.05));
   // The band's lines beat at their distance.
-  bool beat = false;
-  for (const json &line : channel["envelope"])
-    beat = beat || std::abs(line["hz"].get<double>() - 233.0) < 0.5;
-  CHECK(beat);
-  double in_bands = 0.0;
-  for (const json &band : channel["bands"])
-    if (band["hz"].get<double>() > 200.0 && band["hz"].get<double>() < 300.0)
-      in_bands += std::pow(10.0, band["db"].get<double>() / 10.0);
-  CHECK(in_bands == Approx(50.0).epsilon(0.02));
-  const std::string csv = slurp(folder.path / "psd.csv");
-  CHECK(csv.starts_with("frequency_hz,1\n0,"));
+    bool beat = false;
+    for (const json& line : channel["envelope"]) beat = beat || std::abs(line["hz"].get<double>() - 233.0) < 0.5;
+    CHECK(beat);
+    double in_bands = 0.0;
+    for (const json& band : channel["bands"])
+        if (band["hz"].get<double>() > 200.0 && band["hz"].get<double>() < 300.0)
+            in_bands += std::pow(10.0, band["db"].get<double>() / 10.0);
+    CHECK(in_bands == Approx(50.0).epsilon(0.02));
+    const std::string csv = slurp(folder.path / "psd.csv");
+    CHECK(csv.starts_with("frequency_hz,1\n0,"));
 }
 
 TEST_CASE("spectrum draws SVG and PNG") {
-  const Folder folder;
-  folder.sound("a.wav", tones({{233.0, 0.5}}, 2.0));
-  REQUIRE(folder.tactus("spectrum a.wav --plot a.svg").code == 0);
-  CHECK(slurp(folder.path / "a.svg").find("limit of touch") !=
-        std::string::npos);
-  REQUIRE(folder.tactus("spectrum a.wav --plot a.png").code == 0);
-  CHECK(slurp(folder.path / "a.png").starts_with("\x89PNG"));
+    const Folder folder;
+    folder.sound("a.wav", tones({{233.0, 0.5}}, 2.0));
+    REQUIRE(folder.tactus("spectrum a.wav --plot a.svg").code == 0);
+    CHECK(slurp(folder.path / "a.svg").find("limit of touch") != std::string::npos);
+    REQUIRE(folder.tactus("spectrum a.wav --plot a.png").code == 0);
+    CHECK(slurp(folder.path / "a.png").starts_with("\x89PNG"));
 }
 
 TEST_CASE("a batch goes on past a bad file, says so, and writes one table") {
-  const Folder folder;
-  fs::create_directories(folder.path / "set");
-  folder.sound("set/a.wav", tones({{100.0, 0.5}}, 2.0));
-  folder.text("set/b.wav", "no sound");
-  folder.sound("set/c.flac", tones({{120.0, 0.5}}, 2.0), 1, 48000,
-               SF_FORMAT_FLAC | SF_FORMAT_PCM_16);
-  const Outcome outcome =
-      folder.tactus("spectrum set --json --jobs 2 --table t.csv");
-  CHECK(outcome.code == 2);
-  const json answer = outcome.answer();
-  REQUIRE(answer.size() == 3);
-  CHECK(answer[0]["channels"][0]["fundamental_hz"].get<double>() ==
-        Approx(100.0).margin(0.05));
-  CHECK(answer[1]["error"].get<std::string>().find("b.wav") !=
-        std::string::npos);
-  CHECK(answer[2]["channels"][0]["fundamental_hz"].get<double>() ==
-        Approx(120.0).margin(0.05));
-  const std::string table = slurp(folder.path / "t.csv");
-  CHECK(std::count(table.begin(), table.end(), '\n') == 4);
+    const Folder folder;
+    fs::create_directories(folder.path / "set");
+    folder.sound("set/a.wav", tones({{100.0, 0.5}}, 2.0));
+    folder.text("set/b.wav", "no sound");
+    folder.sound("set/c.flac", tones({{120.0, 0.5}}, 2.0), 1, 48000, SF_FORMAT_FLAC | SF_FORMAT_PCM_16);
+    const Outcome outcome = folder.tactus("spectrum set --json --jobs 2 --table t.csv");
+    CHECK(outcome.code == 2);
+    const json answer = outcome.answer();
+    REQUIRE(answer.size() == 3);
+    CHECK(answer[0]["channels"][0]["fundamental_hz"].get<double>() == Approx(100.0).margin(0.05));
+    CHECK(answer[1]["error"].get<std::string>().find("b.wav") != std::string::npos);
+    CHECK(answer[2]["channels"][0]["fundamental_hz"].get<double>() == Approx(120.0).margin(0.05));
+    const std::string table = slurp(folder.path / "t.csv");
+    CHECK(std::count(table.begin(), table.end(), '\n') == 4);
 }
 
 TEST_CASE("odd records get an answer that says what is odd") {
-  const Folder folder;
-  const auto first = [&](const std::string &arguments) {
-    const Outcome outcome = folder.tactus("spectrum --json " + arguments);
-    CAPTURE(arguments, outcome.err);
-    REQUIRE(outcome.code == 0);
-    return outcome.answer()["channels"][0];
-  };
-  const auto warns = [](const json &channel, const char *of) {
-    return channel["warnings"].dump().find(of) != std::string::npos;
-  };
-  folder.sound("silent.wav", std::vector<double>(48000));
-  CHECK(warns(first("silent.wav"), "silent"));
-  CHECK(first("silent.wav")["fundamental_hz"].is_null());
-  folder.sound("dc.wav", std::vector<double>(48000, 0.25));
-  CHECK(warns(first("dc.wav"), "constant"));
-  folder.sound("one.wav", {0.5});
-  CHECK(first("one.wav")["rms"] == 0.0);
-  folder.sound("two.wav", {0.5, -0.5});
-  CHECK(first("two.wav")["rms"] == 0.5);
-  std::vector<double> clipped = tones({{100.0, 1.5}}, 2.0);
-  for (double &v : clipped)
-    v = std::clamp(v, -1.0, 1.0);
-  folder.sound("clipped.wav", clipped, 1, 48000,
-               SF_FORMAT_WAV | SF_FORMAT_PCM_16);
-  CHECK(warns(first("clipped.wav"), "clipped"));
-  folder.sound("loud.wav", tones({{100.0, 40.0}}, 2.0));
-  CHECK(first("loud.wav")["rms"].get<double>() ==
-        Approx(40.0 / std::sqrt(2.0)).epsilon(1e-6));
-  CHECK_FALSE(warns(first("loud.wav"), "clipped"));
-  folder.sound("eight.wav", tones({{100.0, 0.5}}, 2.0), 1, 3000,
-               SF_FORMAT_WAV | SF_FORMAT_PCM_U8);
-  folder.sound("fast.wav", tones({{100.0, 0.5}}, 4.0, 192000.0), 1, 192000);
-  CHECK(first("fast.wav")["fundamental_hz"].get<double>() ==
-        Approx(100.0).margin(0.05));
-  const std::vector<double> mono = tones({{100.0, 0.5}}, 2.0, 3000.0);
-  std::vector<double> seven;
-  for (const double v : mono)
-    for (int c = 0; c < 7; ++c)
-      seven.push_back(v * c);
-  folder.sound("seven.wav", seven, 7, 3000, SF_FORMAT_WAV | SF_FORMAT_PCM_24);
-  const json answer = folder.tactus("spectrum --json seven.wav").answer();
-  REQUIRE(answer["channels"].size() == 7);
-  CHECK(warns(answer["channels"][0], "silent"));
-  CHECK(answer["channels"][1]["fundamental_hz"].get<double>() ==
-        Approx(100.0).margin(0.05));
-  CHECK(folder.tactus("spectrum --json --channel 2,3 seven.wav")
-            .answer()["channels"]
-            .size() == 2);
+    const Folder folder;
+    const auto first = [&](const std::string& arguments) {
+        const Outcome outcome = folder.tactus("spectrum --json " + arguments);
+        CAPTURE(arguments, outcome.err);
+        REQUIRE(outcome.code == 0);
+        return outcome.answer()["channels"][0];
+    };
+    const auto warns = [](const json& channel, const char* of) {
+        return channel["warnings"].dump().find(of) != std::string::npos;
+    };
+    folder.sound("silent.wav", std::vector<double>(48000));
+    CHECK(warns(first("silent.wav"), "silent"));
+    CHECK(first("silent.wav")["fundamental_hz"].is_null());
+    folder.sound("dc.wav", std::vector<double>(48000, 0.25));
+    CHECK(warns(first("dc.wav"), "constant"));
+    folder.sound("one.wav", {0.5});
+    CHECK(first("one.wav")["rms"] == 0.0);
+    folder.sound("two.wav", {0.5, -0.5});
+    CHECK(first("two.wav")["rms"] == 0.5);
+    std::vector<double> clipped = tones({{100.0, 1.5}}, 2.0);
+    for (double& v : clipped) v = std::clamp(v, -1.0, 1.0);
+    folder.sound("clipped.wav", clipped, 1, 48000, SF_FORMAT_WAV | SF_FORMAT_PCM_16);
+    CHECK(warns(first("clipped.wav"), "clipped"));
+    folder.sound("loud.wav", tones({{100.0, 40.0}}, 2.0));
+    CHECK(first("loud.wav")["rms"].get<double>() == Approx(40.0 / std::sqrt(2.0)).epsilon(1e-6));
+    CHECK_FALSE(warns(first("loud.wav"), "clipped"));
+    folder.sound("eight.wav", tones({{100.0, 0.5}}, 2.0), 1, 3000, SF_FORMAT_WAV | SF_FORMAT_PCM_U8);
+    folder.sound("fast.wav", tones({{100.0, 0.5}}, 4.0, 192000.0), 1, 192000);
+    CHECK(first("fast.wav")["fundamental_hz"].get<double>() == Approx(100.0).margin(0.05));
+    const std::vector<double> mono = tones({{100.0, 0.5}}, 2.0, 3000.0);
+    std::vector<double> seven;
+    for (const double v : mono)
+        for (int c = 0; c < 7; ++c) seven.push_back(v * c);
+    folder.sound("seven.wav", seven, 7, 3000, SF_FORMAT_WAV | SF_FORMAT_PCM_24);
+    const json answer = folder.tactus("spectrum --json seven.wav").answer();
+    REQUIRE(answer["channels"].size() == 7);
+    CHECK(warns(answer["channels"][0], "silent"));
+    CHECK(answer["channels"][1]["fundamental_hz"].get<double>() == Approx(100.0).margin(0.05));
+    CHECK(folder.tactus("spectrum --json --channel 2,3 seven.wav").answer()["channels"].size() == 2);
 }
 
 TEST_CASE("records that cannot be used end with one error and exit code 2") {
-  const Folder folder;
-  folder.sound("good.wav", tones({{100.0, 0.5}}, 2.0));
-  folder.sound("nan.wav", {0.0, std::nan(""), 0.0});
-  folder.sound("empty.wav", {});
-  folder.text("words.csv", "time,a\n0,1\n1,word\n");
-  folder.text("words.wav", "RIFF");
-  for (const char *arguments :
-       {"nan.wav", "empty.wav", "words.csv", "words.wav", "missing.wav",
-        "good.wav --channel 2", "good.wav --envelope 100:90000",
-        "good.wav --envelope x", "good.wav --window round",
-        "good.wav --full-scale 5", "good.wav --full-scale '0 m/s^2'",
-        "good.wav --segment 0", "good.wav --plot x.gif",
-        "good.wav --csv /nowhere/x.csv"}) {
-    const Outcome outcome = folder.tactus(std::string("spectrum ") + arguments);
-    CAPTURE(arguments, outcome.err);
-    CHECK(outcome.code == 2);
-    CHECK_FALSE(outcome.err.empty());
-  }
+    const Folder folder;
+    folder.sound("good.wav", tones({{100.0, 0.5}}, 2.0));
+    folder.sound("nan.wav", {0.0, std::nan(""), 0.0});
+    folder.sound("empty.wav", {});
+    folder.text("words.csv", "time,a\n0,1\n1,word\n");
+    folder.text("words.wav", "RIFF");
+    for (const char* arguments :
+         {"nan.wav", "empty.wav", "words.csv", "words.wav", "missing.wav", "good.wav --channel 2",
+          "good.wav --envelope 100:90000", "good.wav --envelope x", "good.wav --window round",
+          "good.wav --full-scale 5", "good.wav --full-scale '0 m/s^2'", "good.wav --segment 0", "good.wav --plot x.gif",
+          "good.wav --csv /nowhere/x.csv"}) {
+        const Outcome outcome = folder.tactus(std::string("spectrum ") + arguments);
+        CAPTURE(arguments, outcome.err);
+        CHECK(outcome.code == 2);
+        CHECK_FALSE(outcome.err.empty());
+    }
 }
 
 TEST_CASE("an uneven log is resampled and says how far it can be trusted") {
-  const Folder folder;
-  std::string text = "timestamp_ms,accel_x\n";
-  double t = 0.0;
-  for (int i = 0; i < 6000; ++i) {
-    t += 3.0 + (i % 5 == 0 ? 3.0 : i % 3 == 0 ? -1.0 : 0.0);
-    text +=
-        fmt::format("{},{:.6f}\n", t,
-                    100.0 * std::sin(2.0 * std::numbers::pi * 33.0 * t * 1e-3));
-  }
-  folder.text("log.csv", text);
-  const json answer =
-      folder.tactus("spectrum --json --calibration '0.01 m/s^2' log.csv")
-          .answer();
-  CHECK(answer["log"]["nyquist_hz"].get<double>() ==
-        Approx(0.5 * answer["sample_rate_hz"].get<double>()));
-  CHECK(answer["log"]["usable_hz"].get<double>() ==
-        Approx(1000.0 / 12.0).epsilon(0.01));
-  CHECK(answer["channels"][0]["fundamental_hz"].get<double>() ==
-        Approx(33.0).margin(0.05));
-  CHECK(answer["channels"][0]["harmonics"][0]["db"].get<double>() ==
-        Approx(-3.01).margin(0.2));
+    const Folder folder;
+    std::string text = "timestamp_ms,accel_x\n";
+    double t = 0.0;
+    for (int i = 0; i < 6000; ++i) {
+        t += 3.0 + (i % 5 == 0 ? 3.0 : i % 3 == 0 ? -1.0 : 0.0);
+        text += fmt::format("{},{:.6f}\n", t, 100.0 * std::sin(2.0 * std::numbers::pi * 33.0 * t * 1e-3));
+    }
+    folder.text("log.csv", text);
+    const json answer = folder.tactus("spectrum --json --calibration '0.01 m/s^2' log.csv").answer();
+    CHECK(answer["log"]["nyquist_hz"].get<double>() == Approx(0.5 * answer["sample_rate_hz"].get<double>()));
+    CHECK(answer["log"]["usable_hz"].get<double>() == Approx(1000.0 / 12.0).epsilon(0.01));
+    CHECK(answer["channels"][0]["fundamental_hz"].get<double>() == Approx(33.0).margin(0.05));
+    CHECK(answer["channels"][0]["harmonics"][0]["db"].get<double>() == Approx(-3.01).margin(0.2));
 }
 
-TEST_CASE("exposure weights three axes, knows bounds, and refuses what is not "
-          "calibrated") {
-  const Folder folder;
-  const std::vector<double> x =
-      tones({{100.0 / (2.0 * std::numbers::pi) * 5.0, 0.5}}, 4.0);
-  std::vector<double> axes;
-  for (const double v : x)
-    for (const double share : {1.0, 0.5, 0.0})
-      axes.push_back(share * v);
-  folder.sound("saw.wav", axes, 3);
-  CHECK(folder.tactus("exposure saw.wav").code == 2);
-  const Outcome outcome = folder.tactus(
-      "exposure saw.wav --json --full-scale '100 m/s^2' --duration '30 min'");
-  REQUIRE(outcome.code == 0);
-  const json answer = outcome.answer();
+TEST_CASE(
+    "exposure weights three axes, knows bounds, and refuses what is not "
+    "calibrated") {
+    const Folder folder;
+    const std::vector<double> x = tones({{100.0 / (2.0 * std::numbers::pi) * 5.0, 0.5}}, 4.0);
+    std::vector<double> axes;
+    for (const double v : x)
+        for (const double share : {1.0, 0.5, 0.0}) axes.push_back(share * v);
+    folder.sound("saw.wav", axes, 3);
+    CHECK(folder.tactus("exposure saw.wav").code == 2);
+    const Outcome outcome = folder.tactus("exposure saw.wav --json --full-scale '100 m/s^2' --duration '30 min'");
+    REQUIRE(outcome.code == 0);
+    const json answer = outcome.answer();
   // 500 rad/s is the norm's check point: weight 0.2020.
-  const double wanted = 50.0 / std::sqrt(2.0) * 0.2020;
-  CHECK(answer["a_hw"][0].get<double>() == Approx(wanted).epsilon(1e-3));
-  CHECK(answer["a_hw_filter"][0].get<double>() == Approx(wanted).epsilon(5e-3));
-  CHECK(answer["a_hv"].get<double>() ==
-        Approx(wanted * std::sqrt(1.25)).epsilon(1e-3));
-  CHECK(answer["a8"].get<double>() ==
-        Approx(wanted * std::sqrt(1.25 / 16.0)).epsilon(1e-3));
-  CHECK(answer["minutes_to_action"].get<double>() ==
-        Approx(480.0 * 6.25 / (1.25 * wanted * wanted)).epsilon(2e-3));
-  CHECK(answer["calibrated"] == true);
-  CHECK(answer["lower_bound"] == false);
-  CHECK(answer["band_hz"][1].get<double>() > 1250.0);
+    const double wanted = 50.0 / std::sqrt(2.0) * 0.2020;
+    CHECK(answer["a_hw"][0].get<double>() == Approx(wanted).epsilon(1e-3));
+    CHECK(answer["a_hw_filter"][0].get<double>() == Approx(wanted).epsilon(5e-3));
+    CHECK(answer["a_hv"].get<double>() == Approx(wanted * std::sqrt(1.25)).epsilon(1e-3));
+    CHECK(answer["a8"].get<double>() == Approx(wanted * std::sqrt(1.25 / 16.0)).epsilon(1e-3));
+    CHECK(answer["minutes_to_action"].get<double>() == Approx(480.0 * 6.25 / (1.25 * wanted * wanted)).epsilon(2e-3));
+    CHECK(answer["calibrated"] == true);
+    CHECK(answer["lower_bound"] == false);
+    CHECK(answer["band_hz"][1].get<double>() > 1250.0);
 
-  folder.sound("slow.wav", tones({{80.0, 0.5}}, 4.0, 2000.0), 1, 2000);
-  const json slow =
-      folder.tactus("exposure slow.wav --json --uncalibrated").answer();
-  CHECK(slow["a_hv"].is_null());
-  CHECK(slow["calibrated"] == false);
-  CHECK(slow["lower_bound"] == true);
-  CHECK(slow["band_hz"][1] == 1000.0);
-  CHECK(folder.tactus("exposure slow.wav --full-scale '5 mm/s'").code == 2);
-  CHECK(folder.tactus("exposure slow.wav --uncalibrated --duration '5 kg'")
-            .code == 2);
+    folder.sound("slow.wav", tones({{80.0, 0.5}}, 4.0, 2000.0), 1, 2000);
+    const json slow = folder.tactus("exposure slow.wav --json --uncalibrated").answer();
+    CHECK(slow["a_hv"].is_null());
+    CHECK(slow["calibrated"] == false);
+    CHECK(slow["lower_bound"] == true);
+    CHECK(slow["band_hz"][1] == 1000.0);
+    CHECK(folder.tactus("exposure slow.wav --full-scale '5 mm/s'").code == 2);
+    CHECK(folder.tactus("exposure slow.wav --uncalibrated --duration '5 kg'").code == 2);
 
-  const json two = folder
-                       .tactus("exposure saw.wav saw.wav --json --full-scale "
-                               "'100 m/s^2' --duration 2 --duration 6")
-                       .answer();
-  CHECK(two["a8"].get<double>() ==
-        Approx(wanted * std::sqrt(1.25)).epsilon(1e-3));
-  CHECK(two["operations"].size() == 2);
+    const json two = folder
+                         .tactus(
+                             "exposure saw.wav saw.wav --json --full-scale "
+                             "'100 m/s^2' --duration 2 --duration 6")
+                         .answer();
+    CHECK(two["a8"].get<double>() == Approx(wanted * std::sqrt(1.25)).epsilon(1e-3));
+    CHECK(two["operations"].size() == 2);
 }
 
 TEST_CASE("orders follow a tachometer, a ridge, or a stated rate") {
-  const Folder folder;
-  constexpr double rate = 8000.0;
-  std::vector<double> both;
-  for (int i = 0; i < 48000; ++i) {
-    const double t = i / rate,
-                 turn = 2.0 * std::numbers::pi * (50.0 * t + 15.25 * t * t);
-    both.push_back(0.5 * std::sin(turn) + 0.2 * std::sin(2.0 * turn) +
-                   0.1 * std::sin(3.0 * turn));
-    both.push_back(std::sin(turn) > 0.0 ? 1.0 : 0.0);
-  }
-  folder.sound("run_up.wav", both, 2, 8000);
-  for (const char *how : {"--tacho 2", "--channel 1"}) {
-    const Outcome outcome =
-        folder.tactus(fmt::format("orders run_up.wav --json {}", how));
-    CAPTURE(how, outcome.err);
-    REQUIRE(outcome.code == 0);
-    const json answer = outcome.answer();
-    REQUIRE(answer["channels"].size() == 1);
-    CHECK(answer["channels"][0]["orders"][0]["amplitude"].get<double>() ==
-          Approx(0.5).epsilon(0.03));
-    CHECK(answer["channels"][0]["orders"][1]["amplitude"].get<double>() ==
-          Approx(0.2).epsilon(0.06));
-    CHECK(answer["rate_hz"]["max"].get<double>() ==
-          Approx(233.0).epsilon(0.03));
-  }
-  folder.sound("steady.wav", tones({{70.0, 0.5}}, 2.0));
-  CHECK(folder.tactus("orders steady.wav --json --rate 70")
-            .answer()["channels"][0]["orders"][0]["amplitude"]
-            .get<double>() == Approx(0.5).epsilon(1e-3));
-  CHECK(folder.tactus("orders steady.wav --tacho 1").code == 2);
-  CHECK(folder.tactus("orders steady.wav --tacho 3").code == 2);
+    const Folder folder;
+    constexpr double rate = 8000.0;
+    std::vector<double> both;
+    for (int i = 0; i < 48000; ++i) {
+        const double t = i / rate, turn = 2.0 * std::numbers::pi * (50.0 * t + 15.25 * t * t);
+        both.push_back(0.5 * std::sin(turn) + 0.2 * std::sin(2.0 * turn) + 0.1 * std::sin(3.0 * turn));
+        both.push_back(std::sin(turn) > 0.0 ? 1.0 : 0.0);
+    }
+    folder.sound("run_up.wav", both, 2, 8000);
+    for (const char* how : {"--tacho 2", "--channel 1"}) {
+        const Outcome outcome = folder.tactus(fmt::format("orders run_up.wav --json {}", how));
+        CAPTURE(how, outcome.err);
+        REQUIRE(outcome.code == 0);
+        const json answer = outcome.answer();
+        REQUIRE(answer["channels"].size() == 1);
+        CHECK(answer["channels"][0]["orders"][0]["amplitude"].get<double>() == Approx(0.5).epsilon(0.03));
+        CHECK(answer["channels"][0]["orders"][1]["amplitude"].get<double>() == Approx(0.2).epsilon(0.06));
+        CHECK(answer["rate_hz"]["max"].get<double>() == Approx(233.0).epsilon(0.03));
+    }
+    folder.sound("steady.wav", tones({{70.0, 0.5}}, 2.0));
+    CHECK(folder.tactus("orders steady.wav --json --rate 70")
+              .answer()["channels"][0]["orders"][0]["amplitude"]
+              .get<double>() == Approx(0.5).epsilon(1e-3));
+    CHECK(folder.tactus("orders steady.wav --tacho 1").code == 2);
+    CHECK(folder.tactus("orders steady.wav --tacho 3").code == 2);
+}
+
+TEST_CASE("orders and exposure answer odd records or refuse them with one line") {
+    const Folder folder;
+    folder.text("empty.wav", "");
+    folder.text("words.wav", "RIFF");
+    folder.text("words.csv", "time,a\n0,1\n1,word\n");
+    folder.sound("no_samples.wav", {});
+    folder.sound("nan.wav", {0.0, std::nan(""), 0.0});
+    const std::vector<double> tone = tones({{100.0, 0.5}, {200.0, 0.2}}, 3.0);
+    folder.sound("good.wav", tone);
+    const std::string bytes = slurp(folder.path / "good.wav");
+    folder.text("cut.wav", bytes.substr(0, bytes.size() / 2));
+    for (const char* file :
+         {"empty.wav", "words.wav", "words.csv", "no_samples.wav", "nan.wav", "cut.wav", "missing.wav"})
+        for (const char* verb : {"orders --rate 100", "orders", "exposure --uncalibrated"}) {
+            const Outcome outcome = folder.tactus(fmt::format("{} {}", verb, file));
+            CAPTURE(verb, file, outcome.out, outcome.err);
+            CHECK(outcome.code == 2);
+            CHECK(outcome.out.empty());
+            CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+        }
+
+    const auto weighted = [&](const char* file) {
+        const Outcome outcome = folder.tactus(fmt::format("exposure --json --channel 1 --full-scale '1 m/s^2' {}", file));
+        CAPTURE(file, outcome.err);
+        REQUIRE(outcome.code == 0);
+        return outcome.answer()["a_hw"][0].get<double>();
+    };
+    const double wanted = weighted("good.wav");
+    folder.sound("silent.wav", std::vector<double>(96000));
+    CHECK(weighted("silent.wav") == 0.0);
+    folder.sound("dc.wav", std::vector<double>(96000, 0.25));
+    CHECK(weighted("dc.wav") == Approx(0.0).margin(1e-9));
+    folder.sound("one.wav", {0.5});
+    CHECK(weighted("one.wav") == 0.0);
+    const auto stored = [&](const char* name, double gain, int rate, int format, int channels = 1) {
+        std::vector<double> samples;
+        for (const double v : tones({{100.0, 0.5 * gain}, {200.0, 0.2 * gain}}, 3.0, rate))
+            samples.insert(samples.end(), static_cast<std::size_t>(channels), v);
+        folder.sound(name, samples, channels, rate, format);
+    };
+    stored("u8.wav", 1.0, 48000, SF_FORMAT_WAV | SF_FORMAT_PCM_U8);
+    stored("b24.flac", 1.0, 48000, SF_FORMAT_FLAC | SF_FORMAT_PCM_24);
+    stored("k192.wav", 1.0, 192000, SF_FORMAT_WAV | SF_FORMAT_FLOAT);
+    stored("seven.wav", 1.0, 48000, SF_FORMAT_WAV | SF_FORMAT_PCM_24, 7);
+    stored("k3.wav", 1.0, 3000, SF_FORMAT_WAV | SF_FORMAT_FLOAT);
+    stored("loud.wav", 40.0, 48000, SF_FORMAT_WAV | SF_FORMAT_FLOAT);
+    for (const char* file : {"u8.wav", "b24.flac", "k192.wav", "seven.wav", "k3.wav"}) {
+        CAPTURE(file);
+        CHECK(weighted(file) == Approx(wanted).epsilon(0.01));
+        const Outcome outcome = folder.tactus(fmt::format("orders --json --rate 100 {}", file));
+        CAPTURE(outcome.err);
+        REQUIRE(outcome.code == 0);
+        CHECK(outcome.answer()["channels"][0]["orders"][1]["amplitude"].get<double>() == Approx(0.2).epsilon(0.02));
+    }
+    CHECK(weighted("loud.wav") == Approx(40.0 * wanted).epsilon(1e-6));
+    CHECK(folder.tactus("orders --rate 100 one.wav").code == 2);
+    for (const char* file : {"silent.wav", "dc.wav"}) {
+        const Outcome outcome = folder.tactus(fmt::format("orders --json --rate 100 {}", file));
+        CAPTURE(file, outcome.err);
+        REQUIRE(outcome.code == 0);
+        CHECK(outcome.answer()["channels"][0]["orders"][0]["amplitude"].get<double>() == Approx(0.0).margin(1e-9));
+        CHECK(folder.tactus(fmt::format("orders {}", file)).code == 2);
+    }
 }

@@ -3,12 +3,16 @@
 #include "tests/tools/run_command.hpp"
 
 #include <sndfile.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <functional>
 #include <limits>
 #include <numbers>
@@ -222,10 +226,71 @@ TEST_CASE("compare answers or says what is wrong with a file, once, and ends wit
     passes(sound(folder, "w64.w64", saw(233.0, 0.3, 3), {.format = SF_FORMAT_W64 | SF_FORMAT_FLOAT}));
     passes(sound(folder, "k192.wav", saw(233.0, 0.3, 3), {.rate = 192000}));
     passes(sound(folder, "k3.wav", saw(233.0, 0.3, 3), {.rate = 3000}));
+    passes(sound(folder, "seven.wav",
+                 [s = saw(233.0, 0.3, 3), value = 0.0, channel = 0](double t) mutable {
+                     if (channel++ % 7 == 0) value = s(t);
+                     return value;
+                 },
+                 {.channels = 7}));
     const Outcome clipped = against(
         sound(folder, "clipped.wav", [s = saw(233.0)](double t) mutable { return std::clamp(3.0 * s(t), -1.0, 1.0); }));
     CHECK(clipped.code != 2);
     CHECK(clipped.out.find("clipped") != std::string::npos);
+}
+
+TEST_CASE("compare reads logs as it reads sounds, each with its own columns, and the longest piece between gaps") {
+    const Folder folder;
+    // 2.5 kHz with jitter; one column is the vibration, one is not.
+    const auto log = [&](const char* name, const char* header, double from, double to, double gap) {
+        std::string text = header;
+        double t = from;
+        for (int i = 0; t < to; ++i) {
+            t = from + 0.4e-3 * i + (i % 3 == 0 ? 0.02e-3 : 0.0) + (i >= 2000 ? gap : 0.0);
+            double y = 0.0;
+            for (int k = 1; k <= 3; ++k) y += std::sin(2.0 * std::numbers::pi * k * 120.0 * t + k * k) / k;
+            text += std::to_string(1e3 * t) + "," + std::to_string(i % 2) + "," + std::to_string(y) + "\n";
+        }
+        return folder.write(name, text).string();
+    };
+    const std::string whole = log("a.csv", "time_ms,flag,accel\n", 0.0, 6.0, 0.0);
+    const std::string parted = log("b.csv", "when_ms,flag,value\n", 1.0, 9.0, 0.5);
+    const std::string wave = sound(folder, "a.wav",
+                                   [](double t) {
+                                       double y = 0.0;
+                                       for (int k = 1; k <= 3; ++k)
+                                           y += 0.3 * std::sin(2.0 * std::numbers::pi * k * 120.0 * t + k * k) / k;
+                                       return y;
+                                   },
+                                   {.seconds = 5.0})
+                                 .string();
+    const json same = compared(folder, whole + " " + wave + " --time-column time_ms --column accel", 0);
+    CHECK(same["fundamental_hz"]["reference"].get<double>() == Approx(120.0).margin(0.1));
+    const json both = compared(
+        folder, whole + " " + parted + " --time-column time_ms,when_ms --column accel,value --time-unit ms", 0);
+    CHECK(both["notes"].dump().find("the longest of its 2 pieces is compared") != std::string::npos);
+    const Outcome none = folder.tactus("compare " + whole + " " + wave + " --column nothing");
+    CHECK(none.code == 2);
+    CHECK(none.err.find("nothing") != std::string::npos);
+}
+
+TEST_CASE("compare needs no more memory for a longer recording") {
+    const Folder folder;
+    const auto kilobytes = [&](double seconds) {
+        const fs::path file = sound(folder, "long.wav", saw(233.0), {.rate = 8000, .seconds = seconds});
+        const pid_t child = fork();
+        if (child == 0) {
+            if (std::freopen("/dev/null", "w", stdout) == nullptr) _exit(9);
+            execl(TACTUS_COMMAND, "tactus", "compare", file.c_str(), file.c_str(), nullptr);
+            _exit(9);
+        }
+        int status = 0;
+        rusage usage{};
+        REQUIRE(wait4(child, &status, 0, &usage) == child);
+        CHECK(status == 0);
+        return usage.ru_maxrss;
+    };
+    // A minute is held, for the alignment; 240 s would take 15 MB more per copy of the samples.
+    CHECK(kilobytes(330.0) < kilobytes(90.0) + 8000);
 }
 
 TEST_CASE("measure and equalise refuse what makes no sense with one line") {

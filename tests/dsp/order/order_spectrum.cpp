@@ -65,6 +65,28 @@ TEST_CASE("without a tachometer the rate is followed by its ridge, in noise too"
         CHECK(spectrum.orders[static_cast<std::size_t>(k - 1)].amplitude == Approx(amplitudes[k]).epsilon(0.1));
 }
 
+TEST_CASE("the ridge of a few clean orders is their rate and not half of it; noise has hardly one") {
+    const auto mean_of = [](const Ridge& ridge) {
+        double sum = 0.0;
+        for (const double frequency : ridge.frequency) sum += frequency / static_cast<double>(ridge.frequency.size());
+        return sum;
+    };
+    for (const int orders : {1, 2, 3, 5}) {
+        std::vector<double> x(24000);
+        for (std::size_t i = 0; i < x.size(); ++i)
+            for (int k = 1; k <= orders; ++k)
+                x[i] += 0.5 / k * std::sin(2.0 * std::numbers::pi * 100.0 * k * static_cast<double>(i) / rate + k * k);
+        INFO(orders << " orders");
+        CHECK(mean_of(track_ridge(x, rate, {})) == Approx(100.0).epsilon(0.005));
+    }
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        std::vector<double> noise(24000);
+        const Random random{seed};
+        for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = random.normal(i);
+        CHECK(track_ridge(noise, rate, {}).prominence_db < 6.0);
+    }
+}
+
 TEST_CASE("a fixed rate needs no tracking") {
     std::vector<double> x(16000);
     for (std::size_t i = 0; i < x.size(); ++i)

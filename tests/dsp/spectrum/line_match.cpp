@@ -39,6 +39,12 @@ TEST_CASE("the harmonic error is the worst order's deviation from the mean gain"
     CHECK_FALSE(harmonic_error(reference, 200.0, output, 201.0, 300.0).has_value());
 }
 
+TEST_CASE("orders 40 dB below the strongest are residue and no part of the harmonic error") {
+    const Spectrum reference = spectrum_of_tones({{200.0, 1.0}, {400.0, 0.5}, {600.0, 0.003}}, 1e-6, 1);
+    const Spectrum output = spectrum_of_tones({{200.0, 1.0}, {400.0, 0.5}, {600.0, 0.0001}}, 1e-6, 2);
+    CHECK(harmonic_error(reference, 200.0, output, 200.0, 1000.0).value() < 0.01);
+}
+
 TEST_CASE("lines match at equal speed, and a line that is there but soft is missing") {
     const Spectrum reference = spectrum_of_tones({{200.0, 1.0}, {400.0, 0.5}, {600.0, 0.2}}, 1e-3, 1);
     const Spectrum output = spectrum_of_tones({{204.0, 0.1}, {408.0, 0.05}, {50.0, 0.01}}, 1e-4, 2);
