@@ -27,11 +27,11 @@ double between(std::span<const double> power, double bin) {
 /// order counts for more than a high one, or half the rate would explain the same lines as well.
 double salience(std::span<const double> power, double floor, double bins_per_hz, double frequency, int orders) {
     double sum = 0.0, weights = 0.0;
-    for (int k = 1; k <= orders; ++k) weights += 1.0 / std::sqrt(k);
     for (int k = 1; k <= orders; ++k) {
-        const double bin = k * frequency * bins_per_hz;
-        if (bin + 1.0 >= static_cast<double>(power.size())) break;
-        sum += std::log10(1.0 + between(power, bin) / floor) / std::sqrt(k);
+        const double bin = k * frequency * bins_per_hz, weight = 1.0 / std::sqrt(k);
+        weights += weight;
+        if (bin + 1.0 < static_cast<double>(power.size()))
+            sum += weight * std::log10(1.0 + between(power, bin) / floor);
     }
     return sum / weights;
 }
@@ -140,7 +140,11 @@ Ridge track_ridge(std::span<const double> record, double rate, const RidgeSettin
         }
         ridge.time.push_back((static_cast<double>(i * hop) + 0.5 * static_cast<double>(frame)) / rate);
         ridge.frequency.push_back(0.5 * (a + b));
-        ridge.prominence_db += 10.0 * value(0.5 * (a + b)) / static_cast<double>(frames);
+        // Of the orders that the record can hold.
+        const double held = static_cast<double>(power.size()) / (0.5 * (a + b) * bins_per_hz);
+        const int there = std::clamp(static_cast<int>(held), 1, settings.orders);
+        ridge.prominence_db +=
+            10.0 * salience(power, floor, bins_per_hz, 0.5 * (a + b), there) / static_cast<double>(frames);
     }
     return ridge;
 }
