@@ -13,6 +13,9 @@ namespace tactus {
 
 namespace {
 
+/// Samples around so many chunks are more than the caches next to a core hold.
+constexpr std::size_t many_chunks = 256;
+
 bool is_usable(const ContactPair& pair) noexcept {
     return pair.shell && pair.map && !pair.shell->empty() && !pair.map->grid.values.empty() &&
            is_valid(pair.shell_pose) && is_valid(pair.map_pose);
@@ -219,7 +222,8 @@ ContactSum PointshellContact::operator()(std::span<const ContactPair> pairs, con
         std::size_t end = first;
         while (end < chosen_.size() && chosen_[end].pair == pair) ++end;
         const Relation relation(pairs[pair], about);
-        const kernel::PairFrame frame = relation.frame(law, parts);
+        kernel::PairFrame frame = relation.frame(law, parts);
+        frame.calls_ahead = end - first > many_chunks;
         kernel::LaneSums lanes;
         Totals totals;
         kernel::ChunkFrame chunks[kernel::most_chunks];

@@ -58,13 +58,18 @@ HWY_INLINE void add_quadratic(const PairFrame& pair, const ChunkFrame& at, Place
 }
 
 void evaluate_chunks(const PairFrame& pair, const ChunkFrame* chunks, std::size_t count, LaneSums& into) {
-    Places places;
+    Places places[2];
     Corners corners;
     Pushes pushes;
+    if (count > 0) locate_cells(pair, chunks[0], places[0]);
     for (std::size_t n = 0; n < count; ++n) {
-        locate_cells(pair, chunks[n], places);
-        if (pair.quadratic) add_quadratic(pair, chunks[n], places, corners, pushes, into);
-        else add_trilinear(pair, chunks[n], places, corners, pushes, into);
+        Places &here = places[n % 2], &next = places[(n + 1) % 2];
+        if (n + 1 < count) {
+            locate_cells(pair, chunks[n + 1], next);
+            if (pair.calls_ahead) call(pair, chunks[n + 1], next);
+        }
+        if (pair.quadratic) add_quadratic(pair, chunks[n], here, corners, pushes, into);
+        else add_trilinear(pair, chunks[n], here, corners, pushes, into);
         if (pushes.rows + points / lanes <= batch / lanes && n + 1 < count) continue;
         add_up(pushes, into, pair.energy_only);
         pushes.rows = 0;

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -97,14 +98,39 @@ struct Corners {
     alignas(64) float low[2 * points], y[2 * points], z[2 * points], yz[2 * points];
 };
 
+/// Copies eight bytes from each of two places, which are two neighbouring samples each.
+HWY_INLINE void copy_pairs(const float* a, const float* b, float* to) {
+#if HWY_TARGET == HWY_SCALAR
+    std::memcpy(to, a, 8);
+    std::memcpy(to + 2, b, 8);
+#else
+    const hn::FixedTag<float, 2> two;
+    const hn::FixedTag<float, 4> four;
+    hn::StoreU(hn::Combine(four, hn::LoadU(two, b), hn::LoadU(two, a)), four, to);
+#endif
+}
+
 HWY_INLINE void fetch(const PairFrame& pair, const ChunkFrame& at, const Places& places, Corners& corners) {
+    const float* base = pair.values + at.base;
+    const std::ptrdiff_t y = pair.row, z = pair.plane, yz = pair.row + pair.plane;
+    for (std::size_t l = 0; l < at.rows * lanes; l += 2) {
+        const float *a = base + places.index[l], *b = base + places.index[l + 1];
+        copy_pairs(a, b, corners.low + 2 * l);
+        copy_pairs(a + y, b + y, corners.y + 2 * l);
+        copy_pairs(a + z, b + z, corners.z + 2 * l);
+        copy_pairs(a + yz, b + yz, corners.yz + 2 * l);
+    }
+}
+
+/// Calls the samples that `fetch` will read into the nearest cache.
+HWY_INLINE void call(const PairFrame& pair, const ChunkFrame& at, const Places& places) {
     const float* base = pair.values + at.base;
     for (std::size_t l = 0; l < at.rows * lanes; ++l) {
         const float* sample = base + places.index[l];
-        std::memcpy(corners.low + 2 * l, sample, 8);
-        std::memcpy(corners.y + 2 * l, sample + pair.row, 8);
-        std::memcpy(corners.z + 2 * l, sample + pair.plane, 8);
-        std::memcpy(corners.yz + 2 * l, sample + pair.plane + pair.row, 8);
+        hwy::Prefetch(sample);
+        hwy::Prefetch(sample + pair.row);
+        hwy::Prefetch(sample + pair.plane);
+        hwy::Prefetch(sample + pair.plane + pair.row);
     }
 }
 

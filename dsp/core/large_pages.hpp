@@ -11,13 +11,17 @@
 
 namespace tactus {
 
-/// Asks for large pages under what has been reserved but not yet written. Only a hint; asks the system.
+/// Asks for large pages under what has been reserved but not yet written: what it holds is lost. Only a hint; asks the
+/// system.
 inline void prefer_large_pages([[maybe_unused]] void* data, [[maybe_unused]] std::size_t bytes) {
 #if defined(__linux__)
     constexpr std::uintptr_t page = std::uintptr_t(1) << 21;
     const auto begin = reinterpret_cast<std::uintptr_t>(data), first = (begin + page - 1) & ~(page - 1),
                end = (begin + bytes) & ~(page - 1);
-    if (first < end) madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);
+    if (first >= end) return;
+    // Memory that was used before keeps its small pages; given back, it comes anew.
+    madvise(reinterpret_cast<void*>(first), end - first, MADV_DONTNEED);
+    madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);
 #endif
 }
 
