@@ -126,10 +126,15 @@ std::string summary_text(const Engine& engine, const Report& report, double seco
         if (const std::string late = describe_lateness(*group); !late.empty())
             text += fmt::format("            {}\n", late);
     }
-    if (report.sections.contains("contact"))
+    if (number(report, "contact", "fraction", -1.0) >= 0.0)
         text += fmt::format("  contact {:.0f} % of the time, at most {:.2f} mm deep; thrust {:.2f} N mean\n",
                             100.0 * number(report, "contact", "fraction"),
                             number(report, "contact", "max_penetration_mm"), number(report, "force", "thrust_mean_N"));
+    if (report.sections.contains("coupling"))
+        text += fmt::format("  touching {:.0f} % of the time, at most {:.2f} mm deep; balanced {:.1f} % of the ticks\n",
+                            100.0 * number(report, "coupling", "in_contact"),
+                            number(report, "coupling", "penetration_max_mm"),
+                            100.0 * number(report, "coupling", "balanced"));
     if (report.sections.contains("carve"))
         text += fmt::format("  removed {:.1f} mm³\n", number(report, "carve", "removed_mm3"));
     for (const auto& card : engine.outside().cards)

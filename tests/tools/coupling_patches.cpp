@@ -51,9 +51,9 @@ TEST_CASE("render pop-through: the direct force turns over, the proxy's never do
     CHECK(s["proxy_range"]["max"][2] > 3.0);
 }
 
-TEST_CASE("render fragments and touch-sphere: balanced, nothing faulty") {
+TEST_CASE("render fragments, press-fragments and touch-sphere: balanced, nothing faulty") {
     const Folder folder;
-    for (const char* patch : {"fragments", "touch-sphere"}) {
+    for (const char* patch : {"fragments", "press-fragments", "touch-sphere"}) {
         const json s = rendered(folder, patch, 9.5);
         CAPTURE(patch, s["coupling"].dump(), s["force"].dump());
         CHECK(s["coupling"]["in_contact"] > 0.2);
