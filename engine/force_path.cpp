@@ -16,7 +16,7 @@ std::vector<bool> force_path(const Generation& generation) {
     std::vector<bool> on_path;
     for (const auto& node : generation.nodes)
         on_path.push_back(
-            std::ranges::any_of(node->devices, [](const auto& use) { return use.second == DeviceUse::drive; }));
+            std::ranges::any_of(node->uses.devices, [](const auto& use) { return use.second == DeviceUse::drive; }));
     for (bool grows = true; grows;) {
         grows = false;
         for (const PlanWire& wire : generation.plan.wires) {

@@ -7,7 +7,9 @@
 #include "graph/layout.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <unordered_map>
 
@@ -72,7 +74,11 @@ private:
                         old->plan->has_audio == group.has_audio && old->max_frames == frames)
                         runtime = old;
             made_->group_is_new.push_back(!runtime);
-            if (!runtime) runtime = std::make_shared<GroupRuntime>(group, workshop_.next_group++, frames);
+            if (!runtime) {
+                if (workshop_.next_group > std::numeric_limits<std::uint16_t>::max())
+                    throw Error("edits of this run have made more rate groups than its log can tell apart; start anew");
+                runtime = std::make_shared<GroupRuntime>(group, workshop_.next_group++, frames);
+            }
             made_->groups.push_back(std::move(runtime));
             auto& program = *made_->programs.emplace_back(std::make_unique<GroupProgram>());
             program.generation = made_->number;
@@ -157,11 +163,16 @@ private:
     }
 
     void prepare() {
+        std::vector<SoundCard*> playing;
+        for (std::size_t i = 0; i < plan().nodes.size(); ++i)
+            if (const auto& cards = made_->nodes[i]->uses.cards; made_->survived[i])
+                playing.insert(playing.end(), cards.begin(), cards.end());
+        workshop_.outside.keep_cards(std::move(playing));
         for (std::size_t i = 0; i < plan().nodes.size(); ++i) {
             if (made_->survived[i]) continue;
             const PlanNode& node = plan().nodes[i];
             const GroupRuntime& group = group_of(node);
-            workshop_.outside.prepare_for(group.index, group.plan->period, made_->nodes[i]->devices);
+            workshop_.outside.prepare_for(group.index, group.plan->period, made_->nodes[i]->uses);
             Hash seed;
             seed.add_word(plan().patch.seed);
             seed.add_text(node.name);
@@ -391,7 +402,7 @@ private:
     void assign_devices(std::size_t index) {
         const PlanNode& node = plan().nodes[index];
         GroupProgram& program = program_of(node.group);
-        for (const auto& [slot, use] : made_->nodes[index]->devices) {
+        for (const auto& [slot, use] : made_->nodes[index]->uses.devices) {
             if (std::ranges::find(program.devices, slot) == program.devices.end()) program.devices.push_back(slot);
             if (use != DeviceUse::drive) continue;
             if (std::ranges::find(program.driven, slot) != program.driven.end())

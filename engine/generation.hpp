@@ -28,7 +28,7 @@ struct LiveNode {
     std::vector<Input*> inputs;
     std::vector<Output*> outputs;
     std::map<std::string, Param*> params;
-    DeviceUses devices;                          ///< that its prepare asked for
+    OutsideUses uses;  ///< what its prepare asked for
 };
 
 /// What the generations of one run share. Used by one builder at a time.

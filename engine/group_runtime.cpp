@@ -13,7 +13,7 @@
 
 namespace tactus {
 
-const TimingRecord* GroupRuntime::replayed_at(TimingKind kind, std::uint16_t source, std::int64_t tick) const noexcept {
+const TimingRecord* GroupRuntime::replayed_at(TimingKind kind, std::uint32_t source, std::int64_t tick) const noexcept {
     if (!replayed) return nullptr;
     for (std::size_t i = cursor_; i < replayed->size(); ++i) {
         const TimingRecord& record = (*replayed)[i];
@@ -138,7 +138,7 @@ bool GroupRuntime::ready() const noexcept {
     for (std::size_t i = 0; i < program_->inputs.size(); ++i) {
         const Link& link = *program_->inputs[i];
         std::int64_t wanted = link.wanted(next_);
-        if (const TimingRecord* held = replayed_at(TimingKind::held_read, static_cast<std::uint16_t>(link.id), next_))
+        if (const TimingRecord* held = replayed_at(TimingKind::held_read, static_cast<std::uint32_t>(link.id), next_))
             wanted = held->value;
         const GroupRuntime& producer = *program_->producers[i];
         wanted = std::min(wanted, producer.end.load(std::memory_order_relaxed) - 1);
@@ -146,7 +146,7 @@ bool GroupRuntime::ready() const noexcept {
     }
     const int frames = cut(max_frames);
     for (const Link* link : program_->outputs)
-        if (!replayed_at(TimingKind::dropped, static_cast<std::uint16_t>(link->id), next_) &&
+        if (!replayed_at(TimingKind::dropped, static_cast<std::uint32_t>(link->id), next_) &&
             !link->has_room(next_, frames))
             return false;
     return true;
@@ -157,8 +157,8 @@ void GroupRuntime::note(TimingKind kind, int source, std::int64_t count, std::in
     if (!log) return;
     TimingRecord record;
     record.kind = kind;
-    record.group = static_cast<std::uint8_t>(index);
-    record.source = static_cast<std::uint16_t>(source);
+    record.group = static_cast<std::uint16_t>(index);
+    record.source = static_cast<std::uint32_t>(source);
     record.count = static_cast<std::int32_t>(count);
     record.tick = next_;
     record.value = value;
@@ -170,7 +170,7 @@ void GroupRuntime::acquire() noexcept {
     const Flicks elapsed = last_ < 0 ? 0 : (next_ - last_) * plan->period;
     for (DeviceSlot* slot : program_->devices) {
         const TimingRecord* logged =
-            replayed_at(TimingKind::device_sample, static_cast<std::uint16_t>(slot->id), next_);
+            replayed_at(TimingKind::device_sample, static_cast<std::uint32_t>(slot->id), next_);
         slot->port.sample = logged ? logged->sample : slot->device->acquire(seconds(elapsed));
         if (!logged) {
             slot->port.sample.taken = slot->guard.was_taken();
@@ -187,7 +187,7 @@ void GroupRuntime::read_links(int frames, Pace pace) noexcept {
         const GroupRuntime& producer = *program_->producers[i];
         const std::int64_t want = link.wanted(next_);
         std::int64_t chosen = link.used();
-        if (const TimingRecord* held = replayed_at(TimingKind::held_read, static_cast<std::uint16_t>(link.id), next_))
+        if (const TimingRecord* held = replayed_at(TimingKind::held_read, static_cast<std::uint32_t>(link.id), next_))
             chosen = held->value;
         else if (want > chosen) chosen = link.newest_available(want, producer.done());
         // Past the producer's last activation there is nothing to miss. Live, its end may still be set behind where it
@@ -304,7 +304,7 @@ void GroupRuntime::run_steps(int frames) noexcept {
 void GroupRuntime::publish(int frames, Pace pace) noexcept {
     std::size_t took = 0;
     for (Link* link : program_->outputs) {
-        const auto id = static_cast<std::uint16_t>(link->id);
+        const auto id = static_cast<std::uint32_t>(link->id);
         const bool drop = pace == Pace::live ? !link->has_room(next_, frames)
                                              : replayed_at(TimingKind::dropped, id, next_) != nullptr;
         if (drop) {

@@ -86,7 +86,7 @@ public:
 
 private:
     int cut(int frames) const noexcept;
-    const TimingRecord* replayed_at(TimingKind kind, std::uint16_t source, std::int64_t tick) const noexcept;
+    const TimingRecord* replayed_at(TimingKind kind, std::uint32_t source, std::int64_t tick) const noexcept;
     void apply_parameters() noexcept;
     void hold_off(bool wanted) noexcept;
     bool switch_if_due(Pace pace) noexcept;

@@ -84,7 +84,7 @@ DevicePort& EngineOutside::use_device(DeviceSlot& slot, DeviceUse use, const Sou
         throw Error(where, fmt::format("device '{}' is used in two groups; its nodes must share one rate, and keep it "
                                        "while the patch runs",
                                        slot.name));
-    uses_->emplace_back(&slot, use);
+    uses_->devices.emplace_back(&slot, use);
     if (use == DeviceUse::drive && !slot.port.info.actuates_torque) {
         std::string notice =
             fmt::format("device '{}' gives forces only: torques that the patch computes for it are dropped", slot.name);
@@ -157,6 +157,14 @@ RecordStream& EngineOutside::record(const StreamFormat& wanted, const SourceLoca
     return *opened_.streams.back();
 }
 
+/// One whose node an edit took away: it plays on, and only one thread ever writes to it.
+SoundCard* EngineOutside::spare_card(const StreamFormat& format) const {
+    for (const auto& card : cards)
+        if (card->serves(group_, format.period) && std::ranges::find(cards_in_use_, card.get()) == cards_in_use_.end())
+            return card.get();
+    return nullptr;
+}
+
 RecordStream& EngineOutside::audio(const StreamFormat& format, const SourceLocation& where) {
     if (!live_ || audio_.device == "file") return record(format, where);
     if (audio_.device == "none") {
@@ -165,12 +173,18 @@ RecordStream& EngineOutside::audio(const StreamFormat& format, const SourceLocat
         opened_.streams.push_back(std::make_unique<Stream>(unheard, std::make_unique<NowhereEnd>()));
         return *opened_.streams.back();
     }
+    if (SoundCard* card = spare_card(format)) {
+        cards_in_use_.push_back(card);
+        uses_->cards.push_back(card);
+        return *card;
+    }
     try {
         std::unique_ptr<AudioSink> sink =
             make_portaudio_sink(audio_.device == "default" ? "" : audio_.device, audio_.margin_s);
         sink->prepare(rate_of(format.period), 1);
         opened_.notices.push_back(fmt::format("playing on {}", sink->name()));
-        opened_.cards.push_back(std::make_unique<SoundCard>(std::move(sink), format.period, audio_.margin_s));
+        opened_.cards.push_back(std::make_unique<SoundCard>(std::move(sink), format.period, audio_.margin_s, group_));
+        uses_->cards.push_back(opened_.cards.back().get());
         return *opened_.cards.back();
     } catch (const Error& error) {
         if (audio_.is_required()) throw Error(where, error.message());

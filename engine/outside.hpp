@@ -23,8 +23,11 @@ struct RecordedDevice {
     DeviceSample first;  ///< what nodes saw when they were prepared
 };
 
-/// Devices that a node asked for.
-using DeviceUses = std::vector<std::pair<DeviceSlot*, DeviceUse>>;
+/// What a node asked for.
+struct OutsideUses {
+    std::vector<std::pair<DeviceSlot*, DeviceUse>> devices;
+    std::vector<SoundCard*> cards;
+};
 
 /// Where sound goes in a live run.
 struct AudioChoice {
@@ -46,8 +49,10 @@ public:
 
     /// What the nodes prepared from now on ask for belongs to this plan. It is opened aside, while the run goes on.
     void begin(const Patch& patch);
-    /// Which group the node being prepared belongs to, and where to note the devices it asks for.
-    void prepare_for(int group, Flicks period, DeviceUses& uses) {
+    /// Cards of nodes that go on; the others are given to nodes that are prepared anew.
+    void keep_cards(std::vector<SoundCard*> in_use) { cards_in_use_ = std::move(in_use); }
+    /// Which group the node being prepared belongs to, and where to note what it asks for.
+    void prepare_for(int group, Flicks period, OutsideUses& uses) {
         group_ = group;
         period_ = period;
         uses_ = &uses;
@@ -70,6 +75,7 @@ private:
     std::string device_name(const std::string& wanted, const SourceLocation& where) const;
     DeviceSlot* find_device(const std::string& name) const;
     DevicePort& use_device(DeviceSlot& slot, DeviceUse use, const SourceLocation& where);
+    SoundCard* spare_card(const StreamFormat& format) const;
     Stream* find_stream(const std::string& file) const;
 
     struct Opened {
@@ -82,7 +88,8 @@ private:
     Patch patch_;
     std::optional<std::vector<RecordedDevice>> recorded_;
     Opened opened_;
-    DeviceUses* uses_ = nullptr;
+    OutsideUses* uses_ = nullptr;
+    std::vector<SoundCard*> cards_in_use_;
     std::vector<std::pair<std::string, std::vector<OptionText>>> device_settings_;
     std::optional<std::filesystem::path> folder_;
     bool live_;

@@ -6,8 +6,8 @@
 
 namespace tactus {
 
-SoundCard::SoundCard(std::unique_ptr<AudioSink> sink, Flicks period, double margin_s)
-    : sink_(std::move(sink)), period_(period) {
+SoundCard::SoundCard(std::unique_ptr<AudioSink> sink, Flicks period, double margin_s, int group)
+    : sink_(std::move(sink)), period_(period), group_(group) {
     follower_.prepare(rate_of(period), margin_s);
 }
 

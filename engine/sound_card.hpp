@@ -17,8 +17,9 @@ namespace tactus {
 
 class SoundCard : public RecordStream {
 public:
-    /// `sink` is prepared for one channel with that period. `margin_s` of sound waits in its ring.
-    SoundCard(std::unique_ptr<AudioSink> sink, Flicks period, double margin_s);
+    /// `sink` is prepared for one channel with that period. `margin_s` of sound waits in its ring. Only the thread of
+    /// `group` writes.
+    SoundCard(std::unique_ptr<AudioSink> sink, Flicks period, double margin_s, int group);
 
     /// Thread of the group. Activations that never ran are silence; what finds no room is lost and counted.
     bool write(std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept override;
@@ -31,6 +32,7 @@ public:
 
     const std::string& name() const { return sink_->name(); }
     double rate() const { return rate_of(period_); }
+    bool serves(int group, Flicks period) const { return group == group_ && period == period_; }
     AudioStatistics statistics() const { return sink_->statistics(); }
     const CardFollower& follower() const { return follower_; }
     std::int64_t largest_callback() const { return largest_; }
@@ -44,6 +46,7 @@ public:
 private:
     std::unique_ptr<AudioSink> sink_;
     Flicks period_;
+    int group_;
     CardFollower follower_;
     std::atomic<std::int64_t> shift_{0};  // index of the activation that is frame 0 of the ring
     std::int64_t expected_ = -1;  // thread of the group

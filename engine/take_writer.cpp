@@ -230,7 +230,7 @@ void TakeWriter::checkpoint(const std::vector<Progress>& progress) {
     for (const Progress& group : progress) {
         TimingRecord record;
         record.kind = TimingKind::progress;
-        record.group = static_cast<std::uint8_t>(group.group);
+        record.group = static_cast<std::uint16_t>(group.group);
         record.tick = group.done;
         record.value = group.time;
         log_->write(record);

@@ -15,8 +15,7 @@ namespace tactus {
 
 namespace {
 
-constexpr char magic[8] = {'T', 'A', 'C', 'T', 'L', 'O', 'G', '2'};
-constexpr std::size_t most_groups = 256;
+constexpr char magic[8] = {'T', 'A', 'C', 'T', 'L', 'O', 'G', '3'};
 
 struct Header {
     char magic[8];
@@ -87,7 +86,7 @@ TimingLog TimingLog::load(const std::filesystem::path& path, bool may_be_cut) {
     log.seconds = header.seconds;
     TimingRecord record;
     while (std::fread(&record, sizeof record, 1, file.get()) == 1) {
-        if (record.group >= most_groups || record.kind > TimingKind::whole || record.tick < 0 || record.count < 0)
+        if (record.kind > TimingKind::whole || record.tick < 0 || record.count < 0)
             fail("a record of the timing log is damaged");
         log.is_whole = record.kind == TimingKind::whole;
         if (log.is_whole) break;

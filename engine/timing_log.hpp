@@ -32,8 +32,8 @@ enum class TimingKind : std::uint8_t {
 /// Written by the group that decides, in its own order.
 struct TimingRecord {
     TimingKind kind = TimingKind::end;
-    std::uint8_t group = 0;
-    std::uint16_t source = 0;
+    std::uint16_t group = 0;
+    std::uint32_t source = 0;
     std::int32_t count = 0;
     std::int64_t tick = 0;
     std::int64_t value = 0;

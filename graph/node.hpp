@@ -25,11 +25,14 @@
 // output; `void report(Report&) const` speaks after the run.
 #pragma once
 
+#include "graph/node_memory.hpp"
 #include "graph/param.hpp"
 #include "graph/port.hpp"
 #include "graph/setup.hpp"
 
 #include <concepts>
+#include <memory>
+#include <new>
 #include <string>
 #include <string_view>
 
@@ -89,11 +92,24 @@ std::string type_name_of(std::string_view struct_name);
 template <class T>
 NodeType make_node_type(std::string_view struct_name, void (*visit)(void*, MemberVisitor&)) {
     static_assert(noexcept(std::declval<T&>().process(std::declval<const Tick&>())), "process must be noexcept");
+    static_assert(alignof(T) <= node_alignment, "a node is aligned to one cache line");
     return {
         .name = type_name_of(struct_name),
         .about = T::about,
-        .create = []() -> void* { return new T; },
-        .destroy = [](void* node) { delete static_cast<T*>(node); },
+        .create = []() -> void* {
+            void* const memory = take_node_memory(sizeof(T));
+            try {
+                return new (memory) T;
+            } catch (...) {
+                give_back_node_memory(memory, sizeof(T));
+                throw;
+            }
+        },
+        .destroy =
+            [](void* node) {
+                std::destroy_at(static_cast<T*>(node));
+                give_back_node_memory(node, sizeof(T));
+            },
         .visit = visit,
         .prepare =
             [](void* node, const Setup& setup) {

@@ -47,7 +47,7 @@ struct Bench {
     explicit Bench(std::size_t frames = 4096) {
         auto owned = std::make_unique<PlayedSink>(frames);
         sink = owned.get();
-        card = std::make_unique<SoundCard>(std::move(owned), period, 0.005);
+        card = std::make_unique<SoundCard>(std::move(owned), period, 0.005, 0);
     }
     void write(std::int64_t first, std::size_t count) const {
         std::vector<float> values(count);

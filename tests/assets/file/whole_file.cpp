@@ -20,7 +20,7 @@ std::string bytes_of_length(std::size_t length) {
 
 }  // namespace
 
-TEST_CASE("file: what was written is read back, and no part of it is left beside") {
+TEST_CASE("what was written is read back, and no part of it is left beside") {
     TemporaryFolder folder;
     for (const std::size_t length : {0u, 1u, 4096u, 100'003u}) {
         const std::string bytes = bytes_of_length(length);
@@ -30,7 +30,7 @@ TEST_CASE("file: what was written is read back, and no part of it is left beside
     }
 }
 
-TEST_CASE("file: a hash of a file in blocks is the hash of its bytes at once") {
+TEST_CASE("a hash of a file in blocks is the hash of its bytes at once") {
     TemporaryFolder folder;
     for (const std::size_t length : {0u, 3u, 65'535u, 65'536u, 65'537u, 200'001u}) {
         const std::string bytes = bytes_of_length(length);
@@ -42,7 +42,7 @@ TEST_CASE("file: a hash of a file in blocks is the hash of its bytes at once") {
     }
 }
 
-TEST_CASE("file: a folder and a file that is not there are told") {
+TEST_CASE("a folder and a file that is not there are told") {
     TemporaryFolder folder;
     Hash hash;
     CHECK_THROWS_WITH(read_whole_file(folder / "none"), Catch::Contains("none: no such file"));
