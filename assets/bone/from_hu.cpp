@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tactus {
 
@@ -111,7 +112,7 @@ HuBone bone_from_hu(Grid hu, const BoneSurface& surface, const RunJobs& run) {
     const float iso = surface.threshold;
     Grid smooth;
     for (int pass = smoothing_passes(hu.spacing); pass > 0; --pass)
-        smooth = smoothed(smooth.values.empty() ? hu : smooth, run);
+        smooth = smoothed(smooth.values.empty() ? Grid(hu) : std::move(smooth), run);
     const Grid& seen = smooth.values.empty() ? hu : smooth;
     Components components = components_above(seen, iso);
     if (components.voxels.empty())

@@ -5,6 +5,7 @@
 #include "dsp/core/error.hpp"
 
 #include <gdcmImageReader.h>
+#include <gdcmMediaStorage.h>
 #include <gdcmReader.h>
 #include <gdcmSequenceOfItems.h>
 #include <gdcmTrace.h>
@@ -24,6 +25,7 @@ namespace tactus {
 namespace {
 
 const gdcm::Tag pixel_data(0x7fe0, 0x0010);
+constexpr std::string_view big_endian = "1.2.840.10008.1.2.2";
 
 // GDCM writes to the terminal on its own; what matters is in our Error.
 void silence() {
@@ -167,6 +169,11 @@ std::vector<DicomImage> dicom_images(const std::filesystem::path& file) {
         image.is_inverted = text_of(set, {0x0028, 0x0004}) == "MONOCHROME1";
         if (binary_of(set, {0x0028, 0x0002}, 1) != 1)
             throw Error(fmt::format("{}: a picture in colour is no CT", file.string()));
+        // GDCM asks such kinds for their number of frames without looking whether it is there.
+        gdcm::MediaStorage kind;
+        kind.SetFromFile(reader.GetFile());
+        if (kind.GetModalityDimension() > 2 && !set.FindDataElement(gdcm::Tag(0x0028, 0x0008)))
+            throw Error(fmt::format("{}: of a kind with several frames, but it does not say how many", file.string()));
         const gdcm::TransferSyntax& syntax = reader.GetFile().GetHeader().GetDataSetTransferSyntax();
         image.syntax = gdcm::TransferSyntax::GetTSString(syntax) ? gdcm::TransferSyntax::GetTSString(syntax) : "";
         take_geometry(set, set, set, image);
@@ -211,6 +218,7 @@ std::vector<float> dicom_samples(const std::vector<DicomImage>& images) {
             layout.high_bit >= layout.bits_allocated)
             refuse("its header contradicts itself about the bits of a sample");
         const auto bytes = static_cast<std::size_t>(layout.bits_allocated / 8);
+        if (bytes == 4 && first.syntax == big_endian) refuse("GDCM swaps its samples of 32 bits wrongly");
         const std::size_t each = static_cast<std::size_t>(first.rows) * static_cast<std::size_t>(first.columns);
         if (picture.GetBufferLength() != each * images.size() * bytes) refuse("not as many samples as its header says");
         std::vector<char> buffer(picture.GetBufferLength());

@@ -30,6 +30,23 @@ Axes axes_of(const SampleMap<Frame::lps>& map) {
 
 bool is_complete(const Axes& axes) { return axes[0] >= 0 && axes[1] >= 0 && axes[2] >= 0; }
 
+// Turns axes about without a second volume.
+void mirror(std::vector<float>& values, const std::array<int, 3>& size, const std::array<bool, 3>& along) {
+    const auto width = static_cast<std::size_t>(size[0]), rows = static_cast<std::size_t>(size[1]);
+    const auto layers = static_cast<std::size_t>(size[2]), layer = width * rows;
+    const auto row_at = [&](std::size_t j, std::size_t k) {
+        return values.begin() + static_cast<std::ptrdiff_t>(k * layer + j * width);
+    };
+    const auto length = [](std::size_t n) { return static_cast<std::ptrdiff_t>(n); };
+    for (std::size_t k = 0; k < layers; ++k) {
+        for (std::size_t j = 0; along[0] && j < rows; ++j) std::reverse(row_at(j, k), row_at(j, k) + length(width));
+        for (std::size_t j = 0; along[1] && j < rows / 2; ++j)
+            std::swap_ranges(row_at(j, k), row_at(j, k) + length(width), row_at(rows - 1 - j, k));
+    }
+    for (std::size_t k = 0; along[2] && k < layers / 2; ++k)
+        std::swap_ranges(row_at(0, k), row_at(0, k) + length(layer), row_at(0, layers - 1 - k));
+}
+
 Grid sorted(ScanVolume volume, const Axes& file_axis) {
     Grid out;
     out.origin = volume.map.origin;
@@ -37,14 +54,16 @@ Grid sorted(ScanVolume volume, const Axes& file_axis) {
                                                static_cast<std::ptrdiff_t>(volume.size[0]) * volume.size[1]};
     std::array<std::ptrdiff_t, 3> step{};  // in the file, per step of an output axis
     std::ptrdiff_t start = 0;
-    bool same = true;
+    bool same = true;  // but for the direction
+    std::array<bool, 3> mirrored{};
     for (int axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<std::size_t>(axis), from = static_cast<std::size_t>(file_axis[a]);
         const double along = volume.map.step[file_axis[a]][axis];
         out.size[a] = volume.size[from];
         out.spacing[axis] = glm::length(volume.map.step[file_axis[a]]);
         step[a] = along > 0.0 ? stride[from] : -stride[from];
-        same = same && step[a] == stride[a];
+        same = same && from == a;
+        mirrored[a] = along < 0.0;
         if (along < 0.0) {
             start += stride[from] * (out.size[a] - 1);
             out.origin[axis] += along * (out.size[a] - 1);
@@ -52,6 +71,7 @@ Grid sorted(ScanVolume volume, const Axes& file_axis) {
     }
     if (same) {
         out.values = std::move(volume.values);
+        mirror(out.values, out.size, mirrored);
         return out;
     }
     out.values.resize(out.count());

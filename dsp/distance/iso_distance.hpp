@@ -10,7 +10,8 @@ namespace tactus {
 /// Each sample replaced by the mean under a cubic B-spline of one cell's width (weights 1/6, 4/6, 1/6 per axis, border
 /// repeated): standard deviation 0.58 cells. Takes off the staircase that partial volume leaves on an oblique surface
 /// (0.08 cells high), for a shift of an edge of radius R of about cell² / 3R.
-Grid smoothed(const Grid& grid, const RunJobs& run = run_in_turn);
+/// In place when the grid is moved in.
+Grid smoothed(Grid grid, const RunJobs& run = run_in_turn);
 
 /// Signed distance (m, negative where grey ≥ iso) at the samples of `grey` to the surface grey == iso. Within three
 /// cells the distance is to the iso-surface of the tricubic (Catmull-Rom) interpolant, found by Newton steps from a

@@ -54,15 +54,14 @@ struct Found {
     double volume_mm3 = 0.0, p95_mm = 0.0;
 };
 
-Found import_of(const std::filesystem::path& path) {
-    ImportOptions options;
-    options.input = path;
-    options.threshold = 100.0;  // half way
-    options.component = std::to_string(shapes);
-    Found found;
-    ImportSummary summary;
-    found.bone = import_bone(options, {}, &summary);
-    found.volume_mm3 = summary.bone_volume_mm3;
+double exact_volume() {
+    return 4.0 / 3.0 * std::numbers::pi * std::pow(ball_radius, 3) +
+           2.0 * std::numbers::pi * std::numbers::pi * ring_radius * tube_radius * tube_radius +
+           8.0 * wall_half.x * wall_half.y * wall_half.z;
+}
+
+Found measured(Bone bone, const ImportSummary& summary) {
+    Found found{std::move(bone), summary.bone_volume_mm3, 0.0};
     std::vector<double> errors;
     for (const Vec3& vertex : surface_of(found.bone.distance).vertices)
         errors.push_back(std::abs(distance_mm(vertex * 1e3)));
@@ -72,12 +71,20 @@ Found import_of(const std::filesystem::path& path) {
     return found;
 }
 
+Found import_of(const std::filesystem::path& path) {
+    ImportOptions options;
+    options.input = path;
+    options.threshold = 100.0;  // half way
+    options.component = std::to_string(shapes);
+    ImportSummary summary;
+    Bone bone = import_bone(options, {}, &summary);
+    return measured(std::move(bone), summary);
+}
+
 }  // namespace
 
 TEST_CASE("a CT of known shapes comes back within 0.15 voxel and 1 % of volume, the gantry level or tilted") {
-    const double exact = 4.0 / 3.0 * std::numbers::pi * std::pow(ball_radius, 3) +
-                         2.0 * std::numbers::pi * std::numbers::pi * ring_radius * tube_radius * tube_radius +
-                         8.0 * wall_half.x * wall_half.y * wall_half.z;
+    const double exact = exact_volume();
     for (const double tilt : {0.0, 15.0}) {
         const TemporaryFolder folder;
         const WrittenVolume v = scan(tilt);
@@ -97,4 +104,30 @@ TEST_CASE("a CT of known shapes comes back within 0.15 voxel and 1 % of volume, 
             CHECK(glm::length(other.bone.distance.origin - nrrd.bone.distance.origin) < 1e-7);
         }
     }
+}
+
+TEST_CASE(
+    "the same shapes as a label map come back with its CT as well as from the CT, without it within a third of a "
+    "voxel") {
+    const TemporaryFolder folder;
+    const WrittenVolume v = scan(0.0);
+    WrittenVolume labels = v;
+    labels.fill([](const Vec3& p) { return distance_mm(p) < 0.0 ? 1.0 : 0.0; });
+    write_whole_file(folder / "ct.nrrd", nrrd_bytes(v));
+    write_whole_file(folder / "labels.nrrd", nrrd_bytes(labels));
+    const auto found = [&](const std::filesystem::path& ct) {
+        ImportOptions options;
+        options.input = folder / "labels.nrrd";
+        options.label = "all";
+        options.ct = ct;
+        ImportedBone made = std::move(import_labels(options).front());
+        return measured(std::move(made.bone), made.summary);
+    };
+    const double exact = exact_volume();
+    const Found with = found(folder / "ct.nrrd"), without = found({});
+    CAPTURE(with.p95_mm, with.volume_mm3, without.p95_mm, without.volume_mm3, exact);
+    CHECK(with.p95_mm < 0.15 * 0.35);
+    CHECK(with.volume_mm3 == Approx(exact).epsilon(0.01));
+    CHECK(without.p95_mm < 0.6 / 3.0);
+    CHECK(without.volume_mm3 == Approx(exact).epsilon(0.01));
 }

@@ -270,3 +270,12 @@ TEST_CASE("raw samples that look like gzip, big-endian ones and those in a file 
     CHECK(lps_grid(read_volume(place.write("big.nrrd", header + "\n" + samples))).values == read.values);
     CHECK_THROWS_WITH(read_volume(place.write("cut.nrrd", header + "\n" + samples.substr(2))), Contains("cut short"));
 }
+
+TEST_CASE("a DICOM file of a kind with frames that does not count them is refused") {
+    const Place place;
+    std::string bytes = enhanced_dicom_bytes(ramp());
+    const std::size_t at = bytes.find(std::string("\x28\0\x08\0IS", 6));
+    REQUIRE(at != std::string::npos);
+    bytes.erase(at, 8 + static_cast<std::size_t>(bytes[at + 6]));
+    CHECK_THROWS_WITH(read_volume(place.write("v.dcm", bytes)), Contains("does not say how many"));
+}
