@@ -2,6 +2,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
 #include "tools/analysis_options.hpp"
+#include "tools/snap_options.hpp"
 #include "tools/verbs.hpp"
 
 #include <fmt/format.h>
@@ -262,6 +263,8 @@ int command_line(int argc, char** argv) {
     add_equalise(app, equalise);
     AnalysisChoices analysis;
     add_analysis_verbs(app, analysis);
+    SnapChoices fitting;
+    add_snap_verbs(app, fitting);
 
     BenchChoice bench;
     CLI::App* bench_app =
@@ -280,6 +283,8 @@ int command_line(int argc, char** argv) {
         ->capture_default_str()
         ->check(CLI::Range(1, 1000));
     bench_contact_app->add_flag("--json", bench.json, "as JSON");
+    SnapBenchChoice bench_snap;
+    add_snap_bench(*bench_app, bench_snap);
 
     try {
         app.parse(argc, argv);
@@ -292,6 +297,7 @@ int command_line(int argc, char** argv) {
         if (*nodes_app) return nodes_verb(type, nodes_json);
         if (*bench_engine_app) return bench_engine_verb(bench);
         if (*bench_contact_app) return bench_contact_verb(bench);
+        if (bench_app->got_subcommand("snap")) return bench_snap_verb(bench_snap);
         if (*devices_app) return devices_verb(devices_json);
         if (app.got_subcommand("spectrum")) return spectrum_verb(analysis.spectrum);
         if (app.got_subcommand("orders")) return orders_verb(analysis.orders);
@@ -299,6 +305,8 @@ int command_line(int argc, char** argv) {
         if (app.got_subcommand("compare")) return compare_verb(compare);
         if (app.got_subcommand("measure")) return measure_verb(measure);
         if (app.got_subcommand("equalise")) return equalise_verb(equalise);
+        if (app.got_subcommand("fracture")) return fracture_verb(fitting.fracture);
+        if (app.got_subcommand("snap")) return snap_verb(fitting.snap);
         if (app.got_subcommand("info")) return info_verb(info);
         if (app.got_subcommand("export")) return export_verb(bone_export);
         return import_verb(import);

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/library/fragments.hpp"
 
+#include "assets/fracture/rough_surface.hpp"
 #include "dsp/contact/sample_surface.hpp"
-#include "dsp/core/random.hpp"
 #include "dsp/distance/iso_distance.hpp"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace tactus {
 
@@ -17,36 +16,6 @@ namespace {
 
 constexpr double mm = 1e-3;
 constexpr double half_length = 35.0 * mm, half_width = 6.0 * mm, half_height = 12.0 * mm, bend = 1.0 / 0.25;
-
-/// Waves in random directions of the plane, from 9 mm down to 1.5 mm long, shorter ones lower: smooth and rough alike.
-class FractureSurface {
-public:
-    FractureSurface(double roughness, std::uint64_t seed) {
-        const Random random{seed};
-        double power = 0.0;
-        for (std::uint64_t n = 0; n < waves; ++n) {
-            const double length = 9.0 * mm * std::pow(1.5 / 9.0, static_cast<double>(n) / (waves - 1));
-            const double angle = 2.0 * std::numbers::pi * random.uniform(3 * n);
-            wave_[n] = {2.0 * std::numbers::pi / length * std::cos(angle),
-                        2.0 * std::numbers::pi / length * std::sin(angle),
-                        2.0 * std::numbers::pi * random.uniform(3 * n + 1), std::pow(length / (9.0 * mm), 1.3)};
-            power += 0.5 * wave_[n].height * wave_[n].height;
-        }
-        for (Wave& wave : wave_) wave.height *= roughness / std::sqrt(power);
-    }
-    double operator()(double y, double z) const {
-        double height = 0.0;
-        for (const Wave& wave : wave_) height += wave.height * std::sin(wave.y * y + wave.z * z + wave.phase);
-        return height;
-    }
-
-private:
-    static constexpr std::uint64_t waves = 24;
-    struct Wave {
-        double y, z, phase, height;
-    };
-    Wave wave_[waves];
-};
 
 /// First-order distance to the unbroken bar.
 double bar(const Vec3& p) {
@@ -58,7 +27,7 @@ double bar(const Vec3& p) {
     return std::max(side, std::abs(p.x) - half_length);
 }
 
-Bone fragment(double side, const FractureSurface& fracture, const FractureOptions& options) {
+Bone fragment(double side, const RoughSurface& fracture, const FractureOptions& options) {
     const Vec3 margin(3.0 * mm);
     const Vec3 low = Vec3(side < 0.0 ? -half_length : -4.0 * mm, -half_width * 1.2, -half_height) - margin;
     const Vec3 high = Vec3(side < 0.0 ? 4.0 * mm : half_length,
@@ -101,7 +70,7 @@ Bone fragment(double side, const FractureSurface& fracture, const FractureOption
 }  // namespace
 
 std::vector<Bone> make_fragments(const FractureOptions& options) {
-    const FractureSurface fracture(options.roughness, options.seed);
+    const RoughSurface fracture(options.roughness, options.seed);
     return {fragment(-1.0, fracture, options), fragment(1.0, fracture, options)};
 }
 

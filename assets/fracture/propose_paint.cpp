@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/fracture/propose_paint.hpp"
+
+#include "dsp/snap/neighbours.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace tactus {
+
+namespace {
+
+/// Mean of 1 − cos between a point's normal and those nearby.
+std::vector<double> roughness_of(std::span<const SurfacePoint> points, double near) {
+    const Neighbours neighbours(points, near);
+    std::vector<double> rough(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        double sum = 0.0, count = 0.0;
+        neighbours.around(i, [&](std::size_t j) {
+            sum += 1.0 - glm::dot(points[i].normal, points[j].normal);
+            count += 1.0;
+        });
+        rough[i] = sum / count;
+    }
+    return rough;
+}
+
+}  // namespace
+
+std::size_t propose_fracture(std::span<SurfacePoint> points, const ProposalOptions& options) {
+    const std::vector<double> rough = roughness_of(points, options.near);
+    const Neighbours neighbours(points, options.smooth);
+    std::vector<std::uint8_t> broken(points.size(), 0);
+    std::vector<double> nearby;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        // The median keeps a sharp rim, which is rough along a line only, from spreading.
+        nearby.clear();
+        neighbours.around(i, [&](std::size_t j) {
+            if (glm::dot(points[i].normal, points[j].normal) > 0.0) nearby.push_back(rough[j]);
+        });
+        const auto middle = nearby.begin() + static_cast<std::ptrdiff_t>(nearby.size() / 2);
+        std::nth_element(nearby.begin(), middle, nearby.end());
+        broken[i] = *middle > options.roughness;
+    }
+    // Patches that hang together, each kept or left out as a whole.
+    for (SurfacePoint& p : points) p.label = surface_label::none;
+    std::size_t count = 0;
+    for (const auto& patch : patches_of(points, options.near, [&](std::size_t i) { return broken[i] != 0; })) {
+        double area = 0.0;
+        for (const std::size_t i : patch) area += points[i].area;
+        if (area < options.least_area) continue;
+        for (const std::size_t i : patch) points[i].label = surface_label::fracture;
+        count += patch.size();
+    }
+    return count;
+}
+
+}  // namespace tactus

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// A first guess of where a fragment is broken, to be corrected by hand.
+#pragma once
+
+#include "dsp/contact/pointshell.hpp"
+
+#include <cstddef>
+#include <span>
+
+namespace tactus {
+
+struct ProposalOptions {
+    double near = 1.5e-3;      ///< m: how far the roughness of a place is looked at
+    double smooth = 3.0e-3;    ///< m: neighbours this far away vote on it
+    double roughness = 0.06;   ///< mean of 1 − cos of the angle between normals nearby, above which it is broken
+    double least_area = 20e-6;  ///< m², smaller patches are left out
+};
+
+/// Labels the points of rough patches: broken bone is rougher within a millimetre or two than grown bone, which bends
+/// over centimetres. Teeth, sutures and sharp rims are rough as well. Other labels are taken off. Returns how many
+/// points are labelled.
+std::size_t propose_fracture(std::span<SurfacePoint> points, const ProposalOptions& options = {});
+
+}  // namespace tactus

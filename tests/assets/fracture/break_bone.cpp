@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/fracture/break_bone.hpp"
+
+#include "assets/fracture/paint.hpp"
+#include "assets/fracture/propose_paint.hpp"
+#include "dsp/contact/sample_surface.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/operator/hand.hpp"
+
+#include <catch2/catch.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace tactus;
+
+namespace {
+
+constexpr double mm = 1e-3;
+
+/// A bar of 10 by 20 mm elliptic section and 40 mm length, bent upwards.
+Grid bar() {
+    Grid grid{{95, 41, 61}, Vec3(-23.5, -10.0, -15.0) * mm, Vec3(0.5 * mm), {}};
+    for (int k = 0; k < grid.size[2]; ++k)
+        for (int j = 0; j < grid.size[1]; ++j)
+            for (int i = 0; i < grid.size[0]; ++i) {
+                Vec3 p = grid.position(i, j, k);
+                p.y -= 4.0 * p.x * p.x;
+                const double r = std::hypot(p.y / (5.0 * mm), p.z / (10.0 * mm));
+                grid.values.push_back(static_cast<float>(std::max((r - 1.0) * 6.0 * mm, std::abs(p.x) - 20.0 * mm)));
+            }
+    return grid;
+}
+
+double volume(const Grid& solid) {
+    const auto count = std::ranges::count_if(solid.values, [](float d) { return d < 0.0f; });
+    return static_cast<double>(count) * solid.spacing.x * solid.spacing.y * solid.spacing.z;
+}
+
+double volume(const std::vector<Grid>& pieces) {
+    double sum = 0.0;
+    for (const Grid& piece : pieces) sum += volume(piece);
+    return sum;
+}
+
+}  // namespace
+
+TEST_CASE("assets: the pieces of a broken bone make up the bone, less kerf and chips") {
+    const Grid whole = bar();
+    for (const int pieces : {2, 4}) {
+        const std::vector<Grid> parts = break_bone(whole, {.pieces = pieces, .seed = 3});
+        REQUIRE(parts.size() == static_cast<std::size_t>(pieces));
+        CHECK(volume(parts) == Approx(volume(whole)).epsilon(0.01));
+        for (const Grid& part : parts) CHECK(volume(part) > 0.04 * volume(whole));
+    }
+    const double unhurt = volume(break_bone(whole, {.seed = 3}));
+    // An ellipse of 157 mm² and more where the break leans.
+    const double lost = unhurt - volume(break_bone(whole, {.seed = 3, .kerf = 1.0 * mm}));
+    CHECK(lost > 140e-9);
+    CHECK(lost < 300e-9);
+    CHECK(volume(break_bone(whole, {.seed = 3, .chips = 0.3})) < unhurt - 5e-9);
+}
+
+TEST_CASE("assets: the same seed breaks alike, another seed otherwise") {
+    const Grid whole = bar();
+    const std::vector<Grid> a = break_bone(whole, {.pieces = 3, .seed = 5}),
+                            b = break_bone(whole, {.pieces = 3, .seed = 5});
+    REQUIRE(a.size() == b.size());
+    for (std::size_t n = 0; n < a.size(); ++n) CHECK(a[n].values == b[n].values);
+    CHECK(break_bone(whole, {.pieces = 3, .seed = 6})[0].values != a[0].values);
+}
+
+TEST_CASE("assets: what cannot be broken says so") {
+    Grid air = bar();
+    for (float& d : air.values) d = 1.0f;
+    CHECK_THROWS_AS(break_bone(air, {}), Error);
+    CHECK_THROWS_AS(break_bone(bar(), {.pieces = 1}), Error);
+    CHECK_THROWS_AS(break_bone(bar(), {.chips = 1.5}), Error);
+    CHECK_THROWS_AS(break_bone(bar(), {.kerf = -1.0}), Error);
+    CHECK_THROWS_AS(break_bone(bar(), {.pieces = 200}), Error);
+}
+
+TEST_CASE("assets: a scan shows a moved solid where it was put, within a fifth of a voxel") {
+    const Grid whole = bar();
+    const Pose put{Vec3(3.0, -40.0, 7.0) * mm, rotation_by(Vec3(0.3, -0.7, 1.1))};
+    const Grid scan = scan_solid(whole, put, {.voxel = Vec3(0.4 * mm), .noise = 0.02, .seed = 4});
+    const Voxmap truth = make_voxmap(whole);
+    double sum = 0.0, squares = 0.0, count = 0.0;
+    for (const SurfacePoint& p : sample_surface(scan, {.spacing = 1.0 * mm})) {
+        const Vec3 at = put.inverse().apply(p.position);
+        // The flat ends' sharp rims are rounded by any scan.
+        if (std::abs(at.x) > 17.0 * mm) continue;
+        const Sample here = truth.sample(at);
+        const double d = here.value / std::max(glm::length(here.gradient), 0.2);
+        sum += d;
+        squares += d * d;
+        count += 1.0;
+    }
+    REQUIRE(count > 300.0);
+    CHECK(std::abs(sum / count) < 0.08 * mm);
+    CHECK(std::sqrt(squares / count) < 0.12 * mm);
+}
+
+TEST_CASE("assets: paint covers the break and nothing else; a proposal finds most of it") {
+    const Grid whole = bar();
+    const Voxmap map = make_voxmap(whole);
+    const std::vector<Grid> parts = break_bone(whole, {.seed = 3});
+    const Grid scan = scan_solid(parts[0], {}, {.voxel = Vec3(0.4 * mm)});
+    std::vector<SurfacePoint> points = sample_surface(scan, {.spacing = 0.5 * mm});
+    paint_fracture(points, map, {});
+    double painted = 0.0;
+    for (const SurfacePoint& p : points)
+        if (p.label == surface_label::fracture) {
+            painted += p.area;
+            CHECK(map.sample(p.position).value < 0.0);
+        }
+    CHECK(painted > 130e-6);
+    CHECK(painted < 350e-6);
+    std::vector<SurfacePoint> guess = points;
+    propose_fracture(guess);
+    double both = 0.0, proposed = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (guess[i].label != surface_label::fracture) continue;
+        proposed += guess[i].area;
+        if (points[i].label == surface_label::fracture) both += guess[i].area;
+    }
+    CHECK(both > 0.7 * painted);
+    CHECK(both > 0.6 * proposed);
+}

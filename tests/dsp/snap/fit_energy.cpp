@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/snap/fit_energy.hpp"
+
+#include "dsp/snap/hold.hpp"
+#include "tests/dsp/snap/broken_bar.hpp"
+#include "tests/support/realtime_check.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace tactus;
+using namespace tactus::test;
+
+namespace {
+
+Pose nudged(const Pose& pose, std::size_t axis, double by) {
+    Vec3 way(0.0), turn(0.0);
+    (axis < 3 ? way : turn)[static_cast<int>(axis % 3)] = by;
+    return {pose.position + way, glm::normalize(rotation_by(turn) * pose.orientation)};
+}
+
+}  // namespace
+
+TEST_CASE("dsp: the gradient of the fit is the slope of its energy, in every mode") {
+    const Half a = bar_half(-1.0, rough_relief(3)), b = bar_half(1.0, rough_relief(3));
+    const FitSurface moving = a.surface(), fixed = b.surface();
+    FitEnergy energy(moving, fixed);
+    for (const bool is_robust : {true, false}) {
+        energy.law = {};
+        energy.law.kernel = is_robust ? FitKernel::robust : FitKernel::steady;
+        energy.law.scale = 1.0 * mm;
+        energy.law.outline = is_robust ? 0.3 : 0.0;
+        energy.law.two_sided = is_robust;
+        energy.law.strength = is_robust ? 10e3 : 30.0;
+        energy.law.contact = is_robust ? 0.0 : 10e3;
+        for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+            const Pose pose = beside(0.8 * mm, 0.05, seed);
+            energy.look(pose);
+            const ContactSum at = energy(pose, ContactParts::all);
+            for (std::size_t axis = 0; axis < 6; ++axis) {
+                // Small enough that hardly any point changes its cell, where the slope steps.
+                const double step = axis < 3 ? 1e-8 : 1e-6;
+                const double slope = (energy(nudged(pose, axis, step), ContactParts::all).energy -
+                                      energy(nudged(pose, axis, -step), ContactParts::all).energy) /
+                                     (2.0 * step);
+                const double scale = axis < 3 ? energy.law.strength * (is_robust ? 1e-3 : 1.0)
+                                              : energy.law.strength * (is_robust ? 1e-5 : 1e-2);
+                INFO("robust " << is_robust << ", seed " << seed << ", axis " << axis);
+                CHECK(at.gradient[axis] == Approx(slope).epsilon(5e-3).margin(5e-3 * scale));
+            }
+        }
+    }
+}
+
+TEST_CASE("dsp: the stiffness of the fit is symmetric and never negative") {
+    const Half a = bar_half(-1.0, rough_relief(3)), b = bar_half(1.0, rough_relief(3));
+    const FitSurface moving = a.surface(), fixed = b.surface();
+    FitEnergy energy(moving, fixed);
+    energy.law.outline = 0.3;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const Pose pose = beside(2 * mm, 0.1, seed);
+        energy.look(pose);
+        const ContactSum sum = energy(pose, ContactParts::all);
+        for (std::size_t i = 0; i < 6; ++i)
+            for (std::size_t j = 0; j < 6; ++j) CHECK(sum.stiffness[6 * i + j] == sum.stiffness[6 * j + i]);
+        const Eigen6 eigen = eigen_of(sum.stiffness);
+        CHECK(eigen.value[0] > -1e-9 * eigen.value[5]);
+    }
+}
+
+TEST_CASE("dsp: eigenvalues and eigenvectors satisfy their equation") {
+    Matrix6 m{};
+    const Random random{5};
+    for (std::size_t i = 0; i < 6; ++i)
+        for (std::size_t j = i; j < 6; ++j) m[6 * i + j] = m[6 * j + i] = random.normal(6 * i + j);
+    const Eigen6 eigen = eigen_of(m);
+    for (std::size_t n = 0; n < 6; ++n) {
+        if (n > 0) CHECK(eigen.value[n] >= eigen.value[n - 1]);
+        for (std::size_t i = 0; i < 6; ++i) {
+            double sum = 0.0;
+            for (std::size_t j = 0; j < 6; ++j) sum += m[6 * i + j] * eigen.vector[n][j];
+            CHECK(sum == Approx(eigen.value[n] * eigen.vector[n][i]).margin(1e-12));
+        }
+    }
+}
+
+TEST_CASE("dsp: looking and evaluating take no memory") {
+    const Half a = bar_half(-1.0, rough_relief(3)), b = bar_half(1.0, rough_relief(3));
+    const FitSurface moving = a.surface(), fixed = b.surface();
+    FitEnergy energy(moving, fixed);
+    energy.law.outline = 0.3;
+    ContactSum sum;
+    const RealtimeViolations seen = watch([&] {
+        energy.look(Pose{});
+        sum = energy(Pose{}, ContactParts::all);
+    });
+    CHECK(seen.allocations == 0);
+    CHECK(seen.releases == 0);
+    CHECK(sum.evaluated > 100);
+}
+
+TEST_CASE("dsp: quality tells a fit from the same paint a little beside it") {
+    const Half a = bar_half(-1.0, rough_relief(3)), b = bar_half(1.0, rough_relief(3));
+    const FitSurface moving = a.surface(), fixed = b.surface();
+    FitEnergy energy(moving, fixed);
+    const Pose truth{moving.centre - fixed.centre, {1.0, 0.0, 0.0, 0.0}};
+    const Pose beside_it{truth.position + Vec3(0.0, 1.0 * mm, 0.0), truth.orientation};
+    const FitQuality good = energy.quality(truth, 0.2 * mm), bad = energy.quality(beside_it, 0.2 * mm);
+    CHECK(good.score > 0.85);
+    CHECK(good.rms < 0.08 * mm);
+    CHECK(good.penetration < 0.2 * mm);
+    CHECK(good.overlap > 0.8 * moving.area);
+    CHECK(bad.score < 0.6 * good.score);
+    CHECK(bad.penetration > 0.3 * mm);
+}

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// Breaking a bone and putting it together, as scripts do it.
+#include "assets/bone/bone.hpp"
+#include "dsp/core/types.hpp"
+#include "tests/tools/run_command.hpp"
+
+#include <catch2/catch.hpp>
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace tactus;
+using nlohmann::json;
+using tactus::test::Folder;
+using tactus::test::Outcome;
+using tactus::test::slurp;
+
+namespace {
+
+constexpr double mm = 1e-3;
+
+/// A bar of egg-shaped section, 12 by 22 mm and 40 mm long.
+Bone bar() {
+    Bone bone;
+    Grid& grid = bone.distance;
+    grid = {{95, 37, 59}, Vec3(-23.5, -9.0, -14.5) * mm, Vec3(0.5 * mm), {}};
+    for (int k = 0; k < grid.size[2]; ++k)
+        for (int j = 0; j < grid.size[1]; ++j)
+            for (int i = 0; i < grid.size[0]; ++i) {
+                const Vec3 p = grid.position(i, j, k);
+                const double width = 6.0 * mm * (1.0 - 0.2 * p.z / (11.0 * mm));
+                const double r = std::hypot(p.y / width, p.z / (11.0 * mm));
+                grid.values.push_back(static_cast<float>(std::max((r - 1.0) * 7.0 * mm, std::abs(p.x) - 20.0 * mm)));
+            }
+    bone.density = grid;
+    for (float& d : bone.density.values) d = d < 0.0f ? 1500.0f : 0.0f;
+    bone.name = "bar";
+    return bone;
+}
+
+Pose pose_in(const json& j) {
+    const json &p = j["position_mm"], &q = j["quaternion_wxyz"];
+    return {Vec3(p[0].get<double>(), p[1].get<double>(), p[2].get<double>()) * mm,
+            {q[0].get<double>(), q[1].get<double>(), q[2].get<double>(), q[3].get<double>()}};
+}
+
+}  // namespace
+
+TEST_CASE("a bone that fracture broke is put together by snap, and a stranger's half is refused") {
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    save_bone(bar(), file("bar.vdb"));
+    const Outcome broken = folder.tactus("fracture " + file("bar.vdb") + " -o " + file("a") + " --seed 4 --json");
+    INFO(broken.err);
+    REQUIRE(broken.code == 0);
+    const json truth = json::parse(slurp(folder.path / "a/truth.json"));
+    CHECK(json::parse(broken.out) == truth);
+    REQUIRE(truth["fragments"].size() == 2);
+    CHECK(slurp(folder.path / "a/fragment_01.stl").substr(0, 80).find("SPACE=LPS") != std::string::npos);
+    const Pose wanted = pose_in(truth["fragments"][0]["pose"]).inverse() * pose_in(truth["fragments"][1]["pose"]);
+    const std::string fixed = file("a/fragment_01.vdb");
+    for (const std::string mode : {"extended", "global"}) {
+        const Outcome done =
+            folder.tactus("snap " + file("a/fragment_02.vdb") + " " + fixed + " --json --mode " + mode);
+        INFO(mode << " " << done.out << done.err);
+        CHECK(done.code == 0);
+        const json fit = json::parse(done.out);
+        CHECK(fit["verdict"] == "fit");
+        CHECK(fit["free_directions"].empty());
+        CHECK(fit["margin"].get<double>() > 0.2);
+        CHECK(fit["overlap_mm2"].get<double>() > 150.0);
+        const Pose found = pose_in(fit["pose"]);
+        for (const Vec3& corner : {Vec3(20.0, 6.0, 11.0), Vec3(20.0, -6.0, -11.0), Vec3(0.0, 0.0, 11.0)}) {
+            const Vec3 at = pose_in(truth["fragments"][1]["pose"]).inverse().apply(corner * mm);
+            CHECK(glm::length(found.apply(at) - wanted.apply(at)) < 0.2 * mm);
+        }
+    }
+    REQUIRE(folder.tactus("fracture " + file("bar.vdb") + " -o " + file("b") + " --seed 5").code == 0);
+    const Outcome stranger = folder.tactus("snap " + file("b/fragment_02.vdb") + " " + fixed + " --json --mode global");
+    CHECK(stranger.code == 1);
+    CHECK(json::parse(stranger.out)["verdict"] != "fit");
+}
+
+TEST_CASE("snap and fracture refuse what they cannot use with one clear line") {
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    save_bone(bar(), file("bar.vdb"));
+    for (const std::string& arguments : {"snap " + file("bar.vdb") + " " + file("none.vdb"),
+                                         "snap " + file("bar.vdb") + " " + file("bar.vdb") + " --start 1,2",
+                                         "snap " + file("bar.vdb") + " " + file("bar.vdb") + " --start 0,0,0,2,0,0,0",
+                                         "snap " + file("bar.vdb") + " " + file("bar.vdb") + " --paint " +
+                                             folder.write("bad.json", "{\"moving\": 3}").string(),
+                                         "fracture " + file("bar.vdb") + " -o " + file("x") + " --pieces 3 --missing 2",
+                                         std::string("bench snap --seeds 1 --case chiped25")}) {
+        const Outcome done = folder.tactus(arguments);
+        INFO(arguments << "\n" << done.err);
+        CHECK(done.code == 2);
+        CHECK(std::ranges::count(done.err, '\n') == 1);
+    }
+}
