@@ -37,6 +37,7 @@
     X(Scene, contact)                \
     X(Shape, contact)                \
     X(Sine, input)                   \
+    X(SnapToFit, coupling)           \
     X(SphereContact, contact)        \
     X(SphereProxy, coupling)         \
     X(Spring, coupling)              \

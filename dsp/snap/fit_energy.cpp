@@ -53,8 +53,11 @@ double median_of(std::vector<double>& values, std::size_t count, double share) n
 }  // namespace
 
 FitEnergy::FitEnergy(const FitSurface& moving, const FitSurface& fixed)
-    : moving_(moving), fixed_(fixed), sides_{Side{&moving, &fixed, {}}, Side{&fixed, &moving, {}}} {
-    for (Side& side : sides_) side.weight.assign(side.points->position.size(), 0.0);
+    : moving_(moving), fixed_(fixed), sides_{Side{&moving, &fixed, {}, {}}, Side{&fixed, &moving, {}, {}}} {
+    for (Side& side : sides_) {
+        side.weight.assign(side.points->position.size(), 0.0);
+        side.seen.assign(side.points->position.size(), {});
+    }
     links_.resize(moving.outline.size());
     depths_.resize(moving.position.size() + fixed.position.size() + moving.outline.size() + fixed.outline.size());
 }
@@ -65,7 +68,7 @@ void FitEnergy::look(Side& side, const Pose& into) noexcept {
     for (std::size_t i = 0; i < points.position.size(); i += law.stride) {
         side.weight[i] = 0.0;
         const Vec3 at = into.position + turn * points.position[i];
-        const Sample here = field.field.sample(at);
+        const Sample here = side.seen[i] = field.field.sample(at);
         if (!here.inside) continue;
         const double against = -glm::dot(turn * points.normal[i], here.gradient);
         if (!(against > 0.0)) continue;
@@ -99,12 +102,14 @@ void FitEnergy::link(const Pose& pose) noexcept {
 }
 
 void FitEnergy::look(const Pose& pose) noexcept {
+    looked_ = pose;
     look(sides_[0], pose);
     if (law.two_sided) look(sides_[1], pose.inverse());
     link(pose);
 }
 
-void FitEnergy::add(ContactSum& sum, const Side& side, const Pose& pose, const Pose& into, double sign) noexcept {
+void FitEnergy::add(ContactSum& sum, const Side& side, const Pose& pose, const Pose& into, double sign,
+                    Reading reading) noexcept {
     const Mat3 turn = glm::mat3_cast(into.orientation);
     const FitSurface& points = *side.points;
     const Voxmap& field = side.field->field;
@@ -112,7 +117,8 @@ void FitEnergy::add(ContactSum& sum, const Side& side, const Pose& pose, const P
     for (std::size_t i = 0; i < points.position.size(); i += law.stride) {
         const double weight = side.weight[i];
         if (!(weight > 0.0) && !(law.contact > 0.0)) continue;
-        const Sample here = field.sample(into.position + turn * points.position[i]);
+        const Sample here =
+            reading == Reading::seen ? side.seen[i] : field.sample(into.position + turn * points.position[i]);
         if (!here.inside) continue;
         Pull pull = law.kernel == FitKernel::robust ? robust(law, here.value) : steady(law, here.value);
         pull = {weight * pull.energy, weight * pull.force, weight * pull.stiffness};
@@ -147,15 +153,19 @@ void FitEnergy::add_outline(ContactSum& sum, const Pose& pose) const noexcept {
     }
 }
 
-ContactSum FitEnergy::operator()(const Pose& pose, ContactParts) noexcept {
+ContactSum FitEnergy::sum_of(const Pose& pose, Reading reading) noexcept {
     ContactSum sum;
-    add(sum, sides_[0], pose, pose, 1.0);
-    if (law.two_sided) add(sum, sides_[1], pose, pose.inverse(), -1.0);
+    add(sum, sides_[0], pose, pose, 1.0, reading);
+    if (law.two_sided) add(sum, sides_[1], pose, pose.inverse(), -1.0, reading);
     add_outline(sum, pose);
     for (std::size_t a = 0; a < 6; ++a)
         for (std::size_t b = 0; b < a; ++b) sum.stiffness[6 * a + b] = sum.stiffness[6 * b + a];
     return sum;
 }
+
+ContactSum FitEnergy::operator()(const Pose& pose, ContactParts) noexcept { return sum_of(pose, Reading::fresh); }
+
+ContactSum FitEnergy::at_look() noexcept { return sum_of(looked_, Reading::seen); }
 
 FitQuality FitEnergy::quality(const Pose& pose, double sigma) noexcept {
     FitQuality q;

@@ -63,6 +63,8 @@ public:
     void look(const Pose& pose) noexcept;
     /// Energy, gradient and stiffness about the origin of the moving frame: what a coupling takes for a contact.
     ContactSum operator()(const Pose& pose, ContactParts parts) noexcept;
+    /// The same at the pose last looked at, without reading the fields once more.
+    ContactSum at_look() noexcept;
     double clearance(const Pose&) const noexcept { return 0.0; }
 
     /// `sigma`, m: the distance at which a point counts 0.6. Takes no notice of the law.
@@ -72,7 +74,9 @@ private:
     struct Side {
         const FitSurface *points, *field;
         std::vector<double> weight;
+        std::vector<Sample> seen;  ///< of the field, at the pose last looked at
     };
+    enum class Reading { fresh, seen };
     struct Link {
         Vec3 from{0.0}, to{0.0}, along{0.0};  ///< moving frame, fixed frame, fixed frame
         double weight = 0.0;
@@ -80,7 +84,9 @@ private:
 
     void look(Side& side, const Pose& into) noexcept;
     void link(const Pose& pose) noexcept;
-    void add(ContactSum& sum, const Side& side, const Pose& pose, const Pose& into, double sign) noexcept;
+    ContactSum sum_of(const Pose& pose, Reading reading) noexcept;
+    void add(ContactSum& sum, const Side& side, const Pose& pose, const Pose& into, double sign,
+             Reading reading) noexcept;
     void add_outline(ContactSum& sum, const Pose& pose) const noexcept;
 
     const FitSurface &moving_, &fixed_;
@@ -88,6 +94,7 @@ private:
     std::vector<Link> links_;
     std::vector<double> depths_;
     std::size_t link_count_ = 0;
+    Pose looked_;
 };
 
 }  // namespace tactus

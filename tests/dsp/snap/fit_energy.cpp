@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/snap/fit_energy.hpp"
 
+#include "dsp/snap/fit.hpp"
+#include "dsp/snap/held_fit.hpp"
 #include "dsp/snap/hold.hpp"
 #include "tests/dsp/snap/broken_bar.hpp"
 #include "tests/support/realtime_check.hpp"
@@ -111,4 +113,36 @@ TEST_CASE("dsp: quality tells a fit from the same paint a little beside it") {
     CHECK(good.overlap > 0.8 * moving.area);
     CHECK(bad.score < 0.6 * good.score);
     CHECK(bad.penetration > 0.3 * mm);
+}
+
+TEST_CASE("dsp: what was seen at the last look gives the same sum, and the held fit carries it to the handle") {
+    const Half a = bar_half(-1.0, rough_relief(3)), b = bar_half(1.0, rough_relief(3));
+    const FitSurface moving = a.surface(), fixed = b.surface();
+    FitEnergy energy(moving, fixed);
+    energy.law.outline = 0.3;
+    const Pose pose = beside(0.8 * mm, 0.05, 2);
+    energy.look(pose);
+    const ContactSum fresh = energy(pose, ContactParts::all), seen = energy.at_look();
+    CHECK(fresh.energy == seen.energy);
+    CHECK(fresh.gradient == seen.gradient);
+    CHECK(fresh.stiffness == seen.stiffness);
+
+    // The fixed half stands askew in the world, the handle is 40 mm from the moving one.
+    HeldContact nothing(64);
+    HeldFit fit(nothing, &energy);
+    const Pose stands{Vec3(0.1, 0.2, -0.1), rotation_by({0.4, -1.0, 0.3})};
+    const Pose grip{Vec3(0.0, 30.0, -25.0) * mm, rotation_by({0.2, 0.1, -0.5})};
+    const Pose handle = stands * between_bodies(moving, fixed, pose) * grip.inverse();
+    fit.look(handle, grip, stands, 1.0);
+    const auto energy_at = [&](const Pose& where) {
+        return energy(between_centres(moving, fixed, stands.inverse() * where * grip), ContactParts::all).energy;
+    };
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+        const double step = axis < 3 ? 1e-7 : 1e-6;
+        const double slope =
+            (energy_at(nudged(handle, axis, step)) - energy_at(nudged(handle, axis, -step))) / (2.0 * step);
+        CHECK(fit.pull().gradient[axis] == Approx(slope).epsilon(0.02).margin(axis < 3 ? 0.05 : 0.002));
+        const ContactSum at = fit(nudged(handle, axis, step), ContactParts::all);
+        CHECK((at.energy - fit.pull().energy) / step == Approx(fit.pull().gradient[axis]).epsilon(1e-2).margin(1e-2));
+    }
 }

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/coupling/quantile.hpp"
+#include "dsp/coupling/quasi_static.hpp"
+#include "dsp/snap/fit.hpp"
+#include "dsp/snap/held_fit.hpp"
+#include "graph/assets.hpp"
+#include "graph/node.hpp"
+#include "nodes/contact/contact_parameters.hpp"
+#include "nodes/coupling/held_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace tactus::nodes {
+
+struct SnapToFit {
+    static constexpr auto about =
+        "Holds a fragment by two springs while its painted fracture is drawn to that of another: every tick it stands "
+        "where pull, contact and springs balance, and the hand can always pull it away. Without paint on both it holds "
+        "alone.";
+
+    In<Pose> device{"the hand in the scene", "m"};
+    In<tactus::Scene> scene{"the fragments and all else that can be touched"};
+    In<Pose> grip{optional, "held body in the frame of the hand; unconnected: its own frame", "m"};
+    In<bool> holding{optional, "false: the body stays where it was let go; unconnected: held all the time"};
+    In<double> strength{optional, "share of the force that is felt, 0 to 1; unconnected: all of it"};
+    In<bool> engaged{optional, "the pull is wanted; unconnected: all the time"};
+    In<bool> settle{optional, "the springs give way, so that the fit is not biased by the hand"};
+    Out<Wrench> wrench{"on the hand, about its origin", "N, N m"};
+    Out<Pose> pose{"of the held body: the proxy", "m"};
+    Out<double> place{"of the held body in the scene, -1 when there is none"};
+    Out<double> score{"of the fit, 0 to 1: share of both paints that lie on each other; ten times a second"};
+    Out<double> pull{"that draws the fragment", "N"};
+    Out<double> penetration{"of the deepest point", "m"};
+    Out<double> residual{"of the balance", "N"};
+    Out<bool> in_contact{"some point has a force"};
+    Asset<Bone> moving{"the fragment that is held, with painted points"};
+    Asset<Bone> fixed{"the one it is drawn to"};
+    Param held{"1", "-1", "7", "place of the held body in the scene; grasp drives it"};
+    Param target{"0", "0", "7", "place of the other fragment"};
+    Choice mode{{"extended", "thesis"}, "extended: both paints, robust, narrowing; thesis: a steady pull of one"};
+    Param force{"10 N", "0 N", "100 N", "the pull of all painted points together, at most"};
+    Param reach{"4 mm", "0.1 mm", "12 mm", "no pull from farther away"};
+    Param fade{"100 ms", "1 ms", "10 s", "in which pull and springs come and go"};
+    Param stiffness{"1 N/mm", "0 N/mm", "20 N/mm", "of the spring to the hand"};
+    Param angular_stiffness{"1 N m/rad", "0 N m/rad", "100 N m/rad", "of the spring that turns"};
+    Param max_force{"10 N", "0 N", "100 N", "the spring pulls no harder"};
+    Param max_torque{"0.5 N m", "0 N m", "20 N m", "the spring turns no harder"};
+    Param iterations{"4", "1", "50", "most steps of the solver in one tick"};
+    Param tolerance{"0.001 N", "0 N", "1 N", "residual that counts as balanced"};
+    Param step{"0.5 mm", "0.001 mm", "20 mm",
+               "farthest that one step may move a point beyond what is free; at most half of the thinnest walls"};
+    ContactParameters contact;
+
+    void prepare(const Setup&) {
+        contact_.emplace(contact.make());
+        moving_paint_ = surface_of(*moving);
+        fixed_paint_ = surface_of(*fixed);
+        energy_.reset();
+        if (moving_paint_ && fixed_paint_) energy_.emplace(*moving_paint_, *fixed_paint_);
+        fit_.emplace(*contact_, energy_ ? &*energy_ : nullptr);
+        place = -1.0;
+    }
+
+    void process(const Tick& tick) noexcept {
+        hold_.update(scene, held, holding, strength);
+        const Pose in_hand = grip.connected && is_valid(grip.get()) ? grip.get() : Pose{};
+        contact.set(*contact_, scene, hold_.place, in_hand);
+        if (hold_.taken) take();
+        const double change = tick.elapsed_seconds() / fade;
+        const auto follow = [change](double value, bool wanted) {
+            return std::clamp(value + (wanted ? change : -change), 0.0, 1.0);
+        };
+        drawn_ = follow(drawn_, hold_.holds && (!engaged.connected || engaged.get()));
+        sprung_ = follow(sprung_, !(settle.connected && settle.get()));
+        set_up();
+        if (hold_.holds) solve(in_hand, tick.elapsed_seconds());
+        else let_go();
+        place = hold_.place;
+    }
+
+    void report(Report& report) const {
+        report.set("snap", "painted_points",
+                   energy_ ? static_cast<double>(moving_paint_->position.size() + fixed_paint_->position.size()) : 0.0);
+        report.set("snap", "score", score_);
+        report.set("snap", "pull_max_N", most_pull_);
+        report.set("snap", "residual_p99_N", residuals_.quantile(0.99));
+        report.set("snap", "penetration_max_mm", deepest_ * 1e3);
+    }
+
+private:
+    static std::optional<FitSurface> surface_of(const Bone& bone) {
+        const auto painted = std::ranges::count_if(
+            bone.points, [](const SurfacePoint& p) { return p.label == surface_label::fracture; });
+        if (painted < 30) return std::nullopt;
+        return make_fit_surface(bone.points, bone.distance);
+    }
+
+    void take() noexcept {
+        solver_.reset(device);
+        drawn_ = 0.0;
+        sprung_ = 1.0;
+        scale_ = 0.5 * reach;
+    }
+
+    void set_up() noexcept {
+        QuasiStaticSettings& s = solver_.settings;
+        s.springs = {{stiffness * sprung_, max_force * sprung_}, {angular_stiffness * sprung_, max_torque * sprung_}};
+        s.iterations = static_cast<int>(iterations);
+        s.tolerance = tolerance;
+        s.step = step;
+        s.reach = contact_->reach();
+        s.gyration = contact_->gyration();
+    }
+
+    void set_law() noexcept {
+        FitLaw& law = energy_->law;
+        law.reach = reach;
+        law.two_sided = law.gated = mode.index == 0;
+        law.kernel = mode.index == 0 ? FitKernel::robust : FitKernel::steady;
+        law.outline = mode.index == 0 ? 0.3 : 0.0;
+        law.scale = scale_;
+        // The robust kernel's force is greatest at scale / √3, where it is 0.325 of strength × scale, on each side.
+        law.strength = mode.index == 0 ? force / (0.65 * scale_) : force.value;
+    }
+
+    void solve(const Pose& in_hand, double elapsed) noexcept {
+        const auto other = static_cast<std::size_t>(target);
+        const bool has_pull = energy_ && other < scene->count && other != static_cast<std::size_t>(hold_.place) &&
+                              is_valid(scene->objects[other].pose);
+        fit_->forget();
+        Pose moving_file, fixed_file;
+        if (has_pull) {
+            set_law();
+            const auto file_of = [](const SceneObject& o) { return o.body.home.inverse(); };
+            moving_file = in_hand * file_of(scene->objects[static_cast<std::size_t>(hold_.place)]);
+            fixed_file = scene->objects[other].pose * file_of(scene->objects[other]);
+            fit_->look(solver_.state().proxy, moving_file, fixed_file, drawn_);
+            narrow(elapsed);
+        }
+        const QuasiStaticState& now = solver_.update(device, *fit_);
+        const auto& g = fit_->pull().gradient;
+        const double drawing = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+        wrench = now.wrench * hold_.strength;
+        pose = now.proxy * in_hand;
+        pull = drawing;
+        penetration = now.contact.penetration;
+        residual = now.residual;
+        in_contact = now.contact.in_contact > 0;
+        last_ = now.wrench;
+        residuals_.add(now.residual);
+        deepest_ = std::max(deepest_, now.contact.penetration);
+        most_pull_ = std::max(most_pull_, drawing);
+        if (has_pull && ticks_++ % score_every == 0) {
+            energy_->law.stride = std::max<std::size_t>(1, moving_paint_->position.size() / 300);
+            score_ = energy_
+                         ->quality(between_centres(*moving_paint_, *fixed_paint_,
+                                                   fixed_file.inverse() * (now.proxy * moving_file)),
+                                   0.2e-3)
+                         .score;
+            energy_->law.stride = 1;
+        }
+        score = score_;
+    }
+
+    /// The scale follows how far the paints are apart, so that what does not match stops counting as they meet.
+    void narrow(double elapsed) noexcept {
+        const double apart = drawn_ > 0.0 ? std::sqrt(fit_->pull().energy / (drawn_ * energy_->law.strength)) : reach;
+        const double wanted = std::clamp(2.0 * apart, 0.25e-3, std::max(0.25e-3, 0.5 * reach));
+        scale_ += (wanted - scale_) * std::min(1.0, elapsed / 0.05);
+    }
+
+    /// The body stays; its last force fades with the strength.
+    void let_go() noexcept {
+        wrench = last_ * hold_.strength;
+        pull = 0.0;
+        penetration = 0.0;
+        residual = 0.0;
+        in_contact = false;
+        if (hold_.strength == 0.0) last_ = {};
+    }
+
+    static constexpr std::uint64_t score_every = 100;
+    std::optional<HeldContact> contact_;
+    std::optional<FitSurface> moving_paint_, fixed_paint_;
+    std::optional<FitEnergy> energy_;
+    std::optional<HeldFit> fit_;
+    tactus::QuasiStaticCoupling solver_;
+    Hold hold_;
+    Wrench last_;
+    SizeCounts residuals_;
+    double drawn_ = 0.0, sprung_ = 1.0, scale_ = 2e-3, score_ = 0.0, deepest_ = 0.0, most_pull_ = 0.0;
+    std::uint64_t ticks_ = 0;
+};
+
+TACTUS_NODE(SnapToFit, device, scene, grip, holding, strength, engaged, settle, wrench, pose, place, score, pull,
+            penetration, residual, in_contact, moving, fixed, held, target, mode, force, reach, fade, stiffness,
+            angular_stiffness, max_force, max_torque, iterations, tolerance, step, contact)
+
+}  // namespace tactus::nodes

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/library/fragments.hpp"
+#include "dsp/contact/pointshell.hpp"
+#include "dsp/coupling/scene.hpp"
+#include "dsp/operator/hand.hpp"
+#include "tests/support/node_harness.hpp"
+
+#include <catch2/catch.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+using namespace tactus;
+using test::NodeHarness;
+
+namespace {
+
+constexpr double mm = 1e-3;
+constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
+
+/// The bundled fracture, coarse: where both halves stand fitted, as bodies and as bones.
+struct Fracture {
+    std::shared_ptr<const Bone> left, right;
+    Pointshell shells[2];
+    Voxmap maps[2];
+    Scene scene;
+
+    Fracture() {
+        std::vector<Bone> bones = make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
+        left = std::make_shared<const Bone>(std::move(bones[0]));
+        right = std::make_shared<const Bone>(std::move(bones[1]));
+        scene.count = 2;
+        for (std::size_t n = 0; n < 2; ++n) {
+            const Bone& bone = n == 0 ? *left : *right;
+            shells[n] = make_pointshell(bone.points);
+            maps[n] = make_voxmap(bone.distance);
+            scene.objects[n] = {{&shells[n], &maps[n], nullptr, {}, 1, n + 1}, {}};
+        }
+        scene.version = 1;
+        scene.content_hash = hash_of(scene);
+    }
+};
+
+const Fracture& fracture() {
+    static const Fracture made;
+    return made;
+}
+
+/// Held two centimetres from its break.
+const Pose grip{Vec3(-20.0 * mm, 0.0, 0.0), {1.0, 0.0, 0.0, 0.0}};
+
+double off(const Pose& pose) {
+    const Vec3 corners[] = {{0.0, 0.0, 12.0 * mm}, {30.0 * mm, 0.0, 0.0}, {0.0, 6.0 * mm, -12.0 * mm}};
+    double most = 0.0;
+    for (const Vec3& c : corners) most = std::max(most, glm::length(pose.apply(c) - c));
+    return most;
+}
+
+struct Session {
+    NodeHarness node{"snap_to_fit", servo};
+
+    template <class Hand>
+    Session(const Hand& hand, std::int64_t ticks, std::int64_t engage, std::int64_t settle) {
+        node.asset("moving", fracture().right).asset("fixed", fracture().left);
+        node.set("held", "1").set("target", "0");
+        node.feed("scene", fracture().scene);
+        node.feed<Pose>("device", hand);
+        node.feed("grip", grip);
+        node.feed<bool>("engaged", [engage](std::int64_t k) { return k >= engage; });
+        node.feed<bool>("settle", [settle](std::int64_t k) { return k >= settle; });
+        node.disconnect("holding").disconnect("strength");
+        node.prepare();
+        node.run(ticks);
+    }
+};
+
+/// 1.5 mm and 4 degrees away from the fit, the hand still.
+const Pose beside = Pose{Vec3(1.2, 0.6, -0.7) * mm, rotation_by({0.05, 0.03, -0.04})} * grip.inverse();
+
+}  // namespace
+
+TEST_CASE("a fragment held beside its place is drawn there, and settles where the hand does not bias it") {
+    Session session([](std::int64_t) { return beside; }, 1600, 100, 900);
+    const auto poses = session.node.values<Pose>("pose");
+    const auto felt = session.node.values<Wrench>("wrench");
+    CHECK(off(poses[99]) > 1.2 * mm);
+    CHECK(off(poses[880]) < 0.6 * off(poses[99]));
+    CHECK(off(poses.back()) < 0.15 * mm);
+    CHECK(session.node.last<double>("score") > 0.7);
+    // Felt while held, gone once the springs gave way, and never in steps.
+    CHECK(glm::length(felt[880].force) > 0.3);
+    CHECK(glm::length(felt.back().force) < 1e-6);
+    double step = 0.0, ripple = 0.0;
+    for (std::size_t k = 1; k < felt.size(); ++k) step = std::max(step, glm::length(felt[k].force - felt[k - 1].force));
+    for (std::size_t k = 780; k < 880; ++k) ripple = std::max(ripple, glm::length(felt[k].force - felt[880].force));
+    CHECK(step < 0.5);
+    CHECK(ripple < 5e-3);
+}
+
+TEST_CASE("the hand can always pull a fragment out of its fit") {
+    // Fitted first, then drawn away by 20 mm within a second.
+    Session session(
+        [](std::int64_t k) {
+            const double away = std::clamp(0.02 * static_cast<double>(k - 500), 0.0, 20.0) * mm;
+            return Pose{Vec3(away, 0.0, 0.0), {1.0, 0.0, 0.0, 0.0}} * grip.inverse();
+        },
+        1700, 0, 1'000'000);
+    const auto felt = session.node.values<Wrench>("wrench");
+    double most = 0.0;
+    for (const Wrench& w : felt) most = std::max(most, glm::length(w.force));
+    CHECK(most > 2.0);
+    CHECK(most < 10.5);
+    CHECK(glm::length(felt.back().force) < 0.05);
+    CHECK(session.node.last<Pose>("pose").position.x == Approx(20.0 * mm).margin(0.1 * mm));
+}
