@@ -24,6 +24,12 @@ namespace tactus {
 
 namespace {
 
+/// As {position_mm, quaternion_wxyz}.
+nlohmann::ordered_json pose_json(const Pose& pose) {
+    const PoseNumbers numbers = numbers_of(pose);
+    return {{"position_mm", numbers.position_mm}, {"quaternion_wxyz", numbers.quaternion_wxyz}};
+}
+
 double volume_of_solid(const Grid& solid) {
     const auto inside = std::ranges::count_if(solid.values, [](float d) { return d < 0.0f; });
     return static_cast<double>(inside) * solid.spacing.x * solid.spacing.y * solid.spacing.z;

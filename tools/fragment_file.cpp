@@ -4,8 +4,6 @@
 #include "assets/bone/import.hpp"
 #include "tools/workers.hpp"
 
-#include <nlohmann/json.hpp>
-
 namespace tactus {
 
 Bone bone_of_file(const std::filesystem::path& path) {
@@ -16,10 +14,10 @@ Bone bone_of_file(const std::filesystem::path& path) {
     return import_bone(options);
 }
 
-nlohmann::ordered_json pose_json(const Pose& pose) {
+PoseNumbers numbers_of(const Pose& pose) {
     const Vec3 p = pose.position * 1e3;
     const Quat q = pose.orientation.w < 0.0 ? -pose.orientation : pose.orientation;
-    return {{"position_mm", {p.x, p.y, p.z}}, {"quaternion_wxyz", {q.w, q.x, q.y, q.z}}};
+    return {{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}};
 }
 
 }  // namespace tactus

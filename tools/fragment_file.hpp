@@ -4,16 +4,19 @@
 
 #include "assets/bone/bone.hpp"
 
+#include <array>
 #include <filesystem>
-
-#include <nlohmann/json_fwd.hpp>
 
 namespace tactus {
 
 /// A bone file ("FILE.vdb#NAME" for one of several), or what import makes of a mesh or a CT.
 Bone bone_of_file(const std::filesystem::path& path);
 
-/// {position_mm, quaternion_wxyz}, w not negative.
-nlohmann::ordered_json pose_json(const Pose& pose);
+/// A pose as files and programs are told it; w not negative.
+struct PoseNumbers {
+    std::array<double, 3> position_mm;
+    std::array<double, 4> quaternion_wxyz;
+};
+PoseNumbers numbers_of(const Pose& pose);
 
 }  // namespace tactus

@@ -85,6 +85,12 @@ Pose start_of(const std::string& text) {
     return {pose.position, glm::normalize(pose.orientation)};
 }
 
+/// As {position_mm, quaternion_wxyz}.
+nlohmann::ordered_json pose_json(const Pose& pose) {
+    const PoseNumbers numbers = numbers_of(pose);
+    return {{"position_mm", numbers.position_mm}, {"quaternion_wxyz", numbers.quaternion_wxyz}};
+}
+
 Json json_of(const Fit& fit) {
     Json free = Json::array();
     for (const FreeDirection& f : fit.free)
