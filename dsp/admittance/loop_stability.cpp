@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace tactus {
@@ -39,14 +40,15 @@ State advance(const LoopModel& m, const HeldStep& object, int delay, const State
 }
 
 LoopModel with(LoopModel model, const ObjectSettings& object, bool in_contact) noexcept {
-    model.is_wall = in_contact && object.kind == ObjectKind::wall;
+    // Where no hand pushes back, the object stands outside of the loop, as a wall does.
+    model.is_wall = (in_contact && object.kind == ObjectKind::wall) || !(model.hand_stiffness > 0.0);
     model.stiffness = in_contact ? object.stiffness : 0.0;
     model.damping = in_contact ? object.damping : object.free_damping;
     model.mass = object.mass;
     if (in_contact && object.kind == ObjectKind::table) {
         model.stiffness = object.table->least_stiffness();
         model.damping = model.mass = 0.0;
-        model.is_wall = !std::isfinite(model.stiffness);
+        model.is_wall = model.is_wall || !std::isfinite(model.stiffness);
     }
     return model;
 }
@@ -68,26 +70,54 @@ LoopMatrix loop_matrix(const LoopModel& model) noexcept {
     return matrix;
 }
 
-double spectral_radius(LoopMatrix a) noexcept {
-    const std::size_t n = a.size;
-    double log_radius = 0.0, share = 1.0;
-    for (int squaring = 0; squaring < 24; ++squaring, share *= 0.5) {
-        double norm = 0.0;
-        for (std::size_t i = 0; i < n; ++i)
-            for (std::size_t j = 0; j < n; ++j) norm = std::max(norm, std::abs(a.at[i][j]));
-        if (!(norm > 0.0)) return 0.0;
-        if (!std::isfinite(norm)) return norm;
-        log_radius += share * std::log(norm);
+namespace {
+
+/// Largest absolute row sum: no eigenvalue is larger.
+double norm_of(const LoopMatrix& a) noexcept {
+    double most = 0.0;
+    for (std::size_t i = 0; i < a.size; ++i) {
+        double sum = 0.0;
+        for (std::size_t j = 0; j < a.size; ++j) sum += std::abs(a.at[i][j]);
+        most = std::max(most, sum);
+    }
+    return most;
+}
+
+/// ‖A^(2^n)‖^(1/2^n) for n up to `squarings`, or until `decided(log of it, share 1/2^n)`.
+template <class Decided>
+double log_radius(LoopMatrix a, int squarings, Decided&& decided) noexcept {
+    double scaled = 0.0, share = 1.0;  // log of what was divided out, per power of A
+    for (int n = 0;; ++n, share *= 0.5) {
+        const double norm = norm_of(a);
+        if (!(norm > 0.0)) return -std::numeric_limits<double>::infinity();
+        if (!std::isfinite(norm)) return std::numeric_limits<double>::infinity();
+        const double bound = scaled + share * std::log(norm);
+        if (n == squarings || decided(bound, share)) return bound;
+        scaled = bound;
         LoopMatrix square;
-        square.size = n;
-        for (std::size_t i = 0; i < n; ++i)
-            for (std::size_t k = 0; k < n; ++k) {
+        square.size = a.size;
+        for (std::size_t i = 0; i < a.size; ++i)
+            for (std::size_t k = 0; k < a.size; ++k) {
                 const double f = a.at[i][k] / norm;
-                for (std::size_t j = 0; j < n; ++j) square.at[i][j] += f * (a.at[k][j] / norm);
+                if (f == 0.0) continue;
+                for (std::size_t j = 0; j < a.size; ++j) square.at[i][j] += f * (a.at[k][j] / norm);
             }
         a = square;
     }
-    return std::exp(log_radius);
+}
+
+}  // namespace
+
+double spectral_radius(const LoopMatrix& matrix) noexcept {
+    return std::exp(log_radius(matrix, 24, [](double, double) { return false; }));
+}
+
+bool is_stable(const LoopModel& model) noexcept {
+    // A power whose norm is below 1 proves that the loop is stable; one whose norm is a billion would need a
+    // transient that no such loop has.
+    const double margin = std::log1p(-1e-6);
+    return log_radius(loop_matrix(model), 24,
+                      [margin](double bound, double share) { return bound < margin || bound > 20.0 * share; }) < margin;
 }
 
 double gain_limit(LoopModel model) noexcept {
@@ -102,9 +132,9 @@ double gain_limit(LoopModel model) noexcept {
     double high = low;
     while (high < most && stable_at(high)) {
         low = high;
-        high *= 1.25;
+        high *= 1.5;
     }
-    for (int halving = 0; halving < 30; ++halving) {
+    for (int halving = 0; halving < 20; ++halving) {
         const double middle = 0.5 * (low + high);
         (stable_at(middle) ? low : high) = middle;
     }

@@ -35,9 +35,10 @@ struct LoopMatrix {
 LoopMatrix loop_matrix(const LoopModel& model) noexcept;
 
 /// Largest modulus of an eigenvalue, by Gelfand's formula: ‖A^(2^n)‖^(1/2^n). Real-time safe.
-double spectral_radius(LoopMatrix matrix) noexcept;
+double spectral_radius(const LoopMatrix& matrix) noexcept;
 
-inline bool is_stable(const LoopModel& model) noexcept { return spectral_radius(loop_matrix(model)) < 1.0 - 1e-6; }
+/// The largest eigenvalue is below 1 − 1e-6. Real-time safe.
+bool is_stable(const LoopModel& model) noexcept;
 
 /// The gain, 1/s, up to which the loop is stable, whatever `model.gain` is; 0 when it never is. Real-time safe.
 double gain_limit(LoopModel model) noexcept;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dsp/filter/one_pole.hpp"
+#include "dsp/gripper/walking_motor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,7 @@ enum class WaveControl : std::uint8_t { frequency, phase, amplitude };
 
 /// The thesis fixes that the speed falls off the resonance and off 90°, that the sign of the phase is the direction, and
 /// that amplitude works too; and the gripper's encoder. Assumed, with the range over which findings must hold:
-/// max_speed 0.4 to 0.8 m/s, least_speed 15 to 30 mm/s, dead_zone 5 to 15 mm/s, lag 3 to 10 ms, holding force 2 to 4 N.
+/// max_speed 0.4 to 0.8 m/s, least_speed 15 to 30 mm/s, dead_zone 5 to 15 mm/s, lag 3 to 10 ms, holding force 2.5 to 4 N.
 struct WaveMotorSettings {
     double resonance = 40e3;  ///< Hz
     double width = 800.0;  ///< Hz above the resonance at which the speed is 1/√2
@@ -74,9 +75,7 @@ struct WaveMotor {
         const double driven = free ? 0.0 : speed_of(drive_for(wanted));
         speed += lag_share(settings.lag, h) * (driven - speed);
         if (free) return speed + load / settings.low_friction;
-        const double excess = std::abs(load) - settings.holding_force;
-        slips = excess > 0.0;
-        return speed + (slips ? std::copysign(excess / settings.slip_damping, load) : 0.0);
+        return yielding(speed, load, settings.holding_force, settings.slip_damping, slips);
     }
 };
 

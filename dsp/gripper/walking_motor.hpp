@@ -23,6 +23,15 @@ struct WalkingMotorSettings {
     double max_speed() const noexcept { return step * drive_limit * leverage; }  ///< m/s at the finger
 };
 
+/// Speed of a finger whose motor gives it `speed` by friction: what a load beyond the holding force does to it, the
+/// motor cannot undo.
+inline double yielding(double speed, double load, double holding_force, double slip_damping, bool& slips) noexcept {
+    const double excess = std::abs(load) - holding_force;
+    slips = excess > 0.0;
+    if (!slips) return speed;
+    return std::copysign(std::max(excess / slip_damping, std::copysign(1.0, load) * speed), load);
+}
+
 struct WalkingMotor {
     WalkingMotorSettings settings;
     double speed = 0.0;  ///< m/s, of the legs, at the finger
@@ -35,9 +44,7 @@ struct WalkingMotor {
         limited = std::abs(drive) > settings.drive_limit * (1.0 + 1e-9);
         const double cycles = std::clamp(drive, -settings.drive_limit, settings.drive_limit);
         speed += lag_share(settings.lag, h) * (cycles * settings.step * settings.leverage - speed);
-        const double excess = std::abs(load) - settings.holding_force;
-        slips = excess > 0.0;
-        return speed + (slips ? std::copysign(excess / settings.slip_damping, load) : 0.0);
+        return yielding(speed, load, settings.holding_force, settings.slip_damping, slips);
     }
 };
 

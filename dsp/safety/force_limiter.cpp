@@ -25,6 +25,8 @@ const char* describe(Fault fault) noexcept {
         case Fault::invalid_input: return "the device delivered an invalid sample";
         case Fault::late_commit: return "no force arrived in time";
         case Fault::sound_lost: return "the sound card was lost";
+        case Fault::stuck_encoder: return "the motor was told to run and the encoder stood still";
+        case Fault::beyond_drive_limit: return "a motor was told to run faster than it may";
     }
     return "unknown fault";
 }

@@ -22,7 +22,16 @@ struct ForceLimits {
     double fade_s = 0.01;             ///< from a fault to zero; may be steeper than the slew limits
 };
 
-enum class Fault : std::uint8_t { none, not_finite, stale_input, invalid_input, late_commit, sound_lost };
+enum class Fault : std::uint8_t {
+    none,
+    not_finite,
+    stale_input,
+    invalid_input,
+    late_commit,
+    sound_lost,
+    stuck_encoder,
+    beyond_drive_limit
+};
 
 /// One clause for people: "a force was not finite".
 const char* describe(Fault fault) noexcept;
