@@ -341,6 +341,7 @@ int GroupRuntime::call(int frames, Pace pace) noexcept {
         slot->committed = slot->port.wrench;
         if (pace == Pace::live) slot->guard.commit(*slot->device, slot->port.wrench, steady_ns());
         else if (!replayed) slot->device->commit(bearable(slot->port.wrench, slot->port.info));
+        if (!replayed && slot->port.info.fingers > 0) slot->device->drive(slot->port.motors);
     }
     telemetry.ticks.fetch_add(n, std::memory_order_relaxed);
     last_ = next_ + n - 1;

@@ -85,7 +85,7 @@ DevicePort& EngineOutside::use_device(DeviceSlot& slot, DeviceUse use, const Sou
                                        "while the patch runs",
                                        slot.name));
     uses_->devices.emplace_back(&slot, use);
-    if (use == DeviceUse::drive && !slot.port.info.actuates_torque) {
+    if (use == DeviceUse::drive && !slot.port.info.actuates_torque && slot.port.info.fingers == 0) {
         std::string notice =
             fmt::format("device '{}' gives forces only: torques that the patch computes for it are dropped", slot.name);
         if (std::ranges::find(notices, notice) == notices.end()) opened_.notices.push_back(std::move(notice));
@@ -114,6 +114,9 @@ DevicePort& EngineOutside::device(const std::string& wanted, DeviceUse use, cons
         if (recorded == recorded_->end()) throw Error(where, fmt::format("the take knows no device '{}'", name));
         slot->device = std::make_unique<StandIn>(*recorded);
     } else {
+        if (!live_ && is_real_driver(is_declared ? declared->driver : name))
+            throw Error(is_declared ? declared->where : where,
+                        fmt::format("device '{}' is hardware and keeps its own time; use 'tactus run'", name));
         slot->device = open_haptic_device(is_declared ? declared->driver : name, is_declared ? declared->where : where,
                                           options, resolve);
         options.finish();

@@ -42,8 +42,9 @@ RecordedDevice read_device(const Json& json) {
     RecordedDevice device;
     device.name = json.at("device");
     const Json& info = json.at("info");
-    device.info = {info.at("name"),          info.at("max_force"),       info.at("max_torque"),     info.at("damping"),
-                   info.at("max_stiffness"), info.at("actuates_torque"), info.at("senses_rotation")};
+    device.info = {info.at("name"),          info.at("max_force"),       info.at("max_torque"),      info.at("damping"),
+                   info.at("max_stiffness"), info.at("actuates_torque"), info.at("senses_rotation"), info.at("fingers"),
+                   info.at("max_speed")};
     const Json& first = json.at("first");
     device.first.buttons = first.at("buttons");
     device.first.counter = first.at("counter");
@@ -52,6 +53,10 @@ RecordedDevice read_device(const Json& json) {
     const auto v = [&n](std::size_t i) { return number_of(n.at(i)); };
     device.first.pose = {Vec3(v(0), v(1), v(2)), Quat(v(3), v(4), v(5), v(6))};
     device.first.twist = {Vec3(v(7), v(8), v(9)), Vec3(v(10), v(11), v(12))};
+    for (std::size_t i = 0; i < most_fingers; ++i) {
+        const Json& finger = first.at("fingers").at(i);
+        device.first.fingers[i] = {number_of(finger.at(0)), number_of(finger.at(1)), finger.at(2)};
+    }
     return device;
 }
 

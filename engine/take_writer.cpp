@@ -75,6 +75,8 @@ Json sample_json(const DeviceSample& s) {
          {s.pose.position.x, s.pose.position.y, s.pose.position.z, q.w, q.x, q.y, q.z, s.twist.linear.x,
           s.twist.linear.y, s.twist.linear.z, s.twist.angular.x, s.twist.angular.y, s.twist.angular.z})
         json["numbers"].push_back(bits(v));
+    for (const FingerSample& finger : s.fingers)
+        json["fingers"].push_back({bits(finger.position), bits(finger.force), finger.state});
     return json;
 }
 
@@ -170,7 +172,9 @@ void TakeWriter::device(const DeviceSlot& slot) {
                 {"damping", info.damping},
                 {"max_stiffness", info.max_stiffness},
                 {"actuates_torque", info.actuates_torque},
-                {"senses_rotation", info.senses_rotation}}},
+                {"senses_rotation", info.senses_rotation},
+                {"fingers", info.fingers},
+                {"max_speed", info.max_speed}}},
               {"first", sample_json(slot.port.sample)}}
              .dump());
 }

@@ -15,7 +15,7 @@ namespace tactus {
 
 namespace {
 
-constexpr char magic[8] = {'T', 'A', 'C', 'T', 'L', 'O', 'G', '3'};
+constexpr char magic[8] = {'T', 'A', 'C', 'T', 'L', 'O', 'G', '4'};
 
 struct Header {
     char magic[8];

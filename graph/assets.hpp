@@ -3,6 +3,7 @@
 #pragma once
 
 #include "assets/bone/bone.hpp"
+#include "assets/deflection/deflection_file.hpp"
 #include "assets/equaliser/equaliser_file.hpp"
 #include "assets/recording/recording_set.hpp"
 #include "graph/param.hpp"
@@ -25,6 +26,12 @@ template <>
 struct AssetLoader<Equaliser> {
     static constexpr std::string_view name = "equaliser";
     static Equaliser load(const std::string& path) { return load_equaliser(path); }
+};
+
+template <>
+struct AssetLoader<DeflectionTable> {
+    static constexpr std::string_view name = "deflection table";
+    static DeflectionTable load(const std::string& path) { return load_deflection_table(path); }
 };
 
 }  // namespace tactus

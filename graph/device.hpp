@@ -5,6 +5,7 @@
 
 #include "dsp/core/types.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -15,7 +16,20 @@ namespace tactus {
 /// Bits of `DeviceSample::buttons`.
 inline constexpr std::uint32_t button_trigger = 1u;  ///< the tool runs while it is held
 
-/// What a haptic device reports in one tick: device frame, m, rad, s.
+/// Bits of `FingerSample::state`.
+inline constexpr std::uint64_t motor_slips = 1u;    ///< the load moves the finger although the motor holds it
+inline constexpr std::uint64_t motor_limited = 2u;  ///< the motor was told to run faster than it may
+
+/// One finger part of a gripper: a device that is moved by a motor and senses force (an admittance device).
+struct FingerSample {
+    double position = 0.0;  ///< m along the path of the finger, towards + it closes
+    double force = 0.0;     ///< N of the hand on it, towards + it closes
+    std::uint64_t state = 0;
+};
+
+inline constexpr std::size_t most_fingers = 2;
+
+/// What a device reports in one tick: device frame, m, rad, s.
 struct DeviceSample {
     Pose pose;
     Twist twist;                 ///< linear at the pose's origin, along the axes of the device frame
@@ -24,6 +38,7 @@ struct DeviceSample {
     bool valid = false;          ///< false: the other members mean nothing
     bool taken = false;  ///< set by the engine: ticks were late and the watchdog faded the force; it must come in anew
     bool sound_lost = false;  ///< set by the engine once when a sound card is gone: the force fades and comes in anew
+    std::array<FingerSample, most_fingers> fingers{};  ///< of a gripper
 };
 static_assert(std::is_trivially_destructible_v<DeviceSample>, "samples travel through rings");
 
@@ -36,6 +51,15 @@ struct DeviceInfo {
     double max_stiffness = 0.0;  ///< N/m, as the maker states it
     bool actuates_torque = false;
     bool senses_rotation = false;
+    int fingers = 0;  ///< finger parts with a motor each; 0: no gripper
+    double max_speed = 0.0;  ///< m/s of a finger
+};
+
+/// What the motors of a gripper, and the servo of a rig that holds it, are told for the next period.
+struct MotorDrive {
+    std::array<double, most_fingers> speed{};  ///< m/s, towards + the finger closes
+    double cord = 0.0;  ///< m, where the rig's servo shall have the cord by the end of the period
+    bool free = false;  ///< the low-friction mode, in which the hand moves the finger, where the motor has one
 };
 
 /// A haptic device. `acquire` and `commit` bracket the steps of the tick that belongs to it and are called by one
@@ -57,6 +81,10 @@ public:
     /// When the tick's thread hangs, even inside `acquire`, another thread calls this to fade the force; two calls never
     /// run at the same time.
     virtual void commit(const Wrench& on_hand) noexcept = 0;
+
+    /// Sets the speeds of a gripper's motors, after `commit`, from the thread of the tick only. They hold until the next
+    /// call; when none comes, a device must stop by itself.
+    virtual void drive(const MotorDrive&) noexcept {}
 };
 
 /// Counts of an audio output since `prepare`.

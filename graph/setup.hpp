@@ -32,11 +32,12 @@ struct Tick {
 };
 
 /// A device as the nodes of one group share it: the engine fills `sample` before the steps of an activation and hands
-/// `wrench` to the driver after them.
+/// `wrench` and `motors` to the driver after them.
 struct DevicePort {
     DeviceInfo info;
     DeviceSample sample;
     Wrench wrench;
+    MotorDrive motors;
     Fault fault = Fault::none;  ///< why the node that writes `wrench` gives no force
     bool hold_off = false;  ///< the engine is about to change the plan: fade the force to zero, ramp in when this ends
 };

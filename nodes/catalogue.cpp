@@ -6,43 +6,48 @@
 #include <vector>
 
 // name of the struct, family (folder), file
-#define TACTUS_NODES(X)              \
-    X(Actuator, vibration)           \
-    X(AudioOutput, output)           \
-    X(BladeContact, contact)         \
-    X(Body, contact)                 \
-    X(Carve, contact)                \
-    X(Constant, input)               \
-    X(DeviceInput, input)            \
-    X(DeviceOutput, input)           \
-    X(DeviceWrench, input)           \
-    X(DirectCoupling, coupling)      \
-    X(DynamicCoupling, coupling)     \
-    X(Envelope, vibration)           \
-    X(Equaliser, vibration)          \
-    X(Filter, vibration)             \
-    X(ForceShaping, coupling)        \
-    X(Gain, vibration)               \
-    X(Grasp, coupling)               \
-    X(Insertion, contact)            \
-    X(Magnitude, math)               \
-    X(Mix, vibration)                \
-    X(PassivityObserver, coupling)   \
-    X(PointProxy, coupling)          \
-    X(Probe, output)                 \
-    X(QuasiStaticCoupling, coupling) \
-    X(Range, math)                   \
-    X(Record, output)                \
-    X(Saw, vibration)                \
-    X(Scene, contact)                \
-    X(Shape, contact)                \
-    X(Sine, input)                   \
-    X(SnapToFit, coupling)           \
-    X(SphereContact, contact)        \
-    X(SphereProxy, coupling)         \
-    X(Spring, coupling)              \
-    X(Sweep, input)                  \
-    X(VoxmapContact, contact)        \
+#define TACTUS_NODES(X)                 \
+    X(Actuator, vibration)              \
+    X(AdmittanceController, admittance) \
+    X(AudioOutput, output)              \
+    X(BladeContact, contact)            \
+    X(Body, contact)                    \
+    X(Carve, contact)                   \
+    X(Constant, input)                  \
+    X(DeviceInput, input)               \
+    X(DeviceOutput, input)              \
+    X(DeviceWrench, input)              \
+    X(DirectCoupling, coupling)         \
+    X(DynamicCoupling, coupling)        \
+    X(Envelope, vibration)              \
+    X(Equaliser, vibration)             \
+    X(Filter, vibration)                \
+    X(ForceShaping, coupling)           \
+    X(Gain, vibration)                  \
+    X(Grasp, coupling)                  \
+    X(GripperInput, admittance)         \
+    X(GripperOutput, admittance)        \
+    X(HeldWeight, admittance)           \
+    X(Insertion, contact)               \
+    X(Magnitude, math)                  \
+    X(Mix, vibration)                   \
+    X(PassivityObserver, coupling)      \
+    X(PointProxy, coupling)             \
+    X(Probe, output)                    \
+    X(QuasiStaticCoupling, coupling)    \
+    X(Range, math)                      \
+    X(Record, output)                   \
+    X(Saw, vibration)                   \
+    X(Scene, contact)                   \
+    X(Shape, contact)                   \
+    X(Sine, input)                      \
+    X(SnapToFit, coupling)              \
+    X(SphereContact, contact)           \
+    X(SphereProxy, coupling)            \
+    X(Spring, coupling)                 \
+    X(Sweep, input)                     \
+    X(TestRig, admittance)              \
+    X(VoxmapContact, contact)           \
     X(Workspace, input)
 
 namespace tactus {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/haptic/catalogue.hpp"
 
+#include "devices/gripper/serial_gripper.hpp"
+#include "devices/gripper/simulated_gripper.hpp"
 #include "devices/haptic/scripted.hpp"
 #include "devices/haptic/simulated.hpp"
 
@@ -21,6 +23,11 @@ std::vector<HapticDriver>& drivers() {
         {"scripted", "a hand that goes to given places at given times and yields to force",
          [](Options& options, const PathResolver&) { return open_scripted(options); }},
         {"replay", "a recorded movement led through a hand that yields to force", open_replay},
+        {"wqsm_gripper", "a simulated gripper with a walking quasi-static motor, on a rig or in a hand",
+         open_walking_gripper},
+        {"twum_gripper", "a simulated gripper with two traveling-wave ultrasonic motors, on a rig or in a hand",
+         open_wave_gripper},
+        {"serial_gripper", "a gripper whose controller is at a serial port", open_serial_gripper, true},
     };
     return all;
 }
@@ -32,6 +39,12 @@ std::span<const HapticDriver> haptic_drivers() { return drivers(); }
 void add_haptic_driver(HapticDriver driver) {
     std::erase_if(drivers(), [&](const HapticDriver& known) { return known.name == driver.name; });
     drivers().push_back(std::move(driver));
+}
+
+bool is_real_driver(std::string_view driver) {
+    for (const HapticDriver& one : haptic_drivers())
+        if (one.name == driver) return one.is_real;
+    return false;
 }
 
 std::unique_ptr<HapticDevice> open_haptic_device(std::string_view driver, const SourceLocation& where, Options& options,

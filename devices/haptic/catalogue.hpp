@@ -17,6 +17,7 @@ struct HapticDriver {
     std::string name;
     std::string summary;  ///< one line for people
     std::unique_ptr<HapticDevice> (*open)(Options& options, const PathResolver& resolve);
+    bool is_real = false;  ///< hardware: runs in real time only
 };
 
 /// All drivers, in the order in which they are listed to users.
@@ -25,6 +26,9 @@ std::span<const HapticDriver> haptic_drivers();
 /// Adds a driver that the program brings along: a device in the laboratory, or one that a test plays. Before anything
 /// is opened; a driver of the same name is replaced.
 void add_haptic_driver(HapticDriver driver);
+
+/// True for a driver of hardware.
+bool is_real_driver(std::string_view driver);
 
 /// Opens a device of the driver `driver` with the options a patch gives it. `where` is where the patch names the
 /// driver. Throws Error on an unknown driver, listing all, and on options the driver refuses.

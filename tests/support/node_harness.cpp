@@ -41,7 +41,11 @@ bool MemoryStream::write(std::int64_t first, const void* values, std::size_t cou
 DevicePort& FakeOutside::device(const std::string& name, DeviceUse use, const SourceLocation&) {
     auto& port = devices[name];
     driven = driven || use == DeviceUse::drive;
-    if (!port) port = std::make_unique<DevicePort>();
+    if (!port) {
+        port = std::make_unique<DevicePort>();
+        port->info.fingers = 2;
+        port->info.max_speed = 0.07;
+    }
     return *port;
 }
 

@@ -128,6 +128,7 @@ DeviceSample sample_device(const Random& random, std::int64_t k, Feed feed) {
     sample.pose = draw.pose();
     sample.twist.linear = draw.vector(0.2);
     sample.twist.angular = draw.vector(1.0);
+    for (FingerSample& finger : sample.fingers) finger = {draw.number(0.03), draw.number(5.0), 0};
     sample.buttons = static_cast<std::uint32_t>(random.bits(draw.at));
     sample.counter = k;
     sample.valid = feed == Feed::ordinary || random.uniform(draw.at + 1) < 0.8;

@@ -59,6 +59,9 @@ std::shared_ptr<const void> sample_asset(std::string_view type_name) {
         equaliser.delay = 1.0 / 48000.0;
         return std::make_shared<const Equaliser>(std::move(equaliser));
     }
+    if (type_name == AssetLoader<DeflectionTable>::name)
+        return std::make_shared<const DeflectionTable>(
+            DeflectionTable{{-1.0, 0.0, 1.0, 5.0}, {-1e-3, 0.0, 2e-3, 4e-3}, {-0.5e-3, 1e-3, 3e-3, 4e-3}});
     throw Error("no sample of a " + std::string(type_name));
 }
 

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/admittance/controller.hpp"
+
+#include "graph/assets.hpp"
+#include "graph/node.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tactus::nodes {
+
+struct AdmittanceController {
+    static constexpr auto about =
+        "Lets a finger feel an object: the force moves the object, and a position loop makes the motor follow it. "
+        "Settings under which the loop would be unstable are refused.";
+
+    In<double> force{"of the hand on the finger, towards + it closes", "N"};
+    In<double> position{"of the finger", "m"};
+    In<double> fault{optional, "what is wrong with the sensors: gripper_input.fault; the motor holds"};
+    In<bool> slips{optional,
+                   "the load is stronger than the motor: gripper_input.slips; a finger that stands is no fault"};
+    Out<double> velocity{"for the motor", "m/s"};
+    Out<double> wanted{"where the object has the finger", "m"};
+    Out<bool> saturated{"the motor is asked for more than max_speed"};
+    Out<bool> holds{"the motor holds because of a fault"};
+    Out<double> reason{"0, or the number of the fault"};
+    Out<bool> refused{"the parameters are not used: unstable, or no object; the last good ones hold"};
+    Out<double> used_gain{"of the position loop", "1/s"};
+    Out<double> gain_limit{"beyond which the loop is unstable", "1/s"};
+    Choice object{{"elastic", "wall", "table"}, "spring and damper with mass, rigid, or measured"};
+    Choice sides{{"both", "one"}, "one: it lies beyond 'rest' towards +, and before it the finger is free"};
+    Param stiffness{internal, "1 N/mm", "0 N/mm", "100 N/mm", "of an elastic object"};
+    Param damping{"0 N s/m", "0 N s/m", "1000 N s/m", "of an elastic object"};
+    Param mass{"0 kg", "0 kg", "10 kg", "of an elastic object"};
+    Param rest{"0 mm", "-500 mm", "500 mm", "where the object is without force"};
+    Param free_damping{"20 N s/m", "0 N s/m", "1000 N s/m", "felt before an object of one side"};
+    Asset<DeflectionTable> table{optional, "force and deflection as measured, for object = \"table\""};
+    Param gain{"0 s^-1", "0 s^-1", "10000 s^-1", "of the position loop; 0: gain_share of what is stable"};
+    Param gain_share{"0.5", "0.01", "0.95", "of the gain's limit"};
+    Param feed_forward{"0", "0", "1", "share of the object's velocity added to the loop's; the thesis had none"};
+    Param feed_forward_lag{"20 ms", "0 ms", "1 s", "smoothing of that velocity"};
+    Param max_speed{"70 mm/s", "0 mm/s", "10 m/s", "of the motor; gripper_input.max_speed drives it"};
+    Param motor_lag{"4 ms", "0 ms", "100 ms", "of the motor's speed, for the limit"};
+    Param delay{"1", "0", "8", "ticks from a sample to the motor's motion, for the limit"};
+    Param hand_stiffness{internal, "0.38 N/mm", "0 N/mm", "100 N/mm", "of the stiffest hand, or rig, for the limit"};
+    Param blend{"100 ms", "0 ms", "10 s", "within which a new object takes over"};
+    Param recover{"0", "0", "1e9", "another number asks to go on after a fault"};
+    Flag allow_unstable{false, "use any gain"};
+
+    void prepare(const Setup& setup) {
+        period_ = seconds(setup.period);
+        if (object.is("table") && !table) setup.fail("object = \"table\" needs an asset 'table'");
+        const ControllerSettings wanted_settings = settings();
+        if (!wanted_settings.object.is_renderable())
+            setup.fail("an object without stiffness, damping and mass would leave with any force; give a damping");
+        if (!control_.set(wanted_settings)) {
+            const double limit = tactus::gain_limit(wanted_settings.loop, wanted_settings.object);
+            setup.fail(
+                fmt::format("with gain {:.4g} s^-1 this object is unstable in a hand of {:.3g} N/mm: the limit is "
+                            "{:.4g} s^-1; lower the gain, leave it 0, soften the hand, or set allow_unstable",
+                            gain.value, hand_stiffness * 1e-3, limit));
+        }
+        seen_ = values();
+        asked_ = recover;
+        tell(0.0);
+    }
+
+    void process(const Tick& tick) noexcept {
+        if (const auto now = values(); now != seen_) {
+            seen_ = now;
+            refused_ = !control_.set(settings());
+            refusals_ += refused_;
+        }
+        if (recover.value != asked_) control_.recover();
+        asked_ = recover;
+        const Fault before = control_.fault();
+        const int periods = static_cast<int>(std::lround(std::min(tick.elapsed_seconds() / period_, 1e6)));
+        const double speed = control_.tick(force, position, sensed(), periods, slips.connected && slips.get());
+        if (control_.fault() != Fault::none && before == Fault::none) {
+            last_ = control_.fault();
+            ++faults_;
+        }
+        held_s_ += control_.fault() != Fault::none ? tick.elapsed_seconds() : 0.0;
+        saturated_s_ += control_.saturated() ? tick.elapsed_seconds() : 0.0;
+        tell(speed);
+    }
+
+    void report(Report& report) const {
+        report.set("admittance", "gain_per_s", control_.gain());
+        report.set("admittance", "gain_limit_per_s", control_.limit());
+        report.set("admittance", "fault", std::string(describe(last_)));
+        report.set("admittance", "faults", static_cast<double>(faults_));
+        report.set("admittance", "held_s", held_s_);
+        report.set("admittance", "saturated_s", saturated_s_);
+        report.set("admittance", "refused_settings", static_cast<double>(refusals_));
+    }
+
+private:
+    std::array<double, 14> values() const noexcept {
+        return {stiffness, damping,          mass,      rest,  free_damping,   gain, gain_share, feed_forward,
+                max_speed, feed_forward_lag, motor_lag, delay, hand_stiffness, blend};
+    }
+
+    ControllerSettings settings() const noexcept {
+        ControllerSettings s;
+        s.object.kind = object.is("wall")    ? ObjectKind::wall
+                        : object.is("table") ? ObjectKind::table
+                                             : ObjectKind::elastic;
+        s.object.stiffness = stiffness;
+        s.object.damping = damping;
+        s.object.mass = mass < 1e-6 ? 0.0 : mass.value;  // less than a milligram only costs digits
+        s.object.one_sided = sides.is("one");
+        s.object.rest = rest;
+        s.object.free_damping = free_damping;
+        s.object.table = table ? &*table : nullptr;
+        s.loop.period = period_;
+        s.loop.gain = gain;
+        s.loop.delay = static_cast<int>(std::lround(delay.value));
+        s.loop.motor_lag = motor_lag;
+        s.loop.hand_stiffness = hand_stiffness;
+        s.loop.feed_forward = feed_forward;
+        s.loop.feed_forward_lag = feed_forward_lag;
+        s.gain_share = gain_share;
+        s.max_speed = max_speed;
+        s.blend = blend;
+        s.allow_unstable = allow_unstable;
+        return s;
+    }
+
+    Fault sensed() const noexcept {
+        const double number = fault.connected ? fault.get() : 0.0;
+        if (!(number > 0.0)) return Fault::none;
+        return number <= static_cast<double>(Fault::beyond_drive_limit) ? static_cast<Fault>(number)
+                                                                        : Fault::invalid_input;
+    }
+
+    void tell(double speed) noexcept {
+        velocity = speed;
+        wanted = control_.wanted();
+        saturated = control_.saturated();
+        holds = control_.fault() != Fault::none;
+        reason = static_cast<double>(control_.fault());
+        refused = refused_;
+        used_gain = control_.gain();
+        gain_limit = control_.limit();
+    }
+
+    AdmittanceControl control_;
+    std::array<double, 14> seen_{};
+    double period_ = 1.0 / 150.0, asked_ = 0.0, held_s_ = 0.0, saturated_s_ = 0.0;
+    Fault last_ = Fault::none;
+    std::int64_t faults_ = 0, refusals_ = 0;
+    bool refused_ = false;
+};
+
+TACTUS_NODE(AdmittanceController, force, position, fault, slips, velocity, wanted, saturated, holds, reason, refused,
+            used_gain, gain_limit, object, sides, stiffness, damping, mass, rest, free_damping, table, gain, gain_share,
+            feed_forward, feed_forward_lag, max_speed, motor_lag, delay, hand_stiffness, blend, recover, allow_unstable)
+
+}  // namespace tactus::nodes

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/node.hpp"
+
+#include <cmath>
+
+namespace tactus::nodes {
+
+struct GripperInput {
+    static constexpr auto about =
+        "What a gripper senses: position and force of its finger, and of its thumb part if it has one.";
+
+    Out<double> finger_position{"towards + it closes; keeps the last good one while samples are bad", "m"};
+    Out<double> finger_force{"of the hand on the finger, towards + it closes; 0 while samples are bad", "N"};
+    Out<double> thumb_position{"of the thumb part, 0 without one", "m"};
+    Out<double> thumb_force{"on the thumb part, 0 without one", "N"};
+    Out<bool> slips{"the load moves a finger although its motor holds it"};
+    Out<bool> limited{"a motor runs as fast as it may"};
+    Out<bool> valid{"this tick's sample is good"};
+    Out<double> fault{"0, or the number of what is wrong: for admittance_controller"};
+    Out<double> max_speed{"of a finger", "m/s"};
+    Text device{"", "name of an entry of [devices]; empty: the only one"};
+    Param stale_after{structural, "25 ms", "0 ms", "10 s", "without a new sample for so long the sensor is gone"};
+
+    void prepare(const Setup& setup) {
+        port_ = &setup.outside->device(device.value, DeviceUse::read, device.where);
+        if (port_->info.fingers == 0) setup.fail("the device is no gripper; use device_input");
+        read(0.0);
+    }
+    void process(const Tick& tick) noexcept { read(tick.elapsed_seconds()); }
+
+private:
+    void read(double elapsed) noexcept {
+        const DeviceSample& s = port_->sample;
+        unchanged_for_ = s.counter == counter_ ? unchanged_for_ + elapsed : 0.0;
+        counter_ = s.counter;
+        const Fault found = fault_of(s);
+        const bool good = found == Fault::none;
+        if (good) last_ = s.fingers;
+        finger_position = last_[0].position;
+        finger_force = good ? last_[0].force : 0.0;
+        thumb_position = last_[1].position;
+        thumb_force = good ? last_[1].force : 0.0;
+        slips = good && ((last_[0].state | last_[1].state) & motor_slips) != 0;
+        limited = good && ((last_[0].state | last_[1].state) & motor_limited) != 0;
+        valid = good;
+        fault = static_cast<double>(found);
+        max_speed = port_->info.max_speed;
+    }
+
+    Fault fault_of(const DeviceSample& s) const noexcept {
+        if (!s.valid) return Fault::invalid_input;
+        if (unchanged_for_ > stale_after) return Fault::stale_input;
+        for (const FingerSample& finger : s.fingers)
+            if (!std::isfinite(finger.position) || !std::isfinite(finger.force)) return Fault::not_finite;
+        return Fault::none;
+    }
+
+    DevicePort* port_ = nullptr;
+    std::array<FingerSample, most_fingers> last_{};
+    std::int64_t counter_ = -1;
+    double unchanged_for_ = 0.0;
+};
+
+TACTUS_NODE(GripperInput, finger_position, finger_force, thumb_position, thumb_force, slips, limited, valid, fault,
+            max_speed, device, stale_after)
+
+}  // namespace tactus::nodes

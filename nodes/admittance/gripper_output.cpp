@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/node.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::nodes {
+
+struct GripperOutput {
+    static constexpr auto about =
+        "Runs a gripper's motors, and the servo of a rig that holds it. On any fault the motors hold until asked to go "
+        "on.";
+
+    In<double> finger_speed{"towards + the finger closes", "m/s"};
+    In<double> thumb_speed{optional, "of the thumb part; unconnected: it holds", "m/s"};
+    In<double> cord{optional, "where the rig's servo shall be at the end of the tick: test_rig.cord", "m"};
+    In<double> fault{optional, "why the motors are held upstream, to be told: admittance_controller.reason"};
+    Out<double> given{"speed that the finger's motor is told", "m/s"};
+    Out<double> cycles{"drive cycles per second of a walking motor at that speed", "Hz"};
+    Out<bool> holds{"the motors hold because of a fault"};
+    Text device{"", "name of an entry of [devices]; empty: the only one"};
+    Param recover{"0", "0", "1e9", "another number asks to go on after a fault"};
+    Param low_friction{"0", "0", "1", "from 0.5 on the hand moves the finger, where the motor can be lifted"};
+    Param drive_limit{"3 kHz", "1 Hz", "1 MHz", "drive cycles per second at full speed"};
+
+    void prepare(const Setup& setup) {
+        port_ = &setup.outside->device(device.value, DeviceUse::drive, device.where);
+        if (port_->info.fingers == 0) setup.fail("the device is no gripper; use device_output");
+        asked_ = recover;
+        port_->motors = {};
+    }
+
+    void process(const Tick& tick) noexcept {
+        const double second = thumb_speed.connected ? thumb_speed.get() : 0.0;
+        const Fault found = fault_of(finger_speed, second);
+        if (found != Fault::none && reason_ == Fault::none) {
+            reason_ = last_ = found;
+            ++faults_;
+        }
+        if (recover.value != asked_ && found == Fault::none) reason_ = Fault::none;
+        asked_ = recover;
+        const bool still = reason_ != Fault::none || port_->hold_off;
+        MotorDrive& motors = port_->motors;
+        motors.speed = {still ? 0.0 : finger_speed.get(), still ? 0.0 : second};
+        motors.free = !still && low_friction >= 0.5;
+        if (cord.connected && std::isfinite(cord.get())) motors.cord = cord;
+        port_->fault = reason_ != Fault::none ? reason_ : upstream();
+        given = motors.speed[0];
+        const double fastest = port_->info.max_speed;
+        cycles = fastest > 0.0 ? std::min(1.0, std::abs(motors.speed[0]) / fastest) * drive_limit : 0.0;
+        holds = reason_ != Fault::none;
+        held_s_ += still ? tick.elapsed_seconds() : 0.0;
+    }
+
+    void report(Report& report) const {
+        report.set("gripper", "fault", std::string(describe(last_)));
+        report.set("gripper", "faults", static_cast<double>(faults_));
+        report.set("gripper", "held_s", held_s_);
+    }
+
+private:
+    Fault fault_of(double first, double second) const noexcept {
+        if (!std::isfinite(first) || !std::isfinite(second)) return Fault::not_finite;
+        const double most = port_->info.max_speed * (1.0 + 1e-6);
+        return most > 0.0 && std::max(std::abs(first), std::abs(second)) > most ? Fault::beyond_drive_limit
+                                                                                : Fault::none;
+    }
+    Fault upstream() const noexcept {
+        const double number = fault.connected ? fault.get() : 0.0;
+        return number > 0.0 && number <= static_cast<double>(Fault::beyond_drive_limit) ? static_cast<Fault>(number)
+                                                                                        : Fault::none;
+    }
+
+    DevicePort* port_ = nullptr;
+    double asked_ = 0.0, held_s_ = 0.0;
+    Fault reason_ = Fault::none, last_ = Fault::none;
+    std::int64_t faults_ = 0;
+};
+
+TACTUS_NODE(GripperOutput, finger_speed, thumb_speed, cord, fault, given, cycles, holds, device, recover, low_friction,
+            drive_limit)
+
+}  // namespace tactus::nodes
