@@ -201,6 +201,18 @@ int command_line(int argc, char** argv) {
     render_app->add_option("--record", render.record, "keep the run as a take, a folder that 'replay' repeats");
     render_app->add_flag("--json", render.json, "print the summary");
 
+    RigChoice rig;
+    CLI::App* rig_app = app.add_subcommand(
+        "rig", "how faithfully a gripper renders objects: motors, objects, rates and amplitudes on a test rig");
+    add_patch_options(*rig_app, rig);
+    rig_app->get_option("patch")->description(
+        "patch with a gripper on a rig, such as gripper-wqsm, or a CSV of a real one");
+    rig_app->add_option("--matrix", rig.matrix, "TOML: what is tried (default: the matrix of the thesis)");
+    rig_app->add_option("--out", rig.out, "folder for report.html, rig.json and rig.csv")->required();
+    rig_app->add_option("--threads", rig.threads, "threads, 0: one per core")->check(CLI::Range(0, 64));
+    rig_app->add_flag("--series", rig.keep_series, "also write every sample, series.csv, which 'rig' reads as well");
+    rig_app->add_flag("--json", rig.json, "print the answer as JSON");
+
     RunChoice run;
     CLI::App* run_app = app.add_subcommand("run", "run a patch in real time, until Ctrl-C or --seconds");
     add_patch_options(*run_app, run);
@@ -289,6 +301,7 @@ int command_line(int argc, char** argv) {
     try {
         app.parse(argc, argv);
         if (*render_app) return render_verb(render);
+        if (*rig_app) return rig_verb(rig);
         if (*run_app) return run_verb(run);
         if (*set_app) return set_verb(set);
         if (*replay_app) return replay_verb(replay);

@@ -147,6 +147,13 @@ struct InfoChoice {
     bool json = false;
 };
 
+struct RigChoice : PatchChoice {     ///< the patch may be a CSV file of a rig's record instead
+    std::filesystem::path matrix, out;
+    int threads = 0;                  ///< 0: one per core
+    bool keep_series = false;         ///< write what was measured as series.csv
+};
+
+int rig_verb(const RigChoice& choice);
 int render_verb(const RenderChoice& choice);
 int run_verb(const RunChoice& choice);
 int set_verb(const SetChoice& choice);
