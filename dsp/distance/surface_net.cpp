@@ -10,45 +10,66 @@ namespace tactus {
 
 namespace {
 
-// The eight samples of a cell: which are in, and which hang together along the cell's edges. Each pair of a part that is
-// in and a part that is out which touch has a vertex of its own, so two sheets in one cell stay two.
-struct Cell {
-    std::array<bool, 8> in{};
-    std::array<int, 8> part{};  // lowest corner of the part
+// The twelve edges of a cell whose eight samples are in or out, by their low corner and axis. Edges that cross hang together
+// around the faces of the cell, and each ring of them is one sheet with a vertex of its own. A face with in and out at
+// opposite corners is cut around each corner that is in: both cells that share the face see the same cuts, so that the
+// sheets of neighbours meet and leave no hole.
+struct Sheets {
+    std::array<int, 24> of_edge{};  // number of the sheet per 3 · low corner + axis, -1 where nothing crosses
+    int count = 0;
 
-    template <typename IsIn>
-    explicit Cell(IsIn is_in) {
-        for (int c = 0; c < 8; ++c) in[at(c)] = is_in(c), part[at(c)] = c;
-        for (int round = 0; round < 3; ++round)
-            for (int c = 0; c < 8; ++c)
-                for (int axis = 0; axis < 3; ++axis) {
-                    const int other = c ^ 1 << axis;
-                    if (in[at(c)] == in[at(other)])
-                        part[at(c)] = part[at(other)] = std::min(part[at(c)], part[at(other)]);
+    Sheets() = default;
+    explicit Sheets(unsigned in) {
+        const auto is_in = [in](int corner) { return (in >> corner & 1u) != 0; };
+        for (int edge = 0; edge < 24; ++edge) {
+            const int low = edge / 3, high = low | 1 << edge % 3;
+            of_edge[at(edge)] = high != low && is_in(low) != is_in(high) ? edge : -1;
+        }
+        for (int axis = 0; axis < 3; ++axis)
+            for (const int face : {0, 1 << axis}) {
+                const int b = 1 << (axis + 1) % 3, c = 1 << (axis + 2) % 3;
+                const std::array<int, 4> corner{face, face | b, face | b | c, face | c};
+                std::array<int, 4> edge{};  // from each corner to the next
+                int crossings = 0;
+                for (int n = 0; n < 4; ++n) {
+                    edge[at(n)] = between(corner[at(n)], corner[at((n + 1) % 4)]);
+                    crossings += of_edge[at(edge[at(n)])] >= 0;
                 }
+                for (int n = 0; n < 4; ++n) {
+                    const int before = edge[at((n + 3) % 4)];
+                    if (crossings == 4 && is_in(corner[at(n)])) join(before, edge[at(n)]);
+                    for (int m = 0; crossings == 2 && m < n; ++m) join(edge[at(m)], edge[at(n)]);
+                }
+            }
+        std::array<int, 24> number;
+        number.fill(-1);
+        for (int& sheet : of_edge) {
+            if (sheet < 0) continue;
+            int& known = number[at(sheet)];
+            if (known < 0) known = count++;
+            sheet = known;
+        }
     }
 
-    static std::size_t at(int corner) { return static_cast<std::size_t>(corner); }
+    static std::size_t at(int n) { return static_cast<std::size_t>(n); }
+    static int between(int a, int b) {
+        const int along = a ^ b;
+        return 3 * std::min(a, b) + (along == 4 ? 2 : along - 1);
+    }
 
-    // visit(low corner, axis, number of the vertex) for every edge that crosses.
-    template <typename Visit>
-    int for_each_crossing(Visit visit) const {
-        std::array<std::pair<int, int>, 12> pairs{};
-        int count = 0;
-        for (int from = 0; from < 8; ++from)
-            for (int axis = 0; axis < 3; ++axis) {
-                const int to = from | 1 << axis;
-                if (to == from || in[at(from)] == in[at(to)]) continue;
-                const std::pair pair =
-                    in[at(from)] ? std::pair(part[at(from)], part[at(to)]) : std::pair(part[at(to)], part[at(from)]);
-                int n = 0;
-                while (n < count && pairs[at(n)] != pair) ++n;
-                if (n == count) pairs[at(count++)] = pair;
-                visit(from, axis, n);
-            }
-        return count;
+    // Until the end a sheet is called after one of its edges.
+    void join(int a, int b) {
+        const int kept = of_edge[at(a)], dropped = of_edge[at(b)];
+        if (kept < 0 || dropped < 0) return;
+        std::replace(of_edge.begin(), of_edge.end(), dropped, kept);
     }
 };
+
+std::vector<Sheets> all_sheets() {
+    std::vector<Sheets> all;
+    for (unsigned in = 0; in < 256; ++in) all.emplace_back(in);
+    return all;
+}
 
 struct Netter {
     const Grid& grid;
@@ -56,6 +77,7 @@ struct Netter {
     bool inside_above;
     SurfaceNet& net;
     std::array<std::vector<int>, 2> vertex;  // the first per cell of this layer and the one before, or -1
+    std::vector<Sheets> sheets;  // per set of corners that are in
 
     bool is_in(int i, int j, int k) const { return (grid.at(i, j, k) >= iso) == inside_above; }
 
@@ -64,27 +86,31 @@ struct Netter {
             k & 1)][static_cast<std::size_t>(j) * static_cast<std::size_t>(grid.size[0]) + static_cast<std::size_t>(i)];
     }
 
-    Cell cell(int i, int j, int k) const {
-        return Cell([&](int c) { return is_in(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)); });
+    const Sheets& sheets_of(int i, int j, int k) const {
+        std::size_t in = 0;
+        for (int c = 0; c < 8; ++c)
+            in |= static_cast<std::size_t>(is_in(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2))) << c;
+        return sheets[in];
     }
 
     void make_vertices(int i, int j, int k) {
         slot(i, j, k) = -1;
-        bool any = false;
-        const bool first = is_in(i, j, k);
-        for (int c = 1; c < 8 && !any; ++c) any = is_in(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)) != first;
-        if (!any) return;
-        std::array<Vec3, 12> sum{};
-        std::array<int, 12> crossings{};
-        const int count = cell(i, j, k).for_each_crossing([&](int from, int axis, int n) {
+        const Sheets& sheet = sheets_of(i, j, k);
+        if (sheet.count == 0) return;
+        std::array<Vec3, 4> sum{};
+        std::array<int, 4> crossings{};
+        for (int edge = 0; edge < 24; ++edge) {
+            if (sheet.of_edge[Sheets::at(edge)] < 0) continue;
+            const int from = edge / 3;
             Vec3 at(from & 1, from >> 1 & 1, from >> 2), step(0.0);
-            step[axis] = 1.0;
+            step[edge % 3] = 1.0;
             const double a = value(Vec3(i, j, k) + at), b = value(Vec3(i, j, k) + at + step);
-            sum[static_cast<std::size_t>(n)] += at + step * ((double(iso) - a) / (b - a));
-            ++crossings[static_cast<std::size_t>(n)];
-        });
+            const auto n = Sheets::at(sheet.of_edge[Sheets::at(edge)]);
+            sum[n] += at + step * ((double(iso) - a) / (b - a));
+            ++crossings[n];
+        }
         slot(i, j, k) = static_cast<int>(net.vertices.size());
-        for (std::size_t n = 0; n < static_cast<std::size_t>(count); ++n) {
+        for (std::size_t n = 0; n < static_cast<std::size_t>(sheet.count); ++n) {
             net.vertices.push_back(grid.origin + (Vec3(i, j, k) + sum[n] / double(crossings[n])) * grid.spacing);
             net.cell.push_back({i, j, k});
         }
@@ -96,11 +122,7 @@ struct Netter {
 
     // Vertex of the cell whose lowest sample is (i, j, k) for its edge from corner `low` along `axis`.
     int vertex_at(int i, int j, int k, int low, int along) {
-        int number = 0;
-        cell(i, j, k).for_each_crossing([&](int from, int axis, int n) {
-            if (from == low && axis == along) number = n;
-        });
-        return slot(i, j, k) + number;
+        return slot(i, j, k) + sheets_of(i, j, k).of_edge[Sheets::at(3 * low + along)];
     }
 
     // The four cells around an edge, counter-clockwise seen from its far end.
@@ -168,7 +190,8 @@ struct Neighbours {
 
 SurfaceNet surface_net(const Grid& grid, float iso, bool inside_above) {
     SurfaceNet net;
-    if (grid.size[0] > 1 && grid.size[1] > 1 && grid.size[2] > 1) Netter{grid, iso, inside_above, net, {}}.run();
+    if (grid.size[0] > 1 && grid.size[1] > 1 && grid.size[2] > 1)
+        Netter{grid, iso, inside_above, net, {}, all_sheets()}.run();
     return net;
 }
 

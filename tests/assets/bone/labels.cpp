@@ -9,6 +9,7 @@
 #include "dsp/core/random.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <fmt/format.h>
@@ -202,6 +203,35 @@ TEST_CASE("a label at the border of its map, of one voxel, or in parts becomes a
         CHECK(volume_of(surface) == Approx(double(voxels) * 2e-9).epsilon(label == 1 ? 0.3 : 0.05));
     }
     CHECK_THROWS_WITH(bone_of_label(labels, {7, "", {}}, {}), Contains("no voxel has label 7"));
+}
+
+TEST_CASE("a ragged label with stray voxels spans its voxels: no streak leads from a touching edge out of the bone") {
+    const Vec3 spacing(0.5 * mm, 0.5 * mm, 0.8 * mm);
+    const Random random{7};
+    std::uint64_t n = 0;
+    // A ball whose outer half is full of holes, so that its voxels touch at faces, edges and corners.
+    Grid labels = sampled(layout(spacing, far_off, {40, 40, 26}), [&](const Vec3& p) {
+        const double depth = -ball(7.0 * mm)(p);
+        return depth > 0.0 && random.uniform(n++) < 0.4 + depth / (6.0 * mm) ? 1.0 : 0.0;
+    });
+    labels.at(2, 20, 13) = labels.at(20, 37, 20) = 1.0f;
+    Vec3 low(1e9), high(-1e9);
+    for (int k = 0; k < labels.size[2]; ++k)
+        for (int j = 0; j < labels.size[1]; ++j)
+            for (int i = 0; i < labels.size[0]; ++i)
+                if (labels.at(i, j, k) > 0.0f)
+                    low = glm::min(low, labels.position(i, j, k)), high = glm::max(high, labels.position(i, j, k));
+    const Bone bone = bone_of_label(labels, {1, "", {}}, {});
+    const Mesh surface = surface_of(bone.distance);
+    CHECK(topology_of(surface).is_watertight());
+    CHECK(volume_of(surface) == Approx(count_of(labels, 1.0f) * voxel_volume(labels)).epsilon(0.03));
+    Vec3 least(1e9), most(-1e9);
+    for (const Vec3& v : surface.vertices) least = glm::min(least, v), most = glm::max(most, v);
+    for (int a = 0; a < 3; ++a) {
+        CAPTURE(a);
+        CHECK(std::abs(least[a] - low[a]) < spacing[a]);
+        CHECK(std::abs(most[a] - high[a]) < spacing[a]);
+    }
 }
 
 TEST_CASE("what is no label map is refused in one sentence") {
