@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/bone/assumed_density.hpp"
+#include "assets/bone/import_steps.hpp"
+#include "assets/mesh/mesh.hpp"
+#include "assets/mesh/repair.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/distance/surface_distance.hpp"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tactus {
+
+namespace {
+
+constexpr double mm = 1e-3;
+
+double unit_of(const ImportOptions& options, double extent) {
+    if (options.unit) {
+        if (*options.unit == "mm") return mm;
+        if (*options.unit == "cm") return 10.0 * mm;
+        if (*options.unit == "m") return 1.0;
+        throw Error(fmt::format("unit '{}' is not mm, cm or m", *options.unit));
+    }
+    if (extent < 5.0 || extent > 2000.0) {
+        const std::string_view likely = extent < 0.005 ? "" : extent <= 2.0 ? "m" : extent < 5.0 ? "cm" : "";
+        throw Error(
+            fmt::format("{}: {:.3g} across cannot be mm for a bone; say what its coordinates are with --unit mm, cm "
+                        "or m{}",
+                        options.input.string(), extent,
+                        likely.empty() ? ""
+                                       : fmt::format(" (--unit {} would make it {:.0f} mm)", likely,
+                                                     extent * (likely == "m" ? 1000.0 : 10.0))));
+    }
+    return mm;
+}
+
+// Keeps the components of largest enclosed volume, each turned to look outwards.
+Mesh largest_components(const Mesh& mesh, const MeshTopology& topology, std::size_t keep) {
+    std::vector<Mesh> parts(topology.components);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        parts[static_cast<std::size_t>(topology.component_of[t])].triangles.push_back(mesh.triangles[t]);
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        parts[p].vertices = mesh.vertices;
+        order.push_back({volume_of(parts[p]), p});
+        parts[p].vertices.clear();
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });
+    Mesh kept;
+    kept.vertices = mesh.vertices;
+    if (keep == 0 || keep > order.size()) keep = order.size();
+    for (std::size_t n = 0; n < keep; ++n)
+        for (auto t : parts[order[n].second].triangles) {
+            // Shells of hollows look inwards on purpose, so all components turn with the largest.
+            if (order[0].first < 0.0) std::swap(t[1], t[2]);
+            kept.triangles.push_back(t);
+        }
+    return kept;
+}
+
+}  // namespace
+
+Bone import_mesh(const ImportOptions& options, const ImportReport& report, ImportSummary& summary) {
+    if (!options.crop.empty()) throw Error("a crop box is for CT volumes; cut the mesh in a mesh editor");
+    const std::size_t keep = parse_component(options.component);
+    report(0.0, "reading");
+    MeshOrigin origin;
+    Mesh mesh = load_mesh(options.input, 1.0, &origin);
+    Vec3 low = mesh.vertices.front(), high = low;
+    for (const Vec3& v : mesh.vertices) low = glm::min(low, v), high = glm::max(high, v);
+    const auto widest = [](const Vec3& v) { return std::max({v.x, v.y, v.z}); };
+    const double unit = unit_of(options, widest(high - low));
+    for (Vec3& v : mesh.vertices) v *= unit;
+    const MeshRepair repaired = repair(mesh, options.input.string());
+    if (!repaired.is_clean()) summary.notes.push_back(repaired.describe());
+    if (origin.without_area > 0)
+        summary.notes.push_back(fmt::format("{} triangles without area dropped", origin.without_area));
+    const MeshTopology topology = topology_of(mesh);
+    mesh = largest_components(mesh, topology, keep);
+    const auto corner = [&](const auto& t, std::size_t c) { return mesh.vertices[static_cast<std::size_t>(t[c])]; };
+    low = high = corner(mesh.triangles.front(), 0);
+    for (const auto& t : mesh.triangles)
+        for (std::size_t c = 0; c < 3; ++c) low = glm::min(low, corner(t, c)), high = glm::max(high, corner(t, c));
+    Grid layout{{}, {}, Vec3(options.spacing.value_or(std::max(0.4 * mm, widest(high - low) / 400.0))), {}};
+    layout.origin = low - 4.0 * layout.spacing;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double steps = std::ceil((high[axis] - low[axis]) / layout.spacing[axis]) + 9.0;
+        if (steps > 100000.0) throw Error("the spacing gives more than 100000 voxels along an axis; use a larger one");
+        layout.size[static_cast<std::size_t>(axis)] = static_cast<int>(steps);
+    }
+    check_layout(layout);
+    report(0.3, "distance");
+    Bone bone;
+    bone.distance = signed_distance(layout, mesh, options.run);
+    bone.density = assumed_density(bone.distance);
+    if (options.mesh_density)
+        for (std::size_t n = 0; n < bone.density.values.size(); ++n)
+            bone.density.values[n] = bone.distance.values[n] > 0.0f ? 0.0f : static_cast<float>(*options.mesh_density);
+    summary.hu = "none";
+    summary.components = topology.components;
+    bone.provenance["calibration"] = options.mesh_density
+                                         ? fmt::format("assumed: density = {} kg/m3 throughout", *options.mesh_density)
+                                         : assumed_density_law();
+    bone.provenance["file_frame"] = fmt::format("{}{}", name_of(origin.frame), origin.frame_stated ? "" : " (assumed)");
+    bone.provenance["unit"] = fmt::format("{} m{}", unit, options.unit ? "" : " (assumed)");
+    return bone;
+}
+
+}  // namespace tactus

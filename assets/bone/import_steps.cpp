@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/bone/import_steps.hpp"
+
+#include "assets/file/whole_file.hpp"
+#include "assets/mesh/mesh.hpp"
+#include "dsp/contact/sample_surface.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/hash.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace tactus {
+
+namespace {
+
+constexpr double mm = 1e-3;
+constexpr double most_voxels = 4e8;
+
+// A file, or all files of a folder by their names.
+std::vector<std::filesystem::path> source_files(const std::filesystem::path& input) {
+    if (!std::filesystem::is_directory(input)) return {input};
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(input))
+        if (entry.is_regular_file()) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+}  // namespace
+
+void check_options(const ImportOptions& options) {
+    if (options.spacing && !(*options.spacing >= 0.01 * mm && *options.spacing <= 100.0 * mm))
+        throw Error("the spacing must be between 0.01 and 100 mm");
+    if (!std::isfinite(options.threshold)) throw Error("the threshold must be a number of HU");
+    if (options.mesh_density && !(*options.mesh_density > 0.0 && *options.mesh_density < 1e5))
+        throw Error("the density of a mesh must be above 0 and below 100000 kg/m3");
+}
+
+std::size_t parse_component(const std::string& text) {
+    if (text == "largest") return 1;
+    if (text == "all") return 0;
+    std::size_t count = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), count);
+    if (code != std::errc{} || end != text.data() + text.size() || count == 0)
+        throw Error(fmt::format("component '{}' is not 'largest', 'all' or a number from 1 up", text));
+    return count;
+}
+
+void check_layout(const Grid& layout) {
+    double count = 1.0;
+    for (const int n : layout.size) count *= n;
+    if (count > most_voxels)
+        throw Error(
+            fmt::format("{:.0f} voxels at {:.3g} mm are too many (at most {:.0f}); use a larger spacing or a crop box",
+                        count, layout.spacing.x / mm, most_voxels));
+}
+
+void measure(const Bone& bone, ImportSummary& summary) {
+    const TriangleSurface surface = iso_surface(bone.distance, 0.0f, false);
+    summary.frame = "LPS";
+    summary.size = bone.distance.size;
+    for (int axis = 0; axis < 3; ++axis)
+        summary.voxel_mm[static_cast<std::size_t>(axis)] = bone.distance.spacing[axis] / mm;
+    summary.bone_volume_mm3 = volume_of(surface) / (mm * mm * mm);
+    summary.surface_area_mm2 = area_of(surface) / (mm * mm);
+    double sum = 0.0, low = std::numeric_limits<double>::infinity(), high = 0.0;
+    std::size_t inside = 0;
+    for (std::size_t n = 0; n < bone.distance.values.size(); ++n) {
+        if (bone.distance.values[n] >= 0.0f) continue;
+        const double density = bone.density.values[n];
+        sum += density;
+        low = std::min(low, density);
+        high = std::max(high, density);
+        ++inside;
+    }
+    if (inside == 0) throw Error("the bone is thinner than a voxel everywhere; use a smaller spacing");
+    summary.density.min = low;
+    summary.density.max = high;
+    summary.density.mean = sum / static_cast<double>(inside);
+}
+
+void add_points(Bone& bone, const ImportOptions& options, ImportSummary& summary) {
+    if (!options.pointshell) return;
+    bone.points = sample_surface(bone.distance,
+                                 {.spacing = *options.pointshell, .follow_curvature = options.pointshell_by_curvature});
+    bone.provenance["pointshell"] =
+        fmt::format("{} mm{}", *options.pointshell / mm, options.pointshell_by_curvature ? ", by curvature" : "");
+    summary.points = bone.points.size();
+}
+
+void add_provenance(Bone& bone, const ImportOptions& options, const ImportSummary& found,
+                    const std::string& source_hash) {
+    bone.provenance["source"] = options.input.filename().string();
+    bone.provenance["source_hash"] = source_hash;
+    bone.provenance["frame"] = found.frame;
+    bone.provenance["hu"] = found.hu;
+    for (std::size_t n = 0; n < found.notes.size(); ++n) bone.provenance[fmt::format("note{}", n + 1)] = found.notes[n];
+    if (options.spacing) bone.provenance["spacing"] = fmt::format("{} mm", *options.spacing / mm);
+}
+
+std::string hash_of_source(const std::filesystem::path& path) {
+    Hash hash;
+    for (const std::filesystem::path& file : source_files(path)) add_file(hash, file);
+    return fmt::format("{:016x}", hash.value());
+}
+
+}  // namespace tactus
