@@ -13,8 +13,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 
 namespace tactus {
 
@@ -179,19 +181,51 @@ std::optional<SampleType> type_of(int type) {
     }
 }
 
-// Samples of a plain or gzip'ed file, in blocks: teem would hold the whole file beside them. False for what only teem reads.
+// Where the samples of one data file begin, `bytes` long unless packed, with the lines and bytes that the header skips.
+std::uint64_t start_of_samples(const std::filesystem::path& path, std::uint64_t start, const NrrdIoState& io,
+                               double bytes) {
+    const auto cut_short = [&] { return Error(fmt::format("{}: cut short; copy the file again", path.string())); };
+    if (io.lineSkip > 0) {
+        std::ifstream file(path, std::ios::binary);
+        file.seekg(static_cast<std::streamoff>(start));
+        for (unsigned n = 0; n < io.lineSkip; ++n)
+            if (!file.ignore(std::numeric_limits<std::streamsize>::max(), '\n') || file.eof()) throw cut_short();
+        start = static_cast<std::uint64_t>(file.tellg());
+    }
+    if (io.encoding != nrrdEncodingRaw) return start;
+    if (io.byteSkip >= 0) return start + static_cast<std::uint64_t>(io.byteSkip);
+    // Counted from the end: -1 is the last possible place.
+    const double from_end = static_cast<double>(std::filesystem::file_size(path)) - bytes + (double(io.byteSkip) + 1.0);
+    if (from_end < static_cast<double>(start)) throw cut_short();
+    return static_cast<std::uint64_t>(from_end);
+}
+
+// Samples of plain or gzip'ed files, in blocks: teem would hold the whole file beside them, and forgets zlib's buffers
+// where packing is damaged. False for what only teem reads.
 bool read_in_blocks(const Nrrd& header, const NrrdIoState& io, const std::filesystem::path& path,
-                    std::vector<float>& values) {
+                    std::span<float> values) {
     const bool is_gzip = io.encoding == nrrdEncodingGzip;
     const std::optional<SampleType> type = type_of(header.type);
+    if (!type || (!is_gzip && io.encoding != nrrdEncodingRaw)) return false;
     const bool is_apart = io.dataFNArr && io.dataFNArr->len > 0;
-    if (!type || (!is_gzip && io.encoding != nrrdEncodingRaw) || io.lineSkip != 0 || io.byteSkip != 0 ||
-        (is_apart && io.dataFNArr->len != 1))
-        return false;
-    PackedFile file(is_apart ? path.parent_path() / io.dataFN[0] : path, is_apart ? 0 : end_of_header(path), is_gzip);
-    const bool swapped = io.endian != airEndianUnknown && io.endian != airMyEndian();
-    read_samples(file, *type, swapped && type->bytes() > 1, values);
-    file.finish();
+    const std::size_t files = is_apart ? io.dataFNArr->len : 1;
+    if (values.size() % files != 0)
+        throw Error(fmt::format("{}: its samples do not fill {} data files evenly", path.string(), files));
+    if (is_gzip && io.byteSkip < 0)
+        throw Error(
+            fmt::format("{}: bytes of a packed file cannot be skipped from its end; unpack it with 'unu save "
+                        "-f nrrd -e raw'",
+                        path.string()));
+    const std::size_t piece = values.size() / files;
+    const bool swapped = io.endian != airEndianUnknown && io.endian != airMyEndian() && type->bytes() > 1;
+    for (std::size_t n = 0; n < files; ++n) {
+        const std::filesystem::path data = is_apart ? path.parent_path() / io.dataFN[n] : path;
+        const double bytes = static_cast<double>(piece) * static_cast<double>(type->bytes());
+        PackedFile file(data, start_of_samples(data, is_apart ? 0 : end_of_header(path), io, bytes), is_gzip);
+        if (is_gzip) file.skip(static_cast<std::uint64_t>(io.byteSkip));
+        read_samples(file, *type, swapped, values.subspan(n * piece, piece));
+        file.finish();
+    }
     return true;
 }
 

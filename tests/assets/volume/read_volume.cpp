@@ -81,6 +81,44 @@ TEST_CASE("the same samples lie at the same places in NRRD, NIfTI and DICOM") {
     check_same(read_volume(place.write("enhanced.dcm", enhanced_dicom_bytes(v))), v);
 }
 
+TEST_CASE(
+    "samples of an NRRD are found behind skipped lines and bytes, at the end of a file, and in a file per slice") {
+    const Place place;
+    const WrittenVolume v = ramp();
+    const std::string plain = nrrd_bytes(v);
+    const std::size_t end = plain.find("\n\n") + 1;
+    const std::string samples = plain.substr(end + 1);
+    std::string packed_header = plain.substr(0, end);
+    packed_header.replace(packed_header.find("encoding: raw"), 13, "encoding: gzip");
+    const auto bytes_of = [](const std::filesystem::path& path) { return read_whole_file(path); };
+    const std::string packed = bytes_of(place.pack("s.gz", samples)),
+                      late = bytes_of(place.pack("l.gz", "abc" + samples));
+    const std::string header = plain.substr(0, end);
+    const auto read = [&](const std::string& bytes) { return read_volume(place.write("v.nrrd", bytes)); };
+    check_same(read(header + "byte skip: 3\n\nabc" + samples), v);
+    check_same(read(header + "byte skip: -1\n\njunk that nobody counted" + samples), v);
+    check_same(read(header + "line skip: 2\nbyte skip: 1\n\none\ntwo\n." + samples), v);
+    check_same(read(packed_header + "byte skip: 3\n\n" + late), v);
+    check_same(read(packed_header + "line skip: 1\n\none\n" + packed), v);
+    CHECK_THROWS_WITH(read(header + "byte skip: 4\n\nabc" + samples), Contains("cut short"));
+    CHECK_THROWS_WITH(read(header + "line skip: 2000000000\n\n" + samples), Contains("of 2000000000"));
+    CHECK_THROWS_WITH(read(packed_header + "byte skip: 4\n\n" + late), Contains("cut short"));
+    CHECK_THROWS_WITH(read(packed_header + "byte skip: -1\n\n" + packed), Contains("unpack it"));
+    std::string damaged = packed;
+    damaged[damaged.size() / 2] = static_cast<char>(~damaged[damaged.size() / 2]);
+    CHECK_THROWS_WITH(read(packed_header + "line skip: 1\n\none\n" + damaged), Contains("copy the file again"));
+    std::string list = header + "data file: LIST 2\n";
+    const std::size_t slice = samples.size() / static_cast<std::size_t>(v.size[2]);
+    for (int k = 0; k < v.size[2]; ++k) {
+        const std::string name = fmt::format("slice{}.raw", k);
+        place.write(name, samples.substr(static_cast<std::size_t>(k) * slice, slice));
+        list += name + "\n";
+    }
+    check_same(read(list), v);
+    std::filesystem::remove(place.folder / "slice3.raw");
+    CHECK_THROWS_WITH(read(list), Contains("slice3.raw"));
+}
+
 TEST_CASE("an InVesalius project has rows from back to front") {
     const Place place;
     const WrittenVolume v = ramp();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes called .vdb are a bone file or a tactus::Error. Behind the checksum OpenVDB is trusted, and trusts what it
-// reads; so no mutated bytes are sealed anew here.
+// Any bytes called .vdb are a bone file or a tactus::Error. Behind a checksum that was forged OpenVDB would allocate
+// whatever it reads; bone files are opened only when their seal is right, which chance does not give. So no mutated bytes
+// are sealed anew here.
 #include "assets/bone/bone.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/fuzz/memory_file.hpp"
