@@ -74,6 +74,7 @@ void add_compare(CLI::App& app, CompareChoice& choice) {
     verb->add_option("output", choice.output, "sound file or CSV log of what came out")->required();
     verb->add_option("--thresholds", choice.thresholds, "TOML file of what must be reached; without: see README");
     verb->add_option("--plot", choice.plot, "a figure, .svg or .png");
+    verb->add_option("--report", choice.report, "figure, tables and how they were computed in one HTML file");
     verb->add_option("--reference-scale", choice.reference_scale, "units per full scale, such as m/s^2")
         ->capture_default_str();
     verb->add_option("--output-scale", choice.output_scale, "of the output, in the same unit")->capture_default_str();

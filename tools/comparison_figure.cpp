@@ -5,6 +5,7 @@
 #include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/plot_panel.hpp"
+#include "tools/spectrogram_panel.hpp"
 
 #include <fmt/format.h>
 
@@ -21,6 +22,7 @@ constexpr Colour reference_colour{0x1F, 0x4E, 0x9E}, output_colour{0xE0, 0x7B, 0
     band_colour{0x9A, 0xA3, 0xB2};
 
 constexpr double left = 64.0, right = 300.0, panel_width = 560.0, gap = 34.0;
+constexpr double picture_width = 352.0, picture_height = 150.0;
 
 /// Density in dB relative to `top`.
 std::vector<double> levels(const std::vector<double>& density, double top) {
@@ -50,6 +52,17 @@ void mark(Figure& figure, double x, double y, Colour colour, bool upwards) {
     figure.fill({{x, y}, {x - 4.5, y - 8.0 * s}, {x + 4.5, y - 8.0 * s}}, colour);
 }
 
+/// "×2" for the second order, "hum" for the mains.
+std::string short_name(double hz, double fundamental) {
+    const std::string name = name_of_line(hz, fundamental);
+    return name.starts_with("order ") ? "×" + name.substr(6) : name.empty() ? "" : "hum";
+}
+
+std::string with_name(const std::string& text, double hz, double fundamental) {
+    const std::string name = short_name(hz, fundamental);
+    return name.empty() ? text : text + " (" + name + ")";
+}
+
 void draw_spectra(Figure& figure, const Comparison& c, double y, double height) {
     const double top = greatest_in(c.reference_density, c.step, c.lowest, c.highest);
     const std::vector<double> r = levels(c.reference_density, top), d = levels(c.output_density, top);
@@ -66,22 +79,26 @@ void draw_spectra(Figure& figure, const Comparison& c, double y, double height) 
     for (const SpectralLine& line : c.lines.in_both) {
         const double x = panel.x_of(line.frequency), level = level_at(r, c.step, line.frequency);
         if (level < -45.0 || x < taken + 26.0 || x > left + panel_width - 12.0) continue;
-        figure.text({x, panel.y_of(std::max(level, level_at(d, c.step, line.frequency))) - 5.0},
-                    fmt::format("{:.0f}", line.frequency), 10.0, ink, TextAnchor::middle);
+        const double at = panel.y_of(std::max(level, level_at(d, c.step, line.frequency))) - 5.0;
+        figure.text({x, at}, fmt::format("{:.0f}", line.frequency), 10.0, ink, TextAnchor::middle);
+        if (const std::string name = short_name(line.frequency, c.reference_hz); !name.empty())
+            figure.text({x, at - 11.0}, name, 10.0, soft, TextAnchor::middle);
         taken = x;
     }
     for (const SpectralLine& line : c.lines.only_in_reference) {
         const double x = panel.x_of(line.frequency), at = panel.y_of(level_at(r, c.step, line.frequency)) - 3.0;
         mark(figure, x, at, reference_colour, true);
-        figure.text({x, at - 11.0}, fmt::format("{:.0f} missing", line.frequency), 10.0, reference_colour,
-                    TextAnchor::middle);
+        figure.text({x, at - 11.0},
+                    with_name(fmt::format("{:.0f} missing", line.frequency), line.frequency, c.reference_hz), 10.0,
+                    reference_colour, TextAnchor::middle);
     }
+    const double base = c.output_hz > 0.0 ? c.output_hz : c.reference_hz;
     for (const SpectralLine& line : c.lines.only_in_output) {
         const double hz = line.frequency * (1.0 / c.speed_ratio), x = std::max(panel.x_of(hz), left + 4.0);
         const double at = panel.y_of(level_at(d, c.step, hz)) - 3.0;
         mark(figure, x, at, added_colour, true);
-        figure.text({x, at - 11.0}, fmt::format("{:.0f} added", line.frequency), 10.0, added_colour,
-                    x < left + 30.0 ? TextAnchor::start : TextAnchor::middle);
+        figure.text({x, at - 11.0}, with_name(fmt::format("{:.0f} added", line.frequency), line.frequency, base), 10.0,
+                    added_colour, x < left + 30.0 ? TextAnchor::start : TextAnchor::middle);
     }
 }
 
@@ -146,13 +163,34 @@ void draw_table(Figure& figure, const Comparison& c, const Verdict& verdict, dou
     if (c.alignment.significant) extra("delay", 1e3 * c.alignment.delay, " ms");
 }
 
+/// Both takes over time, each from its own beginning and to 60 dB below its strongest.
+void draw_pictures(Figure& figure, const ComparedPair& pair, double y) {
+    const std::string names[] = {pair.reference.filename().string(), pair.output.filename().string()};
+    for (std::size_t i = 0; i < 2; ++i) {
+        const double x = left + static_cast<double>(i) * (picture_width + 66.0);
+        figure.text({x, y - 7.0}, names[i], 11.0, i == 0 ? reference_colour : output_colour);
+        draw_spectrogram(figure, pair.spectrograms[i], {x, y, picture_width, picture_height},
+                         {.lowest = pair.comparison.lowest,
+                          .highest = pair.comparison.highest,
+                          .rows = 64,
+                          .columns = 160,
+                          .legend = i == 1,
+                          .relative = true});
+    }
+}
+
 }  // namespace
 
-Figure draw_comparison(const Comparison& c, const Verdict& verdict, const Thresholds& thresholds,
-                       const std::string& reference_name, const std::string& output_name) {
+Figure draw_comparison(const ComparedPair& pair) {
+    const Comparison& c = pair.comparison;
+    const Verdict& verdict = pair.verdict;
+    const std::string reference_name = pair.reference.filename().string(),
+                      output_name = pair.output.filename().string();
     const bool coherent = !c.coherence.empty();
     const double top = 62.0, spectra = 250.0, bands = 110.0, coherence = coherent ? 70.0 + gap * 0.6 : 0.0;
-    Figure figure(left + panel_width + right, std::max(top + spectra + gap * 0.6 + bands + coherence + 46.0, 470.0));
+    const double curves = std::max(top + spectra + gap * 0.6 + bands + coherence + 46.0, 470.0);
+    const bool pictures = pair.spectrograms.size() == 2;
+    Figure figure(left + panel_width + right, curves + (pictures ? picture_height + 76.0 : 0.0));
     figure.text({left, 24.0}, verdict.passed() ? "The same vibration" : "Not the same vibration", 16.0,
                 verdict.passed() ? pass_colour : added_colour, TextAnchor::start, true);
     figure.line({{left, 42.0}, {left + 24.0, 42.0}}, reference_colour, 2.5);
@@ -162,7 +200,7 @@ Figure draw_comparison(const Comparison& c, const Verdict& verdict, const Thresh
     double y = top;
     draw_spectra(figure, c, y, spectra);
     y += spectra + gap * 0.6;
-    draw_bands(figure, c, thresholds, y, bands, !coherent);
+    draw_bands(figure, c, pair.thresholds, y, bands, !coherent);
     y += bands;
     if (coherent) {
         y += gap * 0.6;
@@ -171,6 +209,7 @@ Figure draw_comparison(const Comparison& c, const Verdict& verdict, const Thresh
     }
     figure.text({left + 0.5 * panel_width, y + 32.0}, "frequency, Hz", 11.0, ink, TextAnchor::middle);
     draw_table(figure, c, verdict, left + panel_width + 24.0, top + 10.0);
+    if (pictures) draw_pictures(figure, pair, curves + 24.0);
     return figure;
 }
 

@@ -3,16 +3,15 @@
 #pragma once
 
 #include "devices/display/figure.hpp"
-#include "tools/verdict.hpp"
+#include "tools/compared_pair.hpp"
 
 #include <string>
 
 namespace tactus {
 
-/// Both spectra with their lines marked and the limit of touch, errors of the third-octave bands against the threshold,
-/// coherence when there is one, and a table of scores.
-Figure draw_comparison(const Comparison& comparison, const Verdict& verdict, const Thresholds& thresholds,
-                       const std::string& reference_name, const std::string& output_name);
+/// Both spectra with their lines marked and named and the limit of touch, errors of the third-octave bands against the
+/// threshold, coherence when there is one, both spectrograms when the pair has them, and a table of scores.
+Figure draw_comparison(const ComparedPair& pair);
 
 /// Writes a figure as the name's ending says: .svg or .png. Throws Error.
 void write_figure(const Figure& figure, const std::string& path);

@@ -86,6 +86,7 @@ struct EqualiseChoice {
 struct CompareChoice {
     std::filesystem::path reference, output, thresholds;
     std::string plot;                                  ///< .svg or .png
+    std::filesystem::path report;                      ///< .html
     std::string touch = "displacement";
     std::string actuator;                              ///< whose limits decide the level gap
     double mass = 0.3;                                 ///< that it shakes, kg

@@ -191,6 +191,36 @@ TEST_CASE("a person reads the verdict first, then why; a figure is written as it
     CHECK(folder.tactus("compare " + a + " " + a + " --plot f.gif").code == 2);
 }
 
+TEST_CASE("a report is one page that needs nothing else and names what it found") {
+    const Folder folder;
+    const std::string a = sound(folder, "a.wav", saw(233.0)).string();
+    const auto hummed = [tone = saw(233.0)](double t) mutable {
+        return tone(t) + 0.2 * std::sin(2.0 * std::numbers::pi * 50.0 * t);
+    };
+    const std::string b = sound(folder, "b&c.wav", hummed).string();
+    const fs::path page = folder.path / "page.html";
+    CHECK(folder.tactus("compare " + a + " '" + b + "' --report " + page.string()).code == 1);
+    const std::string html = slurp(page);
+    for (const char* needed : {"<!doctype html>", "<svg", "limit of touch", "Not the same vibration", "b&amp;c.wav",
+                               "mains hum, 50 Hz", "order 2", "only in the output", "lsd_db", "How it was computed"}) {
+        INFO(needed);
+        CHECK(html.find(needed) != std::string::npos);
+    }
+    CHECK(html.find("b&c.wav") == std::string::npos);
+    // Nothing is fetched.
+    for (const char* reference : {"src=", "href=", "@import", "<script", "<link"}) {
+        INFO(reference);
+        CHECK(html.find(reference) == std::string::npos);
+    }
+    // Aligned takes have coherence; those of two recordings say that they have none.
+    CHECK(html.find("One recording") != std::string::npos);
+    const std::string other = sound(folder, "other.wav", saw(233.4, 0.3, 77)).string();
+    const fs::path second = folder.path / "second.html";
+    CHECK(folder.tactus("compare " + a + " " + other + " --report " + second.string()).code != 2);
+    CHECK(slurp(second).find("Two recordings") != std::string::npos);
+    CHECK(folder.tactus("compare " + a + " " + a + " --report /nowhere/page.html").code == 2);
+}
+
 TEST_CASE("compare answers or says what is wrong with a file, once, and ends with exit code 2") {
     const Folder folder;
     const std::string good = sound(folder, "good.wav", saw(233.0)).string();
