@@ -98,6 +98,30 @@ void Engine::retire() {
     gather_hashes(*before_, now_.get(), ended_hashes_);
     before_.reset();
     for (const auto& link : now_->links) link->forget_continued();
+    close_ended();
+}
+
+/// Gives back what only the plan before used: threads, logs and recordings of groups and nodes that are no more. A run
+/// may be edited for days.
+void Engine::close_ended() {
+    drain_log();
+    for (const auto& group : groups_) {
+        if (!group->is_over() || !group->log) continue;
+        const std::lock_guard lock(log_lock_);
+        std::erase_if(log_rings_, [&](const auto& ring) { return ring.get() == group->log; });
+        group->log = nullptr;
+    }
+    for (const auto& group : groups_)
+        if (group->is_over()) end_thread(*group);
+    for (const auto& [name, tap] : taps_)
+        if (tap.stream && tap.group->is_over()) tap.stream->finish();
+    list_open_taps();
+    for (const auto& stream : outside_.streams) {
+        const bool in_use = std::ranges::any_of(now_->nodes, [&](const auto& node) {
+            return std::ranges::find(node->uses.streams, stream.get()) != node->uses.streams.end();
+        });
+        if (!in_use) stream->finish();
+    }
 }
 
 Flicks Engine::set(const std::string& node, const std::string& param, const std::string& text) {

@@ -51,9 +51,9 @@ Engine::Engine(Plan plan, const EngineOptions& options)
         workshop_.take = [this](const std::string& port, const ValueType& type,
                                 const GroupRuntime& group) -> RecordStream* {
             const std::string name = fmt::format("{} {} {}", port, group.index, type.name);
-            auto& stream = taps_[name];
-            if (!stream) stream = options_.tap(port, type, group);
-            return stream.get();
+            Tap& tap = taps_[name];
+            if (!tap.stream) tap = {options_.tap(port, type, group), &group};
+            return tap.stream.get();
         };
     }
     if (options_.replay && options_.replay->plan_hash != plan_hash_)
@@ -72,9 +72,13 @@ void Engine::keep_opened() {
     outside_.keep();
     for (std::size_t i = known; options_.take && i < outside_.devices.size(); ++i)
         options_.take->device(*outside_.devices[i]);
+    list_open_taps();
+}
+
+void Engine::list_open_taps() {
     open_taps_.clear();
-    for (const auto& [name, stream] : taps_)
-        if (stream) open_taps_.push_back(stream.get());
+    for (const auto& [name, tap] : taps_)
+        if (tap.stream && !tap.stream->is_finished()) open_taps_.push_back(tap.stream.get());
 }
 
 Engine::~Engine() = default;
@@ -117,7 +121,7 @@ void Engine::set_end(GroupRuntime& group) const {
 }
 
 void Engine::add_log(GroupRuntime& group) {
-    group.log = log_rings_.emplace_back(std::make_unique<Ring<TimingRecord>>(1 << 15)).get();
+    group.log = log_rings_.emplace_back(std::make_unique<Ring<TimingRecord>>(1 << 14)).get();
 }
 
 void Engine::schedule(Plan plan, Flicks when) {
@@ -216,6 +220,8 @@ void Engine::drain_log() {
     // What each group had done before its ring is emptied: all up to there is in the log afterwards.
     std::vector<TakeWriter::Progress> progress;
     for (const auto& group : groups_) {
+        // One that has ended said so in the log.
+        if (!group->log) continue;
         const std::int64_t done = group->done();
         progress.push_back({group->index, done, done * group->plan->period});
     }
@@ -235,9 +241,9 @@ void Engine::finish() {
     if (!options_.take) return;
     options_.take->finish(port_hashes());
     for (const auto& [name, tap] : taps_)
-        if (tap && tap->dropped() > 0)
+        if (tap.stream && tap.stream->dropped() > 0)
             throw Error(fmt::format("the take is not whole: {} values of {} were lost because the disk was too slow",
-                                    tap->dropped(), name));
+                                    tap.stream->dropped(), name));
 }
 
 void Engine::fail(std::exception_ptr error) {

@@ -132,6 +132,9 @@ private:
     void tend_edits();
     void hand_over(std::unique_ptr<Generation> next);
     void retire();
+    void close_ended();
+    void list_open_taps();
+    void end_thread(const GroupRuntime& group);
     Flicks furthest() const;
     void fail(std::exception_ptr error);
 
@@ -139,8 +142,12 @@ private:
     std::uint64_t plan_hash_ = 0;
     EngineOutside outside_;
     Workshop workshop_;
-    std::map<std::string, std::unique_ptr<Stream>> taps_;  // by output, group and type: one writing thread each
-    std::vector<Stream*> open_taps_;  // of the plans that ran so far
+    struct Tap {
+        std::unique_ptr<Stream> stream;
+        const GroupRuntime* group;
+    };
+    std::map<std::string, Tap> taps_;  // by output, group and type: one writing thread each
+    std::vector<Stream*> open_taps_;  // those that may still be written
     std::vector<std::shared_ptr<GroupRuntime>> groups_;
     std::unique_ptr<Generation> now_, before_;
     std::vector<std::unique_ptr<Generation>> scheduled_;  // offline: all that come before `now_`

@@ -372,9 +372,10 @@ bool GroupRuntime::replay_skip() noexcept {
 void GroupRuntime::end_at(std::int64_t tick) noexcept {
     end.store(std::min(end.load(), tick));
     note(TimingKind::end, 0, 0, 0, nullptr);
+    if (program_)
+        for (DeviceSlot* slot : program_->devices) slot->guard.retire();
+    // From here on nothing of the group is touched by its thread.
     over_.store(true, std::memory_order_release);
-    if (!program_) return;
-    for (DeviceSlot* slot : program_->devices) slot->guard.retire();
 }
 
 }  // namespace tactus

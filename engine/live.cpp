@@ -59,7 +59,7 @@ struct Engine::LiveRun {
     double dilate = 1.0;
     std::atomic<std::size_t> running{0};
     std::atomic<bool> refused{false};  // real-time priority
-    std::vector<std::jthread> threads;
+    std::vector<std::pair<const GroupRuntime*, std::jthread>> threads;
 };
 
 void Engine::live_worker(GroupRuntime& group) {
@@ -101,13 +101,17 @@ void Engine::live_worker(GroupRuntime& group) {
 
 void Engine::start_thread(GroupRuntime& group) {
     ++live_->running;
-    live_->threads.emplace_back([this, &group] {
+    live_->threads.emplace_back(&group, [this, &group] {
         if (!make_real_time(group.plan->period)) live_->refused = true;
         ++live_->ready;
         while (!live_->started.load()) sleep_until(steady_ns() + poll_start_ns);
         live_worker(group);
         --live_->running;
     });
+}
+
+void Engine::end_thread(const GroupRuntime& group) {
+    std::erase_if(live_->threads, [&](const auto& thread) { return thread.first == &group; });
 }
 
 /// The clock follows the first card that is there. When one is lost, all hands are let go of once.

@@ -157,6 +157,7 @@ RecordStream& EngineOutside::record(const StreamFormat& wanted, const SourceLoca
     if (folder_)
         end = is_sound ? make_sound_end(*folder_ / format.file, format) : make_csv_end(*folder_ / format.file, format);
     opened_.streams.push_back(std::make_unique<Stream>(format, std::move(end)));
+    uses_->streams.push_back(opened_.streams.back().get());
     return *opened_.streams.back();
 }
 
@@ -174,6 +175,7 @@ RecordStream& EngineOutside::audio(const StreamFormat& format, const SourceLocat
         StreamFormat unheard = format;
         unheard.file.clear();
         opened_.streams.push_back(std::make_unique<Stream>(unheard, std::make_unique<NowhereEnd>()));
+        uses_->streams.push_back(opened_.streams.back().get());
         return *opened_.streams.back();
     }
     if (SoundCard* card = spare_card(format)) {

@@ -27,6 +27,7 @@ struct RecordedDevice {
 struct OutsideUses {
     std::vector<std::pair<DeviceSlot*, DeviceUse>> devices;
     std::vector<SoundCard*> cards;
+    std::vector<const RecordStream*> streams;
 };
 
 /// Where sound goes in a live run.

@@ -102,7 +102,7 @@ std::unique_ptr<StreamEnd> make_csv_end(const std::filesystem::path& path, const
 Stream::Stream(StreamFormat format, std::unique_ptr<StreamEnd> end)
     : format_(std::move(format)),
       end_(std::move(end)),
-      ring_(ring_bytes),
+      ring_(std::make_unique<Ring<std::byte>>(ring_bytes)),
       packed_(sizeof(Piece) + longest_piece * format_.type->size),
       drained_(longest_piece * format_.type->size) {}
 
@@ -110,7 +110,7 @@ bool Stream::write(std::int64_t first, const void* values, std::size_t count, st
     const std::size_t size = format_.type->size;
     const Piece piece{first, count};
     const std::size_t bytes = sizeof piece + count * size;
-    if (count > longest_piece || ring_.space() < bytes) {
+    if (count > longest_piece || ring_->space() < bytes) {
         dropped_.fetch_add(count, std::memory_order_relaxed);
         return false;
     }
@@ -118,22 +118,29 @@ bool Stream::write(std::int64_t first, const void* values, std::size_t count, st
     for (std::size_t i = 0; i < count; ++i)
         std::memcpy(packed_.data() + sizeof piece + i * size,
                     static_cast<const std::byte*>(values) + static_cast<std::ptrdiff_t>(i) * stride, size);
-    return ring_.push(packed_.data(), bytes) == bytes;
+    return ring_->push(packed_.data(), bytes) == bytes;
 }
 
 void Stream::drain() {
     const std::lock_guard lock(draining_);
+    if (!ring_) return;
     Piece piece;
     // A piece is pushed whole, so once its head is there the rest is too.
-    while (ring_.pop(reinterpret_cast<std::byte*>(&piece), sizeof piece) == sizeof piece) {
-        ring_.pop(drained_.data(), piece.count * format_.type->size);
+    while (ring_->pop(reinterpret_cast<std::byte*>(&piece), sizeof piece) == sizeof piece) {
+        ring_->pop(drained_.data(), piece.count * format_.type->size);
         end_->take(piece.first, drained_.data(), piece.count);
     }
 }
 
 void Stream::finish() {
     drain();
+    const std::lock_guard lock(draining_);
+    if (!end_) return;
     end_->finish();
+    end_.reset();
+    ring_.reset();
+    packed_ = {};
+    drained_ = {};
 }
 
 }  // namespace tactus

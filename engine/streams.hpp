@@ -41,8 +41,10 @@ public:
     /// Moves what has gathered to its end. Any thread outside of a tick. Throws Error.
     void drain();
     /// True when less than half of the ring is left.
-    bool wants_drain() const noexcept { return ring_.size() * 2 > ring_.capacity(); }
+    bool wants_drain() const noexcept { return ring_ && ring_->size() * 2 > ring_->capacity(); }
+    /// Completes the file and gives back all memory. Nobody writes any more; again: nothing.
     void finish();
+    bool is_finished() const { return !end_; }
 
     const StreamFormat& format() const { return format_; }
     std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
@@ -56,7 +58,7 @@ private:
 
     StreamFormat format_;
     std::unique_ptr<StreamEnd> end_;
-    Ring<std::byte> ring_;
+    std::unique_ptr<Ring<std::byte>> ring_;
     std::vector<std::byte> packed_, drained_;  // of the writer, of the drainer
     std::mutex draining_;
     std::atomic<std::uint64_t> dropped_{0};
