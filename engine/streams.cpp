@@ -139,8 +139,8 @@ void Stream::finish() {
     end_->finish();
     end_.reset();
     ring_.reset();
-    packed_ = {};
-    drained_ = {};
+    packed_ = std::vector<std::byte>();
+    drained_ = std::vector<std::byte>();
 }
 
 }  // namespace tactus
