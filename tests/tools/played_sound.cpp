@@ -7,7 +7,9 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include <fcntl.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -38,6 +40,22 @@ frequency = "441.7 Hz"
 type = "audio_output"
 rate = "48 kHz"
 )";
+
+/// Tests that play run one at a time: two servers at once keep each other from their deadlines.
+class Turn {
+public:
+    Turn()
+        : file_(::open((std::filesystem::temp_directory_path() / "tactus_test_sound.lock").c_str(),
+                       O_CREAT | O_RDWR | O_CLOEXEC, 0666)) {
+        ::flock(file_, LOCK_EX);
+    }
+    ~Turn() { ::close(file_); }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+private:
+    int file_;
+};
 
 /// A server of our own. Nothing of it is left behind.
 class Server {
@@ -92,6 +110,7 @@ private:
         return client != nullptr;
     }
 
+    Turn turn_;
     std::string log_;
     bool was_killed_ = false;
     pid_t pid_ = 0;
