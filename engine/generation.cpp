@@ -374,7 +374,7 @@ private:
             output.is_signal = &type == &value::signal;
             output.name = node.name + "." + node.outputs[k].name;
             if (workshop_.take) output.take = workshop_.take(output.name, type, *running.group);
-            if (type.version) program.snapshots.push_back(running.outputs[k]);
+            if (type.version) program.snapshots.push_back(static_cast<SnapshotOutput*>(running.outputs[k]));
         }
         program.hashes_outputs = workshop_.hash;
         program.records_outputs = static_cast<bool>(workshop_.take);

@@ -125,7 +125,7 @@ struct GroupProgram {
     std::vector<std::unique_ptr<DelayLine>> delays;
     std::vector<DeviceSlot*> devices;
     std::vector<DeviceSlot*> driven;  ///< those that a node gives a force
-    std::vector<Output*> snapshots;
+    std::vector<SnapshotOutput*> snapshots;
     // What to do when taking over:
     std::vector<std::pair<Input*, const Input*>> wiring;  ///< inputs of nodes that go on, and how they are wired now
     std::vector<std::pair<Param*, double>> params;  ///< of nodes that go on

@@ -3,6 +3,7 @@
 
 #include "dsp/core/realtime.hpp"
 #include "engine/clock.hpp"
+#include "graph/node_memory.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -254,14 +255,12 @@ void GroupRuntime::record_outputs(const Step& step, int frames) noexcept {
     }
 }
 
-/// Asks for the cache lines of a node's ports and first parameters, a few steps before they are needed: nodes are
+/// Asks for the cache line of a node's ports and first parameters, a few steps before they are needed: nodes are
 /// scattered, and a thousand of them do not fit the nearest cache.
 static void fetch_ahead(const Step* step, const Step* past) noexcept {
     constexpr std::ptrdiff_t distance = 4;
     if (past - step <= distance) return;
-    const auto* node = static_cast<const std::byte*>(step[distance].node);
-    __builtin_prefetch(node + 64);
-    __builtin_prefetch(node + 128);
+    __builtin_prefetch(static_cast<const std::byte*>(step[distance].node) + (cache_line - node_offset));
 }
 
 template <bool watched>
@@ -315,7 +314,8 @@ void GroupRuntime::publish(int frames, Pace pace) noexcept {
         link->publish(next_, frames);
         ++took;
     }
-    for (Output* output : program_->snapshots) output->last_was_dropped = took == 0 && !program_->outputs.empty();
+    for (SnapshotOutput* output : program_->snapshots)
+        output->last_was_dropped = took == 0 && !program_->outputs.empty();
 }
 
 int GroupRuntime::call(int frames, Pace pace) noexcept {
@@ -325,7 +325,7 @@ int GroupRuntime::call(int frames, Pace pace) noexcept {
     {
         RealtimeScope scope;
         read_links(n, pace);
-        for (Output* output : program_->snapshots) {
+        for (SnapshotOutput* output : program_->snapshots) {
             output->oldest_readable = std::numeric_limits<std::int64_t>::max();
             for (const Link* link : program_->outputs)
                 output->oldest_readable = std::min(output->oldest_readable, link->oldest_version(output));

@@ -92,7 +92,7 @@ std::string type_name_of(std::string_view struct_name);
 template <class T>
 NodeType make_node_type(std::string_view struct_name, void (*visit)(void*, MemberVisitor&)) {
     static_assert(noexcept(std::declval<T&>().process(std::declval<const Tick&>())), "process must be noexcept");
-    static_assert(alignof(T) <= node_alignment, "a node is aligned to one cache line");
+    static_assert(alignof(T) <= node_offset, "a node is aligned to 16 bytes");
     return {
         .name = type_name_of(struct_name),
         .about = T::about,

@@ -18,7 +18,7 @@ namespace tactus {
 
 namespace {
 
-constexpr std::size_t line = node_alignment;
+constexpr std::size_t line = cache_line;
 constexpr std::size_t chunk_bytes = 64 << 10;
 constexpr std::size_t largest_in_chunk = chunk_bytes / 4;
 
@@ -48,13 +48,14 @@ struct Filling {
 };
 
 /// Whole lines, an odd number of them: what every call touches of many equal nodes then falls into all sets of a cache.
-std::size_t room_for(std::size_t bytes) { return ((bytes + line - 1) / line | 1) * line; }
+std::size_t room_for(std::size_t bytes) { return ((node_offset + bytes + line - 1) / line | 1) * line; }
 
 }  // namespace
 
 void* take_node_memory(std::size_t bytes) {
     const std::size_t size = room_for(bytes);
-    if (size > largest_in_chunk) return ::operator new(size, std::align_val_t{line});
+    if (size > largest_in_chunk)
+        return static_cast<std::byte*>(::operator new(size, std::align_val_t{line})) + node_offset;
     thread_local Filling filling;
     if (!filling.chunk || filling.chunk->used + size > chunk_bytes) {
         void* fresh = ::operator new(chunk_bytes, std::align_val_t{chunk_bytes});
@@ -62,7 +63,7 @@ void* take_node_memory(std::size_t bytes) {
         ASAN_POISON_MEMORY_REGION(filling.chunk + 1, chunk_bytes - sizeof(Chunk));
     }
     Chunk& chunk = *filling.chunk;
-    auto* place = reinterpret_cast<std::byte*>(&chunk) + chunk.used;
+    auto* place = reinterpret_cast<std::byte*>(&chunk) + chunk.used + node_offset;
     chunk.used += size;
     chunk.users.fetch_add(1, std::memory_order_relaxed);
     ASAN_UNPOISON_MEMORY_REGION(place, bytes);
@@ -71,8 +72,9 @@ void* take_node_memory(std::size_t bytes) {
 
 void give_back_node_memory(void* memory, std::size_t bytes) noexcept {
     const std::size_t size = room_for(bytes);
-    if (size > largest_in_chunk) return ::operator delete(memory, size, std::align_val_t{line});
-    ASAN_POISON_MEMORY_REGION(memory, size);
+    if (size > largest_in_chunk)
+        return ::operator delete(static_cast<std::byte*>(memory) - node_offset, size, std::align_val_t{line});
+    ASAN_POISON_MEMORY_REGION(memory, size - node_offset);
     reinterpret_cast<Chunk*>(reinterpret_cast<std::uintptr_t>(memory) & ~(chunk_bytes - 1))->release();
 }
 

@@ -17,8 +17,7 @@ std::string unit_of(std::string_view quantity) {
 
 }  // namespace
 
-Param::Param(std::string_view default_text, std::string_view min_text, std::string_view max_text,
-             std::string_view about_)
+Param::Param(std::string_view default_text, std::string_view min_text, std::string_view max_text, const char* about_)
     : unit(unit_of(default_text)), about(about_) {
     value = parse_as(default_text, unit);
     min = parse_as(min_text, unit);

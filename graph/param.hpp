@@ -27,15 +27,14 @@ inline constexpr Internal internal{};
 
 /// A quantity with unit and range. Its unit is that of the default; a number wire may drive it unless structural.
 struct Param {
-    Param(std::string_view default_text, std::string_view min_text, std::string_view max_text,
-          std::string_view about_ = {});
+    Param(std::string_view default_text, std::string_view min_text, std::string_view max_text, const char* about_ = "");
     Param(Structural, std::string_view default_text, std::string_view min_text, std::string_view max_text,
-          std::string_view about_ = {})
+          const char* about_ = "")
         : Param(default_text, min_text, max_text, about_) {
         is_structural = true;
     }
     Param(Internal, std::string_view default_text, std::string_view min_text, std::string_view max_text,
-          std::string_view about_ = {})
+          const char* about_ = "")
         : Param(default_text, min_text, max_text, about_) {
         is_internal = true;
     }
@@ -53,7 +52,7 @@ struct Param {
 
     double value, min, max;  ///< SI
     std::string unit;        ///< as in the default, "N/mm"
-    std::string_view about;
+    const char* about;
     bool is_structural = false;
     bool is_internal = false;
 };

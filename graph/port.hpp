@@ -8,7 +8,7 @@
 
 #include <cstddef>
 #include <span>
-#include <string_view>
+#include <type_traits>
 
 namespace tactus {
 
@@ -19,22 +19,23 @@ enum class InputKind : std::uint8_t {
     any,     ///< any type, decided by the wire
 };
 
-// What every call touches stands last in an input and first in an output, so that a node's is close together.
+// What every call touches stands last in an input and first in an output and a parameter, and the rest between is small:
+// the working part of a node with one input, one output and one parameter fits one cache line (see graph/node_memory).
 
 /// What the engine sees of an input.
 struct Input {
     const ValueType* type = nullptr;
+    const char *about = "", *unit = "";
     InputKind kind = InputKind::value;
     bool is_optional = false;
     bool connected = false;
-    std::string_view about, unit;
     // A batch: `count` values at `data`, taken at logical times `times`.
-    const Flicks* times = nullptr;
     int count = 0;
+    const Flicks* times = nullptr;
     Flicks period = 0;  ///< logical time between two values of the producer
 
     const std::byte* data = nullptr;  ///< first value of this call
-    std::ptrdiff_t stride = 0;        ///< bytes from one activation to the next, 0 when constant
+    std::ptrdiff_t stride = 0;  ///< bytes from one activation to the next, 0 when constant
 };
 
 /// What the engine sees of an output.
@@ -43,22 +44,25 @@ struct Output {
     std::ptrdiff_t stride = 0;
 
     const ValueType* type = nullptr;
-    std::string_view about, unit;
-    // For snapshots only: what the schedule says about earlier versions (see `Out<T>::oldest_readable`).
-    std::int64_t oldest_readable = 0;
-    bool last_was_dropped = false;
+    const char *about = "", *unit = "";
+};
+
+/// An output of snapshots, and what the schedule says about earlier versions.
+struct SnapshotOutput : Output {
+    std::int64_t oldest_readable = 0;  ///< versions before this are read no more
+    bool last_was_dropped = false;  ///< nobody took the last one
 };
 
 /// An input. In a call of several activations the value is constant: the engine cuts calls where it changes.
 template <class T>
 struct In : Input {
-    In(std::string_view about_ = {}, std::string_view unit_ = {}) {
+    In(const char* about_ = "", const char* unit_ = "") {
         type = &value_type<T>();
         kind = std::is_same_v<T, Signal> || std::is_same_v<T, Ramp> ? InputKind::stream : InputKind::value;
         about = about_;
         unit = unit_;
     }
-    In(Optional, std::string_view about_ = {}, std::string_view unit_ = {}) : In(about_, unit_) { is_optional = true; }
+    In(Optional, const char* about_ = "", const char* unit_ = "") : In(about_, unit_) { is_optional = true; }
 
     const Element<T>& get() const { return *reinterpret_cast<const Element<T>*>(data); }
     operator const Element<T>&() const { return get(); }
@@ -73,15 +77,13 @@ struct In : Input {
 /// Every value a producer published since the last call, oldest first, with the logical time of each.
 template <class T>
 struct Batch : Input {
-    Batch(std::string_view about_ = {}, std::string_view unit_ = {}) {
+    Batch(const char* about_ = "", const char* unit_ = "") {
         type = &value_type<T>();
         kind = InputKind::batch;
         about = about_;
         unit = unit_;
     }
-    Batch(Optional, std::string_view about_ = {}, std::string_view unit_ = {}) : Batch(about_, unit_) {
-        is_optional = true;
-    }
+    Batch(Optional, const char* about_ = "", const char* unit_ = "") : Batch(about_, unit_) { is_optional = true; }
     std::span<const Element<T>> values() const {
         return {reinterpret_cast<const Element<T>*>(data), static_cast<std::size_t>(count)};
     }
@@ -90,7 +92,7 @@ struct Batch : Input {
 
 /// An input of any type, for probes and recorders; `type` is that of the wire.
 struct AnyIn : Input {
-    AnyIn(std::string_view about_ = {}) {
+    AnyIn(const char* about_ = "") {
         kind = InputKind::any;
         about = about_;
     }
@@ -99,14 +101,14 @@ struct AnyIn : Input {
 /// An output. A node in an audio group writes `out[i]` for every activation of the call; what a signal held before is
 /// not there any more.
 template <class T>
-struct Out : Output {
-    Out(std::string_view about_ = {}, std::string_view unit_ = {}) {
-        type = &value_type<T>();
-        about = about_;
-        unit = unit_;
+struct Out : std::conditional_t<SnapshotHandle<T>, SnapshotOutput, Output> {
+    Out(const char* about_ = "", const char* unit_ = "") {
+        this->type = &value_type<T>();
+        this->about = about_;
+        this->unit = unit_;
     }
-    Element<T>& get() { return *reinterpret_cast<Element<T>*>(data); }
-    Element<T>& operator[](int i) { return reinterpret_cast<Element<T>*>(data)[i]; }
+    Element<T>& get() { return *reinterpret_cast<Element<T>*>(this->data); }
+    Element<T>& operator[](int i) { return reinterpret_cast<Element<T>*>(this->data)[i]; }
     Out& operator=(const Element<T>& value) {
         get() = value;
         return *this;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/node_memory.hpp"
+#include "graph/port.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <random>
 #include <thread>
 #include <vector>
@@ -37,11 +39,26 @@ TEST_CASE("nodes made one after another lie one after another, each on its own c
     for (int i = 0; i < 1000; ++i) places.push_back(take_node_memory(200));
     int neighbours = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {
-        CHECK(reinterpret_cast<std::uintptr_t>(places[i]) % node_alignment == 0);
+        CHECK(reinterpret_cast<std::uintptr_t>(places[i]) % cache_line == node_offset);
         if (i > 0) neighbours += static_cast<std::byte*>(places[i]) - static_cast<std::byte*>(places[i - 1]) == 320;
     }
     CHECK(neighbours > 990);
     for (void* place : places) give_back_node_memory(place, 200);
+}
+
+TEST_CASE("what a call touches of a node with one input, one output and one parameter lies on one cache line") {
+    struct Plain {
+        In<Signal> in;
+        Out<Signal> out;
+        Param factor{"1", "-1000", "1000"};
+    };
+    void* const place = take_node_memory(sizeof(Plain));
+    auto* const node = new (place) Plain;
+    const auto line_of = [](const void* p) { return reinterpret_cast<std::uintptr_t>(p) / cache_line; };
+    CHECK(line_of(&node->in.data) == line_of(&node->factor.value));
+    CHECK(line_of(&node->out.data) == line_of(&node->factor.value));
+    std::destroy_at(node);
+    give_back_node_memory(place, sizeof(Plain));
 }
 
 TEST_CASE("memory of nodes of any size is theirs alone until they give it back, from any thread") {
