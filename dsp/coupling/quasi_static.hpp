@@ -4,13 +4,15 @@
 //
 //     E(proxy) = contact energy + ψ(p − p_hand) + ψ(log(R R_handᵀ))
 //
-// is lowered by Gauss–Newton steps on rigid motions with Armijo's rule, from the proxy of the tick before. It may stop
-// after any iteration: the proxy is always a pose and its energy has never risen. After Wan and McNeely 2003 and Barbič
-// and James 2008, with the contact's own energy in the place of forces along normals.
+// is lowered by Gauss–Newton steps on rigid motions with Armijo's rule, from the proxy of the tick before; what
+// Gauss–Newton leaves out is learned on the way (dsp/coupling/learned_curvature.hpp). It may stop after any iteration:
+// the proxy is always a pose and its energy has never risen. After Wan and McNeely 2003 and Barbič and James 2008, with
+// the contact's own energy in the place of forces along normals.
 #pragma once
 
 #include "dsp/contact/pointshell_contact.hpp"
 #include "dsp/coupling/coupling_spring.hpp"
+#include "dsp/coupling/learned_curvature.hpp"
 #include "dsp/coupling/symmetric6.hpp"
 
 #include <algorithm>
@@ -28,7 +30,8 @@ concept HeldContactLike = requires(T& contact, const Pose& handle) {
 
 struct QuasiStaticSettings {
     CouplingSprings springs;
-    int iterations = 4;
+    int iterations = 10;
+    int evaluations = 24;  ///< most of the contact in one tick, whatever they are for
     double tolerance = 1e-3;  ///< N: balanced when the residual is below
     /// m: farthest that one iteration moves any point beyond what is surely free. Half of the thinnest wall plus the
     /// thinnest held part at most, or they pass through each other.
@@ -59,6 +62,7 @@ public:
         state_ = {};
         state_.proxy = hand_ = is_valid(hand) ? hand : hand_;
         turn_ = Vec3(0.0);
+        curvature_.forget();
     }
 
     const QuasiStaticState& state() const noexcept { return state_; }
@@ -74,7 +78,9 @@ public:
         state_.energy_before = now.energy;
         while (std::isfinite(now.energy)) {
             state_.balanced = residual(now) < settings.tolerance;
-            if (state_.balanced || state_.iterations >= settings.iterations || !improve(now, contact)) break;
+            if (state_.balanced || state_.iterations >= settings.iterations || !may_evaluate() ||
+                !improve(now, contact))
+                break;
             ++state_.iterations;
         }
         state_.residual = residual(now);
@@ -113,6 +119,8 @@ private:
         return b;
     }
 
+    bool may_evaluate() const noexcept { return state_.evaluations < settings.evaluations; }
+
     double residual(const Balance& b) const noexcept {
         const Vector6& g = b.gradient;
         const double lever = std::max(settings.gyration, 1e-6);
@@ -120,25 +128,38 @@ private:
                          (g[3] * g[3] + g[4] * g[4] + g[5] * g[5]) / (lever * lever));
     }
 
+    /// As far as Gauss–Newton knows it.
+    static Matrix6 stiffness(const Balance& b) noexcept {
+        Matrix6 k = b.contact.stiffness;
+        for (std::size_t i = 0; i < 3; ++i) {
+            k[7 * i] += b.linear.curvature;
+            k[7 * (i + 3)] += b.angular.curvature;
+        }
+        return k;
+    }
+
     /// One step downhill; false when none was found.
     template <class Contact>
     bool improve(Balance& now, Contact& contact) noexcept {
-        Matrix6 k = now.contact.stiffness;
+        const Matrix6 known = stiffness(now);
         Vector6 down{}, step{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            k[7 * i] += now.linear.curvature;
-            k[7 * (i + 3)] += now.angular.curvature;
-        }
         for (std::size_t i = 0; i < 6; ++i) down[i] = -now.gradient[i];
-        if (!solve_symmetric6(k, down, step)) return false;
+        if (now.contact.in_contact == 0) curvature_.forget();
+        if (!solve_symmetric6(curvature_.added_to(known), down, step)) {
+            curvature_.forget();
+            if (!solve_symmetric6(known, down, step)) return false;
+        }
         limit(step, contact);
         double slope = 0.0;
         for (std::size_t i = 0; i < 6; ++i) slope += now.gradient[i] * step[i];
         if (!(slope < 0.0)) return false;
         turn_ = now.turn;
-        for (int halving = 0; halving <= most_halvings; ++halving) {
+        for (int halving = 0; halving <= most_halvings && may_evaluate(); ++halving) {
             const Pose trial = moved(state_.proxy, step);
             const Balance there = balance(trial, contact);
+            Vector6 change{};
+            for (std::size_t i = 0; i < 6; ++i) change[i] = there.gradient[i] - now.gradient[i];
+            curvature_.learn(step, change, known, std::max(settings.gyration, 1e-6));
             if (there.energy <= now.energy + 1e-4 * slope) {
                 state_.proxy = trial;
                 now = there;
@@ -166,6 +187,7 @@ private:
     }
 
     static constexpr int most_halvings = 6;
+    LearnedCurvature curvature_;
     QuasiStaticState state_;
     Pose hand_;
     Vec3 turn_{0.0};

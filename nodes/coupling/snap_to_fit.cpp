@@ -47,7 +47,7 @@ struct SnapToFit {
     Param angular_stiffness{"1 N m/rad", "0 N m/rad", "100 N m/rad", "of the spring that turns"};
     Param max_force{"10 N", "0 N", "100 N", "the spring pulls no harder"};
     Param max_torque{"0.5 N m", "0 N m", "20 N m", "the spring turns no harder"};
-    Param iterations{"4", "1", "50", "most steps of the solver in one tick"};
+    Param iterations{"10", "1", "50", "most steps of the solver in one tick"};
     Param tolerance{"0.001 N", "0 N", "1 N", "residual that counts as balanced"};
     Param step{"0.5 mm", "0.001 mm", "20 mm",
                "farthest that one step may move a point beyond what is free; at most half of the thinnest walls"};

@@ -25,7 +25,6 @@ double swing_left(double stiffness, double damping, int late) {
     held.law.stiffness = 100e3;
     QuasiStaticCoupling coupling = test::coupling_for(held, {{0.0, 0.0, 3.0 * mm}, {1, 0, 0, 0}});
     coupling.settings.springs.linear.stiffness = stiffness;
-    coupling.settings.iterations = 10;
     double z = 3.0 * mm - press / stiffness, v = 2.0 * mm, felt[3] = {press, press, press};
     const double decay = std::exp(-damping / mass * period);
     double first[2] = {1.0, -1.0}, last[2] = {1.0, -1.0};

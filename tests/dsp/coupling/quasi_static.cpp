@@ -85,7 +85,8 @@ TEST_CASE("energy never rises, and a balanced hand feels the sum of the contact 
         const Pose hand = wandering(n * 1e-3, std::min(3.0 * mm, -5.0 * mm + n * 0.02 * mm));
         const QuasiStaticState& now = coupling.update(hand, held);
         REQUIRE(now.energy <= now.energy_before);
-        REQUIRE(now.iterations <= 4);
+        REQUIRE(now.iterations <= 10);
+        REQUIRE(now.evaluations <= 24);
         if (now.contact.in_contact > 0) ++pressed;
         if (!now.balanced) continue;
         ++balanced;
@@ -226,7 +227,8 @@ TEST_CASE("bodies and springs at the edge of sense give finite forces") {
 TEST_CASE("sliding over a plane at any slope: the force is the spring's along the normal") {
     const Pointshell foot = make_pointshell(bodies::foot_points(5, 4.0 * mm));
     const Vec3 normal = glm::normalize(Vec3(0.3, -0.2, 1.0)), along = glm::normalize(glm::cross(normal, Vec3(0, 1, 0)));
-    const Voxmap plane = sample_voxmap(centred_layout(81, 0.35 * mm), [&](const Vec3& p) { return glm::dot(p, normal); });
+    const Voxmap plane =
+        sample_voxmap(centred_layout(81, 0.35 * mm), [&](const Vec3& p) { return glm::dot(p, normal); });
     const Quat flat = glm::angleAxis(std::acos(normal.z), glm::normalize(glm::cross(Vec3(0, 0, 1), normal)));
     Held held(foot, {&plane});
     QuasiStaticCoupling coupling = test::coupling_for(held, {normal * mm, flat});
