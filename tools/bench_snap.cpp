@@ -5,6 +5,7 @@
 #include "dsp/operator/hand.hpp"
 #include "dsp/snap/fit.hpp"
 #include "tools/bench_snap_cases.hpp"
+#include "tools/bench_snap_live.hpp"
 #include "tools/bench_snap_peers.hpp"
 #include "tools/fragment_file.hpp"
 #include "tools/snap_options.hpp"
@@ -26,6 +27,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* live_case = "live";
 constexpr double degree = std::numbers::pi / 180.0, success = 0.5e-3;
 
 struct Start {
@@ -156,12 +158,21 @@ void print_row(const Json& row) {
     fmt::print("\n");
 }
 
+void print_live(const Json& rows) {
+    for (const Json& row : rows)
+        fmt::print("live, {} painted points, {}: a tick takes {:.2f} ms, p99 {:.2f}; under 0.5 ms: {:.1f} %\n",
+                   row["painted_points"].get<int>(), row["method"].get<std::string>(), row["median_ms"].get<double>(),
+                   row["p99_ms"].get<double>(), 100.0 * row["success"].get<double>());
+}
+
 std::vector<Case> chosen_cases(const std::vector<std::string>& names) {
     if (names.empty()) return all_cases();
     std::vector<Case> chosen;
     std::vector<std::string> known;
     for (const Case& c : all_cases()) known.emplace_back(c.kind.name);
+    known.emplace_back(live_case);
     for (const std::string& name : names) {
+        if (name == live_case) continue;
         const auto found = std::ranges::find_if(all_cases(), [&](const Case& c) { return c.kind.name == name; });
         if (found == all_cases().end())
             throw Error(fmt::format("there is no case '{}'{}", name, did_you_mean(name, known)));
@@ -174,6 +185,13 @@ std::vector<Case> chosen_cases(const std::vector<std::string>& names) {
 
 int bench_snap_verb(const SnapBenchChoice& choice) {
     const std::vector<Case> cases = chosen_cases(choice.cases);
+    const bool live = choice.cases.empty() || std::ranges::count(choice.cases, live_case) > 0;
+    if (cases.empty()) {
+        const Json rows = bench_snap_live();
+        if (choice.json) fmt::print("{}\n", rows.dump(2));
+        else print_live(rows);
+        return done;
+    }
     const Bone bone = choice.bone.empty() ? make_mandible() : bone_of_file(choice.bone);
     Json rows = Json::array();
     if (!choice.json)
@@ -201,6 +219,11 @@ int bench_snap_verb(const SnapBenchChoice& choice) {
             for (std::size_t n = first; !choice.json && n < rows.size(); ++n) print_row(rows[n]);
             std::fflush(stdout);
         }
+    }
+    if (live) {
+        const Json more = bench_snap_live();
+        if (!choice.json) print_live(more);
+        rows.insert(rows.end(), more.begin(), more.end());
     }
     if (choice.json) fmt::print("{}\n", rows.dump(2));
     return done;

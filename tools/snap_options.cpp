@@ -62,7 +62,7 @@ void add_snap_bench(CLI::App& bench, SnapBenchChoice& choice) {
     verb->add_option("--trials", choice.trials, "starts for each fracture and distance")
         ->capture_default_str()
         ->check(CLI::Range(1, 1000));
-    verb->add_option("--case", choice.cases, "clean, chipped25, chipped30, spilled, both or fine (default: all)")
+    verb->add_option("--case", choice.cases, "clean, chipped25, chipped30, spilled, both, fine or live (default: all)")
         ->delimiter(',');
     verb->add_option("--bone", choice.bone, "what is broken (default: the bundled jaw)");
     verb->add_flag("--pushed", choice.pushed, "starts are moved apart until bone does not lie in bone");

@@ -2,11 +2,13 @@
 // What Gauss–Newton leaves out of the stiffness of a loaded contact: how the surfaces curve under their forces. It is
 // learned from how the balance changed over the steps that were tried, by symmetric updates of rank one (Conn, Gould and
 // Toint 1991) on top of the known part, as structured quasi-Newton methods do, and kept from tick to tick: a contact
-// that slides is much the same a millisecond later.
+// that slides is much the same a millisecond later. Where gradients jump (a trilinear field at cell faces) what was
+// learned may mislead; it is used as long as it has mostly led downhill.
 #pragma once
 
 #include "dsp/coupling/symmetric6.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tactus {
@@ -14,6 +16,13 @@ namespace tactus {
 class LearnedCurvature {
 public:
     void forget() noexcept { extra_ = {}; }
+
+    /// Whether the next step should trust it. Now and then it is given another chance.
+    bool is_trusted() noexcept { return trust_ > 0 || ++passed_over_ % chance_every == 0; }
+    /// What came of a whole step that trusted it.
+    void judge(bool went_down) noexcept {
+        trust_ = went_down ? std::min(trust_ + 1, most_trust) : std::max(trust_ - 2, -most_trust);
+    }
 
     Matrix6 added_to(const Matrix6& known) const noexcept {
         Matrix6 sum = known;
@@ -42,7 +51,10 @@ public:
 
 private:
     static constexpr double least_share = 1e-3;
+    static constexpr int most_trust = 8, chance_every = 16;
     Matrix6 extra_{};
+    int trust_ = most_trust / 2;
+    unsigned passed_over_ = 0;
 };
 
 }  // namespace tactus

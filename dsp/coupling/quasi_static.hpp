@@ -142,33 +142,52 @@ private:
     template <class Contact>
     bool improve(Balance& now, Contact& contact) noexcept {
         const Matrix6 known = stiffness(now);
-        Vector6 down{}, step{};
-        for (std::size_t i = 0; i < 6; ++i) down[i] = -now.gradient[i];
         if (now.contact.in_contact == 0) curvature_.forget();
-        if (!solve_symmetric6(curvature_.added_to(known), down, step)) {
-            curvature_.forget();
-            if (!solve_symmetric6(known, down, step)) return false;
-        }
-        limit(step, contact);
-        double slope = 0.0;
-        for (std::size_t i = 0; i < 6; ++i) slope += now.gradient[i] * step[i];
-        if (!(slope < 0.0)) return false;
         turn_ = now.turn;
-        for (int halving = 0; halving <= most_halvings && may_evaluate(); ++halving) {
-            const Pose trial = moved(state_.proxy, step);
-            const Balance there = balance(trial, contact);
-            Vector6 change{};
-            for (std::size_t i = 0; i < 6; ++i) change[i] = there.gradient[i] - now.gradient[i];
-            curvature_.learn(step, change, known, std::max(settings.gyration, 1e-6));
-            if (there.energy <= now.energy + 1e-4 * slope) {
-                state_.proxy = trial;
-                now = there;
+        Step step;
+        if (curvature_.is_trusted()) {
+            if (!find_step(step, curvature_.added_to(known), now, contact)) curvature_.forget();
+            else if (const bool went_down = try_step(step, known, now, contact); curvature_.judge(went_down), went_down)
                 return true;
-            }
-            for (double& s : step) s *= 0.5;
-            slope *= 0.5;
+        }
+        if (!find_step(step, known, now, contact)) return false;
+        for (int halving = 0; halving <= most_halvings && may_evaluate(); ++halving) {
+            if (try_step(step, known, now, contact)) return true;
+            for (double& s : step.way) s *= 0.5;
+            step.slope *= 0.5;
         }
         return false;
+    }
+
+    struct Step {
+        Vector6 way{};
+        double slope = 0.0;  ///< of the energy along it, J
+    };
+
+    /// False when there is none that leads down.
+    template <class Contact>
+    bool find_step(Step& step, const Matrix6& k, const Balance& now, Contact& contact) const noexcept {
+        Vector6 down{};
+        for (std::size_t i = 0; i < 6; ++i) down[i] = -now.gradient[i];
+        if (!solve_symmetric6(k, down, step.way)) return false;
+        limit(step.way, contact);
+        step.slope = 0.0;
+        for (std::size_t i = 0; i < 6; ++i) step.slope += now.gradient[i] * step.way[i];
+        return step.slope < 0.0;
+    }
+
+    /// Takes the step if it lowers the energy enough (Armijo 1966).
+    template <class Contact>
+    bool try_step(const Step& step, const Matrix6& known, Balance& now, Contact& contact) noexcept {
+        const Pose trial = moved(state_.proxy, step.way);
+        const Balance there = balance(trial, contact);
+        if (!(there.energy <= now.energy + 1e-4 * step.slope)) return false;
+        Vector6 change{};
+        for (std::size_t i = 0; i < 6; ++i) change[i] = there.gradient[i] - now.gradient[i];
+        curvature_.learn(step.way, change, known, std::max(settings.gyration, 1e-6));
+        state_.proxy = trial;
+        now = there;
+        return true;
     }
 
     template <class Contact>

@@ -166,6 +166,12 @@ FitSurface make_fit_surface(std::span<const SurfacePoint> points, const Grid& di
     return made;
 }
 
+FitSurface make_live_fit_surface(std::span<const SurfacePoint> points, const Grid& distance) {
+    FitSurfaceOptions options;
+    options.most_outline /= 2;
+    return make_fit_surface(points, distance, options);
+}
+
 std::vector<FitSurface> make_fit_faces(std::span<const SurfacePoint> points, const Grid& distance,
                                        const FitSurfaceOptions& options) {
     auto patches = patches_of(points, options.apart, [&](std::size_t i) { return points[i].label == options.paint; });

@@ -43,6 +43,9 @@ struct FitSurface {
 FitSurface make_fit_surface(std::span<const SurfacePoint> points, const Grid& distance,
                             const FitSurfaceOptions& options = {});
 
+/// The same for a pull that is read every tick: with half of the outline's points, whose partners are searched one by one.
+FitSurface make_live_fit_surface(std::span<const SurfacePoint> points, const Grid& distance);
+
 /// One surface per patch of paint that hangs together, largest first: a fragment from the middle has several. Patches of
 /// less than 30 points are left out; throws Error as above when none is left.
 std::vector<FitSurface> make_fit_faces(std::span<const SurfacePoint> points, const Grid& distance,

@@ -94,7 +94,7 @@ private:
         const auto painted = std::ranges::count_if(
             bone.points, [](const SurfacePoint& p) { return p.label == surface_label::fracture; });
         if (painted < 30) return std::nullopt;
-        return make_fit_surface(bone.points, bone.distance);
+        return make_live_fit_surface(bone.points, bone.distance);
     }
 
     void take() noexcept {
