@@ -43,6 +43,12 @@ void add_point(ContactSum& sum, double force, double stiffness, const Vec3& n, c
     }
 }
 
+/// The lower triangle from the upper one.
+void mirror(std::array<double, 36>& m) noexcept {
+    for (std::size_t a = 0; a < 6; ++a)
+        for (std::size_t b = 0; b < a; ++b) m[6 * a + b] = m[6 * b + a];
+}
+
 double median_of(std::vector<double>& values, std::size_t count, double share) noexcept {
     if (count == 0) return 0.0;
     const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(count - 1));
@@ -102,7 +108,6 @@ void FitEnergy::link(const Pose& pose) noexcept {
 }
 
 void FitEnergy::look(const Pose& pose) noexcept {
-    looked_ = pose;
     look(sides_[0], pose);
     if (law.two_sided) look(sides_[1], pose.inverse());
     link(pose);
@@ -153,19 +158,29 @@ void FitEnergy::add_outline(ContactSum& sum, const Pose& pose) const noexcept {
     }
 }
 
-ContactSum FitEnergy::sum_of(const Pose& pose, Reading reading) noexcept {
+ContactSum FitEnergy::operator()(const Pose& pose, ContactParts) noexcept {
     ContactSum sum;
-    add(sum, sides_[0], pose, pose, 1.0, reading);
-    if (law.two_sided) add(sum, sides_[1], pose, pose.inverse(), -1.0, reading);
+    add(sum, sides_[0], pose, pose, 1.0, Reading::fresh);
+    if (law.two_sided) add(sum, sides_[1], pose, pose.inverse(), -1.0, Reading::fresh);
     add_outline(sum, pose);
-    for (std::size_t a = 0; a < 6; ++a)
-        for (std::size_t b = 0; b < a; ++b) sum.stiffness[6 * a + b] = sum.stiffness[6 * b + a];
+    mirror(sum.stiffness);
     return sum;
 }
 
-ContactSum FitEnergy::operator()(const Pose& pose, ContactParts) noexcept { return sum_of(pose, Reading::fresh); }
-
-ContactSum FitEnergy::at_look() noexcept { return sum_of(looked_, Reading::seen); }
+ContactSum FitEnergy::look_at_half(FitHalf half, const Pose& pose) noexcept {
+    ContactSum sum;
+    if (half == FitHalf::moving_points) {
+        look(sides_[0], pose);
+        link(pose);
+        add(sum, sides_[0], pose, pose, 1.0, Reading::seen);
+        add_outline(sum, pose);
+    } else if (law.two_sided) {
+        look(sides_[1], pose.inverse());
+        add(sum, sides_[1], pose, pose.inverse(), -1.0, Reading::seen);
+    }
+    mirror(sum.stiffness);
+    return sum;
+}
 
 FitQuality FitEnergy::quality(const Pose& pose, double sigma) noexcept {
     FitQuality q;

@@ -24,6 +24,10 @@ namespace tactus {
 
 enum class FitKernel : std::uint8_t { robust, steady };
 
+/// The halves of the energy that may be looked at apart: what the moving points find in the fixed field with the outline,
+/// and the fixed points in the moving field.
+enum class FitHalf : std::uint8_t { moving_points, fixed_points };
+
 struct FitLaw {
     FitKernel kernel = FitKernel::robust;
     double strength = 10e3;  ///< robust: K, N/m over all points of a side; steady: F, N
@@ -63,8 +67,8 @@ public:
     void look(const Pose& pose) noexcept;
     /// Energy, gradient and stiffness about the origin of the moving frame: what a coupling takes for a contact.
     ContactSum operator()(const Pose& pose, ContactParts parts) noexcept;
-    /// The same at the pose last looked at, without reading the fields once more.
-    ContactSum at_look() noexcept;
+    /// The same for one half alone, looking anew on the way and reading each field once.
+    ContactSum look_at_half(FitHalf half, const Pose& pose) noexcept;
     double clearance(const Pose&) const noexcept { return 0.0; }
 
     /// `sigma`, m: the distance at which a point counts 0.6. Takes no notice of the law.
@@ -84,7 +88,6 @@ private:
 
     void look(Side& side, const Pose& into) noexcept;
     void link(const Pose& pose) noexcept;
-    ContactSum sum_of(const Pose& pose, Reading reading) noexcept;
     void add(ContactSum& sum, const Side& side, const Pose& pose, const Pose& into, double sign,
              Reading reading) noexcept;
     void add_outline(ContactSum& sum, const Pose& pose) const noexcept;
@@ -94,7 +97,6 @@ private:
     std::vector<Link> links_;
     std::vector<double> depths_;
     std::size_t link_count_ = 0;
-    Pose looked_;
 };
 
 }  // namespace tactus

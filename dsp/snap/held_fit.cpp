@@ -44,30 +44,44 @@ ContactSum carried(const ContactSum& sum, const Mat3& turn, const Vec3& arm, dou
 }  // namespace
 
 void HeldFit::look(const Pose& handle, const Pose& moving, const Pose& fixed, double share) noexcept {
-    pull_ = {};
-    if (!energy_ || !(share > 0.0)) return;
+    if (!energy_ || !(share > 0.0)) return forget();
+    if (!halves_[1 - turn_].is_read) read(static_cast<FitHalf>(1 - turn_), handle, moving, fixed, share);
+    read(static_cast<FitHalf>(turn_), handle, moving, fixed, share);
+    // One-sided, there is nothing to take turns with.
+    turn_ = energy_->law.two_sided ? 1 - turn_ : 0;
+}
+
+void HeldFit::read(FitHalf half, const Pose& handle, const Pose& moving, const Pose& fixed, double share) noexcept {
     const Pose body = handle * moving;
     const Pose centres = between_centres(energy_->moving(), energy_->fixed(), fixed.inverse() * body);
-    energy_->look(centres);
     const Vec3 arm = body.apply(energy_->moving().centre) - handle.position;
-    pull_ = carried(energy_->at_look(), glm::mat3_cast(fixed.orientation), arm, std::min(share, 1.0));
-    at_ = handle;
+    const ContactSum sum = energy_->look_at_half(half, centres);
+    halves_[static_cast<std::size_t>(half)] = {
+        carried(sum, glm::mat3_cast(fixed.orientation), arm, std::min(share, 1.0)), handle, true};
+}
+
+double HeldFit::force() const noexcept {
+    Vec3 sum(0.0);
+    for (const Half& half : halves_) sum += Vec3(half.pull.gradient[0], half.pull.gradient[1], half.pull.gradient[2]);
+    return glm::length(sum);
 }
 
 ContactSum HeldFit::operator()(const Pose& handle, ContactParts parts) noexcept {
     ContactSum sum = contact_(handle, parts);
-    if (pull_.energy == 0.0) return sum;
-    const Vec3 way = handle.position - at_.position, turn = rotation_between(at_.orientation, handle.orientation);
-    const Vector6 x{way.x, way.y, way.z, turn.x, turn.y, turn.z};
-    sum.energy += pull_.energy;
-    for (std::size_t i = 0; i < 6; ++i) {
-        double slope = pull_.gradient[i];
-        for (std::size_t j = 0; j < 6; ++j) {
-            slope += pull_.stiffness[6 * i + j] * x[j];
-            sum.stiffness[6 * i + j] += pull_.stiffness[6 * i + j];
+    for (const auto& [pull, at, is_read] : halves_) {
+        if (!is_read || pull.energy == 0.0) continue;
+        const Vec3 way = handle.position - at.position, turn = rotation_between(at.orientation, handle.orientation);
+        const Vector6 x{way.x, way.y, way.z, turn.x, turn.y, turn.z};
+        sum.energy += pull.energy;
+        for (std::size_t i = 0; i < 6; ++i) {
+            double slope = pull.gradient[i];
+            for (std::size_t j = 0; j < 6; ++j) {
+                slope += pull.stiffness[6 * i + j] * x[j];
+                sum.stiffness[6 * i + j] += pull.stiffness[6 * i + j];
+            }
+            sum.energy += 0.5 * x[i] * (slope + pull.gradient[i]);
+            sum.gradient[i] += slope;
         }
-        sum.energy += 0.5 * x[i] * (slope + pull_.gradient[i]);
-        sum.gradient[i] += slope;
     }
     return sum;
 }

@@ -99,6 +99,7 @@ private:
 
     void take() noexcept {
         solver_.reset(device);
+        fit_->forget();
         drawn_ = 0.0;
         sprung_ = 1.0;
         scale_ = 0.5 * reach;
@@ -129,7 +130,7 @@ private:
         const auto other = static_cast<std::size_t>(target);
         const bool has_pull = energy_ && other < scene->count && other != static_cast<std::size_t>(hold_.place) &&
                               is_valid(scene->objects[other].pose);
-        fit_->forget();
+        if (!has_pull) fit_->forget();
         Pose moving_file, fixed_file;
         if (has_pull) {
             set_law();
@@ -140,8 +141,7 @@ private:
             narrow(elapsed);
         }
         const QuasiStaticState& now = solver_.update(device, *fit_);
-        const auto& g = fit_->pull().gradient;
-        const double drawing = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+        const double drawing = fit_->force();
         wrench = now.wrench * hold_.strength;
         pose = now.proxy * in_hand;
         pull = drawing;
@@ -166,7 +166,7 @@ private:
 
     /// The scale follows how far the paints are apart, so that what does not match stops counting as they meet.
     void narrow(double elapsed) noexcept {
-        const double apart = drawn_ > 0.0 ? std::sqrt(fit_->pull().energy / (drawn_ * energy_->law.strength)) : reach;
+        const double apart = drawn_ > 0.0 ? std::sqrt(fit_->energy() / (drawn_ * energy_->law.strength)) : reach;
         const double wanted = std::clamp(2.0 * apart, 0.25e-3, std::max(0.25e-3, 0.5 * reach));
         scale_ += (wanted - scale_) * std::min(1.0, elapsed / 0.05);
     }
