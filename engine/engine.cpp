@@ -41,7 +41,12 @@ Engine::Engine(Plan plan, const EngineOptions& options)
     : options_(options),
       plan_hash_(hash_of(plan.patch)),
       outside_(options.folder, options.live, options.audio),
-      workshop_{.outside = outside_, .block = options.block, .hash = options.hash, .constants = {}, .take = {}} {
+      workshop_{.outside = outside_,
+                .block = options.block,
+                .hash = options.hash,
+                .constants = {},
+                .take = {},
+                .observer = options.observer} {
     if (options_.devices) outside_.imitate(*options_.devices);
     if (options_.take && !options_.tap)
         options_.tap = [this](const std::string& port, const ValueType& type, const GroupRuntime& group) {

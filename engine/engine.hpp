@@ -32,6 +32,7 @@ struct EngineOptions {
     const TimingLog* replay = nullptr;  ///< repeat what timing decided in a live run
     const std::vector<RecordedDevice>* devices = nullptr;  ///< stand-ins for the devices of the run that is repeated
     TakeWriter* take = nullptr;  ///< records the run
+    Observer* observer = nullptr;  ///< looks on; changes nothing
     bool live = false;
     AudioChoice audio;  ///< live only
     bool hash = true;  ///< keep `output_hash`; costs about as much per sample of a signal as a trivial node

@@ -374,10 +374,22 @@ private:
             output.is_signal = &type == &value::signal;
             output.name = node.name + "." + node.outputs[k].name;
             if (workshop_.take) output.take = workshop_.take(output.name, type, *running.group);
+            if (workshop_.observer) output.seen = &observed(running, k, output.name);
             if (type.version) program.snapshots.push_back(static_cast<SnapshotOutput*>(running.outputs[k]));
         }
         program.hashes_outputs = workshop_.hash;
-        program.records_outputs = static_cast<bool>(workshop_.take);
+        program.records_outputs = workshop_.take || workshop_.observer;
+    }
+
+    /// Where the output of a node is seen from outside. One that goes on is looked at as before.
+    ObservedPort& observed(LiveNode& node, std::size_t output, const std::string& name) {
+        if (node.seen.size() <= output) {
+            const GroupRuntime& group = *node.group;
+            node.seen.push_back(workshop_.observer->open(
+                {name, group.plan->name, group.plan->period, group.plan->has_audio ? group.max_frames : 1},
+                *node.outputs[output]->type, node.outputs[output]->data));
+        }
+        return *node.seen[output];
     }
 
     void make_programs() {

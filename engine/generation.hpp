@@ -5,6 +5,7 @@
 
 #include "engine/group_program.hpp"
 #include "engine/group_runtime.hpp"
+#include "engine/observer.hpp"
 #include "engine/outside.hpp"
 #include "graph/plan.hpp"
 
@@ -29,6 +30,7 @@ struct LiveNode {
     std::vector<Output*> outputs;
     std::map<std::string, Param*> params;
     OutsideUses uses;  ///< what its prepare asked for
+    std::vector<std::shared_ptr<ObservedPort>> seen;  ///< as outputs, when there is an observer
 };
 
 /// What the generations of one run share. Used by one builder at a time.
@@ -41,6 +43,7 @@ struct Workshop {
     /// Where the values of an output are recorded, or null. Named "node.port"; empty: there is no take.
     std::function<RecordStream*(const std::string& port, const ValueType&, const GroupRuntime&)> take;
     int next_group = 0, next_link = 0;
+    Observer* observer = nullptr;  ///< who looks on, or null
 };
 
 struct Generation {

@@ -21,6 +21,7 @@
 namespace tactus {
 
 class GroupRuntime;
+class ObservedPort;
 
 /// A number that drives a parameter before its node's step: from the same group, or gliding from another.
 struct Drive {
@@ -79,6 +80,7 @@ struct PublishedOutput {
     Hash hash;
     SignalHash samples;
     RecordStream* take = nullptr;  ///< where every value is recorded, or null
+    ObservedPort* seen = nullptr;  ///< where an observer finds it, or null
     std::string name;  ///< "node.port"
     int before = -1;  ///< the same output in the program before, whose hash goes on
 

@@ -3,6 +3,7 @@
 
 #include "dsp/core/realtime.hpp"
 #include "engine/clock.hpp"
+#include "engine/observed_port.hpp"
 #include "graph/node_memory.hpp"
 
 #include <glm/geometric.hpp>
@@ -252,6 +253,8 @@ void GroupRuntime::record_outputs(const Step& step, int frames) noexcept {
         const PublishedOutput& output = program_->published[k];
         if (output.take)
             output.take->write(next_, output.port->data, static_cast<std::size_t>(frames), output.port->stride);
+        if (output.seen)
+            output.seen->see(next_, output.port->data, static_cast<std::size_t>(frames), output.port->stride);
     }
 }
 

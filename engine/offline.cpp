@@ -51,6 +51,7 @@ void Engine::offline_worker(const std::vector<GroupRuntime*>& mine, std::uint64_
             if (stream->wants_drain()) stream->drain();
         for (Stream* tap : open_taps_)
             if (tap->wants_drain()) tap->drain();
+        if (options_.observer && options_.observer->wants_drain()) options_.observer->drain();
         if (earliest->log && earliest->log->size() * 2 > earliest->log->capacity()) drain_log();
     }
 }

@@ -183,6 +183,20 @@ void add_export(CLI::App& app, ExportChoice& choice) {
     verb->add_flag("--json", choice.json, "print a summary as JSON");
 }
 
+void add_frame_options(CLI::App& app, FrameChoice& choice) {
+    auto* frames =
+        app.add_option("--frames", choice.frames, "pictures of the scene, evenly over the time: frame_0001.png, ...")
+            ->check(CLI::Range(1, 100000));
+    const auto add = [&](const char* name, std::string& value, const char* about) {
+        app.add_option(name, value, about)->capture_default_str()->needs(frames);
+    };
+    add("--view-from", choice.view_from, "front, back, left, right, top, bottom or iso");
+    add("--size", choice.size, "of the pictures, WIDTHxHEIGHT");
+    add("--stereo", choice.stereo, "mono, side-by-side or anaglyph");
+    add("--clip", choice.clip, "take away what is above along an axis: x, -y, \"z=12 mm\"");
+    add("--head", choice.head, "a pose output that is the viewer's head before a screen 0.3 m high");
+}
+
 }  // namespace
 
 int command_line(int argc, char** argv) {
@@ -200,6 +214,7 @@ int command_line(int argc, char** argv) {
     render_app->add_option("--block", render.block, "most samples per call, or 'random'; the output is the same");
     render_app->add_option("--log", render.log, "repeat the timing decisions of a live run");
     render_app->add_option("--record", render.record, "keep the run as a take, a folder that 'replay' repeats");
+    add_frame_options(*render_app, render.frames);
     render_app->add_flag("--json", render.json, "print the summary");
 
     RigChoice rig;
@@ -296,6 +311,12 @@ int command_line(int argc, char** argv) {
         ->capture_default_str()
         ->check(CLI::Range(1, 1000));
     bench_contact_app->add_flag("--json", bench.json, "as JSON");
+    CLI::App* bench_view_app =
+        bench_app->add_subcommand("view", "time to remesh what a cut changed of a bone, beside OpenVDB's volumeToMesh");
+    bench_view_app->add_option("--rounds", bench.rounds, "more rounds, steadier figures")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 100));
+    bench_view_app->add_flag("--json", bench.json, "as JSON");
     SnapBenchChoice bench_snap;
     add_snap_bench(*bench_app, bench_snap);
 
@@ -311,6 +332,7 @@ int command_line(int argc, char** argv) {
         if (*nodes_app) return nodes_verb(type, nodes_json);
         if (*bench_engine_app) return bench_engine_verb(bench);
         if (*bench_contact_app) return bench_contact_verb(bench);
+        if (*bench_view_app) return bench_view_verb(bench);
         if (bench_app->got_subcommand("snap")) return bench_snap_verb(bench_snap);
         if (*devices_app) return devices_verb(devices_json);
         if (app.got_subcommand("spectrum")) return spectrum_verb(analysis.spectrum);

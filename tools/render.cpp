@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/file/whole_file.hpp"
+#include "tools/frames.hpp"
 #include "tools/load_plan.hpp"
 #include "tools/results.hpp"
 #include "tools/summary.hpp"
@@ -46,6 +47,11 @@ int render_verb(const RenderChoice& choice) {
         take = make_take(choice, choice.record, options.seconds, false);
         options.take = take.get();
     }
+    std::unique_ptr<FrameWriter> frames;
+    if (choice.frames.frames > 0) {
+        frames = std::make_unique<FrameWriter>(choice.frames, outline_of(plan), options.seconds, choice.out);
+        options.observer = &frames->observer();
+    }
     Engine engine(std::move(plan), options);
     const int threads =
         choice.threads > 0 ? choice.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -53,15 +59,18 @@ int render_verb(const RenderChoice& choice) {
     LiveLine line;
     const auto begin = std::chrono::steady_clock::now();
     engine.render(threads, [&](double done) {
+        if (frames) frames->advance(engine.progress_seconds() - 1e-6);
         line.show(
             fmt::format("{:3.0f} %  {:.1f} s of {:.1f} s", 100.0 * done, done * options.seconds, options.seconds));
     });
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (frames) frames->advance(options.seconds);
     line.clear();
     engine.finish();
     const Report report = engine.report();
     std::vector<std::string> files = write_pictures(report, choice.out);
     for (std::string& file : write_bones(report, choice.out)) files.push_back(std::move(file));
+    if (frames) files.insert(files.end(), frames->files().begin(), frames->files().end());
     files.push_back("summary.json");
     const std::string summary = summary_json(engine, report, options.seconds, false, files);
     write_whole_file(choice.out / "summary.json", summary);

@@ -5,6 +5,7 @@
 
 #include "assets/bone/import.hpp"
 #include "graph/patch.hpp"
+#include "tools/frame_choice.hpp"
 #include "tools/record_options.hpp"
 
 #include <filesystem>
@@ -30,6 +31,7 @@ struct RenderChoice : PatchChoice {
     int threads = 0;      ///< 0: one per core
     std::string block;    ///< "", a number, or "random"
     std::filesystem::path log, record;
+    FrameChoice frames;
 };
 
 struct RunChoice : PatchChoice {
@@ -169,6 +171,7 @@ int info_verb(const InfoChoice& choice);
 
 int bench_engine_verb(const BenchChoice& choice);
 int bench_contact_verb(const BenchChoice& choice);
+int bench_view_verb(const BenchChoice& choice);
 
 /// Parses the command line and runs the verb.
 int command_line(int argc, char** argv);

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "devices/display/gl_program.hpp"
+
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace tactus {
+namespace {
+
+GLuint compile(GLenum kind, const char* source) {
+    const GLuint shader = glCreateShader(kind);
+    glShaderSource(shader, 1, &source, nullptr);
+    glCompileShader(shader);
+    GLint good = 0;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
+    if (good == 0) {
+        std::array<char, 1024> log{};
+        glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()) - 1, nullptr, log.data());
+        glDeleteShader(shader);
+        throw Error(fmt::format("the graphics driver refuses a shader: {}", log.data()));
+    }
+    return shader;
+}
+
+}  // namespace
+
+GlProgram::GlProgram(const char* vertex, const char* fragment) : program_(glCreateProgram()) {
+    for (const auto& [kind, source] : {std::pair{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}}) {
+        const GLuint shader = compile(static_cast<GLenum>(kind), source);
+        glAttachShader(program_, shader);
+        glDeleteShader(shader);  // lives on as long as the program
+    }
+    glLinkProgram(program_);
+    GLint good = 0;
+    glGetProgramiv(program_, GL_LINK_STATUS, &good);
+    if (good == 0) throw Error("the graphics driver cannot link a shader");
+}
+
+}  // namespace tactus

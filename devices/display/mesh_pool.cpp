@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "devices/display/mesh_pool.hpp"
+
+#include "devices/display/gl_program.hpp"
+#include "dsp/core/error.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+
+namespace tactus {
+
+std::size_t BufferShelf::room_for(std::size_t count) { return std::bit_ceil(std::max<std::size_t>(count, 64)); }
+
+std::size_t BufferShelf::take(std::size_t count) {
+    const std::size_t room = room_for(count);
+    if (auto& places = free_[room]; !places.empty()) {
+        const std::size_t first = places.back();
+        places.pop_back();
+        return first;
+    }
+    end_ += room;
+    return end_ - room;
+}
+
+void BufferShelf::give_back(std::size_t first, std::size_t count) { free_[room_for(count)].push_back(first); }
+
+MeshPool::MeshPool() {
+    glGenVertexArrays(1, &array_);
+    describe_vertices();
+}
+
+MeshPool::~MeshPool() {
+    glDeleteVertexArrays(1, &array_);
+    glDeleteBuffers(1, &vertex_buffer_);
+    glDeleteBuffers(1, &index_buffer_);
+}
+
+void MeshPool::describe_vertices() const {
+    glBindVertexArray(array_);
+    glBindBuffer(GL_ARRAY_BUFFER, vertex_buffer_);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, index_buffer_);
+    if (vertex_buffer_ == 0) return;
+    const auto at = [](std::size_t offset) { return reinterpret_cast<const void*>(offset); };
+    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(SurfaceVertex), at(offsetof(SurfaceVertex, position)));
+    glVertexAttribPointer(1, 3, GL_SHORT, GL_TRUE, sizeof(SurfaceVertex), at(offsetof(SurfaceVertex, normal)));
+    glVertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(SurfaceVertex), at(offsetof(SurfaceVertex, colour)));
+    for (GLuint location = 0; location < 3; ++location) glEnableVertexAttribArray(location);
+}
+
+/// Moves to a longer buffer when needed; what is in it stays.
+void MeshPool::ensure(std::uint32_t& buffer, std::size_t& size, std::size_t wanted) {
+    if (wanted <= size) return;
+    const std::size_t longer = std::max(wanted, 2 * size);
+    GLuint next = 0;
+    glGenBuffers(1, &next);
+    glBindBuffer(GL_COPY_WRITE_BUFFER, next);
+    glBufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(longer), nullptr, GL_DYNAMIC_DRAW);
+    if (buffer != 0) {
+        glBindBuffer(GL_COPY_READ_BUFFER, buffer);
+        glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, static_cast<GLsizeiptr>(size));
+        glDeleteBuffers(1, &buffer);
+    }
+    buffer = next;
+    size = longer;
+    describe_vertices();
+}
+
+MeshPool::Mesh MeshPool::make() {
+    const auto free = std::ranges::find(meshes_, false, &Parts::is_used);
+    const auto at = free - meshes_.begin();
+    if (free == meshes_.end()) meshes_.emplace_back();
+    meshes_[static_cast<std::size_t>(at)].is_used = true;
+    return static_cast<Mesh>(at);
+}
+
+void MeshPool::remove(Mesh mesh) {
+    Parts& parts = meshes_[static_cast<std::size_t>(mesh)];
+    for (const auto& [number, part] : parts.of) give_back(part);
+    parts = Parts{};
+}
+
+void MeshPool::give_back(const Part& part) {
+    vertex_shelf_.give_back(part.first_vertex, part.vertices);
+    index_shelf_.give_back(part.first_index, part.indices);
+}
+
+void MeshPool::set_part(Mesh mesh, std::uint32_t number, const SurfacePatch& patch) {
+    if (std::ranges::any_of(patch.triangles, [&](std::uint32_t v) { return v >= patch.vertices.size(); }))
+        throw Error("a mesh for a picture names a vertex that it does not have");
+    Parts& parts = meshes_[static_cast<std::size_t>(mesh)];
+    parts.is_listed = false;
+    if (const auto known = parts.of.find(number); known != parts.of.end()) {
+        give_back(known->second);
+        parts.of.erase(known);
+    }
+    if (patch.triangles.empty()) return;
+    const Part part{vertex_shelf_.take(patch.vertices.size()), patch.vertices.size(),
+                    index_shelf_.take(patch.triangles.size()), patch.triangles.size()};
+    parts.of[number] = part;
+    ensure(vertex_buffer_, vertex_bytes_, vertex_shelf_.end() * sizeof(SurfaceVertex));
+    ensure(index_buffer_, index_bytes_, index_shelf_.end() * sizeof(std::uint32_t));
+    const auto send = [](GLuint buffer, std::size_t first, const auto& values) {
+        const std::size_t size = sizeof values.front();
+        glBindBuffer(GL_COPY_WRITE_BUFFER, buffer);
+        glBufferSubData(GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(first * size),
+                        static_cast<GLsizeiptr>(values.size() * size), values.data());
+    };
+    send(vertex_buffer_, part.first_vertex, patch.vertices);
+    send(index_buffer_, part.first_index, patch.triangles);
+}
+
+std::size_t MeshPool::triangles(Mesh mesh) const {
+    std::size_t count = 0;
+    for (const auto& [number, part] : meshes_[static_cast<std::size_t>(mesh)].of) count += part.indices / 3;
+    return count;
+}
+
+void MeshPool::draw(Mesh mesh) const {
+    const Parts& parts = meshes_[static_cast<std::size_t>(mesh)];
+    if (parts.of.empty()) return;
+    if (!parts.is_listed) {
+        parts.counts.clear();
+        parts.bases.clear();
+        parts.offsets.clear();
+        for (const auto& [number, part] : parts.of) {
+            parts.counts.push_back(static_cast<std::int32_t>(part.indices));
+            parts.bases.push_back(static_cast<std::int32_t>(part.first_vertex));
+            parts.offsets.push_back(reinterpret_cast<const void*>(part.first_index * sizeof(std::uint32_t)));
+        }
+        parts.is_listed = true;
+    }
+    glBindVertexArray(array_);
+    glMultiDrawElementsBaseVertex(GL_TRIANGLES, parts.counts.data(), GL_UNSIGNED_INT, parts.offsets.data(),
+                                  static_cast<GLsizei>(parts.counts.size()), parts.bases.data());
+}
+
+}  // namespace tactus

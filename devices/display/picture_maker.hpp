@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of a scene without a window.
+#pragma once
+
+#include "devices/display/gl_context.hpp"
+#include "devices/display/offscreen.hpp"
+#include "devices/display/scene_renderer.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace tactus {
+
+/// Holds an OpenGL context of its own, which is the current one of its thread for as long as it lives.
+class PictureMaker {
+public:
+    /// Throws Error when no OpenGL context can be had, and for a size outside 1 to 8192 pixels.
+    PictureMaker(int width, int height);
+    ~PictureMaker();
+
+    SceneRenderer& renderer() { return *renderer_; }
+    int width() const { return width_; }
+    int height() const { return height_; }
+
+    /// Four samples per pixel where the driver has them. The same scene gives the same pixels on one machine.
+    Image draw(const Picture& picture, std::span<const DrawnView> views);
+
+private:
+    int width_, height_;
+    SurfacelessContext context_;
+    std::uint32_t frame_ = 0, resolved_ = 0, buffers_[3] = {};
+    std::unique_ptr<SceneRenderer> renderer_;
+};
+
+}  // namespace tactus

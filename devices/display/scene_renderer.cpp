@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "devices/display/scene_renderer.hpp"
+
+#include "devices/display/gl_program.hpp"
+#include "devices/display/scene_shaders.hpp"
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus {
+
+namespace {
+
+using Shader = std::pair<const char*, const char*>;
+
+Mat4 matrix_of(const Pose& pose) {
+    Mat4 matrix = glm::mat4_cast(pose.orientation);
+    matrix[3] = glm::dvec4(pose.position, 1.0);
+    return matrix;
+}
+
+void set(GLint location, const Mat4& value) {
+    const glm::mat4 single(value);
+    glUniformMatrix4fv(location, 1, GL_FALSE, glm::value_ptr(single));
+}
+void set(GLint location, const Vec3& value) {
+    glUniform3f(location, static_cast<float>(value.x), static_cast<float>(value.y), static_cast<float>(value.z));
+}
+
+void check_version() {
+    const GLubyte* const text = glGetString(GL_VERSION);
+    GLint major = 0, minor = 0;
+    if (text) {
+        glGetIntegerv(GL_MAJOR_VERSION, &major);
+        glGetIntegerv(GL_MINOR_VERSION, &minor);
+    }
+    if (!text || major * 10 + minor < 33)
+        throw Error(fmt::format("pictures of the scene need OpenGL 3.3; here is {}",
+                                text ? reinterpret_cast<const char*>(text) : "none"));
+}
+
+}  // namespace
+
+struct SceneRenderer::Programs {
+    GlProgram background{scene_shaders::background_vertex, scene_shaders::background_fragment};
+    GlProgram mesh{scene_shaders::mesh_vertex, scene_shaders::mesh_fragment};
+    GlProgram points{scene_shaders::point_vertex, scene_shaders::point_fragment};
+    GlProgram pick{scene_shaders::mesh_vertex, scene_shaders::pick_fragment};
+    GLuint no_attributes = 0, point_array = 0, point_buffer = 0, pick_frame = 0, pick_buffers[2] = {};
+
+    Programs() {
+        glGenVertexArrays(1, &no_attributes);
+        glGenVertexArrays(1, &point_array);
+        glGenBuffers(1, &point_buffer);
+    }
+    ~Programs() {
+        glDeleteVertexArrays(1, &no_attributes);
+        glDeleteVertexArrays(1, &point_array);
+        glDeleteBuffers(1, &point_buffer);
+        glDeleteFramebuffers(1, &pick_frame);
+        glDeleteRenderbuffers(2, pick_buffers);
+    }
+};
+
+std::vector<DrawnView> views_of(const OrbitCamera& camera, const Bounds& scene, int width, int height, StereoMode mode,
+                                std::optional<double> separation) {
+    const bool halves = mode == StereoMode::side_by_side;
+    const double aspect = static_cast<double>(halves ? width / 2 : width) / std::max(height, 1);
+    if (mode == StereoMode::mono) return {{camera.projection(aspect, scene), 0, 0, width, height, Channel::all}};
+    // The two eyes look through one window that stands at the target.
+    const double tall = camera.distance * std::tan(0.5 * camera.vertical_field_of_view_rad);
+    const Vec3 right = camera.orientation * Vec3(tall * aspect, 0.0, 0.0);
+    const Vec3 up = camera.orientation * Vec3(0.0, tall, 0.0);
+    const Screen window{camera.target - right - up, camera.target + right - up, camera.target - right + up};
+    const Eyes eyes = eyes_of({camera.eye(), camera.orientation}, separation.value_or(camera.distance / 30.0));
+    const RigView both[] = {{0, eyes.left, through_screen(window, eyes.left, scene)},
+                            {0, eyes.right, through_screen(window, eyes.right, scene)}};
+    return views_of(both, width, height, mode);
+}
+
+std::vector<DrawnView> views_of(std::span<const RigView> eyes, int width, int height, StereoMode mode) {
+    if (eyes.size() < 2 || mode == StereoMode::mono)
+        return {{eyes.front().projection, 0, 0, width, height, Channel::all}};
+    const Projection &left = eyes[0].projection, &right = eyes[1].projection;
+    switch (mode) {
+        case StereoMode::side_by_side:
+            return {{left, 0, 0, width / 2, height, Channel::all},
+                    {right, width / 2, 0, width - width / 2, height, Channel::all}};
+        case StereoMode::anaglyph:
+            return {{left, 0, 0, width, height, Channel::red}, {right, 0, 0, width, height, Channel::cyan}};
+        default:
+            return {{left, 0, 0, width, height, Channel::back_left}, {right, 0, 0, width, height, Channel::back_right}};
+    }
+}
+
+SceneRenderer::SceneRenderer() {
+    check_version();
+    programs_ = std::make_unique<Programs>();
+    pool_ = std::make_unique<MeshPool>();
+}
+
+SceneRenderer::~SceneRenderer() = default;
+
+void SceneRenderer::draw_meshes(const Picture& picture, const Projection& projection, bool see_through) {
+    const GlProgram& program = programs_->mesh;
+    program.use();
+    set(program.uniform("to_clip"), projection.to_clip);
+    set(program.uniform("section"), picture.section);
+    for (std::size_t i = 0; i < picture.meshes.size(); ++i) {
+        const DrawnMesh& drawn = picture.meshes[i];
+        if ((drawn.opacity < 1.0) != see_through || !is_valid(drawn.pose)) continue;
+        const Mat4 to_world = matrix_of(drawn.pose);
+        set(program.uniform("to_eye"), projection.to_eye * to_world);
+        glUniform1f(program.uniform("opacity"), static_cast<float>(drawn.opacity));
+        const bool is_cut = picture.clip && drawn.is_clipped;
+        glm::dvec4 plane(0.0, 0.0, 0.0, 1.0);
+        if (is_cut) {
+            // Seen from the mesh: height below the plane.
+            const Pose back = drawn.pose.inverse();
+            const Vec3 normal = back.rotate(picture.clip->normal), point = back.apply(picture.clip->point);
+            plane = glm::dvec4(-normal, glm::dot(normal, point));
+        }
+        glUniform4f(program.uniform("keep"), static_cast<float>(plane.x), static_cast<float>(plane.y),
+                    static_cast<float>(plane.z), static_cast<float>(plane.w));
+        glUniform1i(program.uniform("is_cut"), is_cut ? 1 : 0);
+        if (see_through) {
+            // The far side first, so that a body shines through itself in one order only.
+            glEnable(GL_CULL_FACE);
+            for (const GLenum hidden : {GL_FRONT, GL_BACK}) {
+                glCullFace(hidden);
+                pool_->draw(drawn.mesh);
+            }
+            glDisable(GL_CULL_FACE);
+        } else {
+            pool_->draw(drawn.mesh);
+        }
+    }
+}
+
+void SceneRenderer::draw_points(const Picture& picture, const Projection& projection) {
+    if (picture.points.empty()) return;
+    glBindVertexArray(programs_->point_array);
+    glBindBuffer(GL_ARRAY_BUFFER, programs_->point_buffer);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(picture.points.size() * sizeof(SurfaceVertex)),
+                 picture.points.data(), GL_STREAM_DRAW);
+    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(SurfaceVertex), nullptr);
+    glVertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(SurfaceVertex),
+                          reinterpret_cast<const void*>(offsetof(SurfaceVertex, colour)));
+    glEnableVertexAttribArray(0);
+    glEnableVertexAttribArray(2);
+    const GlProgram& program = programs_->points;
+    program.use();
+    set(program.uniform("to_eye"), projection.to_eye);
+    set(program.uniform("to_clip"), projection.to_clip);
+    glUniform1f(program.uniform("size"), static_cast<float>(picture.point_size));
+    glEnable(GL_PROGRAM_POINT_SIZE);
+    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(picture.points.size()));
+    glDisable(GL_PROGRAM_POINT_SIZE);
+}
+
+void SceneRenderer::draw(const Picture& picture, std::span<const DrawnView> views) {
+    glEnable(GL_SCISSOR_TEST);
+    glDisable(GL_CULL_FACE);
+    for (const DrawnView& view : views) {
+        if (view.width < 1 || view.height < 1) continue;
+        const bool red = view.channel != Channel::cyan, cyan = view.channel != Channel::red;
+        if (view.channel == Channel::back_left) glDrawBuffer(GL_BACK_LEFT);
+        if (view.channel == Channel::back_right) glDrawBuffer(GL_BACK_RIGHT);
+        glColorMask(red, cyan, cyan, GL_TRUE);
+        glViewport(view.x, view.y, view.width, view.height);
+        glScissor(view.x, view.y, view.width, view.height);
+        glDepthMask(GL_TRUE);
+        glClear(GL_DEPTH_BUFFER_BIT);
+        glDisable(GL_DEPTH_TEST);
+        glDisable(GL_BLEND);
+        programs_->background.use();
+        set(programs_->background.uniform("sky"), picture.sky);
+        set(programs_->background.uniform("ground"), picture.ground);
+        glBindVertexArray(programs_->no_attributes);
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+        glEnable(GL_DEPTH_TEST);
+        glEnable(GL_CLIP_DISTANCE0);
+        glFrontFace(view.projection.is_mirrored ? GL_CW : GL_CCW);
+        draw_meshes(picture, view.projection, false);
+        draw_points(picture, view.projection);
+        glEnable(GL_BLEND);
+        glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+        draw_meshes(picture, view.projection, true);
+    }
+    glFrontFace(GL_CCW);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    for (const GLenum what : {GL_BLEND, GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_CLIP_DISTANCE0}) glDisable(what);
+    glBindVertexArray(0);
+}
+
+std::optional<Picked> SceneRenderer::pick(const Picture& picture, const DrawnView& view, double x, double y) {
+    const double u = 2.0 * (x - view.x) / std::max(view.width, 1) - 1.0;
+    const double v = 2.0 * (y - view.y) / std::max(view.height, 1) - 1.0;
+    if (!(std::abs(u) <= 1.0 && std::abs(v) <= 1.0)) return std::nullopt;
+    GLint frame_before = 0;
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &frame_before);
+    if (programs_->pick_frame == 0) {
+        glGenFramebuffers(1, &programs_->pick_frame);
+        glBindFramebuffer(GL_FRAMEBUFFER, programs_->pick_frame);
+        glGenRenderbuffers(2, programs_->pick_buffers);
+        const std::pair<GLenum, GLenum> kinds[] = {{GL_R32UI, GL_COLOR_ATTACHMENT0},
+                                                   {GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT}};
+        for (std::size_t i = 0; i < 2; ++i) {
+            glBindRenderbuffer(GL_RENDERBUFFER, programs_->pick_buffers[i]);
+            glRenderbufferStorage(GL_RENDERBUFFER, kinds[i].first, 1, 1);
+            glFramebufferRenderbuffer(GL_FRAMEBUFFER, kinds[i].second, GL_RENDERBUFFER, programs_->pick_buffers[i]);
+        }
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, programs_->pick_frame);
+    glViewport(0, 0, 1, 1);
+    const GLuint nothing[4] = {};
+    const GLfloat farthest = 1.0f;
+    glClearBufferuiv(GL_COLOR, 0, nothing);
+    glClearBufferfv(GL_DEPTH, 0, &farthest);
+    // The one pixel is blown up to the whole target.
+    const Mat4 to_clip = glm::scale(Mat4(1.0), Vec3(view.width, view.height, 1.0)) *
+                         glm::translate(Mat4(1.0), Vec3(-u, -v, 0.0)) * view.projection.to_clip;
+    const GlProgram& program = programs_->pick;
+    program.use();
+    set(program.uniform("to_clip"), to_clip);
+    glEnable(GL_DEPTH_TEST);
+    glEnable(GL_CLIP_DISTANCE0);
+    for (std::size_t i = 0; i < picture.meshes.size(); ++i) {
+        const DrawnMesh& drawn = picture.meshes[i];
+        if (drawn.opacity < 1.0 || !is_valid(drawn.pose)) continue;
+        set(program.uniform("to_eye"), view.projection.to_eye * matrix_of(drawn.pose));
+        glm::dvec4 plane(0.0, 0.0, 0.0, 1.0);
+        if (picture.clip && drawn.is_clipped) {
+            const Pose back = drawn.pose.inverse();
+            const Vec3 normal = back.rotate(picture.clip->normal), point = back.apply(picture.clip->point);
+            plane = glm::dvec4(-normal, glm::dot(normal, point));
+        }
+        glUniform4f(program.uniform("keep"), static_cast<float>(plane.x), static_cast<float>(plane.y),
+                    static_cast<float>(plane.z), static_cast<float>(plane.w));
+        glUniform1ui(program.uniform("number"), static_cast<GLuint>(i + 1));
+        pool_->draw(drawn.mesh);
+    }
+    GLuint number = 0;
+    GLfloat depth = 1.0f;
+    glReadPixels(0, 0, 1, 1, GL_RED_INTEGER, GL_UNSIGNED_INT, &number);
+    glReadPixels(0, 0, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &depth);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CLIP_DISTANCE0);
+    glBindVertexArray(0);
+    glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(frame_before));
+    if (number == 0) return std::nullopt;
+    const glm::dvec4 at = glm::inverse(view.projection.to_clip * view.projection.to_eye) *
+                          glm::dvec4(u, v, 2.0 * static_cast<double>(depth) - 1.0, 1.0);
+    return Picked{Vec3(at) / at.w, number - 1};
+}
+
+}  // namespace tactus

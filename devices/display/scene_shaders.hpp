@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the graphics card runs for a scene. Light is computed in linear light and shown as sRGB.
+#pragma once
+
+namespace tactus::scene_shaders {
+
+inline constexpr const char* background_vertex = R"(#version 330 core
+out float height;
+void main() {
+    vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+    height = 0.5 + 0.5 * corner.y;
+    gl_Position = vec4(corner, 0.0, 1.0);
+})";
+
+inline constexpr const char* background_fragment = R"(#version 330 core
+in float height;
+uniform vec3 sky, ground;
+out vec4 colour;
+void main() { colour = vec4(mix(ground, sky, height), 1.0); })";
+
+// `keep`: a plane in the frame of the mesh; what is below zero of it is taken away.
+inline constexpr const char* mesh_vertex = R"(#version 330 core
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 colour;
+uniform mat4 to_eye, to_clip;
+uniform vec4 keep;
+out vec3 eye_position, eye_normal;
+out vec4 surface;
+void main() {
+    vec4 at = to_eye * vec4(position, 1.0);
+    eye_position = at.xyz;
+    eye_normal = mat3(to_eye) * normal;
+    surface = colour;
+    gl_ClipDistance[0] = dot(keep, vec4(position, 1.0));
+    gl_Position = to_clip * at;
+})";
+
+// The lights stand with the camera: a key from upper left, a fill from the right, and one from behind that draws a fine
+// bright rim. A section is flat: it is the inner side of the far wall that is seen there.
+inline constexpr const char* mesh_fragment = R"(#version 330 core
+in vec3 eye_position, eye_normal;
+in vec4 surface;
+uniform float opacity;
+uniform vec3 section;
+uniform bool is_cut;
+out vec4 colour;
+void main() {
+    if (is_cut && !gl_FrontFacing) {
+        colour = vec4(section, opacity * surface.a);
+        return;
+    }
+    vec3 n = normalize(eye_normal);
+    vec3 v = normalize(-eye_position);
+    // The triangle's own normal decides which side is seen: an interpolated one may point away at the rim.
+    if (dot(n, cross(dFdx(eye_position), dFdy(eye_position))) < 0.0) n = -n;
+    vec3 key = normalize(vec3(-0.45, 0.65, 0.65));
+    vec3 fill = normalize(vec3(0.85, 0.05, 0.35));
+    float diffuse = 0.78 * max(dot(n, key), 0.0) + 0.24 * max(dot(n, fill), 0.0);
+    float ambient = 0.17 + 0.08 * n.y;
+    float gloss = 0.10 * pow(max(dot(n, normalize(key + v)), 0.0), 48.0);
+    float edge = 1.0 - max(dot(n, v), 0.0);
+    float rim = 0.10 * pow(edge, 4.0);
+    vec3 light = pow(surface.rgb, vec3(2.2)) * (diffuse + ambient) * (1.0 - 0.25 * edge * edge) + gloss + rim;
+    colour = vec4(pow(clamp(light, 0.0, 1.0), vec3(1.0 / 2.2)), opacity * surface.a);
+})";
+
+// Drawn a little nearer than they are, so that dots on a surface are not lost in it.
+inline constexpr const char* point_vertex = R"(#version 330 core
+layout(location = 0) in vec3 position;
+layout(location = 2) in vec4 colour;
+uniform mat4 to_eye, to_clip;
+uniform float size;
+out vec4 surface;
+void main() {
+    vec4 at = to_eye * vec4(position, 1.0);
+    float away = length(at.xyz);
+    at.xyz *= max(away - 0.002, 0.5 * away) / away;
+    surface = colour;
+    gl_ClipDistance[0] = 1.0;
+    gl_PointSize = size;
+    gl_Position = to_clip * at;
+})";
+
+inline constexpr const char* point_fragment = R"(#version 330 core
+in vec4 surface;
+out vec4 colour;
+void main() {
+    vec2 from_middle = 2.0 * gl_PointCoord - 1.0;
+    if (dot(from_middle, from_middle) > 1.0) discard;
+    colour = surface;
+})";
+
+inline constexpr const char* pick_fragment = R"(#version 330 core
+uniform uint number;
+out uint picked;
+void main() { picked = number; })";
+
+}  // namespace tactus::scene_shaders

@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Makes the pictures of scenes in this folder with the command as it was built: docs/pictures.sh [COMMAND [PICTURE ...]]
+set -euo pipefail
+docs=$(dirname "$(readlink -f "$0")")
+tactus=${1:-$docs/../build/release/tactus}
+shift $(($# > 0 ? 1 : 0))
+[ -x "$tactus" ] || { echo "docs/pictures.sh: no command $tactus; build it first: ./dev build" >&2; exit 2; }
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+# picture NAME PATCH OPTIONS ...: the last of its frames becomes NAME.png.
+wanted=("$@")
+picture() {
+    local name=$1 patch=$2
+    shift 2
+    [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" $name "* ]] || return 0
+    "$tactus" render "$patch" --out "$folder/$name" "$@" >/dev/null
+    mv "$(ls "$folder/$name"/frame_*.png | tail -1)" "$docs/$name.png"
+    echo "$name.png"
+}
+
+picture scene-saw-training saw-training --seconds 9 --frames 1
+picture scene-fragments fragments --seconds 2.2 --frames 1
+picture scene-press-fragments press-fragments --seconds 4 --frames 1
+picture scene-peg-in-hole peg-in-hole --seconds 2.4 --frames 1 --clip=-y
+picture scene-touch-sphere touch-sphere --seconds 3 --frames 1 --view-from front
+picture scene-pop-through pop-through --seconds 2 --frames 1 --view-from front
+picture scene-gripper gripper-on-arm --seconds 4 --frames 1
+picture scene-stereo fragments --seconds 2.2 --frames 1 --stereo side-by-side --size 1280x500

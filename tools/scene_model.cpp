@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/scene_model.hpp"
+
+#include "devices/display/shapes.hpp"
+#include "dsp/distance/surface_net.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+
+namespace tactus {
+
+namespace {
+
+const Vec3 steel{0.62, 0.65, 0.70}, force_colour{0.86, 0.20, 0.16}, hand_colour{0.25, 0.45, 0.85},
+    proxy_colour{0.95, 0.60, 0.12}, paint_colour{0.90, 0.38, 0.30}, still_colour{0.80, 0.79, 0.75};
+// One colour for each place of a scene, apart also for most colour-blind eyes.
+const std::array<Vec3, Scene::most_objects> group_colours{{{0.88, 0.83, 0.70},
+                                                           {0.42, 0.62, 0.80},
+                                                           {0.55, 0.72, 0.45},
+                                                           {0.83, 0.62, 0.45},
+                                                           {0.66, 0.55, 0.76},
+                                                           {0.45, 0.72, 0.70},
+                                                           {0.82, 0.72, 0.42},
+                                                           {0.78, 0.52, 0.58}}};
+constexpr double painted_within = 0.9e-3;  // m from a painted point
+
+/// Painted points by cells of a grid.
+class Paint {
+public:
+    explicit Paint(const SeenBody& body) {
+        for (std::size_t i = 0; i < body.points.size() && i < body.labels.size(); ++i)
+            if (body.labels[i] == surface_label::fracture) cells_[cell_of(body.points[i])].push_back(body.points[i]);
+    }
+    bool empty() const { return cells_.empty(); }
+    bool covers(const Vec3& at) const {
+        const Key middle = cell_of(at);
+        for (int n = 0; n < 27; ++n) {
+            const auto found = cells_.find({middle[0] + n % 3 - 1, middle[1] + n / 3 % 3 - 1, middle[2] + n / 9 - 1});
+            if (found == cells_.end()) continue;
+            for (const Vec3& point : found->second)
+                if (glm::dot(point - at, point - at) < painted_within * painted_within) return true;
+        }
+        return false;
+    }
+
+private:
+    using Key = std::array<int, 3>;
+    static Key cell_of(const Vec3& at) {
+        const Vec3 cell = glm::floor(at / painted_within);
+        return {static_cast<int>(cell.x), static_cast<int>(cell.y), static_cast<int>(cell.z)};
+    }
+    std::map<Key, std::vector<Vec3>> cells_;
+};
+
+/// Two triangles for each crossing edge of the grid, its vertices drawn onto the surface.
+SurfacePatch patch_of(const Voxmap& field, const Paint& paint, const Vec3& colour, Bounds& bounds) {
+    const SurfaceNet net = surface_net(field.grid, 0.0f, false);
+    SurfacePatch patch;
+    for (const Vec3& vertex : net.vertices) {
+        const Sample rough = field.sample(vertex);
+        const double steep = glm::dot(rough.gradient, rough.gradient);
+        const Vec3 at = steep > 0.25 ? vertex - rough.gradient * (rough.value / steep) : vertex;
+        patch.vertices.push_back({{static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)},
+                                  packed_normal(field.smooth_sample(at).gradient),
+                                  packed_colour(paint.covers(at) ? paint_colour : colour)});
+        bounds.add(at);
+    }
+    for (const auto& triangle : net.triangles)
+        for (const int corner : triangle) patch.triangles.push_back(static_cast<std::uint32_t>(corner));
+    return patch;
+}
+
+Bounds bounds_of(const SurfacePatch& patch) {
+    Bounds bounds;
+    for (const SurfaceVertex& v : patch.vertices)
+        bounds.add(Vec3(static_cast<double>(v.position[0]), static_cast<double>(v.position[1]),
+                        static_cast<double>(v.position[2])));
+    return bounds;
+}
+
+std::string node_of(const std::string& port) { return port.substr(0, port.find('.')); }
+
+}  // namespace
+
+SceneModel::SceneModel(SceneOutline outline, Observer& observer, SceneRenderer& renderer)
+    : observer_(observer), renderer_(renderer), notes_mesh_(renderer.meshes().make()) {
+    follow(std::move(outline));
+}
+
+SceneModel::~SceneModel() {
+    for (const auto& [name, bone] : bones_) renderer_.meshes().remove(bone.mesh);
+    for (const auto& [hash, body] : bodies_) renderer_.meshes().remove(body.mesh);
+    for (const auto& [name, mesh] : shapes_) renderer_.meshes().remove(mesh);
+    renderer_.meshes().remove(notes_mesh_);
+}
+
+void SceneModel::follow(SceneOutline outline) {
+    for (const std::string& port : outline_.ports()) observer_.watch(port, Watch::nothing);
+    outline_ = std::move(outline);
+    for (const std::string& port : outline_.ports()) observer_.watch(port, Watch::latest);
+    is_fitting_ = true;
+}
+
+std::size_t SceneModel::triangles() const {
+    std::size_t count = 0;
+    for (const DrawnMesh& drawn : picture_.meshes) count += renderer_.meshes().triangles(drawn.mesh);
+    return count;
+}
+
+/// A mesh that never changes, made when it is first asked for.
+MeshPool::Mesh SceneModel::shape_mesh(const std::string& name, const SurfacePatch& patch) {
+    const auto known = shapes_.find(name);
+    if (known != shapes_.end()) return known->second;
+    const MeshPool::Mesh mesh = renderer_.meshes().make();
+    renderer_.meshes().set_part(mesh, 0, patch);
+    return shapes_[name] = mesh;
+}
+
+std::optional<Pose> SceneModel::pose_of(const std::string& port) {
+    if (port.empty()) return std::nullopt;
+    const auto seen = observer_.latest<Pose>(port);
+    if (!seen) return std::nullopt;
+    if (is_valid(seen->value)) return seen->value;
+    legend_.warnings.push_back(fmt::format("{} is no valid pose: not drawn", port));
+    return std::nullopt;
+}
+
+double SceneModel::number_of(const std::string& port, double otherwise) const {
+    const auto seen = port.empty() ? std::nullopt : observer_.latest<double>(port);
+    return seen && std::isfinite(seen->value) ? seen->value : otherwise;
+}
+
+void SceneModel::show(MeshPool::Mesh mesh, const Pose& pose, const Bounds& local, double opacity, bool is_clipped,
+                      bool is_fitted) {
+    picture_.meshes.push_back({mesh, pose, opacity, is_clipped});
+    if (local.empty()) return;
+    for (const Vec3& corner : local.corners()) {
+        picture_.bounds.add(pose.apply(corner));
+        if (is_fitting_ && is_fitted) bounds_.add(pose.apply(corner));
+    }
+}
+
+Picture& SceneModel::update() {
+    picture_.meshes.clear();
+    picture_.points.clear();
+    picture_.bounds = {};
+    legend_ = {};
+    legend_.title = outline_.title;
+    notes_.vertices.clear();
+    notes_.triangles.clear();
+    remeshed_ = 0;
+    deepest_ = 0.0;
+    if (is_fitting_) bounds_ = {};
+    show_bones();
+    show_bodies();
+    show_blades();
+    show_balls();
+    show_gripper();
+    for (const auto& handle : outline_.handles)
+        if (const auto pose = pose_of(handle.pose)) add_axes(notes_, *pose, 0.02);
+    renderer_.meshes().set_part(notes_mesh_, 0, notes_);
+    show(notes_mesh_, {}, bounds_of(notes_), 1.0, false, outline_.handles.size() > 0);
+    is_fitting_ = is_fitting_ && bounds_.empty();
+    if (deepest_ > 0.0)
+        legend_.entries.push_back({fmt::format("penetration, {:.2f} mm at most", deepest_ * 1e3), {0.85, 0.05, 0.05}});
+    return picture_;
+}
+
+void SceneModel::show_bones() {
+    for (const auto& [port] : outline_.bones) {
+        const auto seen = observer_.bone(port);
+        if (!seen) continue;
+        BoneMesh& bone = bones_[port];
+        const bool is_new = bone.of.lock() != seen;
+        if (is_new) {
+            if (bone.mesh >= 0) renderer_.meshes().remove(bone.mesh);
+            bone = {renderer_.meshes().make(), seen, 0, {}};
+        }
+        for (const std::uint32_t brick : seen->changed_since(bone.update)) {
+            mesher_.make(seen->snapshot(), brick, patch_);
+            renderer_.meshes().set_part(bone.mesh, brick, patch_);
+            if (is_new) bone.bounds.add(bounds_of(patch_));
+            ++remeshed_;
+        }
+        bone.update = seen->update;
+        show(bone.mesh, {}, bone.bounds);
+        if (legend_.scales.empty()) legend_.scales.push_back(density_scale(mesher_.colours));
+    }
+}
+
+SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, std::size_t place) {
+    if (const auto known = bodies_.find(content); known != bodies_.end()) return &known->second;
+    for (const auto& body : observer_.bodies()) {
+        if (body->content_hash != content || body->distance.values.empty()) continue;
+        BodyMesh& mesh = bodies_[content];
+        mesh.body = body;
+        mesh.field = make_voxmap(body->distance);
+        const Paint paint(*body);
+        mesh.has_paint = !paint.empty();
+        mesh.mesh = renderer_.meshes().make();
+        renderer_.meshes().set_part(
+            mesh.mesh, 0, patch_of(mesh.field, paint, group_colours[place % group_colours.size()], mesh.bounds));
+        return &mesh;
+    }
+    return nullptr;
+}
+
+void SceneModel::show_bodies() {
+    std::unordered_set<std::uint64_t> shown;
+    bool has_paint = false;
+    // The fullest scene first: others that hold the same bodies show them once more, elsewhere or not at all.
+    std::vector<const SceneOutline::Bodies*> scenes;
+    for (const auto& scene : outline_.scenes) scenes.push_back(&scene);
+    std::ranges::stable_sort(scenes, std::greater{}, [](const auto* scene) { return scene->bodies.size(); });
+    for (const SceneOutline::Bodies* scene : scenes) {
+        const auto seen = observer_.latest<SeenScene>(scene->port);
+        if (!seen) continue;
+        for (std::size_t i = 0; i < seen->value.count; ++i) {
+            const auto& object = seen->value.objects[i];
+            if (object.body == 0 || !shown.insert(object.body).second) continue;
+            BodyMesh* mesh = mesh_of(object.body, i);
+            if (!mesh) continue;
+            Pose pose = object.pose;
+            const SceneOutline::Held* held = nullptr;
+            for (const auto& candidate : outline_.held)
+                if (candidate.scene == scene->port &&
+                    std::lround(number_of(candidate.place, candidate.held)) == static_cast<long>(i))
+                    held = &candidate;
+            // Whoever holds it knows best where it is.
+            const auto hand = held ? pose_of(held->hand) : std::nullopt;
+            if (held)
+                if (const auto now = pose_of(held->pose)) pose = *now;
+            const std::string name = i < scene->bodies.size() ? node_of(scene->bodies[i]) : fmt::format("body {}", i);
+            legend_.entries.push_back({name + (held ? ", held" : ""), group_colours[i % group_colours.size()]});
+            if (!is_valid(pose)) {
+                legend_.warnings.push_back(fmt::format("{} has no valid pose: not drawn", name));
+                continue;
+            }
+            show(mesh->mesh, pose, mesh->bounds);
+            has_paint = has_paint || mesh->has_paint;
+            if (!held) continue;
+            if (hand) {
+                // Where the hand would have it, as far as that is somewhere else.
+                const Pose grip = held->grip.empty() ? held->grip_at : pose_of(held->grip).value_or(held->grip_at);
+                const Pose wanted = *hand * grip;
+                const double apart = glm::length(wanted.position - pose.position) +
+                                     mesh->bounds.radius() *
+                                         glm::length(glm::axis(glm::conjugate(pose.orientation) * wanted.orientation)) *
+                                         std::abs(glm::angle(glm::conjugate(pose.orientation) * wanted.orientation));
+                if (apart > 0.2e-3) show(mesh->mesh, wanted, mesh->bounds, 0.22, false, false);
+                show_force(held->wrench, hand->position);
+            } else {
+                show_force(held->wrench, pose.position);
+            }
+            show_penetration(*mesh, pose, i, seen->value);
+        }
+    }
+    if (has_paint) legend_.entries.push_back({"painted fracture", paint_colour});
+}
+
+/// Points of the held body that lie within another.
+void SceneModel::show_penetration(const BodyMesh& held, const Pose& pose, std::size_t place, const SeenScene& scene) {
+    constexpr double worst = 0.5e-3;
+    for (std::size_t i = 0; i < scene.count; ++i) {
+        const auto other = bodies_.find(scene.objects[i].body);
+        if (i == place || other == bodies_.end() || !is_valid(scene.objects[i].pose)) continue;
+        const Pose into = scene.objects[i].pose.inverse() * pose;
+        for (const Vec3& point : held.body->points) {
+            const double depth = -other->second.field.sample(into.apply(point)).value;
+            if (!(depth > 2e-6)) continue;
+            deepest_ = std::max(deepest_, depth);
+            const Vec3 at = pose.apply(point);
+            const Vec3 colour = glm::mix(Vec3(1.0, 0.80, 0.10), Vec3(0.85, 0.05, 0.05), std::min(depth / worst, 1.0));
+            picture_.points.push_back({{static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)},
+                                       {},
+                                       packed_colour(colour)});
+        }
+    }
+}
+
+void SceneModel::show_force(const std::string& port, const Vec3& at) {
+    const auto seen = port.empty() ? std::nullopt : observer_.latest<Wrench>(port);
+    if (!seen) return;
+    const Vec3 force = seen->value.force;
+    if (!is_finite(seen->value)) {
+        legend_.warnings.push_back(fmt::format("{} is not a number: not drawn", port));
+        return;
+    }
+    const double size = glm::length(force), reach = std::max(bounds_.radius(), 5e-3);
+    legend_.entries.push_back({fmt::format("{}: {:.1f} N", port, size), force_colour});
+    // 10 N are half as long as the scene.
+    if (size > 0.02) add_arrow(notes_, at, at + force * (0.1 * reach), 0.018 * reach, force_colour);
+}
+
+void SceneModel::show_blades() {
+    for (const auto& blade : outline_.blades) {
+        const auto pose = pose_of(blade.pose);
+        if (!pose) continue;
+        SurfacePatch patch;
+        add_blade(patch, blade.shape, steel);
+        // Room for the way that it will go.
+        show(shape_mesh("blade " + blade.node, patch), *pose, bounds_of(patch), 1.0, false, false);
+        show_force(blade.wrench, pose->position);
+    }
+}
+
+void SceneModel::show_balls() {
+    for (std::size_t i = 0; i < outline_.fixed_balls.size(); ++i) {
+        SurfacePatch patch;
+        add_ball(patch, outline_.fixed_balls[i].centre, outline_.fixed_balls[i].radius, still_colour);
+        show(shape_mesh(fmt::format("fixed ball {}", i), patch), {}, bounds_of(patch));
+    }
+    for (const auto& ball : outline_.balls) {
+        SurfacePatch patch;
+        const auto proxy = pose_of(ball.pose), hand = pose_of(ball.hand);
+        if (hand) {
+            add_ball(patch, Vec3(0.0), ball.radius, hand_colour);
+            show(shape_mesh("hand of " + ball.pose, patch), *hand, bounds_of(patch), 1.0, false);
+            legend_.entries.push_back({"hand", hand_colour});
+        }
+        if (!proxy) continue;
+        patch = {};
+        add_ball(patch, Vec3(0.0), ball.radius, proxy_colour);
+        show(shape_mesh(ball.pose, patch), *proxy, bounds_of(patch), hand ? 0.75 : 1.0, false);
+        legend_.entries.push_back({hand ? "proxy" : "tool", proxy_colour});
+        show_force(ball.wrench, proxy->position);
+    }
+}
+
+void SceneModel::show_gripper() {
+    constexpr double opening = 50e-3;
+    for (const auto& fingers : outline_.fingers) {
+        const Pose hand = pose_of(fingers.hand).value_or(Pose{});
+        const double finger = number_of(fingers.finger, 0.0), thumb = number_of(fingers.thumb, 0.0);
+        SurfacePatch patch;
+        add_box(patch, {-4e-3, -9e-3, -25e-3}, {4e-3, 9e-3, 25e-3}, steel);
+        SurfacePatch body;
+        add_box(body, {-45e-3, -14e-3, 25e-3}, {45e-3, 14e-3, 45e-3}, {0.30, 0.32, 0.36});
+        const Vec3 left(-0.5 * opening - 4e-3 + thumb, 0.0, 0.0), right(0.5 * opening + 4e-3 - finger, 0.0, 0.0);
+        show(shape_mesh("finger", patch), hand * Pose{left, {1.0, 0.0, 0.0, 0.0}}, bounds_of(patch), 1.0, false);
+        show(shape_mesh("finger", patch), hand * Pose{right, {1.0, 0.0, 0.0, 0.0}}, bounds_of(patch), 1.0, false);
+        show(shape_mesh("gripper", body), hand, bounds_of(body), 1.0, false);
+        const double force = number_of(fingers.force, 0.0);
+        legend_.entries.push_back({fmt::format("{}: {:.1f} mm closed", fingers.finger, finger * 1e3), steel});
+        legend_.entries.push_back({fmt::format("{}: {:.1f} N", fingers.force, force), force_colour});
+        // From outside, towards the way that the hand presses.
+        const Vec3 at = hand.apply(right + Vec3(4e-3, 0.0, -10e-3)), along = hand.rotate(Vec3(1.0, 0.0, 0.0));
+        if (std::abs(force) > 0.02) add_arrow(notes_, at + along * (force * 5e-3), at, 1.2e-3, force_colour);
+    }
+    for (const auto& weight : outline_.weights) {
+        SurfacePatch patch;
+        constexpr double half = 12e-3;
+        add_box(patch, {-half, -half, -half}, {half, half, half}, group_colours[3]);
+        const double height = number_of(weight.height, 0.0);
+        show(shape_mesh("weight", patch), {{0.0, 0.0, height - 10e-3}, {1.0, 0.0, 0.0, 0.0}}, bounds_of(patch), 1.0,
+             false);
+        legend_.entries.push_back({fmt::format("weight, lifted by {:.1f} mm", height * 1e3), group_colours[3]});
+    }
+}
+
+}  // namespace tactus
