@@ -163,7 +163,8 @@ Picture& SceneModel::update() {
     for (const auto& handle : outline_.handles)
         if (const auto pose = pose_of(handle.pose)) add_axes(notes_, *pose, 0.02);
     renderer_.meshes().set_part(notes_mesh_, 0, notes_);
-    show(notes_mesh_, {}, bounds_of(notes_), 1.0, false, outline_.handles.size() > 0);
+    show(notes_mesh_, {}, bounds_of(notes_), 1.0, false, !outline_.handles.empty());
+    picture_.meshes.back().shines_through = true;
     is_fitting_ = is_fitting_ && bounds_.empty();
     if (deepest_ > 0.0)
         legend_.entries.push_back({fmt::format("penetration, {:.2f} mm at most", deepest_ * 1e3), {0.85, 0.05, 0.05}});
@@ -293,7 +294,7 @@ void SceneModel::show_force(const std::string& port, const Vec3& at) {
     const double size = glm::length(force), reach = std::max(bounds_.radius(), 5e-3);
     legend_.entries.push_back({fmt::format("{}: {:.1f} N", port, size), force_colour});
     // 10 N are half as long as the scene.
-    if (size > 0.02) add_arrow(notes_, at, at + force * (0.1 * reach), 0.018 * reach, force_colour);
+    if (size > 0.02) add_arrow(notes_, at, at + force * (0.1 * reach), 0.014 * reach, force_colour);
 }
 
 void SceneModel::show_blades() {
@@ -339,7 +340,7 @@ void SceneModel::show_gripper() {
         SurfacePatch patch;
         add_box(patch, {-4e-3, -9e-3, -25e-3}, {4e-3, 9e-3, 25e-3}, steel);
         SurfacePatch body;
-        add_box(body, {-45e-3, -14e-3, 25e-3}, {45e-3, 14e-3, 45e-3}, {0.30, 0.32, 0.36});
+        add_box(body, {-45e-3, -14e-3, 25e-3}, {45e-3, 14e-3, 45e-3}, {0.42, 0.45, 0.50});
         const Vec3 left(-0.5 * opening - 4e-3 + thumb, 0.0, 0.0), right(0.5 * opening + 4e-3 - finger, 0.0, 0.0);
         show(shape_mesh("finger", patch), hand * Pose{left, {1.0, 0.0, 0.0, 0.0}}, bounds_of(patch), 1.0, false);
         show(shape_mesh("finger", patch), hand * Pose{right, {1.0, 0.0, 0.0, 0.0}}, bounds_of(patch), 1.0, false);

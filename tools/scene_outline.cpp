@@ -70,6 +70,7 @@ void add_scene(const NodeView& view, const std::string& port, SceneOutline& outl
     SceneOutline::Bodies bodies{port, {}};
     for (const PlanInput& input : view.node.inputs)
         if (input.port->type == &body_type) bodies.bodies.push_back(view.source(input.name));
+    while (!bodies.bodies.empty() && bodies.bodies.back().empty()) bodies.bodies.pop_back();
     outline.scenes.push_back(std::move(bodies));
 }
 

@@ -53,7 +53,7 @@ Image legend_image(const Legend& legend, double scale) {
     double height = 2.0 * margin + (legend.title.empty() ? 0.0 : line);
     for (const Legend::Scale& s : legend.scales) {
         width = std::max({width, width_of(s.title), width_of(s.low_text) + width_of(s.high_text) + 24.0});
-        height += 2.4 * line + swatch;
+        height += 2.2 * line + swatch;
     }
     for (const Legend::Entry& entry : legend.entries) width = std::max(width, swatch + 8.0 + width_of(entry.text));
     for (const std::string& warning : legend.warnings) width = std::max(width, width_of(warning));
@@ -78,7 +78,7 @@ Image legend_image(const Legend& legend, double scale) {
         y += swatch;
         write(s.low_text, margin, ink);
         figure.text({margin + width, y + 13.0}, s.high_text, size, ink, TextAnchor::end);
-        y += 1.4 * line;
+        y += 1.2 * line;
     }
     for (const Legend::Entry& entry : legend.entries) {
         figure.rectangle(margin, y + 2.0, swatch, swatch, colour_of(entry.colour));

@@ -142,6 +142,19 @@ void SceneRenderer::draw_meshes(const Picture& picture, const Projection& projec
     }
 }
 
+/// What shines through, where it lies behind something.
+void SceneRenderer::draw_hidden(const Picture& picture, const Projection& projection) {
+    Picture hidden;
+    for (const DrawnMesh& drawn : picture.meshes)
+        if (drawn.shines_through) hidden.meshes.push_back({drawn.mesh, drawn.pose, 0.3, false});
+    if (hidden.meshes.empty()) return;
+    glDepthFunc(GL_GREATER);
+    glDepthMask(GL_FALSE);
+    draw_meshes(hidden, projection, true);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_LESS);
+}
+
 void SceneRenderer::draw_points(const Picture& picture, const Projection& projection) {
     if (picture.points.empty()) return;
     glBindVertexArray(programs_->point_array);
@@ -191,6 +204,7 @@ void SceneRenderer::draw(const Picture& picture, std::span<const DrawnView> view
         glEnable(GL_BLEND);
         glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
         draw_meshes(picture, view.projection, true);
+        draw_hidden(picture, view.projection);
     }
     glFrontFace(GL_CCW);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);

@@ -21,6 +21,7 @@ struct DrawnMesh {
     Pose pose;
     double opacity = 1.0;  ///< below 1 what is behind shines through
     bool is_clipped = true;  ///< by the picture's clip plane
+    bool shines_through = false;  ///< faintly seen also where something stands before it: arrows, axes
 };
 
 /// Everything that is to be seen.
@@ -78,6 +79,7 @@ public:
 private:
     struct Programs;
     void draw_meshes(const Picture& picture, const Projection& projection, bool see_through);
+    void draw_hidden(const Picture& picture, const Projection& projection);
     void draw_points(const Picture& picture, const Projection& projection);
 
     std::unique_ptr<Programs> programs_;

@@ -51,10 +51,11 @@ struct BrickField {
         return step / bone.layout().spacing;
     }
 
-    /// Of the bone below the surface.
-    double density(const Vec3& position, const Vec3& outwards) const noexcept {
+    /// Of the bone below the surface; `inside` is the next sample that lies in the bone, which counts at sharp edges,
+    /// where the way down leads out again.
+    double density(const Vec3& position, const Vec3& outwards, const Vec3& inside) const noexcept {
         const double voxel = bone.layout().spacing.x;
-        double most = 0.0;
+        double most = bone.density(inside);
         for (const double depth : {0.75, 1.5, 2.5})
             most = std::max(most, bone.density(position - outwards * (depth * voxel)));
         return most;
@@ -111,11 +112,12 @@ void BrickSurface::make(const BoneSnapshot& bone, std::uint32_t brick, SurfacePa
         Vec3 normal = glm::mix(field.gradient(x, y, z), field.gradient(u, v, w), t);
         const double length = glm::length(normal);
         normal = length > 0.0 ? normal / length : Vec3(0.0, 0.0, 1.0);
+        const Vec3 inside_end = field.at(x, y, z) < 0.0f ? field.position(x, y, z) : field.position(u, v, w);
         slot = static_cast<std::int32_t>(patch.vertices.size());
         patch.vertices.push_back(
             {{static_cast<float>(position.x), static_cast<float>(position.y), static_cast<float>(position.z)},
              packed_normal(normal),
-             packed_colour(colours(field.density(position, normal)))});
+             packed_colour(colours(field.density(position, normal, inside_end)))});
         return slot;
     };
     std::array<int, 3> cells{};

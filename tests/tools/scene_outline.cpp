@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <string>
 
 using namespace tactus;
 
@@ -15,7 +16,7 @@ namespace {
 SceneOutline outline_in_library(const std::string& patch) {
     Problems problems;
     PatchChoice choice;
-    choice.patch = patch;
+    choice.patch = std::string(TACTUS_SOURCE_DIR) + "/assets/library/patches/" + patch + ".toml";
     const auto plan = read_plan(choice, problems);
     REQUIRE(plan);
     return outline_of(*plan);
