@@ -39,6 +39,8 @@ std::string structure_of(const Plan& plan, int index) {
     for (const PlanWire& wire : plan.wires) {
         if (wire.to_node != index || wire.to_input < 0) continue;
         const PlanInput& input = node.inputs[static_cast<std::size_t>(wire.to_input)];
+        // What comes in batches was prepared for at its rate.
+        if (input.port->kind == InputKind::batch) text += fmt::format("{} every {}\n", input.name, input.port->period);
         if (input.port->kind != InputKind::any) continue;
         const std::string source = wire.from_node < 0
                                        ? wire.asset

@@ -133,6 +133,7 @@ private:
             throw Error(fmt::format("'{}.{}' gives a {}, but '{}.{}' takes a {}", source_.from_node, source_.from_port,
                                     type.name, source_.to_node, source_.to_port, port.type->name));
         check_mode(port, type);
+        port.period = plan_.groups[static_cast<std::size_t>(node(wire_.from_node).group)].period;
     }
 
     void check_mode(const Input& port, const ValueType& type) {

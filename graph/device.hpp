@@ -53,6 +53,7 @@ struct DeviceInfo {
     bool senses_rotation = false;
     int fingers = 0;  ///< finger parts with a motor each; 0: no gripper
     double max_speed = 0.0;  ///< m/s of a finger
+    double least_speed = 0.0;  ///< m/s; its motor turns no slower than this, or not at all
 };
 
 /// What the motors of a gripper, and the servo of a rig that holds it, are told for the next period.

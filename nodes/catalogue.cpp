@@ -42,6 +42,8 @@
     X(Shape, contact)                   \
     X(Sine, input)                      \
     X(SnapToFit, coupling)              \
+    X(SpectralMonitor, vibration)       \
+    X(SpectrumAnalyser, vibration)      \
     X(SphereContact, contact)           \
     X(SphereProxy, coupling)            \
     X(Spring, coupling)                 \

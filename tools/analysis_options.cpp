@@ -48,7 +48,8 @@ void add_spectrum(CLI::App& app, SpectrumChoice& choice) {
     verb->add_option("--csv", choice.csv, "frequency and spectrum per channel; for several files a folder");
     verb->add_option("--plot", choice.plot, "figure, .svg or .png; for several files a folder, of SVG");
     verb->add_option("--table", choice.table, "a row per file and channel, CSV");
-    verb->add_option("--jobs", choice.jobs, "files at a time")->capture_default_str()->check(CLI::Range(1, 256));
+    verb->add_option("--report", choice.report, "figures, tables and how they were computed in one HTML file");
+    verb->add_option("--jobs", choice.jobs, "files at a time, 0: one per core")->check(CLI::Range(0, 256));
 }
 
 void add_orders(CLI::App& app, OrdersChoice& choice) {
@@ -71,11 +72,13 @@ void add_orders(CLI::App& app, OrdersChoice& choice) {
 void add_exposure(CLI::App& app, ExposureChoice& choice) {
     CLI::App* verb = app.add_subcommand(
         "exposure", "vibration exposure of the hand (ISO 5349-1): A(8), minutes to action and limit value");
-    add_record_options(*verb, choice, "a record per tool, its channels the axes");
+    add_record_options(*verb, choice, "a record per tool, its channels the axes; or folders of them");
     verb->add_option("--duration", choice.durations,
                      "of contact per day, such as \"90 min\" (default 8 h); one, or one per file")
         ->allow_extra_args(false);
     verb->add_flag("--uncalibrated", choice.uncalibrated, "take an uncalibrated record's values as m/s^2");
+    verb->add_option("--table", choice.table, "a row per file, CSV");
+    verb->add_option("--jobs", choice.jobs, "files at a time, 0: one per core")->check(CLI::Range(0, 256));
 }
 
 }  // namespace

@@ -58,6 +58,23 @@ Json check_json(const std::optional<Plan>& plan, const Problems& problems) {
     return json;
 }
 
+/// The position loops of admittance controllers: their gain, and from which on they would be unstable.
+Json loops_json(const std::vector<std::shared_ptr<LiveNode>>& nodes) {
+    Json loops = Json::array();
+    for (const auto& node : nodes) {
+        if (node->type->name != "admittance_controller") continue;
+        Report report;
+        node->type->report(node->instance.get(), report);
+        const auto number = [&](const char* key) { return std::get<double>(report.sections.at(node->name).at(key)); };
+        loops.push_back({{"node", node->name},
+                         {"gain_per_s", number("gain_per_s")},
+                         {"gain_limit_per_s", number("gain_limit_per_s")},
+                         {"hand_stiffness_N_per_mm", node->params.at("hand_stiffness")->value * 1e-3},
+                         {"ok", number("gain_per_s") < number("gain_limit_per_s")}});
+    }
+    return loops;
+}
+
 /// Damping of a device by its name in the patch, N·s/m; "" is the only one.
 std::function<double(const std::string&)> damping_of(const EngineOutside& outside) {
     return [&outside](const std::string& name) {
@@ -65,6 +82,14 @@ std::function<double(const std::string&)> damping_of(const EngineOutside& outsid
             if (name.empty() || slot->name == name) return slot->port.info.damping;
         return 0.0;
     };
+}
+
+void print_loops(const Json& loops) {
+    fmt::print("\n{:<32} {:>12} {:>12}\n", "admittance loop", "gain", "unstable from");
+    for (const Json& loop : loops)
+        fmt::print("{:<32} {:>8.4g} 1/s {:>8.4g} 1/s  in a hand of {:.3g} N/mm{}\n", loop["node"].get<std::string>(),
+                   loop["gain_per_s"].get<double>(), loop["gain_limit_per_s"].get<double>(),
+                   loop["hand_stiffness_N_per_mm"].get<double>(), loop["ok"] ? "" : "  UNSTABLE");
 }
 
 void print_check(const Json& json) {
@@ -104,6 +129,7 @@ int check_verb(const PatchChoice& choice) {
         if (problems.empty()) {
             const Engine engine(std::move(*plan), EngineOptions{});
             json["paths"] = paths_json(engine.plan(), force_loops(engine.plan(), damping_of(engine.outside())));
+            json["admittance_loops"] = loops_json(engine.nodes());
             json["warnings"] = engine.outside().notices;
         }
     } catch (const Error& error) {
@@ -116,6 +142,8 @@ int check_verb(const PatchChoice& choice) {
     else {
         for (const Error& error : problems.list) fmt::print(stderr, "{}\n", error.what());
         print_check(json);
+        if (json.contains("admittance_loops") && !json["admittance_loops"].empty())
+            print_loops(json["admittance_loops"]);
         if (json.contains("warnings"))
             for (const Json& warning : json["warnings"]) fmt::print("warning: {}\n", warning.get<std::string>());
         if (problems.empty()) fmt::print("no errors\n");

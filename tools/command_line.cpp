@@ -70,11 +70,16 @@ void add_import(CLI::App& app, ImportChoice& choice) {
 void add_compare(CLI::App& app, CompareChoice& choice) {
     CLI::App* verb =
         app.add_subcommand("compare", "is what the actuator plays what the saw did? Exit code 0: yes, 1: no");
-    verb->add_option("reference", choice.reference, "sound file or CSV log of what was wanted")->required();
-    verb->add_option("output", choice.output, "sound file or CSV log of what came out")->required();
+    verb->add_option("reference", choice.reference, "sound file or CSV log of what was wanted, or a folder")
+        ->required();
+    verb->add_option("output", choice.output,
+                     "sound file or CSV log of what came out, or a folder: files are paired by name")
+        ->required();
     verb->add_option("--thresholds", choice.thresholds, "TOML file of what must be reached; without: see README");
-    verb->add_option("--plot", choice.plot, "a figure, .svg or .png");
+    verb->add_option("--plot", choice.plot, "a figure, .svg or .png; of folders a folder, of SVG");
     verb->add_option("--report", choice.report, "figure, tables and how they were computed in one HTML file");
+    verb->add_option("--table", choice.table, "a row per pair, CSV");
+    verb->add_option("--jobs", choice.jobs, "pairs at a time, 0: one per core")->check(CLI::Range(0, 256));
     verb->add_option("--reference-scale", choice.reference_scale, "units per full scale, such as m/s^2")
         ->capture_default_str();
     verb->add_option("--output-scale", choice.output_scale, "of the output, in the same unit")->capture_default_str();
@@ -99,6 +104,34 @@ void add_compare(CLI::App& app, CompareChoice& choice) {
     verb->add_option("--max-delay", choice.longest_delay, "greatest delay looked for, s")
         ->capture_default_str()
         ->check(CLI::Range(0.001, 100.0));
+    verb->add_flag("--json", choice.json, "as JSON");
+}
+
+void add_validate(CLI::App& app, ValidateChoice& choice) {
+    CLI::App* verb = app.add_subcommand(
+        "validate", "does the handle vibrate as the saw did, at every rate and load recorded? Exit code 0: yes, 1: no");
+    add_patch_options(*verb, choice);
+    verb->add_option("--reference", choice.set, "recording set, TOML, or one sound; the patch's saw plays it")
+        ->required();
+    verb->add_option("--level", choice.levels, "dB on top of the patch's, one or more")
+        ->capture_default_str()
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(-80.0, 40.0));
+    verb->add_option("--saw", choice.saw, "the node that plays (default: the only one of type saw)");
+    verb->add_option("--out", choice.out_port,
+                     "NODE.PORT, the handle's vibration (default: what is recorded as handle.wav, or the actuator's)");
+    verb->add_option("--seconds", choice.seconds, "that are compared of each run")
+        ->capture_default_str()
+        ->check(CLI::Range(0.5, 600.0));
+    verb->add_option("--thresholds", choice.thresholds, "TOML file of what must be reached, as of compare");
+    verb->add_option("--touch", choice.touch, "what the threshold of touch is a threshold of")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"displacement", "acceleration", "none"}));
+    verb->add_option("--report", choice.report, "figures, tables and how they were computed in one HTML file");
+    verb->add_option("--plot", choice.plot, "folder for a figure of each run, SVG");
+    verb->add_option("--table", choice.table, "a row per run, CSV");
+    verb->add_option("--jobs", choice.jobs, "runs at a time, 0: one per core")->check(CLI::Range(0, 256));
     verb->add_flag("--json", choice.json, "as JSON");
 }
 
@@ -285,6 +318,8 @@ int command_line(int argc, char** argv) {
     add_export(app, bone_export);
     CompareChoice compare;
     add_compare(app, compare);
+    ValidateChoice validate;
+    add_validate(app, validate);
     MeasureChoice measure;
     add_measure(app, measure);
     EqualiseChoice equalise;
@@ -339,6 +374,7 @@ int command_line(int argc, char** argv) {
         if (app.got_subcommand("orders")) return orders_verb(analysis.orders);
         if (app.got_subcommand("exposure")) return exposure_verb(analysis.exposure);
         if (app.got_subcommand("compare")) return compare_verb(compare);
+        if (app.got_subcommand("validate")) return validate_verb(validate);
         if (app.got_subcommand("measure")) return measure_verb(measure);
         if (app.got_subcommand("equalise")) return equalise_verb(equalise);
         if (app.got_subcommand("fracture")) return fracture_verb(fitting.fracture);

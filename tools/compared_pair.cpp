@@ -190,6 +190,14 @@ ThresholdUnit touch_of(const std::string& name) {
                                     : ThresholdUnit::displacement;
 }
 
+void compare_takes(ComparedPair& pair, const Take& reference, const Take& output, const ComparisonOptions& options,
+                   bool pictures) {
+    pair.touch = options.touch;
+    pair.comparison = compare(reference, output, options);
+    if (pictures)
+        for (const Take* take : {&reference, &output}) pair.spectrograms.push_back(spectrogram_of(*take));
+}
+
 ComparedPair compare_files(const CompareChoice& choice, const Thresholds& thresholds, bool pictures) {
     ComparedPair o;
     o.reference = choice.reference;
@@ -201,8 +209,8 @@ ComparedPair compare_files(const CompareChoice& choice, const Thresholds& thresh
         {choice.reference, "reference", selection_for(choice, 0), choice.reference_scale, choice.channel});
     const TakeFile output({choice.output, "output", selection_for(choice, 1), choice.output_scale, choice.channel});
     try {
-        o.comparison =
-            compare(reference.take(), output.take(), {.touch = o.touch, .longest_delay = choice.longest_delay});
+        compare_takes(o, reference.take(), output.take(), {.touch = o.touch, .longest_delay = choice.longest_delay},
+                      pictures);
     } catch (const Error& error) {
         throw Error(fmt::format("{} and {}: {}", choice.reference.string(), choice.output.string(), error.message()));
     }
@@ -214,8 +222,6 @@ ComparedPair compare_files(const CompareChoice& choice, const Thresholds& thresh
         o.notes.push_back(fmt::format("the slower recording carries no more than {:.0f} Hz", o.comparison.highest));
     o.level_gap_db = level_gap(choice, o.comparison, reference.peak());
     o.verdict = judge(o.comparison, o.level_gap_db, thresholds);
-    if (pictures)
-        for (const TakeFile* take : {&reference, &output}) o.spectrograms.push_back(spectrogram_of(take->take()));
     return o;
 }
 

@@ -24,6 +24,10 @@ struct ComparedPair {
     std::vector<Spectrogram> spectrograms;  ///< of reference and output, when pictures are wanted
 };
 
+/// Fills in the comparison of two takes; spectrograms when pictures are wanted. Throws Error.
+void compare_takes(ComparedPair& pair, const Take& reference, const Take& output, const ComparisonOptions& options,
+                   bool pictures);
+
 /// Compares `choice.reference` with `choice.output`. Throws Error.
 ComparedPair compare_files(const CompareChoice& choice, const Thresholds& thresholds, bool pictures);
 

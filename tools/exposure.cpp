@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vibration exposure of the hand.
+#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
 #include "dsp/exposure/hand_arm.hpp"
 #include "dsp/spectrum/level.hpp"
 #include "dsp/spectrum/vibration_analysis.hpp"
+#include "tools/batch.hpp"
 #include "tools/verbs.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
-#include <memory>
+#include <functional>
+#include <optional>
 
 namespace tactus {
 
@@ -42,7 +47,8 @@ double parse_duration(const std::string& text) {
     return seconds;
 }
 
-Operation analyse(const std::filesystem::path& file, const ExposureChoice& choice, double duration) {
+Operation analyse(const std::filesystem::path& file, const ExposureChoice& choice, double duration,
+                  const std::function<void(double)>& progress) {
     RecordReader reader = open_record(file, choice);
     const Calibration& calibration = reader.calibration();
     if (!calibration.known && !choice.uncalibrated)
@@ -89,6 +95,7 @@ Operation analyse(const std::filesystem::path& file, const ExposureChoice& choic
             }
         }
         count += block.size();
+        progress(static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, reader.frames())));
     }
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         out.axes.push_back(reader.channels()[chosen[i]]);
@@ -140,49 +147,124 @@ Json operation_json(const Operation& one) {
             {"notes", one.notes}};
 }
 
+/// Of the day, when its durations fit into one and no file is missing.
+std::optional<double> daily(const std::vector<Operation>& operations, const std::vector<std::string>& failures) {
+    std::vector<HandArmOperation> day;
+    double seconds = 0.0;
+    for (std::size_t i = 0; i < operations.size(); ++i) {
+        if (!failures[i].empty()) return std::nullopt;
+        day.push_back({operations[i].total(), operations[i].duration});
+        seconds += operations[i].duration;
+    }
+    if (seconds > 24.0 * 3600.0) return std::nullopt;
+    return daily_exposure(day);
+}
+
+std::string table_row(const Operation& one) {
+    std::string axes, notes;
+    for (std::size_t i = 0; i < 3; ++i)
+        axes += i < one.weighted.size() ? fmt::format("{},", one.weighted[i]) : std::string(",");
+    for (const std::string& note : one.notes) notes += (notes.empty() ? "" : "; ") + note;
+    const auto minutes = [&](double value) {
+        const double found = time_to_reach(value, one.total()) / 60.0;
+        return std::isfinite(found) ? fmt::format("{}", found) : std::string();
+    };
+    return fmt::format("{},{}{},{},{},{},{},{},{},{},{},\n", csv_field(one.file), axes,
+                       one.three_axes ? fmt::format("{}", one.total()) : std::string(),
+                       daily_exposure(std::array{HandArmOperation{one.total(), one.duration}}), one.duration,
+                       minutes(action_value), minutes(limit_value), one.calibrated, hand_arm_lowest, one.band_high,
+                       csv_field(notes));
+}
+
+void write_table(const ExposureChoice& choice, const std::vector<Operation>& operations,
+                 const std::vector<std::filesystem::path>& files, const std::vector<std::string>& failures) {
+    std::string table =
+        "file,a_hw_1,a_hw_2,a_hw_3,a_hv,a8,duration_s,minutes_to_action,minutes_to_limit,calibrated,band_low_hz,"
+        "band_high_hz,notes,error\n";
+    for (std::size_t i = 0; i < files.size(); ++i)
+        table += failures[i].empty()
+                     ? table_row(operations[i])
+                     : fmt::format("{},,,,,,,,,,,,,{}\n", csv_field(files[i].string()), csv_field(failures[i]));
+    write_whole_file(choice.table, table);
+}
+
+void print_operation(const Operation& one) {
+    fmt::print("{}: {:.0f} min a day\n", one.file, one.duration / 60.0);
+    for (std::size_t i = 0; i < one.axes.size(); ++i)
+        fmt::print("  axis {}: a_hw {:.3g} m/s^2 (by filter {:.3g})\n", one.axes[i], one.weighted[i], one.filtered[i]);
+    if (one.three_axes) fmt::print("  a_hv {:.3g} m/s^2\n", one.total());
+    fmt::print("  action value {}, limit value {}\n", reached(action_value, one.total()),
+               reached(limit_value, one.total()));
+    for (const std::string& note : one.notes) fmt::print("  {}\n", note);
+}
+
+/// A line per file, for more of them than one cares to read about one by one.
+void print_table(const std::vector<Operation>& operations) {
+    std::size_t width = 4;
+    for (const Operation& one : operations) width = std::max(width, one.file.size());
+    fmt::print("{:<{}}  {:>9}  {:>9}  {:>8}  {:>18}  {}\n", "file", width, "a, m/s^2", "A(8)", "min/day",
+               "action value", "limit value");
+    for (const Operation& one : operations)
+        if (!one.file.empty())
+            fmt::print("{:<{}}  {:>9.3g}  {:>9.3g}  {:>8.0f}  {:>18}  {}{}\n", one.file, width, one.total(),
+                       daily_exposure(std::array{HandArmOperation{one.total(), one.duration}}), one.duration / 60.0,
+                       reached(action_value, one.total()), reached(limit_value, one.total()),
+                       one.band_high < 1250.0 || !one.three_axes || !one.calibrated ? "  (see --table)" : "");
+}
+
 }  // namespace
 
 int exposure_verb(const ExposureChoice& choice) {
-    if (choice.durations.size() > 1 && choice.durations.size() != choice.files.size())
+    const std::vector<std::filesystem::path> files = expand_folders(choice.files);
+    if (choice.durations.size() > 1 && choice.durations.size() != files.size())
         throw Error(fmt::format("there are {} durations for {} files; give one, or one per file",
-                                choice.durations.size(), choice.files.size()));
-    std::vector<Operation> operations;
-    std::vector<HandArmOperation> day;
-    for (std::size_t i = 0; i < choice.files.size(); ++i) {
-        const double duration = choice.durations.empty()       ? reference_day
-                                : choice.durations.size() == 1 ? parse_duration(choice.durations.front())
-                                                               : parse_duration(choice.durations[i]);
-        operations.push_back(analyse(choice.files[i], choice, duration));
-        day.push_back({operations.back().total(), duration});
+                                choice.durations.size(), files.size()));
+    std::vector<double> durations;
+    for (const std::string& text : choice.durations) durations.push_back(parse_duration(text));
+    if (durations.empty()) durations.push_back(reference_day);
+    std::vector<Operation> operations(files.size());
+    const std::vector<std::string> failures =
+        run_batch(files.size(), choice.jobs, "files", [&](std::size_t i, const std::function<void(double)>& progress) {
+            operations[i] = analyse(files[i], choice, durations[std::min(i, durations.size() - 1)], progress);
+        });
+    bool bad = false;
+    for (const std::string& failure : failures) {
+        if (failure.empty()) continue;
+        bad = true;
+        fmt::print(stderr, "tactus: {}\n", failure);
     }
-    const double a8 = daily_exposure(day);
+    if (!choice.table.empty()) write_table(choice, operations, files, failures);
+    if (bad && files.size() == 1) return bad_input;
+    const std::optional<double> a8 = daily(operations, failures);
     if (choice.json) {
         Json json;
-        if (operations.size() == 1) {
+        if (files.size() == 1) {
             json = operation_json(operations.front());
         } else {
-            json = {{"a8", a8}, {"operations", Json::array()}};
-            for (const Operation& one : operations) json["operations"].push_back(operation_json(one));
+            json = {{"a8", a8 ? Json(*a8) : Json()}, {"operations", Json::array()}};
+            for (std::size_t i = 0; i < files.size(); ++i)
+                json["operations"].push_back(failures[i].empty()
+                                                 ? operation_json(operations[i])
+                                                 : Json{{"file", files[i].string()}, {"error", failures[i]}});
         }
-        json["years_to_white_fingers"] = a8 > 0.0 ? Json(years_to_white_fingers(a8)) : Json(nullptr);
+        json["years_to_white_fingers"] = a8 && *a8 > 0.0 ? Json(years_to_white_fingers(*a8)) : Json(nullptr);
         fmt::print("{}\n", json.dump(2));
-        return done;
+        return bad ? bad_input : done;
     }
-    for (const Operation& one : operations) {
-        fmt::print("{}: {:.0f} min a day\n", one.file, one.duration / 60.0);
-        for (std::size_t i = 0; i < one.axes.size(); ++i)
-            fmt::print("  axis {}: a_hw {:.3g} m/s^2 (by filter {:.3g})\n", one.axes[i], one.weighted[i],
-                       one.filtered[i]);
-        if (one.three_axes) fmt::print("  a_hv {:.3g} m/s^2\n", one.total());
-        fmt::print("  action value {}, limit value {}\n", reached(action_value, one.total()),
-                   reached(limit_value, one.total()));
-        for (const std::string& note : one.notes) fmt::print("  {}\n", note);
-    }
-    fmt::print("A(8) {:.3g} m/s^2: {}\n", a8,
-               a8 > limit_value    ? "above the limit value, 5"
-               : a8 > action_value ? "above the action value, 2.5"
-                                   : "below the action value, 2.5");
-    return done;
+    if (files.size() > 3) print_table(operations);
+    else
+        for (const Operation& one : operations)
+            if (!one.file.empty()) print_operation(one);
+    if (a8)
+        fmt::print("A(8) {:.3g} m/s^2: {}\n", *a8,
+                   *a8 > limit_value    ? "above the limit value, 5"
+                   : *a8 > action_value ? "above the action value, 2.5"
+                                        : "below the action value, 2.5");
+    else
+        fmt::print(
+            "no A(8) of the day: {}\n",
+            bad ? "a file could not be used" : "the durations add up to more than 24 h; state them with --duration");
+    return bad ? bad_input : done;
 }
 
 }  // namespace tactus

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of a rig's report: everything in one file, to be read without a net.
+#include "tools/html_report.hpp"
 #include "tools/rig_figures.hpp"
 #include "tools/rig_report.hpp"
 
@@ -10,30 +11,6 @@
 namespace tactus {
 
 namespace {
-
-constexpr const char* style =
-    R"(body{font:15px/1.5 system-ui,sans-serif;color:#22262e;max-width:60rem;margin:2rem auto;padding:0 1rem}
-h1{font-size:1.5rem}h2{font-size:1.15rem;margin-top:2.2rem}table{border-collapse:collapse;font-size:13px}
-td,th{padding:.25rem .6rem;border-bottom:1px solid #e3e6ea;text-align:left;vertical-align:top}td.n,th.n{text-align:right}
-svg{max-width:100%;height:auto}.small{color:#6b7280;font-size:13px})";
-
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text) switch (c) {
-            case '<': out += "&lt;"; break;
-            case '>': out += "&gt;"; break;
-            case '&': out += "&amp;"; break;
-            case '"': out += "&quot;"; break;
-            default: out += c;
-        }
-    return out;
-}
-
-/// The drawing without what only a file of its own needs.
-std::string inlined(const Figure& figure) {
-    const std::string svg = figure.svg();
-    return svg.substr(svg.find("<svg"));
-}
 
 std::string number(const std::optional<double>& value, double scale, const char* format) {
     return value && std::isfinite(*value) ? fmt::format(fmt::runtime(format), *value * scale) : "–";
@@ -77,17 +54,19 @@ std::string table(std::span<const Fact> rows) {
 
 std::string rows_table(const RigReport& report) {
     std::string out =
-        "<table><tr><th>motor</th><th>object</th><th class=n>Hz</th><th class=n>mm</th><th class=n>gain, dB</th><th "
-        "class=n>phase, °</th><th class=n>NRMSE, %</th><th class=n>k, N/mm</th><th class=n>b, N s/mm</th><th "
-        "class=n>slips, "
-        "%</th><th class=n>saturated, %</th><th class=n>hunting, µm</th></tr>\n";
+        "<table><tr><th>motor</th><th>object</th><th class=\"n\">Hz</th><th class=\"n\">mm</th><th class=\"n\">gain, "
+        "dB</th><th "
+        "class=\"n\">phase, °</th><th class=\"n\">NRMSE, %</th><th class=\"n\">k, N/mm</th><th class=\"n\">b, N "
+        "s/mm</th><th "
+        "class=\"n\">slips, "
+        "%</th><th class=\"n\">saturated, %</th><th class=\"n\">hunting, µm</th></tr>\n";
     for (const RigRow& row : report.rows) {
         const Fidelity& f = row.fidelity;
-        out +=
-            fmt::format("<tr><td>{}</td><td>{}</td><td class=n>{:g}</td><td class=n>{:g}</td>", escaped(row.cell.motor),
-                        escaped(row.cell.object.name), row.cell.rate, row.cell.amplitude * 1e3);
+        out += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"n\">{:g}</td><td class=\"n\">{:g}</td>",
+                           html::escaped(row.cell.motor), html::escaped(row.cell.object.name), row.cell.rate,
+                           row.cell.amplitude * 1e3);
         if (!row.failure.empty()) {
-            out += fmt::format("<td colspan=8>{}</td></tr>\n", escaped(row.failure));
+            out += fmt::format("<td colspan=\"8\">{}</td></tr>\n", html::escaped(row.failure));
             continue;
         }
         for (const std::string& cell :
@@ -95,7 +74,7 @@ std::string rows_table(const RigReport& report) {
               number(f.nrmse, 100.0, "{:.1f}"), number(f.rendered_stiffness, 1e-3, "{:.4g}"),
               number(f.rendered_damping, 1e-3, "{:.3g}"), number(f.slip_share, 100.0, "{:.0f}"),
               number(f.saturated_share, 100.0, "{:.0f}"), number(f.limit_cycle_rms, 1e6, "{:.1f}")})
-            out += "<td class=n>" + cell + "</td>";
+            out += "<td class=\"n\">" + cell + "</td>";
         out += "</tr>\n";
     }
     return out + "</table>\n";
@@ -104,10 +83,7 @@ std::string rows_table(const RigReport& report) {
 }  // namespace
 
 std::string rig_html(const RigReport& report) {
-    std::string out = fmt::format(
-        "<!doctype html>\n<html lang=en><meta charset=utf-8><title>{0}</title><style>{1}</style>\n"
-        "<h1>{0}</h1>\n<p>{2}</p>\n",
-        escaped(report.title), style, escaped(report.source));
+    std::string out = fmt::format("<p>{}</p>\n", html::escaped(report.source));
     out += "<h2>In short</h2><ul>";
     out += fmt::format("<li>The cord runs at up to {:.2f} mm/s at 1 Hz.</li>", report.peak_cord_speed * 1e3);
     if (report.saturation_rate)
@@ -115,8 +91,8 @@ std::string rig_html(const RigReport& report) {
             "<li>In free motion the slower motor saturates from {:.3f} Hz on; {:.3f} Hz in closed form.</li>",
             *report.saturation_rate, report.saturation_closed_form.value_or(NAN));
     for (const RigFinding& f : report.findings)
-        out +=
-            fmt::format("<li>{}: in {} of {} combinations of what is assumed.</li>", escaped(f.claim), f.holds, f.of);
+        out += fmt::format("<li>{}: in {} of {} combinations of what is assumed.</li>", html::escaped(f.claim), f.holds,
+                           f.of);
     for (const RigCrossover& c : report.crossover)
         out +=
             c.low ? fmt::format(
@@ -126,47 +102,47 @@ std::string rig_html(const RigReport& report) {
                         c.stiffness * 1e-3, c.amplitude * 1e3, *c.low, c.high.value_or(*c.low), c.crossed, c.of)
                   : fmt::format("<li>With {:g} N/mm and ±{:.3g} mm the second motor never becomes the better one.</li>",
                                 c.stiffness * 1e-3, c.amplitude * 1e3);
-    for (const std::string& note : report.notes) out += "<li>" + escaped(note) + "</li>";
+    for (const std::string& note : report.notes) out += "<li>" + html::escaped(note) + "</li>";
     out += "</ul>\n";
     if (!report.rows.empty()) {
         out +=
             "<h2>Error over rate</h2><p>Position beside what the object would have done under the force that was "
             "measured, as a share "
             "of its motion, over the samples without slip. For a wall: how far it was pushed away.</p>\n";
-        out += inlined(draw_rig_errors(report));
+        out += html::drawing(draw_rig_errors(report), "a");
         out +=
             "<h2>Gain and phase</h2><p>Measured admittance over the object's, 1/(k + jωb), at the rate of the "
             "rig.</p>\n";
-        out += inlined(draw_rig_response(report));
+        out += html::drawing(draw_rig_response(report), "b");
     }
     if (!report.examples.empty()) {
         out += "<h2>Position over force</h2><p>Last cycle; dashed: the object.</p>\n";
-        out += inlined(draw_rig_examples(report));
+        out += html::drawing(draw_rig_examples(report), "c");
     }
     if (!report.crossover.empty()) {
         out +=
             "<h2>Which motor is better</h2><p>Bands: all combinations of both ends of what is assumed of a "
             "motor.</p>\n";
-        out += inlined(draw_rig_crossover(report));
+        out += html::drawing(draw_rig_crossover(report), "d");
     }
     if (!report.leads.empty()) {
         out +=
             "<h2>Feed-forward</h2><p>Error of the loop of the thesis, which had none, over the error with the object's "
             "velocity fed "
             "forward; above 1 feed-forward is better.</p>\n";
-        out += inlined(draw_rig_leads(report));
+        out += html::drawing(draw_rig_leads(report), "e");
     }
     if (!report.assumptions.empty()) {
         out += "<h2>What is known and what is assumed</h2><p>Facts of the thesis (Olsson 2015):</p>" + table(facts);
         out += "<p>Assumptions of the simulated grippers, unless the patch says otherwise:</p>" + table(models);
         out += "<p>Ranges over which the findings above were tried:</p><table>";
         for (const RigAssumption& a : report.assumptions)
-            out += fmt::format("<tr><td>{}</td><td>{}</td><td>{} to {}</td></tr>", escaped(a.motor), escaped(a.option),
-                               escaped(a.low), escaped(a.high));
+            out += fmt::format("<tr><td>{}</td><td>{}</td><td>{} to {}</td></tr>", html::escaped(a.motor),
+                               html::escaped(a.option), html::escaped(a.low), html::escaped(a.high));
         out += "</table>\n";
     }
     out += "<h2>All cells</h2>\n" + rows_table(report);
-    return out + "</html>\n";
+    return html::page(report.title, out);
 }
 
 }  // namespace tactus

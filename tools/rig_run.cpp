@@ -38,10 +38,17 @@ std::vector<std::uint8_t> flags(const std::vector<double>& numbers) {
     return all;
 }
 
+/// A controller of the thumb part, which a rig does not pull at.
+bool moves_another_part(const Patch& patch, const PatchNode& node) {
+    for (const PatchWire& wire : patch.wires)
+        if (wire.from_node == node.name && wire.to_port == "thumb_speed") return true;
+    return false;
+}
+
 std::string only_node(const Patch& patch, const std::string& type) {
     std::string found;
     for (const PatchNode& node : patch.nodes) {
-        if (node.type != type) continue;
+        if (node.type != type || moves_another_part(patch, node)) continue;
         if (!found.empty())
             throw Error(node.where, fmt::format("a rig judges one finger: '{}' and '{}' are both of type {}", found,
                                                 node.name, type));

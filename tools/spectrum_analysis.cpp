@@ -65,12 +65,6 @@ std::string power_unit(const AnalysedFile& file, bool density) {
     return fmt::format("({})^2{}", file.calibration.unit, density ? "/Hz" : "");
 }
 
-/// How far a band's level scatters, dB: its bins are averaged over too.
-double band_deviation(const Band& band, const Spectrum& spectrum) {
-    const double bins = std::max(1.0, (band.high - band.low) / spectrum.noise_bandwidth);
-    return 10.0 / std::log(10.0) * spectrum.relative_deviation() / std::sqrt(bins);
-}
-
 Json number_or_null(double value) { return value > 0.0 ? Json(value) : Json(nullptr); }
 
 Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
@@ -125,6 +119,11 @@ Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
 
 }  // namespace
 
+double band_deviation(const Band& band, const Spectrum& spectrum) {
+    const double bins = std::max(1.0, (band.high - band.low) / spectrum.noise_bandwidth);
+    return 10.0 / std::log(10.0) * spectrum.relative_deviation() / std::sqrt(bins);
+}
+
 double decibels(double power) { return 10.0 * std::log10(std::max(power, 1e-30)); }
 
 AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumChoice& choice,
@@ -137,7 +136,7 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumChoic
     std::tie(settings.lowest, settings.highest) = parse_band(choice.rate, "--fundamental");
     if (!choice.envelope.empty()) settings.envelope = parse_band(choice.envelope, "--envelope");
     settings.orders = choice.orders;
-    settings.spectrogram = !choice.plot.empty();
+    settings.spectrogram = !choice.plot.empty() || !choice.report.empty();
     std::vector<VibrationAnalysis> analyses;
     try {
         for (std::size_t i = 0; i < chosen.size(); ++i) analyses.emplace_back(settings, reader.frames());

@@ -30,6 +30,8 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumChoic
 
 /// 10 log10, not below −300 dB.
 double decibels(double power);
+/// How far a band's level scatters, dB: its bins are averaged over too.
+double band_deviation(const Band& band, const Spectrum& spectrum);
 
 std::string analysis_json(const AnalysedFile& file, const SpectrumChoice& choice);
 std::string analysis_text(const AnalysedFile& file);

@@ -97,7 +97,20 @@ struct CompareChoice {
     int channel = 0;                                   ///< 0: the mean of all
     std::vector<std::string> time_columns, columns;    ///< of CSV logs: of both files, or of each
     std::string time_unit;
+    int jobs = 0;                                      ///< pairs at a time, 0: one per core
+    std::filesystem::path table;                       ///< .csv
     bool json = false;
+};
+
+/// A patch beside the recordings that it plays.
+struct ValidateChoice : PatchChoice {
+    std::filesystem::path set;             ///< of recordings
+    std::string saw, out_port;             ///< node, NODE.PORT; empty: found in the patch
+    std::vector<double> levels{0.0, -6.0}; ///< dB on top of the patch's
+    double seconds = 4.0;                  ///< that are compared of each run
+    std::filesystem::path thresholds, report, plot, table;
+    std::string touch = "displacement";
+    int jobs = 0;                          ///< runs at a time, 0: one per core
 };
 
 struct SpectrumChoice : RecordOptions {
@@ -106,8 +119,8 @@ struct SpectrumChoice : RecordOptions {
     std::string rate = "20:500";  ///< LOW:HIGH in Hz: where the fundamental may lie
     std::optional<std::size_t> segment;
     std::optional<double> overlap;  ///< share of the segment
-    int orders = 10, jobs = 1;
-    std::filesystem::path csv, plot, table;
+    int orders = 10, jobs = 0;      ///< files at a time, 0: one per core
+    std::filesystem::path csv, plot, table, report;
 };
 
 struct OrdersChoice : RecordOptions {
@@ -122,12 +135,15 @@ struct OrdersChoice : RecordOptions {
 struct ExposureChoice : RecordOptions {
     std::vector<std::string> durations;  ///< quantities of time; a bare number is hours
     bool uncalibrated = false;           ///< take values of a record without calibration as m/s²
+    int jobs = 0;                        ///< files at a time, 0: one per core
+    std::filesystem::path table;
 };
 
 int spectrum_verb(const SpectrumChoice& choice);
 int orders_verb(const OrdersChoice& choice);
 int exposure_verb(const ExposureChoice& choice);
 int compare_verb(const CompareChoice& choice);
+int validate_verb(const ValidateChoice& choice);
 int measure_verb(const MeasureChoice& choice);
 int equalise_verb(const EqualiseChoice& choice);
 

@@ -2,6 +2,7 @@
 #include "assets/bone/import_steps.hpp"
 #include "assets/bone/labels.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/distance/components.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -31,6 +32,11 @@ std::vector<Segment> choose_segments(const std::string& wanted, const std::vecto
         if (wanted == std::to_string(segment.label) || wanted == segment.name) return {segment};
     throw Error(fmt::format("{}: has no label '{}' but {}{}", file, wanted, fmt::join(labels, ", "),
                             did_you_mean(wanted, names)));
+}
+
+std::size_t pieces_of(Grid distance) {
+    for (float& value : distance.values) value = -value;
+    return components_above(distance, 0.0f).voxels.size();
 }
 
 }  // namespace
@@ -66,7 +72,7 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
         made.bone = bone_of_label(map, segment, how, options.run);
         made.summary.hu = name_of(hu);
         made.summary.notes = notes;
-        made.summary.components = 1;
+        made.summary.components = pieces_of(made.bone.distance);
         measure(made.bone, made.summary);
         add_points(made.bone, options, made.summary);
         add_provenance(made.bone, options, made.summary, source_hash);

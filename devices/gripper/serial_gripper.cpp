@@ -26,6 +26,7 @@ SerialGripper::SerialGripper(SerialGripperSettings settings) : settings_(std::mo
     info_.name = fmt::format("gripper at {}", settings_.port);
     info_.fingers = settings_.fingers;
     info_.max_speed = settings_.max_speed;
+    info_.least_speed = settings_.least_speed;
     if (const std::string why = port_.open(settings_.port, settings_.baud); !why.empty()) throw Error(why);
 }
 
@@ -117,6 +118,7 @@ std::unique_ptr<HapticDevice> open_serial_gripper(Options& options, const PathRe
     const std::array<std::string, 2> calibrations{options.text("calibration", ""),
                                                   options.text("thumb_calibration", "")};
     s.max_speed = options.quantity("max_speed", "70 mm/s", "0.1 mm/s", "10 m/s");
+    s.least_speed = options.quantity("least_speed", "0 mm/s", "0 mm/s", "1 m/s");
     s.timeout = options.quantity("timeout", "20 ms", "1 ms", "10 s");
     options.finish();
     for (std::size_t i = 0; i < calibrations.size(); ++i)

@@ -23,6 +23,7 @@ struct SerialGripperSettings {
     double pulse = 4.5e-3 / 16e3;  ///< m of the finger per pulse of its encoder
     std::array<LineFit, 2> gauge{{{1e-3, 0.0, 1.0, 0.0}, {1e-3, 0.0, 1.0, 0.0}}};  ///< N from counts
     double max_speed = 0.07;       ///< m/s
+    double least_speed = 0.0;      ///< m/s; the motor turns no slower
     double timeout = 0.02;         ///< s without a good sample after which the device is not valid
     double reopen_every = 0.25;    ///< s between attempts to find a line again that is gone
 };
@@ -64,7 +65,7 @@ private:
 };
 
 /// Options: port, baud, fingers, encoder (pulses per m of the finger), newton_per_count, or calibration and
-/// thumb_calibration (assets; see load_force_calibration), max_speed, timeout. Throws Error.
+/// thumb_calibration (assets; see load_force_calibration), max_speed, least_speed, timeout. Throws Error.
 std::unique_ptr<HapticDevice> open_serial_gripper(Options& options, const PathResolver& resolve);
 
 }  // namespace tactus

@@ -109,11 +109,12 @@ Breakage read_breakage(Options& options) {
     return breakage;
 }
 
-DeviceInfo describe_gripper(std::string name, int fingers, double max_speed) {
+DeviceInfo describe_gripper(std::string name, int fingers, double max_speed, double least_speed) {
     DeviceInfo info;
     info.name = std::move(name);
     info.fingers = fingers;
     info.max_speed = max_speed;
+    info.least_speed = least_speed;
     return info;
 }
 
@@ -134,8 +135,8 @@ std::unique_ptr<HapticDevice> open_walking_gripper(Options& options, const PathR
     options.finish();
     finger.motor = WalkingMotor{s};
     finger.encoder.step = s.leverage / pulses;  // the encoder is on the rod
-    return std::make_unique<SimulatedGripper>(describe_gripper("simulated gripper, walking motor", 1, s.max_speed()),
-                                              std::vector{finger}, breakage);
+    return std::make_unique<SimulatedGripper>(
+        describe_gripper("simulated gripper, walking motor", 1, s.max_speed(), 0.0), std::vector{finger}, breakage);
 }
 
 std::unique_ptr<HapticDevice> open_wave_gripper(Options& options, const PathResolver&) {
@@ -163,8 +164,8 @@ std::unique_ptr<HapticDevice> open_wave_gripper(Options& options, const PathReso
     Finger thumb = finger;
     thumb.gauge.random.seed += 1;
     return std::make_unique<SimulatedGripper>(
-        describe_gripper("simulated gripper, traveling-wave motors", 2, s.max_speed), std::vector{finger, thumb},
-        breakage);
+        describe_gripper("simulated gripper, traveling-wave motors", 2, s.max_speed, s.least_speed),
+        std::vector{finger, thumb}, breakage);
 }
 
 }  // namespace tactus

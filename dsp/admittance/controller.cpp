@@ -34,7 +34,8 @@ double AdmittanceControl::tick(double force, double position, Fault sensed, int 
     // What no finger can do would make the object overflow.
     const bool sane = std::abs(force) < most_force && std::abs(position) < most_position;
     if (sensed == Fault::none && !sane) sensed = Fault::not_finite;
-    if (sensed == Fault::none && fault_ == Fault::none && is_stuck(position, slips)) sensed = Fault::stuck_encoder;
+    if (sensed == Fault::none && fault_ == Fault::none && is_stuck(force, position, slips))
+        sensed = Fault::stuck_encoder;
     if (fault_ == Fault::none) fault_ = sensed;
     if (asked_ && sensed == Fault::none) fault_ = Fault::none;
     asked_ = false;
@@ -67,15 +68,18 @@ double AdmittanceControl::follow(double force, double position, int periods) noe
         if (std::abs(offset_) < 1e-12) offset_ = 0.0;
         wanted_ = object_.position() + offset_;
         force_ = force;
-        return loop_({gain_, settings_.loop.feed_forward, settings_.loop.feed_forward_lag, settings_.max_speed},
+        return loop_({gain_, settings_.loop.feed_forward, settings_.loop.feed_forward_lag, settings_.max_speed,
+                      settings_.least_speed, settings_.loop.delay},
                      wanted_, position, (wanted_ - before) / steps, period);
     }
     force_ = force;
     return 0.0;
 }
 
-bool AdmittanceControl::is_stuck(double position, bool slips) noexcept {
-    if (slips || std::abs(told_) < settings_.stuck_speed) {
+bool AdmittanceControl::is_stuck(double force, double position, bool slips) noexcept {
+    // A motor that runs against a hand that strong may stand still in good health.
+    const bool stalled = told_ * force < 0.0 && std::abs(force) >= settings_.stall_force;
+    if (slips || stalled || std::abs(told_) < settings_.stuck_speed) {
         told_travel_ = seen_travel_ = 0.0;
         return false;
     }

@@ -14,10 +14,12 @@ struct ControllerSettings {
     LoopModel loop;             ///< what is assumed of motor and hand; its gain 0: gain_share of the limit
     double gain_share = 0.5;    ///< of the limit, below 1
     double max_speed = 0.07;    ///< m/s
+    double least_speed = 0.0;   ///< m/s, see PositionLoopSettings
     double blend = 0.1;         ///< s, time constant with which a jump of the wanted position is let go
     bool allow_unstable = false;
     double stuck_speed = 0.04;  ///< m/s; told to run faster than this …
-    double stuck_travel = 0.008;  ///< … and so far, m, while the encoder does not change at all, it is stuck
+    double stuck_travel = 0.008;  ///< … and so far, m, while the encoder does not change at all, it is stuck …
+    double stall_force = 2.0;  ///< N … unless the hand holds against it with this much: then the motor may be stalled
 };
 
 class AdmittanceControl {
@@ -40,7 +42,7 @@ public:
     double limit() const noexcept { return limit_; }  ///< of the gain, 1/s
 
 private:
-    bool is_stuck(double position, bool slips) noexcept;
+    bool is_stuck(double force, double position, bool slips) noexcept;
     double follow(double force, double position, int periods) noexcept;
 
     ControllerSettings settings_;

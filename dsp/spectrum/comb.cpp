@@ -2,7 +2,9 @@
 #include "dsp/spectrum/comb.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 namespace tactus {
 
@@ -54,41 +56,60 @@ CombFit fit(std::span<const Weighted> lines, double frequency, double df) {
     return comb;
 }
 
+/// The strongest lines, by amplitude: what is felt and what a fault of the rate would move; the weakest of many are
+/// clutter.
+struct StrongestLines {
+    static constexpr std::size_t most = 24;
+
+    std::array<Weighted, most> lines;
+    std::size_t count = 0;
+
+    void add(const Weighted& line) noexcept {
+        const auto heavier = [](const Weighted& a, const Weighted& b) { return a.weight > b.weight; };
+        Weighted* const end = lines.data() + count;
+        Weighted* const place = std::upper_bound(lines.data(), end, line, heavier);
+        if (place == lines.data() + most) return;
+        Weighted* const last = count < most ? lines.data() + count++ : end - 1;
+        std::move_backward(place, last, last + 1);
+        *place = line;
+    }
+    std::span<const Weighted> worth_fitting() const noexcept {
+        std::size_t kept = count;
+        while (kept > 0 && lines[kept - 1].weight < 1e-3 * lines[0].weight) --kept;
+        return {lines.data(), kept};
+    }
+};
+
 }  // namespace
 
-Comb fit_comb(const Spectrum& spectrum, double lowest, double highest) {
+Comb fit_comb(const Spectrum& spectrum, double lowest, double highest) noexcept {
     Comb out;
     const double top = std::min(most_teeth * highest, spectrum.df * static_cast<double>(spectrum.power.size()));
-    std::vector<Weighted> lines;
-    for (const SpectralLine& line : find_lines(spectrum, std::max(0.7 * lowest, 3.0 * spectrum.df), top, 8.0))
-        lines.push_back({line.frequency, std::sqrt(line.power)});
-    if (lines.empty()) return out;
-    // Amplitudes: what is felt and what a fault of the rate would move; the weakest of many lines are clutter.
-    std::sort(lines.begin(), lines.end(), [](const Weighted& a, const Weighted& b) { return a.weight > b.weight; });
-    if (lines.size() > 24) lines.resize(24);
-    while (lines.back().weight < 1e-3 * lines.front().weight) lines.pop_back();
-    std::vector<CombFit> fits;
+    StrongestLines strongest;
+    each_line(spectrum, std::max(0.7 * lowest, 3.0 * spectrum.df), top, 8.0,
+              [&](const SpectralLine& line) { strongest.add({line.frequency, std::sqrt(line.power)}); });
+    const std::span<const Weighted> lines = strongest.worth_fitting();
+    std::array<CombFit, StrongestLines::most * most_teeth> fits;
+    std::size_t count = 0;
     for (const Weighted& line : lines)
         for (int order = 1; order <= most_teeth; ++order) {
             const double frequency = line.frequency / order;
             if (frequency < lowest || frequency > highest) continue;
             const CombFit one = fit(lines, frequency, spectrum.df);
-            if (one.frequency >= lowest && one.frequency <= highest && one.score() > 0.0) fits.push_back(one);
+            if (one.frequency >= lowest && one.frequency <= highest && one.score() > 0.0) fits[count++] = one;
         }
-    std::sort(fits.begin(), fits.end(), [](const CombFit& a, const CombFit& b) {
+    if (count == 0) return out;
+    const std::span<CombFit> found(fits.data(), count);
+    std::sort(found.begin(), found.end(), [](const CombFit& a, const CombFit& b) {
         return a.score() != b.score() ? a.score() > b.score() : a.frequency > b.frequency;
     });
-    if (fits.empty()) return out;
-    out.best = fits.front();
-    std::vector<CombFit> apart{out.best};
-    for (const CombFit& one : fits) {
-        const bool is_new = std::none_of(apart.begin(), apart.end(), [&](const CombFit& other) {
-            return std::abs(one.frequency / other.frequency - 1.0) < 0.02;
-        });
-        if (is_new && apart.size() < 4) apart.push_back(one);
+    out.best = found.front();
+    for (const CombFit& one : found) {
+        const auto near = [&](const CombFit& other) { return std::abs(one.frequency / other.frequency - 1.0) < 0.02; };
+        if (near(out.best) || std::ranges::any_of(out.others(), near)) continue;
+        if (out.rival_count < Comb::most_rivals) out.rivals[out.rival_count++] = one;
     }
-    out.others.assign(apart.begin() + 1, apart.end());
-    const double rival = out.others.empty() ? 0.0 : out.others.front().score() / out.best.score();
+    const double rival = out.rival_count == 0 ? 0.0 : out.rivals.front().score() / out.best.score();
     out.confidence = std::clamp(out.best.score() * (1.0 - 0.5 * rival), 0.0, 1.0);
     return out;
 }

@@ -4,6 +4,10 @@
 
 #include "dsp/spectrum/lines.hpp"
 
+#include <array>
+#include <cstddef>
+#include <span>
+
 namespace tactus {
 
 struct CombFit {
@@ -14,15 +18,20 @@ struct CombFit {
 };
 
 struct Comb {
+    static constexpr std::size_t most_rivals = 3;
+
     CombFit best;
-    std::vector<CombFit> others;  ///< rivals, best first: no neighbours of the best
+    std::array<CombFit, most_rivals> rivals{};  ///< best first: no neighbours of the best
+    std::size_t rival_count = 0;
     /// 0 … 1: the score of the best, halved when a rival does as well.
     double confidence = 0.0;
+
+    std::span<const CombFit> others() const { return {rivals.data(), rival_count}; }
 };
 
 /// Fits combs with fundamentals from `lowest` to `highest` Hz. A comb and its subharmonic explain the same lines; the
-/// subharmonic has more teeth missing, so it wins only when lines between speak for it. Allocates.
-Comb fit_comb(const Spectrum& spectrum, double lowest, double highest);
+/// subharmonic has more teeth missing, so it wins only when lines between speak for it. Wait-free, allocates nothing.
+Comb fit_comb(const Spectrum& spectrum, double lowest, double highest) noexcept;
 
 /// The same of a record at `rate` Hz that is in memory, by its spectrum in segments of the suggested length. No comb when
 /// the record has fewer than two of them. Allocates.

@@ -32,12 +32,12 @@ double snr_of(const Spectrum& spectrum, std::size_t k) {
     return std::min(200.0, decibels(spectrum.power[k] / std::max(floor, 1e-20 * spectrum.power[k])));
 }
 
-bool is_top(const Spectrum& spectrum, std::size_t k) {
+}  // namespace
+
+bool is_top(const Spectrum& spectrum, std::size_t k) noexcept {
     const std::vector<double>& p = spectrum.power;
     return k >= 1 && k + 1 < p.size() && p[k] > p[k - 1] && p[k] >= p[k + 1];
 }
-
-}  // namespace
 
 SpectralLine line_at(const Spectrum& spectrum, std::size_t k) {
     const std::vector<double>& p = spectrum.power;
@@ -80,13 +80,7 @@ double detection_threshold_db(const Spectrum& spectrum) {
 
 std::vector<SpectralLine> find_lines(const Spectrum& spectrum, double lowest, double highest, double snr_db) {
     std::vector<SpectralLine> lines;
-    const double threshold = std::max(snr_db, detection_threshold_db(spectrum));
-    for (std::size_t k = 2; k + 1 < spectrum.power.size(); ++k) {
-        const double frequency = spectrum.frequency(k);
-        if (frequency < lowest || frequency > highest || !is_top(spectrum, k)) continue;
-        const SpectralLine line = line_at(spectrum, k);
-        if (line.snr_db >= threshold) lines.push_back(line);
-    }
+    each_line(spectrum, lowest, highest, snr_db, [&](const SpectralLine& line) { lines.push_back(line); });
     return lines;
 }
 

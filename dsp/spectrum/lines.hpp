@@ -4,6 +4,10 @@
 
 #include "dsp/spectrum/welch.hpp"
 
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
 namespace tactus {
 
 struct SpectralLine {
@@ -24,6 +28,21 @@ SpectralLine line_near(const Spectrum& spectrum, double frequency, double reach)
 
 /// SNR (dB) that a bin of noise passes once in a million: 10 dB for long records, more for few segments.
 double detection_threshold_db(const Spectrum& spectrum);
+
+/// Whether bin `k` stands above its neighbours.
+bool is_top(const Spectrum& spectrum, std::size_t k) noexcept;
+
+/// Calls use(SpectralLine) for what `find_lines` finds; allocates nothing.
+template <class Use>
+void each_line(const Spectrum& spectrum, double lowest, double highest, double snr_db, const Use& use) {
+    const double threshold = std::max(snr_db, detection_threshold_db(spectrum));
+    for (std::size_t k = 2; k + 1 < spectrum.power.size(); ++k) {
+        const double frequency = spectrum.frequency(k);
+        if (frequency < lowest || frequency > highest || !is_top(spectrum, k)) continue;
+        const SpectralLine line = line_at(spectrum, k);
+        if (line.snr_db >= threshold) use(line);
+    }
+}
 
 /// Tops that pass `detection_threshold_db` (or `snr_db` where that is more) between `lowest` and `highest` Hz, in order
 /// of frequency.

@@ -66,6 +66,24 @@ WaveformSimilarity similarity_of(std::span<const double> reference, std::span<co
     return similarity;
 }
 
+template <class Use>
+void each_band_error(const SpectrumPair& pair, double lowest, double highest, double gain, const Use& use) {
+    // Half a percent of tolerance: the band called 40 Hz has its true centre at 39.8 Hz.
+    const int first = static_cast<int>(std::ceil(10.0 * std::log10(lowest * 0.99)));
+    const int last = static_cast<int>(std::floor(10.0 * std::log10(highest * 1.01)));
+    const auto level = [&](std::span<const double> density, int n) {
+        return band_power(density, pair.step, std::pow(10.0, n / 10.0 - 0.05), std::pow(10.0, n / 10.0 + 0.05));
+    };
+    double greatest = 0.0;
+    for (int n = first; n <= last; ++n) greatest = std::max(greatest, level(pair.reference, n));
+    for (int n = first; n <= last; ++n) {
+        const double reference = level(pair.reference, n);
+        if (!(reference > floor_ratio * greatest)) continue;
+        const double output = gain * gain * level(pair.output, n);
+        use(BandError{std::pow(10.0, n / 10.0), decibel(std::max(output / reference, 1e-6))});
+    }
+}
+
 }  // namespace
 
 double log_spectral_distance(const SpectrumPair& pair, double lowest, double highest, double gain) {
@@ -96,28 +114,16 @@ double spectral_cosine(const SpectrumPair& pair, double lowest, double highest, 
 }
 
 std::vector<BandError> third_octave_errors(const SpectrumPair& pair, double lowest, double highest, double gain) {
-    // Half a percent of tolerance: the band called 40 Hz has its true centre at 39.8 Hz.
-    const int first = static_cast<int>(std::ceil(10.0 * std::log10(lowest * 0.99)));
-    const int last = static_cast<int>(std::floor(10.0 * std::log10(highest * 1.01)));
-    std::vector<double> levels;
-    double greatest = 0.0;
-    for (int n = first; n <= last; ++n) {
-        const double centre = std::pow(10.0, n / 10.0);
-        levels.push_back(
-            band_power(pair.reference, pair.step, centre * std::pow(10.0, -0.05), centre * std::pow(10.0, 0.05)));
-        greatest = std::max(greatest, levels.back());
-    }
     std::vector<BandError> errors;
-    for (int n = first; n <= last; ++n) {
-        const double reference = levels[static_cast<std::size_t>(n - first)];
-        if (!(reference > floor_ratio * greatest)) continue;
-        const double centre = std::pow(10.0, n / 10.0);
-        const double output =
-            gain * gain *
-            band_power(pair.output, pair.step, centre * std::pow(10.0, -0.05), centre * std::pow(10.0, 0.05));
-        errors.push_back({centre, decibel(std::max(output / reference, 1e-6))});
-    }
+    each_band_error(pair, lowest, highest, gain, [&](const BandError& error) { errors.push_back(error); });
     return errors;
+}
+
+double third_octave_max_error(const SpectrumPair& pair, double lowest, double highest, double gain) noexcept {
+    double worst = 0.0;
+    each_band_error(pair, lowest, highest, gain,
+                    [&](const BandError& error) { worst = std::max(worst, std::abs(error.error_db)); });
+    return worst;
 }
 
 WaveformSimilarity::WaveformSimilarity() {

@@ -46,6 +46,9 @@ struct BandError {
 /// strongest band there), the output multiplied by `gain` before. A band without output errs by −60 dB at most.
 std::vector<BandError> third_octave_errors(const SpectrumPair& pair, double lowest, double highest, double gain = 1.0);
 
+/// The largest of them, without its sign. Allocates nothing.
+double third_octave_max_error(const SpectrumPair& pair, double lowest, double highest, double gain = 1.0) noexcept;
+
 /// Scores of two takes that were aligned, both at 8 kHz, in pieces and in memory that does not grow.
 class WaveformSimilarity {
 public:

@@ -119,7 +119,7 @@ void VibrationAnalysis::gap() {
 FundamentalEstimate VibrationAnalysis::fundamental(const Spectrum& lines) const {
     const Comb comb = fit_comb(lines, settings_.lowest, settings_.highest);
     FundamentalEstimate out{comb.best.frequency, comb.confidence,     true,
-                            comb.best.frequency, comb.best.frequency, comb.others};
+                            comb.best.frequency, comb.best.frequency, {comb.others().begin(), comb.others().end()}};
     std::vector<Second> heard;
     for (const Second& second : seconds_)
         if (second.frequency > 0.0) heard.push_back(second);

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 namespace tactus::nodes {
 
@@ -43,6 +44,13 @@ struct AdmittanceController {
     Param feed_forward{"0", "0", "1", "share of the object's velocity added to the loop's; the thesis had none"};
     Param feed_forward_lag{"20 ms", "0 ms", "1 s", "smoothing of that velocity"};
     Param max_speed{"70 mm/s", "0 mm/s", "10 m/s", "of the motor; gripper_input.max_speed drives it"};
+    Param least_speed{
+        "0 mm/s", "0 mm/s", "1 m/s",
+        "slower than this the motor turns not at all, so it is moved in steps of one tick; 0: it turns at "
+        "any speed; gripper_input.least_speed drives it"};
+    Param stall_force{"2 N", "0 N", "1000 N",
+                      "of the hand against the motion, from which on a finger that stands may be stalled, and not its "
+                      "encoder stuck"};
     Param motor_lag{"4 ms", "0 ms", "100 ms", "of the motor's speed, for the limit"};
     Param delay{"1", "0", "8", "ticks from a sample to the motor's motion, for the limit"};
     Param hand_stiffness{internal, "0.38 N/mm", "0 N/mm", "100 N/mm", "of the stiffest hand, or rig, for the limit"};
@@ -63,6 +71,7 @@ struct AdmittanceController {
                             "{:.4g} s^-1; lower the gain, leave it 0, soften the hand, or set allow_unstable",
                             gain.value, hand_stiffness * 1e-3, limit));
         }
+        name_ = setup.name;
         seen_ = values();
         asked_ = recover;
         tell(0.0);
@@ -89,19 +98,19 @@ struct AdmittanceController {
     }
 
     void report(Report& report) const {
-        report.set("admittance", "gain_per_s", control_.gain());
-        report.set("admittance", "gain_limit_per_s", control_.limit());
-        report.set("admittance", "fault", std::string(describe(last_)));
-        report.set("admittance", "faults", static_cast<double>(faults_));
-        report.set("admittance", "held_s", held_s_);
-        report.set("admittance", "saturated_s", saturated_s_);
-        report.set("admittance", "refused_settings", static_cast<double>(refusals_));
+        report.set(name_, "gain_per_s", control_.gain());
+        report.set(name_, "gain_limit_per_s", control_.limit());
+        report.set(name_, "fault", std::string(describe(last_)));
+        report.set(name_, "faults", static_cast<double>(faults_));
+        report.set(name_, "held_s", held_s_);
+        report.set(name_, "saturated_s", saturated_s_);
+        report.set(name_, "refused_settings", static_cast<double>(refusals_));
     }
 
 private:
-    std::array<double, 14> values() const noexcept {
-        return {stiffness, damping,          mass,      rest,  free_damping,   gain, gain_share, feed_forward,
-                max_speed, feed_forward_lag, motor_lag, delay, hand_stiffness, blend};
+    std::array<double, 16> values() const noexcept {
+        return {stiffness, damping,          mass,      rest,  free_damping,   gain,  gain_share,  feed_forward,
+                max_speed, feed_forward_lag, motor_lag, delay, hand_stiffness, blend, least_speed, stall_force};
     }
 
     ControllerSettings settings() const noexcept {
@@ -125,6 +134,8 @@ private:
         s.loop.feed_forward_lag = feed_forward_lag;
         s.gain_share = gain_share;
         s.max_speed = max_speed;
+        s.least_speed = least_speed;
+        s.stall_force = stall_force;
         s.blend = blend;
         s.allow_unstable = allow_unstable;
         return s;
@@ -149,7 +160,8 @@ private:
     }
 
     AdmittanceControl control_;
-    std::array<double, 14> seen_{};
+    std::string name_;
+    std::array<double, 16> seen_{};
     double period_ = 1.0 / 150.0, asked_ = 0.0, held_s_ = 0.0, saturated_s_ = 0.0;
     Fault last_ = Fault::none;
     std::int64_t faults_ = 0, refusals_ = 0;
@@ -158,6 +170,7 @@ private:
 
 TACTUS_NODE(AdmittanceController, force, position, fault, slips, velocity, wanted, saturated, holds, reason, refused,
             used_gain, gain_limit, object, sides, stiffness, damping, mass, rest, free_damping, table, gain, gain_share,
-            feed_forward, feed_forward_lag, max_speed, motor_lag, delay, hand_stiffness, blend, recover, allow_unstable)
+            feed_forward, feed_forward_lag, max_speed, least_speed, stall_force, motor_lag, delay, hand_stiffness,
+            blend, recover, allow_unstable)
 
 }  // namespace tactus::nodes

@@ -13,11 +13,13 @@ struct GripperInput {
     Out<double> finger_force{"of the hand on the finger, towards + it closes; 0 while samples are bad", "N"};
     Out<double> thumb_position{"of the thumb part, 0 without one", "m"};
     Out<double> thumb_force{"on the thumb part, 0 without one", "N"};
-    Out<bool> slips{"the load moves a finger although its motor holds it"};
+    Out<bool> slips{"the load moves the finger although its motor holds it"};
+    Out<bool> thumb_slips{"the load moves the thumb part although its motor holds it"};
     Out<bool> limited{"a motor runs as fast as it may"};
     Out<bool> valid{"this tick's sample is good"};
     Out<double> fault{"0, or the number of what is wrong: for admittance_controller"};
     Out<double> max_speed{"of a finger", "m/s"};
+    Out<double> least_speed{"slower than this no motor turns; 0: any speed", "m/s"};
     Text device{"", "name of an entry of [devices]; empty: the only one"};
     Param stale_after{structural, "25 ms", "0 ms", "10 s", "without a new sample for so long the sensor is gone"};
 
@@ -40,11 +42,13 @@ private:
         finger_force = good ? last_[0].force : 0.0;
         thumb_position = last_[1].position;
         thumb_force = good ? last_[1].force : 0.0;
-        slips = good && ((last_[0].state | last_[1].state) & motor_slips) != 0;
+        slips = good && (last_[0].state & motor_slips) != 0;
+        thumb_slips = good && (last_[1].state & motor_slips) != 0;
         limited = good && ((last_[0].state | last_[1].state) & motor_limited) != 0;
         valid = good;
         fault = static_cast<double>(found);
         max_speed = port_->info.max_speed;
+        least_speed = port_->info.least_speed;
     }
 
     Fault fault_of(const DeviceSample& s) const noexcept {
@@ -61,7 +65,7 @@ private:
     double unchanged_for_ = 0.0;
 };
 
-TACTUS_NODE(GripperInput, finger_position, finger_force, thumb_position, thumb_force, slips, limited, valid, fault,
-            max_speed, device, stale_after)
+TACTUS_NODE(GripperInput, finger_position, finger_force, thumb_position, thumb_force, slips, thumb_slips, limited,
+            valid, fault, max_speed, least_speed, device, stale_after)
 
 }  // namespace tactus::nodes

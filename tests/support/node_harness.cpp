@@ -109,7 +109,8 @@ NodeHarness::NodeHarness(const NodeType& type, Options options)
         Input& port = *input.port;
         port.connected = true;
         if (port.kind == InputKind::any) port.type = options_.any;
-        takes_blocks_ |= port.kind == InputKind::stream || port.type == &value::signal;
+        takes_blocks_ |= port.kind == InputKind::stream ||
+                         (port.kind == InputKind::any && port.type == &value::signal);
     }
     for (const OutputSlot& output : members_->outputs) takes_blocks_ |= output.port->type == &value::signal;
     for (auto& [name, asset] : members_->assets)
@@ -190,6 +191,7 @@ void NodeHarness::prepare() {
         port.data = input.buffer.data();
         port.stride = is_stream && port.connected ? static_cast<std::ptrdiff_t>(port.type->size) : 0;
         port.times = input.times.data();
+        port.period = is_batch ? options_.period / most_in_batch : options_.period;
     }
     for (OutputSlot& output : members_->outputs) {
         Output& port = *output.port;

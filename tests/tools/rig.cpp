@@ -56,6 +56,14 @@ TEST_CASE("rig: the whole matrix gives the facts and findings of the thesis over
         CHECK(row["rendered_stiffness_N_per_mm"].get<double>() ==
               Approx(row["stiffness_N_per_mm"].get<double>()).epsilon(0.02));
     }
+    // A traveling wave turns no slower than 30 mm/s: 0.2 mm in a tick, beside 1.9 and 4.6 mm that these springs give way.
+    for (const char* object : {"spring 0.2 N/mm", "spring 1 N/mm"}) {
+        const json& row = row_of(answer, "twum", object, 0.1, 7.0);
+        CAPTURE(row.dump());
+        CHECK(row["slip"] == false);
+        CHECK(row["rendered_stiffness_N_per_mm"].get<double>() ==
+              Approx(row["stiffness_N_per_mm"].get<double>()).epsilon(0.02));
+    }
     REQUIRE(facts["findings"].size() == 2);
     for (const json& finding : facts["findings"]) {
         CAPTURE(finding.dump());
@@ -159,10 +167,10 @@ TEST_CASE("gripper patches: planted faults hold the motor and are told") {
                                 "devices.wqsm.holding_force=\"20 N\" "
                                 "--set devices.wqsm.fault=" +
                                     std::string(fault) + " --set devices.wqsm.fault_at=\"2.1 s\"");
-        CAPTURE(fault, s["admittance"].dump());
-        CHECK(s["admittance"]["faults"] == 1.0);
-        CHECK(s["admittance"]["fault"].get<std::string>().find(words) != std::string::npos);
-        CHECK(s["admittance"]["held_s"] > 3.0);
+        CAPTURE(fault, s["object"].dump());
+        CHECK(s["object"]["faults"] == 1.0);
+        CHECK(s["object"]["fault"].get<std::string>().find(words) != std::string::npos);
+        CHECK(s["object"]["held_s"] > 3.0);
         CHECK(s["faults"].dump().find(words) != std::string::npos);
     }
 }

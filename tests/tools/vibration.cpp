@@ -236,7 +236,8 @@ TEST_CASE("compare answers or says what is wrong with a file, once, and ends wit
     refused(folder.path / "none.wav", "no such sound file");
     refused(folder.write("empty.wav", ""), "cannot be read as sound");
     refused(folder.write("text.wav", std::string(1000, 'x')), "cannot be read as sound");
-    refused(folder.path, "folder");
+    fs::create_directories(folder.path / "bare");
+    refused(folder.path / "bare", "folder");
     refused(sound(folder, "silent.wav", [](double) { return 0.0; }), "output is silent");
     refused(sound(folder, "constant.wav", [](double) { return 0.5; }), "output is silent");
     refused(sound(folder, "one.wav", saw(233.0), {.seconds = 1.0 / 48000.0}), "shorter than 0.5 s");

@@ -16,10 +16,12 @@
 
 #include <catch2/catch.hpp>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <numbers>
+#include <sstream>
 
 using namespace tactus;
 using Catch::Matchers::Contains;
@@ -157,6 +159,34 @@ TEST_CASE("an exported NIfTI holds the same samples with the axes of RAS in its 
             place += index[c] * double(number(280 + 16 * std::size_t(row) + 4 * c, float{}));
         CHECK(place == Approx(wanted[row]).epsilon(1e-6));
     }
+}
+
+TEST_CASE("an exported NIfTI read by nibabel has the samples and their places") {
+    if (std::system("/usr/bin/python3 -c 'import nibabel' >/dev/null 2>&1") != 0) {
+        WARN("skipped: there is no nibabel (package python3-nibabel)");
+        return;
+    }
+    const TemporaryFolder folder;
+    const Bone bone = cut_ball();
+    const Grid distance = volume_of_bones({&bone, 1}, BoneQuantity::distance);
+    write_volume(distance, SampleType::float32, folder / "ball.nii.gz");
+    const std::string command =
+        "/usr/bin/python3 -c 'import nibabel; v = nibabel.load(\"" + (folder / "ball.nii.gz").string() +
+        "\"); d = v.get_fdata(); p = v.affine @ [3, 5, 7, 1]; print(*d.shape, *p[:3], d[3, 5, 7], d.sum())' >" +
+        (folder / "said.txt").string();
+    REQUIRE(std::system(command.c_str()) == 0);
+    std::array<double, 8> said{};
+    std::istringstream text(read_whole_file(folder / "said.txt"));
+    for (double& number : said) REQUIRE(text >> number);
+    for (std::size_t a = 0; a < 3; ++a) CHECK(said[a] == distance.size[a]);
+    const Vec3 at = distance.position(3, 5, 7) / mm;
+    CHECK(said[3] == Approx(-at.x).epsilon(1e-6));
+    CHECK(said[4] == Approx(-at.y).epsilon(1e-6));
+    CHECK(said[5] == Approx(at.z).epsilon(1e-6));
+    CHECK(said[6] == Approx(double(distance.at(3, 5, 7))).epsilon(1e-6));
+    double sum = 0.0;
+    for (const float value : distance.values) sum += double(value);
+    CHECK(said[7] == Approx(sum).epsilon(1e-6));
 }
 
 TEST_CASE("bones on one lattice become one volume, others are asked for one by one") {

@@ -265,11 +265,19 @@ TEST_CASE("a label map's file becomes one file of bones in its frame; labels are
     CHECK(both[0].summary.bone_volume_mm3 == Approx(count_of(labels, 1.0f) * 0.125).epsilon(0.02));
     CHECK(both[1].summary.bone_volume_mm3 == Approx(count_of(labels, 5.0f) * 0.125).epsilon(0.02));
     CHECK(both[0].bone.provenance.at("source") == "two.nrrd");
+    CHECK(both[0].summary.components == 1);
+    CHECK(both[1].summary.components == 1);
     options.label = "5";
     CHECK(import_labels(options).front().bone.distance.values == both[1].bone.distance.values);
     options.label = "2";
     CHECK_THROWS_WITH(import_labels(options), Contains("no label '2' but 1, 5"));
+    for (int k = 0; k < 24; ++k)
+        for (int j = 0; j < 24; ++j)
+            for (int i = 9; i < 15; ++i) labels.at(i, j, k) = 0.0f;
+    for (float& value : labels.values) value = value > 0.0f ? 1.0f : 0.0f;
+    write_whole_file(options.input, nrrd_of(labels));
     options.label = "1";
+    CHECK(import_labels(options).front().summary.components == 2);
     options.crop = "0:1,0:1,0:1";
     CHECK_THROWS_WITH(import_labels(options), Contains("crop"));
 }

@@ -141,8 +141,8 @@ TEST_CASE("a force that is not a number, or a sensor that is gone, stops the mot
         held.ticks(400);
         CHECK(held.position == Approx(2e-3).epsilon(1e-3));
         const Report report = held.node.report();
-        CHECK(std::get<double>(report.sections.at("admittance").at("faults")) == 1.0);
-        CHECK(std::get<std::string>(report.sections.at("admittance").at("fault")) == describe(why));
+        CHECK(std::get<double>(report.sections.at("node").at("faults")) == 1.0);
+        CHECK(std::get<std::string>(report.sections.at("node").at("fault")) == describe(why));
     }
 }
 
@@ -174,6 +174,22 @@ TEST_CASE("an encoder that stands still while the motor runs is found within 15 
     stalled.force = 5.0;
     stalled.ticks(100);
     CHECK_FALSE(stalled.node.last<bool>("holds"));
+}
+
+TEST_CASE("a motor that a hand holds still is stalled, and its encoder is not called stuck") {
+    Held held;
+    held.node.set("stiffness", "0.2 N/mm").set("rest", "30 mm");
+    held.node.prepare();
+    held.tick();
+    held.stuck = true;
+    held.force = -3.0;  // the object pulls the finger to +30 mm, the hand holds it back
+    held.ticks(200);
+    CHECK(held.node.last<double>("velocity") > 0.04);
+    CHECK_FALSE(held.node.last<bool>("holds"));
+    // The hand lets go, and still nothing moves.
+    held.force = -1.0;
+    held.ticks(60);
+    CHECK(held.node.last<double>("reason") == static_cast<double>(Fault::stuck_encoder));
 }
 
 TEST_CASE("a gripper's output refuses what its motor may not, and goes on when asked") {

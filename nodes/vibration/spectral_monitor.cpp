@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/spectrum/live_comparison.hpp"
+#include "graph/node.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace tactus::nodes {
+
+struct SpectralMonitor {
+    static constexpr auto about =
+        "Whether an output vibrates as a reference does, told while both go on; delays do not matter. For a slow group "
+        "of its own.";
+
+    Batch<Signal> reference{"what is wanted, 'as batch' from the audio group"};
+    Batch<Signal> output{"what comes out, 'as batch' from the audio group"};
+    Out<bool> alike{"distance, likeness and worst band are all within what is asked below"};
+    Out<double> distance{"log-spectral, 40 to 500 Hz, dB"};
+    Out<double> likeness{"cosine of the amplitude spectra, 40 to 500 Hz: 1 for one shape"};
+    Out<double> worst_band{"largest third-octave error, 40 to 1000 Hz, dB"};
+    Out<double> gain{"that gives the output the reference's power, dB"};
+    Param most_distance{"2", "0", "100", "dB, of two that are alike"};
+    Param least_likeness{"0.98", "0", "1", "of two that are alike"};
+    Param most_band_error{"4.5", "0", "100", "dB, of two that are alike"};
+    Param memory{structural, "2 s", "10 ms", "1000 s", "time constant of forgetting"};
+
+    void prepare(const Setup& setup) {
+        const double reference_rate = rate_of(reference.period), output_rate = rate_of(output.period);
+        if (!(std::min(reference_rate, output_rate) >= least_rate))
+            setup.fail("signals slower than 223 Hz carry too little of a vibration to be compared");
+        comparison_ = LiveComparison(reference_rate, output_rate, memory);
+        name_ = setup.name;
+        tell();
+    }
+
+    void process(const Tick& tick) noexcept {
+        comparison_.push_reference(reference.values());
+        comparison_.push_output(output.values());
+        tell();
+        if (scores_.heard) heard_s_ += tick.elapsed_seconds();
+        if (alike.get()) alike_s_ += tick.elapsed_seconds();
+    }
+
+    void report(Report& report) const {
+        report.set(name_, "heard_s", heard_s_);
+        report.set(name_, "alike_s", alike_s_);
+        report.set(name_, "lsd_db", scores_.lsd_db);
+        report.set(name_, "cosine_40_500", scores_.cosine_500);
+        report.set(name_, "third_octave_max_db", scores_.third_octave_max_db);
+        report.set(name_, "gain_db", scores_.gain_db);
+    }
+
+private:
+    static constexpr double least_rate = 223.0;  // Hz
+
+    void tell() noexcept {
+        scores_ = comparison_.scores();
+        distance = scores_.lsd_db;
+        likeness = scores_.cosine_500;
+        worst_band = scores_.third_octave_max_db;
+        gain = scores_.gain_db;
+        alike = scores_.heard && scores_.lsd_db <= most_distance && scores_.cosine_500 >= least_likeness &&
+                scores_.third_octave_max_db <= most_band_error;
+    }
+
+    LiveComparison comparison_;
+    LiveScores scores_;
+    std::string name_;
+    double heard_s_ = 0.0, alike_s_ = 0.0;
+};
+
+TACTUS_NODE(SpectralMonitor, reference, output, alike, distance, likeness, worst_band, gain, most_distance,
+            least_likeness, most_band_error, memory)
+
+}  // namespace tactus::nodes

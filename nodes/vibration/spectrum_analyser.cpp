@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/spectrum/bands.hpp"
+#include "dsp/spectrum/comb.hpp"
+#include "dsp/spectrum/live_spectrum.hpp"
+#include "graph/node.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace tactus::nodes {
+
+struct SpectrumAnalyser {
+    static constexpr auto about =
+        "What vibrates in a signal, now: its level, its strongest line and the rate of the machine. For a slow group "
+        "of "
+        "its own.";
+
+    Batch<Signal> in{"the signal, 'as batch' from the audio group"};
+    Out<double> level{"root mean square in the band, in the unit of the signal"};
+    Out<double> strongest{"frequency of the strongest line in the band; 0: none stands out of the noise", "Hz"};
+    Out<double> fundamental{"rate that explains the lines; 0: none", "Hz"};
+    Out<double> confidence{"in the fundamental, 0 to 1"};
+    Param lowest{structural, "20 Hz", "1 Hz", "10 kHz", "lower end of the band, and of the fundamental"};
+    Param highest{structural, "1 kHz", "2 Hz", "24 kHz", "upper end of the band"};
+    Param highest_rate{structural, "500 Hz", "1 Hz", "10 kHz", "highest fundamental"};
+    Param segment{structural, "512 ms", "1 ms", "10 s", "resolution: lines 4 over this apart are told apart"};
+    Param memory{structural, "2 s", "10 ms", "1000 s", "time constant of forgetting"};
+
+    void prepare(const Setup& setup) {
+        const double rate = rate_of(in.period);
+        const auto samples = static_cast<std::size_t>(std::llround(rate * segment));
+        if (samples < 16) setup.fail("a segment holds fewer than 16 samples; make it longer");
+        spectrum_ = LiveSpectrum(rate, samples, memory);
+        comb_ = {};
+        name_ = setup.name;
+        tell({});
+    }
+
+    void process(const Tick&) noexcept {
+        if (spectrum_.push(in.values()) > 0) tell(spectrum_.spectrum());
+    }
+
+    void report(Report& report) const {
+        const Spectrum& now = spectrum_.spectrum();
+        report.set(name_, "segments", static_cast<double>(now.segments));
+        std::vector<double> hz, db;
+        for (const Band& band : third_octaves(now)) {
+            hz.push_back(band.centre);
+            db.push_back(10.0 * std::log10(std::max(band.power, 1e-30)));
+        }
+        report.set(name_, "third_octave_hz", hz);
+        report.set(name_, "third_octave_db", db);
+        std::vector<double> orders;
+        if (comb_.best.frequency > 0.0)
+            for (const Harmonic& h : harmonic_table(now, comb_.best.frequency, 10))
+                orders.push_back(h.present ? std::sqrt(2.0 * h.power) : 0.0);
+        report.set(name_, "order_amplitudes", orders);
+        report.set(name_, "fundamental_hz", comb_.best.frequency);
+        report.set(name_, "confidence", comb_.confidence);
+    }
+
+private:
+    void tell(const Spectrum& now) noexcept {
+        level = std::sqrt(band_power(now, lowest, highest));
+        SpectralLine top;
+        if (now.segments > 0)
+            each_line(now, lowest, highest, 0.0, [&](const SpectralLine& line) {
+                if (line.power > top.power) top = line;
+            });
+        strongest = top.frequency;
+        comb_ = now.segments > 0 ? fit_comb(now, lowest, highest_rate) : Comb{};
+        fundamental = comb_.best.frequency;
+        confidence = comb_.confidence;
+    }
+
+    LiveSpectrum spectrum_;
+    Comb comb_;
+    std::string name_;
+};
+
+TACTUS_NODE(SpectrumAnalyser, in, level, strongest, fundamental, confidence, lowest, highest, highest_rate, segment,
+            memory)
+
+}  // namespace tactus::nodes
