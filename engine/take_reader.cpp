@@ -44,7 +44,8 @@ RecordedDevice read_device(const Json& json) {
     const Json& info = json.at("info");
     device.info = {info.at("name"),          info.at("max_force"),       info.at("max_torque"),      info.at("damping"),
                    info.at("max_stiffness"), info.at("actuates_torque"), info.at("senses_rotation"), info.at("fingers"),
-                   info.at("max_speed")};
+                   info.at("max_speed"),
+                   info.at("least_speed")};
     const Json& first = json.at("first");
     device.first.buttons = first.at("buttons");
     device.first.counter = first.at("counter");

@@ -174,7 +174,8 @@ void TakeWriter::device(const DeviceSlot& slot) {
                 {"actuates_torque", info.actuates_torque},
                 {"senses_rotation", info.senses_rotation},
                 {"fingers", info.fingers},
-                {"max_speed", info.max_speed}}},
+                {"max_speed", info.max_speed},
+                {"least_speed", info.least_speed}}},
               {"first", sample_json(slot.port.sample)}}
              .dump());
 }
