@@ -16,11 +16,17 @@ picture() {
     shift 2
     [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" $name "* ]] || return 0
     "$tactus" render "$patch" --out "$folder/$name" "$@" >/dev/null
-    mv "$(ls "$folder/$name"/frame_*.png | tail -1)" "$docs/$name.png"
+    local frames=("$folder/$name"/frame_*.png)
+    mv "${frames[-1]}" "$docs/$name.png"
     echo "$name.png"
 }
 
-picture scene-saw-training saw-training --seconds 9 --frames 1
+if [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" saw-training "* ]]; then
+    "$tactus" render saw-training --seconds 4 --out "$folder/bone" >/dev/null
+    mv "$folder/bone/bone.png" "$docs/saw-training.png"
+    echo saw-training.png
+fi
+picture scene-saw-training saw-training --seconds 3.4 --frames 1
 picture scene-fragments fragments --seconds 2.2 --frames 1
 picture scene-press-fragments press-fragments --seconds 4 --frames 1
 picture scene-peg-in-hole peg-in-hole --seconds 2.4 --frames 1 --clip=-y

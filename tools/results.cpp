@@ -50,7 +50,7 @@ Image picture_of(const Bone& bone, const std::string& name, const Vec3& towards)
     }
     OrbitCamera camera;
     camera.look_along(towards, std::abs(towards.z) < 0.9 ? Vec3(0.0, 0.0, 1.0) : Vec3(0.0, -1.0, 0.0));
-    camera.fit(picture.bounds, static_cast<double>(width) / height);
+    camera.fit(picture.bounds, static_cast<double>(width) / height, 1.2);
     Image image = maker.draw(picture, views_of(camera, picture.bounds, width, height, StereoMode::mono));
     Legend legend;
     legend.title = name;

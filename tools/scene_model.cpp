@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_set>
 
 namespace tactus {
 
@@ -99,9 +98,26 @@ SceneModel::~SceneModel() {
 }
 
 void SceneModel::follow(SceneOutline outline) {
-    for (const std::string& port : outline_.ports()) observer_.watch(port, Watch::nothing);
+    const std::vector<std::string> before = outline_.ports(), now = outline.ports();
     outline_ = std::move(outline);
-    for (const std::string& port : outline_.ports()) observer_.watch(port, Watch::latest);
+    // What goes on is watched all the time: a bone that was not would have to be sent as a whole.
+    for (const std::string& port : before)
+        if (!std::ranges::binary_search(now, port)) observer_.watch(port, Watch::nothing);
+    for (const std::string& port : now) observer_.watch(port, Watch::latest);
+    MeshPool& meshes = renderer_.meshes();
+    std::erase_if(bones_, [&](const auto& bone) {
+        const bool gone =
+            std::ranges::none_of(outline_.bones, [&](const auto& kept) { return kept.port == bone.first; });
+        if (gone) meshes.remove(bone.second.mesh);
+        return gone;
+    });
+    std::erase_if(bodies_, [&](const auto& body) {
+        const bool gone = !shown_.contains(body.first);
+        if (gone) meshes.remove(body.second.mesh);
+        return gone;
+    });
+    for (const auto& [name, mesh] : shapes_) meshes.remove(mesh);
+    shapes_.clear();  // a blade may have another length now
     is_fitting_ = true;
 }
 
@@ -211,7 +227,7 @@ SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, std::size_t pla
 }
 
 void SceneModel::show_bodies() {
-    std::unordered_set<std::uint64_t> shown;
+    shown_.clear();
     bool has_paint = false;
     // The fullest scene first: others that hold the same bodies show them once more, elsewhere or not at all.
     std::vector<const SceneOutline::Bodies*> scenes;
@@ -222,7 +238,7 @@ void SceneModel::show_bodies() {
         if (!seen) continue;
         for (std::size_t i = 0; i < seen->value.count; ++i) {
             const auto& object = seen->value.objects[i];
-            if (object.body == 0 || !shown.insert(object.body).second) continue;
+            if (object.body == 0 || !shown_.insert(object.body).second) continue;
             BodyMesh* mesh = mesh_of(object.body, i);
             if (!mesh) continue;
             Pose pose = object.pose;
@@ -305,6 +321,7 @@ void SceneModel::show_blades() {
         add_blade(patch, blade.shape, steel);
         // Room for the way that it will go.
         show(shape_mesh("blade " + blade.node, patch), *pose, bounds_of(patch), 1.0, false, false);
+        tool_ = pose->apply({0.0, -0.2, 0.0});  // on the hand's side, however deep the teeth are
         show_force(blade.wrench, pose->position);
     }
 }

@@ -9,7 +9,9 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 namespace tactus {
@@ -34,6 +36,8 @@ public:
     const Legend& legend() const { return legend_; }
     /// Of what stands still and of where tools began: what a camera is fitted to.
     const Bounds& bounds() const { return bounds_; }
+    /// From where a blade came in the last picture.
+    const std::optional<Vec3>& tool() const { return tool_; }
     /// Bricks that the last `update` made anew, and triangles of everything.
     std::size_t remeshed_bricks() const { return remeshed_; }
     std::size_t triangles() const;
@@ -75,11 +79,13 @@ private:
     std::map<std::string, BoneMesh> bones_;
     std::map<std::uint64_t, BodyMesh> bodies_;
     std::map<std::string, MeshPool::Mesh> shapes_;
+    std::unordered_set<std::uint64_t> shown_;  // content of the bodies in the last picture
     MeshPool::Mesh notes_mesh_;
     Picture picture_;
     Legend legend_;
     Bounds bounds_;
     double deepest_ = 0.0;
+    std::optional<Vec3> tool_;
     std::size_t remeshed_ = 0;
     bool is_fitting_ = true;
 };

@@ -26,7 +26,7 @@ double width_of(const std::string& text, bool bold = false) {
 }
 
 /// Dimensions that follow a picture's, so that text is readable in large and small ones.
-double scale_for(const Image& image) { return std::clamp(std::min(image.width, image.height) / 600.0, 0.8, 4.0); }
+double scale_for(const Image& image) { return std::clamp(std::min(image.width, image.height) / 600.0, 0.55, 4.0); }
 
 /// Onto `image` at (x, y), as opaque as told.
 void lay_over(Image& image, const Image& over, int x, int y, double opacity) {

@@ -56,7 +56,7 @@ struct BrickField {
     double density(const Vec3& position, const Vec3& outwards, const Vec3& inside) const noexcept {
         const double voxel = bone.layout().spacing.x;
         double most = bone.density(inside);
-        for (const double depth : {0.75, 1.5, 2.5})
+        for (const double depth : {0.75, 1.5, 2.5, 3.5})
             most = std::max(most, bone.density(position - outwards * (depth * voxel)));
         return most;
     }

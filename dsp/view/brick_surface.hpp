@@ -39,7 +39,7 @@ public:
     DensityColours colours;
 
     /// The surface within one brick (where distance is 0), in place of what `patch` held. Normals are the gradient of the
-    /// distance; a vertex is as dense as the densest within 2.5 voxels below it, because a scan blurs the rim of every
+    /// distance; a vertex is as dense as the densest within 3.5 voxels below it, because a scan blurs the rim of every
     /// bone. A brick that is not stored has no surface.
     void make(const BoneSnapshot& bone, std::uint32_t brick, SurfacePatch& patch);
 

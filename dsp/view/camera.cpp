@@ -61,6 +61,11 @@ void OrbitCamera::look_from(NamedView view) {
     }
 }
 
+void OrbitCamera::look_from_side_of(const Vec3& tool, const Bounds& box) {
+    const Vec3 side = box.empty() || !is_finite(tool) ? Vec3(1.0, -1.0, 0.0) : tool - box.middle();
+    look_along({side.x < 0.0 ? 0.6 : -0.6, side.y > 0.0 ? -0.75 : 0.75, -0.4});
+}
+
 void OrbitCamera::look_along(const Vec3& towards, const Vec3& up) {
     if (!is_finite(towards) || !(glm::length(towards) > 0.0)) return;
     const Vec3 back = -glm::normalize(towards);

@@ -55,6 +55,8 @@ public:
 
     /// Sets the direction; target and distance stay.
     void look_from(NamedView view);
+    /// Iso, from that of its four sides on which `tool` lies as seen from the middle of `box`: so that it is not hidden.
+    void look_from_side_of(const Vec3& tool, const Bounds& box);
     /// The same from any direction: `towards` is where the eye looks.
     void look_along(const Vec3& towards, const Vec3& up = {0.0, 0.0, 1.0});
     /// The eye moves about the target: to the right about the world's z, and upwards. rad.

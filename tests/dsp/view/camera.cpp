@@ -39,6 +39,18 @@ TEST_CASE("dsp: from the front the patient's left is on the right, and up is up"
     CHECK_FALSE(view_of_name("behind"));
 }
 
+TEST_CASE("dsp: a tool is looked at from its own side") {
+    OrbitCamera camera;
+    for (const double x : {-0.1, 0.1})
+        for (const double y : {-0.1, 0.1}) {
+            camera.look_from_side_of(box().middle() + Vec3(x, y, 0.0), box());
+            const Vec3 towards_eye = camera.eye() - camera.target;
+            CHECK(towards_eye.x * x > 0.0);
+            CHECK(towards_eye.y * y > 0.0);
+            CHECK(towards_eye.z > 0.0);
+        }
+}
+
 TEST_CASE("dsp: after a fit all corners are in the picture, and one touches its margin") {
     for (const double aspect : {0.5, 1.0, 1.8})
         for (int number = 1; number <= 7; ++number) {
