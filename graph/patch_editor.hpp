@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// A patch while it is edited: every edit compiles or is refused, and any of them can be taken back.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactus {
+
+class PatchEditor {
+public:
+    /// What is wrong with a text, or nothing.
+    using Check = std::function<std::optional<std::string>(std::string_view text)>;
+    using Edit = std::function<std::string(std::string_view text)>;
+
+    /// `file` is where `text` was read from.
+    PatchEditor(std::string text, std::filesystem::path file, Check check);
+
+    const std::string& text() const { return text_; }
+    const std::filesystem::path& file() const { return file_; }
+    /// Rises with every change of the text, taken back or not.
+    std::int64_t version() const { return version_; }
+
+    /// Makes an edit. What it returns, when it is refused, is why; the text is as it was then.
+    std::optional<std::string> apply(const Edit& edit);
+    /// The same without asking whether it compiles, for a text that already runs.
+    void replace(std::string text);
+    bool can_undo() const { return done_ > 0; }
+    bool can_redo() const { return done_ < steps_.size(); }
+    void undo();
+    void redo();
+
+    /// The file holds the text.
+    bool is_saved() const { return text_ == saved_; }
+    /// Writes beside the file and renames; a link stays one. Throws Error when somebody else changed the file since.
+    void save();
+    /// Takes over a file that was saved elsewhere, as an edit. False: the file holds nothing new.
+    bool reload();
+
+private:
+    /// `removed` stood at `at` before and `added` stands there after.
+    struct Step {
+        std::size_t at;
+        std::string removed, added;
+    };
+    void keep(std::string text);
+
+    std::string text_, saved_;
+    std::filesystem::path file_;
+    Check check_;
+    std::vector<Step> steps_;
+    std::size_t done_ = 0;
+    std::int64_t version_ = 0;
+};
+
+}  // namespace tactus
