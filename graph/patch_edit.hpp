@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edits of a patch as edits of its text: what an edit does not name keeps its bytes, comments, order and layout with it.
+// Edits of a patch as edits of its text: what an edit does not name keeps its bytes, and with them comments, order and
+// layout.
 // Each takes a text that reads as a patch and returns the new one; whether that compiles is for PatchEditor to ask.
 // All throw Error when what they name is not there.
 #pragma once

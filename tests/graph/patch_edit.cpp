@@ -7,9 +7,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <unistd.h>
 #include <filesystem>
 #include <fstream>
-#include <unistd.h>
 
 using namespace tactus;
 
@@ -68,7 +68,8 @@ bool reads(const std::string& text) { return meaning(text).find("PROBLEM") == st
 std::string changed_part(const std::string& before, const std::string& after) {
     std::size_t a = 0, b = 0;
     while (a < before.size() && a < after.size() && before[a] == after[a]) ++a;
-    while (b < before.size() - a && b < after.size() - a && before[before.size() - 1 - b] == after[after.size() - 1 - b])
+    while (b < before.size() - a && b < after.size() - a &&
+           before[before.size() - 1 - b] == after[after.size() - 1 - b])
         ++b;
     return after.substr(a, after.size() - a - b);
 }
@@ -85,7 +86,8 @@ TEST_CASE("a parameter that is new becomes a line in the layout of its table") {
     const std::string made = with_setting(plain, "tone", "amplitude", "0.5");
     CHECK(changed_part(plain, made) == "amplitude = 0.5\n");
     CHECK(made.find("# low\namplitude = 0.5\n\n# what makes it loud") != std::string::npos);
-    CHECK(with_setting(plain, "loud", "factor", "007").find("rate = \"48 kHz\"\nfactor = \"007\"\n") != std::string::npos);
+    CHECK(with_setting(plain, "loud", "factor", "007").find("rate = \"48 kHz\"\nfactor = \"007\"\n") !=
+          std::string::npos);
 }
 
 TEST_CASE("a parameter that is set back to its default takes its line away") {
@@ -141,21 +143,27 @@ TEST_CASE("a new node's table stands behind the last node's, with its wires in t
 
 TEST_CASE("edits do the same to every layout that TOML allows") {
     const std::string one_line =
-        "wires=[\"tone.signal->loud.in\",\"loud.out -> kept.in\"]\n[nodes]\ntone={type=\"sine\",rate=\"48 kHz\",frequency="
+        "wires=[\"tone.signal->loud.in\",\"loud.out -> kept.in\"]\n[nodes]\ntone={type=\"sine\",rate=\"48 "
+        "kHz\",frequency="
         "\"100 Hz\"}\nloud = { type = \"gain\", rate = \"48 kHz\" }\nkept = { type = \"record\", rate = \"48 kHz\" }";
     const std::string braces =
-        "wires = [ 'tone.signal -> loud.in'\n, \"loud\\u002eout -> kept.in\" # ] not yet\n , ]\nnodes = { tone = { type = "
+        "wires = [ 'tone.signal -> loud.in'\n, \"loud\\u002eout -> kept.in\" # ] not yet\n , ]\nnodes = { tone = { "
+        "type = "
         "\"sine\", rate = \"48 kHz\", frequency = \"100 Hz\" }, \"loud\" = { rate = \"48 kHz\", type = \"gain\" }, "
         "kept.type = \"record\", kept.rate = \"48 kHz\" }\n";
     const std::string dotted =
         "nodes.tone.type = \"sine\"\nnodes.tone.rate = '48 kHz'\nnodes.tone.frequency = \"100 Hz\"\n"
-        "nodes.\"loud\" . type = \"gain\"  # [nodes.loud]\nnodes.loud.rate = \"48 kHz\"\nwires = [\"tone.signal -> loud.in\""
-        ", # a ] and a \"\n\"loud.out -> kept.in\"]\n\"nodes\".kept.type = \"\"\"record\"\"\"\nnodes.kept.rate = \"48 kHz\"\n";
+        "nodes.\"loud\" . type = \"gain\"  # [nodes.loud]\nnodes.loud.rate = \"48 kHz\"\nwires = [\"tone.signal -> "
+        "loud.in\""
+        ", # a ] and a \"\n\"loud.out -> kept.in\"]\n\"nodes\".kept.type = \"\"\"record\"\"\"\nnodes.kept.rate = \"48 "
+        "kHz\"\n";
     const std::string quoted =
         "\"wires\" = [ \"\"\"\ntone.signal -> loud.in\"\"\", \"loud.out -> kept.in\", ]\n[ nodes . \"tone\" ]\ntype = "
-        "\"sine\"\nrate = \"48 kHz\"\n\"frequency\" = \"100 Hz\"\n[\"nodes\".'loud']\ntype = \"gain\"\nrate = \"48 kHz\"\n"
+        "\"sine\"\nrate = \"48 kHz\"\n\"frequency\" = \"100 Hz\"\n[\"nodes\".'loud']\ntype = \"gain\"\nrate = \"48 "
+        "kHz\"\n"
         "[nodes.kept]\nrate = \"48 kHz\"\ntype = \"record\"";
-    for (const std::string& text : {plain, with_crlf(plain), "\xEF\xBB\xBF" + plain, one_line, braces, dotted, quoted}) {
+    for (const std::string& text :
+         {plain, with_crlf(plain), "\xEF\xBB\xBF" + plain, one_line, braces, dotted, quoted}) {
         INFO(text);
         REQUIRE(reads(text));
         const std::string set = with_setting(text, "tone", "frequency", "220 Hz");
@@ -182,7 +190,8 @@ TEST_CASE("edits do the same to every layout that TOML allows") {
         INFO(without);
         CHECK(reads(without));
         CHECK(meaning(without).find("loud") == std::string::npos);
-        const std::string grown = with_node(text, {"echo", "delay", "48 kHz", "", {}, {{"tone.signal", "echo.in", ""}}});
+        const std::string grown =
+            with_node(text, {"echo", "delay", "48 kHz", "", {}, {{"tone.signal", "echo.in", ""}}});
         INFO(grown);
         CHECK(reads(grown));
         CHECK(meaning(grown).find("echo:delay@48 kHz") != std::string::npos);
@@ -194,7 +203,8 @@ TEST_CASE("edits do the same to every layout that TOML allows") {
 
 TEST_CASE("a patch without wires gets its list above the first table") {
     const std::string bare = "title = \"t\"\n\n[nodes.a]\ntype = \"sine\"\nrate = \"48 kHz\"\n";
-    CHECK(with_wire(bare, {"a.signal", "a.in", ""}).starts_with("title = \"t\"\nwires = [\n  \"a.signal -> a.in\",\n]\n\n"));
+    CHECK(with_wire(bare, {"a.signal", "a.in", ""})
+              .starts_with("title = \"t\"\nwires = [\n  \"a.signal -> a.in\",\n]\n\n"));
     for (const char* list : {"wires = []\n", "wires = [ # none\n]\n", "wires = [\n  # none\n  ]\n"}) {
         const std::string text = list + bare;
         INFO(text);
@@ -238,7 +248,8 @@ TEST_CASE("random edits taken back give the bytes there were, and made again tho
                 switch (kind) {
                     case 0: return with_setting(text, name, "gain", std::to_string(pick(9)) + " dB");
                     case 1: return without_setting(text, name, "gain");
-                    case 2: return with_node(text, {name, "gain", "48 kHz", "", {}, {{other + ".out", name + ".in", ""}}});
+                    case 2:
+                        return with_node(text, {name, "gain", "48 kHz", "", {}, {{other + ".out", name + ".in", ""}}});
                     case 3: return without_node(text, name);
                     case 4: return with_wire(text, {name + ".out", other + ".in", pick(2) ? "linear" : ""});
                     case 5: return without_wire(text, name + ".in");
@@ -264,7 +275,9 @@ TEST_CASE("saving replaces the file at once, through a link too, and never over 
     const fs::path folder = fs::temp_directory_path() / ("tactus-edit-" + std::to_string(::getpid()));
     fs::create_directories(folder);
     const fs::path file = folder / "p.toml", link = folder / "link.toml";
-    const auto write = [](const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; };
+    const auto write = [](const fs::path& path, const std::string& text) {
+        std::ofstream(path, std::ios::binary) << text;
+    };
     const auto read = [](const fs::path& path) {
         std::ifstream stream(path, std::ios::binary);
         return std::string(std::istreambuf_iterator<char>(stream), {});
