@@ -72,7 +72,8 @@ public:
     /// Before an offline run: parameter changes by their number in the replayed log, in the plan scheduled last.
     void schedule_change(std::int64_t id, const std::string& node, const std::string& param, double value);
 
-    /// Runs to the end on `threads` threads; `progress` is told the fraction done. Throws Error.
+    /// Runs to the end on `threads` threads; `progress` is told the fraction done; what it throws ends the
+    /// run. Throws Error.
     void render(int threads, const std::function<void(double)>& progress = {});
     /// Runs in real time, one thread per group. Throws Error. Engines run once.
     void run_live(const LiveOptions& options);
@@ -84,6 +85,11 @@ public:
     /// While a live run goes on, from `watch`: sets a parameter, "0.8 N/mm", two quanta ahead. Returns the logical time.
     /// Throws Error on unknown names, structural or driven parameters, and values out of range.
     Flicks set(const std::string& node, const std::string& param, const std::string& text);
+    /// While a live run goes on, from `watch`: forces fade to zero and logical time stops, or it goes on and forces come
+    /// in anew. A take repeats it to the bit.
+    void pause(bool wanted) { wants_pause_ = wanted; }
+    enum class Pausing : std::uint8_t { runs, fades, stands };
+    Pausing pausing() const;
     /// No edit is on its way.
     bool is_settled() const { return !waiting_ && !building_.valid() && !before_; }
 
@@ -130,6 +136,7 @@ private:
     void offline_worker(const std::vector<GroupRuntime*>& mine, std::uint64_t seed);
     void live_worker(GroupRuntime& group);
     void start_thread(GroupRuntime& group);
+    void tend_pause();
     void tend_edits();
     void hand_over(std::unique_ptr<Generation> next);
     void retire();
@@ -161,6 +168,8 @@ private:
     std::vector<std::unique_ptr<Ring<TimingRecord>>> log_rings_;
     std::unique_ptr<TimingLogWriter> log_;
     std::mutex log_lock_;
+    PauseWindow pause_;
+    bool wants_pause_ = false;
     LiveRun* live_ = nullptr;
     std::atomic<std::uint32_t> generation_{0};  // rises after every offline call
     std::atomic<bool> stop_{false};

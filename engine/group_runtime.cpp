@@ -69,14 +69,31 @@ void GroupRuntime::apply_parameters() noexcept {
     }
 }
 
-void GroupRuntime::hold_off(bool wanted) noexcept {
-    held_off_ = wanted;
-    for (DeviceSlot* slot : program_->driven) slot->port.hold_off = wanted;
+void GroupRuntime::hold_off() noexcept {
+    for (DeviceSlot* slot : program_->driven) slot->port.hold_off = fades_for_plan_ || is_paused_;
+}
+
+void GroupRuntime::apply_pause(Pace pace) noexcept {
+    bool wanted = is_paused_;
+    if (replayed) {
+        if (const TimingRecord* logged = replayed_at(TimingKind::fade, 1, next_)) wanted = logged->value != 0;
+    } else if (pause) {
+        wanted = pause->holds_off(next_ * plan->period);
+    }
+    if (wanted == is_paused_) return;
+    is_paused_ = wanted;
+    hold_off();
+    if (pace == Pace::live) note(TimingKind::fade, 1, 0, wanted ? 1 : 0, nullptr);
+}
+
+void GroupRuntime::rest() noexcept {
+    for (DeviceSlot* slot : program_->driven) slot->guard.commit(*slot->device, {}, steady_ns());
 }
 
 void GroupRuntime::take_over(GroupProgram& next) noexcept {
-    if (held_off_) hold_off(false);
     if (program_) {
+        fades_for_plan_ = false;
+        hold_off();
         program_->ran = ran_;
         for (PublishedOutput& output : next.published) {
             if (output.before < 0) continue;
@@ -97,6 +114,7 @@ void GroupRuntime::take_over(GroupProgram& next) noexcept {
     for (Link* link : next.new_inputs) link->take_over();
     for (Link* link : next.new_outputs) link->begin_at(next_);
     program_ = &next;
+    if (is_paused_) hold_off();
     generation_.store(next.generation, std::memory_order_release);
 }
 
@@ -107,7 +125,10 @@ bool GroupRuntime::take_changes(Pace pace) noexcept {
         if (finished()) return took_over;
         if (!upcoming_ && taken_ < scheduled.size()) upcoming_ = scheduled[taken_++];
         if (!upcoming_) programs_.pop(upcoming_);
-        if (program_) apply_parameters();
+        if (program_) {
+            apply_parameters();
+            apply_pause(pace);
+        }
         if (!upcoming_ || !switch_if_due(pace)) return took_over;
         took_over = true;
     }
@@ -127,10 +148,11 @@ bool GroupRuntime::switch_if_due(Pace pace) noexcept {
         return true;
     }
     const bool must_fade = is_logged ? replayed_at(TimingKind::fade, 0, next_) != nullptr
-                                     : program_ && !held_off_ && time >= upcoming_->fade_time &&
+                                     : program_ && !fades_for_plan_ && time >= upcoming_->fade_time &&
                                            upcoming_->fade_time < upcoming_->switch_time;
     if (must_fade) {
-        hold_off(true);
+        fades_for_plan_ = true;
+        hold_off();
         if (pace == Pace::live) note(TimingKind::fade, 0, 0, 0, nullptr);
     }
     return false;

@@ -4,6 +4,7 @@
 
 #include "dsp/core/ring.hpp"
 #include "engine/group_program.hpp"
+#include "engine/pause_window.hpp"
 #include "engine/telemetry.hpp"
 #include "engine/timing_log.hpp"
 #include "graph/plan.hpp"
@@ -40,6 +41,7 @@ public:
     const std::vector<ParameterChange>* replayed_changes = nullptr;  ///< by id
     Ring<TimingRecord>* log = nullptr;                    ///< where live decisions go, or null
     std::vector<GroupProgram*> scheduled;  ///< programs known before the run, in order
+    const PauseWindow* pause = nullptr;    ///< live only
     bool times_nodes = true;
     Flicks now = 0;  ///< logical time of the call that runs
     GroupTelemetry telemetry;
@@ -76,6 +78,10 @@ public:
     bool ready() const noexcept;
     /// Runs one call and returns how many activations it covered. At most `frames` of them.
     int call(int frames, Pace pace) noexcept;
+    /// Live: the next activation waits, because the run pauses.
+    bool pauses() const noexcept { return pause && pause->stops(next_ * plan->period); }
+    /// While it pauses, now and then: tells the watchdog that the devices are not forsaken. May call the system, in drivers.
+    void rest() noexcept;
     /// Leaves out activations up to `to`, because they are too late.
     void skip_to(std::int64_t to) noexcept;
     /// Repeats a logged skip that starts at the next activation; false when there is none.
@@ -88,7 +94,8 @@ private:
     int cut(int frames) const noexcept;
     const TimingRecord* replayed_at(TimingKind kind, std::uint32_t source, std::int64_t tick) const noexcept;
     void apply_parameters() noexcept;
-    void hold_off(bool wanted) noexcept;
+    void hold_off() noexcept;
+    void apply_pause(Pace pace) noexcept;
     bool switch_if_due(Pace pace) noexcept;
     void take_over(GroupProgram& next) noexcept;
     void read_links(int frames, Pace pace) noexcept;
@@ -112,7 +119,7 @@ private:
     GroupProgram* program_ = nullptr;
     GroupProgram* upcoming_ = nullptr;
     ParameterChange change_;
-    bool has_change_ = false, held_off_ = false;
+    bool has_change_ = false, fades_for_plan_ = false, is_paused_ = false;
     std::size_t taken_ = 0;  ///< of `scheduled`
     std::int64_t next_ = 0, last_ = -1, ran_ = 0;
     int closely_ = 0;  ///< calls still to be timed

@@ -25,6 +25,9 @@ namespace {
 constexpr std::int64_t spin_ns = 80'000;
 constexpr std::int64_t start_delay_ns = 20'000'000;
 constexpr std::int64_t poll_start_ns = 200'000;
+constexpr Flicks pause_fade = flicks_per_second / 50;  // a fade takes 10 ms
+constexpr Flicks pause_lead = flicks_per_second / 20;
+constexpr std::int64_t rest_ns = 1'000'000;  // well below the watchdog's limit
 
 void wait_until(std::int64_t when_ns) noexcept {
     const std::int64_t sleep_to = when_ns - spin_ns;
@@ -59,6 +62,7 @@ struct Engine::LiveRun {
     double dilate = 1.0;
     std::atomic<std::size_t> running{0};
     std::atomic<bool> refused{false};  // real-time priority
+    bool stood = false;  // time stands still, or has just begun to go on
     std::vector<std::pair<const GroupRuntime*, std::jthread>> threads;
 };
 
@@ -74,6 +78,21 @@ void Engine::live_worker(GroupRuntime& group) {
     std::int64_t busy_until = 0;
     LateCause overrun = LateCause::woken_late;
     while (!group.finished()) {
+        if (group.pauses()) {
+            const std::int64_t before = line.steady_ns;
+            const auto rest = [&group] {
+                group.rest();
+                sleep_until(steady_ns() + rest_ns);
+            };
+            while (group.pauses() && !group.finished()) rest();
+            // The clock is set before the pause ends; a reader that was unlucky looks again.
+            while (!group.finished() && line.steady_ns == before) {
+                line = live_->clock.get(line);
+                if (line.steady_ns == before) sleep_until(steady_ns() + spin_ns);
+            }
+            while (!group.finished() && release_ns(group.next()) - steady_ns() > 2 * rest_ns) rest();
+            continue;
+        }
         const std::int64_t due = release_ns(group.next());
         wait_until(due);
         const std::int64_t begin = steady_ns();
@@ -101,6 +120,7 @@ void Engine::live_worker(GroupRuntime& group) {
 
 void Engine::start_thread(GroupRuntime& group) {
     ++live_->running;
+    group.pause = &pause_;
     live_->threads.emplace_back(&group, [this, &group] {
         if (!make_real_time(group.plan->period)) live_->refused = true;
         ++live_->ready;
@@ -114,12 +134,41 @@ void Engine::end_thread(const GroupRuntime& group) {
     std::erase_if(live_->threads, [&](const auto& thread) { return thread.first == &group; });
 }
 
+Engine::Pausing Engine::pausing() const {
+    const Flicks stop = pause_.stop.load();
+    if (stop == PauseWindow::never) return Pausing::runs;
+    const bool all = std::ranges::all_of(now_->groups, [stop](const auto& group) {
+        return group->is_over() || group->done() * group->plan->period >= stop;
+    });
+    return all ? Pausing::stands : Pausing::fades;
+}
+
+/// Nobody is asked to stop at once: a pause begins a little ahead of the furthest group, so that all stand at one logical
+/// time; and it ends with a clock that was set to go on from there.
+void Engine::tend_pause() {
+    const Pausing state = pausing();
+    if (state == Pausing::runs && wants_pause_) {
+        const Flicks stop = furthest() + pause_lead;
+        pause_.fade = PauseWindow::never;
+        pause_.until = PauseWindow::never;
+        pause_.stop = stop;
+        pause_.fade = stop - pause_fade;
+    } else if (state == Pausing::stands && !wants_pause_) {
+        const Flicks stop = pause_.stop.load();
+        live_->line.steady_ns += steady_ns() + start_delay_ns - live_->line.when(stop);
+        live_->clock.set(live_->line);
+        pause_.until = stop + pause_fade;
+        pause_.stop = PauseWindow::never;
+    }
+    live_->stood = pausing() != Pausing::runs;
+}
+
 /// The clock follows the first card that is there. When one is lost, all hands are let go of once.
 void Engine::tend_cards() {
     bool follows = false;
     for (const auto& card : outside_.cards) {
         // Sound at another pace than that of its card cannot be followed.
-        TrimmedClock* const line = follows || live_->dilate != 1.0 ? nullptr : &live_->line;
+        TrimmedClock* const line = follows || live_->dilate != 1.0 || live_->stood ? nullptr : &live_->line;
         if (card->tend(steady_ns(), furthest(), line)) {
             for (const auto& slot : outside_.devices) slot->guard.ask_fade();
             outside_.notices.push_back(
@@ -162,6 +211,7 @@ void Engine::run_live(const LiveOptions& options) {
         try {
             drain_log();
             drain_streams();
+            tend_pause();
             tend_edits();
             watch_devices();
             tend_cards();
@@ -171,7 +221,9 @@ void Engine::run_live(const LiveOptions& options) {
             for (const auto& group : groups_) group->end = 0;
             break;
         }
-        if (options.stop && options.stop->load() && !stopping) {
+        const bool is_asked = options.stop && options.stop->load();
+        if (is_asked) pause(false);
+        if (is_asked && !stopping && pausing() == Pausing::runs) {
             stopping = true;
             // All groups end at one logical time, a little ahead of the furthest.
             const Flicks end = furthest() + flicks_per_second / 20;

@@ -80,7 +80,11 @@ void Engine::render(int threads, const std::function<void(double)>& progress) {
         });
     if (progress) {
         while (running.load() > 0) {
-            progress(progress_seconds() / options_.seconds);
+            try {
+                progress(progress_seconds() / options_.seconds);
+            } catch (...) {
+                fail(std::current_exception());
+            }
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
     }

@@ -125,6 +125,7 @@ struct TakeStreamReader::File {
     std::int64_t start = 0;
     Handle handle;
     std::size_t channels = 0;
+    std::int64_t length = 0;            // of the file
     std::int64_t first = 0, count = 0;  // activations in `frames`
     std::vector<double> frames;
 };
@@ -137,6 +138,7 @@ TakeStreamReader::TakeStreamReader(const std::filesystem::path& path, const Take
     if (format.channels < 1 || format.channels > 64)
         throw Error(fmt::format("{}: {} channels; a take has at most 64", path.string(), format.channels));
     file_->channels = static_cast<std::size_t>(format.channels);
+    file_->length = format.frames;
     file_->start = file_->first = info.start;
     file_->frames.resize(frames_at_once * file_->channels);
 }
@@ -144,6 +146,16 @@ TakeStreamReader::TakeStreamReader(const std::filesystem::path& path, const Take
 TakeStreamReader::~TakeStreamReader() = default;
 
 int TakeStreamReader::channels() const { return static_cast<int>(file_->channels); }
+
+std::int64_t TakeStreamReader::frames() const { return file_->length; }
+
+void TakeStreamReader::seek(std::int64_t activation) {
+    File& file = *file_;
+    const std::int64_t wanted = std::clamp<std::int64_t>(activation - file.start, 0, file.length);
+    if (sf_seek(file.handle.get(), wanted, SEEK_SET) != wanted) return;
+    file.first = file.start + wanted;
+    file.count = 0;
+}
 
 const double* TakeStreamReader::frame(std::int64_t activation) {
     File& file = *file_;

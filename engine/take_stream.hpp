@@ -56,6 +56,9 @@ public:
     TakeStreamReader& operator=(const TakeStreamReader&) = delete;
 
     int channels() const;
+    std::int64_t frames() const;  ///< in the file
+    /// The next frame asked for will not lie before that of `activation`.
+    void seek(std::int64_t activation);
     /// The frame of an activation, or null when it is not in the file. Activations must be asked for in order.
     const double* frame(std::int64_t activation);
 

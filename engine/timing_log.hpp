@@ -22,7 +22,8 @@ enum class TimingKind : std::uint8_t {
     skipped,        ///< activations tick … tick + count − 1 never ran
     dropped,        ///< publications tick … tick + count − 1 towards link `source` found no room
     parameter,      ///< from activation tick on, the parameter change numbered `value` holds
-    fade,           ///< from activation tick on, forces fade because the plan will change
+    fade,           ///< from activation tick on, forces fade: `source` 0, because the plan will change; 1, because of a
+                    ///< pause, which `value` 1 begins and 0 ends
     plan,           ///< from activation tick on, the plan numbered `value` runs
     progress,       ///< all before tick is in the log; where a log that was cut off can be trusted to
     end,            ///< the group ran up to tick − 1
