@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Makes the pictures of scenes in this folder with the command as it was built: docs/pictures.sh [COMMAND [PICTURE ...]]
+# Makes the pictures of scenes, and of the window, in this folder with the command as it was built:
+# docs/pictures.sh [COMMAND [PICTURE ...]]
 set -euo pipefail
 docs=$(dirname "$(readlink -f "$0")")
 tactus=${1:-$docs/../build/release/tactus}
@@ -34,3 +35,20 @@ picture scene-touch-sphere touch-sphere --seconds 3 --frames 1 --view-from front
 picture scene-pop-through pop-through --seconds 2 --frames 1 --view-from front
 picture scene-gripper gripper-on-arm --seconds 4 --frames 1
 picture scene-stereo fragments --seconds 2.2 --frames 1 --stereo side-by-side --size 1280x500
+
+# The window needs a display; where there is none, one without a screen does.
+if [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" window "* ]]; then
+    command=$(readlink -f "$tactus")
+    if [ -z "${DISPLAY:-}" ]; then
+        Xvfb -displayfd 3 -screen 0 1800x1200x24 -nolisten tcp 3>"$folder/display" 2>/dev/null &
+        display=$!
+        trap 'kill $display; rm -rf "$folder"' EXIT
+        until [ -s "$folder/display" ]; do sleep 0.1; done
+        DISPLAY=:$(cat "$folder/display")
+        export DISPLAY LP_NUM_THREADS=1
+    fi
+    (cd "$folder" && "$command" run saw-training --view --view-script "$docs/window.script" --audio file --out run \
+        --reference "$(dirname "$command")/library/saw/cutting_190_7N.flac" >/dev/null)
+    mv "$folder/window.png" "$docs/window.png"
+    echo window.png
+fi

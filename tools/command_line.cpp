@@ -24,6 +24,13 @@ void add_patch_options(CLI::App& verb, PatchChoice& choice) {
     verb.add_option("--seed", choice.seed, "seed of the random numbers");
 }
 
+void add_view_options(CLI::App& verb, ViewChoice& choice) {
+    verb.add_option("--view-script", choice.script, "do in the window what the lines of this file say");
+    verb.add_option("--reference", choice.reference, "sound file whose spectrum stands beneath the signals'");
+    verb.add_option("--view-scale", choice.scale, "size of letters and controls (default: as the screen says)")
+        ->check(CLI::Range(0.5, 4.0));
+}
+
 void add_import(CLI::App& app, ImportChoice& choice) {
     CLI::App* verb = app.add_subcommand(
         "import", "make a bone from a CT (DICOM, NRRD, NIfTI, InVesalius) or a closed mesh (STL, PLY, OBJ)");
@@ -278,6 +285,11 @@ int command_line(int argc, char** argv) {
     run_app->add_option("--record", run.record, "keep the run as a take, a folder that 'replay' repeats");
     run_app->add_flag("--json", run.json, "print the summary as JSON and nothing else");
 
+    CLI::Option* view_flag = run_app->add_flag("--view", run.view.wanted,
+                                               "open a window: the patch, its values, the scene; edits run at once");
+    run_app->add_flag("--keep-running", run.view.keep_running, "closing the window leaves the run alive")
+        ->needs(view_flag);
+    add_view_options(*run_app, run.view);
     run_app->add_flag("!--no-edits", run.edits, "neither watch the patch file nor listen to 'set'");
 
     SetChoice set;
@@ -290,6 +302,11 @@ int command_line(int argc, char** argv) {
     replay_app->add_option("take", replay.take, "folder that --record made")->required();
     replay_app->add_flag("--anyway", replay.anyway, "although assets have changed since");
     replay_app->add_flag("--json", replay.json, "as JSON");
+
+    TakeViewChoice take_view;
+    CLI::App* view_app = app.add_subcommand("view", "open a window on a take: its values and bones at any instant");
+    view_app->add_option("take", take_view.take, "folder that --record made")->required();
+    add_view_options(*view_app, take_view.view);
 
     PatchChoice check;
     CLI::App* check_app = app.add_subcommand("check", "find errors; list groups and latencies");
@@ -362,6 +379,7 @@ int command_line(int argc, char** argv) {
         if (*run_app) return run_verb(run);
         if (*set_app) return set_verb(set);
         if (*replay_app) return replay_verb(replay);
+        if (*view_app) return view_verb(take_view);
         if (*check_app) return check_verb(check);
         if (*draw_app) return draw_verb(draw, drawing);
         if (*nodes_app) return nodes_verb(type, nodes_json);

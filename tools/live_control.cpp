@@ -27,11 +27,11 @@ LiveControl::LiveControl(Engine& engine, PatchChoice choice, AssetCache& assets,
 }
 
 void LiveControl::tend() {
-    if (watch_.was_saved()) edit();
+    if (watch_.was_saved()) take_over_file();
     if (socket_) socket_->serve([this](const std::string& line) { return answer(line); });
 }
 
-void LiveControl::edit() {
+void LiveControl::take_over_file() {
     // Read here: what the take keeps is what is compiled, even if the file changes again.
     std::string text;
     try {
@@ -40,7 +40,11 @@ void LiveControl::edit() {
     } catch (const Error& error) {
         return say_(error.what());
     }
-    if (text == engine_.plan().patch.text) return;
+    if (saved) saved();
+    if (text != engine_.plan().patch.text && text != expected_) edit(std::move(text));
+}
+
+void LiveControl::edit(std::string text) {
     const auto make = [this, text] {
         Problems problems;
         std::optional<Plan> plan =

@@ -22,8 +22,15 @@ public:
     /// From LiveOptions::watch.
     void tend();
 
+    /// From there, too: this text takes over, as if it had been saved.
+    void edit(std::string text);
+    /// A text that runs already, by single parameters: when it is saved, nothing is to be done.
+    void expect(std::string text) { expected_ = std::move(text); }
+    /// Who hears of a save, whatever becomes of it.
+    std::function<void()> saved;
+
 private:
-    void edit();
+    void take_over_file();
     std::string answer(const std::string& line);
 
     Engine& engine_;
@@ -33,6 +40,7 @@ private:
     std::filesystem::path file_;
     PatchWatch watch_;
     std::unique_ptr<ControlSocket> socket_;
+    std::string expected_;
 };
 
 }  // namespace tactus

@@ -2,8 +2,9 @@
 #include "dsp/core/error.hpp"
 #include "engine/engine.hpp"
 #include "engine/take_compare.hpp"
-#include "tools/load_plan.hpp"
+#include "tools/replayed_take.hpp"
 #include "tools/terminal.hpp"
+#include "tools/verbs.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,14 +18,6 @@ namespace tactus {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Plan plan_in(const Take& take, const std::string& text, AssetCache& assets) {
-    Problems problems;
-    std::optional<Plan> plan = plan_of(read_patch(text, take.about.patch_file, problems), take.about.overrides,
-                                       take.about.seed, &assets, problems);
-    if (!problems.empty()) throw problems.list.front();
-    return std::move(*plan);
-}
 
 /// Outputs whose hashes differ although no value did: values that the streams do not hold.
 std::vector<std::string> differing_hashes(const Take& take, const Engine& engine) {
@@ -57,18 +50,11 @@ int replay_verb(const ReplayChoice& choice) {
     TakeComparison comparison(take);
     EngineOptions options;
     options.seconds = take.about.seconds;
-    options.replay = &take.log;
-    options.devices = &take.devices;
     options.tap = [&comparison](const std::string& port, const ValueType& type, const GroupRuntime& group) {
         return comparison.tap(port, type, group);
     };
-    Engine engine(plan_in(take, take.text, assets), options);
-    for (const auto& event : take.events) {
-        if (const auto* edit = std::get_if<TakenEdit>(&event))
-            engine.schedule(plan_in(take, edit->text, assets), edit->when);
-        if (const auto* change = std::get_if<TakenChange>(&event))
-            engine.schedule_change(change->id, change->node, change->param, change->value);
-    }
+    ReplayedTake repeated(take, options, assets);
+    Engine& engine = repeated.engine();
     LiveLine line;
     const int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     engine.render(threads, [&](double done) { line.show(fmt::format("{:3.0f} %", 100.0 * done)); });

@@ -34,6 +34,15 @@ struct RenderChoice : PatchChoice {
     FrameChoice frames;
 };
 
+/// The window on a run.
+struct ViewChoice {
+    bool wanted = false;
+    bool keep_running = false;                ///< closing the window leaves the run alive
+    std::filesystem::path script;             ///< what is done in the window, instead of by hand
+    std::filesystem::path reference;          ///< sound file whose spectrum stands behind the signals'
+    double scale = 0.0;                       ///< of the window's contents, 0: what the screen says
+};
+
 struct RunChoice : PatchChoice {
     std::optional<double> seconds;
     double dilate = 1.0;
@@ -41,6 +50,12 @@ struct RunChoice : PatchChoice {
     double audio_margin = 10;  ///< ms
     std::filesystem::path out, log, record;
     bool edits = true;  ///< take over the patch file when it is saved, and listen to 'set'
+    ViewChoice view;
+};
+
+struct TakeViewChoice {
+    std::filesystem::path take;
+    ViewChoice view;
 };
 
 struct SetChoice {
@@ -175,6 +190,7 @@ struct RigChoice : PatchChoice {     ///< the patch may be a CSV file of a rig's
 int rig_verb(const RigChoice& choice);
 int render_verb(const RenderChoice& choice);
 int run_verb(const RunChoice& choice);
+int view_verb(const TakeViewChoice& choice);
 int set_verb(const SetChoice& choice);
 int replay_verb(const ReplayChoice& choice);
 int check_verb(const PatchChoice& choice);

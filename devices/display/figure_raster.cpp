@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Figures in pixels: every shape is filled on a grid three times as fine, then averaged.
 #include "devices/display/figure.hpp"
+#include "devices/display/system_font.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -29,14 +30,9 @@ constexpr int fine = 3;
 
 /// A font file of the system, empty when none of the usual ones is installed.
 std::string font_bytes(bool bold) {
-    for (const char* name : {"dejavu/DejaVuSans", "liberation/LiberationSans", "noto/NotoSans", "freefont/FreeSans"}) {
-        const bool has_dash = std::string_view(name).find("Liberation") != std::string_view::npos ||
-                              std::string_view(name).find("Noto") != std::string_view::npos;
-        const std::string style = bold ? "-Bold" : has_dash ? "-Regular" : "";
-        std::ifstream file(fmt::format("/usr/share/fonts/truetype/{}{}.ttf", name, style), std::ios::binary);
-        if (file) return {std::istreambuf_iterator<char>(file), {}};
-    }
-    return {};
+    std::ifstream file(system_font(bold), std::ios::binary);
+    if (!file) return {};
+    return {std::istreambuf_iterator<char>(file), {}};
 }
 
 /// Next code point of UTF-8 text.

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+// The window as people use it, on a display without a screen: a script does what hands would.
+#include "assets/file/whole_file.hpp"
+#include "tests/tools/run_command.hpp"
+#include "tests/tools/view/display.hpp"
+
+#include <fmt/format.h>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#pragma GCC diagnostic ignored "-Wsign-compare"
+#include <stb/stb_image.h>
+#pragma GCC diagnostic pop
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <string>
+
+namespace fs = std::filesystem;
+using namespace tactus::test;
+using nlohmann::json;
+
+namespace {
+
+const std::string voice = R"(# a voice and what makes it loud
+title = "voice"
+wires = [
+  "tone.signal -> loud.in",    # the way of the sound
+  "level.value -> loud.factor",
+]
+[nodes.tone]
+type = "sine"
+rate = "48 kHz"
+frequency = "440 Hz"   # a
+[nodes.loud]
+type = "gain"
+rate = "48 kHz"
+[nodes.level]
+type = "constant"
+rate = "60 Hz"
+number = 0.5
+)";
+
+/// Runs the command on that display, with a time limit of its own.
+Outcome on(const Display& display, const Folder& folder, const std::string& arguments) {
+    const std::string command = "cd " + folder.path.string() + " && " + display.environment() + "timeout 100 " +
+                                std::string(TACTUS_COMMAND) + " " + arguments + " >stdout 2>stderr";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(folder.path / "stdout"), slurp(folder.path / "stderr")};
+}
+
+struct Pixels {
+    int width = 0, height = 0;
+    std::size_t colours = 0;  ///< different ones
+    double brightness = 0.0;  ///< 0 to 1, mean
+};
+
+Pixels look_at(const fs::path& png) {
+    Pixels seen;
+    int parts = 0;
+    unsigned char* data = stbi_load(png.c_str(), &seen.width, &seen.height, &parts, 3);
+    if (!data) return seen;
+    std::set<int> colours;
+    const int count = seen.width * seen.height;
+    for (int i = 0; i < count; ++i) {
+        colours.insert(data[3 * i] << 16 | data[3 * i + 1] << 8 | data[3 * i + 2]);
+        seen.brightness += (data[3 * i] + data[3 * i + 1] + data[3 * i + 2]) / 765.0 / count;
+    }
+    seen.colours = colours.size();
+    stbi_image_free(data);
+    return seen;
+}
+
+/// A picture of the whole window with contents: dark panels, letters with smooth edges, curves.
+void check_picture(const fs::path& png, int width, int height) {
+    INFO(png.string());
+    const Pixels seen = look_at(png);
+    CHECK(seen.width == width);
+    CHECK(seen.height == height);
+    CHECK(seen.colours > 300);
+    CHECK((seen.brightness > 0.04 && seen.brightness < 0.6));
+}
+
+}  // namespace
+
+#define NEEDS_DISPLAY(display)                                                      \
+    const Display display;                                                          \
+    if (!display.is_there()) {                                                      \
+        WARN("Xvfb is not installed (apt install xvfb): the window is not tested"); \
+        return;                                                                     \
+    }
+
+TEST_CASE("in the window a parameter is turned, a node added, wired, taken back and saved, while the patch runs") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    folder.write("voice.toml", voice);
+    folder.write("script", R"(until 0.2
+scope tone.signal
+scope tone.signal spectrum
+select tone
+set tone.frequency "220 Hz"
+! set tone.frequency "3 kg"
+! connect level.value loud.in
+add gain "48 kHz"
+wire loud.out in
+rename gain echo
+add constant "60 Hz"
+undo
+frames 3
+screenshot window.png
+export 0 wave.csv
+export 1 spectrum.png
+pause
+until paused
+resume
+size 900 700
+frames 5
+minimise
+wait 0.2
+restore
+frames 3
+save
+stop
+until over
+close
+)");
+    const Outcome done =
+        on(display, folder, "run voice.toml --view --view-script script --audio file --out out --json");
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    const std::string saved = slurp(folder.path / "voice.toml");
+    CHECK(saved.find("frequency = \"220 Hz\"   # a") != std::string::npos);
+    CHECK(saved.find("# the way of the sound") != std::string::npos);
+    CHECK(saved.find("\"loud.out    -> echo.in\"") != std::string::npos);
+    CHECK(saved.find("[nodes.echo]\ntype = \"gain\"\nrate = \"48 kHz\"\n") != std::string::npos);
+    CHECK(saved.find("[nodes.constant]") == std::string::npos);
+    CHECK(on(display, folder, "check voice.toml").code == 0);
+    const json summary = json::parse(done.out);
+    CHECK(summary["seconds"].get<double>() > 0.2);
+    check_picture(folder.path / "window.png", 1600, 1000);
+    CHECK(look_at(folder.path / "spectrum.png").width > 600);
+    CHECK(slurp(folder.path / "wave.csv").starts_with("time s,"));
+}
+
+TEST_CASE("a run with a window on it is recorded, replays to the bit, and its take is looked at at any instant") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    folder.write("record",
+                 "until 0.4\nset hand_out.max_force \"8 N\"\npause\nuntil paused\nresume\nuntil 0.8\nstop\nuntil "
+                 "over\nclose\n");
+    const Outcome run =
+        on(display, folder, "run touch-sphere --view --view-script record --audio file --out out --record take --json");
+    INFO(run.err);
+    REQUIRE(run.code == 0);
+    const Outcome again = on(display, folder, "replay take --json");
+    INFO(again.err);
+    REQUIRE(again.code == 0);
+    CHECK(json::parse(again.out)["identical"] == true);
+    folder.write("scrub",
+                 "scope hand.pose\ngoto 0.6\nscene\nframes 3\nscreenshot late.png\ngoto 0.05\nscene\nframes "
+                 "3\nscreenshot early.png\nclose\n");
+    const Outcome scrubbed = on(display, folder, "view take --view-script scrub");
+    INFO(scrubbed.err);
+    REQUIRE(scrubbed.code == 0);
+    check_picture(folder.path / "late.png", 1600, 1000);
+    CHECK(slurp(folder.path / "late.png") != slurp(folder.path / "early.png"));
+    CHECK(slurp(folder.path / "take/patch-0.toml") ==
+          tactus::read_whole_file(fs::path(TACTUS_COMMAND).parent_path() / "library/patches/touch-sphere.toml"));
+}
+
+TEST_CASE("a window changes no bit of what a patch computes") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    folder.write("voice.toml", voice);
+    const auto hash_of = [&](const std::string& how) {
+        const Outcome done = on(display, folder, how);
+        INFO(done.err);
+        REQUIRE(done.code == 0);
+        const json summary = json::parse(done.out);
+        std::int64_t late = 0;
+        for (const json& group : summary["groups"])
+            late += group["misses"].get<std::int64_t>() + group["skipped"].get<std::int64_t>() +
+                    group["dropped"].get<std::int64_t>();
+        return std::pair(summary["output_hash"].get<std::string>(), late);
+    };
+    const auto [seen, late] = hash_of("run voice.toml --view --seconds 1 --audio file --out out --json");
+    const auto plain = hash_of("render voice.toml --seconds 1 --out out --json").first;
+    if (late > 0) WARN("the machine was too busy for the live run to keep its schedule");
+    else CHECK(seen == plain);
+}
+
+TEST_CASE("every patch of the library opens in the window") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    std::string script;
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(fs::path(TACTUS_COMMAND).parent_path() / "library/patches"))
+        if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
+    REQUIRE(names.size() >= 9);
+    for (const std::string& name : names) script += fmt::format("open {0}\nframes 3\nscreenshot {0}.png\n", name);
+    folder.write("script", script + "close\n");
+    const Outcome done =
+        on(display, folder, "run touch-sphere --view --view-script script --audio file --out out --json");
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    for (const std::string& name : names) check_picture(folder.path / (name + ".png"), 1600, 1000);
+}
+
+TEST_CASE("a window that is closed can leave the run alive") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    folder.write("voice.toml", voice);
+    folder.write("script", "until 0.1\nclose\n");
+    const Outcome done =
+        on(display, folder,
+           "run voice.toml --view --keep-running --view-script script --seconds 1.5 --audio file --out out --json");
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    CHECK(json::parse(done.out)["seconds"] == 1.5);
+}
+
+TEST_CASE("without a display, or without OpenGL, the command says so once and ends with code 2") {
+    const Folder folder;
+    const std::string patch = folder.write("voice.toml", voice).string();
+    const Outcome blind = folder.tactus("run " + patch + " --view --out " + (folder.path / "out").string());
+    const char* display_name = std::getenv("DISPLAY");
+    if (!display_name || !*display_name) {
+        CHECK(blind.code == 2);
+        CHECK(blind.err.find("no window can be opened") != std::string::npos);
+        CHECK(std::count(blind.err.begin(), blind.err.end(), '\n') == 1);
+    }
+    NEEDS_DISPLAY(display)
+    const std::string refused = "MESA_GL_VERSION_OVERRIDE=2.1 ";
+    const std::string command = display.environment() + refused + std::string(TACTUS_COMMAND) + " run " + patch +
+                                " --view --out " + (folder.path / "out").string() + " 2>" +
+                                (folder.path / "err").string();
+    CHECK(WEXITSTATUS(std::system(command.c_str())) == 2);
+    CHECK(slurp(folder.path / "err").find("OpenGL 3.3") != std::string::npos);
+}
+
+TEST_CASE("a script that asks for what is not there fails where it does") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    folder.write("voice.toml", voice);
+    folder.write("unknown", "frames 1\nscren shot\n");
+    const Outcome unknown = on(display, folder, "run voice.toml --view --view-script unknown --audio file --out out");
+    CHECK(unknown.code == 2);
+    CHECK(unknown.err.find("unknown:2:1: no command 'scren'") != std::string::npos);
+    folder.write("refused", "set tone.frequency \"3 kg\"\n");
+    const Outcome refused = on(display, folder, "run voice.toml --view --view-script refused --audio file --out out");
+    CHECK(refused.code == 2);
+    CHECK(refused.err.find("refused:1:1") != std::string::npos);
+}

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/workbench.hpp"
+#include "tests/tools/run_command.hpp"
+#include "tools/load_plan.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <chrono>
+#include <functional>
+#include <thread>
+
+using namespace tactus;
+using namespace tactus::view;
+using tactus::test::Folder;
+using tactus::test::slurp;
+
+namespace {
+
+const std::string voice = R"(title = "voice"
+wires = [
+  "tone.signal -> loud.in",   # as it is
+  "level.value -> loud.factor",
+]
+[nodes.tone]
+type = "sine"
+rate = "48 kHz"
+frequency = "440 Hz"  # a
+[nodes.loud]
+type = "gain"
+rate = "48 kHz"
+[nodes.level]
+type = "constant"
+rate = "60 Hz"
+number = 0.5
+)";
+
+RunChoice choice_in(const Folder& folder) {
+    RunChoice choice;
+    choice.patch = folder.write("voice.toml", voice).string();
+    choice.out = folder.path / "out";
+    choice.audio = "file";
+    choice.json = true;
+    return choice;
+}
+
+bool come_about(const std::function<bool()>& what) {
+    for (int i = 0; i < 1500; ++i) {
+        if (what()) return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+}
+
+}  // namespace
+
+TEST_CASE("an edit at the bench that does not compile is refused with the compiler's words") {
+    const Folder folder;
+    Workbench bench(choice_in(folder));
+    CHECK_FALSE(bench.set("tone", "frequency", "3 kg"));
+    CHECK(bench.messages().back().is_problem);
+    CHECK(bench.messages().back().text.find("frequency") != std::string::npos);
+    CHECK_FALSE(bench.connect("level.value", "loud.in"));
+    CHECK_FALSE(bench.disconnect("loud.in"));
+    CHECK_FALSE(bench.remove("tone"));
+    CHECK_FALSE(bench.rename("tone", "loud"));
+    CHECK(bench.objection("level.value", "loud.in"));
+    CHECK_FALSE(bench.objection("tone.signal", "loud.in"));
+    CHECK(bench.editor().text() == voice);
+    CHECK(bench.picture().nodes.size() == 3);
+}
+
+TEST_CASE("a new node waits as a draft until its inputs have wires, then joins as one edit") {
+    const Folder folder;
+    Workbench bench(choice_in(folder));
+    bench.begin_draft("gain", bench.picture().nodes[0].group);
+    REQUIRE(bench.draft());
+    CHECK(bench.editor().text() == voice);
+    CHECK(bench.draft()->node.name == "gain");
+    bench.connect_draft("level.value", "in");
+    REQUIRE(bench.draft());
+    bench.connect_draft("loud.out", "in");
+    CHECK_FALSE(bench.draft());
+    CHECK(bench.picture().find("gain") >= 0);
+    bench.begin_draft("constant", 0);
+    CHECK_FALSE(bench.draft());
+    CHECK(bench.picture().find("constant") >= 0);
+    CHECK(bench.undo());
+    CHECK(bench.undo());
+    CHECK(bench.editor().text() == voice);
+    CHECK_FALSE(bench.undo());
+}
+
+TEST_CASE("a patch saved at the bench compiles to the plan that was shown") {
+    const Folder folder;
+    const RunChoice choice = choice_in(folder);
+    Workbench bench(choice);
+    REQUIRE(bench.set("tone", "frequency", "220 Hz"));
+    REQUIRE(bench.add({"echo", "gain", "48 kHz", "", {{"factor", "2"}}, {{"loud.out", "echo.in", ""}}}));
+    REQUIRE(bench.rename("loud", "louder"));
+    REQUIRE(bench.save());
+    const std::string text = slurp(choice.patch);
+    CHECK(text == bench.editor().text());
+    CHECK(text.find("# as it is") != std::string::npos);
+    CHECK(text.find("\"220 Hz\"  # a") != std::string::npos);
+    Problems problems;
+    const std::optional<Plan> plan = read_plan(choice, problems);
+    REQUIRE(plan);
+    REQUIRE(plan->nodes.size() == bench.plan()->nodes.size());
+    for (std::size_t n = 0; n < plan->nodes.size(); ++n) {
+        const PlanNode &a = plan->nodes[n], &b = bench.plan()->nodes[n];
+        CHECK(a.name == b.name);
+        CHECK(a.type == b.type);
+        CHECK(a.group == b.group);
+        for (const auto& [name, param] : a.params) CHECK(param->value == b.params.at(name)->value);
+    }
+    REQUIRE(plan->wires.size() == bench.plan()->wires.size());
+    for (std::size_t w = 0; w < plan->wires.size(); ++w) {
+        const PlanWire &a = plan->wires[w], &b = bench.plan()->wires[w];
+        CHECK((a.from_node == b.from_node && a.from_output == b.from_output && a.to_node == b.to_node &&
+               a.to_input == b.to_input && a.mode == b.mode));
+    }
+}
+
+TEST_CASE("edits at the bench reach the run: parameters as such, all else as a new plan, a pause as time that stands") {
+    const Folder folder;
+    Workbench bench(choice_in(folder));
+    bench.run();
+    const auto status = [&] {
+        bench.tend();
+        return bench.status();
+    };
+    REQUIRE(come_about([&] { return status()->time > 0.1; }));
+    REQUIRE(bench.set("tone", "frequency", "220 Hz"));
+    REQUIRE(bench.connect("level.value", "loud.factor", "linear"));
+    REQUIRE(come_about([&] { return status()->edits == 1; }));
+    bench.undo();
+    REQUIRE(come_about([&] { return status()->edits == 2; }));
+    bench.pause(true);
+    REQUIRE(come_about([&] { return status()->state == RunStatus::State::stands; }));
+    const double stood = status()->time;
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    CHECK(status()->time == stood);
+    bench.pause(false);
+    REQUIRE(come_about([&] { return status()->time > stood + 0.05; }));
+    REQUIRE(bench.save());
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    // What was saved runs already.
+    CHECK(status()->edits == 2);
+    bench.stop();
+    REQUIRE(come_about([&] { return bench.running()->is_over(); }));
+    CHECK(bench.status()->failure.empty());
+    CHECK(bench.running()->summary_json().find("output_hash") != std::string::npos);
+}
+
+TEST_CASE("a run whose patch is broken ends with the reason and leaves the bench to mend it") {
+    const Folder folder;
+    RunChoice choice = choice_in(folder);
+    folder.write("voice.toml", voice + "[nodes.bad]\ntype = \"gian\"\nrate = \"48 kHz\"\n");
+    Workbench bench(choice);
+    CHECK_FALSE(bench.plan());
+    CHECK(bench.messages().back().text.find("did you mean 'gain'") != std::string::npos);
+    bench.run();
+    REQUIRE(come_about([&] { return bench.running()->is_over(); }));
+    CHECK(bench.status()->failure.find("gian") != std::string::npos);
+}

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything in the window, side by side.
+#pragma once
+
+#include "tools/view/node_panel.hpp"
+#include "tools/view/patch_panel.hpp"
+#include "tools/view/scene_panel.hpp"
+#include "tools/view/scopes.hpp"
+#include "tools/view/take_bench.hpp"
+#include "tools/view/window.hpp"
+#include "tools/view/workbench.hpp"
+
+#include <memory>
+#include <set>
+#include <string>
+
+namespace tactus::view {
+
+class Desk {
+public:
+    Desk(Window& window, Workbench& bench, TakeBench* take);
+
+    /// One picture of all, between Window::begin and Window::end.
+    void draw();
+
+    Workbench& bench() { return bench_; }
+    TakeBench* take() { return take_; }
+    PatchPanel& patch() { return patch_; }
+    NodePanel& nodes() { return nodes_; }
+    Scopes& scopes() { return scopes_; }
+    ScenePanel& scene() { return scene_; }
+    const Feed* feed() const;
+
+    /// Asked when the window is to be closed: end the run, or let it go on?
+    enum class Farewell { none, asks, ends, goes_on } farewell = Farewell::none;
+
+private:
+    void follow_run();
+    void splitter(const char* id, bool upright, double& share, double whole);
+    void panel(const char* id, double width, double height);
+    void show_messages(double height);
+    void ask_farewell();
+    void shortcuts();
+
+    Window& window_;
+    Workbench& bench_;
+    TakeBench* take_;
+    std::unique_ptr<LiveFeed> live_;
+    int runs_ = 0;
+    Fonts fonts_;
+    PatchPanel patch_;
+    NodePanel nodes_;
+    Scopes scopes_;
+    ScenePanel scene_;
+    std::set<std::string> looked_at_;
+    double left_ = 0.64, patch_height_ = 0.58, scene_height_ = 0.55;
+};
+
+}  // namespace tactus::view

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the window gets values from: a run that goes on, or a take at some instant.
+#pragma once
+
+#include "engine/observer.hpp"
+#include "engine/take_reader.hpp"
+#include "graph/plan.hpp"
+
+#include <array>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace tactus::view {
+
+/// What one output gave: a row of numbers for each time, times rising.
+struct Trace {
+    std::vector<double> times;                 ///< logical, s
+    std::vector<std::vector<double>> columns;  ///< by column, as long as `times`
+    std::vector<std::string> names;            ///< of the columns
+};
+
+class Feed {
+public:
+    struct Port {
+        std::string name;  ///< "node.port"
+        const ValueType* type = nullptr;
+        double rate = 0.0;  ///< Hz
+    };
+    static constexpr std::size_t most_columns = 16;
+    struct Latest {
+        std::array<double, most_columns> columns{};
+        std::size_t count = 0;
+    };
+
+    virtual ~Feed() = default;
+    virtual std::vector<Port> ports() const = 0;
+    virtual double now() const = 0;  ///< s
+    /// Once per picture: which outputs are wanted at all, and which with every value.
+    virtual void follow(const std::set<std::string>& looked_at, const std::set<std::string>& traced) = 0;
+    /// The newest value of an output that is looked at; none: count 0.
+    virtual Latest latest(const std::string& port) const = 0;
+    /// Null for an output that is not traced.
+    virtual const Trace* trace(const std::string& port) const = 0;
+};
+
+/// Of a live run.
+class LiveFeed : public Feed {
+public:
+    explicit LiveFeed(std::shared_ptr<Observer> observer) : observer_(std::move(observer)) {}
+
+    std::vector<Port> ports() const override;
+    double now() const override { return now_; }
+    void set_now(double seconds) { now_ = seconds; }
+    void follow(const std::set<std::string>& looked_at, const std::set<std::string>& traced) override;
+    Latest latest(const std::string& port) const override;
+    const Trace* trace(const std::string& port) const override;
+
+    static constexpr double kept_s = 20.0;  ///< of every trace
+
+private:
+    std::shared_ptr<Observer> observer_;
+    double now_ = 0.0;
+    int pictures_ = 0;
+    std::set<std::string> watched_;
+    std::map<std::string, Trace> traces_;
+    std::map<std::string, const ValueType*, std::less<>> types_;
+};
+
+/// Of a take at a time that is set: `latest` is what held then, traces end then.
+class TakeFeed : public Feed {
+public:
+    /// `take` must outlive it. Throws Error.
+    explicit TakeFeed(const Take& take);
+
+    std::vector<Port> ports() const override;
+    double now() const override { return now_; }
+    void set_now(double seconds) { now_ = seconds; }
+    /// What the longest stream holds, s.
+    double length() const { return length_; }
+    void follow(const std::set<std::string>& looked_at, const std::set<std::string>& traced) override;
+    Latest latest(const std::string& port) const override;
+    const Trace* trace(const std::string& port) const override;
+
+    double traced_s = 5.0;  ///< length of the traces
+
+private:
+    struct Cut {
+        double begin = 0.0, end = -1.0;
+        Trace trace;
+    };
+    void read(const std::string& port, double begin, double end, Trace& into) const;
+
+    const Take& take_;
+    double now_ = 0.0, length_ = 0.0;
+    std::map<std::string, std::vector<const TakeStreamInfo*>> streams_;  // an edit may end one and begin another
+    std::map<std::string, Latest> latest_;
+    std::map<std::string, Cut> cuts_;
+    double latest_at_ = -1.0;
+};
+
+}  // namespace tactus::view

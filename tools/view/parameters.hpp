@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parameters of a node as a form shows them.
+#pragma once
+
+#include "graph/plan.hpp"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactus::view {
+
+struct ParameterField {
+    enum class Kind { quantity, choice, flag, text, vector, asset } kind = Kind::quantity;
+    std::string name, about;
+    std::string text;      ///< its value as a patch would write it
+    std::string standard;  ///< its default; empty for an asset
+    bool is_set = false;   ///< the patch writes it
+    bool is_live = false;  ///< can be turned while the patch runs
+    bool is_driven = false;
+    // Of a quantity, in its unit:
+    std::string unit;
+    double value = 0.0, least = 0.0, most = 0.0;
+    std::vector<std::string> options;  ///< of a choice; of an asset those the patch names
+};
+
+/// Of one node of a plan, in the order of its declaration.
+std::vector<ParameterField> parameters_of(const Plan& plan, int node);
+
+/// "0.8 N/mm" for a number that a form gives.
+std::string quantity_text(double value, std::string_view unit);
+
+}  // namespace tactus::view

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a run gets from one text of its patch to another: by single parameters where that is enough.
+#pragma once
+
+#include "graph/plan.hpp"
+
+#include <string>
+#include <vector>
+
+namespace tactus::view {
+
+struct PatchChange {
+    struct Setting {
+        std::string node, param, value;
+        bool operator==(const Setting&) const = default;
+    };
+    std::vector<Setting> settings;  ///< live quantities of nodes that both texts have
+    bool needs_edit = false;        ///< something else differs, too
+};
+
+PatchChange change_between(const Plan& before, const Plan& after);
+
+}  // namespace tactus::view

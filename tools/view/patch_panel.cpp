@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/patch_panel.hpp"
+
+#include "tools/view/theme.hpp"
+
+#include <fmt/format.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::view {
+
+namespace {
+
+constexpr double rounding = 6.0, text_size = 13.0, small_size = 10.5;
+constexpr double readable = 5.5;  ///< pixels: smaller text is left out
+constexpr double red_for_s = 1.5;
+constexpr double smallest_box = 9.0, smallest_curve = 0.12;  ///< pixels; zoom: from here on the form is left out
+
+}  // namespace
+
+Box PatchPanel::screen(const Box& world) const {
+    const Point a = screen(Point{world.left, world.top}), b = screen(Point{world.right, world.bottom});
+    return {a.x, a.y, b.x, b.y};
+}
+
+bool PatchPanel::is_late(const std::string& group) const {
+    const auto found = health_.find(group);
+    return found != health_.end() && ImGui::GetTime() - found->second.since < red_for_s;
+}
+
+std::string PatchPanel::port_name(const Hit& at) const {
+    const PictureNode& node = bench_.picture().nodes[static_cast<std::size_t>(at.index)];
+    const auto& ports = at.what == Hit::What::output ? node.outputs : node.inputs;
+    return node.name + "." + ports[static_cast<std::size_t>(at.port)].name;
+}
+
+void PatchPanel::look_at(const std::string& name) {
+    const int index = bench_.picture().find(name);
+    if (index < 0) return;
+    const Point middle = bench_.picture().nodes[static_cast<std::size_t>(index)].box.middle();
+    canvas_.zoom = std::max(canvas_.zoom, 0.9 * unit_);
+    canvas_.origin = middle - Point{width_, height_} * (0.5 / canvas_.zoom);
+    fits_ = true;
+}
+
+void PatchPanel::notice_new_plan() {
+    if (plan_version_ == bench_.plan_version()) return;
+    // Indices are of the picture before.
+    wiring_ = {};
+    hovered_ = menu_ = {};
+    plan_version_ = bench_.plan_version();
+    if (!selected.empty() && bench_.picture().find(selected) < 0) selected.clear();
+}
+
+void PatchPanel::draw(const Feed* feed, const Fonts& fonts, std::set<std::string>& looked_at) {
+    const PatchPicture& picture = bench_.picture();
+    unit_ = fonts.scale;
+    corner_ = point(ImGui::GetCursorScreenPos());
+    const Point size = point(ImGui::GetContentRegionAvail());
+    width_ = size.x;
+    height_ = size.y;
+    if (width_ < 8.0 || height_ < 8.0) return;
+    notice_new_plan();
+    if (!fits_ && !picture.nodes.empty()) {
+        canvas_.fit(picture.bounds, width_, height_, unit_);
+        fits_ = true;
+    }
+    ImGui::InvisibleButton(
+        "canvas", vec(size),
+        ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
+    handle_mouse();
+    notice_new_plan();
+
+    const auto status = bench_.status();
+    const double now = ImGui::GetTime();
+    for (const GroupStatus& group : status->groups) {
+        Health& health = health_[group.name];
+        if (group.missed > health.missed) health.since = now;
+        health.missed = group.missed;
+    }
+    std::map<std::string_view, const NodeStatus*> times;
+    for (const NodeStatus& node : status->nodes) times[node.name] = &node;
+
+    const Painter paint(ImGui::GetWindowDrawList(), fonts);
+    const ImVec2 low = vec(corner_), high = vec(corner_ + size);
+    paint.list()->PushClipRect(low, high, true);
+    const Box visible = canvas_.visible(width_, height_);
+    draw_lanes(paint, *status);
+    draw_wires(paint, visible);
+    drawn_nodes = 0;
+    for (const PictureNode& node : picture.nodes) {
+        if (!node.box.meets(visible)) continue;
+        ++drawn_nodes;
+        const auto time = times.find(node.name);
+        draw_node(paint, node, time == times.end() ? nullptr : time->second, feed, looked_at);
+    }
+    draw_wiring(paint);
+    if (!bench_.plan())
+        paint.text(corner_ + Point{16, 14}, text_size * unit_, tone::bad, "the patch does not compile; see below");
+    paint.list()->PopClipRect();
+    if (ImGui::IsItemHovered()) explain(hovered_);
+    menus();
+}
+
+void PatchPanel::draw_lanes(const Painter& paint, const RunStatus& status) {
+    const PatchPicture& picture = bench_.picture();
+    const double z = canvas_.zoom;
+    for (const PictureLane& lane : picture.lanes) {
+        const Box box = screen(Box{picture.bounds.left, lane.top, picture.bounds.right, lane.bottom});
+        const bool late = is_late(lane.name);
+        paint.box(box, colour(0x171d26), 8.0 * z);
+        paint.frame(box, late ? tone::bad : tone::lane_edge, 8.0 * z, late ? 2.0 : 1.0);
+        if (text_size * z < readable) continue;
+        Point at = screen(Point{picture.bounds.left + 16, lane.top + 8});
+        paint.text(at, text_size * z, tone::text, lane.name, true);
+        at.x += paint.width_of(lane.name, text_size * z, true) + 12.0 * z;
+        paint.text({at.x, at.y + 1.5 * z}, small_size * z, tone::dim, lane.note);
+        at.x += paint.width_of(lane.note, small_size * z) + 16.0 * z;
+        const auto group = std::ranges::find(status.groups, lane.name, &GroupStatus::name);
+        if (group == status.groups.end() || group->ticks == 0) continue;
+        const std::string figures = fmt::format("{:.1f} µs a call, load {:.1f} %, late {:.3f} ms (99 %)",
+                                                group->execution_us, 100.0 * group->load, group->late_p99_ms);
+        paint.text({at.x, at.y + 1.5 * z}, small_size * z, tone::dim, figures);
+        if (group->missed == 0) continue;
+        at.x += paint.width_of(figures, small_size * z) + 12.0 * z;
+        paint.text({at.x, at.y + 1.5 * z}, small_size * z, late ? tone::bad : tone::warm,
+                   fmt::format("{} missed", group->missed), true);
+    }
+}
+
+void PatchPanel::draw_wires(const Painter& paint, const Box& visible) {
+    const PatchPicture& picture = bench_.picture();
+    const double z = canvas_.zoom;
+    const int chosen = picture.find(selected);
+    drawn_wires = 0;
+    for (std::size_t w = 0; w < picture.wires.size(); ++w) {
+        const PictureWire& wire = picture.wires[w];
+        if (!wire.bounds.meets(visible)) continue;
+        ++drawn_wires;
+        const PictureNode& from = picture.nodes[static_cast<std::size_t>(wire.from)];
+        ImU32 ink = colour_of(from.outputs[static_cast<std::size_t>(wire.output)].type);
+        const bool is_hovered = hovered_ == Hit{Hit::What::wire, static_cast<int>(w), -1};
+        const bool is_near = wire.from == chosen || wire.to == chosen;
+        if (!is_hovered && !is_near) ink = faded(ink, 0.62);
+        const double width = (is_hovered ? 3.2 : is_near ? 2.4 : 1.7) * std::max(z, 0.35);
+        std::array<Point, 4> c;
+        for (std::size_t i = 0; i < 4; ++i) c[i] = screen(wire.curve[i]);
+        if (z < smallest_curve) {
+            paint.line(c[0], c[3], ink);
+            continue;
+        }
+        if (!wire.crosses || z < 0.4) {
+            paint.list()->AddBezierCubic(vec(c[0]), vec(c[1]), vec(c[2]), vec(c[3]), ink, static_cast<float>(width));
+            continue;
+        }
+        // Dashed: between groups.
+        const double length = std::hypot(c[3].x - c[0].x, c[3].y - c[0].y) * 1.15;
+        const int dashes = std::clamp(static_cast<int>(length / (13.0 * z)), 4, 160);
+        for (int d = 0; d < dashes; ++d)
+            paint.line(on_curve(c, (d + 0.0) / dashes), on_curve(c, (d + 0.62) / dashes), ink, width);
+    }
+}
+
+void PatchPanel::draw_node(const Painter& paint, const PictureNode& node, const NodeStatus* status, const Feed* feed,
+                           std::set<std::string>& looked_at) {
+    const double z = canvas_.zoom;
+    const Box box = screen(node.box);
+    const bool is_chosen = node.name == selected;
+    if (box.height() < smallest_box) return paint.box(box, is_chosen ? tone::chosen : tone::node_edge);
+    paint.box(box, tone::node, rounding * z);
+    Box head = box;
+    head.bottom = box.top + (title_height - 6.0) * z;
+    paint.list()->AddRectFilled(vec({head.left, head.top}), vec({head.right, head.bottom}), tone::node_head,
+                                static_cast<float>(rounding * z), ImDrawFlags_RoundCornersTop);
+    paint.frame(box, is_chosen ? tone::chosen : tone::node_edge, rounding * z, is_chosen ? 2.0 : 1.0);
+    if (text_size * z < readable) return;
+    double room = node_width * z - 16.0 * z;
+    if (status && status->mean_us > 0.0) {
+        const std::string time = fmt::format("{:.{}f} µs", status->mean_us, status->mean_us < 10.0 ? 1 : 0);
+        paint.text_left_of({box.right - 8.0 * z, box.top + 5.0 * z}, small_size * z, tone::dim, time);
+        room -= paint.width_of(time, small_size * z) + 6.0 * z;
+        // How much of its period it takes, as a bar under the title.
+        const double share = std::clamp(status->share, 0.0, 1.0);
+        Box bar{box.left, head.bottom - 2.0 * z, box.left + share * box.width(), head.bottom};
+        paint.box(bar, share > 0.7 ? tone::bad : share > 0.4 ? tone::warm : tone::good);
+    }
+    paint.text({box.left + 8.0 * z, box.top + 3.0 * z}, text_size * z, tone::text,
+               paint.shortened(node.name, text_size * z, room, true), true);
+    paint.text({box.left + 8.0 * z, box.top + 17.5 * z}, small_size * z, tone::dim, node.type);
+    draw_ports(paint, node, feed, looked_at);
+}
+
+void PatchPanel::draw_ports(const Painter& paint, const PictureNode& node, const Feed* feed,
+                            std::set<std::string>& looked_at) {
+    const double z = canvas_.zoom, size = small_size * z;
+    const double half = 0.5 * node_width * z - 10.0 * z;
+    const PatchPicture& picture = bench_.picture();
+    const ValueType* wanted = nullptr;
+    if (wiring_.node >= 0)
+        wanted =
+            picture.nodes[static_cast<std::size_t>(wiring_.node)].outputs[static_cast<std::size_t>(wiring_.port)].type;
+    for (const PicturePort& port : node.inputs) {
+        const Point at = screen(port.at);
+        const bool suits = wanted && (!port.type || port.type == wanted);
+        const ImU32 ink = colour_of(port.type);
+        if (suits) paint.dot(at, 8.0 * z, faded(ink, 0.35));
+        paint.dot(at, 4.0 * z, ink);
+        if (!port.is_connected) paint.dot(at, 2.4 * z, tone::node);
+        paint.text({at.x + 9.0 * z, at.y - 0.6 * size}, size, port.is_connected || suits ? tone::text : tone::dim,
+                   paint.shortened(port.name, size, half));
+    }
+    for (const PicturePort& port : node.outputs) {
+        const Point at = screen(port.at);
+        const ImU32 ink = colour_of(port.type);
+        paint.dot(at, 4.0 * z, ink);
+        if (!port.is_connected) paint.dot(at, 2.4 * z, tone::node);
+        paint.text_left_of({at.x - 9.0 * z, at.y - 0.6 * size}, size, tone::text,
+                           paint.shortened(port.name, size, half));
+        if (!feed || !port.type || size < 5.8) continue;
+        const std::string name = node.name + "." + port.name;
+        looked_at.insert(name);
+        const Feed::Latest latest = feed->latest(name);
+        if (latest.count == 0) continue;
+        if (port.type == &value::signal) {
+            double& meter = meters_[name];
+            meter = std::max(0.93 * meter, std::abs(latest.columns[0]));
+            const double level = meter > 0.0 ? std::clamp(1.0 + std::log10(meter) / 3.0, 0.0, 1.0) : 0.0;
+            const Box all{at.x + 8.0 * z, at.y - 11.0 * z, at.x + 58.0 * z, at.y - 6.0 * z};
+            paint.box(all, colour(0x0c1015), 2.0 * z);
+            paint.box({all.left, all.top, all.left + level * all.width(), all.bottom}, ink, 2.0 * z);
+            continue;
+        }
+        const std::string text = short_value(*port.type, latest, port.unit);
+        paint.text({at.x + 8.0 * z, at.y - 1.35 * size}, 0.95 * size, faded(ink, 0.95), text);
+    }
+}
+
+void PatchPanel::draw_wiring(const Painter& paint) {
+    if (wiring_.node < 0) return;
+    const PicturePort& port =
+        bench_.picture().nodes[static_cast<std::size_t>(wiring_.node)].outputs[static_cast<std::size_t>(wiring_.port)];
+    const Point mouse = point(ImGui::GetIO().MousePos), from = screen(port.at);
+    const auto curve = curve_between(from, mouse);
+    const bool refused = hovered_.what == Hit::What::input && !wiring_.objection.empty();
+    paint.list()->AddBezierCubic(vec(curve[0]), vec(curve[1]), vec(curve[2]), vec(curve[3]),
+                                 refused ? tone::bad : colour_of(port.type), 2.5f);
+}
+
+std::string short_value(const ValueType& type, const Feed::Latest& latest, const std::string& unit) {
+    const auto& c = latest.columns;
+    const auto length = [&](std::size_t at) { return std::hypot(c[at], c[at + 1], c[at + 2]); };
+    if (&type == &value::pose) return fmt::format("{:.1f} {:.1f} {:.1f} mm", c[0] * 1e3, c[1] * 1e3, c[2] * 1e3);
+    if (&type == &value::wrench) return fmt::format("{:.2f} N", length(0));
+    if (&type == &value::twist) return fmt::format("{:.1f} mm/s", length(0) * 1e3);
+    if (&type == &value::boolean) return c[0] != 0.0 ? "true" : "false";
+    if (unit == "m") return fmt::format("{:.3f} mm", c[0] * 1e3);
+    return fmt::format("{:.4g}{}{}", c[0], unit.empty() ? "" : " ", unit);
+}
+
+}  // namespace tactus::view

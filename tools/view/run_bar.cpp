@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/run_bar.hpp"
+
+#include "tools/view/take_bench.hpp"
+#include "tools/view/theme.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace tactus::view {
+
+namespace {
+
+enum class Sign { play, pause, stop, record };
+
+/// A button with a sign that needs no letter of a font.
+bool sign_button(const char* id, Sign sign, ImU32 ink, bool is_on, const char* tip) {
+    const float size = ImGui::GetFrameHeight();
+    if (is_on) ImGui::PushStyleColor(ImGuiCol_Button, faded(ink, 0.35));
+    const bool pressed = ImGui::Button(id, ImVec2(1.4f * size, size));
+    if (is_on) ImGui::PopStyleColor();
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const ImVec2 c((low.x + high.x) * 0.5f, (low.y + high.y) * 0.5f);
+    const float r = 0.24f * size;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    if (sign == Sign::play)
+        list->AddTriangleFilled({c.x - 0.8f * r, c.y - r}, {c.x + r, c.y}, {c.x - 0.8f * r, c.y + r}, ink);
+    if (sign == Sign::stop) list->AddRectFilled({c.x - r, c.y - r}, {c.x + r, c.y + r}, ink, 1.0f);
+    if (sign == Sign::record) list->AddCircleFilled(c, 1.1f * r, ink);
+    if (sign == Sign::pause) {
+        list->AddRectFilled({c.x - r, c.y - r}, {c.x - 0.3f * r, c.y + r}, ink, 1.0f);
+        list->AddRectFilled({c.x + 0.3f * r, c.y - r}, {c.x + r, c.y + r}, ink, 1.0f);
+    }
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip);
+    ImGui::SameLine();
+    return pressed;
+}
+
+void words(const std::string& text, ImU32 ink) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ink);
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopStyleColor();
+    ImGui::SameLine();
+}
+
+void run_buttons(Workbench& bench, const RunStatus& status) {
+    using State = RunStatus::State;
+    const bool runs = bench.running() && status.state != State::over;
+    const bool paused = status.state == State::stands || status.state == State::fades;
+    if (!runs) {
+        if (sign_button("##run", Sign::play, tone::good, false, "Run the patch")) bench.run();
+    } else if (sign_button("##stop", Sign::stop, tone::text, false, "End the run")) bench.stop();
+    ImGui::BeginDisabled(!runs);
+    if (sign_button("##pause", Sign::pause, tone::warm, paused,
+                    "Pause: forces fade, then logical time stands still (Space)"))
+        bench.pause(!paused);
+    ImGui::EndDisabled();
+    const char* tip = bench.is_recording() ? "Begin anew without recording"
+                                           : "Begin anew and record: a take is repeated from its beginning";
+    if (sign_button("##record", Sign::record, tone::bad, bench.is_recording(), tip))
+        bench.record(!bench.is_recording());
+    static const char* const names[] = {"loading", "runs", "forces fade", "paused", "not running"};
+    const ImU32 ink = status.state == State::runs ? tone::good : status.state == State::stands ? tone::warm : tone::dim;
+    words(names[static_cast<std::size_t>(status.state)], ink);
+    if (!runs && !bench.take().empty() && std::filesystem::exists(bench.take() / "result.json")) {
+        ImGui::BeginDisabled(!bench.editor().is_saved());
+        if (ImGui::Button("Look at the take")) bench.wants_take = true;
+        ImGui::EndDisabled();
+        ImGui::SameLine();
+    }
+    if (!runs) return;
+    words(fmt::format("{:8.2f} s", status.time), tone::text);
+    words(fmt::format("{:5.2f} N on the hand", status.force), status.force > 0.01 ? tone::text : tone::dim);
+    std::int64_t missed = 0;
+    double late = 0.0;
+    for (const GroupStatus& group : status.groups) {
+        missed += group.missed;
+        late = std::max(late, group.late_max_ms);
+    }
+    words(fmt::format("{} missed, latest {:.2f} ms", missed, late), missed > 0 ? tone::bad : tone::dim);
+    if (!status.faults.empty()) words(status.faults.back(), tone::bad);
+}
+
+void take_line(Workbench& bench, TakeBench& take) {
+    if (bench.has_patch_behind) {
+        if (ImGui::Button("Back to the patch")) bench.wants_patch = true;
+        ImGui::SameLine();
+    }
+    float at = static_cast<float>(take.time());
+    if (sign_button("##play", take.is_playing() ? Sign::pause : Sign::play, tone::good, false, "Play the take (Space)"))
+        take.play(!take.is_playing());
+    words(fmt::format("{:.3f} s of {:.3f} s", take.time(), take.length()), tone::text);
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 15.0f * ImGui::GetFontSize());
+    if (ImGui::SliderFloat("##time", &at, 0.0f, static_cast<float>(take.length()), "%.3f s"))
+        take.go_to(static_cast<double>(at));
+    ImGui::SameLine();
+    words(take.scene_note(), tone::dim);
+}
+
+}  // namespace
+
+void run_bar(Workbench& bench, TakeBench* take, const Fonts& fonts) {
+    ImGui::PushFont(fonts.bold);
+    words(bench.title(), tone::text);
+    ImGui::PopFont();
+    if (take) return take_line(bench, *take);
+    run_buttons(bench, *bench.status());
+    const float right = 19.0f * ImGui::GetFontSize();
+    ImGui::SameLine(std::max(ImGui::GetCursorPosX(), ImGui::GetWindowWidth() - right));
+    ImGui::BeginDisabled(!bench.editor().can_undo());
+    if (ImGui::Button("Undo")) bench.undo();
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    ImGui::BeginDisabled(!bench.editor().can_redo());
+    if (ImGui::Button("Redo")) bench.redo();
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    ImGui::BeginDisabled(bench.editor().is_saved());
+    if (ImGui::Button(bench.editor().is_saved() ? "Saved" : "Save")) bench.save();
+    ImGui::EndDisabled();
+    ImGui::NewLine();
+}
+
+}  // namespace tactus::view

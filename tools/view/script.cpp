@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/script.hpp"
+
+#include "assets/file/whole_file.hpp"
+#include "devices/display/png.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/view/desk.hpp"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+namespace tactus::view {
+
+namespace {
+
+constexpr double longest_wait = 60.0;  // s, of what should come by itself
+
+const std::vector<std::string> commands{
+    "open",      "run",        "stop",    "pause",      "resume", "record", "select",    "set",    "reset",
+    "add",       "wire",       "connect", "remove",     "rename", "undo",   "redo",      "save",   "scope",
+    "reference", "freeze",     "export",  "disconnect", "fit",    "look",   "catalogue", "goto",   "scene",
+    "hover",     "click",      "drag",    "wheel",      "wait",   "until",  "frames",    "size",   "minimise",
+    "restore",   "screenshot", "close",   "say",        "from",   "stereo", "clip",      "measure"};
+
+std::vector<std::string> words_of(const std::string& line) {
+    std::vector<std::string> words;
+    std::istringstream stream(line);
+    for (std::string word; stream >> word;) {
+        if (word.front() == '#') break;
+        if (word.front() == '"') {
+            std::string rest;
+            if (word.size() < 2 || word.back() != '"') {
+                std::getline(stream, rest, '"');
+                word = word.substr(1) + rest;
+            } else word = word.substr(1, word.size() - 2);
+        }
+        words.push_back(word);
+    }
+    return words;
+}
+
+}  // namespace
+
+Script::Script(const std::filesystem::path& file) : file_(file) {
+    std::istringstream text(read_whole_file(file));
+    int number = 0;
+    for (std::string written; std::getline(text, written);) {
+        ++number;
+        Line line{number, false, words_of(written)};
+        if (line.words.empty()) continue;
+        if (line.words.front() == "!") {
+            line.is_refused = true;
+            line.words.erase(line.words.begin());
+        }
+        if (line.words.empty() || std::ranges::find(commands, line.words.front()) == commands.end()) {
+            const std::string name = line.words.empty() ? "" : line.words.front();
+            throw Error({file.string(), number, 1},
+                        fmt::format("no command '{}'{}", name, did_you_mean(name, commands)));
+        }
+        lines_.push_back(std::move(line));
+    }
+}
+
+const std::string& Script::word(const Line& line, std::size_t i) const {
+    if (i >= line.words.size())
+        throw Error({file_.string(), line.number, 1},
+                    fmt::format("'{}' needs {} words more", line.words.front(), i + 1 - line.words.size()));
+    return line.words[i];
+}
+
+double Script::number(const Line& line, std::size_t i) const {
+    const std::string& text = word(line, i);
+    double value = 0.0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (failure != std::errc{} || end != text.data() + text.size())
+        throw Error({file_.string(), line.number, 1}, fmt::format("'{}' is no number", text));
+    return value;
+}
+
+void Script::move_mouse() const {
+    if (!mouse_) return;
+    ImGuiIO& io = ImGui::GetIO();
+    io.MousePos = ImVec2(static_cast<float>(mouse_->at.x), static_cast<float>(mouse_->at.y));
+    io.MouseDown[0] = mouse_->left;
+    io.MouseDown[1] = mouse_->right;
+    io.MouseWheel = static_cast<float>(mouse_->wheel);
+}
+
+void Script::step(Desk& desk, Window& window) {
+    ++pictures_;
+    while (!is_done()) {
+        const Line line = lines_[next_];
+        if (!since_) {
+            since_ = ImGui::GetTime();
+            pictures_ = 0;
+        }
+        try {
+            if (!perform(line, desk, window)) return;
+        } catch (const Error& error) {
+            if (error.where().line > 0) throw;
+            throw Error({file_.string(), line.number, 1}, error.what());
+        }
+        since_.reset();
+        ++next_;
+        // Another patch is another desk.
+        if (line.words.front() == "open") return;
+    }
+}
+
+/// Commands that change the patch: all may be refused.
+bool Script::edit(const Line& line, Desk& desk) {
+    Workbench& bench = desk.bench();
+    const std::string& what = line.words.front();
+    const auto split = [&](std::size_t i) {
+        const std::string& text = word(line, i);
+        const std::size_t dot = text.find('.');
+        if (dot == std::string::npos) throw Error(fmt::format("'{}' is no NODE.NAME", text));
+        return std::pair(text.substr(0, dot), text.substr(dot + 1));
+    };
+    if (what == "set") return bench.set(split(1).first, split(1).second, word(line, 2));
+    if (what == "reset") return bench.reset(split(1).first, split(1).second);
+    if (what == "connect")
+        return bench.connect(word(line, 1), word(line, 2), line.words.size() > 3 ? line.words[3] : "");
+    if (what == "disconnect") return bench.disconnect(word(line, 1));
+    if (what == "remove") return bench.remove(word(line, 1));
+    if (what == "rename") return bench.rename(word(line, 1), word(line, 2));
+    if (what == "undo") return bench.undo();
+    if (what == "redo") return bench.redo();
+    if (what == "save") return bench.save();
+    if (what == "wire") {
+        if (!bench.draft()) throw Error("there is no node that waits for wires");
+        bench.connect_draft(word(line, 1), word(line, 2));
+        return true;
+    }
+    // add TYPE GROUP
+    const auto& lanes = bench.picture().lanes;
+    const auto lane = std::ranges::find(lanes, word(line, 2), &PictureLane::name);
+    if (lane == lanes.end()) throw Error(fmt::format("no group '{}'", word(line, 2)));
+    bench.begin_draft(word(line, 1), static_cast<int>(lane - lanes.begin()));
+    return true;
+}
+
+bool Script::wait_for(const Line& line, Desk& desk, Window& window) {
+    const std::string& what = line.words.front();
+    const double waited = ImGui::GetTime() - since_.value_or(0.0);
+    if (what == "wait") return waited >= number(line, 1);
+    if (what == "frames") return pictures_ >= static_cast<int>(number(line, 1));
+    if (what == "screenshot") {
+        // One picture to draw what was done, one to keep.
+        if (pictures_ == 1) window.want_picture();
+        if (pictures_ < 2) return false;
+        write_png(window.picture(), word(line, 1));
+        return true;
+    }
+    if (what == "click" || what == "drag") {
+        const std::size_t last = what == "drag" ? 3 : 1;
+        const double share = std::clamp((pictures_ - 2) / 6.0, 0.0, 1.0);
+        const Point from{number(line, 1), number(line, 2)}, to{number(line, last), number(line, last + 1)};
+        mouse_ = Mouse{from + (to - from) * share, pictures_ >= 1 && pictures_ < 10, false, 0.0};
+        return pictures_ >= 12;
+    }
+    if (what == "wheel") {
+        mouse_ = Mouse{{number(line, 1), number(line, 2)}, false, false, pictures_ == 1 ? number(line, 3) : 0.0};
+        return pictures_ >= 3;
+    }
+    if (waited > longest_wait) throw Error(fmt::format("'{}' did not come about within {} s", what, longest_wait));
+    if (what == "scene") return !desk.take() || desk.take()->scene_is_there();
+    // until SECONDS | until paused | until over
+    const auto status = desk.bench().status();
+    if (word(line, 1) == "paused") return status->state == RunStatus::State::stands;
+    if (word(line, 1) == "over") return status->state == RunStatus::State::over;
+    if (status->state == RunStatus::State::over) throw Error("the run is over: " + status->failure);
+    return status->state != RunStatus::State::loading && status->time >= number(line, 1);
+}
+
+bool Script::perform(const Line& line, Desk& desk, Window& window) {
+    Workbench& bench = desk.bench();
+    const std::string& what = line.words.front();
+    const auto is = [&](auto... names) { return ((what == names) || ...); };
+    if (is("wait", "frames", "screenshot", "click", "drag", "wheel", "scene", "until"))
+        return wait_for(line, desk, window);
+    if (is("set", "reset", "connect", "disconnect", "remove", "rename", "undo", "redo", "save", "wire", "add")) {
+        const bool made = edit(line, desk);
+        if (made == line.is_refused)
+            throw Error(made                       ? "was expected to be refused"
+                        : bench.messages().empty() ? "was refused"
+                                                   : bench.messages().back().text);
+        return true;
+    }
+    if (is("run")) bench.run();
+    else if (is("stop")) bench.stop();
+    else if (is("pause", "resume")) bench.pause(what == "pause");
+    else if (is("record")) bench.record(line.words.size() < 2 || line.words[1] != "off");
+    else if (is("select")) desk.patch().selected = word(line, 1);
+    else if (is("scope")) desk.scopes().add(word(line, 1), line.words.size() > 2 && line.words[2] == "spectrum");
+    else if (is("reference")) desk.scopes().set_reference(word(line, 1));
+    else if (is("freeze")) desk.scopes().freeze(line.words.size() < 2 || line.words[1] != "off");
+    else if (is("export")) {
+        if (!desk.feed()) throw Error("no run");
+        desk.scopes().write(static_cast<std::size_t>(number(line, 1)), *desk.feed(), word(line, 2));
+    } else if (is("fit")) desk.patch().fit();
+    else if (is("look")) desk.patch().look_at(word(line, 1));
+    else if (is("catalogue")) {
+        desk.nodes().wants_catalogue = true;
+        desk.nodes().search = line.words.size() > 1 ? line.words[1] : "";
+    } else if (is("goto")) {
+        if (!desk.take()) throw Error("no take is open");
+        desk.take()->go_to(number(line, 1));
+    } else if (is("hover")) mouse_ = Mouse{{number(line, 1), number(line, 2)}, false, false, 0.0};
+    else if (is("size")) window.resize(static_cast<int>(number(line, 1)), static_cast<int>(number(line, 2)));
+    else if (is("minimise", "restore")) window.minimise(what == "minimise");
+    else if (is("from")) {
+        const auto view = view_of_name(word(line, 1));
+        if (!view) throw Error(fmt::format("no view '{}'", word(line, 1)));
+        desk.scene().look_from(*view);
+    } else if (is("stereo")) desk.scene().stereo = static_cast<StereoMode>(static_cast<int>(number(line, 1)));
+    else if (is("clip")) desk.scene().clip(static_cast<int>(number(line, 1)), number(line, 2));
+    else if (is("measure")) desk.scene().is_measuring = true;
+    else if (is("say")) bench.tell(word(line, 1));
+    else if (is("open")) {
+        if (open) open(word(line, 1));
+    } else closes_ = true;
+    return true;
+}
+
+}  // namespace tactus::view

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// A picture on the graphics card that a panel shows: drawn into with smooth edges, then a texture.
+#pragma once
+
+#include <cstdint>
+
+namespace tactus::view {
+
+/// Of one OpenGL context, which must be current in every call.
+class TextureTarget {
+public:
+    TextureTarget() = default;
+    ~TextureTarget();
+    TextureTarget(const TextureTarget&) = delete;
+    TextureTarget& operator=(const TextureTarget&) = delete;
+
+    /// From here on everything is drawn into it. A new size makes it anew. Throws Error.
+    void begin(int width, int height);
+    /// Gives the window back and resolves what was drawn.
+    void end();
+
+    std::uint32_t texture() const { return texture_; }  ///< its first row is the lowest
+    int width() const { return width_; }
+    int height() const { return height_; }
+
+private:
+    void make(int width, int height);
+    void remove();
+
+    int width_ = 0, height_ = 0;
+    std::uint32_t frame_ = 0, resolved_ = 0, texture_ = 0, buffers_[2] = {};
+};
+
+}  // namespace tactus::view

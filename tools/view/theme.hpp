@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Colours and sizes of the window.
+#pragma once
+
+#include "graph/value.hpp"
+
+#include <cstdint>
+
+namespace tactus::view {
+
+/// As Dear ImGui packs it: alpha, blue, green, red.
+constexpr std::uint32_t colour(std::uint32_t rgb, std::uint32_t alpha = 255) {
+    return alpha << 24 | (rgb & 0xFF) << 16 | (rgb & 0xFF00) | rgb >> 16;
+}
+constexpr std::uint32_t faded(std::uint32_t packed, double share) {
+    return (packed & 0xFFFFFF) | static_cast<std::uint32_t>(static_cast<double>(packed >> 24) * share) << 24;
+}
+
+namespace tone {
+inline constexpr std::uint32_t ground = colour(0x12161d), lane = colour(0x1a202a), lane_edge = colour(0x2a3342),
+                               node = colour(0x262f3d), node_head = colour(0x313c4d), node_edge = colour(0x46546a),
+                               chosen = colour(0xf2b84b), text = colour(0xe8edf4), dim = colour(0x93a1b5),
+                               grid = colour(0x2a3342), bad = colour(0xff5c5c), good = colour(0x46d39a),
+                               warm = colour(0xf2b84b);
+inline constexpr std::uint32_t curves[] = {colour(0x5ab0ff), colour(0xff9f5a), colour(0x6fe3a5), colour(0xd591ff),
+                                           colour(0xffe06b), colour(0xff7b93), colour(0x78e0e6), colour(0xb9c4d4)};
+}  // namespace tone
+
+/// Of a wire by what it carries; null: anything.
+std::uint32_t colour_of(const ValueType* type);
+
+/// Of every widget, for contents that are `scale` times as large as on a common screen.
+void apply_theme(double scale);
+
+}  // namespace tactus::view

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/view.hpp"
+
+#include "dsp/core/error.hpp"
+#include "tools/view/desk.hpp"
+#include "tools/view/script.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <thread>
+
+namespace tactus::view {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+// A screen shows no more, and without one nothing else would hold the window back.
+constexpr auto picture_time = std::chrono::microseconds(16'667);
+
+/// One window, and what stands in it.
+class Viewer {
+public:
+    Viewer(const ViewChoice& view, const std::atomic<bool>& interrupted)
+        : view_(view), interrupted_(interrupted), window_("Tactus", 1600, 1000, view.scale) {
+        if (!view.script.empty()) {
+            script_.emplace(view.script);
+            script_->open = [this](const std::string& what) { wanted_ = what; };
+        }
+    }
+
+    void open_patch(const RunChoice& choice) {
+        close();
+        choice_ = choice;
+        bench_ = std::make_unique<Workbench>(choice);
+        set_up();
+    }
+
+    void open_take(const fs::path& folder) {
+        close();
+        take_ = std::make_unique<TakeBench>(folder);
+        RunChoice choice;
+        choice.patch = (folder / "patch-0.toml").string();
+        choice.overrides = take_->take().about.overrides;
+        choice.seed = take_->take().about.seed;
+        bench_ = std::make_unique<Workbench>(choice);
+        bench_->has_patch_behind = !choice_.patch.empty();
+        set_up();
+    }
+
+    Workbench& bench() { return *bench_; }
+
+    /// Until the window closes. True: the run is to go on without it.
+    bool show() {
+        for (;;) {
+            const auto begin = Clock::now();
+            if (interrupted_) return false;
+            if (window_.begin()) {
+                if (script_) script_->move_mouse();
+                desk_->draw();
+                window_.end();
+            } else bench_->tend();
+            if (script_) script_->step(*desk_, window_);
+            if (!wanted_.empty()) open_wanted();
+            if (bench_->wants_take) open_take(fs::path(bench_->take()));
+            else if (bench_->wants_patch) open_patch(choice_);
+            if (const std::optional<bool> goes_on = farewell()) return *goes_on;
+            std::this_thread::sleep_until(begin + picture_time);
+        }
+    }
+
+private:
+    void close() {
+        desk_.reset();
+        bench_.reset();
+        take_.reset();
+    }
+
+    void set_up() {
+        desk_ = std::make_unique<Desk>(window_, *bench_, take_.get());
+        window_.set_title(fmt::format("{} - Tactus", bench_->title()));
+        if (view_.reference.empty()) return;
+        desk_->scopes().set_reference(view_.reference);
+    }
+
+    void open_wanted() {
+        const std::string what = std::exchange(wanted_, {});
+        if (fs::exists(fs::path(what) / "take.json")) return open_take(what);
+        RunChoice choice = choice_;
+        choice.patch = what;
+        choice.overrides = {};
+        choice.record.clear();
+        open_patch(choice);
+    }
+
+    /// Whether the run goes on, once the window is to close.
+    std::optional<bool> farewell() {
+        using Farewell = Desk::Farewell;
+        const bool runs = bench_->running() && !bench_->running()->is_over();
+        // A run of stated length takes its window along.
+        if (choice_.seconds && bench_->running() && !runs && !script_) return false;
+        if (script_ && script_->wants_to_close()) return view_.keep_running;
+        if (window_.wants_to_close()) {
+            if (!runs) return false;
+            if (view_.keep_running) return true;
+            window_.keep_open();
+            desk_->farewell = Farewell::asks;
+        }
+        if (desk_->farewell == Farewell::goes_on) return true;
+        if (desk_->farewell == Farewell::ends) return false;
+        return std::nullopt;
+    }
+
+    const ViewChoice& view_;
+    const std::atomic<bool>& interrupted_;
+    Window window_;
+    RunChoice choice_;
+    std::optional<Script> script_;
+    std::unique_ptr<TakeBench> take_;
+    std::unique_ptr<Workbench> bench_;
+    std::unique_ptr<Desk> desk_;
+    std::string wanted_;
+
+public:
+    /// Closes the window and leaves the bench with its run.
+    std::unique_ptr<Workbench> let_go() {
+        desk_.reset();
+        return std::move(bench_);
+    }
+};
+
+}  // namespace
+
+int view_run(const RunChoice& choice, const std::atomic<bool>& interrupted) {
+    std::unique_ptr<Workbench> bench;
+    bool goes_on = false;
+    {
+        Viewer viewer(choice.view, interrupted);
+        viewer.open_patch(choice);
+        viewer.bench().run();
+        goes_on = viewer.show();
+        bench = viewer.let_go();
+    }
+    ViewedRun* const run = bench->running();
+    if (!run) return done;
+    if (goes_on && !choice.json) fmt::print(stderr, "the window is closed; the patch runs on, Ctrl-C ends it\n");
+    while (!run->is_over()) {
+        if (!goes_on || interrupted) run->stop();
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    if (const std::string failure = bench->status()->failure; !failure.empty()) throw Error(failure);
+    fmt::print("{}", choice.json ? run->summary_json() : run->summary_text());
+    return done;
+}
+
+int view_take(const TakeViewChoice& choice, const std::atomic<bool>& interrupted) {
+    Viewer viewer(choice.view, interrupted);
+    viewer.open_take(choice.take);
+    viewer.show();
+    return done;
+}
+
+}  // namespace tactus::view

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// The window: on a run, or on a take.
+#pragma once
+
+#include "tools/verbs.hpp"
+
+#include <atomic>
+
+namespace tactus::view {
+
+/// Runs a patch with a window on it. Ends when the window is closed, or with the run when that is to go on.
+/// Throws Error when no window can be opened.
+int view_run(const RunChoice& choice, const std::atomic<bool>& interrupted);
+
+/// Opens a window on a take. Throws Error.
+int view_take(const TakeViewChoice& choice, const std::atomic<bool>& interrupted);
+
+}  // namespace tactus::view

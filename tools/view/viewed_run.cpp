@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/viewed_run.hpp"
+
+#include "dsp/safety/force_limiter.hpp"
+#include "tools/live_table.hpp"
+#include "tools/run_session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace tactus::view {
+
+namespace {
+
+GroupStatus status_of(const GroupRuntime& group) {
+    const GroupTelemetry& t = group.telemetry;
+    const double rate = rate_of(group.plan->period);
+    const double execution_us = t.execution.quantile_ns(0.5) * 1e-3;
+    return {group.plan->name,
+            rate,
+            t.ticks.load(),
+            t.misses.load() + t.skipped.load(),
+            t.lateness.quantile_ns(0.99) * 1e-6,
+            static_cast<double>(t.lateness.max_ns()) * 1e-6,
+            execution_us,
+            execution_us * 1e-6 * rate / group.max_frames};
+}
+
+NodeStatus status_of(const LiveNode& node) {
+    const double period_us = seconds(node.group->plan->period) * 1e6 * node.group->max_frames;
+    const double mean = node.time.mean_ns() * 1e-3;
+    return {node.name, mean, static_cast<double>(node.time.max_ns.load()) * 1e-3, mean / period_us};
+}
+
+}  // namespace
+
+ViewedRun::ViewedRun(RunChoice choice, AssetCache& assets, Observer& observer)
+    : choice_(std::move(choice)), assets_(assets), observer_(observer), thread_([this] { work(); }) {}
+
+ViewedRun::~ViewedRun() {
+    stop_ = true;
+    thread_.join();
+}
+
+void ViewedRun::work() {
+    try {
+        RunSession session(choice_, assets_, &observer_);
+        if (!stop_) session.run({[&] { tend(session); }, [this](const std::string& said) { say(said); }}, stop_);
+        look_at(session);
+        session.finish();
+        {
+            const std::lock_guard lock(lock_);
+            json_ = session.summary_json();
+            text_ = fmt::format("{}  results in {}/\n", session.summary_text(), session.folder().string());
+        }
+        end({});
+    } catch (const std::exception& error) {
+        say(error.what());
+        end(error.what());
+    }
+}
+
+void ViewedRun::end(const std::string& failure) {
+    const std::lock_guard lock(lock_);
+    auto last = std::make_shared<RunStatus>(*status_);
+    last->state = RunStatus::State::over;
+    last->failure = failure;
+    status_ = std::move(last);
+    over_ = true;
+}
+
+void ViewedRun::tend(RunSession& session) {
+    if (session.control()) session.control()->saved = [this] { saved_ = true; };
+    std::vector<std::function<void(RunSession&)>> asked;
+    {
+        const std::lock_guard lock(lock_);
+        asked.swap(asked_);
+    }
+    for (const auto& what : asked) {
+        try {
+            what(session);
+        } catch (const Error& error) {
+            say(error.what());
+        }
+    }
+    constexpr int looks = 5;  // every 100 ms
+    if (tends_++ % looks == 0) look_at(session);
+}
+
+void ViewedRun::look_at(RunSession& session) {
+    Engine& engine = session.engine();
+    RunStatus status;
+    constexpr RunStatus::State states[] = {RunStatus::State::runs, RunStatus::State::fades, RunStatus::State::stands};
+    status.state = states[static_cast<std::size_t>(engine.pausing())];
+    status.time = engine.progress_seconds();
+    status.edits = engine.edits();
+    for (const auto& group : engine.groups()) {
+        if (group->is_over()) continue;
+        status.groups.push_back(status_of(*group));
+        status.force = std::max(status.force, group->telemetry.force_N.load(std::memory_order_relaxed));
+    }
+    for (const auto& node : engine.nodes()) status.nodes.push_back(status_of(*node));
+    for (const auto& slot : engine.outside().devices)
+        for (const DeviceFault& fault : slot->guard.faults())
+            status.faults.push_back(fmt::format("{} at {:.1f} s: {}", slot->name, seconds(fault.tick * slot->period),
+                                                describe(fault.reason)));
+    const std::lock_guard lock(lock_);
+    status_ = std::make_shared<RunStatus>(std::move(status));
+}
+
+std::shared_ptr<const RunStatus> ViewedRun::status() const {
+    const std::lock_guard lock(lock_);
+    return status_;
+}
+
+std::vector<std::string> ViewedRun::messages() {
+    const std::lock_guard lock(lock_);
+    return std::exchange(messages_, {});
+}
+
+void ViewedRun::say(const std::string& text) {
+    const std::lock_guard lock(lock_);
+    messages_.push_back(text);
+}
+
+void ViewedRun::ask(std::function<void(RunSession&)> what) {
+    const std::lock_guard lock(lock_);
+    asked_.push_back(std::move(what));
+}
+
+void ViewedRun::set(const std::string& node, const std::string& param, const std::string& value) {
+    ask([=](RunSession& session) { session.engine().set(node, param, value); });
+}
+
+void ViewedRun::edit(const std::string& text) {
+    ask([text](RunSession& session) {
+        if (!session.control()) throw Error("this run takes no edits (--no-edits)");
+        session.control()->edit(text);
+    });
+}
+
+void ViewedRun::expect(const std::string& text) {
+    ask([text](RunSession& session) {
+        if (session.control()) session.control()->expect(text);
+    });
+}
+
+void ViewedRun::pause(bool wanted) {
+    ask([wanted](RunSession& session) { session.engine().pause(wanted); });
+}
+
+std::string ViewedRun::summary_json() const {
+    const std::lock_guard lock(lock_);
+    return json_;
+}
+
+std::string ViewedRun::summary_text() const {
+    const std::lock_guard lock(lock_);
+    return text_;
+}
+
+}  // namespace tactus::view

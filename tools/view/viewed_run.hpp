@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// A live run on threads of its own, beside a window: what it tells is copied, what it is asked for is queued.
+#pragma once
+
+#include "engine/observer.hpp"
+#include "graph/load_assets.hpp"
+#include "tools/verbs.hpp"
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace tactus {
+class RunSession;
+}
+
+namespace tactus::view {
+
+struct GroupStatus {
+    std::string name;
+    double rate = 0.0;  ///< Hz
+    std::int64_t ticks = 0, missed = 0;
+    double late_p99_ms = 0.0, late_max_ms = 0.0, execution_us = 0.0, load = 0.0;  ///< load: of its period
+};
+struct NodeStatus {
+    std::string name;
+    double mean_us = 0.0, max_us = 0.0, share = 0.0;  ///< of the group's period
+};
+
+struct RunStatus {
+    enum class State { loading, runs, fades, stands, over } state = State::loading;
+    double time = 0.0;  ///< logical, s
+    double force = 0.0;  ///< on the hand, N
+    std::vector<GroupStatus> groups;
+    std::vector<NodeStatus> nodes;
+    std::vector<std::string> faults;
+    std::int64_t edits = 0;
+    std::string failure;  ///< why it is over before its time
+};
+
+class ViewedRun {
+public:
+    /// Starts at once; loading happens on its own thread.
+    ViewedRun(RunChoice choice, AssetCache& assets, Observer& observer);
+    /// Ends the run and waits for it.
+    ~ViewedRun();
+
+    /// At most a tenth of a second old.
+    std::shared_ptr<const RunStatus> status() const;
+    /// What was said since the last call.
+    std::vector<std::string> messages();
+    /// The patch's file was saved since the last call.
+    bool file_was_saved() { return saved_.exchange(false); }
+    bool is_over() const { return over_; }
+
+    void set(const std::string& node, const std::string& param, const std::string& value);
+    void edit(const std::string& text);
+    void expect(const std::string& text);
+    void pause(bool wanted);
+    void stop() { stop_ = true; }
+
+    /// After its end: what the command prints.
+    std::string summary_json() const, summary_text() const;
+
+private:
+    void work();
+    void tend(RunSession& session);
+    void look_at(RunSession& session);
+    void end(const std::string& failure);
+    void say(const std::string& text);
+    void ask(std::function<void(RunSession&)> what);
+
+    RunChoice choice_;
+    AssetCache& assets_;
+    Observer& observer_;
+    mutable std::mutex lock_;
+    std::vector<std::function<void(RunSession&)>> asked_;
+    std::vector<std::string> messages_;
+    std::shared_ptr<const RunStatus> status_ = std::make_shared<RunStatus>();
+    int tends_ = 0;
+    std::string json_, text_;
+    std::atomic<bool> stop_{false}, over_{false}, saved_{false};
+    std::thread thread_;
+};
+
+}  // namespace tactus::view

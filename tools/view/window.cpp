@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#define GL_GLEXT_PROTOTYPES
+#include <GL/glcorearb.h>
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include "tools/view/window.hpp"
+
+#include "devices/display/system_font.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/view/theme.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+namespace tactus::view {
+
+namespace {
+
+std::string last_error;
+
+void keep_error(int, const char* text) { last_error = text; }
+
+}  // namespace
+
+Window::Library::Library() {
+    glfwSetErrorCallback(keep_error);
+    if (!glfwInit())
+        throw Error(fmt::format("no window can be opened: {}; set DISPLAY, or leave out --view", last_error));
+}
+
+Window::Library::~Library() { glfwTerminate(); }
+
+Window::Window(const std::string& title, int width, int height, double scale) {
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, scale == 0.0 ? GLFW_TRUE : GLFW_FALSE);
+    window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+    if (!window_) throw Error(fmt::format("no window with OpenGL 3.3 can be opened: {}", last_error));
+    glfwMakeContextCurrent(window_);
+    glfwSwapInterval(1);
+    float across = 1.0f, down = 1.0f;
+    glfwGetWindowContentScale(window_, &across, &down);
+    scale_ = scale > 0.0 ? scale : std::clamp(static_cast<double>(across), 1.0, 4.0);
+    ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;  // nothing is written beside the patch
+    load_fonts();
+    apply_theme(scale_);
+    if (!ImGui_ImplGlfw_InitForOpenGL(window_, true) || !ImGui_ImplOpenGL3_Init("#version 330"))
+        throw Error("the window's contents cannot be drawn: OpenGL 3.3 refuses their shaders");
+}
+
+Window::~Window() {
+    if (!window_) return;
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+    glfwDestroyWindow(window_);
+}
+
+void Window::load_fonts() {
+    ImGuiIO& io = ImGui::GetIO();
+    // Latin, Greek, punctuation, super- and subscripts, arrows, mathematics, shapes.
+    static const ImWchar glyphs[] = {0x20,   0x17f,  0x370,  0x3ff,  0x2010, 0x205e, 0x2070, 0x209f,
+                                     0x2190, 0x21ff, 0x2200, 0x22ff, 0x25a0, 0x25ff, 0};
+    const auto size = static_cast<float>(std::round(14.0 * scale_));
+    const std::string plain = system_font(false), heavy = system_font(true);
+    if (!plain.empty() && !heavy.empty()) {
+        body = io.Fonts->AddFontFromFileTTF(plain.c_str(), size, nullptr, glyphs);
+        bold = io.Fonts->AddFontFromFileTTF(heavy.c_str(), size, nullptr, glyphs);
+        large = io.Fonts->AddFontFromFileTTF(plain.c_str(), 2.0f * size, nullptr, glyphs);
+    }
+    if (!body) {
+        ImFontConfig config;
+        config.SizePixels = size;
+        body = bold = large = io.Fonts->AddFontDefault(&config);
+    }
+}
+
+bool Window::begin() {
+    glfwPollEvents();
+    if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED)) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        return false;
+    }
+    glfwGetFramebufferSize(window_, &width_, &height_);
+    if (width_ < 1 || height_ < 1) return false;
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    return true;
+}
+
+void Window::end() {
+    ImGui::Render();
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, width_, height_);
+    glClearColor(0.05f, 0.06f, 0.08f, 1.0f);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    if (wants_picture_) {
+        wants_picture_ = false;
+        shown_.width = width_;
+        shown_.height = height_;
+        const auto row = static_cast<std::size_t>(width_) * 3;
+        std::vector<std::uint8_t> upwards(row * static_cast<std::size_t>(height_));
+        glPixelStorei(GL_PACK_ALIGNMENT, 1);
+        glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, upwards.data());
+        shown_.rgb.resize(upwards.size());
+        for (std::size_t y = 0; y < static_cast<std::size_t>(height_); ++y)
+            std::copy_n(upwards.data() + y * row, row,
+                        shown_.rgb.data() + (static_cast<std::size_t>(height_) - 1 - y) * row);
+    }
+    glfwSwapBuffers(window_);
+}
+
+bool Window::wants_to_close() const { return glfwWindowShouldClose(window_) != 0; }
+void Window::keep_open() { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+void Window::resize(int width, int height) { glfwSetWindowSize(window_, width, height); }
+void Window::minimise(bool wanted) {
+    if (wanted) glfwIconifyWindow(window_);
+    else glfwRestoreWindow(window_);
+}
+void Window::want_picture() { wants_picture_ = true; }
+
+}  // namespace tactus::view

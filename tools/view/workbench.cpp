@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/workbench.hpp"
+
+#include "assets/file/whole_file.hpp"
+#include "nodes/catalogue.hpp"
+#include "tools/load_plan.hpp"
+#include "tools/view/patch_change.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace tactus::view {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t most_messages = 200;
+
+std::string_view without_mark(std::string_view text) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    return text;
+}
+
+struct PortLister : MemberVisitor {
+    explicit PortLister(Draft& draft_) : draft(draft_) {}
+    void input(std::string_view name, Input& port) override {
+        draft.inputs.push_back({std::string(name),
+                                std::string(port.about),
+                                std::string(port.unit),
+                                port.type,
+                                port.is_optional,
+                                false,
+                                false,
+                                {}});
+    }
+    void output(std::string_view name, Output& port) override {
+        draft.outputs.push_back(
+            {std::string(name), std::string(port.about), std::string(port.unit), port.type, true, false, false, {}});
+    }
+    Draft& draft;
+};
+
+}  // namespace
+
+bool Draft::is_complete() const {
+    return std::ranges::all_of(inputs, [](const PicturePort& p) { return p.is_optional || p.is_connected; });
+}
+
+Workbench::Workbench(const RunChoice& choice) : choice_(choice) {
+    const fs::path file = find_patch(choice.patch);
+    editor_ = std::make_unique<PatchEditor>(read_whole_file(file), file,
+                                            [this](std::string_view text) { return check(text); });
+    if (const auto problem = check(editor_->text())) tell(*problem, true);
+    adopt();
+    last_take_ = choice.record;
+}
+
+std::string Workbench::title() const {
+    if (plan_ && !plan_->patch.title.empty()) return plan_->patch.title;
+    return editor_->file().stem().string();
+}
+
+void Workbench::tell(std::string text, bool is_problem) {
+    messages_.push_back({std::move(text), is_problem});
+    if (messages_.size() > most_messages) messages_.pop_front();
+}
+
+std::optional<std::string> Workbench::check(std::string_view text) {
+    Problems problems;
+    std::optional<Plan> plan =
+        plan_of(read_patch(without_mark(text), editor_ ? editor_->file() : fs::path(choice_.patch), problems),
+                choice_.overrides, choice_.seed, nullptr, problems);
+    checked_.reset();
+    if (plan && problems.empty()) {
+        checked_ = std::make_unique<Plan>(std::move(*plan));
+        return std::nullopt;
+    }
+    if (problems.empty()) return "the patch does not compile";
+    return problems.list.front().what();
+}
+
+/// Makes the plan that was checked last the one that is shown.
+void Workbench::adopt() {
+    plan_ = std::move(checked_);
+    picture_ = plan_ ? picture_of(*plan_) : PatchPicture{};
+    ++plan_version_;
+}
+
+/// Lets the run take over what the text says now.
+void Workbench::follow(const Plan* before) {
+    if (!run_ || !plan_) return;
+    const std::string text(without_mark(editor_->text()));
+    const PatchChange change = before ? change_between(*before, *plan_) : PatchChange{{}, true};
+    for (const PatchChange::Setting& s : change.settings) run_->set(s.node, s.param, s.value);
+    if (change.needs_edit) run_->edit(text);
+    run_->expect(text);
+}
+
+bool Workbench::edit(const PatchEditor::Edit& how, std::string done) {
+    const std::int64_t version = editor_->version();
+    if (const auto problem = editor_->apply(how)) {
+        tell(*problem, true);
+        return false;
+    }
+    if (editor_->version() == version) return true;
+    const std::unique_ptr<Plan> before = std::move(plan_);
+    adopt();
+    follow(before.get());
+    tell(std::move(done));
+    return true;
+}
+
+bool Workbench::set(const std::string& node, const std::string& param, const std::string& value) {
+    return edit([&](std::string_view text) { return with_setting(text, node, param, value); },
+                fmt::format("{}.{} = {}", node, param, value));
+}
+
+bool Workbench::reset(const std::string& node, const std::string& param) {
+    return edit([&](std::string_view text) { return without_setting(text, node, param); },
+                fmt::format("{}.{} has its default", node, param));
+}
+
+bool Workbench::add(const NewNode& node) {
+    return edit([&](std::string_view text) { return with_node(text, node); },
+                fmt::format("added {} of type {}", node.name, node.type));
+}
+
+bool Workbench::remove(const std::string& node) {
+    return edit([&](std::string_view text) { return without_node(text, node); }, fmt::format("removed {}", node));
+}
+
+bool Workbench::rename(const std::string& from, const std::string& to) {
+    return edit([&](std::string_view text) { return with_node_named(text, from, to); },
+                fmt::format("{} is now {}", from, to));
+}
+
+bool Workbench::connect(const std::string& from, const std::string& to, const std::string& mode) {
+    return edit([&](std::string_view text) { return with_wire(text, {from, to, mode}); },
+                fmt::format("{} -> {}{}{}", from, to, mode.empty() ? "" : " as ", mode));
+}
+
+bool Workbench::disconnect(const std::string& to) {
+    return edit([&](std::string_view text) { return without_wire(text, to); }, fmt::format("no wire to {}", to));
+}
+
+bool Workbench::undo() {
+    if (!editor_->can_undo()) return false;
+    editor_->undo();
+    const std::unique_ptr<Plan> before = std::move(plan_);
+    if (const auto problem = check(editor_->text())) tell(*problem, true);
+    adopt();
+    follow(before.get());
+    return true;
+}
+
+bool Workbench::redo() {
+    if (!editor_->can_redo()) return false;
+    editor_->redo();
+    const std::unique_ptr<Plan> before = std::move(plan_);
+    if (const auto problem = check(editor_->text())) tell(*problem, true);
+    adopt();
+    follow(before.get());
+    return true;
+}
+
+bool Workbench::save() {
+    try {
+        editor_->save();
+        tell(fmt::format("saved {}", editor_->file().string()));
+        return true;
+    } catch (const Error& error) {
+        tell(error.what(), true);
+        return false;
+    }
+}
+
+void Workbench::turn(const std::string& node, const std::string& param, const std::string& value) {
+    if (run_) run_->set(node, param, value);
+}
+
+std::string Workbench::free_name(const std::string& type) const {
+    std::string name = type;
+    for (int i = 2; picture_.find(name) >= 0; ++i) name = fmt::format("{}_{}", type, i);
+    return name;
+}
+
+void Workbench::begin_draft(const std::string& type, int group) {
+    const auto found = std::ranges::find(catalogue(), type, [](const NodeType* t) { return t->name; });
+    if (found == catalogue().end() || !plan_) return tell(fmt::format("no node type '{}'", type), true);
+    Draft draft;
+    draft.node.name = free_name(type);
+    draft.node.type = type;
+    const PlanGroup& lane = plan_->groups[static_cast<std::size_t>(group)];
+    const auto named = std::ranges::find(plan_->patch.groups, lane.name, &PatchGroup::name);
+    if (named != plan_->patch.groups.end()) draft.node.group = lane.name;
+    else draft.node.rate = lane.name;
+    const NodeInstance fresh((*found)->create(), (*found)->destroy);
+    PortLister lister(draft);
+    (*found)->visit(fresh.get(), lister);
+    draft_ = std::move(draft);
+    if (!draft_->is_complete()) return tell(fmt::format("{} needs wires to its inputs", draft_->node.name));
+    const NewNode node = draft_->node;
+    draft_.reset();
+    add(node);
+}
+
+void Workbench::connect_draft(const std::string& from, const std::string& input) {
+    if (!draft_) return;
+    const auto port = std::ranges::find(draft_->inputs, input, &PicturePort::name);
+    if (port == draft_->inputs.end()) return;
+    std::erase_if(draft_->node.wires, [&](const WireText& w) { return w.to.ends_with("." + input); });
+    draft_->node.wires.push_back({from, draft_->node.name + "." + input, {}});
+    port->is_connected = true;
+    if (!draft_->is_complete()) return;
+    const NewNode node = draft_->node;
+    if (add(node)) draft_.reset();
+    else {
+        draft_->node.wires.pop_back();
+        std::ranges::find(draft_->inputs, input, &PicturePort::name)->is_connected = false;
+    }
+}
+
+std::optional<std::string> Workbench::objection(const std::string& from, const std::string& to) const {
+    Problems problems;
+    try {
+        const std::string text = with_wire(editor_->text(), {from, to, {}});
+        plan_of(read_patch(without_mark(text), editor_->file(), problems), choice_.overrides, choice_.seed, nullptr,
+                problems);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    if (problems.empty()) return std::nullopt;
+    return problems.list.front().message();
+}
+
+void Workbench::run() {
+    if (run_ && !run_->is_over()) return;
+    run_.reset();
+    observer_ = std::make_shared<Observer>();
+    ++runs_;
+    RunChoice choice = choice_;
+    choice.patch = editor_->file().string();
+    run_ = std::make_unique<ViewedRun>(choice, assets_, *observer_);
+    // The run begins with the file; what is not saved takes over at once.
+    if (!editor_->is_saved()) follow(nullptr);
+}
+
+void Workbench::stop() {
+    if (run_) run_->stop();
+}
+
+void Workbench::pause(bool wanted) {
+    if (run_) run_->pause(wanted);
+}
+
+void Workbench::record(bool wanted) {
+    run_.reset();
+    choice_.record.clear();
+    if (wanted) {
+        const std::string stem = editor_->file().stem().string();
+        fs::path folder;
+        for (int i = 1; folder.empty() || fs::exists(folder); ++i) folder = fmt::format("{}-take-{}", stem, i);
+        choice_.record = last_take_ = folder;
+        tell(fmt::format("the run begins anew and is recorded in {}", folder.string()));
+    }
+    run();
+}
+
+std::shared_ptr<const RunStatus> Workbench::status() const {
+    static const auto none = [] {
+        auto status = std::make_shared<RunStatus>();
+        status->state = RunStatus::State::over;
+        return status;
+    }();
+    return run_ ? run_->status() : none;
+}
+
+void Workbench::tend() {
+    if (!run_) return;
+    for (std::string& text : run_->messages()) tell(std::move(text));
+    if (!run_->file_was_saved()) return;
+    try {
+        if (!editor_->reload()) return;
+        if (const auto problem = check(editor_->text())) return tell(*problem, true);
+        adopt();
+        tell("the file was saved elsewhere; it is taken over");
+    } catch (const Error& error) {
+        tell(error.what(), true);
+    }
+}
+
+}  // namespace tactus::view

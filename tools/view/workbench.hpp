@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// What can be done with a patch and its run in the window, without the window: the panels and scripts both call this.
+#pragma once
+
+#include "engine/observer.hpp"
+#include "graph/load_assets.hpp"
+#include "graph/patch_edit.hpp"
+#include "graph/patch_editor.hpp"
+#include "graph/plan.hpp"
+#include "tools/verbs.hpp"
+#include "tools/view/patch_picture.hpp"
+#include "tools/view/viewed_run.hpp"
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace tactus::view {
+
+/// A node that is to come, while its inputs still lack wires: only as a whole it can become an edit.
+struct Draft {
+    NewNode node;
+    std::vector<PicturePort> inputs, outputs;
+
+    bool is_complete() const;  ///< every input that needs a wire has one
+};
+
+struct Message {
+    std::string text;
+    bool is_problem = false;
+};
+
+class Workbench {
+public:
+    /// Reads the patch; whether it compiles is told in `messages`. Throws Error when it cannot be read at all.
+    explicit Workbench(const RunChoice& choice);
+
+    const PatchEditor& editor() const { return *editor_; }
+    /// Of the text; null when it does not compile, which only a file saved elsewhere can do.
+    const Plan* plan() const { return plan_.get(); }
+    const PatchPicture& picture() const { return picture_; }
+    /// Rises whenever plan and picture are new.
+    std::int64_t plan_version() const { return plan_version_; }
+    std::string title() const;
+    const std::deque<Message>& messages() const { return messages_; }
+    void tell(std::string text, bool is_problem = false);
+
+    // Edits. False: refused, and `messages` says why; the text is as it was.
+    bool set(const std::string& node, const std::string& param, const std::string& value);
+    bool reset(const std::string& node, const std::string& param);
+    bool add(const NewNode& node);
+    bool remove(const std::string& node);
+    bool rename(const std::string& from, const std::string& to);
+    /// "node.port" to "node.port"; a wire that leads there gives way.
+    bool connect(const std::string& from, const std::string& to, const std::string& mode = {});
+    bool disconnect(const std::string& to);
+    bool undo();
+    bool redo();
+    bool save();
+    /// While a slider moves: the run follows, the text does not yet.
+    void turn(const std::string& node, const std::string& param, const std::string& value);
+
+    /// Begins a draft of that type in a group of the picture; without inputs to wire it becomes an edit at once.
+    void begin_draft(const std::string& type, int group);
+    std::optional<Draft>& draft() { return draft_; }
+    /// Wires an output to an input of the draft; as soon as it is complete it becomes an edit.
+    void connect_draft(const std::string& from, const std::string& input);
+    /// A name of that kind that no node has yet.
+    std::string free_name(const std::string& type) const;
+
+    /// Why that wire cannot be, or nothing.
+    std::optional<std::string> objection(const std::string& from, const std::string& to) const;
+
+    // The run.
+    void run();
+    void stop();
+    void pause(bool wanted);
+    /// Begins the run anew, recorded: a take can be repeated from its beginning only. Again: anew and not recorded.
+    void record(bool wanted);
+    bool is_recording() const { return !choice_.record.empty(); }
+    const std::filesystem::path& take() const { return last_take_; }
+    ViewedRun* running() { return run_.get(); }
+    std::shared_ptr<const RunStatus> status() const;
+    std::shared_ptr<Observer> observer() const { return observer_; }
+    /// Rises with every run that begins: what was seen of the one before is over.
+    int runs() const { return runs_; }
+    const RunChoice& choice() const { return choice_; }
+
+    /// Once per picture.
+    void tend();
+
+    /// Asked for in the window, for who holds this bench: to look at `take()`, or from a take back at its patch.
+    bool wants_take = false, wants_patch = false;
+    bool has_patch_behind = false;  ///< a take that was opened from the run of a patch
+
+private:
+    bool edit(const PatchEditor::Edit& how, std::string done);
+    std::optional<std::string> check(std::string_view text);
+    void adopt();
+    void follow(const Plan* before);
+
+    RunChoice choice_;
+    AssetCache assets_;
+    std::unique_ptr<PatchEditor> editor_;
+    std::unique_ptr<Plan> plan_, checked_;
+    PatchPicture picture_;
+    std::int64_t plan_version_ = 0;
+    std::deque<Message> messages_;
+    std::optional<Draft> draft_;
+    std::shared_ptr<Observer> observer_;
+    std::unique_ptr<ViewedRun> run_;
+    std::filesystem::path last_take_;
+    int runs_ = 0;
+};
+
+}  // namespace tactus::view
