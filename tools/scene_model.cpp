@@ -373,6 +373,9 @@ void SceneModel::show_gripper() {
         SurfacePatch patch;
         constexpr double half = 12e-3;
         add_box(patch, {-half, -half, -half}, {half, half, half}, group_colours[3]);
+        SurfacePatch table;
+        add_square(table, Vec3(0.0), {0.0, 0.0, 1.0}, 120e-3, {0.70, 0.72, 0.74}, 1.0);
+        show(shape_mesh("table", table), {{0.0, 0.0, -10e-3 - half}, {1.0, 0.0, 0.0, 0.0}}, bounds_of(table));
         const double height = number_of(weight.height, 0.0);
         show(shape_mesh("weight", patch), {{0.0, 0.0, height - 10e-3}, {1.0, 0.0, 0.0, 0.0}}, bounds_of(patch), 1.0,
              false);

@@ -49,7 +49,4 @@ View fit_view(const Vec3& low, const Vec3& high, const Vec3& direction, const Ve
 /// pixels.
 Image render_picture(std::span<const PictureMesh> meshes, const View& view, int width, int height);
 
-/// An arrow from `from` to `to` (shaft and head), for forces and paths. `radius` of the shaft in m.
-PictureMesh arrow_mesh(const Vec3& from, const Vec3& to, double radius, const Vec3& colour);
-
 }  // namespace tactus

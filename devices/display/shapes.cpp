@@ -107,25 +107,6 @@ void add_arrow(SurfacePatch& patch, const Vec3& from, const Vec3& to, double rad
     add_band(patch, around, neck, head, to, 0.0, colour);
 }
 
-void add_ring(SurfacePatch& patch, const Vec3& centre, const Vec3& axis, double radius, double thickness,
-              const Vec3& colour) {
-    if (!(glm::length(axis) > 0.0)) return;
-    constexpr int steps = 16;
-    const Around around(axis);
-    const auto first = static_cast<std::uint32_t>(patch.vertices.size());
-    for (int side = 0; side <= sides; ++side)
-        for (int step = 0; step <= steps; ++step) {
-            const double angle = 2.0 * std::numbers::pi * step / steps;
-            const Vec3 out = std::cos(angle) * around.out(side) + std::sin(angle) * around.axis;
-            add_vertex(patch, centre + radius * around.out(side) + thickness * out, out, colour);
-        }
-    for (std::uint32_t side = 0; side < sides; ++side)
-        for (std::uint32_t step = 0; step < steps; ++step) {
-            const std::uint32_t a = first + side * (steps + 1) + step, b = a + steps + 1;
-            patch.triangles.insert(patch.triangles.end(), {a, b, a + 1, a + 1, b, b + 1});
-        }
-}
-
 void add_axes(SurfacePatch& patch, const Pose& pose, double length) {
     const Vec3 colours[] = {{0.80, 0.20, 0.18}, {0.25, 0.60, 0.25}, {0.20, 0.35, 0.80}};
     for (int axis = 0; axis < 3; ++axis) {

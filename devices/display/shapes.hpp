@@ -8,7 +8,7 @@
 
 namespace tactus {
 
-/// Triangles with one normal per corner given by `outwards` of a point are smooth; these are the flat ones.
+/// Flat: its three vertices are its own.
 void add_triangle(SurfacePatch& patch, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& colour,
                   double opacity = 1.0);
 void add_ball(SurfacePatch& patch, const Vec3& centre, double radius, const Vec3& colour);
@@ -16,9 +16,6 @@ void add_ball(SurfacePatch& patch, const Vec3& centre, double radius, const Vec3
 void add_box(SurfacePatch& patch, const Vec3& low, const Vec3& high, const Vec3& colour, const Pose& frame = {});
 /// Shaft and head, the tip at `to`; nothing when both ends are one.
 void add_arrow(SurfacePatch& patch, const Vec3& from, const Vec3& to, double radius, const Vec3& colour);
-/// A ring of an arrow's thickness around an axis, for torques and turns.
-void add_ring(SurfacePatch& patch, const Vec3& centre, const Vec3& axis, double radius, double thickness,
-              const Vec3& colour);
 /// Three thin arrows: x red, y green, z blue.
 void add_axes(SurfacePatch& patch, const Pose& pose, double length);
 /// A saw blade with teeth, as BladeShape describes it.

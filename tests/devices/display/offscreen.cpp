@@ -95,14 +95,14 @@ TEST_CASE("edges are smooth: a pixel on the rim is a mixture") {
 
 TEST_CASE("the same scene gives the same pixels") {
     if (!can_render()) return;
-    const std::array scene{arrow_mesh({0, 0, 0}, {0, 0, 1}, 0.05, {0.2, 0.6, 0.3})};
+    const std::array scene{sphere({0, 0, 0.5}, 0.2, {0.2, 0.6, 0.3})};
     const View view = fit_view({-0.2, -0.2, 0}, {0.2, 0.2, 1}, {1, 1, -0.3});
     const Image once = render_picture(scene, view, 64, 64);
     CHECK(once.rgb == render_picture(scene, view, 64, 64).rgb);
 }
 
 TEST_CASE("malformed meshes and sizes are refused") {
-    PictureMesh mesh = arrow_mesh({0, 0, 0}, {0, 0, 1}, 0.05, {0.2, 0.6, 0.3});
+    PictureMesh mesh = sphere({0, 0, 0.5}, 0.2, {0.2, 0.6, 0.3});
     CHECK_THROWS_AS(render_picture({}, View{}, 0, 10), Error);
     CHECK_THROWS_AS(render_picture({}, View{}, 10, 100000), Error);
     mesh.triangles.back() = static_cast<std::uint32_t>(mesh.positions.size() / 3);
