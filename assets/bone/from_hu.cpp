@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -54,6 +55,44 @@ void close_border(Grid& grey, const Box& inner, float iso) {
             }
 }
 
+// Samples of air that bone is given around it, along each axis.
+std::array<int, 3> reach_of(const Vec3& spacing) {
+    std::array<int, 3> reach{};
+    for (int axis = 0; axis < 3; ++axis)
+        reach[static_cast<std::size_t>(axis)] = 6 + static_cast<int>(std::ceil(air_around / spacing[axis]));
+    return reach;
+}
+
+// Only that part of the volume where bone can be, so that what follows needs memory for no more. Smoothing raises no
+// sample above its neighbours: `passes` samples away from the last one at the threshold there is no bone.
+Grid part_with_bone(Grid hu, float iso, int passes) {
+    Box box{hu.size, {-1, -1, -1}};
+    for (int k = 0; k < hu.size[2]; ++k)
+        for (int j = 0; j < hu.size[1]; ++j) {
+            const float* row = &hu.values[hu.index(0, j, k)];
+            const float* end = row + hu.size[0];
+            const float* first = std::find_if(row, end, [iso](float v) { return v >= iso; });
+            if (first == end) continue;
+            const float* last = end - 1;
+            while (!(*last >= iso)) --last;
+            const std::array<int, 3> low{static_cast<int>(first - row), j, k}, high{static_cast<int>(last - row), j, k};
+            for (std::size_t a = 0; a < 3; ++a) {
+                box.first[a] = std::min(box.first[a], low[a]);
+                box.last[a] = std::max(box.last[a], high[a]);
+            }
+        }
+    if (box.last[0] < 0) return hu;
+    const std::array<int, 3> reach = reach_of(hu.spacing);
+    std::size_t part = 1;
+    for (std::size_t a = 0; a < 3; ++a) {
+        box.first[a] = std::max(0, box.first[a] - reach[a] - passes - 1);
+        box.last[a] = std::min(hu.size[a] - 1, box.last[a] + reach[a] + passes + 1);
+        part *= static_cast<std::size_t>(box.last[a] - box.first[a] + 1);
+    }
+    // A copy of nearly all of it would cost more than it saves.
+    return 2 * part > hu.count() ? std::move(hu) : cut_out(hu, box, air);
+}
+
 // Samples around the components that are kept: some millimetres of air, but only four layers outside the volume, which
 // tell a face where the scan ends.
 Box room_around(const Components& components, std::size_t keep, const Grid& hu) {
@@ -63,10 +102,10 @@ Box room_around(const Components& components, std::size_t keep, const Grid& hu) 
             room.first[a] = std::min(room.first[a], components.boxes[n].first[a]);
             room.last[a] = std::max(room.last[a], components.boxes[n].last[a]);
         }
+    const std::array<int, 3> reach = reach_of(hu.spacing);
     for (std::size_t a = 0; a < 3; ++a) {
-        const int reach = 6 + static_cast<int>(std::ceil(air_around / hu.spacing[static_cast<int>(a)]));
-        room.first[a] = std::max(room.first[a] - reach, -margin);
-        room.last[a] = std::min(room.last[a] + reach, hu.size[a] - 1 + margin);
+        room.first[a] = std::max(room.first[a] - reach[a], -margin);
+        room.last[a] = std::min(room.last[a] + reach[a], hu.size[a] - 1 + margin);
     }
     return room;
 }
@@ -110,8 +149,10 @@ std::string density_calibration() {
 
 HuBone bone_from_hu(Grid hu, const BoneSurface& surface, const RunJobs& run) {
     const float iso = surface.threshold;
+    const int passes = smoothing_passes(hu.spacing);
+    hu = part_with_bone(std::move(hu), iso, passes);
     Grid smooth;
-    for (int pass = smoothing_passes(hu.spacing); pass > 0; --pass)
+    for (int pass = passes; pass > 0; --pass)
         smooth = smoothed(smooth.values.empty() ? Grid(hu) : std::move(smooth), run);
     const Grid& seen = smooth.values.empty() ? hu : smooth;
     Components components = components_above(seen, iso);

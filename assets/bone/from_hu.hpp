@@ -33,8 +33,9 @@ struct HuBone {
 /// samples of room; outside of the volume four layers of air are added, so that a bone cut by its border ends in a flat
 /// face half a voxel outside the last samples. Grey values are smoothed to about 0.3 mm (not at all where voxels are
 /// coarser: any scanner blurs more than that). Throws Error when nothing reaches the threshold. Memory: four bytes per
-/// sample of `hu` (eight where it is smoothed) and eight per sample around the bone; then, when `hu` is gone, 16 per
-/// sample around the bone and about 24 per cell that its surface crosses.
+/// sample of `hu`; then four (eight where it is smoothed) per sample of the box around all that reaches the threshold, or
+/// of `hu` when that box is more than half of it, and eight per sample around the bone; then 16 per sample around the bone
+/// and about 24 per cell that its surface crosses.
 HuBone bone_from_hu(Grid hu, const BoneSurface& surface, const RunJobs& run = run_in_turn);
 
 }  // namespace tactus

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/import.hpp"
 
+#include "assets/bone/from_hu.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/volume/scan_volume.hpp"
 #include "dsp/core/error.hpp"
@@ -241,6 +242,32 @@ TEST_CASE("components are counted and the small ones left out") {
           Approx(4.0 / 3.0 * std::numbers::pi * 8.0).epsilon(0.12));
     options.component = "none";
     CHECK_THROWS_WITH(import_of(ct, options), Contains("'largest', 'all'"));
+}
+
+TEST_CASE("how much air a scan holds around a bone does not change the bone, smoothed or not") {
+    for (const double mm : {0.25, 0.7}) {
+        INFO("voxels of " << mm << " mm");
+        const auto ball = [mm](int air) {
+            const int n = 31 + 2 * air;
+            Grid hu{{n, n, n}, Vec3(-1e-3 * mm * (15 + air)), Vec3(1e-3 * mm), {}};
+            for (int k = 0; k < n; ++k)
+                for (int j = 0; j < n; ++j)
+                    for (int i = 0; i < n; ++i) {
+                        const double away = glm::length(Vec3(i, j, k) - Vec3(15 + air));
+                        hu.values.push_back(
+                            static_cast<float>(std::clamp(300.0 + 900.0 * (9.0 - away), -1000.0, 1500.0)));
+                    }
+            return bone_from_hu(std::move(hu), {300.0f, 1, true}).bone;
+        };
+        // 27 and 50 samples leave more air than a bone is given: the volume is cut to the same room.
+        const Bone some = ball(27), more = ball(50);
+        REQUIRE(some.distance.size == more.distance.size);
+        for (std::size_t n = 0; n < some.distance.values.size(); ++n) {
+            REQUIRE(more.distance.values[n] == Approx(some.distance.values[n]).margin(1e-7));
+            REQUIRE(more.density.values[n] == some.density.values[n]);
+        }
+        CHECK(glm::length(some.distance.origin - more.distance.origin) < 1e-12);
+    }
 }
 
 TEST_CASE("a volume without bone is refused") {
