@@ -54,7 +54,7 @@ Range fitted(Range shown, Range values) {
     const double size = std::max(std::abs(values.low), std::abs(values.high));
     const double air = values.span() > 0.0 ? 0.08 * values.span() : size > 0.0 ? 0.1 * size : 1.0;
     const Range wanted{values.low - air, values.high + air};
-    const bool holds = shown.low <= values.low && shown.high >= values.high;
+    const bool holds = shown.span() > 0.0 && shown.low <= values.low && shown.high >= values.high;
     return holds && shown.span() < 2.0 * wanted.span() ? shown : wanted;
 }
 

@@ -142,7 +142,9 @@ void Desk::draw() {
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0.0f, 0.0f));
     ImGui::BeginChild("left", vec({left, height}));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0.0f, 0.0f));
-    panel("patch", 0.0, patch_height_ * height);
+    // Without scopes the patch has their place.
+    const double bar = 64.0 * fonts_.scale;
+    panel("patch", 0.0, scopes_.list().empty() ? std::max(height - bar, 0.5 * height) : patch_height_ * height);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({8.0 * fonts_.scale, 6.0 * fonts_.scale}));
     patch_.draw(feed(), fonts_, looked_at_);
     ImGui::PopStyleVar();

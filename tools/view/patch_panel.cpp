@@ -40,6 +40,7 @@ void PatchPanel::look_at(const std::string& name) {
     const int index = bench_.picture().find(name);
     if (index < 0) return;
     const Point middle = bench_.picture().nodes[static_cast<std::size_t>(index)].box.middle();
+    follows_size_ = false;
     canvas_.zoom = std::max(canvas_.zoom, 0.9 * unit_);
     canvas_.origin = middle - Point{width_, height_} * (0.5 / canvas_.zoom);
     fits_ = true;
@@ -59,13 +60,15 @@ void PatchPanel::draw(const Feed* feed, const Fonts& fonts, std::set<std::string
     unit_ = fonts.scale;
     corner_ = point(ImGui::GetCursorScreenPos());
     const Point size = point(ImGui::GetContentRegionAvail());
+    // A picture that was fitted is fitted again when its place becomes another.
+    if (follows_size_ && (width_ != size.x || height_ != size.y)) fits_ = false;
     width_ = size.x;
     height_ = size.y;
     if (width_ < 8.0 || height_ < 8.0) return;
     notice_new_plan();
     if (!fits_ && !picture.nodes.empty()) {
         canvas_.fit(picture.bounds, width_, height_, unit_);
-        fits_ = true;
+        fits_ = follows_size_ = true;
     }
     ImGui::InvisibleButton(
         "canvas", vec(size),

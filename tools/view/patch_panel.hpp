@@ -59,7 +59,7 @@ private:
     Canvas canvas_;
     Point corner_;
     double width_ = 0.0, height_ = 0.0, unit_ = 1.0;
-    bool fits_ = false;
+    bool fits_ = false, follows_size_ = true;
     std::int64_t plan_version_ = -1;
     Wiring wiring_;
     Hit hovered_, menu_;

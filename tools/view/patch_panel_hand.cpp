@@ -13,7 +13,10 @@ void PatchPanel::handle_mouse() {
     const ImGuiIO& io = ImGui::GetIO();
     const Point mouse = point(io.MousePos) - corner_;
     const bool inside = ImGui::IsItemHovered();
-    if (inside && io.MouseWheel != 0.0f) canvas_.zoom_at(mouse, std::pow(1.15, static_cast<double>(io.MouseWheel)));
+    if (inside && io.MouseWheel != 0.0f) {
+        canvas_.zoom_at(mouse, std::pow(1.15, static_cast<double>(io.MouseWheel)));
+        follows_size_ = false;
+    }
     if (inside || wiring_.node >= 0)
         hovered_ = hit(bench_.picture(), canvas_.to_world(mouse), 7.0 / std::max(canvas_.zoom, 0.3));
     else hovered_ = {};
@@ -33,7 +36,10 @@ void PatchPanel::handle_mouse() {
         ImGui::IsItemActive() && wiring_.node < 0 &&
         (ImGui::IsMouseDragging(ImGuiMouseButton_Left, 3.0f) || ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 3.0f) ||
          ImGui::IsMouseDragging(ImGuiMouseButton_Right, 3.0f));
-    if (drags_ground) canvas_.pan(point(io.MouseDelta));
+    if (drags_ground) {
+        canvas_.pan(point(io.MouseDelta));
+        follows_size_ = false;
+    }
     if (inside && ImGui::IsMouseReleased(ImGuiMouseButton_Right) && io.MouseDragMaxDistanceSqr[1] < 16.0f &&
         hovered_.what != Hit::What::nothing) {
         menu_ = hovered_;

@@ -97,6 +97,7 @@ void take_line(Workbench& bench, TakeBench& take) {
         take.go_to(static_cast<double>(at));
     ImGui::SameLine();
     words(take.scene_note(), tone::dim);
+    ImGui::NewLine();
 }
 
 }  // namespace

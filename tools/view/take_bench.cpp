@@ -2,7 +2,9 @@
 #include "tools/view/take_bench.hpp"
 
 #include "engine/engine.hpp"
+#include "tools/load_plan.hpp"
 #include "tools/replayed_take.hpp"
+#include "tools/scene_outline.hpp"
 
 #include <fmt/format.h>
 
@@ -17,10 +19,33 @@ namespace {
 /// Ends a repetition that nobody waits for any more.
 struct Outdated {};
 
+/// What is seen of a run is there for as long as the run is.
+struct Repetition {
+    Observer observer{Observer::Pace::lossless};
+    std::unique_ptr<ReplayedTake> run;
+};
+
+/// What the scenes of all patches of a take need; a text that does not compile needs nothing.
+std::set<std::string> scene_ports(const Take& take) {
+    std::vector<std::string> texts{take.text};
+    for (const auto& event : take.events)
+        if (const auto* edit = std::get_if<TakenEdit>(&event)) texts.push_back(edit->text);
+    std::set<std::string> all;
+    for (const std::string& text : texts) {
+        Problems problems;
+        const std::optional<Plan> plan = plan_of(read_patch(text, take.about.patch_file, problems),
+                                                 take.about.overrides, take.about.seed, nullptr, problems);
+        if (!plan) continue;
+        const std::vector<std::string> ports = outline_of(*plan).ports();
+        all.insert(ports.begin(), ports.end());
+    }
+    return all;
+}
+
 }  // namespace
 
 TakeBench::TakeBench(const std::filesystem::path& folder)
-    : take_(Take::load(folder)), feed_(take_), thread_([this] { work(); }) {}
+    : take_(Take::load(folder)), feed_(take_), scene_ports_(scene_ports(take_)), thread_([this] { work(); }) {}
 
 TakeBench::~TakeBench() { ends_ = true; }
 
@@ -83,22 +108,21 @@ void TakeBench::work() {
 }
 
 void TakeBench::repeat_until(double seconds) {
-    auto observer = std::make_shared<Observer>(Observer::Pace::lossless);
+    const auto repetition = std::make_shared<Repetition>();
+    Observer& observer = repetition->observer;
     EngineOptions options;
-    options.observer = observer.get();
+    options.observer = &observer;
     options.hash = options.time_nodes = false;
     // At least one tick of everything: what nodes begin with is only there when they were prepared.
     options.seconds = std::max(seconds, 1e-3);
-    ReplayedTake repeated(take_, options, assets_);
-    for (const Observer::Port& port : observer->ports())
-        if (port.type->version || port.type == &value::pose || port.type == &value::wrench)
-            observer->watch(port.name, Watch::latest);
-    repeated.engine().render(1, [&](double) {
+    repetition->run = std::make_unique<ReplayedTake>(take_, options, assets_);
+    for (const std::string& port : scene_ports_) observer.watch(port, Watch::latest);
+    repetition->run->engine().render(1, [&](double) {
         if (ends_) throw Outdated();
     });
-    observer->advance();
+    observer.advance();
     const std::lock_guard lock(lock_);
-    made_scene_ = std::move(observer);
+    made_scene_ = std::shared_ptr<Observer>(repetition, &observer);
     made_ = seconds;
 }
 

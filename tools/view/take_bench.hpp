@@ -12,6 +12,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 
@@ -46,6 +47,7 @@ private:
     Take take_;
     TakeFeed feed_;
     AssetCache assets_;
+    const std::set<std::string> scene_ports_;
     bool is_playing_ = false;
     mutable std::mutex lock_;
     double wanted_ = 0.0, made_ = -1.0;

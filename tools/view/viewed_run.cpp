@@ -46,7 +46,8 @@ ViewedRun::~ViewedRun() {
 
 void ViewedRun::work() {
     try {
-        RunSession session(choice_, assets_, &observer_);
+        session_ = std::make_unique<RunSession>(choice_, assets_, &observer_);
+        RunSession& session = *session_;
         if (!stop_) session.run({[&] { tend(session); }, [this](const std::string& said) { say(said); }}, stop_);
         look_at(session);
         session.finish();

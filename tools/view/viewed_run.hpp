@@ -83,6 +83,7 @@ private:
     std::shared_ptr<const RunStatus> status_ = std::make_shared<RunStatus>();
     int tends_ = 0;
     std::string json_, text_;
+    std::unique_ptr<RunSession> session_;  // also when it is over: what was seen last stays to be seen
     std::atomic<bool> stop_{false}, over_{false}, saved_{false};
     std::thread thread_;
 };

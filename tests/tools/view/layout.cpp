@@ -108,6 +108,7 @@ TEST_CASE("an axis keeps its range while the values still fill it, and follows t
     CHECK(fitted(first, {-1.0, 5.0}).high > 5.0);
     CHECK(fitted(first, {0.0, 0.1}).span() < 0.2);
     CHECK(fitted(first, {2.0, 2.0}).span() > 0.0);
+    CHECK(fitted({0.0, 0.0}, {0.0, 0.0}).span() > 0.0);
     CHECK(fitted(first, {1.0, -1.0}) == first);
 }
 
