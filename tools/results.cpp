@@ -44,9 +44,7 @@ Image picture_of(const Bone& bone, const std::string& name, const Vec3& towards)
     for (int b = 0; b < editor.layout().brick_count(); ++b) {
         mesher.make(editor.current(), static_cast<std::uint32_t>(b), patch);
         meshes.set_part(picture.meshes.front().mesh, static_cast<std::uint32_t>(b), patch);
-        for (const SurfaceVertex& v : patch.vertices)
-            picture.bounds.add(Vec3(static_cast<double>(v.position[0]), static_cast<double>(v.position[1]),
-                                    static_cast<double>(v.position[2])));
+        picture.bounds.add(bounds_of(patch));
     }
     OrbitCamera camera;
     camera.look_along(towards, std::abs(towards.z) < 0.9 ? Vec3(0.0, 0.0, 1.0) : Vec3(0.0, -1.0, 0.0));

@@ -2,7 +2,8 @@
 #include "tools/scene_model.hpp"
 
 #include "devices/display/shapes.hpp"
-#include "dsp/distance/surface_net.hpp"
+#include "tools/body_surface.hpp"
+#include "tools/scene_colours.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -12,74 +13,9 @@
 
 namespace tactus {
 
+using namespace scene_colours;
+
 namespace {
-
-const Vec3 steel{0.62, 0.65, 0.70}, force_colour{0.86, 0.20, 0.16}, hand_colour{0.25, 0.45, 0.85},
-    proxy_colour{0.95, 0.60, 0.12}, paint_colour{0.90, 0.38, 0.30}, still_colour{0.80, 0.79, 0.75};
-// One colour for each place of a scene, apart also for most colour-blind eyes.
-const std::array<Vec3, Scene::most_objects> group_colours{{{0.88, 0.83, 0.70},
-                                                           {0.42, 0.62, 0.80},
-                                                           {0.55, 0.72, 0.45},
-                                                           {0.83, 0.62, 0.45},
-                                                           {0.66, 0.55, 0.76},
-                                                           {0.45, 0.72, 0.70},
-                                                           {0.82, 0.72, 0.42},
-                                                           {0.78, 0.52, 0.58}}};
-constexpr double painted_within = 0.9e-3;  // m from a painted point
-
-/// Painted points by cells of a grid.
-class Paint {
-public:
-    explicit Paint(const SeenBody& body) {
-        for (std::size_t i = 0; i < body.points.size() && i < body.labels.size(); ++i)
-            if (body.labels[i] == surface_label::fracture) cells_[cell_of(body.points[i])].push_back(body.points[i]);
-    }
-    bool empty() const { return cells_.empty(); }
-    bool covers(const Vec3& at) const {
-        const Key middle = cell_of(at);
-        for (int n = 0; n < 27; ++n) {
-            const auto found = cells_.find({middle[0] + n % 3 - 1, middle[1] + n / 3 % 3 - 1, middle[2] + n / 9 - 1});
-            if (found == cells_.end()) continue;
-            for (const Vec3& point : found->second)
-                if (glm::dot(point - at, point - at) < painted_within * painted_within) return true;
-        }
-        return false;
-    }
-
-private:
-    using Key = std::array<int, 3>;
-    static Key cell_of(const Vec3& at) {
-        const Vec3 cell = glm::floor(at / painted_within);
-        return {static_cast<int>(cell.x), static_cast<int>(cell.y), static_cast<int>(cell.z)};
-    }
-    std::map<Key, std::vector<Vec3>> cells_;
-};
-
-/// Two triangles for each crossing edge of the grid, its vertices drawn onto the surface.
-SurfacePatch patch_of(const Voxmap& field, const Paint& paint, const Vec3& colour, Bounds& bounds) {
-    const SurfaceNet net = surface_net(field.grid, 0.0f, false);
-    SurfacePatch patch;
-    for (const Vec3& vertex : net.vertices) {
-        const Sample rough = field.sample(vertex);
-        const double steep = glm::dot(rough.gradient, rough.gradient);
-        const Vec3 at = steep > 0.25 ? vertex - rough.gradient * (rough.value / steep) : vertex;
-        patch.vertices.push_back({{static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)},
-                                  packed_normal(field.smooth_sample(at).gradient),
-                                  packed_colour(paint.covers(at) ? paint_colour : colour)});
-        bounds.add(at);
-    }
-    for (const auto& triangle : net.triangles)
-        for (const int corner : triangle) patch.triangles.push_back(static_cast<std::uint32_t>(corner));
-    return patch;
-}
-
-Bounds bounds_of(const SurfacePatch& patch) {
-    Bounds bounds;
-    for (const SurfaceVertex& v : patch.vertices)
-        bounds.add(Vec3(static_cast<double>(v.position[0]), static_cast<double>(v.position[1]),
-                        static_cast<double>(v.position[2])));
-    return bounds;
-}
 
 std::string node_of(const std::string& port) { return port.substr(0, port.find('.')); }
 
@@ -216,11 +152,12 @@ SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, std::size_t pla
         BodyMesh& mesh = bodies_[content];
         mesh.body = body;
         mesh.field = make_voxmap(body->distance);
-        const Paint paint(*body);
-        mesh.has_paint = !paint.empty();
+        BodySurface surface =
+            make_body_surface(*body, mesh.field, group_colours[place % group_colours.size()], paint_colour);
+        mesh.has_paint = surface.has_paint;
+        mesh.bounds = surface.bounds;
         mesh.mesh = renderer_.meshes().make();
-        renderer_.meshes().set_part(
-            mesh.mesh, 0, patch_of(mesh.field, paint, group_colours[place % group_colours.size()], mesh.bounds));
+        renderer_.meshes().set_part(mesh.mesh, 0, surface.patch);
         return &mesh;
     }
     return nullptr;
@@ -311,76 +248,6 @@ void SceneModel::show_force(const std::string& port, const Vec3& at) {
     legend_.entries.push_back({fmt::format("{}: {:.1f} N", port, size), force_colour});
     // 10 N are half as long as the scene.
     if (size > 0.02) add_arrow(notes_, at, at + force * (0.1 * reach), 0.014 * reach, force_colour);
-}
-
-void SceneModel::show_blades() {
-    for (const auto& blade : outline_.blades) {
-        const auto pose = pose_of(blade.pose);
-        if (!pose) continue;
-        SurfacePatch patch;
-        add_blade(patch, blade.shape, steel);
-        // Room for the way that it will go.
-        show(shape_mesh("blade " + blade.node, patch), *pose, bounds_of(patch), 1.0, false, false);
-        tool_ = pose->apply({0.0, -0.2, 0.0});  // on the hand's side, however deep the teeth are
-        show_force(blade.wrench, pose->position);
-    }
-}
-
-void SceneModel::show_balls() {
-    for (std::size_t i = 0; i < outline_.fixed_balls.size(); ++i) {
-        SurfacePatch patch;
-        add_ball(patch, outline_.fixed_balls[i].centre, outline_.fixed_balls[i].radius, still_colour);
-        show(shape_mesh(fmt::format("fixed ball {}", i), patch), {}, bounds_of(patch));
-    }
-    for (const auto& ball : outline_.balls) {
-        SurfacePatch patch;
-        const auto proxy = pose_of(ball.pose), hand = pose_of(ball.hand);
-        if (hand) {
-            add_ball(patch, Vec3(0.0), ball.radius, hand_colour);
-            show(shape_mesh("hand of " + ball.pose, patch), *hand, bounds_of(patch), 1.0, false);
-            legend_.entries.push_back({"hand", hand_colour});
-        }
-        if (!proxy) continue;
-        patch = {};
-        add_ball(patch, Vec3(0.0), ball.radius, proxy_colour);
-        show(shape_mesh(ball.pose, patch), *proxy, bounds_of(patch), hand ? 0.75 : 1.0, false);
-        legend_.entries.push_back({hand ? "proxy" : "tool", proxy_colour});
-        show_force(ball.wrench, proxy->position);
-    }
-}
-
-void SceneModel::show_gripper() {
-    constexpr double opening = 50e-3;
-    for (const auto& fingers : outline_.fingers) {
-        const Pose hand = pose_of(fingers.hand).value_or(Pose{});
-        const double finger = number_of(fingers.finger, 0.0), thumb = number_of(fingers.thumb, 0.0);
-        SurfacePatch patch;
-        add_box(patch, {-4e-3, -9e-3, -25e-3}, {4e-3, 9e-3, 25e-3}, steel);
-        SurfacePatch body;
-        add_box(body, {-45e-3, -14e-3, 25e-3}, {45e-3, 14e-3, 45e-3}, {0.42, 0.45, 0.50});
-        const Vec3 left(-0.5 * opening - 4e-3 + thumb, 0.0, 0.0), right(0.5 * opening + 4e-3 - finger, 0.0, 0.0);
-        show(shape_mesh("finger", patch), hand * Pose{left, {1.0, 0.0, 0.0, 0.0}}, bounds_of(patch), 1.0, false);
-        show(shape_mesh("finger", patch), hand * Pose{right, {1.0, 0.0, 0.0, 0.0}}, bounds_of(patch), 1.0, false);
-        show(shape_mesh("gripper", body), hand, bounds_of(body), 1.0, false);
-        const double force = number_of(fingers.force, 0.0);
-        legend_.entries.push_back({fmt::format("{}: {:.1f} mm closed", fingers.finger, finger * 1e3), steel});
-        legend_.entries.push_back({fmt::format("{}: {:.1f} N", fingers.force, force), force_colour});
-        // From outside, towards the way that the hand presses.
-        const Vec3 at = hand.apply(right + Vec3(4e-3, 0.0, -10e-3)), along = hand.rotate(Vec3(1.0, 0.0, 0.0));
-        if (std::abs(force) > 0.02) add_arrow(notes_, at + along * (force * 5e-3), at, 1.2e-3, force_colour);
-    }
-    for (const auto& weight : outline_.weights) {
-        SurfacePatch patch;
-        constexpr double half = 12e-3;
-        add_box(patch, {-half, -half, -half}, {half, half, half}, group_colours[3]);
-        SurfacePatch table;
-        add_square(table, Vec3(0.0), {0.0, 0.0, 1.0}, 120e-3, {0.70, 0.72, 0.74}, 1.0);
-        show(shape_mesh("table", table), {{0.0, 0.0, -10e-3 - half}, {1.0, 0.0, 0.0, 0.0}}, bounds_of(table));
-        const double height = number_of(weight.height, 0.0);
-        show(shape_mesh("weight", patch), {{0.0, 0.0, height - 10e-3}, {1.0, 0.0, 0.0, 0.0}}, bounds_of(patch), 1.0,
-             false);
-        legend_.entries.push_back({fmt::format("weight, lifted by {:.1f} mm", height * 1e3), group_colours[3]});
-    }
 }
 
 }  // namespace tactus

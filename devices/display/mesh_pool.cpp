@@ -10,6 +10,14 @@
 
 namespace tactus {
 
+Bounds bounds_of(const SurfacePatch& patch) {
+    Bounds bounds;
+    for (const SurfaceVertex& v : patch.vertices)
+        bounds.add(Vec3(static_cast<double>(v.position[0]), static_cast<double>(v.position[1]),
+                        static_cast<double>(v.position[2])));
+    return bounds;
+}
+
 std::size_t BufferShelf::room_for(std::size_t count) { return std::bit_ceil(std::max<std::size_t>(count, 64)); }
 
 std::size_t BufferShelf::take(std::size_t count) {

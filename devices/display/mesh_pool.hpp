@@ -4,6 +4,7 @@
 #pragma once
 
 #include "dsp/view/brick_surface.hpp"
+#include "dsp/view/camera.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +12,9 @@
 #include <vector>
 
 namespace tactus {
+
+/// The box around its vertices.
+Bounds bounds_of(const SurfacePatch& patch);
 
 /// Places in a long buffer, in powers of two, so that what is given back fits again.
 class BufferShelf {

@@ -54,9 +54,7 @@ Image render_picture(std::span<const PictureMesh> meshes, const View& view, int 
     for (const SurfacePatch& patch : patches) {
         picture.meshes.push_back({maker.renderer().meshes().make(), {}, 1.0, false});
         maker.renderer().meshes().set_part(picture.meshes.back().mesh, 0, patch);
-        for (const SurfaceVertex& v : patch.vertices)
-            picture.bounds.add(Vec3(static_cast<double>(v.position[0]), static_cast<double>(v.position[1]),
-                                    static_cast<double>(v.position[2])));
+        picture.bounds.add(bounds_of(patch));
     }
     DrawnView drawn{{glm::lookAt(view.eye, view.target, view.up), Mat4(1.0), false}, 0, 0, width, height, Channel::all};
     const auto [near, far] = depth_range(drawn.projection.to_eye, picture.bounds);

@@ -16,8 +16,6 @@ namespace tactus {
 
 namespace {
 
-using Shader = std::pair<const char*, const char*>;
-
 Mat4 matrix_of(const Pose& pose) {
     Mat4 matrix = glm::mat4_cast(pose.orientation);
     matrix[3] = glm::dvec4(pose.position, 1.0);
@@ -30,6 +28,17 @@ void set(GLint location, const Mat4& value) {
 }
 void set(GLint location, const Vec3& value) {
     glUniform3f(location, static_cast<float>(value.x), static_cast<float>(value.y), static_cast<float>(value.z));
+}
+
+/// The clip plane as the mesh sees it: what is below zero of it is taken away.
+void set_clip(const GlProgram& program, const Picture& picture, const DrawnMesh& drawn) {
+    glm::vec4 plane(0.0f, 0.0f, 0.0f, 1.0f);
+    if (picture.clip && drawn.is_clipped) {
+        const Pose back = drawn.pose.inverse();
+        const Vec3 normal = back.rotate(picture.clip->normal), point = back.apply(picture.clip->point);
+        plane = glm::vec4(glm::dvec4(-normal, glm::dot(normal, point)));
+    }
+    glUniform4fv(program.uniform("keep"), 1, glm::value_ptr(plane));
 }
 
 void check_version() {
@@ -117,17 +126,8 @@ void SceneRenderer::draw_meshes(const Picture& picture, const Projection& projec
         const Mat4 to_world = matrix_of(drawn.pose);
         set(program.uniform("to_eye"), projection.to_eye * to_world);
         glUniform1f(program.uniform("opacity"), static_cast<float>(drawn.opacity));
-        const bool is_cut = picture.clip && drawn.is_clipped;
-        glm::dvec4 plane(0.0, 0.0, 0.0, 1.0);
-        if (is_cut) {
-            // Seen from the mesh: height below the plane.
-            const Pose back = drawn.pose.inverse();
-            const Vec3 normal = back.rotate(picture.clip->normal), point = back.apply(picture.clip->point);
-            plane = glm::dvec4(-normal, glm::dot(normal, point));
-        }
-        glUniform4f(program.uniform("keep"), static_cast<float>(plane.x), static_cast<float>(plane.y),
-                    static_cast<float>(plane.z), static_cast<float>(plane.w));
-        glUniform1i(program.uniform("is_cut"), is_cut ? 1 : 0);
+        set_clip(program, picture, drawn);
+        glUniform1i(program.uniform("is_cut"), picture.clip && drawn.is_clipped ? 1 : 0);
         if (see_through) {
             // The far side first, so that a body shines through itself in one order only.
             glEnable(GL_CULL_FACE);
@@ -248,14 +248,7 @@ std::optional<Picked> SceneRenderer::pick(const Picture& picture, const DrawnVie
         const DrawnMesh& drawn = picture.meshes[i];
         if (drawn.opacity < 1.0 || !is_valid(drawn.pose)) continue;
         set(program.uniform("to_eye"), view.projection.to_eye * matrix_of(drawn.pose));
-        glm::dvec4 plane(0.0, 0.0, 0.0, 1.0);
-        if (picture.clip && drawn.is_clipped) {
-            const Pose back = drawn.pose.inverse();
-            const Vec3 normal = back.rotate(picture.clip->normal), point = back.apply(picture.clip->point);
-            plane = glm::dvec4(-normal, glm::dot(normal, point));
-        }
-        glUniform4f(program.uniform("keep"), static_cast<float>(plane.x), static_cast<float>(plane.y),
-                    static_cast<float>(plane.z), static_cast<float>(plane.w));
+        set_clip(program, picture, drawn);
         glUniform1ui(program.uniform("number"), static_cast<GLuint>(i + 1));
         pool_->draw(drawn.mesh);
     }
