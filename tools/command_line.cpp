@@ -2,6 +2,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
 #include "tools/analysis_options.hpp"
+#include "tools/plan_options.hpp"
 #include "tools/snap_options.hpp"
 #include "tools/verbs.hpp"
 
@@ -345,6 +346,8 @@ int command_line(int argc, char** argv) {
     add_analysis_verbs(app, analysis);
     SnapChoices fitting;
     add_snap_verbs(app, fitting);
+    PlanChoice plan;
+    add_plan_verbs(app, plan);
 
     BenchChoice bench;
     CLI::App* bench_app =
@@ -397,6 +400,7 @@ int command_line(int argc, char** argv) {
         if (app.got_subcommand("equalise")) return equalise_verb(equalise);
         if (app.got_subcommand("fracture")) return fracture_verb(fitting.fracture);
         if (app.got_subcommand("snap")) return snap_verb(fitting.snap);
+        if (app.got_subcommand("plan")) return plan_verb(app, plan);
         if (app.got_subcommand("info")) return info_verb(info);
         if (app.got_subcommand("export")) return export_verb(bone_export);
         return import_verb(import);

@@ -3,7 +3,9 @@
 
 #include "dsp/core/error.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -53,7 +55,19 @@ void add_file(Hash& hash, const std::filesystem::path& path) {
     }
 }
 
-void write_whole_file(const std::filesystem::path& path, std::string_view bytes) {
+namespace {
+
+enum class Disk { whenever, now };
+
+/// The names of a folder reach the disk. A file system that cannot say so is left to itself.
+void sync_folder(const std::filesystem::path& folder) {
+    const int handle = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (handle < 0) return;
+    ::fsync(handle);
+    ::close(handle);
+}
+
+void write_beside(const std::filesystem::path& path, std::string_view bytes, Disk disk) {
     const std::filesystem::path part = path.string() + ".part";
     const auto fail = [&](int code) {
         std::error_code ignored;
@@ -62,12 +76,24 @@ void write_whole_file(const std::filesystem::path& path, std::string_view bytes)
     };
     std::FILE* file = std::fopen(part.c_str(), "wb");
     if (!file) throw Error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
-    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() && std::fflush(file) == 0;
+    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() && std::fflush(file) == 0 &&
+                         (disk == Disk::whenever || ::fsync(::fileno(file)) == 0);
     const int write_code = errno;
     const bool closed = std::fclose(file) == 0;
     if (!written) fail(write_code);
     if (!closed) fail(errno);
     if (std::rename(part.c_str(), path.c_str()) != 0) fail(errno);
+    if (disk == Disk::now) sync_folder(path.parent_path());
+}
+
+}  // namespace
+
+void write_whole_file(const std::filesystem::path& path, std::string_view bytes) {
+    write_beside(path, bytes, Disk::whenever);
+}
+
+void write_durable_file(const std::filesystem::path& path, std::string_view bytes) {
+    write_beside(path, bytes, Disk::now);
 }
 
 }  // namespace tactus

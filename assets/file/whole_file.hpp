@@ -19,4 +19,8 @@ void add_file(Hash& hash, const std::filesystem::path& path);
 /// Writes `bytes` to `path` + ".part" and renames it. On failure nothing is left behind and Error is thrown.
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
 
+/// The same, and the disk has both the bytes and the name before it returns: after a power failure the old file or the
+/// new one is there.
+void write_durable_file(const std::filesystem::path& path, std::string_view bytes);
+
 }  // namespace tactus

@@ -27,4 +27,14 @@ void write_png(const Image& image, const std::string& path) {
     if (failure) throw Error(fmt::format("cannot rename '{}' to '{}': {}", part, path, failure.message()));
 }
 
+std::string png_bytes(const Image& image) {
+    std::string bytes;
+    const auto append = [](void* to, void* data, int size) {
+        static_cast<std::string*>(to)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
+    };
+    if (stbi_write_png_to_func(append, &bytes, image.width, image.height, 3, image.rgb.data(), 3 * image.width) == 0)
+        throw Error("a picture cannot be compressed");
+    return bytes;
+}
+
 }  // namespace tactus

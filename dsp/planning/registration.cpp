@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/planning/registration.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/coupling/symmetric6.hpp"
+#include "dsp/operator/hand.hpp"
+#include "dsp/snap/neighbours.hpp"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace tactus {
+
+namespace {
+
+constexpr double least_cosine = 0.5;
+
+std::vector<Vec3> positions_of(std::span<const SurfacePoint> points) {
+    std::vector<Vec3> positions;
+    positions.reserve(points.size());
+    for (const SurfacePoint& p : points) positions.push_back(p.position);
+    return positions;
+}
+
+struct Spread {
+    Vec3 middle{0.0};
+    Mat3 axes{1.0};  ///< columns, longest first
+    double gyration = 0.0;
+};
+
+/// Middle and main axes of the surface, by Jacobi's rotations.
+Spread spread_of(std::span<const SurfacePoint> points) {
+    Spread spread;
+    double area = 0.0;
+    for (const SurfacePoint& p : points) spread.middle += p.area * p.position, area += p.area;
+    spread.middle /= area;
+    Mat3 m(0.0);
+    for (const SurfacePoint& p : points) {
+        const Vec3 r = p.position - spread.middle;
+        m += p.area / area * glm::outerProduct(r, r);
+    }
+    spread.gyration = std::sqrt(m[0][0] + m[1][1] + m[2][2]);
+    Mat3 v(1.0);
+    for (int sweep = 0; sweep < 20; ++sweep)
+        for (int p = 0; p < 2; ++p)
+            for (int q = p + 1; q < 3; ++q) {
+                if (m[p][q] == 0.0) continue;
+                const double theta = 0.5 * std::atan2(2.0 * m[p][q], m[q][q] - m[p][p]);
+                Mat3 turn(1.0);
+                turn[p][p] = turn[q][q] = std::cos(theta);
+                turn[q][p] = std::sin(theta);
+                turn[p][q] = -std::sin(theta);
+                m = glm::transpose(turn) * m * turn;
+                v = v * turn;
+            }
+    std::array<int, 3> order{0, 1, 2};
+    std::ranges::sort(order, [&](int a, int b) { return m[a][a] > m[b][b]; });
+    spread.axes = Mat3(v[order[0]], v[order[1]], v[order[2]]);
+    if (glm::determinant(spread.axes) < 0.0) spread.axes[2] = -spread.axes[2];
+    return spread;
+}
+
+std::vector<SurfacePoint> thinned(std::span<const SurfacePoint> points, std::size_t most) {
+    const std::size_t stride = std::max<std::size_t>(1, (points.size() + most - 1) / most);
+    std::vector<SurfacePoint> some;
+    for (std::size_t n = 0; n < points.size(); n += stride) some.push_back(points[n]);
+    return some;
+}
+
+void judge(Registration& result, std::span<const SurfacePoint> moving, const RegistrationTarget& fixed,
+           const Pose& start, double scale) {
+    const auto median_at = [&](const Pose& pose, std::vector<double>& all) {
+        all.clear();
+        for (const SurfacePoint& p : moving) all.push_back(fixed.distance(pose.apply(p.position)));
+        std::ranges::sort(all);
+        return all[all.size() / 2];
+    };
+    std::vector<double> all;
+    result.before = median_at(start, all);
+    result.median = median_at(result.pose, all);
+    result.p90 = all[all.size() * 9 / 10];
+    const auto near = std::ranges::lower_bound(all, 2.0 * scale) - all.begin();
+    result.covered = static_cast<double>(near) / static_cast<double>(all.size());
+}
+
+Pose anneal(const std::vector<SurfacePoint>& moving, const RegistrationTarget& fixed, const Pose& start,
+            const RegistrationSettings& settings) {
+    const Spread spread = spread_of(moving);
+    Pose pose = start;
+    for (int stage = 0; stage < settings.stages + 20; ++stage) {
+        const double progress = std::min(1.0, static_cast<double>(stage) / std::max(1, settings.stages - 1));
+        const double s = settings.widest * std::pow(settings.finest / settings.widest, progress);
+        const Vec3 centre = pose.apply(spread.middle);
+        Matrix6 k{};
+        Vector6 push{}, step{};
+        for (const SurfacePoint& p : moving) {
+            const Vec3 x = pose.apply(p.position);
+            const std::size_t to = fixed.nearest(x);
+            const Vec3& n = fixed.normal(to);
+            const double facing = glm::dot(pose.rotate(p.normal), n);
+            if (!(facing > least_cosine)) continue;
+            const Vec3 apart = x - fixed.position(to);
+            const double squares = glm::dot(apart, apart), kernel = s * s / (s * s + squares);
+            const double weight = p.area * facing * kernel * kernel, d = glm::dot(n, apart);
+            const Vec3 lever = glm::cross(x - centre, n);
+            const double row[6] = {n.x, n.y, n.z, lever.x, lever.y, lever.z};
+            for (std::size_t a = 0; a < 6; ++a) {
+                push[a] -= weight * d * row[a];
+                for (std::size_t b = 0; b < 6; ++b) k[6 * a + b] += weight * row[a] * row[b];
+            }
+        }
+        // Scaled to numbers that the solver's floor for what nothing holds is small against.
+        double greatest = 0.0;
+        for (std::size_t a = 0; a < 3; ++a) greatest = std::max(greatest, k[7 * a]);
+        if (!(greatest > 0.0)) break;
+        for (double& entry : k) entry *= 1e6 / greatest;
+        for (double& entry : push) entry *= 1e6 / greatest;
+        if (!solve_symmetric6(k, push, step)) break;
+        const Vec3 way(step[0], step[1], step[2]), turn(step[3], step[4], step[5]);
+        const Quat spin = rotation_by(turn);
+        pose = {centre + way + spin * (pose.position - centre), glm::normalize(spin * pose.orientation)};
+        if (stage > settings.stages && glm::length(way) + glm::length(turn) * spread.gyration < 1e-8) break;
+    }
+    return pose;
+}
+
+}  // namespace
+
+RegistrationTarget::RegistrationTarget(std::span<const SurfacePoint> points)
+    : positions_(positions_of(points)), tree_(positions_) {
+    if (points.empty()) throw Error("there is no surface to register to");
+    for (const SurfacePoint& p : points) normals_.push_back(p.normal);
+}
+
+double RegistrationTarget::distance(const Vec3& place) const noexcept {
+    const std::size_t n = nearest(place);
+    const Vec3 apart = place - positions_[n];
+    const double plane = std::abs(glm::dot(apart, normals_[n])), point = glm::length(apart);
+    return point < 3e-3 ? plane : point;
+}
+
+Registration register_surface(std::span<const SurfacePoint> moving, const RegistrationTarget& fixed, const Pose& start,
+                              const RegistrationSettings& settings) {
+    if (moving.empty()) throw Error("there is no surface to register");
+    const std::vector<SurfacePoint> some = thinned(moving, settings.most_points);
+    Registration result;
+    result.pose = anneal(some, fixed, start, settings);
+    judge(result, some, fixed, start, settings.finest);
+    return result;
+}
+
+Registration register_from_anywhere(std::span<const SurfacePoint> moving, std::span<const SurfacePoint> fixed_points,
+                                    const RegistrationTarget& fixed, const RegistrationSettings& settings) {
+    if (moving.empty()) throw Error("there is no surface to register");
+    const Spread from = spread_of(moving), to = spread_of(fixed_points);
+    RegistrationSettings coarse = settings;
+    coarse.most_points = std::max<std::size_t>(200, settings.most_points / 8);
+    coarse.finest = 3.0 * settings.finest;
+    coarse.stages = settings.stages / 2;
+    Registration best;
+    for (int n = 0; n < 24; ++n) {
+        // Main axes along each other in the four ways that are turns, each also turned about the longest by sixths.
+        Mat3 axes = to.axes;
+        if (n & 1) axes[0] = -axes[0], axes[1] = -axes[1];
+        const Quat about = glm::angleAxis(2.0 * std::numbers::pi * (n / 2) / 12.0, to.axes[0]);
+        const Quat turn = glm::normalize(about * glm::quat_cast(axes * glm::transpose(from.axes)));
+        const Registration found = register_surface(moving, fixed, {to.middle - turn * from.middle, turn}, coarse);
+        if (n == 0 || found.median < best.median) best = found;
+    }
+    return register_surface(moving, fixed, best.pose, settings);
+}
+
+std::vector<std::size_t> displaced_region(std::span<const SurfacePoint> moving, const Pose& pose,
+                                          const RegistrationTarget& fixed, double away, double gap, double margin) {
+    std::vector<char> is_away(moving.size());
+    for (std::size_t n = 0; n < moving.size(); ++n) is_away[n] = fixed.distance(pose.apply(moving[n].position)) > away;
+    const auto patches = patches_of(moving, gap, [&](std::size_t n) { return is_away[n] != 0; });
+    const auto area_of = [&](const std::vector<std::size_t>& patch) {
+        double area = 0.0;
+        for (const std::size_t n : patch) area += moving[n].area;
+        return area;
+    };
+    if (patches.empty()) return {};
+    const auto& largest = *std::ranges::max_element(patches, {}, area_of);
+    std::vector<char> taken(moving.size(), 0);
+    const Neighbours neighbours(moving, std::max(margin, 1e-9));
+    for (const std::size_t n : largest) neighbours.around(n, [&](std::size_t m) { taken[m] = 1; });
+    std::vector<std::size_t> region;
+    for (std::size_t n = 0; n < taken.size(); ++n)
+        if (taken[n]) region.push_back(n);
+    return region;
+}
+
+}  // namespace tactus

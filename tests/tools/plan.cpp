@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+// The plan of a case from fragments to what other programs read, as scripts do it.
+#include "assets/bone/bone.hpp"
+#include "assets/mesh/mesh.hpp"
+#include "assets/mesh/write_mesh.hpp"
+#include "dsp/core/types.hpp"
+#include "tests/tools/run_command.hpp"
+
+#include <catch2/catch.hpp>
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+using namespace tactus;
+using nlohmann::json;
+using tactus::test::Folder;
+using tactus::test::Outcome;
+using tactus::test::slurp;
+
+namespace {
+
+constexpr double mm = 1e-3;
+
+/// A bar of egg-shaped section, 12 by 22 mm and 40 mm long.
+Bone bar() {
+    Bone bone;
+    Grid& grid = bone.distance;
+    grid = {{95, 37, 59}, Vec3(-23.5, -9.0, -14.5) * mm, Vec3(0.5 * mm), {}};
+    for (int k = 0; k < grid.size[2]; ++k)
+        for (int j = 0; j < grid.size[1]; ++j)
+            for (int i = 0; i < grid.size[0]; ++i) {
+                const Vec3 p = grid.position(i, j, k);
+                const double width = 6.0 * mm * (1.0 - 0.2 * p.z / (11.0 * mm));
+                const double r = std::hypot(p.y / width, p.z / (11.0 * mm));
+                grid.values.push_back(static_cast<float>(std::max((r - 1.0) * 7.0 * mm, std::abs(p.x) - 20.0 * mm)));
+            }
+    bone.density = grid;
+    for (float& d : bone.density.values) d = d < 0.0f ? 1500.0f : 0.0f;
+    bone.name = "bar";
+    return bone;
+}
+
+/// A box of 12 triangles, corners in the file's numbers; `open` leaves two of them out.
+std::string box_stl(const Vec3& low, const Vec3& high, bool open) {
+    const auto corner = [&](int n) {
+        return Vec3(n & 1 ? high.x : low.x, n & 2 ? high.y : low.y, n & 4 ? high.z : low.z);
+    };
+    constexpr int faces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                  {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    std::ostringstream text;
+    text.precision(12);
+    text << "solid box\n";
+    for (int f = open ? 2 : 0; f < 12; ++f) {
+        text << "facet normal 0 0 0\nouter loop\n";
+        for (const int n : faces[f])
+            text << "vertex " << corner(n).x << ' ' << corner(n).y << ' ' << corner(n).z << '\n';
+        text << "endloop\nendfacet\n";
+    }
+    text << "endsolid\n";
+    return text.str();
+}
+
+Pose pose_in(const json& j) {
+    const json &p = j["position_mm"], &q = j["quaternion_wxyz"];
+    return {Vec3(p[0].get<double>(), p[1].get<double>(), p[2].get<double>()) * mm,
+            {q[0].get<double>(), q[1].get<double>(), q[2].get<double>(), q[3].get<double>()}};
+}
+
+/// A case of two boxes, with commands on its plan.
+struct Boxes {
+    Folder folder;
+    std::string plan = (folder.path / "case.plan.json").string();
+
+    Boxes() {
+        folder.write("a.stl", box_stl(Vec3(0.0), Vec3(10.0, 12.0, 14.0), false));
+        folder.write("b.stl", box_stl(Vec3(11.0, 0.0, 0.0), Vec3(20.0, 12.0, 14.0), false));
+        const Outcome made = folder.tactus("plan new " + plan + " " + file("a.stl") + " " + file("b.stl"));
+        INFO(made.err);
+        REQUIRE(made.code == 0);
+    }
+    std::string file(const std::string& name) const { return (folder.path / name).string(); }
+    Outcome run(const std::string& verb, const std::string& rest = "") const {
+        return folder.tactus("plan " + verb + " " + plan + " " + rest);
+    }
+    json state() const { return json::parse(run("show", "--json").out); }
+};
+
+/// A transform file as ITK means it, read line by line: from the parent's frame, rows of a matrix, then a translation.
+struct FromParent {
+    double m[3][3], t[3];
+
+    explicit FromParent(const std::string& text) {
+        std::istringstream lines(text);
+        std::string line;
+        bool found = false;
+        while (std::getline(lines, line)) {
+            if (!line.starts_with("Parameters:")) continue;
+            std::istringstream numbers(line.substr(11));
+            for (auto& row : m)
+                for (double& entry : row) numbers >> entry;
+            for (double& entry : t) numbers >> entry;
+            found = !numbers.fail();
+        }
+        REQUIRE(found);
+    }
+    /// Where the transform's child is, of a place in the parent, mm.
+    Vec3 back(const Vec3& p) const {
+        Vec3 x;
+        for (int row = 0; row < 3; ++row) x[row] = m[row][0] * p.x + m[row][1] * p.y + m[row][2] * p.z + t[row];
+        return x;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a case is arranged by commands: every step is kept, undone and redone") {
+    const Boxes boxes;
+    CHECK(boxes.run("move", "b --pose 1,2,3,0,0,0,1").code == 0);
+    CHECK(boxes.run("group", "a b --name jaw").code == 0);
+    CHECK(boxes.run("lock", "a").code == 0);
+    json state = boxes.state();
+    CHECK(state["steps_done"] == 3);
+    CHECK(state["fragments"][1]["groups"] == json::array({"jaw"}));
+    CHECK(state["fragments"][0]["locked"] == true);
+    CHECK(state["fragments"][1]["pose"]["position_mm"] == json::array({1.0, 2.0, 3.0}));
+    const Outcome held = boxes.run("move", "b --pose 0,0,0,1,0,0,0");
+    CHECK(held.code == 2);
+    CHECK_THAT(held.err, Catch::Contains("locked"));
+    CHECK(boxes.run("undo", "--steps 2").code == 0);
+    CHECK(boxes.state()["fragments"][1]["groups"].empty());
+    CHECK(boxes.run("alternative", "second").code == 0);
+    CHECK(boxes.run("move", "b --pose 0,0,9,1,0,0,0").code == 0);
+    CHECK(boxes.state()["steps_to_redo"] == 0);
+    CHECK(boxes.run("alternative", "main").code == 0);
+    CHECK(boxes.run("redo", "--steps 9").code == 0);
+    state = boxes.state();
+    CHECK(state["steps_done"] == 3);
+    CHECK(state["steps_in_all"] == 4);
+    CHECK(state["fragments"][1]["pose"]["position_mm"][2] == 3.0);
+    CHECK(boxes.run("redo").code == 1);
+    CHECK(boxes.run("alternative", "second").code == 0);
+    CHECK(boxes.state()["fragments"][1]["pose"]["position_mm"][2] == 9.0);
+    CHECK(boxes.run("hide", "b").code == 0);
+    CHECK(boxes.run("unhide", "b").code == 0);
+    CHECK(boxes.run("group", "a b").code == 0);
+    CHECK(boxes.run("remove", "b").code == 0);
+    CHECK(boxes.state()["groups"].empty());
+}
+
+TEST_CASE("exported transforms and landmarks, read by other code, move the scan onto the exported mesh") {
+    const Boxes boxes;
+    REQUIRE(boxes.run("move", "b --pose 12.5,-3,40,0.5,0.5,-0.5,0.5").code == 0);
+    const Outcome done = boxes.run("export", "--json --out " + boxes.file("out"));
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    const FromParent transform(slurp(boxes.folder.path / "out/b.tfm"));
+    // Corners of the scan's mesh and of the exported one, in the same order.
+    const Mesh scan = load_mesh(boxes.file("b.stl")), placed = load_mesh(boxes.file("out/b.stl"));
+    REQUIRE(scan.vertices.size() == 8);
+    REQUIRE(placed.vertices.size() == 8);
+    for (std::size_t n = 0; n < 8; ++n)
+        CHECK(glm::length(transform.back(placed.vertices[n]) - scan.vertices[n]) < 1e-4);
+    CHECK(slurp(boxes.folder.path / "out/b.stl").substr(0, 80).find("SPACE=LPS") != std::string::npos);
+    const json before = json::parse(slurp(boxes.folder.path / "out/b.scan.mrk.json"))["markups"][0],
+               after = json::parse(slurp(boxes.folder.path / "out/b.plan.mrk.json"))["markups"][0];
+    CHECK(after["coordinateSystem"] == "LPS");
+    REQUIRE(before["controlPoints"].size() == 7);
+    for (std::size_t n = 0; n < 7; ++n) {
+        const auto place = [n](const json& list) {
+            const json& p = list["controlPoints"][n]["position"];
+            return Vec3(p[0].get<double>(), p[1].get<double>(), p[2].get<double>());
+        };
+        CHECK(glm::length(transform.back(place(after)) - place(before)) < 1e-9);
+    }
+    // Rows of the turn of the placed fragment: the transpose of the transform's.
+    const json& turn = after["controlPoints"][0]["orientation"];
+    for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t column = 0; column < 3; ++column)
+            CHECK(turn[3 * row + column].get<double>() == Approx(transform.m[column][row]).margin(1e-12));
+    const Pose told = pose_in(json::parse(done.out)[1]["pose"]);
+    CHECK(glm::length(transform.back(told.apply(Vec3(0.01, 0.02, 0.03)) / mm) - Vec3(10.0, 20.0, 30.0)) < 1e-9);
+    CHECK(boxes.run("export", "--format ply --out " + boxes.file("ply")).code == 0);
+    CHECK(load_mesh(boxes.file("ply/a.ply")).vertices.size() == 8);
+}
+
+TEST_CASE("broken bone is put together by a plan, measured, and written up on one page") {
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    save_bone(bar(), file("bar.vdb"));
+    REQUIRE(folder.tactus("fracture " + file("bar.vdb") + " -o " + file("f") + " --seed 4 --spread 5 --turn 10").code ==
+            0);
+    const json truth = json::parse(slurp(folder.path / "f/truth.json"));
+    const std::string plan = file("f/case.plan.json");
+    REQUIRE(
+        folder.tactus("plan new " + plan + " " + file("f/fragment_01.vdb") + " " + file("f/fragment_02.vdb")).code ==
+        0);
+    const Outcome snapped = folder.tactus("plan snap " + plan + " fragment_02 --json");
+    INFO(snapped.out << snapped.err);
+    REQUIRE(snapped.code == 0);
+    const json state = json::parse(folder.tactus("plan show " + plan + " --json").out);
+    const json& placed = state["fragments"][1];
+    CHECK(placed["fit"]["partner"] == "fragment_01");
+    CHECK(placed["fit"]["verdict"] == "fit");
+    const Pose found = pose_in(placed["pose"]), wanted = pose_in(truth["fragments"][1]["pose"]);
+    for (const Vec3& corner : {Vec3(20.0, 6.0, 11.0), Vec3(20.0, -6.0, -11.0), Vec3(0.0, 0.0, 11.0)}) {
+        const Vec3 at = wanted.inverse().apply(corner * mm);
+        CHECK(glm::length(found.apply(at) - corner * mm) < 0.2 * mm);
+    }
+    const json gaps = json::parse(folder.tactus("plan gap " + plan + " --json").out);
+    REQUIRE(gaps.size() == 1);
+    CHECK(gaps[0]["contact_mm2"].get<double>() > 100.0);
+    CHECK(std::abs(gaps[0]["gap_median_mm"].get<double>()) < 0.15);
+    CHECK(gaps[0]["overlap_mm3"].get<double>() < 30.0);
+    const Outcome report = folder.tactus("plan report " + plan);
+    INFO(report.err);
+    REQUIRE(report.code == 0);
+    const std::string page = slurp(folder.path / "f/case.html");
+    CHECK(page.find("data:image/png;base64,iVBOR") != std::string::npos);
+    CHECK(page.find("place fragment_02, fit to fragment_01") != std::string::npos);
+    CHECK(page.find("src=\"http") == std::string::npos);
+    // A file that is not what it was is named, and the plan itself is still shown.
+    save_bone(bar(), file("f/fragment_02.vdb"));
+    for (const std::string verb : {"snap", "report"}) {
+        const Outcome refused = folder.tactus("plan " + verb + " " + plan + (verb == "snap" ? " fragment_02" : ""));
+        CHECK(refused.code == 2);
+        CHECK_THAT(refused.err, Catch::Contains("not the one that the plan was made with"));
+    }
+    CHECK(json::parse(folder.tactus("plan show " + plan + " --json").out)["problems"].size() == 1);
+}
+
+TEST_CASE("fragments a metre from the origin are planned like any others") {
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    Bone far = bar();
+    for (Grid* grid : {&far.distance, &far.density}) grid->origin += Vec3(1.0, -0.6, 0.8);
+    save_bone(far, file("bar.vdb"));
+    REQUIRE(folder.tactus("fracture " + file("bar.vdb") + " -o " + file("f") + " --seed 4 --spread 5 --turn 10").code ==
+            0);
+    const json truth = json::parse(slurp(folder.path / "f/truth.json"));
+    const std::string plan = file("case.plan.json");
+    REQUIRE(
+        folder.tactus("plan new " + plan + " " + file("f/fragment_01.vdb") + " " + file("f/fragment_02.vdb")).code ==
+        0);
+    REQUIRE(folder.tactus("plan snap " + plan + " fragment_02 fragment_01").code == 0);
+    const json state = json::parse(folder.tactus("plan show " + plan + " --json").out);
+    const Pose found = pose_in(state["fragments"][1]["pose"]), wanted = pose_in(truth["fragments"][1]["pose"]);
+    const Vec3 at = wanted.inverse().apply(Vec3(1.0, -0.6, 0.8));
+    CHECK(glm::length(found.apply(at) - Vec3(1.0, -0.6, 0.8)) < 0.2 * mm);
+}
+
+TEST_CASE("what cannot be planned is refused in one line, and nothing is lost") {
+    const Boxes boxes;
+    const std::string whole = slurp(boxes.plan);
+    boxes.folder.write("metres.stl", box_stl(Vec3(0.0), Vec3(0.010, 0.012, 0.014), false));
+    boxes.folder.write("open.stl", box_stl(Vec3(0.0), Vec3(10.0, 12.0, 14.0), true));
+    boxes.folder.write("cut.plan.json", whole.substr(0, whole.size() / 2));
+    std::string later = whole;
+    later.replace(later.find("\"version\": 1"), 12, "\"version\": 9");
+    boxes.folder.write("later.plan.json", later);
+    const std::string fresh = boxes.file("fresh.plan.json");
+    const std::pair<std::string, std::string> refused[] = {
+        {"new " + boxes.plan + " " + boxes.file("a.stl"), "never written over"},
+        {"new " + fresh + " " + boxes.file("a.stl") + " a=" + boxes.file("b.stl"), "there is a fragment 'a' already"},
+        {"new " + fresh + " " + boxes.file("metres.stl"), "--unit"},
+        {"new " + fresh + " " + boxes.file("open.stl"), "fragment 'open'"},
+        {"new " + fresh + " " + boxes.file("none.stl"), "no such file"},
+        {"show " + boxes.file("cut.plan.json"), "ends in the middle"},
+        {"undo " + boxes.file("later.plan.json"), "version 9"},
+        {"move " + boxes.plan + " b --pose 1,2,3", "--pose"},
+        {"move " + boxes.plan + " c --pose 0,0,0,1,0,0,0", "no fragment 'c'"},
+        {"ungroup " + boxes.plan + " x", "no group 'x'"},
+        {"alternative " + boxes.plan + " main --remove", "where the plan stands"}};
+    for (const auto& [arguments, message] : refused) {
+        const Outcome done = boxes.folder.tactus("plan " + arguments);
+        INFO(arguments << "\n" << done.err);
+        CHECK(done.code == 2);
+        CHECK(std::ranges::count(done.err, '\n') == 1);
+        CHECK_THAT(done.err, Catch::Contains(message));
+    }
+    CHECK(slurp(boxes.plan) == whole);
+    CHECK(slurp(boxes.file("later.plan.json")) == later);
+    CHECK_FALSE(std::filesystem::exists(fresh));
+}

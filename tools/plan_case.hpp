@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the verbs of a plan share: fragments from their files, poses as text and JSON.
+#pragma once
+
+#include "assets/bone/bone.hpp"
+#include "assets/plan/plan_file.hpp"
+#include "dsp/contact/voxmap.hpp"
+#include "dsp/distance/iso_surface.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactus {
+
+/// A fragment ready to be looked at. Its points are never empty.
+struct CaseFragment {
+    Bone bone;
+    Voxmap map;
+    bool was_painted = false;  ///< in its file; else the paint is a proposal
+};
+
+/// From its file, with paint of its own or a proposed one. Throws Error naming the fragment.
+CaseFragment load_fragment(const PlanFragment& fragment, const std::filesystem::path& folder);
+/// All of a plan. Throws Error for the first file that is missing or has changed.
+std::vector<CaseFragment> load_fragments(const CasePlan& plan, const std::filesystem::path& folder);
+
+/// The surface in the frame of its file, m: a mesh's own triangles, or that of a bone's distance.
+TriangleSurface surface_of_file(const std::filesystem::path& path, const Bone& bone);
+/// The points of a mesh's corners, or of a bone. Meshes need not be closed. Throws Error.
+std::vector<SurfacePoint> points_of_file(const std::filesystem::path& path);
+
+/// {position_mm, quaternion_wxyz}.
+nlohmann::ordered_json pose_json(const Pose& pose);
+/// "X,Y,Z,QW,QX,QY,QZ" in mm. Throws Error naming the option.
+Pose pose_of_text(const std::string& text, std::string_view option);
+
+/// Distance and angle of a pose from none, for people: mm and degrees.
+double angle_deg(const Pose& pose);
+
+/// Adds a step with the time of day and saves the plan.
+void do_step(CasePlan& plan, PlanStep step, const std::filesystem::path& path);
+
+}  // namespace tactus
