@@ -5,6 +5,7 @@
 #include "assets/bone/bone.hpp"
 #include "assets/deflection/deflection_file.hpp"
 #include "assets/equaliser/equaliser_file.hpp"
+#include "assets/plan/case_bones.hpp"
 #include "assets/recording/recording_set.hpp"
 #include "graph/param.hpp"
 
@@ -14,6 +15,12 @@ template <>
 struct AssetLoader<Bone> {
     static constexpr std::string_view name = "bone";
     static Bone load(const std::string& path) { return load_bone(path); }
+};
+
+template <>
+struct AssetLoader<CaseBones> {
+    static constexpr std::string_view name = "plan of a case";
+    static CaseBones load(const std::string& path) { return load_case(path); }
 };
 
 template <>

@@ -12,7 +12,9 @@
     X(AudioOutput, output)              \
     X(BladeContact, contact)            \
     X(Body, contact)                    \
+    X(Brush, planning)                  \
     X(Carve, contact)                   \
+    X(CaseScene, planning)              \
     X(Constant, input)                  \
     X(DeviceInput, input)               \
     X(DeviceOutput, input)              \
@@ -23,6 +25,7 @@
     X(Equaliser, vibration)             \
     X(Filter, vibration)                \
     X(ForceShaping, coupling)           \
+    X(FragmentMatcher, planning)        \
     X(Gain, vibration)                  \
     X(Grasp, coupling)                  \
     X(GripperInput, admittance)         \

@@ -399,6 +399,8 @@ int command_line(int argc, char** argv) {
         if (app.got_subcommand("measure")) return measure_verb(measure);
         if (app.got_subcommand("equalise")) return equalise_verb(equalise);
         if (app.got_subcommand("fracture")) return fracture_verb(fitting.fracture);
+        if (app.got_subcommand("fracture-surface")) return fracture_surface_verb(fitting.surface);
+        if (app.got_subcommand("register")) return register_verb(fitting.registration);
         if (app.got_subcommand("snap")) return snap_verb(fitting.snap);
         if (app.got_subcommand("plan")) return plan_verb(app, plan);
         if (app.got_subcommand("info")) return info_verb(info);

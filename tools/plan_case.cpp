@@ -27,7 +27,7 @@ bool is_mesh(const std::filesystem::path& path) {
 
 }  // namespace
 
-CaseFragment load_fragment(const PlanFragment& fragment, const std::filesystem::path& folder) {
+CaseFragment load_fragment(const PlanFragment& fragment, const std::filesystem::path& folder, Paint paint) {
     CaseFragment loaded;
     try {
         loaded.bone = bone_of_file(file_of(fragment.file, folder));
@@ -35,7 +35,7 @@ CaseFragment load_fragment(const PlanFragment& fragment, const std::filesystem::
         if (loaded.bone.points.empty()) throw Error("has no surface");
         loaded.was_painted = std::ranges::any_of(
             loaded.bone.points, [](const SurfacePoint& p) { return p.label == surface_label::fracture; });
-        if (!loaded.was_painted) propose_fracture(loaded.bone.points);
+        if (!loaded.was_painted && paint == Paint::or_proposed) propose_fracture(loaded.bone.points);
         loaded.map = make_voxmap(loaded.bone.distance);
     } catch (const Error& error) {
         throw Error(fmt::format("fragment '{}': {}", fragment.name, error.what()));
@@ -43,12 +43,12 @@ CaseFragment load_fragment(const PlanFragment& fragment, const std::filesystem::
     return loaded;
 }
 
-std::vector<CaseFragment> load_fragments(const CasePlan& plan, const std::filesystem::path& folder) {
+std::vector<CaseFragment> load_fragments(const CasePlan& plan, const std::filesystem::path& folder, Paint paint) {
     if (const auto problems = changed_files(plan, folder); !problems.empty())
         throw Error(fmt::format("{}{}; put the file back, or make a plan of the new one", problems.front(),
                                 problems.size() > 1 ? fmt::format(" (and {} more)", problems.size() - 1) : ""));
     std::vector<CaseFragment> all;
-    for (const PlanFragment& fragment : plan.fragments) all.push_back(load_fragment(fragment, folder));
+    for (const PlanFragment& fragment : plan.fragments) all.push_back(load_fragment(fragment, folder, paint));
     return all;
 }
 

@@ -23,10 +23,14 @@ struct CaseFragment {
     bool was_painted = false;  ///< in its file; else the paint is a proposal
 };
 
-/// From its file, with paint of its own or a proposed one. Throws Error naming the fragment.
-CaseFragment load_fragment(const PlanFragment& fragment, const std::filesystem::path& folder);
+enum class Paint { as_filed, or_proposed };
+
+/// From its file. Throws Error naming the fragment.
+CaseFragment load_fragment(const PlanFragment& fragment, const std::filesystem::path& folder,
+                           Paint paint = Paint::as_filed);
 /// All of a plan. Throws Error for the first file that is missing or has changed.
-std::vector<CaseFragment> load_fragments(const CasePlan& plan, const std::filesystem::path& folder);
+std::vector<CaseFragment> load_fragments(const CasePlan& plan, const std::filesystem::path& folder,
+                                         Paint paint = Paint::as_filed);
 
 /// The surface in the frame of its file, m: a mesh's own triangles, or that of a bone's distance.
 TriangleSurface surface_of_file(const std::filesystem::path& path, const Bone& bone);

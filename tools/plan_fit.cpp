@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where fragments of a plan belong: by their own fractures, and by the healthy side.
 #include "dsp/core/error.hpp"
+#include "dsp/planning/fragment_matcher.hpp"
 #include "dsp/planning/gap.hpp"
 #include "dsp/planning/mirror.hpp"
-#include "dsp/snap/fit.hpp"
 #include "tools/plan_case.hpp"
 #include "tools/plan_options.hpp"
 #include "tools/verbs.hpp"
@@ -12,8 +12,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <memory>
 #include <numbers>
 
 namespace tactus {
@@ -22,37 +21,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double near = 25e-3;  // m: from where it is, a fragment is not brought to one farther away
-
-/// Least distance between the points of two placed bones, every so many-th of the first tried.
-double apart(const CaseFragment& a, const Pose& at, const CaseFragment& b, const Pose& bt) {
-    const Pose into = bt.inverse() * at;
-    const RegistrationTarget target(b.bone.points);
-    double least = std::numeric_limits<double>::infinity();
-    const std::size_t stride = std::max<std::size_t>(1, a.bone.points.size() / 500);
-    for (std::size_t n = 0; n < a.bone.points.size(); n += stride) {
-        const Vec3 x = into.apply(a.bone.points[n].position);
-        least = std::min(least, glm::length(x - target.position(target.nearest(x))));
-    }
-    return least;
-}
-
-std::vector<FitSurface> faces_of(const CaseFragment& fragment, const std::string& name) {
-    try {
-        return make_fit_faces(fragment.bone.points, fragment.bone.distance);
-    } catch (const Error& error) {
-        throw Error(fmt::format("fragment '{}': {}", name, error.message()));
-    }
-}
-
-PlanFit record_of(const Fit& fit, const std::string& partner) {
-    return {partner,         std::string(name_of(fit.verdict)), fit.quality.score,  fit.margin, fit.quality.rms,
-            fit.quality.gap, fit.quality.penetration,           fit.quality.overlap};
-}
-
-/// What a fit is worth beside others: one that holds before one that does not, and a larger area before a smaller.
-double worth(const Fit& fit) {
-    return (fit.verdict == FitVerdict::fit ? 1.0 : 1e-3) * fit.quality.score * std::sqrt(fit.quality.overlap);
+PlanFit record_of(const FragmentMatch& match, const std::string& partner) {
+    const FitQuality& q = match.quality;
+    return {partner,  std::string(name_of(match.verdict)), q.score, match.margin, q.rms, q.gap, q.penetration,
+            q.overlap};
 }
 
 /// Motion of the fragment's middle, mm and degrees.
@@ -64,65 +36,134 @@ Json motion_json(const Pose& from, const Pose& to, const CaseFragment& fragment)
             {"angle_deg", angle_deg(to * from.inverse())}};
 }
 
+/// The fragments of a plan, and the matcher that looks at them.
+struct Matching {
+    std::vector<CaseFragment> loaded;
+    std::vector<FragmentSurface> surfaces;
+    std::unique_ptr<FragmentMatcher> matcher;
+
+    Matching(const CasePlan& plan, const std::filesystem::path& folder)
+        : loaded(load_fragments(plan, folder, Paint::or_proposed)) {
+        for (const CaseFragment& f : loaded) surfaces.push_back({f.bone.points, &f.bone.distance});
+        MatcherSettings settings;
+        settings.most_points = 2000;
+        for (const CaseFragment& f : loaded) {
+            // Coarse scans know their surfaces no better than their voxels.
+            const Vec3& h = f.bone.distance.spacing;
+            settings.finest = std::max(settings.finest, 0.6 * std::max({h.x, h.y, h.z}));
+            settings.sigma = std::max(settings.sigma, 0.5 * std::max({h.x, h.y, h.z}));
+        }
+        matcher = std::make_unique<FragmentMatcher>(surfaces, settings);
+    }
+};
+
+std::vector<Pose> poses_of(const Arrangement& a) {
+    std::vector<Pose> poses;
+    for (int n = 0; n < static_cast<int>(a.size()); ++n) poses.push_back(a.pose(n));
+    return poses;
+}
+
+/// All that is shown and does not move along; or one of them alone.
+std::vector<char> partners_of(const Arrangement& a, int moving, int only) {
+    std::vector<char> stands;
+    for (int n = 0; n < static_cast<int>(a.size()); ++n)
+        stands.push_back(!a.move_together(moving, n) && (only == Arrangement::none ? !a.is_hidden(n) : n == only));
+    return stands;
+}
+
+Json match_json(const CasePlan& plan, const FragmentMatch& match, const Pose& from, const CaseFragment& fragment) {
+    const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
+    return {{"fragment", name(match.moving)},
+            {"partner", match.partner == Arrangement::none ? Json(nullptr) : Json(name(match.partner))},
+            {"verdict", name_of(match.verdict)},
+            {"placed", match.verdict == FitVerdict::fit},
+            {"faces", match.faces},
+            {"score", match.quality.score},
+            {"margin", match.margin},
+            {"rms_mm", match.quality.rms * 1e3},
+            {"gap_mm", match.quality.gap * 1e3},
+            {"penetration_mm", match.quality.penetration * 1e3},
+            {"overlap_mm2", match.quality.overlap * 1e6},
+            {"pose", pose_json(match.pose)},
+            {"moved", motion_json(from, match.pose, fragment)},
+            {"paint", fragment.was_painted ? "file" : "proposed"}};
+}
+
+/// One line for people.
+void say(const CasePlan& plan, const FragmentMatch& match) {
+    const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
+    if (match.partner == Arrangement::none) fmt::print("{}: nothing near looks against it\n", name(match.moving));
+    else
+        fmt::print("{} to {}: {}, {} faces, score {:.2f}, margin {:.2f}, {:.0f} mm² on each other, {:.3f} mm rms{}\n",
+                   name(match.moving), name(match.partner), name_of(match.verdict), match.faces, match.quality.score,
+                   match.margin, match.quality.overlap * 1e6, match.quality.rms * 1e3,
+                   match.verdict == FitVerdict::fit ? "" : "; it stays where it was");
+}
+
+PlanStep step_of(const CasePlan& plan, const FragmentMatch& match, const char* by) {
+    PlanStep step = placing(plan, match.moving, match.pose, by);
+    step.fit = record_of(match, plan.fragments[static_cast<std::size_t>(match.partner)].name);
+    return step;
+}
+
 }  // namespace
 
 int plan_snap(const PlanChoice& choice) {
     CasePlan plan = load_case_plan(choice.plan);
-    const std::filesystem::path folder = choice.plan.parent_path();
     const int moving = find_fragment(plan, choice.names[0]);
     const int only = choice.names.size() > 1 ? find_fragment(plan, choice.names[1]) : Arrangement::none;
-    const PlanState state = state_of(plan);
-    const Arrangement& a = state.arrangement;
+    const Arrangement a = state_of(plan).arrangement;
     if (only != Arrangement::none && a.move_together(moving, only))
         throw Error(fmt::format("'{}' and '{}' move together", choice.names[0], choice.names[1]));
     if (!a.can_move(moving)) throw Error(fmt::format("'{}', or one grouped with it, is locked", choice.names[0]));
-    const std::vector<CaseFragment> loaded = load_fragments(plan, folder);
-    const auto fragment = [&](int n) -> const CaseFragment& { return loaded[static_cast<std::size_t>(n)]; };
-    const auto name = [&](int n) -> const std::string& { return plan.fragments[static_cast<std::size_t>(n)].name; };
-    const FitMode mode = choice.mode == "global" ? FitMode::global : FitMode::extended;
-    const std::vector<FitSurface> faces = faces_of(fragment(moving), name(moving));
-    std::optional<Fit> best;
-    int partner = Arrangement::none;
-    for (int other = 0; other < static_cast<int>(a.size()); ++other) {
-        if (only != Arrangement::none ? other != only : a.is_hidden(other) || a.move_together(moving, other)) continue;
-        if (only == Arrangement::none && mode == FitMode::extended &&
-            apart(fragment(moving), a.pose(moving), fragment(other), a.pose(other)) > near)
-            continue;
-        const Fit fit =
-            find_fit(faces, faces_of(fragment(other), name(other)), a.pose(other).inverse() * a.pose(moving), mode);
-        if (best && !(worth(fit) > worth(*best))) continue;
-        best = fit;
-        partner = other;
+    Matching matching(plan, choice.plan.parent_path());
+    FragmentMatcher& matcher = *matching.matcher;
+    if (matcher.faces_of(moving) == 0)
+        throw Error(
+            fmt::format("fragment '{}' has no painted fracture; see 'tactus fracture-surface'", choice.names[0]));
+    const auto poses = poses_of(a);
+    const auto stands = partners_of(a, moving, only);
+    FragmentMatch match = matcher.near(moving, poses, stands);
+    if (choice.mode == "global") {
+        matcher.begin_search();
+        do match = matcher.search(moving, poses, stands);
+        while (matcher.left() > 0);
     }
-    if (!best)
-        throw Error(fmt::format("nothing that is shown lies within {:.0f} mm of '{}'", near * 1e3, name(moving)));
-    const Pose to = a.pose(partner) * best->pose;
-    if (best->verdict == FitVerdict::fit) {
-        PlanStep step = placing(plan, moving, to, "snap");
-        step.fit = record_of(*best, name(partner));
-        do_step(plan, std::move(step), choice.plan);
+    if (match.verdict == FitVerdict::fit) do_step(plan, step_of(plan, match, "snap"), choice.plan);
+    if (choice.json)
+        fmt::print("{}\n",
+                   match_json(plan, match, a.pose(moving), matching.loaded[static_cast<std::size_t>(moving)]).dump(2));
+    else say(plan, match);
+    return match.verdict == FitVerdict::fit ? done : answer_is_no;
+}
+
+int plan_settle(const PlanChoice& choice) {
+    CasePlan plan = load_case_plan(choice.plan);
+    std::vector<int> numbers;
+    for (const std::string& name : choice.names) numbers.push_back(find_fragment(plan, name));
+    if (numbers.empty()) {
+        const PlanState state = state_of(plan);
+        for (int n = 0; n < static_cast<int>(plan.fragments.size()); ++n)
+            if (state.fits[static_cast<std::size_t>(n)] && state.arrangement.can_move(n)) numbers.push_back(n);
     }
-    if (choice.json) {
-        Json json{{"fragment", name(moving)},
-                  {"partner", name(partner)},
-                  {"verdict", name_of(best->verdict)},
-                  {"placed", best->verdict == FitVerdict::fit},
-                  {"score", best->quality.score},
-                  {"margin", best->margin},
-                  {"rms_mm", best->quality.rms * 1e3},
-                  {"gap_mm", best->quality.gap * 1e3},
-                  {"penetration_mm", best->quality.penetration * 1e3},
-                  {"overlap_mm2", best->quality.overlap * 1e6},
-                  {"pose", pose_json(to)},
-                  {"moved", motion_json(a.pose(moving), to, fragment(moving))},
-                  {"paint", fragment(moving).was_painted ? "file" : "proposed"}};
-        fmt::print("{}\n", json.dump(2));
-    } else
-        fmt::print("{} to {}: {}, score {:.2f}, margin {:.2f}, {:.0f} mm² on each other, {:.3f} mm rms{}\n",
-                   name(moving), name(partner), name_of(best->verdict), best->quality.score, best->margin,
-                   best->quality.overlap * 1e6, best->quality.rms * 1e3,
-                   best->verdict == FitVerdict::fit ? "" : "; it stays where it was");
-    return best->verdict == FitVerdict::fit ? done : answer_is_no;
+    if (numbers.empty()) throw Error("nothing was fitted yet; 'tactus plan snap' comes first");
+    Matching matching(plan, choice.plan.parent_path());
+    Json rows = Json::array();
+    for (int pass = 0; pass < choice.steps; ++pass)
+        for (const int n : numbers) {
+            const Arrangement a = state_of(plan).arrangement;
+            const FragmentMatch match = matching.matcher->near(n, poses_of(a), partners_of(a, n, Arrangement::none));
+            if (match.verdict == FitVerdict::fit) {
+                PlanStep step = step_of(plan, match, "settle");
+                step.time = time_of_day();
+                add_step(plan, std::move(step));
+            }
+            rows.push_back(match_json(plan, match, a.pose(n), matching.loaded[static_cast<std::size_t>(n)]));
+            if (!choice.json) say(plan, match);
+        }
+    save_case_plan(plan, choice.plan);
+    if (choice.json) fmt::print("{}\n", rows.dump(2));
+    return std::ranges::all_of(rows, [](const Json& row) { return row["placed"] == true; }) ? done : answer_is_no;
 }
 
 int plan_mirror(const PlanChoice& choice) {

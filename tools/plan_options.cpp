@@ -28,6 +28,11 @@ void add_fitting(CLI::App& plan, PlanChoice& choice) {
     snap->add_option("--mode", choice.mode, "extended starts from where it is, global from anywhere")
         ->check(CLI::IsMember({"extended", "global"}))
         ->capture_default_str();
+    CLI::App* settle =
+        add(plan, choice, "settle",
+            "seat fitted fragments once more, each on all of its neighbours together; 1: one does not fit");
+    settle->add_option("fragments", choice.names, "which ones (default: all that were fitted)");
+    settle->add_option("--passes", choice.steps, "how often")->check(CLI::Range(1, 20));
     CLI::App* mirror = add(plan, choice, "mirror", "the healthy side, mirrored and laid on a fragment, as a target");
     mirror->add_option("healthy", choice.healthy, "bone file or mesh of the other side")->required();
     add_fragments(mirror, choice, "the one that stands; more of them are compared, or moved with --settle");
@@ -89,6 +94,7 @@ int plan_verb(const CLI::App& app, const PlanChoice& choice) {
     if (verb == "redo") return plan_redo(choice);
     if (verb == "alternative") return plan_alternative(choice);
     if (verb == "snap") return plan_snap(choice);
+    if (verb == "settle") return plan_settle(choice);
     if (verb == "mirror") return plan_mirror(choice);
     if (verb == "gap") return plan_gap(choice);
     if (verb == "export") return plan_export(choice);

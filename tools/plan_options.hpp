@@ -35,6 +35,7 @@ int plan_undo(const PlanChoice& choice);
 int plan_redo(const PlanChoice& choice);
 int plan_alternative(const PlanChoice& choice);
 int plan_snap(const PlanChoice& choice);
+int plan_settle(const PlanChoice& choice);
 int plan_mirror(const PlanChoice& choice);
 int plan_gap(const PlanChoice& choice);
 int plan_export(const PlanChoice& choice);

@@ -6,6 +6,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/snap/fit.hpp"
 #include "tools/fragment_file.hpp"
+#include "tools/paint_file.hpp"
 #include "tools/snap_options.hpp"
 #include "tools/verbs.hpp"
 
@@ -48,7 +49,11 @@ Fragment load_fragment(const std::filesystem::path& path, const SnapChoice& choi
     Fragment fragment{bone_of_file(path), "file"};
     if (fragment.bone.points.empty()) fragment.bone.points = sample_surface(fragment.bone.distance, {});
     const auto is_painted = [](const SurfacePoint& p) { return p.label == surface_label::fracture; };
-    if (choice.paint != "auto") {
+    if (const auto comma = choice.paint.find(','); comma != std::string::npos) {
+        fragment.paint =
+            std::string_view(side) == "moving" ? choice.paint.substr(0, comma) : choice.paint.substr(comma + 1);
+        paint_from_file(fragment.bone.points, fragment.paint);
+    } else if (choice.paint != "auto") {
         const Json strokes = Json::parse(read_whole_file(choice.paint), nullptr, false);
         brush(fragment.bone.points, strokes, side, choice.paint);
         fragment.paint = choice.paint;

@@ -38,19 +38,59 @@ void add_snap_verbs(CLI::App& app, SnapChoices& choices) {
         ->check(CLI::Range(0.1, 5.0));
     verb->add_flag("--json", fracture.json, "print truth.json as well");
 
+    FractureSurfaceChoice& surface = choices.surface;
+    CLI::App* surface_app = app.add_subcommand("fracture-surface", "propose where a fragment is broken; 1: nowhere");
+    surface_app->add_option("bone", surface.bone, "bone file or closed mesh")->required();
+    surface_app
+        ->add_option("-o,--out", surface.out,
+                     ".json: strokes of a brush, to be corrected by hand; .vdb: the bone with its paint")
+        ->required();
+    surface_app->add_option("--paint", surface.paint, "use this file of strokes instead of the proposal");
+    surface_app->add_flag("--correct", surface.correct, "use its strokes on top of the proposal");
+    surface_app->add_flag("--keep", surface.keep, "start from the paint that the bone file has");
+    surface_app
+        ->add_option("--roughness", surface.roughness, "from which on a place is broken: mean of 1 - cos of normals")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 1.0));
+    surface_app->add_option("--least-area", surface.least_area, "smaller patches are left out, mm²")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 1e5));
+    surface_app->add_flag("--json", surface.json, "as JSON");
+
     SnapChoice& snap = choices.snap;
     CLI::App* snap_app = app.add_subcommand("snap", "where a fragment fits another, and how sure that is");
     snap_app->add_option("moving", snap.moving, "the fragment that is to move: bone file or closed mesh")->required();
     snap_app->add_option("fixed", snap.fixed, "the one that stands")->required();
     snap_app
-        ->add_option("--paint", snap.paint,
-                     "auto: what the bone files have painted, or else a proposal; or a JSON file of brush strokes")
+        ->add_option(
+            "--paint", snap.paint,
+            "auto: what the bone files have painted, or else a proposal; or a JSON file of brush strokes, or two of "
+            "'fracture-surface': MOVING.json,FIXED.json")
         ->capture_default_str();
     snap_app->add_option("--start", snap.start, "X,Y,Z,QW,QX,QY,QZ in mm: where the moving one is (default: as filed)");
     snap_app->add_option("--mode", snap.mode, "thesis and extended start from there, global from anywhere")
         ->check(CLI::IsMember({"thesis", "extended", "global"}))
         ->capture_default_str();
     snap_app->add_flag("--json", snap.json, "as JSON");
+
+    RegisterChoice& registration = choices.registration;
+    CLI::App* register_app = app.add_subcommand("register", "lay a surface on another one of the same shape");
+    register_app->add_option("moving", registration.moving, "bone file or mesh, which need not be closed")->required();
+    register_app->add_option("fixed", registration.fixed, "what it is laid on")->required();
+    register_app->add_flag("--mirror", registration.mirror, "the moving one is of the other side of the body");
+    register_app->add_flag("--anywhere", registration.anywhere, "from any position (default: from where they lie)");
+    register_app->add_flag("--region", registration.region,
+                           "also find the part that lies elsewhere than the rest, and lay it on its place by itself");
+    register_app->add_option("--away", registration.away, "from which distance on a point lies elsewhere, mm")
+        ->capture_default_str()
+        ->check(CLI::Range(0.01, 100.0));
+    register_app->add_option("--gap", registration.gap, "points of a region are no farther apart, mm")
+        ->capture_default_str()
+        ->check(CLI::Range(0.1, 100.0));
+    register_app->add_option("--margin", registration.margin, "by which a region is grown, mm")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 100.0));
+    register_app->add_flag("--json", registration.json, "as JSON");
 }
 
 void add_snap_bench(CLI::App& bench, SnapBenchChoice& choice) {

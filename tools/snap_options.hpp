@@ -33,6 +33,18 @@ struct SnapChoice {
     bool json = false;
 };
 
+struct FractureSurfaceChoice {
+    std::filesystem::path bone, out, paint;
+    double roughness = 0.06, least_area = 20.0;  ///< mean of 1 − cos between normals; mm²
+    bool correct = false, keep = false, json = false;
+};
+
+struct RegisterChoice {
+    std::filesystem::path moving, fixed;
+    double away = 1.5, gap = 3.0, margin = 2.0;  ///< mm, of a region that lies elsewhere
+    bool mirror = false, anywhere = false, region = false, json = false;
+};
+
 struct SnapBenchChoice {
     std::uint64_t seed = 1001;
     int seeds = 8, trials = 1;
@@ -43,13 +55,17 @@ struct SnapBenchChoice {
 
 struct SnapChoices {
     FractureChoice fracture;
+    FractureSurfaceChoice surface;
     SnapChoice snap;
+    RegisterChoice registration;
 };
 
 void add_snap_verbs(CLI::App& app, SnapChoices& choices);
 void add_snap_bench(CLI::App& bench, SnapBenchChoice& choice);
 
 int fracture_verb(const FractureChoice& choice);
+int fracture_surface_verb(const FractureSurfaceChoice& choice);
+int register_verb(const RegisterChoice& choice);
 int snap_verb(const SnapChoice& choice);
 int bench_snap_verb(const SnapBenchChoice& choice);
 

@@ -20,8 +20,7 @@ std::vector<HapticDriver>& drivers() {
     static std::vector<HapticDriver> all{
         {"simulated", "a hand that presses a blade with a set thrust and saws",
          [](Options& options, const PathResolver&) { return open_simulated(options); }},
-        {"scripted", "a hand that goes to given places at given times and yields to force",
-         [](Options& options, const PathResolver&) { return open_scripted(options); }},
+        {"scripted", "a hand that goes to given places at given times and yields to force", open_scripted},
         {"replay", "a recorded movement led through a hand that yields to force", open_replay},
         {"wqsm_gripper", "a simulated gripper with a walking quasi-static motor, on a rig or in a hand",
          open_walking_gripper},

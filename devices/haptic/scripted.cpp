@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/haptic/scripted.hpp"
 
+#include "assets/file/whole_file.hpp"
 #include "devices/haptic/operated.hpp"
 #include "dsp/core/units.hpp"
 #include "dsp/coupling/placement.hpp"
@@ -8,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -15,14 +18,23 @@
 namespace tactus {
 namespace {
 
+/// Bits of DeviceSample::buttons that are held from a time on.
+struct Press {
+    double time = 0.0;
+    std::uint32_t buttons = 0;
+};
+
 struct Following {
     ScriptOperator moves;
     double trigger_on = 0.0, trigger_off = 0.0;
+    std::shared_ptr<const std::vector<Press>> presses;  // shared by the copy that `prepare` goes back to
 
     Intention operator()(double h, const Wrench& force, const Pose& hand) noexcept { return moves(h, force, hand); }
     Pose start() const { return moves.start(); }
     std::uint32_t buttons() const noexcept {
-        return moves.time() >= trigger_on && moves.time() < trigger_off ? button_trigger : 0;
+        if (presses->empty()) return moves.time() >= trigger_on && moves.time() < trigger_off ? button_trigger : 0;
+        const auto next = std::ranges::upper_bound(*presses, moves.time(), {}, &Press::time);
+        return next == presses->begin() ? 0u : (next - 1)->buttons;
     }
 };
 
@@ -56,34 +68,77 @@ HandTarget read_target(std::string_view text) {
     return target;
 }
 
-std::vector<HandTarget> read_targets(Options& options) {
-    const std::string text = options.text("targets", "0 s: 0 0 0 mm");
-    std::vector<HandTarget> targets;
+/// Calls take(part) for the parts of a list with semicolons, each a time, a colon and what belongs to it. Throws Error
+/// where the option stands; times must rise.
+template <class Take>
+void read_list(Options& options, const char* name, const std::string& text, const Take& take) {
+    double last = -1.0;
     std::string_view rest = text;
     while (!rest.empty()) {
-        const auto end = rest.find(';');
+        const auto end = rest.find_first_of(";\n");
         const std::string_view one = trimmed(rest.substr(0, end));
         rest = end == std::string_view::npos ? std::string_view{} : rest.substr(end + 1);
-        if (one.empty()) continue;
+        if (one.empty() || one.front() == '#') continue;
+        const auto fail = [&](const std::string& message) {
+            throw Error(options.where(name), fmt::format("{}: option '{}': {}", options.owner(), name, message));
+        };
+        double time = 0.0;
         try {
-            targets.push_back(read_target(one));
+            time = take(one);
         } catch (const Error& error) {
-            throw Error(options.where("targets"),
-                        fmt::format("{}: option 'targets': {}", options.owner(), error.message()));
+            fail(error.message());
         }
-        if (targets.size() > 1 && !(targets.back().time > targets[targets.size() - 2].time))
-            throw Error(options.where("targets"),
-                        fmt::format("{}: option 'targets': times must rise; '{}' does not", options.owner(), one));
+        if (!(time > last)) fail(fmt::format("times must rise; '{}' does not", one));
+        last = time;
     }
+}
+
+/// Bit 1 is the gap of a replayed hand.
+constexpr std::uint32_t button_bits[] = {button_trigger, 4u, 8u, 16u};
+
+std::uint32_t read_buttons(std::string_view text) {
+    std::istringstream words{std::string(text)};
+    std::uint32_t buttons = 0;
+    for (std::string word; words >> word;) {
+        static const std::vector<std::string> names{"trigger", "second", "third", "fourth"};
+        const auto found = std::ranges::find(names, word);
+        if (found == names.end())
+            throw Error(fmt::format("there is no button '{}'{}", word, did_you_mean(word, names)));
+        buttons |= button_bits[static_cast<std::size_t>(found - names.begin())];
+    }
+    return buttons;
+}
+
+/// Targets and buttons: of the options, or of the file that one of them names. In a file, a line is a target, and what
+/// stands behind a bar is held from then on.
+void read_script(Options& options, const PathResolver& resolve, std::vector<HandTarget>& targets,
+                 std::vector<Press>& presses) {
+    const std::string asset = options.text("file", "");
+    const bool is_file = !asset.empty();
+    const std::string text = is_file ? read_whole_file(resolve(asset)) : options.text("targets", "0 s: 0 0 0 mm");
+    read_list(options, is_file ? "file" : "targets", text, [&](std::string_view one) {
+        const auto bar = one.find('|');
+        targets.push_back(read_target(trimmed(one.substr(0, bar))));
+        if (bar != std::string_view::npos) presses.push_back({targets.back().time, read_buttons(one.substr(bar + 1))});
+        return targets.back().time;
+    });
     if (targets.empty())
         throw Error(options.where("targets"), fmt::format("{}: option 'targets' names no place", options.owner()));
-    return targets;
+    read_list(options, "buttons", options.text("buttons", ""), [&](std::string_view one) {
+        const auto colon = one.find(':');
+        if (colon == std::string_view::npos)
+            throw Error(fmt::format("'{}' has no time; write \"2 s: trigger second\"", one));
+        presses.push_back({parse_as(trimmed(one.substr(0, colon)), "s"), read_buttons(one.substr(colon + 1))});
+        return presses.back().time;
+    });
 }
 
 }  // namespace
 
-std::unique_ptr<HapticDevice> open_scripted(Options& options) {
-    std::vector<HandTarget> targets = read_targets(options);
+std::unique_ptr<HapticDevice> open_scripted(Options& options, const PathResolver& resolve) {
+    std::vector<HandTarget> targets;
+    std::vector<Press> presses;
+    read_script(options, resolve, targets, presses);
     HandWiggle wiggle;
     wiggle.amplitude = options.quantity("wiggle", "0 mm", "0 mm", "20 mm");
     wiggle.turn = options.quantity("wiggle_turn", "0 deg", "0 deg", "45 deg");
@@ -93,8 +148,10 @@ std::unique_ptr<HapticDevice> open_scripted(Options& options) {
     const HandDynamics hand = read_hand(options);
     DeviceInfo info = read_device_info(options, hand, "scripted hand");
     options.finish();
-    return std::make_unique<OperatedDevice<Following>>(std::move(info), hand,
-                                                       Following{ScriptOperator(std::move(targets), wiggle), on, off});
+    return std::make_unique<OperatedDevice<Following>>(
+        std::move(info), hand,
+        Following{ScriptOperator(std::move(targets), wiggle), on, off,
+                  std::make_shared<const std::vector<Press>>(std::move(presses))});
 }
 
 }  // namespace tactus

@@ -40,21 +40,34 @@ void HeldContact::set(const Scene& scene, int held, const Pose& grip, const Cont
     count_ = 0;
     held_shell_ = nullptr;
     if (held < 0 || static_cast<std::size_t>(held) >= scene.count) return;
-    const SceneObject& mine = scene.objects[static_cast<std::size_t>(held)];
-    held_shell_ = mine.body.shell;
-    for (std::size_t i = 0; i < scene.count; ++i) {
-        const SceneObject& other = scene.objects[i];
-        if (i == static_cast<std::size_t>(held) || !is_valid(other.pose)) continue;
-        if (mine.body.shell && other.body.map)
-            pairs_[count_++] = {mine.body.shell, {}, other.body.map, other.pose, true};
-        if (both_ways && other.body.shell && mine.body.map)
-            pairs_[count_++] = {other.body.shell, other.pose, mine.body.map, {}, false};
+    const SceneObject& grasped = scene.objects[static_cast<std::size_t>(held)];
+    held_shell_ = grasped.body.shell;
+    const auto moves_along = [&](std::size_t i) {
+        return i == static_cast<std::size_t>(held) || (grasped.unit >= 0 && scene.objects[i].unit == grasped.unit);
+    };
+    const Pose from_held = is_valid(grasped.pose) ? grasped.pose.inverse() : Pose{};
+    for (std::size_t m = 0; m < scene.count; ++m) {
+        const SceneObject& mine = scene.objects[m];
+        if (!moves_along(m) || (m != static_cast<std::size_t>(held) && !is_valid(mine.pose))) continue;
+        const Pose beside = m == static_cast<std::size_t>(held) ? Pose{} : from_held * mine.pose;
+        for (std::size_t i = 0; i < scene.count; ++i)
+            if (!moves_along(i) && is_valid(scene.objects[i].pose)) add(mine, beside, scene.objects[i], both_ways);
     }
+}
+
+void HeldContact::add(const SceneObject& mine, const Pose& beside, const SceneObject& other, bool both_ways) noexcept {
+    const auto put = [&](const ContactPair& pair) {
+        beside_[count_] = beside;
+        pairs_[count_++] = pair;
+    };
+    if (mine.body.shell && other.body.map) put({mine.body.shell, {}, other.body.map, other.pose, true});
+    if (both_ways && other.body.shell && mine.body.map) put({other.body.shell, other.pose, mine.body.map, {}, false});
 }
 
 std::span<const ContactPair> HeldContact::place(const Pose& handle) noexcept {
     const Pose body = handle * grip_;
-    for (std::size_t i = 0; i < count_; ++i) (pairs_[i].shell_moves ? pairs_[i].shell_pose : pairs_[i].map_pose) = body;
+    for (std::size_t i = 0; i < count_; ++i)
+        (pairs_[i].shell_moves ? pairs_[i].shell_pose : pairs_[i].map_pose) = body * beside_[i];
     return std::span(pairs_).first(count_);
 }
 
@@ -67,7 +80,7 @@ double HeldContact::clearance(const Pose& handle) const noexcept {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < count_; ++i) {
         ContactPair pair = pairs_[i];
-        (pair.shell_moves ? pair.shell_pose : pair.map_pose) = body;
+        (pair.shell_moves ? pair.shell_pose : pair.map_pose) = body * beside_[i];
         least = std::min(least, clearance_of(pair, least));
         if (!(least > 0.0)) return 0.0;
     }

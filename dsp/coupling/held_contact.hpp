@@ -18,6 +18,7 @@ public:
     explicit HeldContact(std::size_t most_points);
 
     /// From now on: body `held` of `scene` (which must live meanwhile), standing at handle ∘ `grip`, against all others.
+    /// What is of one unit with it moves along, where it stands in `scene`, and touches what else there is.
     /// `both_ways`: the points of the others are tried against the held body's distance too. A `held` that is no place
     /// in the scene is not there and touches nothing.
     void set(const Scene& scene, int held, const Pose& grip, const ContactLaw& law, bool both_ways,
@@ -31,11 +32,15 @@ public:
     double gyration() const noexcept;
 
 private:
+    void add(const SceneObject& mine, const Pose& beside, const SceneObject& other, bool both_ways) noexcept;
     std::span<const ContactPair> place(const Pose& handle) noexcept;
 
     PointshellContact kernel_;
     ContactLaw law_;
-    std::array<ContactPair, 2 * Scene::most_objects> pairs_;
+    // Half of the objects against the other half is the most there can be.
+    static constexpr std::size_t most_pairs = Scene::most_objects * Scene::most_objects / 2;
+    std::array<ContactPair, most_pairs> pairs_;
+    std::array<Pose, most_pairs> beside_;  ///< of the moving body of a pair in the frame of the held one
     std::size_t count_ = 0, budget_ = 0;
     const Pointshell* held_shell_ = nullptr;
     Pose grip_;

@@ -31,12 +31,14 @@ struct Body {
 struct SceneObject {
     Body body;
     Pose pose;
+    int unit = -1;  ///< objects of one unit move as one and do not touch each other; -1: on its own
+    bool stands = true;  ///< others may be brought to it: it is where it belongs
 };
 
-/// Up to eight bodies with their poses, by value: whoever holds a scene holds one moment of it.
+/// Up to sixteen bodies with their poses, by value: whoever holds a scene holds one moment of it.
 struct Scene {
     static constexpr std::string_view wire_name = "scene";
-    static constexpr std::size_t most_objects = 8;
+    static constexpr std::size_t most_objects = 16;
 
     std::array<SceneObject, most_objects> objects;
     std::size_t count = 0;
@@ -51,6 +53,7 @@ inline std::uint64_t hash_of(const Scene& scene) noexcept {
     for (std::size_t i = 0; i < scene.count; ++i) {
         hash.add_word(scene.objects[i].body.content_hash);
         hash.add_bytes(&scene.objects[i].pose, sizeof(Pose));
+        if (scene.objects[i].unit >= 0) hash.add_word(static_cast<std::uint64_t>(scene.objects[i].unit) + 1);
     }
     return hash.state;
 }

@@ -42,7 +42,12 @@ MirrorFit fit_mirror(std::span<const SurfacePoint> healthy, std::span<const Surf
                      const RegistrationSettings& settings) {
     // Any mirror will do to begin with; the registration finds the rest.
     const MirrorPlane first;
-    const std::vector<SurfacePoint> other = mirrored(healthy, first);
+    std::vector<SurfacePoint> other = mirrored(healthy, first);
+    // Planes at the points stand for the surface between them, so not all are needed.
+    const std::size_t stride = other.size() / 40'000 + 1;
+    std::size_t kept = 0;
+    for (std::size_t n = 0; n < other.size(); n += stride) other[kept++] = other[n];
+    other.resize(kept);
     const RegistrationTarget target(other);
     MirrorFit fit;
     // The broken side is part of what the mirrored one has, so its points are laid on that.

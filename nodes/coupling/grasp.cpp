@@ -22,7 +22,7 @@ struct Grasp {
     Out<double> strength{"share of the coupling's force that is to be felt"};
     Param reach{"5 mm", "0 mm", "1 m", "how near to a body the hand must be"};
     Param fade{"50 ms", "0 ms", "10 s", "in which the force comes in and goes out"};
-    Param fixed{"1", "0", "8", "so many places from the first cannot be taken"};
+    Param fixed{"1", "0", "16", "so many places from the first cannot be taken"};
 
     void prepare(const Setup&) { tell(); }
 

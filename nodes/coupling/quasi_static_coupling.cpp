@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/coupling/guidance.hpp"
 #include "dsp/coupling/quantile.hpp"
 #include "dsp/coupling/quasi_static.hpp"
 #include "graph/node.hpp"
 #include "nodes/contact/contact_parameters.hpp"
 #include "nodes/coupling/held_body.hpp"
+
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <optional>
@@ -13,25 +16,35 @@ namespace tactus::nodes {
 struct QuasiStaticCoupling {
     static constexpr auto about =
         "Holds a body of a scene by two springs: every tick it stands where springs and contact forces balance, solved "
-        "within the tick, and the hand feels the springs, in six degrees of freedom.";
+        "within the tick, and the hand feels the springs, in six degrees of freedom. It may be led to a target by a "
+        "second pair of springs, which the hand can always pull against.";
 
     In<Pose> device{"the hand in the scene", "m"};
     In<tactus::Scene> scene{"everything that can be touched, and the body that is held"};
     In<Pose> grip{optional, "held body in the frame of the hand; unconnected: 'grip_at'", "m"};
     In<bool> holding{optional, "false: the body stays where it was let go; unconnected: held all the time"};
     In<double> strength{optional, "share of the force that is felt, 0 to 1; unconnected: all of it"};
+    In<Pose> target{optional, "where the held body is led to, while 'guided'", "m"};
+    In<bool> guided{optional, "the hand wants it to be led there; unconnected: not"};
+    In<bool> has_target{optional, "there is a target; unconnected: always"};
+    In<bool> settle{optional, "the springs to the hand give way, so that it is led without bias"};
     Out<Wrench> wrench{"on the hand, about its origin", "N, N m"};
     Out<Pose> pose{"of the held body: the proxy", "m"};
     Out<double> place{"of the held body in the scene, -1 when there is none"};
     Out<double> penetration{"of the deepest point", "m"};
     Out<double> residual{"of the balance", "N"};
     Out<bool> in_contact{"some point has a force"};
-    Param held{"0", "-1", "7", "place of the held body in the scene; grasp drives it"};
+    Param held{"0", "-1", "15", "place of the held body in the scene; grasp drives it"};
     Vector grip_at{"0 mm, 0 mm, 0 mm", "origin of the held body in the frame of the hand"};
     Param stiffness{"1 N/mm", "0 N/mm", "20 N/mm", "of the spring to the hand"};
     Param angular_stiffness{"1 N m/rad", "0 N m/rad", "100 N m/rad", "of the spring that turns"};
     Param max_force{"10 N", "0 N", "100 N", "the spring pulls no harder"};
     Param max_torque{"0.5 N m", "0 N m", "20 N m", "the spring turns no harder"};
+    Param guide_stiffness{"1 N/mm", "0 N/mm", "20 N/mm", "of the spring to the target"};
+    Param guide_angular_stiffness{"1 N m/rad", "0 N m/rad", "100 N m/rad", "of that which turns"};
+    Param guide_force{"8 N", "0 N", "100 N", "the target pulls no harder"};
+    Param guide_torque{"0.3 N m", "0 N m", "20 N m", "the target turns no harder"};
+    Param fade{"100 ms", "1 ms", "10 s", "in which guidance and springs come and go"};
     Param iterations{"10", "1", "50", "most steps of the solver in one tick"};
     Param tolerance{"0.001 N", "0 N", "1 N", "residual that counts as balanced"};
     Param step{"0.5 mm", "0.001 mm", "20 mm",
@@ -40,15 +53,17 @@ struct QuasiStaticCoupling {
 
     void prepare(const Setup&) {
         contact_.emplace(contact.make());
+        guided_contact_.emplace(*contact_);
         place = -1.0;
     }
 
-    void process(const Tick&) noexcept {
+    void process(const Tick& tick) noexcept {
         hold_.update(scene, held, holding, strength);
         const Pose in_hand = grip.connected && is_valid(grip.get()) ? grip.get() : Pose{grip_at, {1.0, 0.0, 0.0, 0.0}};
         contact.set(*contact_, scene, hold_.place, in_hand);
+        if (hold_.taken) take();
+        guide(in_hand, tick.elapsed_seconds() / fade);
         set_up();
-        if (hold_.taken) solver_.reset(device);
         if (hold_.holds) solve(in_hand);
         else let_go();
         place = hold_.place;
@@ -70,9 +85,26 @@ struct QuasiStaticCoupling {
     }
 
 private:
+    void take() noexcept {
+        solver_.reset(device);
+        guided_contact_->share = 0.0;
+        sprung_ = 1.0;
+    }
+
+    void guide(const Pose& in_hand, double change) noexcept {
+        GuidedContact& g = *guided_contact_;
+        const bool wanted = hold_.holds && guided.connected && guided.get() &&
+                            (!has_target.connected || has_target.get()) && target.connected && is_valid(target.get());
+        g.share = std::clamp(g.share + (wanted ? change : -change), 0.0, 1.0);
+        if (wanted) g.target = Pose{target->position, glm::normalize(target->orientation)} * in_hand.inverse();
+        g.springs = {{guide_stiffness, guide_force}, {guide_angular_stiffness, guide_torque}};
+        const bool gives_way = wanted && settle.connected && settle.get();
+        sprung_ = std::clamp(sprung_ + (gives_way ? -change : change), 0.0, 1.0);
+    }
+
     void set_up() noexcept {
         QuasiStaticSettings& s = solver_.settings;
-        s.springs = {{stiffness, max_force}, {angular_stiffness, max_torque}};
+        s.springs = {{stiffness * sprung_, max_force * sprung_}, {angular_stiffness * sprung_, max_torque * sprung_}};
         s.iterations = static_cast<int>(iterations);
         s.tolerance = tolerance;
         s.step = step;
@@ -81,7 +113,7 @@ private:
     }
 
     void solve(const Pose& in_hand) noexcept {
-        const QuasiStaticState& now = solver_.update(device, *contact_);
+        const QuasiStaticState& now = solver_.update(device, *guided_contact_);
         wrench = now.wrench * hold_.strength;
         pose = now.proxy * in_hand;
         penetration = now.contact.penetration;
@@ -108,6 +140,8 @@ private:
     }
 
     std::optional<HeldContact> contact_;
+    std::optional<GuidedContact> guided_contact_;
+    double sprung_ = 1.0;
     tactus::QuasiStaticCoupling solver_;
     Hold hold_;
     Wrench last_;
@@ -116,8 +150,9 @@ private:
            reduced_ = 0.0;
 };
 
-TACTUS_NODE(QuasiStaticCoupling, device, scene, grip, holding, strength, wrench, pose, place, penetration, residual,
-            in_contact, held, grip_at, stiffness, angular_stiffness, max_force, max_torque, iterations, tolerance, step,
-            contact)
+TACTUS_NODE(QuasiStaticCoupling, device, scene, grip, holding, strength, target, guided, has_target, settle, wrench,
+            pose, place, penetration, residual, in_contact, held, grip_at, stiffness, angular_stiffness, max_force,
+            max_torque, guide_stiffness, guide_angular_stiffness, guide_force, guide_torque, fade, iterations,
+            tolerance, step, contact)
 
 }  // namespace tactus::nodes

@@ -37,8 +37,8 @@ struct SnapToFit {
     Out<bool> in_contact{"some point has a force"};
     Asset<Bone> moving{"the fragment that is held, with painted points"};
     Asset<Bone> fixed{"the one it is drawn to"};
-    Param held{"1", "-1", "7", "place of the held body in the scene; grasp drives it"};
-    Param target{"0", "0", "7", "place of the other fragment"};
+    Param held{"1", "-1", "15", "place of the held body in the scene; grasp drives it"};
+    Param target{"0", "0", "15", "place of the other fragment"};
     Choice mode{{"extended", "thesis"}, "extended: both paints, robust, narrowing; thesis: a steady pull of one"};
     Param force{"10 N", "0 N", "100 N", "the pull of all painted points together, at most"};
     Param reach{"4 mm", "0.1 mm", "12 mm", "no pull from farther away"};

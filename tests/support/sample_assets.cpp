@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Assets for tests, made in memory: a ball of bone, a saw of two recordings and a short equaliser.
+#include "dsp/contact/sample_surface.hpp"
 #include "graph/assets.hpp"
 #include "tests/support/node_harness.hpp"
 
@@ -48,6 +49,15 @@ Recording tone(bool cutting, double rate, double load) {
 
 std::shared_ptr<const void> sample_asset(std::string_view type_name) {
     if (type_name == AssetLoader<Bone>::name) return std::make_shared<const Bone>(ball());
+    if (type_name == AssetLoader<CaseBones>::name) {
+        CaseBones made;
+        for (const char* name : {"ball", "other"}) {
+            made.plan.fragments.push_back({name, name, 0, Vec3(1.0)});
+            made.bones.push_back(ball());
+            made.bones.back().points = sample_surface(made.bones.back().distance, {.spacing = 1.5e-3});
+        }
+        return std::make_shared<const CaseBones>(std::move(made));
+    }
     if (type_name == AssetLoader<RecordingSet>::name) {
         RecordingSet set;
         set.recordings = {tone(false, 200.0, 0.0), tone(true, 200.0, 7.0)};

@@ -251,6 +251,46 @@ TEST_CASE("fragments a metre from the origin are planned like any others") {
     CHECK(glm::length(found.apply(at) - Vec3(1.0, -0.6, 0.8)) < 0.2 * mm);
 }
 
+TEST_CASE("paint goes to a file of strokes that a hand may correct, and comes back from it") {
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    save_bone(bar(), file("bar.vdb"));
+    REQUIRE(folder.tactus("fracture " + file("bar.vdb") + " -o " + file("f") + " --seed 4 --spread 5 --turn 10").code ==
+            0);
+    json strokes;
+    for (const std::string n : {"1", "2"}) {
+        const std::string surface = "fracture-surface " + file("f/fragment_0" + n + ".vdb") + " --keep --json -o ";
+        const Outcome done = folder.tactus(surface + file(n + ".json"));
+        INFO(done.err);
+        REQUIRE(done.code == 0);
+        const json faces = json::parse(done.out)["faces"];
+        REQUIRE_FALSE(faces.empty());
+        CHECK(faces[0]["area_mm2"].get<double>() > 150.0);
+        strokes = json::parse(slurp(file(n + ".json")));
+        CHECK(strokes["paint"].size() > 50);
+    }
+    const std::string pair = file("f/fragment_02.stl") + " " + file("f/fragment_01.stl");
+    const Outcome snapped = folder.tactus("snap " + pair + " --json --paint " + file("2.json") + "," + file("1.json"));
+    INFO(snapped.out << snapped.err);
+    CHECK(snapped.code == 0);
+    CHECK(json::parse(snapped.out)["verdict"] == "fit");
+    // A hand takes off all but a spot.
+    const std::string again = "fracture-surface " + file("f/fragment_02.vdb") + " --keep --json --paint ";
+    const auto area = [&](const std::string& from) {
+        const Outcome done = folder.tactus(again + file(from) + " -o " + file("painted.vdb"));
+        INFO(done.err);
+        double sum = 0.0;
+        for (const json& face : json::parse(done.out)["faces"]) sum += face["area_mm2"].get<double>();
+        return sum;
+    };
+    const double whole = area("2.json");
+    strokes["erase"] = strokes["paint"];
+    strokes["erase"].erase(0, 1);
+    folder.write("nothing.json", strokes.dump());
+    CHECK(area("nothing.json") < 0.1 * whole);
+    CHECK(folder.tactus(again + folder.write("bad.json", "[]").string() + " -o " + file("painted.vdb")).code == 2);
+}
+
 TEST_CASE("what cannot be planned is refused in one line, and nothing is lost") {
     const Boxes boxes;
     const std::string whole = slurp(boxes.plan);

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/library/broken_mandible.hpp"
+
+#include "assets/bone/labels.hpp"
+#include "assets/fracture/break_bone.hpp"
+#include "assets/fracture/paint.hpp"
+#include "dsp/contact/sample_surface.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/random.hpp"
+#include "dsp/distance/point_tree.hpp"
+#include "dsp/operator/hand.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tactus {
+
+namespace {
+
+Vec3 direction(const Random& random, std::uint64_t n) {
+    return glm::normalize(Vec3(random.normal(n), random.normal(n + 1), random.normal(n + 2)));
+}
+
+Vec3 middle_of(const std::vector<SurfacePoint>& points) {
+    Vec3 middle(0.0);
+    for (const SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
+    return middle;
+}
+
+/// Turned about its middle and moved.
+Pose about(const Vec3& middle, const Vec3& way, const Vec3& turn) {
+    const Quat q = rotation_by(turn);
+    return {middle + way - q * middle, q};
+}
+
+std::size_t samples_inside(const Grid& solid) {
+    return static_cast<std::size_t>(std::ranges::count_if(solid.values, [](float d) { return d < 0.0f; }));
+}
+
+/// Pieces so that each, when its turn comes, has as much as possible of its fracture against those before it.
+std::vector<std::size_t> order_of(const BrokenMandible& broken) {
+    const std::size_t count = broken.fragments.size();
+    std::vector<std::vector<Vec3>> paint(count);
+    for (std::size_t n = 0; n < count; ++n)
+        for (const SurfacePoint& p : broken.fragments[n].points)
+            if (p.label == surface_label::fracture) paint[n].push_back(broken.truth[n].apply(p.position));
+    std::vector<Vec3> standing = paint[0];
+    std::vector<std::size_t> order;
+    std::vector<char> done(count, 0);
+    done[0] = 1;
+    while (order.size() + 1 < count) {
+        const PointTree tree(standing);
+        std::size_t best = 0, most = 0;
+        for (std::size_t n = 1; n < count; ++n) {
+            if (done[n]) continue;
+            const auto near = static_cast<std::size_t>(std::ranges::count_if(
+                paint[n], [&](const Vec3& p) { return glm::length(p - standing[tree.nearest(p)]) < 0.8e-3; }));
+            if (best == 0 || near > most) best = n, most = near;
+        }
+        done[best] = 1;
+        order.push_back(best);
+        standing.insert(standing.end(), paint[best].begin(), paint[best].end());
+    }
+    return order;
+}
+
+/// Lines of a script, one after the other in time.
+class Script {
+public:
+    void go(double seconds, const Pose& to, const char* held) {
+        time_ += seconds;
+        text_ += fmt::format("{:.3f} s: {:.9g} {:.9g} {:.9g} mm, {} deg | {}\n", time_, to.position.x * 1e3,
+                             to.position.y * 1e3, to.position.z * 1e3, turns(to.orientation), held);
+        at_ = to;
+    }
+    void stay(double seconds, const char* held) { go(seconds, at_, held); }
+    double time() const { return time_; }
+    const std::string& text() const { return text_; }
+
+private:
+    /// About the fixed axes x, then y, then z.
+    static std::string turns(const Quat& q) {
+        const Mat3 m = glm::mat3_cast(q);
+        const double y = std::asin(std::clamp(-m[0][2], -1.0, 1.0)), x = std::atan2(m[1][2], m[2][2]),
+                     z = std::atan2(m[0][1], m[0][0]);
+        constexpr double degrees = 180.0 / std::numbers::pi;
+        return fmt::format("{:.9g} {:.9g} {:.9g}", x * degrees, y * degrees, z * degrees);
+    }
+
+    double time_ = 0.0;
+    std::string text_;
+    Pose at_;
+};
+
+/// Snap while the matcher looks twice, settle, and let go before anything pulls at the piece again.
+void snap_and_settle(Script& script) {
+    script.stay(0.05, "trigger second");
+    script.stay(0.95, "trigger second third");
+    script.stay(0.25, "second third");
+    script.stay(0.10, "");
+}
+
+std::string script_of(const BrokenMandible& broken, const BrokenMandibleOptions& options, double& seconds) {
+    Script script;
+    const auto order = order_of(broken);
+    script.go(0.0, {middle_of(broken.fragments[order[0]].points), {1.0, 0.0, 0.0, 0.0}}, "");
+    for (const std::size_t n : order) {
+        const Random random{options.seed * 7919 + n};
+        const Vec3 middle = middle_of(broken.fragments[n].points);
+        const Pose grip{middle, {1.0, 0.0, 0.0, 0.0}};
+        const Vec3 place = broken.truth[n].apply(middle);
+        const Pose beside =
+            about(place, options.error * direction(random, 0), options.error_turn * direction(random, 3)) *
+            broken.truth[n];
+        script.go(0.6, grip, "");
+        script.stay(0.1, "trigger");
+        script.stay(0.1, "trigger");
+        script.go(1.0, beside * grip, "trigger");
+        script.stay(0.2, "trigger");
+        snap_and_settle(script);
+    }
+    // Once more, now that all neighbours are there; the hand reaches for a piece only about where it is.
+    for (const std::size_t n : order) {
+        const Random random{options.seed * 7919 + n};
+        const Vec3 place = broken.truth[n].apply(middle_of(broken.fragments[n].points));
+        script.go(0.5, {place + 1.5e-3 * direction(random, 6), {1.0, 0.0, 0.0, 0.0}}, "");
+        script.stay(0.1, "trigger");
+        snap_and_settle(script);
+    }
+    seconds = script.time();
+    return script.text();
+}
+
+}  // namespace
+
+BrokenMandible break_mandible(const Bone& bone, const BrokenMandibleOptions& options) {
+    std::vector<Grid> solids = break_bone(
+        bone.distance, {.pieces = options.pieces, .seed = options.seed, .chips = options.chips, .kerf = options.kerf});
+    std::ranges::stable_sort(solids, std::ranges::greater{}, samples_inside);
+    const Voxmap whole = make_voxmap(bone.distance);
+    const Vec3 centre =
+        bone.distance.position(bone.distance.size[0] / 2, bone.distance.size[1] / 2, bone.distance.size[2] / 2);
+    BrokenMandible broken;
+    for (std::size_t n = 0; n < solids.size(); ++n) {
+        const Random random{options.seed * 1009 + n};
+        const Grid& solid = solids[n];
+        const Vec3 middle = solid.position(solid.size[0] / 2, solid.size[1] / 2, solid.size[2] / 2);
+        // Laid out around, each in a direction of its own.
+        const double round = 2.0 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(solids.size() - 1);
+        const Vec3 to =
+            centre + options.apart * Vec3(std::cos(round), -0.6 + 0.3 * std::sin(2.0 * round), std::sin(round));
+        const Pose placement = n == 0 ? Pose{} : about(middle, to - middle, options.turn * direction(random, 0));
+        Bone fragment;
+        fragment.distance = scan_solid(solid, placement, {.seed = options.seed * 2003 + n});
+        fragment.density = fragment.distance;
+        for (float& d : fragment.density.values) d = d < 0.0f ? 1200.0f : 0.0f;
+        fragment.points = sample_surface(fragment.distance, {.spacing = 0.42e-3});
+        paint_fracture(fragment.points, whole, placement.inverse());
+        fragment.name = fmt::format("fragment_{:02}", n + 1);
+        fragment.colour = label_colour(static_cast<int>(n) + 1);
+        fragment.provenance = {
+            {"source", "simulated scan of a piece of the bundled mandible"}, {"frame", "LPS"}, {"hu", "simulated"}};
+        broken.truth.push_back(placement.inverse());
+        broken.fragments.push_back(std::move(fragment));
+    }
+    broken.script = script_of(broken, options, broken.seconds);
+    return broken;
+}
+
+CasePlan plan_of(const BrokenMandible& broken, const std::vector<std::string>& files,
+                 const std::vector<std::uint64_t>& hashes) {
+    CasePlan plan;
+    plan.title = "A mandible in twelve pieces";
+    for (std::size_t n = 0; n < broken.fragments.size(); ++n)
+        plan.fragments.push_back({broken.fragments[n].name, files[n], hashes[n], broken.fragments[n].colour});
+    PlanStep lock;
+    lock.kind = StepKind::lock;
+    lock.by = "command";
+    lock.fragments = {0};
+    add_step(plan, lock);
+    return plan;
+}
+
+}  // namespace tactus

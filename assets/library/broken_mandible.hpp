@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The bundled case: the bundled mandible in twelve pieces, scanned, laid out, and a hand that puts it together.
+#pragma once
+
+#include "assets/bone/bone.hpp"
+#include "assets/plan/case_plan.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tactus {
+
+struct BrokenMandibleOptions {
+    int pieces = 12;
+    std::uint64_t seed = 1;
+    double chips = 0.15;        ///< share of each fracture's area
+    double kerf = 0.0;          ///< m
+    double apart = 45e-3;       ///< m, how far the pieces are laid from their places
+    double turn = 0.5;          ///< rad, how far they are turned
+    double error = 5e-3, error_turn = 0.17453292519943295;  ///< m, rad: where the hand stops beside a piece's place
+};
+
+struct BrokenMandible {
+    std::vector<Bone> fragments;  ///< as scanned; painted where they broke; the first is in its place
+    std::vector<Pose> truth;      ///< of each: p_bone = R p_fragment + t
+    std::string script;           ///< of the hand, for the driver 'scripted'
+    double seconds = 0.0;         ///< that the hand needs
+};
+
+/// Breaks `bone` and makes the case. The hand takes each piece, stops beside its place by the error in a seeded direction,
+/// snaps, settles and lets go; then it takes each once more where it lies and settles it on all its neighbours. It knows
+/// the truth for no more than where to stop. Deterministic.
+BrokenMandible break_mandible(const Bone& bone, const BrokenMandibleOptions& options = {});
+
+/// The plan of the case as it is scanned, for fragments in files of their names; the first one is locked.
+CasePlan plan_of(const BrokenMandible& broken, const std::vector<std::string>& files,
+                 const std::vector<std::uint64_t>& hashes);
+
+}  // namespace tactus

@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/planning/fragment_matcher.hpp"
+
+#include "dsp/coupling/quasi_static.hpp"
+#include "dsp/planning/faces.hpp"
+#include "dsp/snap/carried.hpp"
+#include "dsp/snap/hold.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace tactus {
+
+namespace {
+
+constexpr int spins = 16;
+constexpr std::size_t coarse_points = 160;
+constexpr std::uint8_t own_label = 200;  // of the face that is being made
+
+QuasiStaticSettings free_solver(double gyration) {
+    QuasiStaticSettings s;
+    s.springs = {{0.0, 1.0}, {0.0, 1.0}};
+    s.iterations = 1;
+    s.tolerance = 1e-7;
+    s.reach = s.gyration = gyration;
+    return s;
+}
+
+void set_law(FitEnergy& energy, double scale, double power, std::size_t points) noexcept {
+    energy.law = {};
+    energy.law.reach = 1.0;
+    energy.law.scale = scale;
+    energy.law.power = power;
+    const std::size_t all = std::min(energy.moving().position.size(), energy.fixed().position.size());
+    energy.law.stride = std::max<std::size_t>(1, all / points);
+}
+
+Pose anneal(FitEnergy& energy, const Pose& start, double widest, double finest, int stages,
+            std::size_t points) noexcept {
+    QuasiStaticCoupling solver;
+    solver.settings = free_solver(energy.moving().gyration);
+    solver.reset(start);
+    for (int stage = 0; stage < stages; ++stage) {
+        const double progress = static_cast<double>(stage) / (stages - 1);
+        const double scale = widest * std::pow(finest / widest, progress);
+        set_law(energy, scale, 1.0 + 2.0 * progress, points);
+        solver.settings.step = std::max(scale, 0.3e-3);
+        const Pose pose = solver.state().proxy;
+        energy.look(pose);
+        solver.update(pose, energy);
+    }
+    return solver.state().proxy;
+}
+
+Vec3 direction_of(const Vec3& normal) {
+    const double length = glm::length(normal);
+    return length > 1e-6 ? normal / length : Vec3(0.0, 0.0, 1.0);
+}
+
+Quat shortest_turn(const Vec3& from, const Vec3& to) {
+    const Vec3 axis = glm::cross(from, to);
+    const double sine = glm::length(axis), cosine = glm::dot(from, to);
+    if (sine < 1e-9) {
+        if (cosine > 0.0) return {1.0, 0.0, 0.0, 0.0};
+        const Vec3 other = std::abs(from.x) < 0.5 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
+        return glm::angleAxis(std::numbers::pi, glm::normalize(glm::cross(from, other)));
+    }
+    return glm::angleAxis(std::atan2(sine, cosine), axis / sine);
+}
+
+double apart(const Pose& a, const Pose& b, double gyration) noexcept {
+    return glm::length(a.position - b.position) +
+           gyration * glm::length(rotation_between(a.orientation, b.orientation));
+}
+
+/// One face as a surface of its own: the other faces of the fragment are bone to it, not paint.
+FitSurface surface_of(const FragmentSurface& fragment, std::span<const std::size_t> face, std::size_t most) {
+    std::vector<SurfacePoint> points(fragment.points.begin(), fragment.points.end());
+    for (const std::size_t n : face) points[n].label = own_label;
+    FitSurfaceOptions options;
+    options.paint = own_label;
+    options.reach = 6e-3;
+    options.most_samples = 400'000;
+    FitSurface made = make_fit_surface(points, *fragment.distance, options);
+    // Beside a face there may be another one, which is no outer contour.
+    made.outline.clear();
+    made.outline_normal.clear();
+    const std::size_t stride = (made.position.size() + most - 1) / most;
+    if (stride < 2) return made;
+    std::size_t kept = 0;
+    double sum = 0.0;
+    for (std::size_t n = 0; n < made.position.size(); n += stride, ++kept) {
+        made.position[kept] = made.position[n];
+        made.normal[kept] = made.normal[n];
+        sum += made.share[kept] = made.share[n];
+    }
+    made.position.resize(kept);
+    made.normal.resize(kept);
+    made.share.resize(kept);
+    for (double& share : made.share) share /= sum;
+    return made;
+}
+
+}  // namespace
+
+/// Several pairs of faces of one moving fragment, as the solver asks for one contact. Its handle stands at `centre` of the
+/// fragment, wherever its file has its origin.
+class FragmentMatcher::Together {
+public:
+    Together(FragmentMatcher& matcher, std::span<const Pair> pairs, std::span<const Pose> poses, const Vec3& centre)
+        : matcher_(matcher), pairs_(pairs), poses_(poses), centre_(centre) {}
+
+    Pose handle(const Pose& body) const noexcept { return {body.apply(centre_), body.orientation}; }
+    Pose body(const Pose& handle) const noexcept { return {handle.apply(-centre_), handle.orientation}; }
+
+    void look(const Pose& at) noexcept {
+        for (const Pair& pair : pairs_) energy(pair).look(matcher_.centres(pair, body(at), poses_));
+    }
+    ContactSum operator()(const Pose& at, ContactParts parts) noexcept {
+        ContactSum all;
+        for (const Pair& pair : pairs_) {
+            const Face &m = matcher_.faces_[pair.moving], &f = matcher_.faces_[pair.fixed];
+            const ContactSum one =
+                carried(energy(pair)(matcher_.centres(pair, body(at), poses_), parts),
+                        glm::mat3_cast(poses_[static_cast<std::size_t>(f.fragment)].orientation),
+                        at.rotate(m.surface.centre - centre_), std::min(m.surface.area, f.surface.area) * 1e4);
+            all.energy += one.energy;
+            for (std::size_t n = 0; n < 6; ++n) all.gradient[n] += one.gradient[n];
+            for (std::size_t n = 0; n < 36; ++n) all.stiffness[n] += one.stiffness[n];
+        }
+        return all;
+    }
+    double clearance(const Pose&) const noexcept { return 0.0; }
+
+private:
+    FitEnergy& energy(const Pair& pair) noexcept { return matcher_.energy(pair.moving, pair.fixed); }
+
+    FragmentMatcher& matcher_;
+    std::span<const Pair> pairs_;
+    std::span<const Pose> poses_;
+    Vec3 centre_;
+};
+
+FragmentMatcher::FragmentMatcher(std::span<const FragmentSurface> fragments, const MatcherSettings& wanted)
+    : settings(wanted) {
+    for (std::size_t n = 0; n < fragments.size(); ++n)
+        for (const auto& face : split_faces(fragments[n].points)) {
+            if (face.size() < 40) continue;
+            faces_.push_back({static_cast<int>(n), surface_of(fragments[n], face, settings.most_points)});
+        }
+    energies_.resize(faces_.size() * faces_.size());
+    for (std::size_t a = 0; a < faces_.size(); ++a)
+        for (std::size_t b = 0; b < faces_.size(); ++b)
+            if (faces_[a].fragment != faces_[b].fragment)
+                energies_[a * faces_.size() + b] = std::make_unique<FitEnergy>(faces_[a].surface, faces_[b].surface);
+    pairs_.reserve(energies_.size());
+    joined_.reserve(energies_.size());
+    solved_.reserve(std::max<std::size_t>(settings.most_pairs, 1));
+    free_.free.reserve(6);
+}
+
+std::size_t FragmentMatcher::faces_of(int fragment) const noexcept {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(faces_, [fragment](const Face& f) { return f.fragment == fragment; }));
+}
+
+Pose FragmentMatcher::world(const Pair& pair, const Pose& at, std::span<const Pose> poses) const noexcept {
+    const Face& f = faces_[pair.fixed];
+    return poses[static_cast<std::size_t>(f.fragment)] * between_bodies(faces_[pair.moving].surface, f.surface, at);
+}
+
+Pose FragmentMatcher::centres(const Pair& pair, const Pose& moving, std::span<const Pose> poses) const noexcept {
+    const Face& f = faces_[pair.fixed];
+    return between_centres(faces_[pair.moving].surface, f.surface,
+                           poses[static_cast<std::size_t>(f.fragment)].inverse() * moving);
+}
+
+FragmentMatcher::Solved FragmentMatcher::solve(const Pair& pair, std::span<const Pose> starts) noexcept {
+    FitEnergy& e = energy(pair.moving, pair.fixed);
+    const double gyration = e.moving().gyration;
+    std::array<Candidate, 2> best;
+    for (const Pose& start : starts) {
+        Candidate c{anneal(e, start, settings.widest, 2.0 * settings.finest, 24, coarse_points), 0.0};
+        set_law(e, settings.finest, 3.0, coarse_points);
+        c.score = e.quality(c.pose, 2.0 * settings.sigma).score;
+        // The same place again counts once.
+        if (best[0].score >= 0.0 && apart(c.pose, best[0].pose, gyration) < 1e-3) {
+            if (c.score > best[0].score) best[0] = c;
+        } else if (c.score > best[0].score) best[1] = best[0], best[0] = c;
+        else if (c.score > best[1].score) best[1] = c;
+    }
+    Solved solved{pair, {}, 0.0};
+    for (Candidate& c : best) {
+        if (!(c.score >= 0.0)) continue;
+        c.pose = anneal(e, c.pose, 4.0 * settings.finest, settings.finest, 14, settings.most_points);
+        set_law(e, settings.finest, 3.0, settings.most_points);
+        c.score = e.quality(c.pose, settings.sigma).score;
+        if (c.score > solved.best.score) {
+            if (solved.best.score >= 0.0 && apart(c.pose, solved.best.pose, gyration) > 1e-3)
+                solved.second = solved.best.score;
+            solved.best = c;
+        } else if (apart(c.pose, solved.best.pose, gyration) > 1e-3) solved.second = std::max(solved.second, c.score);
+    }
+    return solved;
+}
+
+const FragmentMatch& FragmentMatcher::near(int moving, std::span<const Pose> poses,
+                                           std::span<const char> stands) noexcept {
+    match_ = {};
+    match_.moving = moving;
+    pairs_.clear();
+    const Pose& held = poses[static_cast<std::size_t>(moving)];
+    for (std::size_t m = 0; m < faces_.size(); ++m) {
+        if (faces_[m].fragment != moving) continue;
+        for (std::size_t f = 0; f < faces_.size(); ++f) {
+            const auto other = static_cast<std::size_t>(faces_[f].fragment);
+            if (faces_[f].fragment == moving || !stands[other]) continue;
+            const FitSurface &a = faces_[m].surface, &b = faces_[f].surface;
+            const double facing = glm::dot(held.rotate(a.mean_normal), poses[other].rotate(b.mean_normal));
+            const double away = glm::length(held.apply(a.centre) - poses[other].apply(b.centre));
+            if (facing < -0.2 && away < settings.near) pairs_.push_back({m, f, away});
+        }
+    }
+    std::ranges::sort(pairs_, [](const Pair& a, const Pair& b) {
+        return a.apart != b.apart ? a.apart < b.apart : a.moving != b.moving ? a.moving < b.moving : a.fixed < b.fixed;
+    });
+    solved_.clear();
+    for (std::size_t n = 0; n < std::min({pairs_.size(), settings.most_pairs, solved_.capacity()}); ++n) {
+        const Pair& pair = pairs_[n];
+        const FitSurface &a = faces_[pair.moving].surface, &b = faces_[pair.fixed].surface;
+        const Pose from = centres(pair, held, poses);
+        const Vec3 about = direction_of(b.mean_normal);
+        const Quat opposed = shortest_turn(from.rotate(direction_of(a.mean_normal)), -about) * from.orientation;
+        // Where it is; laid on the other as it is; that turned flat on, and a little round either way.
+        const std::array<Pose, 5> starts{from,
+                                         {Vec3(0.0), from.orientation},
+                                         {Vec3(0.0), opposed},
+                                         {Vec3(0.0), glm::angleAxis(0.3, about) * opposed},
+                                         {Vec3(0.0), glm::angleAxis(-0.3, about) * opposed}};
+        solved_.push_back(solve(pair, starts));
+    }
+    lead(solved_, poses, stands);
+    return match_;
+}
+
+void FragmentMatcher::begin_search() noexcept {
+    found_ = {};
+    left_ = next_ = 0;
+}
+
+const FragmentMatch& FragmentMatcher::search(int moving, std::span<const Pose> poses,
+                                             std::span<const char> stands) noexcept {
+    if (found_.moving != moving || left_ == 0) {
+        found_ = {};
+        found_.moving = moving;
+        next_ = 0;
+    }
+    pairs_.clear();
+    for (std::size_t m = 0; m < faces_.size(); ++m)
+        for (std::size_t f = 0; f < faces_.size(); ++f)
+            if (faces_[m].fragment == moving && faces_[f].fragment != moving &&
+                stands[static_cast<std::size_t>(faces_[f].fragment)])
+                pairs_.push_back({m, f, 0.0});
+    if (pairs_.empty()) {
+        left_ = 0;
+        return found_;
+    }
+    next_ = std::min(next_, pairs_.size() - 1);
+    const Pair pair = pairs_[next_++];
+    left_ = pairs_.size() - next_;
+    const FitSurface &a = faces_[pair.moving].surface, &b = faces_[pair.fixed].surface;
+    const Vec3 about = direction_of(b.mean_normal);
+    const Quat opposed = shortest_turn(direction_of(a.mean_normal), -about);
+    std::array<Pose, spins> starts;
+    for (int n = 0; n < spins; ++n)
+        starts[static_cast<std::size_t>(n)] = {Vec3(0.0),
+                                               glm::angleAxis(2.0 * std::numbers::pi * n / spins, about) * opposed};
+    solved_.clear();
+    solved_.push_back(solve(pair, starts));
+    match_ = {};
+    match_.moving = moving;
+    lead(solved_, poses, stands);
+    const auto worth = [](const FragmentMatch& m) { return m.quality.score * std::sqrt(m.quality.overlap); };
+    if (worth(match_) > worth(found_)) found_ = match_;
+    return found_;
+}
+
+void FragmentMatcher::lead(std::span<const Solved> solved, std::span<const Pose> poses,
+                           std::span<const char> stands) noexcept {
+    const auto worth = [this](const Solved& s) {
+        const double area = std::min(faces_[s.pair.moving].surface.area, faces_[s.pair.fixed].surface.area);
+        return s.best.score * std::sqrt(area);
+    };
+    const auto best = std::ranges::max_element(solved, {}, worth);
+    if (best == solved.end() || !(best->best.score > 0.0)) return;
+    Pose at = world(best->pair, best->best.pose, poses);
+    match_.partner = faces_[best->pair.fixed].fragment;
+    // All faces that lie well there take part.
+    joined_.clear();
+    joined_.push_back(best->pair);
+    for (std::size_t m = 0; m < faces_.size(); ++m)
+        for (std::size_t f = 0; f < faces_.size(); ++f) {
+            if (faces_[m].fragment != match_.moving || !energies_[m * faces_.size() + f] ||
+                !stands[static_cast<std::size_t>(faces_[f].fragment)] ||
+                (m == best->pair.moving && f == best->pair.fixed))
+                continue;
+            const Pair pair{m, f, 0.0};
+            const Pose there = centres(pair, at, poses);
+            const double reach = faces_[m].surface.gyration + faces_[f].surface.gyration;
+            if (glm::length(there.position) > reach) continue;
+            FitEnergy& e = energy(m, f);
+            set_law(e, settings.finest, 3.0, coarse_points);
+            if (e.quality(there, 1.5 * settings.sigma).score > settings.least_share * best->best.score)
+                joined_.push_back(pair);
+        }
+    match_.faces = static_cast<int>(joined_.size());
+    Together together(*this, joined_, poses, faces_[best->pair.moving].surface.centre);
+    QuasiStaticCoupling solver;
+    solver.settings = free_solver(faces_[best->pair.moving].surface.gyration);
+    solver.settings.reach = 0.02;
+    solver.settings.step = 0.3e-3;
+    solver.reset(together.handle(at));
+    for (int stage = 0; stage < 24; ++stage) {
+        const double scale = settings.finest * (stage < 8 ? 3.0 - 0.25 * stage : 1.0);
+        for (const Pair& pair : joined_) set_law(energy(pair.moving, pair.fixed), scale, 3.0, settings.most_points);
+        const Pose before = solver.state().proxy;
+        together.look(before);
+        if (solver.update(before, together).iterations == 0 && stage > 8) break;
+    }
+    at = together.body(solver.state().proxy);
+    match_.pose = at;
+    FitEnergy& e = energy(best->pair.moving, best->pair.fixed);
+    set_law(e, settings.finest, 3.0, settings.most_points);
+    match_.quality = e.quality(centres(best->pair, at, poses), settings.sigma);
+    match_.margin = match_.quality.score > 0.0 ? std::clamp(1.0 - best->second / match_.quality.score, 0.0, 1.0) : 0.0;
+    free_.free.clear();
+    together.look(solver.state().proxy);
+    find_free(free_, together(solver.state().proxy, ContactParts::all).stiffness,
+              faces_[best->pair.moving].surface.gyration, settings.least_hold);
+    judge();
+}
+
+void FragmentMatcher::judge() noexcept {
+    const FitQuality& q = match_.quality;
+    if (q.score < settings.least_score || q.rms > settings.most_rms * settings.sigma)
+        match_.verdict = FitVerdict::no_match;
+    else if (!free_.free.empty()) match_.verdict = FitVerdict::sliding;
+    else if (match_.margin < settings.least_margin) match_.verdict = FitVerdict::ambiguous;
+    else if (q.penetration > settings.most_penetration) match_.verdict = FitVerdict::blocked;
+    else match_.verdict = FitVerdict::fit;
+}
+
+}  // namespace tactus

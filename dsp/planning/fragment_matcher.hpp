@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which of the fragments that stand does a fragment fit, and where: a solver for the background, in bounded time and
+// without memory of its own making once it is constructed.
+//
+// A fragment from the middle of a bone has a face for each neighbour it broke from. Pairs of faces that are near and look
+// against each other where the fragment is held are fitted one by one, by the two-sided robust energy of fit_energy.hpp with
+// a scale that narrows. What fits best leads; then all faces that fit there are fitted together, so that an error of one
+// does not add to that of the next. When nothing near fits, every face is tried on every other in all ways round, a pair or
+// two at a time.
+#pragma once
+
+#include "dsp/planning/arrangement.hpp"
+#include "dsp/snap/fit.hpp"
+#include "dsp/snap/fit_energy.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace tactus {
+
+/// What is known of a fragment: the points of its whole surface, those of its fracture labelled, and its distances.
+struct FragmentSurface {
+    std::span<const SurfacePoint> points;
+    const Grid* distance = nullptr;
+};
+
+struct FragmentMatch {
+    int moving = Arrangement::none, partner = Arrangement::none;
+    Pose pose;  ///< of the moving fragment, in the frame of the poses that were given
+    FitVerdict verdict = FitVerdict::no_match;
+    FitQuality quality;  ///< of the pair of faces that leads
+    double margin = 0.0;  ///< to the second best pose, as share of the best score
+    int faces = 0;  ///< pairs of faces that were fitted together
+};
+
+struct MatcherSettings {
+    double near = 15e-3;  ///< m: middles of faces that are tried on each other
+    double widest = 3e-3, finest = 0.25e-3;  ///< m, scale of the robust kernel
+    double sigma = 0.2e-3;  ///< m, of the score
+    double least_score = 0.2;  ///< below it nothing matches
+    double least_share = 0.5;  ///< of the leading score: what other faces must have to take part
+    double least_margin = 0.1;
+    double most_rms = 0.8;  ///< as share of sigma
+    double most_penetration = 0.6e-3;  ///< m
+    double least_hold = 0.008;
+    std::size_t most_pairs = 6;  ///< of faces that one call fits, nearest first
+    std::size_t most_points = 700;  ///< of each face that take part
+};
+
+class FragmentMatcher {
+public:
+    MatcherSettings settings;
+
+    /// Throws Error when a fragment's points and distances do not belong together. A fragment without paint fits nothing.
+    explicit FragmentMatcher(std::span<const FragmentSurface> fragments, const MatcherSettings& wanted = {});
+
+    std::size_t faces() const noexcept { return faces_.size(); }
+    std::size_t faces_of(int fragment) const noexcept;
+
+    /// From where it is. `stands`: which fragments count as partners; the moving one does not.
+    const FragmentMatch& near(int moving, std::span<const Pose> poses, std::span<const char> stands) noexcept;
+    /// Wherever it is: the next pair of faces in turn, in all ways round. Returns the best match since `begin_search`.
+    const FragmentMatch& search(int moving, std::span<const Pose> poses, std::span<const char> stands) noexcept;
+    void begin_search() noexcept;
+    /// Pairs of faces that `search` still has to try; 0: it starts over.
+    std::size_t left() const noexcept { return left_; }
+
+private:
+    struct Face {
+        int fragment;
+        FitSurface surface;
+    };
+    struct Pair {
+        std::size_t moving, fixed;
+        double apart;
+    };
+    struct Candidate {
+        Pose pose;  // between centres
+        double score = -1.0;
+    };
+    struct Solved {
+        Pair pair;
+        Candidate best;
+        double second = 0.0;
+    };
+    class Together;
+
+    FitEnergy& energy(std::size_t moving, std::size_t fixed) noexcept {
+        return *energies_[moving * faces_.size() + fixed];
+    }
+    Pose world(const Pair& pair, const Pose& centres, std::span<const Pose> poses) const noexcept;
+    Pose centres(const Pair& pair, const Pose& moving, std::span<const Pose> poses) const noexcept;
+    Solved solve(const Pair& pair, std::span<const Pose> starts) noexcept;
+    void lead(std::span<const Solved> solved, std::span<const Pose> poses, std::span<const char> stands) noexcept;
+    void judge() noexcept;
+
+    std::vector<Face> faces_;
+    std::vector<std::unique_ptr<FitEnergy>> energies_;
+    std::vector<Pair> pairs_;
+    std::vector<Solved> solved_;
+    std::vector<Pair> joined_;
+    FragmentMatch match_, found_;
+    Fit free_;
+    std::size_t left_ = 0, next_ = 0;
+};
+
+}  // namespace tactus

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/planning/fragment_matcher.hpp"
+
+#include "dsp/coupling/scene.hpp"
+#include "graph/assets.hpp"
+#include "graph/node.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <array>
+#include <memory>
+#include <string>
+
+namespace tactus::nodes {
+
+struct FragmentMatcher {
+    static constexpr auto about =
+        "Finds, in the background, where the fragment in the hand fits those that stand: from where it is held, on all "
+        "faces together; and, when nothing near fits, by trying every face on every other in turn.";
+
+    In<tactus::Scene> scene{"case_scene.scene, of the same plan"};
+    In<double> held{"place of the fragment in the hand, -1 without one"};
+    In<bool> engaged{optional, "look for a fit; unconnected: all the time"};
+    Out<Pose> target{"of the fragment in the hand, in the scene; as it is while there is no fit", "m"};
+    Out<bool> fits{"the target is a fit"};
+    Out<double> partner{"place of the fragment that it fits best, -1 without one"};
+    Out<double> verdict{"0 fit, 1 sliding, 2 ambiguous, 3 no match, 4 blocked"};
+    Out<double> score{"of the faces that fit best, 0 to 1"};
+    Out<double> margin{"to the second best pose, as share of the best score"};
+    Out<double> rms{"of the distances of what lies on each other", "m"};
+    Out<double> faces{"pairs of faces that were fitted together"};
+    Asset<CaseBones> plan{"the plan that the scene shows"};
+    Choice partners{{"standing", "all"}, "standing: those that are locked or were fitted; all: any other"};
+    Choice reach{{"near", "anywhere"}, "near: from where it is; anywhere: also every face on every other, in turn"};
+    Param least_score{"0.2", "0", "1", "below it nothing matches"};
+    Param points{structural, "700", "100", "20000", "of each face that take part"};
+
+    void prepare(const Setup& setup) {
+        std::vector<FragmentSurface> surfaces;
+        for (const Bone& bone : plan->bones) surfaces.push_back({bone.points, &bone.distance});
+        MatcherSettings settings;
+        settings.most_points = static_cast<std::size_t>(points);
+        try {
+            matcher_ = std::make_unique<tactus::FragmentMatcher>(surfaces, settings);
+        } catch (const Error& error) {
+            setup.fail("plan '" + plan.name + "': " + error.message());
+        }
+        name_ = setup.name;
+        nothing();
+    }
+
+    void process(const Tick&) noexcept {
+        const double place = held.get();
+        const bool wanted = !engaged.connected || engaged.get();
+        if (!wanted || !(place >= 0.0 && place < static_cast<double>(scene->count)) ||
+            scene->count != plan->bones.size()) {
+            if (was_ >= 0) matcher_->begin_search();
+            was_ = -1;
+            nothing();
+            return;
+        }
+        look(static_cast<int>(place));
+    }
+
+    void report(Report& report) const {
+        report.set(name_, "faces", static_cast<double>(matcher_->faces()));
+        report.set(name_, "looks", looks_);
+        report.set(name_, "fits", fits_);
+    }
+
+private:
+    void look(int place) noexcept {
+        const std::size_t count = scene->count;
+        const SceneObject& mine = scene->objects[static_cast<std::size_t>(place)];
+        for (std::size_t n = 0; n < count; ++n) {
+            const SceneObject& other = scene->objects[n];
+            if (!is_valid(other.pose)) return nothing();
+            poses_[n] = Pose{other.pose.position, glm::normalize(other.pose.orientation)} * other.body.home.inverse();
+            const bool goes_along = n == static_cast<std::size_t>(place) || (mine.unit >= 0 && mine.unit == other.unit);
+            stands_[n] = !goes_along && other.body.map && (other.stands || partners.index == 1);
+        }
+        const std::span<const Pose> poses(poses_.data(), count);
+        const std::span<const char> stands(stands_.data(), count);
+        matcher_->settings.least_score = least_score;
+        FragmentMatch match = matcher_->near(place, poses, stands);
+        if (match.verdict != FitVerdict::fit && reach.index == 1) {
+            if (was_ != place) matcher_->begin_search();
+            const FragmentMatch& found = matcher_->search(place, poses, stands);
+            if (found.verdict == FitVerdict::fit) match = found;
+        }
+        was_ = place;
+        ++looks_;
+        fits_ += match.verdict == FitVerdict::fit;
+        const bool is_fit = match.verdict == FitVerdict::fit;
+        target = is_fit ? match.pose * mine.body.home : mine.pose;
+        fits = is_fit;
+        partner = match.partner;
+        verdict = static_cast<double>(match.verdict);
+        score = match.quality.score;
+        margin = match.margin;
+        rms = match.quality.rms;
+        faces = match.faces;
+    }
+
+    void nothing() noexcept {
+        target = Pose{};
+        fits = false;
+        partner = -1.0;
+        verdict = static_cast<double>(FitVerdict::no_match);
+        score = 0.0;
+        margin = 0.0;
+        rms = 0.0;
+        faces = 0.0;
+    }
+
+    std::unique_ptr<tactus::FragmentMatcher> matcher_;
+    std::array<Pose, tactus::Scene::most_objects> poses_;
+    std::array<char, tactus::Scene::most_objects> stands_{};
+    std::string name_;
+    double looks_ = 0.0, fits_ = 0.0;
+    int was_ = -1;
+};
+
+TACTUS_NODE(FragmentMatcher, scene, held, engaged, target, fits, partner, verdict, score, margin, rms, faces, plan,
+            partners, reach, least_score, points)
+
+}  // namespace tactus::nodes

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+// The nodes of a planning session: scene of a case, matcher, brush, and the coupling that is led.
+#include "assets/library/fragments.hpp"
+#include "assets/plan/step_row.hpp"
+#include "dsp/coupling/scene.hpp"
+#include "dsp/operator/hand.hpp"
+#include "graph/assets.hpp"
+#include "tests/support/node_harness.hpp"
+
+#include <catch2/catch.hpp>
+#include <glm/geometric.hpp>
+
+#include <any>
+#include <bit>
+#include <cstdint>
+#include <memory>
+
+using namespace tactus;
+using test::NodeHarness;
+
+namespace {
+
+constexpr double mm = 1e-3;
+constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
+
+/// The bundled fracture, coarse, its left half locked; a third one, a copy of the left, lies far away.
+std::shared_ptr<const CaseBones> broken() {
+    static const std::shared_ptr<const CaseBones> made = [] {
+        auto c = std::make_shared<CaseBones>();
+        c->bones = make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
+        c->bones.push_back(c->bones[0]);
+        for (const char* name : {"left", "right", "copy"}) c->plan.fragments.push_back({name, name, 0, Vec3(1.0)});
+        PlanStep lock;
+        lock.kind = StepKind::lock;
+        lock.fragments = {0};
+        add_step(c->plan, lock);
+        PlanStep away;
+        away.fragments = {2};
+        away.poses = {{Vec3(0.0, 0.2, 0.0), {1.0, 0.0, 0.0, 0.0}}};
+        add_step(c->plan, away);
+        return c;
+    }();
+    return made;
+}
+
+Pose home_of(int fragment) {
+    Vec3 middle(0.0);
+    const auto& points = broken()->bones[static_cast<std::size_t>(fragment)].points;
+    for (const SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
+    return {middle, {1.0, 0.0, 0.0, 0.0}};
+}
+
+const Pose beside{Vec3(2.5, -1.5, 2.0) * mm, rotation_by({0.08, -0.06, 0.07})};
+
+/// A scene of the case node, fragment 1 held at `at` (file frame).
+struct Session {
+    NodeHarness node{"case_scene", servo};
+    std::int64_t settle = 1'000'000, release = 1'000'000, undo = 1'000'000, redo = 1'000'000, join = 1'000'000,
+                 split = 1'000'000;
+    Pose at = beside, fit;
+
+    void run(std::int64_t ticks) {
+        const auto press = [this](const char* input, const std::int64_t* when) {
+            node.feed<bool>(input, [when](std::int64_t k) { return k >= *when && k < *when + 5; });
+        };
+        node.asset("plan", broken());
+        node.feed<Pose>("moved", at * home_of(1));
+        node.feed<double>("which", [this](std::int64_t k) { return k < release + 50 ? 1.0 : -1.0; });
+        node.feed<bool>("holding", [this](std::int64_t k) { return k < release; });
+        node.feed<Pose>("target", fit * home_of(1));
+        node.feed<bool>("fits", true);
+        node.feed<double>("partner", 0.0);
+        for (const char* number : {"score", "margin", "rms"}) node.feed<double>(number, 0.5);
+        node.disconnect("lock");
+        press("settle", &settle);
+        press("undo", &undo);
+        press("redo", &redo);
+        press("join", &join);
+        press("split", &split);
+        node.prepare();
+        node.run(ticks);
+    }
+    Scene scene() const { return node.last<Scene>("scene"); }
+    Pose file_pose(int n) const {
+        const SceneObject& o = scene().objects[static_cast<std::size_t>(n)];
+        return o.pose * o.body.home.inverse();
+    }
+    CasePlan plan() const {
+        return *std::any_cast<std::shared_ptr<const CasePlan>>(node.report().results.begin()->second);
+    }
+};
+
+bool same_bits(const Pose& a, const Pose& b) {
+    return std::bit_cast<std::array<double, 3>>(a.position) == std::bit_cast<std::array<double, 3>>(b.position) &&
+           std::bit_cast<std::array<double, 4>>(a.orientation) == std::bit_cast<std::array<double, 4>>(b.orientation);
+}
+
+double off(const Pose& pose, const Pose& wanted = {}) {
+    double most = 0.0;
+    for (const Vec3& c : {Vec3(0.0, 0.0, 12.0), Vec3(30.0, 0.0, 0.0), Vec3(0.0, 6.0, -12.0)})
+        most = std::max(most, glm::length(pose.apply(c * mm) - wanted.apply(c * mm)));
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE("a settled fragment stands where it fits when it is let go, and the step says so to the bit") {
+    Session session;
+    session.settle = 100;
+    session.release = 200;
+    session.fit = {Vec3(0.1, 0.2, -0.1) * mm, rotation_by({0.001, 0.0, 0.002})};
+    session.run(400);
+    CHECK(off(session.file_pose(1), session.fit) < 1e-12);
+    CHECK(session.node.last<double>("steps") == 1.0);
+    const CasePlan plan = session.plan();
+    REQUIRE(plan.steps.size() == 3);
+    CHECK(plan.steps[2].by == "settle");
+    CHECK(plan.steps[2].fit->partner == "left");
+    CHECK(*plan.steps[2].run_second == Approx(0.1));
+    // Told to the stream as it was done, and read back as the same pose.
+    REQUIRE(session.node.outside.records.size() == 1);
+    const auto& stream = *session.node.outside.records[0];
+    REQUIRE(stream.used == sizeof(StepRow));
+    StepRow row;
+    std::memcpy(static_cast<void*>(&row), stream.bytes.data(), sizeof row);
+    CHECK(same_bits(row.pose(), plan.steps[2].poses[0]));
+    CHECK(session.scene().objects[1].stands);
+    CHECK_FALSE(session.scene().objects[2].stands);
+}
+
+TEST_CASE("a fragment that is let go without a fit stays where the hand left it") {
+    Session session;
+    session.release = 200;
+    session.run(300);
+    CHECK(off(session.file_pose(1), beside) < 1e-9);
+    CHECK(session.plan().steps.back().by == "hand");
+    CHECK_FALSE(session.scene().objects[1].stands);
+}
+
+TEST_CASE("what a run did is undone and redone, and undoing is part of its plan") {
+    Session session;
+    session.settle = 100;
+    session.release = 200;
+    session.undo = 300;
+    session.run(310);
+    CHECK(off(session.file_pose(1)) < 1e-12);
+    CHECK(session.node.last<double>("steps") == 0.0);
+    CasePlan plan = session.plan();
+    CHECK(plan.steps.size() == 3);
+    CHECK(plan.place().head == 1);
+    CHECK(redone(plan.before(), plan.place()).head == 2);
+    Session again;
+    again.settle = 100;
+    again.release = 200;
+    again.undo = 300;
+    again.redo = 350;
+    again.fit = {Vec3(0.1, 0.2, -0.1) * mm, {1.0, 0.0, 0.0, 0.0}};
+    again.run(400);
+    CHECK(off(again.file_pose(1), again.fit) < 1e-12);
+    CHECK(again.plan().place().head == 2);
+}
+
+TEST_CASE("joined fragments are one unit of the scene until they are split") {
+    Session session;
+    session.join = 100;
+    session.run(150);
+    CHECK(session.scene().objects[0].unit >= 0);
+    CHECK(session.scene().objects[0].unit == session.scene().objects[1].unit);
+    CHECK(session.scene().objects[2].unit == -1);
+    // The other half is locked, so now nothing moves any more.
+    CHECK(off(session.file_pose(0)) == 0.0);
+    Session both;
+    both.join = 100;
+    both.split = 200;
+    both.run(300);
+    CHECK(both.scene().objects[1].unit == -1);
+    CHECK(both.plan().steps.size() == 4);
+}
+
+TEST_CASE("rows of a run that are no steps of the plan are refused") {
+    StepRow row;
+    row.fragment = 7.0;
+    const double second[] = {0.0};
+    CHECK_THROWS_WITH(with_steps(broken()->plan, {&row, 1}, second), Catch::Contains("7 is no fragment"));
+    row.fragment = 1.0;
+    row.after = 3.0;
+    CHECK_THROWS_AS(with_steps(broken()->plan, {&row, 1}, second), Error);
+}
+
+TEST_CASE("the matcher finds where a fragment fits from beside it, and says that a copy of its partner does not") {
+    NodeHarness scene("case_scene", servo);
+    scene.asset("plan", broken());
+    scene.disconnect_optional();
+    scene.prepare();
+    scene.run(1);
+    Scene now = scene.last<Scene>("scene");
+    now.objects[1].pose = beside * now.objects[1].body.home;
+    NodeHarness matcher("fragment_matcher", {.period = flicks_per_second / 4});
+    matcher.asset("plan", broken());
+    matcher.feed("scene", now);
+    matcher.feed<double>("held", 1.0);
+    matcher.feed<bool>("engaged", true);
+    matcher.prepare();
+    matcher.run(2);
+    REQUIRE(matcher.last<bool>("fits"));
+    CHECK(matcher.last<double>("partner") == 0.0);
+    CHECK(off(matcher.last<Pose>("target") * now.objects[1].body.home.inverse()) < 0.3 * mm);
+    // Its own partner's copy in the hand: the same face does not fit itself.
+    now.objects[2].pose = beside * now.objects[2].body.home;
+    NodeHarness wrong("fragment_matcher", {.period = flicks_per_second / 4});
+    wrong.asset("plan", broken());
+    wrong.feed("scene", now);
+    wrong.feed<double>("held", 2.0);
+    wrong.disconnect("engaged");
+    wrong.prepare();
+    wrong.run(2);
+    CHECK_FALSE(wrong.last<bool>("fits"));
+    CHECK(off(wrong.last<Pose>("target"), now.objects[2].pose) == 0.0);
+}
+
+TEST_CASE("a brush paints what it meets, erases it again, and nothing else") {
+    const auto bone = std::make_shared<const Bone>(broken()->bones[0]);
+    NodeHarness node("brush", servo);
+    node.asset("bone", bone).set("start_clean", "true").set("radius", "2 mm");
+    const Vec3 at = bone->points[100].position;
+    node.feed<Pose>("tool", Pose{at + Vec3(0.1, 0.0, 0.0), {1.0, 0.0, 0.0, 0.0}});
+    node.feed<Pose>("body", Pose{Vec3(0.1, 0.0, 0.0), {1.0, 0.0, 0.0, 0.0}});
+    node.feed<bool>("paint", [](std::int64_t k) { return k >= 10; });
+    node.feed<bool>("erase", [](std::int64_t k) { return k >= 30; });
+    node.prepare();
+    node.run(20);
+    std::size_t within = 0;
+    for (const SurfacePoint& p : bone->points) within += glm::length(p.position - at) <= 2.0 * mm;
+    REQUIRE(within > 5);
+    CHECK(node.values<double>("painted")[5] == 0.0);
+    CHECK(node.last<double>("painted") == static_cast<double>(within));
+    CHECK(node.last<double>("area") > 5e-6);
+    CHECK(node.last<double>("distance") < 1e-9);
+    const auto painted = *std::any_cast<std::shared_ptr<const Bone>>(node.report().results.begin()->second);
+    CHECK(painted.points[100].label == surface_label::fracture);
+    node.run(20);
+    CHECK(node.last<double>("painted") == 0.0);
+}
+
+TEST_CASE(
+    "a held fragment is led to its target with a force that has a limit, and follows the hand that pulls harder") {
+    NodeHarness scene("case_scene", servo);
+    scene.asset("plan", broken());
+    scene.disconnect_optional();
+    scene.prepare();
+    scene.run(1);
+    Scene now = scene.last<Scene>("scene");
+    // The right half alone in free space, 6 mm from its target.
+    now.count = 2;
+    now.objects[0].pose.position += Vec3(0.0, 0.0, 0.3);
+    const Pose home = now.objects[1].pose;
+    NodeHarness node("quasi_static_coupling", servo);
+    node.set("held", "1");
+    for (const char* open : {"grip", "holding", "strength", "has_target"}) node.disconnect(open);
+    node.feed("scene", now);
+    node.feed<Pose>("device", [home](std::int64_t k) {
+        // From one second on the hand pulls away at 100 mm/s.
+        const double away = 6.0 * mm + (k > 1000 ? 0.1 * mm * static_cast<double>(k - 1000) : 0.0);
+        return Pose{home.position + Vec3(away, 0.0, 0.0), home.orientation};
+    });
+    node.feed<Pose>("target", home).feed<bool>("guided", [](std::int64_t k) { return k >= 100 && k < 2000; });
+    node.feed<bool>("settle", [](std::int64_t k) { return k >= 500 && k < 900; });
+    node.prepare();
+    node.run(1400);
+    const auto poses = node.values<Pose>("pose");
+    const auto felt = node.values<Wrench>("wrench");
+    CHECK(glm::length(poses[90].position - home.position) == Approx(6.0 * mm).margin(0.01 * mm));
+    // Both springs are alike: half way, 3 N.
+    CHECK(glm::length(poses[450].position - home.position) == Approx(3.0 * mm).margin(0.05 * mm));
+    CHECK(glm::length(felt[450].force) == Approx(3.0).margin(0.05));
+    CHECK(glm::length(poses[850].position - home.position) < 0.01 * mm);
+    CHECK(glm::length(felt[850].force) < 0.01);
+    double step = 0.0, most = 0.0;
+    for (std::size_t k = 1; k < felt.size(); ++k) {
+        step = std::max(step, glm::length(felt[k].force - felt[k - 1].force));
+        most = std::max(most, glm::length(felt[k].force));
+    }
+    CHECK(step < 0.5);
+    // The target pulls 8 N at most and the hand ten: within 50 ms of being pulled harder than that it goes along.
+    CHECK(most < 8.01);
+    CHECK(glm::length(poses.back().position - home.position) > 30.0 * mm);
+}

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// The scripted case: a mandible in twelve pieces is put together by a hand that stops 5 mm and 10 degrees beside each place.
+#include "dsp/core/types.hpp"
+#include "dsp/operator/hand.hpp"
+#include "tests/tools/run_command.hpp"
+
+#include <catch2/catch.hpp>
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <numbers>
+#include <sstream>
+
+using namespace tactus;
+using nlohmann::json;
+using tactus::test::Folder;
+using tactus::test::Outcome;
+using tactus::test::slurp;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path case_folder() { return fs::path(TACTUS_COMMAND).parent_path() / "library/cases/mandible-twelve"; }
+
+/// Where a fragment belongs, p_bone = R p_fragment + t, and the middle of its surface in its file.
+struct Belongs {
+    Pose pose;
+    Vec3 middle;
+};
+
+std::map<std::string, Belongs> truth() {
+    std::map<std::string, Belongs> all;
+    std::ifstream file(case_folder() / "truth.txt");
+    for (std::string line; std::getline(file, line);) {
+        if (line.starts_with('#')) continue;
+        std::istringstream words(line);
+        std::string name;
+        Vec3 t, middle;
+        Quat q;
+        words >> name >> t.x >> t.y >> t.z >> q.w >> q.x >> q.y >> q.z >> middle.x >> middle.y >> middle.z;
+        REQUIRE_FALSE(words.fail());
+        all[name] = {{t * 1e-3, q}, middle * 1e-3};
+    }
+    return all;
+}
+
+/// As the file has it: m.
+Pose pose_in(const json& j) {
+    const json &p = j["position_m"], &q = j["quaternion_wxyz"];
+    return {Vec3(p[0].get<double>(), p[1].get<double>(), p[2].get<double>()),
+            {q[0].get<double>(), q[1].get<double>(), q[2].get<double>(), q[3].get<double>()}};
+}
+
+}  // namespace
+
+TEST_CASE("render planning-trauma: every piece within 0.3 mm and 0.5 degrees, the chain within 0.5 mm") {
+    const Folder folder;
+    const fs::path out = folder.path / "out", take = folder.path / "take";
+    const Outcome run =
+        folder.tactus("render planning-trauma --seconds 66 --out " + out.string() + " --record " + take.string());
+    INFO(run.err);
+    REQUIRE(run.code == 0);
+    const json summary = json::parse(slurp(out / "summary.json"));
+    CHECK(summary["faults"].empty());
+    const json plan = json::parse(slurp(out / "case.plan.json"));
+    // The last place of each fragment along the steps.
+    std::map<std::string, Pose> placed;
+    std::map<std::string, int> settled;
+    for (const json& step : plan["steps"]) {
+        if (step["kind"] != "place") continue;
+        CHECK(step["by"] == "settle");
+        CHECK(step["fit"]["verdict"] == "fit");
+        for (std::size_t n = 0; n < step["fragments"].size(); ++n)
+            placed[step["fragments"][n].get<std::string>()] = pose_in(step["poses"][n]);
+        ++settled[step["fragments"][0].get<std::string>()];
+    }
+    CHECK(placed.size() == 11);
+    double worst = 0.0, worst_turn = 0.0, chain = 0.0;
+    for (const auto& [name, belongs] : truth()) {
+        if (!placed.contains(name)) continue;
+        const Pose& wanted = belongs.pose;
+        CAPTURE(name, settled[name]);
+        const Pose off = placed[name] * wanted.inverse();
+        const double turn =
+            glm::length(rotation_between({1.0, 0.0, 0.0, 0.0}, off.orientation)) * 180.0 / std::numbers::pi;
+        const double away = glm::length(placed[name].apply(belongs.middle) - wanted.apply(belongs.middle));
+        CHECK(away < 0.3e-3);
+        CHECK(turn < 0.5);
+        worst = std::max(worst, away);
+        worst_turn = std::max(worst_turn, turn);
+        chain = std::max(chain, away);
+    }
+    CAPTURE(worst * 1e3, worst_turn);
+    CHECK(chain < 0.5e-3);
+    // A process of its own opens the plan and has the same poses; so has the take that is replayed.
+    const json shown = json::parse(folder.tactus("plan show " + (out / "case.plan.json").string() + " --json").out);
+    CHECK(shown["problems"].empty());
+    CHECK(shown["steps_done"] == plan["steps"].size());
+    for (const json& fragment : shown["fragments"])
+        if (const std::string name = fragment["name"]; placed.contains(name))
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                CHECK(fragment["pose"]["position_mm"][axis].get<double>() ==
+                      placed[name].position[static_cast<int>(axis)] * 1e3);
+    const Outcome again = folder.tactus("replay " + take.string());
+    INFO(again.out << again.err);
+    CHECK(again.code == 0);
+}

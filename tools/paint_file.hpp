@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Paint on a surface as strokes of a brush, in a file that people can correct.
+#pragma once
+
+#include "dsp/contact/pointshell.hpp"
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tactus {
+
+/// Reads {"radius_mm": r, "paint": [[x, y, z], ...], "erase": [[x, y, z], ...]} and labels the points within the radius of a
+/// stroke as fracture; those within it of an erasing stroke are none then. Labels that no stroke meets are taken off
+/// unless `keep`. Throws Error.
+void paint_from_file(std::span<SurfacePoint> points, const std::filesystem::path& path, bool keep = false);
+
+/// A painted face, for people: m.
+struct PaintedFace {
+    std::size_t points = 0;
+    double area = 0.0;
+    Vec3 middle{0.0}, normal{0.0};
+};
+
+/// Writes the paint of a surface as such a file, with the faces it falls into beside. Throws Error.
+std::vector<PaintedFace> write_paint_file(std::span<const SurfacePoint> points, const std::string& bone,
+                                          const std::filesystem::path& path);
+std::vector<PaintedFace> painted_faces(std::span<const SurfacePoint> points);
+
+}  // namespace tactus
