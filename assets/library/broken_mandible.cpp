@@ -9,13 +9,16 @@
 #include "dsp/core/random.hpp"
 #include "dsp/distance/point_tree.hpp"
 #include "dsp/operator/hand.hpp"
+#include "dsp/planning/faces.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
 namespace tactus {
 
@@ -41,31 +44,77 @@ std::size_t samples_inside(const Grid& solid) {
     return static_cast<std::size_t>(std::ranges::count_if(solid.values, [](float d) { return d < 0.0f; }));
 }
 
-/// Pieces so that each, when its turn comes, has as much as possible of its fracture against those before it.
+/// A painted point where it belongs, and which face of which piece it is of.
+struct FacePoint {
+    Vec3 position, normal;
+    std::size_t face;
+};
+
+/// Pieces so that each, when its turn comes, has as large a face as possible against one of those before it.
 std::vector<std::size_t> order_of(const BrokenMandible& broken) {
     const std::size_t count = broken.fragments.size();
-    std::vector<std::vector<Vec3>> paint(count);
+    std::vector<std::vector<FacePoint>> paint(count);
+    std::size_t faces = 0;
     for (std::size_t n = 0; n < count; ++n)
-        for (const SurfacePoint& p : broken.fragments[n].points)
-            if (p.label == surface_label::fracture) paint[n].push_back(broken.truth[n].apply(p.position));
-    std::vector<Vec3> standing = paint[0];
+        for (const auto& face : split_faces(broken.fragments[n].points)) {
+            for (const std::size_t i : face) {
+                const SurfacePoint& p = broken.fragments[n].points[i];
+                paint[n].push_back({broken.truth[n].apply(p.position), broken.truth[n].rotate(p.normal), faces});
+            }
+            ++faces;
+        }
+    std::vector<FacePoint> standing = paint[0];
     std::vector<std::size_t> order;
     std::vector<char> done(count, 0);
     done[0] = 1;
     while (order.size() + 1 < count) {
-        const PointTree tree(standing);
-        std::size_t best = 0, most = 0;
+        std::vector<Vec3> places;
+        for (const FacePoint& p : standing) places.push_back(p.position);
+        const PointTree tree(places);
+        std::size_t best = 0;
+        double most = 0.0;
         for (std::size_t n = 1; n < count; ++n) {
             if (done[n]) continue;
-            const auto near = static_cast<std::size_t>(std::ranges::count_if(
-                paint[n], [&](const Vec3& p) { return glm::length(p - standing[tree.nearest(p)]) < 0.8e-3; }));
-            if (best == 0 || near > most) best = n, most = near;
+            std::map<std::pair<std::size_t, std::size_t>, std::size_t> covered;
+            for (const FacePoint& p : paint[n]) {
+                const FacePoint& other = standing[tree.nearest(p.position)];
+                if (glm::length(p.position - other.position) < 0.7e-3 && glm::dot(p.normal, other.normal) < -0.6)
+                    ++covered[{p.face, other.face}];
+            }
+            // A face that is covered as a whole shows its place better than a larger one that is not.
+            for (const auto& [pair, points] : covered) {
+                const auto whole = static_cast<double>(std::ranges::count(paint[n], pair.first, &FacePoint::face));
+                const double worth = static_cast<double>(points * points) / whole;
+                if (best == 0 || worth > most) best = n, most = worth;
+            }
         }
+        if (best == 0) throw Error("a piece of the bundled mandible touches none of the others");
         done[best] = 1;
         order.push_back(best);
         standing.insert(standing.end(), paint[best].begin(), paint[best].end());
     }
     return order;
+}
+
+/// From which side a piece comes to its place with the most room to those that stand, of the sides before the bone.
+Vec3 way_in(const std::vector<SurfacePoint>& points, const Pose& truth, const PointTree& tree,
+            const std::vector<Vec3>& standing) {
+    Vec3 best(0.0, -1.0, 0.0);
+    double widest = -1.0;
+    for (int side = 0; side < 18; ++side) {
+        // Rows at 0, 45 and 80 degrees from straight ahead.
+        const double lean = side == 0 ? 0.0 : side < 9 ? 0.8 : 1.4, round = 2.0 * std::numbers::pi * side / 8.0;
+        const Vec3 d(std::sin(lean) * std::cos(round), -std::cos(lean), std::sin(lean) * std::sin(round));
+        double room = 1.0;
+        for (const double away : {6e-3, 10e-3, 15e-3, 22e-3, 30e-3, 40e-3})
+            for (std::size_t n = 0; n < points.size(); n += points.size() / 150 + 1) {
+                const Vec3 x = truth.apply(points[n].position) + away * d;
+                const double clear = glm::length(x - standing[tree.nearest(x)]) / away;
+                room = std::min(room, clear);
+            }
+        if (room > widest) widest = room, best = d;
+    }
+    return best;
 }
 
 /// Lines of a script, one after the other in time.
@@ -107,6 +156,11 @@ void snap_and_settle(Script& script) {
 std::string script_of(const BrokenMandible& broken, const BrokenMandibleOptions& options, double& seconds) {
     Script script;
     const auto order = order_of(broken);
+    std::vector<Vec3> standing;
+    const auto stand = [&](std::size_t n) {
+        for (const SurfacePoint& p : broken.fragments[n].points) standing.push_back(broken.truth[n].apply(p.position));
+    };
+    stand(0);
     script.go(0.0, {middle_of(broken.fragments[order[0]].points), {1.0, 0.0, 0.0, 0.0}}, "");
     for (const std::size_t n : order) {
         const Random random{options.seed * 7919 + n};
@@ -119,7 +173,12 @@ std::string script_of(const BrokenMandible& broken, const BrokenMandibleOptions&
         script.go(0.6, grip, "");
         script.stay(0.1, "trigger");
         script.stay(0.1, "trigger");
-        script.go(1.0, beside * grip, "trigger");
+        const Vec3 way = way_in(broken.fragments[n].points, broken.truth[n], PointTree(standing), standing);
+        stand(n);
+        // Off the table, before its place, and in.
+        script.go(0.4, about(middle, Vec3(0.0, 25e-3, 0.0), Vec3(0.0)) * grip, "trigger");
+        script.go(0.8, about(place, 40e-3 * way, Vec3(0.0)) * beside * grip, "trigger");
+        script.go(0.6, beside * grip, "trigger");
         script.stay(0.2, "trigger");
         snap_and_settle(script);
     }
@@ -149,10 +208,9 @@ BrokenMandible break_mandible(const Bone& bone, const BrokenMandibleOptions& opt
         const Random random{options.seed * 1009 + n};
         const Grid& solid = solids[n];
         const Vec3 middle = solid.position(solid.size[0] / 2, solid.size[1] / 2, solid.size[2] / 2);
-        // Laid out around, each in a direction of its own.
-        const double round = 2.0 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(solids.size() - 1);
-        const Vec3 to =
-            centre + options.apart * Vec3(std::cos(round), -0.6 + 0.3 * std::sin(2.0 * round), std::sin(round));
+        // Laid out in rows before the bone.
+        const Vec3 to = centre + Vec3(36e-3 * (static_cast<double>(n % 4) - 1.5), -options.apart,
+                                      36e-3 * (static_cast<double>(n / 4) - 1.0));
         const Pose placement = n == 0 ? Pose{} : about(middle, to - middle, options.turn * direction(random, 0));
         Bone fragment;
         fragment.distance = scan_solid(solid, placement, {.seed = options.seed * 2003 + n});

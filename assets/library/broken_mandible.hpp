@@ -16,7 +16,7 @@ struct BrokenMandibleOptions {
     std::uint64_t seed = 1;
     double chips = 0.15;        ///< share of each fracture's area
     double kerf = 0.0;          ///< m
-    double apart = 45e-3;       ///< m, how far the pieces are laid from their places
+    double apart = 100e-3;      ///< m, how far before the bone the pieces are laid out
     double turn = 0.5;          ///< rad, how far they are turned
     double error = 5e-3, error_turn = 0.17453292519943295;  ///< m, rad: where the hand stops beside a piece's place
 };

@@ -235,15 +235,45 @@ const FragmentMatch& FragmentMatcher::near(int moving, std::span<const Pose> pos
         const Pose from = centres(pair, held, poses);
         const Vec3 about = direction_of(b.mean_normal);
         const Quat opposed = shortest_turn(from.rotate(direction_of(a.mean_normal)), -about) * from.orientation;
-        // Where it is; laid on the other as it is; that turned flat on, and a little round either way.
-        const std::array<Pose, 5> starts{from,
-                                         {Vec3(0.0), from.orientation},
-                                         {Vec3(0.0), opposed},
-                                         {Vec3(0.0), glm::angleAxis(0.3, about) * opposed},
-                                         {Vec3(0.0), glm::angleAxis(-0.3, about) * opposed}};
+        // Where it is; middles on each other as it is, flat on, and turned a little either way; and flat on where it
+        // is, also shifted: the middles of faces that share but a part do not belong on each other.
+        const Vec3 beside = from.position - glm::dot(from.position, about) * about;
+        const Vec3 across =
+            glm::normalize(glm::cross(about, std::abs(about.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0)));
+        const Vec3 u = 2.5e-3 * across, v = 2.5e-3 * glm::cross(about, across);
+        const std::array<Pose, 10> starts{{from,
+                                           {Vec3(0.0), from.orientation},
+                                           {Vec3(0.0), opposed},
+                                           {Vec3(0.0), glm::angleAxis(0.3, about) * opposed},
+                                           {Vec3(0.0), glm::angleAxis(-0.3, about) * opposed},
+                                           {beside, opposed},
+                                           {beside + u, opposed},
+                                           {beside - u, opposed},
+                                           {beside + v, opposed},
+                                           {beside - v, opposed}}};
         solved_.push_back(solve(pair, starts));
     }
-    lead(solved_, poses, stands);
+    // In their order of worth; a chance fit far from where the fragment is held is none that the hand meant.
+    const auto worth = [this](const Solved& s) {
+        return s.best.score *
+               std::sqrt(std::min(faces_[s.pair.moving].surface.area, faces_[s.pair.fixed].surface.area));
+    };
+    std::erase_if(solved_, [&](const Solved& s) {
+        const Pose at = world(s.pair, s.best.pose, poses);
+        const Vec3& centre = faces_[s.pair.moving].surface.centre;
+        return glm::length(at.apply(centre) - held.apply(centre)) > settings.near ||
+               glm::length(rotation_between(held.orientation, at.orientation)) > settings.most_turn;
+    });
+    std::ranges::sort(solved_, [&](const Solved& a, const Solved& b) { return worth(a) > worth(b); });
+    FragmentMatch first = match_;
+    for (std::size_t n = 0; n < std::min<std::size_t>(solved_.size(), 3); ++n) {
+        match_ = {};
+        match_.moving = moving;
+        lead(solved_[n], poses, stands);
+        if (match_.verdict == FitVerdict::fit) return match_;
+        if (n == 0) first = match_;
+    }
+    match_ = first;
     return match_;
 }
 
@@ -283,30 +313,24 @@ const FragmentMatch& FragmentMatcher::search(int moving, std::span<const Pose> p
     solved_.push_back(solve(pair, starts));
     match_ = {};
     match_.moving = moving;
-    lead(solved_, poses, stands);
+    lead(solved_.front(), poses, stands);
     const auto worth = [](const FragmentMatch& m) { return m.quality.score * std::sqrt(m.quality.overlap); };
     if (worth(match_) > worth(found_)) found_ = match_;
     return found_;
 }
 
-void FragmentMatcher::lead(std::span<const Solved> solved, std::span<const Pose> poses,
-                           std::span<const char> stands) noexcept {
-    const auto worth = [this](const Solved& s) {
-        const double area = std::min(faces_[s.pair.moving].surface.area, faces_[s.pair.fixed].surface.area);
-        return s.best.score * std::sqrt(area);
-    };
-    const auto best = std::ranges::max_element(solved, {}, worth);
-    if (best == solved.end() || !(best->best.score > 0.0)) return;
-    Pose at = world(best->pair, best->best.pose, poses);
-    match_.partner = faces_[best->pair.fixed].fragment;
+void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std::span<const char> stands) noexcept {
+    if (!(best.best.score > 0.0)) return;
+    Pose at = world(best.pair, best.best.pose, poses);
+    match_.partner = faces_[best.pair.fixed].fragment;
     // All faces that lie well there take part.
     joined_.clear();
-    joined_.push_back(best->pair);
+    joined_.push_back(best.pair);
     for (std::size_t m = 0; m < faces_.size(); ++m)
         for (std::size_t f = 0; f < faces_.size(); ++f) {
             if (faces_[m].fragment != match_.moving || !energies_[m * faces_.size() + f] ||
                 !stands[static_cast<std::size_t>(faces_[f].fragment)] ||
-                (m == best->pair.moving && f == best->pair.fixed))
+                (m == best.pair.moving && f == best.pair.fixed))
                 continue;
             const Pair pair{m, f, 0.0};
             const Pose there = centres(pair, at, poses);
@@ -314,13 +338,13 @@ void FragmentMatcher::lead(std::span<const Solved> solved, std::span<const Pose>
             if (glm::length(there.position) > reach) continue;
             FitEnergy& e = energy(m, f);
             set_law(e, settings.finest, 3.0, coarse_points);
-            if (e.quality(there, 1.5 * settings.sigma).score > settings.least_share * best->best.score)
+            if (e.quality(there, 1.5 * settings.sigma).score > settings.least_share * best.best.score)
                 joined_.push_back(pair);
         }
     match_.faces = static_cast<int>(joined_.size());
-    Together together(*this, joined_, poses, faces_[best->pair.moving].surface.centre);
+    Together together(*this, joined_, poses, faces_[best.pair.moving].surface.centre);
     QuasiStaticCoupling solver;
-    solver.settings = free_solver(faces_[best->pair.moving].surface.gyration);
+    solver.settings = free_solver(faces_[best.pair.moving].surface.gyration);
     solver.settings.reach = 0.02;
     solver.settings.step = 0.3e-3;
     solver.reset(together.handle(at));
@@ -333,14 +357,14 @@ void FragmentMatcher::lead(std::span<const Solved> solved, std::span<const Pose>
     }
     at = together.body(solver.state().proxy);
     match_.pose = at;
-    FitEnergy& e = energy(best->pair.moving, best->pair.fixed);
+    FitEnergy& e = energy(best.pair.moving, best.pair.fixed);
     set_law(e, settings.finest, 3.0, settings.most_points);
-    match_.quality = e.quality(centres(best->pair, at, poses), settings.sigma);
-    match_.margin = match_.quality.score > 0.0 ? std::clamp(1.0 - best->second / match_.quality.score, 0.0, 1.0) : 0.0;
+    match_.quality = e.quality(centres(best.pair, at, poses), settings.sigma);
+    match_.margin = match_.quality.score > 0.0 ? std::clamp(1.0 - best.second / match_.quality.score, 0.0, 1.0) : 0.0;
     free_.free.clear();
     together.look(solver.state().proxy);
     find_free(free_, together(solver.state().proxy, ContactParts::all).stiffness,
-              faces_[best->pair.moving].surface.gyration, settings.least_hold);
+              faces_[best.pair.moving].surface.gyration, settings.least_hold);
     judge();
 }
 

@@ -36,7 +36,8 @@ struct FragmentMatch {
 };
 
 struct MatcherSettings {
-    double near = 15e-3;  ///< m: middles of faces that are tried on each other
+    double near = 15e-3;  ///< m: middles of faces that are tried on each other; the farthest that one is moved
+    double most_turn = 0.7;  ///< rad, the farthest that it is turned
     double widest = 3e-3, finest = 0.25e-3;  ///< m, scale of the robust kernel
     double sigma = 0.2e-3;  ///< m, of the score
     double least_score = 0.2;  ///< below it nothing matches
@@ -93,7 +94,7 @@ private:
     Pose world(const Pair& pair, const Pose& centres, std::span<const Pose> poses) const noexcept;
     Pose centres(const Pair& pair, const Pose& moving, std::span<const Pose> poses) const noexcept;
     Solved solve(const Pair& pair, std::span<const Pose> starts) noexcept;
-    void lead(std::span<const Solved> solved, std::span<const Pose> poses, std::span<const char> stands) noexcept;
+    void lead(const Solved& best, std::span<const Pose> poses, std::span<const char> stands) noexcept;
     void judge() noexcept;
 
     std::vector<Face> faces_;

@@ -82,7 +82,8 @@ struct Session {
     }
     Scene scene() const { return node.last<Scene>("scene"); }
     Pose file_pose(int n) const {
-        const SceneObject& o = scene().objects[static_cast<std::size_t>(n)];
+        const Scene now = scene();
+        const SceneObject& o = now.objects[static_cast<std::size_t>(n)];
         return o.pose * o.body.home.inverse();
     }
     CasePlan plan() const {
