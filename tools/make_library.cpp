@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The case of the patch 'planning-trauma': fragments, plan, the hand's script, and the truth, which the patch never reads.
+/// The case of the patch 'planning-trauma': fragments, plan, the hand's script, and the truth, which the patch never
+/// reads.
 void make_case(const tactus::Bone& mandible, const fs::path& folder) {
     fs::create_directories(folder);
     const tactus::BrokenMandible broken = tactus::break_mandible(mandible);

@@ -11,7 +11,8 @@
 
 namespace tactus {
 
-/// Reads {"radius_mm": r, "paint": [[x, y, z], ...], "erase": [[x, y, z], ...]} and labels the points within the radius of a
+/// Reads {"radius_mm": r, "paint": [[x, y, z], ...], "erase": [[x, y, z], ...]} and labels the points within the
+/// radius of a
 /// stroke as fracture; those within it of an erasing stroke are none then. Labels that no stroke meets are taken off
 /// unless `keep`. Throws Error.
 void paint_from_file(std::span<SurfacePoint> points, const std::filesystem::path& path, bool keep = false);

@@ -79,11 +79,6 @@ std::vector<SurfacePoint> points_of_file(const std::filesystem::path& path) {
     return points;
 }
 
-nlohmann::ordered_json pose_json(const Pose& pose) {
-    const PoseNumbers numbers = numbers_of(pose);
-    return {{"position_mm", numbers.position_mm}, {"quaternion_wxyz", numbers.quaternion_wxyz}};
-}
-
 Pose pose_of_text(const std::string& text, std::string_view option) {
     double v[7];
     char rest = 0;

@@ -6,8 +6,7 @@
 #include "assets/plan/plan_file.hpp"
 #include "dsp/contact/voxmap.hpp"
 #include "dsp/distance/iso_surface.hpp"
-
-#include <nlohmann/json.hpp>
+#include "tools/fragment_file.hpp"
 
 #include <filesystem>
 #include <string>
@@ -37,8 +36,12 @@ TriangleSurface surface_of_file(const std::filesystem::path& path, const Bone& b
 /// The points of a mesh's corners, or of a bone. Meshes need not be closed. Throws Error.
 std::vector<SurfacePoint> points_of_file(const std::filesystem::path& path);
 
-/// {position_mm, quaternion_wxyz}.
-nlohmann::ordered_json pose_json(const Pose& pose);
+/// {position_mm, quaternion_wxyz}, in a JSON type.
+template <class Json>
+Json pose_json(const Pose& pose) {
+    const PoseNumbers numbers = numbers_of(pose);
+    return {{"position_mm", numbers.position_mm}, {"quaternion_wxyz", numbers.quaternion_wxyz}};
+}
 /// "X,Y,Z,QW,QX,QY,QZ" in mm. Throws Error naming the option.
 Pose pose_of_text(const std::string& text, std::string_view option);
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
@@ -124,7 +125,7 @@ int plan_export(const PlanChoice& choice) {
         written.push_back(
             {{"fragment", fragment.name},
              {"files", {mesh, names[n] + ".tfm", names[n] + ".scan.mrk.json", names[n] + ".plan.mrk.json"}},
-             {"pose", pose_json(pose)}});
+             {"pose", pose_json<Json>(pose)}});
         if (!choice.json)
             fmt::print("{0}.{1}, {0}.tfm, {0}.scan.mrk.json, {0}.plan.mrk.json\n", names[n], choice.format);
     }

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -84,7 +85,7 @@ Json match_json(const CasePlan& plan, const FragmentMatch& match, const Pose& fr
             {"gap_mm", match.quality.gap * 1e3},
             {"penetration_mm", match.quality.penetration * 1e3},
             {"overlap_mm2", match.quality.overlap * 1e6},
-            {"pose", pose_json(match.pose)},
+            {"pose", pose_json<Json>(match.pose)},
             {"moved", motion_json(from, match.pose, fragment)},
             {"paint", fragment.was_painted ? "file" : "proposed"}};
 }
@@ -211,7 +212,7 @@ int plan_mirror(const PlanChoice& choice) {
                           {"away", motion},
                           {"median_before_mm", found.before * 1e3},
                           {"median_after_mm", found.median * 1e3},
-                          {"pose", pose_json(found.pose)}});
+                          {"pose", pose_json<Json>(found.pose)}});
         if (!choice.json)
             fmt::print(
                 "{}: {:.2f} mm and {:.2f}° from where it lies best on the target; median {:.2f} mm, there "

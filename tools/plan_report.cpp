@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -78,7 +79,8 @@ std::string picture_of(const std::vector<PictureMesh>& meshes, const Vec3& direc
         html::escaped(caption), width, base64(png_bytes(render_picture(meshes, view, width, height))));
 }
 
-/// Blue where bones lie in each other, white where they touch, red where a millimetre gapes, grey where nothing is near.
+/// Blue where bones lie in each other, white where they touch, red where a millimetre gapes, grey where nothing is
+/// near.
 Vec3 gap_colour(double distance) {
     if (!std::isfinite(distance)) return Vec3(0.62);
     const double t = std::clamp(distance / 1e-3, -0.5, 1.0);

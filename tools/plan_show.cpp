@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
 
 namespace tactus {
 
@@ -50,7 +51,7 @@ Json json_of(const CasePlan& plan, const std::vector<std::string>& problems) {
         const PlanFragment& f = plan.fragments[static_cast<std::size_t>(n)];
         Json fragment{{"name", f.name},
                       {"file", f.file},
-                      {"pose", pose_json(state.arrangement.pose(n))},
+                      {"pose", pose_json<Json>(state.arrangement.pose(n))},
                       {"groups", groups_of(state, n)},
                       {"locked", state.arrangement.is_locked(n)},
                       {"hidden", state.arrangement.is_hidden(n)},

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 
@@ -18,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json json_of(const Registration& r) {
-    return {{"pose", pose_json(r.pose)},
+    return {{"pose", pose_json<Json>(r.pose)},
             {"median_before_mm", r.before * 1e3},
             {"median_mm", r.median * 1e3},
             {"p90_mm", r.p90 * 1e3},
@@ -59,7 +60,7 @@ int register_verb(const RegisterChoice& choice) {
     if (choice.mirror) {
         const MirrorFit fit = fit_mirror(moving, fixed);
         json = json_of(fit.registration);
-        json["pose"] = pose_json(fit.pose);
+        json["pose"] = pose_json<Json>(fit.pose);
         json["plane_normal"] = {fit.plane.normal.x, fit.plane.normal.y, fit.plane.normal.z};
         json["plane_offset_mm"] = fit.plane.offset * 1e3;
     } else {

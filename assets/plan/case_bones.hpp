@@ -15,7 +15,8 @@ struct CaseBones {
     std::vector<Bone> bones;  ///< one per fragment, none without points; unpainted ones with a proposal
 };
 
-/// Reads a plan and its fragments. Throws Error as load_case_plan does, for files that are missing or have changed, and for
+/// Reads a plan and its fragments. Throws Error as load_case_plan does, for files that are missing or have changed,
+/// and for
 /// what import refuses.
 CaseBones load_case(const std::filesystem::path& path);
 

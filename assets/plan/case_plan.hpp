@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plan of a case: which fragments there are, and every step that was done with them. Nothing is ever thrown away: undo
+// The plan of a case: which fragments there are, and every step that was done with them. Nothing is ever thrown away:
+// undo
 // goes back along the steps, a new step after it begins a branch, and named alternatives stand at any of them.
 #pragma once
 
@@ -87,11 +88,13 @@ struct PlanState {
     /// Number of the group of that name, or Arrangement::none.
     int find_group(std::string_view name) const;
 };
-/// After the step `head` (-1: as scanned) or at the current alternative's head. Poses are those of the steps, bit by bit.
+/// After the step `head` (-1: as scanned) or at the current alternative's head. Poses are those of the steps, bit by
+/// bit.
 PlanState state_of(const CasePlan& plan, int head);
 PlanState state_of(const CasePlan& plan);
 
-/// Whether a step means something where it is to be applied; throws Error saying what is wrong. `state` is then changed.
+/// Whether a step means something where it is to be applied; throws Error saying what is wrong. `state` is then
+/// changed.
 void apply(const CasePlan& plan, const PlanStep& step, PlanState& state);
 
 /// Checks a step, adds it after the current head and moves the head there. Throws Error and leaves the plan as it was.

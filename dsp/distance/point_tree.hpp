@@ -17,7 +17,8 @@
 
 namespace tactus {
 
-/// A k-d tree without pointers: the median of a range of points, along the longest axis of their box, stands in its middle.
+/// A k-d tree without pointers: the median of a range of points, along the longest axis of their box, stands in its
+/// middle.
 class PointTree {
 public:
     explicit PointTree(std::span<const Vec3> points)

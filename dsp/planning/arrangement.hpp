@@ -10,7 +10,8 @@
 
 namespace tactus {
 
-/// Fragments with poses, in groups that may hold groups. Fragments and groups are numbered from 0. Memory is taken by the
+/// Fragments with poses, in groups that may hold groups. Fragments and groups are numbered from 0. Memory is taken by
+/// the
 /// constructor and not later, so that a node may keep one.
 class Arrangement {
 public:
@@ -40,7 +41,8 @@ public:
     /// stay. Returns whether it moved.
     bool move(int fragment, const Pose& pose) noexcept;
 
-    /// A new group of these fragments and all that move with them: groups among them stay and are held by it. Returns its
+    /// A new group of these fragments and all that move with them: groups among them stay and are held by it. Returns
+    /// its
     /// number, or `none` for less than two things to join.
     int join(std::span<const int> fragments) noexcept;
     /// A fragment, or the outermost group that it is in, becomes part of a group. False when it is part of it already.

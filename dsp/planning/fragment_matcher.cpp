@@ -107,7 +107,8 @@ FitSurface surface_of(const FragmentSurface& fragment, std::span<const std::size
 
 }  // namespace
 
-/// Several pairs of faces of one moving fragment, as the solver asks for one contact. Its handle stands at `centre` of the
+/// Several pairs of faces of one moving fragment, as the solver asks for one contact. Its handle stands at `centre`
+/// of the
 /// fragment, wherever its file has its origin.
 class FragmentMatcher::Together {
 public:

@@ -2,10 +2,14 @@
 // Which of the fragments that stand does a fragment fit, and where: a solver for the background, in bounded time and
 // without memory of its own making once it is constructed.
 //
-// A fragment from the middle of a bone has a face for each neighbour it broke from. Pairs of faces that are near and look
-// against each other where the fragment is held are fitted one by one, by the two-sided robust energy of fit_energy.hpp with
-// a scale that narrows. What fits best leads; then all faces that fit there are fitted together, so that an error of one
-// does not add to that of the next. When nothing near fits, every face is tried on every other in all ways round, a pair or
+// A fragment from the middle of a bone has a face for each neighbour it broke from. Pairs of faces that are near and
+// look
+// against each other where the fragment is held are fitted one by one, by the two-sided robust energy of
+// fit_energy.hpp with
+// a scale that narrows. What fits best leads; then all faces that fit there are fitted together, so that an error of
+// one
+// does not add to that of the next. When nothing near fits, every face is tried on every other in all ways round, a
+// pair or
 // two at a time.
 #pragma once
 
@@ -54,7 +58,8 @@ class FragmentMatcher {
 public:
     MatcherSettings settings;
 
-    /// Throws Error when a fragment's points and distances do not belong together. A fragment without paint fits nothing.
+    /// Throws Error when a fragment's points and distances do not belong together. A fragment without paint fits
+    /// nothing.
     explicit FragmentMatcher(std::span<const FragmentSurface> fragments, const MatcherSettings& wanted = {});
 
     std::size_t faces() const noexcept { return faces_.size(); }

@@ -8,7 +8,8 @@
 
 namespace tactus {
 
-/// A way through the tree: the steps from the root to `head` are done, those from there to `tip` can be redone. Root: -1.
+/// A way through the tree: the steps from the root to `head` are done, those from there to `tip` can be redone. Root:
+/// -1.
 struct HistoryPlace {
     int head = -1, tip = -1;
 };

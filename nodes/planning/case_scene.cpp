@@ -42,7 +42,8 @@ struct CaseScene {
     Out<bool> settled{"the body in the hand has been put where it fits"};
     Asset<CaseBones> plan{"the plan with its fragments; new steps follow where it stands"};
     Text file{"plan-steps.csv", "name of the record of steps within the folder of the run"};
-    Param loose{"3 mm", "0.1 mm", "100 mm", "a settled body that the hand pulls farther away than this is free again"};
+    Param loose{"8 mm", "0.1 mm", "100 mm",
+                "a settled body that the hand takes farther than this from where it had it is free again"};
 
     void prepare(const Setup& setup) {
         if (plan->bones.size() > tactus::Scene::most_objects)
@@ -115,7 +116,8 @@ private:
         const Pose here = file_pose(place, {moved->position, glm::normalize(moved->orientation)});
         if (settled_) {
             const Vec3& middle = parts_[static_cast<std::size_t>(place)]->home.position;
-            if (!(glm::length(here.apply(middle) - now_->pose(place).apply(middle)) > loose)) return;
+            // What was in the way of the hand when it settled counts for nothing.
+            if (!(glm::length(here.apply(middle) - let_at_) > loose)) return;
             settled_ = false;
         }
         now_->move(place, here);
@@ -123,9 +125,12 @@ private:
     }
 
     void press(const Tick& tick) noexcept {
-        if (edge(settle, 0) && holding_ && fits.connected && fits.get() && target.connected && is_valid(target.get())) {
+        if (edge(settle, 0) && holding_ && fits.connected && fits.get() && target.connected && is_valid(target.get()) &&
+            moved.connected && is_valid(moved.get())) {
             if (now_->move(last_, file_pose(last_, {target->position, glm::normalize(target->orientation)}))) {
                 settled_ = true;
+                const Vec3& middle = parts_[static_cast<std::size_t>(last_)]->home.position;
+                let_at_ = file_pose(last_, {moved->position, glm::normalize(moved->orientation)}).apply(middle);
                 fitted_[static_cast<std::size_t>(last_)] = 1;
                 placed(tick, last_, 1.0);
             }
@@ -243,6 +248,7 @@ private:
     std::string name_;
     std::int64_t version_ = 0;
     int last_ = -1;
+    Vec3 let_at_{0.0};  // where the hand had the middle of a body when it was settled
     bool holding_ = false, settled_ = false;
     bool was_[6] = {};
 };

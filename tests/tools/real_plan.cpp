@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hip that was really broken, by its own faces and against the other side; and a pelvis with a shifted part. Runs only where
+// A hip that was really broken, by its own faces and against the other side; and a pelvis with a shifted part. Runs
+// only where
 // TACTUS_SHARED_DATA names a folder with these published scans.
 #include "tests/tools/run_command.hpp"
 
