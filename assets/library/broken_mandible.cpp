@@ -182,14 +182,15 @@ std::string script_of(const BrokenMandible& broken, const BrokenMandibleOptions&
         script.stay(0.2, "trigger");
         snap_and_settle(script);
     }
-    // Once more, now that all neighbours are there; the hand reaches for a piece only about where it is.
-    for (const std::size_t n : order) {
-        const Random random{options.seed * 7919 + n};
-        const Vec3 place = broken.truth[n].apply(middle_of(broken.fragments[n].points));
-        script.go(0.5, {place + 1.5e-3 * direction(random, 6), {1.0, 0.0, 0.0, 0.0}}, "");
-        script.stay(0.1, "trigger");
-        snap_and_settle(script);
-    }
+    // Twice more, now that all neighbours are there; the hand reaches for a piece only about where it is.
+    for (const std::uint64_t pass : {6u, 9u})
+        for (const std::size_t n : order) {
+            const Random random{options.seed * 7919 + n};
+            const Vec3 place = broken.truth[n].apply(middle_of(broken.fragments[n].points));
+            script.go(0.5, {place + 1.5e-3 * direction(random, pass), {1.0, 0.0, 0.0, 0.0}}, "");
+            script.stay(0.1, "trigger");
+            snap_and_settle(script);
+        }
     seconds = script.time();
     return script.text();
 }

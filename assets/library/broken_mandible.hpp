@@ -30,7 +30,7 @@ struct BrokenMandible {
 
 /// Breaks `bone` and makes the case. The hand takes each piece, stops beside its place by the error in a seeded
 /// direction,
-/// snaps, settles and lets go; then it takes each once more where it lies and settles it on all its neighbours. It
+/// snaps, settles and lets go; then it takes each twice more where it lies and settles it on all its neighbours. It
 /// knows
 /// the truth for no more than where to stop. Deterministic.
 BrokenMandible break_mandible(const Bone& bone, const BrokenMandibleOptions& options = {});

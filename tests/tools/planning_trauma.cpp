@@ -62,7 +62,7 @@ TEST_CASE("render planning-trauma: every piece within 0.3 mm and 0.5 degrees, th
     const Folder folder;
     const fs::path out = folder.path / "out", take = folder.path / "take";
     const Outcome run =
-        folder.tactus("render planning-trauma --seconds 66 --out " + out.string() + " --record " + take.string());
+        folder.tactus("render planning-trauma --seconds 90 --out " + out.string() + " --record " + take.string());
     INFO(run.err);
     REQUIRE(run.code == 0);
     const json summary = json::parse(slurp(out / "summary.json"));

@@ -105,6 +105,7 @@ TEST_CASE("workspace and device_wrench together keep the power of hand and tool 
     const Vec3 velocity(0.2, -0.1, 0.05);
     const double dt = 1e-3 / 1024.0;
     NodeHarness place("workspace", servo);
+    place.disconnect("clutch").disconnect("turn");
     place.set("origin", "10 mm, -20 mm, 5 mm").set("rotation", "30 deg, 40 deg, -70 deg").set("scale", "2.5");
     place.set("grip", "0 mm, 30 mm, -80 mm").set("grip_rotation", "-90 deg, 10 deg, 0 deg");
     place.feed<Pose>("device", [&](std::int64_t k) {
@@ -127,6 +128,7 @@ TEST_CASE("workspace and device_wrench together keep the power of hand and tool 
 
 TEST_CASE("a workspace with a bone puts the resting blade in front of it, teeth towards it") {
     NodeHarness node("workspace", servo);
+    node.disconnect("clutch").disconnect("turn");
     node.asset("bone", test::sample_asset("bone")).set("clearance", "4 mm");
     node.feed<Pose>("device", [](std::int64_t k) {
         return Pose{k == 1   ? Vec3(0.0, 0.0, -3e-3)
@@ -149,6 +151,7 @@ TEST_CASE("a workspace with a bone puts the resting blade in front of it, teeth 
 TEST_CASE("on the bundled mandible the blade goes across the body from the outside, clear of everything else") {
     const auto mandible = std::make_shared<const Bone>(make_mandible());
     NodeHarness node("workspace", servo);
+    node.disconnect("clutch").disconnect("turn");
     node.asset("bone", mandible);
     node.prepare();
     const Report report = node.report();
@@ -166,6 +169,7 @@ TEST_CASE("a workspace says so when a bone has no place for a blade") {
     Bone air = *std::static_pointer_cast<const Bone>(test::sample_asset("bone"));
     for (float& d : air.distance.values) d = 1.0f;
     NodeHarness node("workspace", servo);
+    node.disconnect("clutch").disconnect("turn");
     node.asset("bone", std::make_shared<const Bone>(air));
     CHECK_THROWS_WITH(node.prepare(), Catch::Contains("leave 'bone' out"));
 }
