@@ -158,6 +158,20 @@ void print_row(const Json& row) {
     fmt::print("\n");
 }
 
+Json live_rows() {
+    Json rows = Json::array();
+    for (const LiveTicks& row : bench_snap_live())
+        rows.push_back({{"case", live_case},
+                        {"method", row.method},
+                        {"painted_points", row.painted_points},
+                        {"trials", row.ticks},
+                        {"success", row.in_time},
+                        {"median_ms", row.median_ms},
+                        {"p99_ms", row.p99_ms},
+                        {"evaluations_mean", row.evaluations}});
+    return rows;
+}
+
 void print_live(const Json& rows) {
     for (const Json& row : rows)
         fmt::print("live, {} painted points, {}: a tick takes {:.2f} ms, p99 {:.2f}; under 0.5 ms: {:.1f} %\n",
@@ -187,7 +201,7 @@ int bench_snap_verb(const SnapBenchChoice& choice) {
     const std::vector<Case> cases = chosen_cases(choice.cases);
     const bool live = choice.cases.empty() || std::ranges::count(choice.cases, live_case) > 0;
     if (cases.empty()) {
-        const Json rows = bench_snap_live();
+        const Json rows = live_rows();
         if (choice.json) fmt::print("{}\n", rows.dump(2));
         else print_live(rows);
         return done;
@@ -221,7 +235,7 @@ int bench_snap_verb(const SnapBenchChoice& choice) {
         }
     }
     if (live) {
-        const Json more = bench_snap_live();
+        const Json more = live_rows();
         if (!choice.json) print_live(more);
         rows.insert(rows.end(), more.begin(), more.end());
     }

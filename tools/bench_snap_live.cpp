@@ -17,10 +17,8 @@ namespace tactus {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
-constexpr int ticks = 3000;
+constexpr int all_ticks = 3000;
 
 double thread_seconds() {
     timespec t;
@@ -53,7 +51,7 @@ FitLaw law_of(FitMode mode) {
 
 }  // namespace
 
-nlohmann::ordered_json bench_snap_live() {
+std::vector<LiveTicks> bench_snap_live() {
     FractureOptions options;
     options.spacing *= 0.82;  // about 5,000 painted points on both together
     const std::vector<Bone> bones = make_fragments(options);
@@ -69,7 +67,7 @@ nlohmann::ordered_json bench_snap_live() {
     HeldContact contact(shells[0].size() + shells[1].size());
     contact.set(scene, 1, grip, ContactLaw{}, false);
     FitEnergy energy(moving, fixed);
-    Json rows = Json::array();
+    std::vector<LiveTicks> rows;
     for (const FitMode mode : {FitMode::extended, FitMode::thesis}) {
         energy.law = law_of(mode);
         HeldFit fit(contact, &energy);
@@ -80,7 +78,7 @@ nlohmann::ordered_json bench_snap_live() {
         coupling.reset({arm, {1, 0, 0, 0}});
         std::vector<double> seconds;
         double evaluations = 0.0;
-        for (int n = 0; n < ticks; ++n) {
+        for (int n = 0; n < all_ticks; ++n) {
             const Pose hand = wandering_hand(arm, n * 1e-3);
             const double begin = thread_seconds();
             fit.look(coupling.state().proxy, grip, {}, 1.0);
@@ -88,16 +86,11 @@ nlohmann::ordered_json bench_snap_live() {
             seconds.push_back(thread_seconds() - begin);
         }
         std::ranges::sort(seconds);
-        const auto at = [&](double share) { return seconds[static_cast<std::size_t>(share * (ticks - 1))] * 1e3; };
+        const auto at = [&](double share) { return seconds[static_cast<std::size_t>(share * (all_ticks - 1))] * 1e3; };
         const auto in_time = std::ranges::count_if(seconds, [](double s) { return s < 0.5e-3; });
-        rows.push_back({{"case", "live"},
-                        {"method", mode == FitMode::extended ? "extended" : "thesis"},
-                        {"painted_points", moving.position.size() + fixed.position.size()},
-                        {"trials", ticks},
-                        {"success", static_cast<double>(in_time) / ticks},
-                        {"median_ms", at(0.5)},
-                        {"p99_ms", at(0.99)},
-                        {"evaluations_mean", evaluations / ticks}});
+        rows.push_back({mode == FitMode::extended ? "extended" : "thesis",
+                        moving.position.size() + fixed.position.size(), all_ticks,
+                        static_cast<double>(in_time) / all_ticks, at(0.5), at(0.99), evaluations / all_ticks});
     }
     return rows;
 }

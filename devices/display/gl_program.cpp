@@ -3,6 +3,9 @@
 
 #include "dsp/core/error.hpp"
 
+#define GL_GLEXT_PROTOTYPES
+#include <GL/glcorearb.h>
+
 #include <fmt/format.h>
 
 #include <array>
@@ -38,5 +41,11 @@ GlProgram::GlProgram(const char* vertex, const char* fragment) : program_(glCrea
     glGetProgramiv(program_, GL_LINK_STATUS, &good);
     if (good == 0) throw Error("the graphics driver cannot link a shader");
 }
+
+GlProgram::~GlProgram() { glDeleteProgram(program_); }
+
+void GlProgram::use() const { glUseProgram(program_); }
+
+int GlProgram::uniform(const char* name) const { return glGetUniformLocation(program_, name); }
 
 }  // namespace tactus

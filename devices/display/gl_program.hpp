@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The few things of OpenGL that every drawing file needs. Inside devices/display only.
+// A program of shaders.
 #pragma once
-
-#define GL_GLEXT_PROTOTYPES
-#include <GL/glcorearb.h>
 
 #include <utility>
 
@@ -14,15 +11,16 @@ class GlProgram {
 public:
     /// Throws Error with what the driver says.
     GlProgram(const char* vertex, const char* fragment);
-    ~GlProgram() { glDeleteProgram(program_); }
+    ~GlProgram();
     GlProgram(GlProgram&& other) noexcept : program_(std::exchange(other.program_, 0)) {}
     GlProgram& operator=(GlProgram&&) = delete;
 
-    void use() const { glUseProgram(program_); }
-    GLint uniform(const char* name) const { return glGetUniformLocation(program_, name); }
+    void use() const;
+    /// Location of a uniform, −1 for none.
+    int uniform(const char* name) const;
 
 private:
-    GLuint program_ = 0;
+    unsigned program_ = 0;
 };
 
 }  // namespace tactus

@@ -4,6 +4,9 @@
 #include "devices/display/gl_program.hpp"
 #include "dsp/core/error.hpp"
 
+#define GL_GLEXT_PROTOTYPES
+#include <GL/glcorearb.h>
+
 #include <algorithm>
 #include <bit>
 #include <cstddef>

@@ -5,6 +5,9 @@
 #include "devices/display/scene_shaders.hpp"
 #include "dsp/core/error.hpp"
 
+#define GL_GLEXT_PROTOTYPES
+#include <GL/glcorearb.h>
+
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
