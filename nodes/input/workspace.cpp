@@ -4,6 +4,8 @@
 #include "graph/assets.hpp"
 #include "graph/node.hpp"
 
+#include <glm/geometric.hpp>
+
 #include <optional>
 
 namespace tactus::nodes {
@@ -11,8 +13,8 @@ namespace tactus::nodes {
 struct Workspace {
     static constexpr auto about =
         "Places the device in the scene and the tool in the hand. Given a bone, it finds a place where a saw blade can "
-        "be "
-        "set on, and puts the resting tool in front of it. With 'clutch' held the hand takes the device along through "
+        "be set on, and puts the resting tool in front of it. With 'clutch' held the hand takes the device along "
+        "through "
         "the scene and the tool stays in place; with 'turn' held the scene turns and shifts with the hand. Forces go "
         "back through device_wrench.";
 
@@ -43,7 +45,9 @@ struct Workspace {
     }
     void process(const Tick&) noexcept {
         const Pose hand = device;
-        if (is_valid(hand)) arrange({hand.position, glm::normalize(hand.orientation)});
+        // What stays must not be moved by a faulty pose.
+        if (is_valid(hand) && glm::length(hand.position) < farthest)
+            arrange({hand.position, glm::normalize(hand.orientation)});
         place(hand);
     }
 
@@ -93,6 +97,8 @@ private:
         const Pose tool{site_->point - site_->feed * clearance.value, glm::normalize(glm::quat_cast(axes))};
         return tool * placement_.grip.inverse();
     }
+
+    static constexpr double farthest = 1e3;  // m
 
     Placement placement_;
     Pose last_;
