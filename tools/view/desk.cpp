@@ -11,8 +11,7 @@
 namespace tactus::view {
 
 Desk::Desk(Window& window, Workbench& bench, TakeBench* take)
-    : window_(window),
-      bench_(bench),
+    : bench_(bench),
       take_(take),
       fonts_{window.body, window.bold, window.large, window.scale()},
       patch_(bench),

@@ -42,7 +42,6 @@ private:
     void ask_farewell();
     void shortcuts();
 
-    Window& window_;
     Workbench& bench_;
     TakeBench* take_;
     std::unique_ptr<LiveFeed> live_;
