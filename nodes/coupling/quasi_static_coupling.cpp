@@ -5,6 +5,7 @@
 #include "graph/node.hpp"
 #include "nodes/contact/contact_parameters.hpp"
 #include "nodes/coupling/held_body.hpp"
+#include "nodes/coupling/solver_parameters.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -36,19 +37,12 @@ struct QuasiStaticCoupling {
     Out<bool> in_contact{"some point has a force"};
     Param held{"0", "-1", "15", "place of the held body in the scene; grasp drives it"};
     Vector grip_at{"0 mm, 0 mm, 0 mm", "origin of the held body in the frame of the hand"};
-    Param stiffness{"1 N/mm", "0 N/mm", "20 N/mm", "of the spring to the hand"};
-    Param angular_stiffness{"1 N m/rad", "0 N m/rad", "100 N m/rad", "of the spring that turns"};
-    Param max_force{"10 N", "0 N", "100 N", "the spring pulls no harder"};
-    Param max_torque{"0.5 N m", "0 N m", "20 N m", "the spring turns no harder"};
     Param guide_stiffness{"1 N/mm", "0 N/mm", "20 N/mm", "of the spring to the target"};
     Param guide_angular_stiffness{"1 N m/rad", "0 N m/rad", "100 N m/rad", "of that which turns"};
     Param guide_force{"8 N", "0 N", "100 N", "the target pulls no harder"};
     Param guide_torque{"0.3 N m", "0 N m", "20 N m", "the target turns no harder"};
     Param fade{"100 ms", "1 ms", "10 s", "in which guidance and springs come and go"};
-    Param iterations{"10", "1", "50", "most steps of the solver in one tick"};
-    Param tolerance{"0.001 N", "0 N", "1 N", "residual that counts as balanced"};
-    Param step{"0.5 mm", "0.001 mm", "20 mm",
-               "farthest that one step may move a point beyond what is free; at most half of the thinnest walls"};
+    SolverParameters solver;
     ContactParameters contact;
 
     void prepare(const Setup&) {
@@ -63,7 +57,7 @@ struct QuasiStaticCoupling {
         contact.set(*contact_, scene, hold_.place, in_hand);
         if (hold_.taken) take();
         guide(in_hand, tick.elapsed_seconds() / fade);
-        set_up();
+        solver.set(solver_.settings, *contact_, sprung_);
         if (hold_.holds) solve(in_hand);
         else let_go();
         place = hold_.place;
@@ -100,16 +94,6 @@ private:
         g.springs = {{guide_stiffness, guide_force}, {guide_angular_stiffness, guide_torque}};
         const bool gives_way = wanted && settle.connected && settle.get();
         sprung_ = std::clamp(sprung_ + (gives_way ? -change : change), 0.0, 1.0);
-    }
-
-    void set_up() noexcept {
-        QuasiStaticSettings& s = solver_.settings;
-        s.springs = {{stiffness * sprung_, max_force * sprung_}, {angular_stiffness * sprung_, max_torque * sprung_}};
-        s.iterations = static_cast<int>(iterations);
-        s.tolerance = tolerance;
-        s.step = step;
-        s.reach = contact_->reach();
-        s.gyration = contact_->gyration();
     }
 
     void solve(const Pose& in_hand) noexcept {
@@ -151,8 +135,7 @@ private:
 };
 
 TACTUS_NODE(QuasiStaticCoupling, device, scene, grip, holding, strength, target, guided, has_target, settle, wrench,
-            pose, place, penetration, residual, in_contact, held, grip_at, stiffness, angular_stiffness, max_force,
-            max_torque, guide_stiffness, guide_angular_stiffness, guide_force, guide_torque, fade, iterations,
-            tolerance, step, contact)
+            pose, place, penetration, residual, in_contact, held, grip_at, guide_stiffness, guide_angular_stiffness,
+            guide_force, guide_torque, fade, solver, contact)
 
 }  // namespace tactus::nodes

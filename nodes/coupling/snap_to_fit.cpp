@@ -7,6 +7,7 @@
 #include "graph/node.hpp"
 #include "nodes/contact/contact_parameters.hpp"
 #include "nodes/coupling/held_body.hpp"
+#include "nodes/coupling/solver_parameters.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -43,14 +44,7 @@ struct SnapToFit {
     Param force{"10 N", "0 N", "100 N", "the pull of all painted points together, at most"};
     Param reach{"4 mm", "0.1 mm", "12 mm", "no pull from farther away"};
     Param fade{"100 ms", "1 ms", "10 s", "in which pull and springs come and go"};
-    Param stiffness{"1 N/mm", "0 N/mm", "20 N/mm", "of the spring to the hand"};
-    Param angular_stiffness{"1 N m/rad", "0 N m/rad", "100 N m/rad", "of the spring that turns"};
-    Param max_force{"10 N", "0 N", "100 N", "the spring pulls no harder"};
-    Param max_torque{"0.5 N m", "0 N m", "20 N m", "the spring turns no harder"};
-    Param iterations{"10", "1", "50", "most steps of the solver in one tick"};
-    Param tolerance{"0.001 N", "0 N", "1 N", "residual that counts as balanced"};
-    Param step{"0.5 mm", "0.001 mm", "20 mm",
-               "farthest that one step may move a point beyond what is free; at most half of the thinnest walls"};
+    SolverParameters solver;
     ContactParameters contact;
 
     void prepare(const Setup&) {
@@ -74,7 +68,7 @@ struct SnapToFit {
         };
         drawn_ = follow(drawn_, hold_.holds && (!engaged.connected || engaged.get()));
         sprung_ = follow(sprung_, !(settle.connected && settle.get()));
-        set_up();
+        solver.set(solver_.settings, *contact_, sprung_);
         if (hold_.holds) solve(in_hand, tick.elapsed_seconds());
         else let_go();
         place = hold_.place;
@@ -103,16 +97,6 @@ private:
         drawn_ = 0.0;
         sprung_ = 1.0;
         scale_ = 0.5 * reach;
-    }
-
-    void set_up() noexcept {
-        QuasiStaticSettings& s = solver_.settings;
-        s.springs = {{stiffness * sprung_, max_force * sprung_}, {angular_stiffness * sprung_, max_torque * sprung_}};
-        s.iterations = static_cast<int>(iterations);
-        s.tolerance = tolerance;
-        s.step = step;
-        s.reach = contact_->reach();
-        s.gyration = contact_->gyration();
     }
 
     void set_law() noexcept {
@@ -195,7 +179,6 @@ private:
 };
 
 TACTUS_NODE(SnapToFit, device, scene, grip, holding, strength, engaged, settle, wrench, pose, place, score, pull,
-            penetration, residual, in_contact, moving, fixed, held, target, mode, force, reach, fade, stiffness,
-            angular_stiffness, max_force, max_torque, iterations, tolerance, step, contact)
+            penetration, residual, in_contact, moving, fixed, held, target, mode, force, reach, fade, solver, contact)
 
 }  // namespace tactus::nodes

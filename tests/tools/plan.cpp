@@ -4,6 +4,7 @@
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "dsp/core/types.hpp"
+#include "tests/tools/bar.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <catch2/catch.hpp>
@@ -16,6 +17,7 @@
 
 using namespace tactus;
 using nlohmann::json;
+using tactus::test::bar;
 using tactus::test::Folder;
 using tactus::test::Outcome;
 using tactus::test::slurp;
@@ -23,25 +25,6 @@ using tactus::test::slurp;
 namespace {
 
 constexpr double mm = 1e-3;
-
-/// A bar of egg-shaped section, 12 by 22 mm and 40 mm long.
-Bone bar() {
-    Bone bone;
-    Grid& grid = bone.distance;
-    grid = {{95, 37, 59}, Vec3(-23.5, -9.0, -14.5) * mm, Vec3(0.5 * mm), {}};
-    for (int k = 0; k < grid.size[2]; ++k)
-        for (int j = 0; j < grid.size[1]; ++j)
-            for (int i = 0; i < grid.size[0]; ++i) {
-                const Vec3 p = grid.position(i, j, k);
-                const double width = 6.0 * mm * (1.0 - 0.2 * p.z / (11.0 * mm));
-                const double r = std::hypot(p.y / width, p.z / (11.0 * mm));
-                grid.values.push_back(static_cast<float>(std::max((r - 1.0) * 7.0 * mm, std::abs(p.x) - 20.0 * mm)));
-            }
-    bone.density = grid;
-    for (float& d : bone.density.values) d = d < 0.0f ? 1500.0f : 0.0f;
-    bone.name = "bar";
-    return bone;
-}
 
 /// A box of 12 triangles, corners in the file's numbers; `open` leaves two of them out.
 std::string box_stl(const Vec3& low, const Vec3& high, bool open) {

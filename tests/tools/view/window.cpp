@@ -3,6 +3,7 @@
 #include "assets/file/whole_file.hpp"
 #include "tests/tools/run_command.hpp"
 #include "tests/tools/view/display.hpp"
+#include "tests/tools/view/voice.hpp"
 
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
@@ -29,25 +30,6 @@ using namespace tactus::test;
 using nlohmann::json;
 
 namespace {
-
-const std::string voice = R"(# a voice and what makes it loud
-title = "voice"
-wires = [
-  "tone.signal -> loud.in",    # the way of the sound
-  "level.value -> loud.factor",
-]
-[nodes.tone]
-type = "sine"
-rate = "48 kHz"
-frequency = "440 Hz"   # a
-[nodes.loud]
-type = "gain"
-rate = "48 kHz"
-[nodes.level]
-type = "constant"
-rate = "60 Hz"
-number = 0.5
-)";
 
 /// Runs the command on that display, with a time limit of its own.
 Outcome on(const Display& display, const Folder& folder, const std::string& arguments) {

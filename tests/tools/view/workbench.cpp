@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/workbench.hpp"
 #include "tests/tools/run_command.hpp"
+#include "tests/tools/view/voice.hpp"
 #include "tools/load_plan.hpp"
 
 #include <catch2/catch.hpp>
@@ -13,26 +14,9 @@ using namespace tactus;
 using namespace tactus::view;
 using tactus::test::Folder;
 using tactus::test::slurp;
+using tactus::test::voice;
 
 namespace {
-
-const std::string voice = R"(title = "voice"
-wires = [
-  "tone.signal -> loud.in",   # as it is
-  "level.value -> loud.factor",
-]
-[nodes.tone]
-type = "sine"
-rate = "48 kHz"
-frequency = "440 Hz"  # a
-[nodes.loud]
-type = "gain"
-rate = "48 kHz"
-[nodes.level]
-type = "constant"
-rate = "60 Hz"
-number = 0.5
-)";
 
 RunChoice choice_in(const Folder& folder) {
     RunChoice choice;
@@ -100,8 +84,8 @@ TEST_CASE("a patch saved at the bench compiles to the plan that was shown") {
     REQUIRE(bench.save());
     const std::string text = slurp(choice.patch);
     CHECK(text == bench.editor().text());
-    CHECK(text.find("# as it is") != std::string::npos);
-    CHECK(text.find("\"220 Hz\"  # a") != std::string::npos);
+    CHECK(text.find("# the way of the sound") != std::string::npos);
+    CHECK(text.find("\"220 Hz\"   # a") != std::string::npos);
     Problems problems;
     const std::optional<Plan> plan = read_plan(choice, problems);
     REQUIRE(plan);
