@@ -104,9 +104,11 @@ void Engine::retire() {
 /// Gives back what only the plan before used: threads, logs and recordings of groups and nodes that are no more. A run
 /// may be edited for days.
 void Engine::close_ended() {
-    drain_log();
-    for (const auto& group : groups_) {
-        if (!group->is_over() || !group->log) continue;
+    std::vector<GroupRuntime*> ended;
+    for (const auto& group : groups_)
+        if (group->is_over() && group->log) ended.push_back(group.get());
+    drain_log();  // with the last that they said
+    for (GroupRuntime* group : ended) {
         const std::lock_guard lock(log_lock_);
         std::erase_if(log_rings_, [&](const auto& ring) { return ring.get() == group->log; });
         group->log = nullptr;

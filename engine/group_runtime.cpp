@@ -87,6 +87,7 @@ void GroupRuntime::apply_pause(Pace pace) noexcept {
 }
 
 void GroupRuntime::rest() noexcept {
+    if (!program_) return;  // made by an edit while the run stands
     for (DeviceSlot* slot : program_->driven) slot->guard.commit(*slot->device, {}, steady_ns());
 }
 

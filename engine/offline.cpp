@@ -84,6 +84,7 @@ void Engine::render(int threads, const std::function<void(double)>& progress) {
                 progress(progress_seconds() / options_.seconds);
             } catch (...) {
                 fail(std::current_exception());
+                break;
             }
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }

@@ -98,7 +98,8 @@ void Editing::add_table(const NewNode& node) {
     for (const auto& [name, value] : lines) table += fmt::format("{:<{}} = {}{}", name, width, value, newline);
     std::size_t at = text_.size();
     for (std::size_t h = 0; h < spans_.headers.size(); ++h)
-        if (spans_.headers[h].path.front() == "nodes") at = line_end(text_, last_of(h));
+        if (const auto& path = spans_.headers[h].path; !path.empty() && path.front() == "nodes")
+            at = line_end(text_, last_of(h));
     const bool ends_line = at == 0 || text_[at - 1] == '\n';
     replace({at, at}, (ends_line ? "" : newline) + (at == 0 ? "" : newline) + table);
 }

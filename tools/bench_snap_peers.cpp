@@ -4,14 +4,12 @@
 #include "dsp/coupling/symmetric6.hpp"
 #include "dsp/operator/hand.hpp"
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace tactus {
 
@@ -50,52 +48,6 @@ std::string_view name_of(IcpKind kind) {
 std::string_view name_of(IcpSchedule schedule) {
     constexpr std::string_view names[] = {"unlimited", "trimmed", "annealed"};
     return names[static_cast<std::size_t>(schedule)];
-}
-
-IcpTarget::IcpTarget(const FitSurface& fixed)
-    : surface_(fixed), order_(fixed.position.size()), axis_(order_.size(), 0) {
-    std::iota(order_.begin(), order_.end(), std::size_t(0));
-    arrange(0, order_.size());
-}
-
-void IcpTarget::arrange(std::size_t first, std::size_t last) {
-    if (last - first < 2) return;
-    Vec3 low(std::numeric_limits<double>::infinity()), high(-low);
-    for (std::size_t n = first; n < last; ++n) {
-        low = glm::min(low, surface_.position[order_[n]]);
-        high = glm::max(high, surface_.position[order_[n]]);
-    }
-    const Vec3 extent = high - low;
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-    const std::size_t middle = (first + last) / 2;
-    const auto at = [&](std::size_t n) { return order_.begin() + static_cast<std::ptrdiff_t>(n); };
-    std::nth_element(at(first), at(middle), at(last), [&](std::size_t a, std::size_t b) {
-        return surface_.position[a][axis] < surface_.position[b][axis];
-    });
-    axis_[middle] = axis;
-    arrange(first, middle);
-    arrange(middle + 1, last);
-}
-
-void IcpTarget::search(const Vec3& position, std::size_t first, std::size_t last, double& least,
-                       std::size_t& best) const {
-    if (first >= last) return;
-    const std::size_t middle = (first + last) / 2;
-    const Vec3 apart = position - surface_.position[order_[middle]];
-    const double d2 = glm::dot(apart, apart), side = apart[axis_[middle]];
-    if (d2 < least) least = d2, best = order_[middle];
-    if (side < 0.0) search(position, first, middle, least, best);
-    else search(position, middle + 1, last, least, best);
-    if (side * side >= least) return;
-    if (side < 0.0) search(position, middle + 1, last, least, best);
-    else search(position, first, middle, least, best);
-}
-
-std::size_t IcpTarget::nearest(const Vec3& position) const {
-    double least = std::numeric_limits<double>::infinity();
-    std::size_t best = 0;
-    search(position, 0, order_.size(), least, best);
-    return best;
 }
 
 Pose run_icp(const FitSurface& moving, const IcpTarget& target, const Pose& start, IcpKind kind, IcpSchedule schedule) {

@@ -2,6 +2,7 @@
 // Iterative closest point in its usual forms, which snap-to-fit is measured against.
 #pragma once
 
+#include "dsp/distance/point_tree.hpp"
 #include "dsp/snap/fit_surface.hpp"
 
 #include <string_view>
@@ -20,18 +21,14 @@ std::string_view name_of(IcpSchedule schedule);
 /// Nearest points by a balanced tree over the painted points of the fixed side.
 class IcpTarget {
 public:
-    explicit IcpTarget(const FitSurface& fixed);
+    explicit IcpTarget(const FitSurface& fixed) : surface_(fixed), tree_(fixed.position) {}
 
     const FitSurface& surface() const { return surface_; }
-    std::size_t nearest(const Vec3& position) const;
+    std::size_t nearest(const Vec3& position) const { return tree_.nearest(position); }
 
 private:
-    void arrange(std::size_t first, std::size_t last);
-    void search(const Vec3& position, std::size_t first, std::size_t last, double& least, std::size_t& best) const;
-
     const FitSurface& surface_;
-    std::vector<std::size_t> order_;
-    std::vector<int> axis_;
+    PointTree tree_;
 };
 
 /// From `start` (between the middles of the paints) to where it settles, at most 100 iterations.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/file/whole_file.hpp"
 #include "devices/display/png.hpp"
+#include "tools/batch.hpp"
 #include "tools/load_plan.hpp"
 #include "tools/rig_figures.hpp"
 #include "tools/rig_series.hpp"
@@ -21,9 +22,7 @@ RigReport simulate(const RigChoice& choice, const RigMatrix& matrix) {
         if (choice.keep_series) series += rig_series_csv(cell, measured, series.empty());
     };
     const auto progress = [&](int done_cells, int of) {
-        const int filled = 30 * done_cells / of;
-        line.show(fmt::format("[{}{}] {} of {} cells", std::string(static_cast<std::size_t>(filled), '#'),
-                              std::string(static_cast<std::size_t>(30 - filled), ' '), done_cells, of));
+        line.show(progress_bar(static_cast<std::size_t>(done_cells), static_cast<std::size_t>(of), "cells"));
     };
     RigReport report = study_rig(choice, matrix, on_threads(choice.threads), progress, keep);
     line.clear();

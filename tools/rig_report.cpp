@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/rig_report.hpp"
 
+#include "tools/batch.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -51,10 +53,7 @@ Json row_json(const RigRow& row) {
 
 std::string cell_text(const Json& value) {
     if (value.is_null()) return "";
-    if (value.is_string()) {
-        std::string text = value;
-        return text.find_first_of(",\"") == std::string::npos ? text : "\"" + text + "\"";
-    }
+    if (value.is_string()) return csv_field(value.get<std::string>());
     return value.is_number_float() ? fmt::format("{:.6g}", value.get<double>()) : value.dump();
 }
 

@@ -80,7 +80,10 @@ std::string analysis_section(const AnalysedFile& file, const SpectrumChoice& cho
     std::string out = fmt::format("<h2>{}</h2>\n", html::escaped(file.file.filename().string()));
     std::string mark = "s";
     // Letters, different for every file of a page.
-    for (const char c : file.file.string()) mark += static_cast<char>('a' + static_cast<unsigned char>(c) % 26);
+    for (const char c : file.file.string()) {
+        mark += static_cast<char>('a' + static_cast<unsigned char>(c) / 16);
+        mark += static_cast<char>('a' + static_cast<unsigned char>(c) % 16);
+    }
     out += html::drawing(draw_spectrum(file), mark);
     out += fmt::format("<p>{:.4g} s at {:.6g} Hz, {} channel(s); {} segments of {} samples.</p>\n", file.duration,
                        file.rate, file.channels.size(),

@@ -64,7 +64,7 @@ PlanStep step_of(const CasePlan& plan, std::span<const StepRow> rows, double sec
 
 }  // namespace
 
-CasePlan with_steps(CasePlan plan, std::span<const StepRow> rows, std::span<const double> seconds) {
+void apply_steps(CasePlan& plan, std::span<const StepRow> rows, std::span<const double> seconds) {
     std::vector<int> numbers;  // in the plan, of the run's steps
     const int stood = plan.place().head;
     const auto head_of = [&](double number) {
@@ -85,7 +85,6 @@ CasePlan with_steps(CasePlan plan, std::span<const StepRow> rows, std::span<cons
         }
         n = end;
     }
-    return plan;
 }
 
 std::vector<StepRow> read_step_rows(const std::filesystem::path& path, std::vector<double>& seconds) {

@@ -39,9 +39,9 @@ inline constexpr std::size_t step_row_columns = 20;
 static_assert(sizeof(StepRow) == step_row_columns * sizeof(double));
 extern const std::array<std::string_view, step_row_columns> step_row_names;
 
-/// The plan with the steps of a run, their time counted in `seconds` from its start, one per row. Throws Error for rows
-/// that are no steps of this plan.
-CasePlan with_steps(CasePlan plan, std::span<const StepRow> rows, std::span<const double> seconds);
+/// Adds the steps of a run to its plan, their time counted in `seconds` from its start, one per row. Throws Error at the
+/// first row that is no step of this plan; the steps before it are in the plan then.
+void apply_steps(CasePlan& plan, std::span<const StepRow> rows, std::span<const double> seconds);
 
 /// Reads what 'record' wrote of a run: a CSV file, complete or as a crash left it. `seconds` gets the time of each row.
 /// Throws Error for files that hold something else.

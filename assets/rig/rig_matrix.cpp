@@ -115,7 +115,7 @@ private:
             object.name = name ? word(*name)
                           : object.kind == ObjectKind::wall
                               ? "wall"
-                              : fmt::format("{:g} N/mm, {:g} N s/mm", object.stiffness * 1e-3, object.damping * 1e-3);
+                              : fmt::format("{:g} N/mm + {:g} N s/mm", object.stiffness * 1e-3, object.damping * 1e-3);
             return object;
         });
     }

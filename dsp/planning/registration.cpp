@@ -148,10 +148,19 @@ Registration register_surface(std::span<const SurfacePoint> moving, const Regist
                               const RegistrationSettings& settings) {
     if (moving.empty()) throw Error("there is no surface to register");
     const std::vector<SurfacePoint> some = thinned(moving, settings.most_points);
-    Registration result;
-    result.pose = anneal(some, fixed, start, settings);
-    judge(result, some, fixed, start, settings.finest);
-    return result;
+    const auto from_scale = [&](double widest, double finest) {
+        RegistrationSettings scales = settings;
+        scales.widest = widest;
+        scales.finest = finest;
+        Registration made;
+        made.pose = anneal(some, fixed, start, scales);
+        judge(made, some, fixed, start, settings.finest);
+        return made;
+    };
+    const Registration far = from_scale(settings.widest, settings.finest);
+    // A part that is displaced turns the whole as long as it is within sight: what lies well already is found from near.
+    const Registration near = from_scale(0.5 * settings.finest, 0.5 * settings.finest);
+    return near.median < far.median ? near : far;
 }
 
 Registration register_from_anywhere(std::span<const SurfacePoint> moving, std::span<const SurfacePoint> fixed_points,

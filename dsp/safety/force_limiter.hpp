@@ -33,6 +33,13 @@ enum class Fault : std::uint8_t {
     beyond_drive_limit
 };
 
+/// The fault that a number on a wire stands for; what stands for none is invalid input.
+inline Fault fault_of_number(double number) noexcept {
+    for (int n = 0; n <= static_cast<int>(Fault::beyond_drive_limit); ++n)
+        if (number == n) return static_cast<Fault>(n);
+    return Fault::invalid_input;
+}
+
 /// One clause for people: "a force was not finite".
 const char* describe(Fault fault) noexcept;
 

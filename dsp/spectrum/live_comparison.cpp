@@ -30,14 +30,12 @@ LiveComparison::LiveComparison(double reference_rate, double output_rate, double
       output_(output_rate, memory),
       highest_(std::min(1000.0, 0.45 * std::min(reference_rate, output_rate))) {}
 
-void LiveComparison::push_reference(std::span<const float> samples) noexcept {
-    reference_.coarse.push(samples);
-    reference_.fine.push(samples);
+int LiveComparison::push_reference(std::span<const float> samples) noexcept {
+    return reference_.coarse.push(samples) + reference_.fine.push(samples);
 }
 
-void LiveComparison::push_output(std::span<const float> samples) noexcept {
-    output_.coarse.push(samples);
-    output_.fine.push(samples);
+int LiveComparison::push_output(std::span<const float> samples) noexcept {
+    return output_.coarse.push(samples) + output_.fine.push(samples);
 }
 
 LiveScores LiveComparison::scores() const noexcept {

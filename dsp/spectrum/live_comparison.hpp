@@ -24,8 +24,9 @@ public:
     LiveComparison(double reference_rate, double output_rate, double memory);
 
     /// Wait-free, allocate nothing.
-    void push_reference(std::span<const float> samples) noexcept;
-    void push_output(std::span<const float> samples) noexcept;
+    /// Returns how many segments became whole: without one the scores stay.
+    int push_reference(std::span<const float> samples) noexcept;
+    int push_output(std::span<const float> samples) noexcept;
     LiveScores scores() const noexcept;
 
 private:

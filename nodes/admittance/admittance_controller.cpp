@@ -141,12 +141,7 @@ private:
         return s;
     }
 
-    Fault sensed() const noexcept {
-        const double number = fault.connected ? fault.get() : 0.0;
-        if (!(number > 0.0)) return Fault::none;
-        return number <= static_cast<double>(Fault::beyond_drive_limit) ? static_cast<Fault>(number)
-                                                                        : Fault::invalid_input;
-    }
+    Fault sensed() const noexcept { return fault.connected ? fault_of_number(fault.get()) : Fault::none; }
 
     void tell(double speed) noexcept {
         velocity = speed;

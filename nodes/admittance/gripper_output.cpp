@@ -65,11 +65,7 @@ private:
         return most > 0.0 && std::max(std::abs(first), std::abs(second)) > most ? Fault::beyond_drive_limit
                                                                                 : Fault::none;
     }
-    Fault upstream() const noexcept {
-        const double number = fault.connected ? fault.get() : 0.0;
-        return number > 0.0 && number <= static_cast<double>(Fault::beyond_drive_limit) ? static_cast<Fault>(number)
-                                                                                        : Fault::none;
-    }
+    Fault upstream() const noexcept { return fault.connected ? fault_of_number(fault.get()) : Fault::none; }
 
     DevicePort* port_ = nullptr;
     double asked_ = 0.0, held_s_ = 0.0;

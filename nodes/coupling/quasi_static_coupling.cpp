@@ -28,6 +28,7 @@ struct QuasiStaticCoupling {
     In<Pose> target{optional, "where the held body is led to, while 'guided'", "m"};
     In<bool> guided{optional, "the hand wants it to be led there; unconnected: not"};
     In<bool> has_target{optional, "there is a target; unconnected: always"};
+    In<double> target_of{optional, "place of the body that the target is of; unconnected: of whatever is held"};
     In<bool> settle{optional, "the springs to the hand give way, so that it is led without bias"};
     Out<Wrench> wrench{"on the hand, about its origin", "N, N m"};
     Out<Pose> pose{"of the held body: the proxy", "m"};
@@ -87,7 +88,8 @@ private:
 
     void guide(const Pose& in_hand, double change) noexcept {
         GuidedContact& g = *guided_contact_;
-        const bool wanted = hold_.holds && guided.connected && guided.get() &&
+        const bool is_its = !target_of.connected || target_of.get() == static_cast<double>(hold_.place);
+        const bool wanted = hold_.holds && guided.connected && guided.get() && is_its &&
                             (!has_target.connected || has_target.get()) && target.connected && is_valid(target.get());
         g.share = std::clamp(g.share + (wanted ? change : -change), 0.0, 1.0);
         if (wanted) g.target = Pose{target->position, glm::normalize(target->orientation)} * in_hand.inverse();
@@ -134,8 +136,8 @@ private:
            reduced_ = 0.0;
 };
 
-TACTUS_NODE(QuasiStaticCoupling, device, scene, grip, holding, strength, target, guided, has_target, settle, wrench,
-            pose, place, penetration, residual, in_contact, held, grip_at, guide_stiffness, guide_angular_stiffness,
-            guide_force, guide_torque, fade, solver, contact)
+TACTUS_NODE(QuasiStaticCoupling, device, scene, grip, holding, strength, target, guided, has_target, target_of, settle,
+            wrench, pose, place, penetration, residual, in_contact, held, grip_at, guide_stiffness,
+            guide_angular_stiffness, guide_force, guide_torque, fade, solver, contact)
 
 }  // namespace tactus::nodes

@@ -27,6 +27,7 @@ struct CaseScene {
     In<bool> holding{optional, "it is held; once it is not, it stays where it was last"};
     In<Pose> target{optional, "where the body in the hand would fit: fragment_matcher.target", "m"};
     In<bool> fits{optional, "there is such a place"};
+    In<double> target_of{optional, "place of the body that it is of: fragment_matcher.fragment, which may lag behind"};
     In<double> partner{optional, "place of the body that it fits"};
     In<double> score{optional, "of that fit"};
     In<double> margin{optional, "of that fit, to the second best"};
@@ -67,7 +68,7 @@ struct CaseScene {
         const bool was_holding = holding_;
         follow();
         press(tick);
-        if (was_holding && !holding_ && !settled_ && last_ >= 0) placed(tick, last_, 0.0);
+        if (was_holding && !holding_) keep_last(tick);
         if (!holding_) settled_ = false;
         tell();
     }
@@ -75,12 +76,14 @@ struct CaseScene {
     void report(Report& report) const {
         report.set(name_, "steps", static_cast<double>(log_->count()));
         if (log_->overflowed()) report.set(name_, "steps_not_kept", 1.0);
+        const auto done = std::make_shared<CasePlan>(plan->plan);
         try {
-            report.results[name_] =
-                std::make_shared<const CasePlan>(with_steps(plan->plan, log_->rows(), log_->seconds()));
+            apply_steps(*done, log_->rows(), log_->seconds());
         } catch (const Error& error) {
+            // What was done before it is kept all the same.
             report.set(name_, "error", std::string(error.what()));
         }
+        report.results[name_] = std::shared_ptr<const CasePlan>(done);
     }
 
 private:
@@ -125,8 +128,7 @@ private:
     }
 
     void press(const Tick& tick) noexcept {
-        if (edge(settle, 0) && holding_ && fits.connected && fits.get() && target.connected && is_valid(target.get()) &&
-            moved.connected && is_valid(moved.get())) {
+        if (edge(settle, 0) && holding_ && has_fit() && moved.connected && is_valid(moved.get())) {
             if (now_->move(last_, file_pose(last_, {target->position, glm::normalize(target->orientation)}))) {
                 settled_ = true;
                 const Vec3& middle = parts_[static_cast<std::size_t>(last_)]->home.position;
@@ -138,10 +140,12 @@ private:
         if (edge(join, 1) && last_ >= 0) {
             const int other = partner_place();
             const int both[] = {last_, other};
+            keep_held(tick);
             if (other >= 0 && now_->join(both) != Arrangement::none) arranged(tick, StepKind::group, other);
         }
         if (edge(split, 2) && last_ >= 0 && now_->remove(last_)) arranged(tick, StepKind::remove, -1);
         if (edge(lock, 3) && last_ >= 0) {
+            keep_held(tick);
             now_->lock(last_, !now_->is_locked(last_));
             arranged(tick, now_->is_locked(last_) ? StepKind::lock : StepKind::unlock, -1);
         }
@@ -154,6 +158,20 @@ private:
             row.kind = row_goes_to;
             write(tick, row);
         }
+    }
+
+    /// Where the body in the hand would fit, and it is that body.
+    bool has_fit() const noexcept {
+        return fits.connected && fits.get() && target.connected && is_valid(target.get()) &&
+               (!target_of.connected || target_of.get() == static_cast<double>(last_));
+    }
+
+    /// Where the hand has brought a body is a step before what is done to it there.
+    void keep_held(const Tick& tick) noexcept {
+        if (holding_) keep_last(tick);
+    }
+    void keep_last(const Tick& tick) noexcept {
+        if (!settled_ && last_ >= 0 && now_->can_move(last_)) placed(tick, last_, 0.0);
     }
 
     int partner_place() const noexcept {
@@ -253,7 +271,7 @@ private:
     bool was_[6] = {};
 };
 
-TACTUS_NODE(CaseScene, moved, which, holding, target, fits, partner, score, margin, rms, settle, join, split, lock,
-            undo, redo, scene, steps, settled, plan, file, loose)
+TACTUS_NODE(CaseScene, moved, which, holding, target, fits, target_of, partner, score, margin, rms, settle, join, split,
+            lock, undo, redo, scene, steps, settled, plan, file, loose)
 
 }  // namespace tactus::nodes

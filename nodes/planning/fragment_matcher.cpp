@@ -23,6 +23,7 @@ struct FragmentMatcher {
     In<bool> engaged{optional, "look for a fit; unconnected: all the time"};
     Out<Pose> target{"of the fragment in the hand, in the scene; as it is while there is no fit", "m"};
     Out<bool> fits{"the target is a fit"};
+    Out<double> fragment{"place of the fragment that the target is of, -1 without one"};
     Out<double> partner{"place of the fragment that it fits best, -1 without one"};
     Out<double> verdict{"0 fit, 1 sliding, 2 ambiguous, 3 no match, 4 blocked"};
     Out<double> score{"of the faces that fit best, 0 to 1"};
@@ -94,6 +95,7 @@ private:
         const bool is_fit = match.verdict == FitVerdict::fit;
         target = is_fit ? match.pose * mine.body.home : mine.pose;
         fits = is_fit;
+        fragment = place;
         partner = match.partner;
         verdict = static_cast<double>(match.verdict);
         score = match.quality.score;
@@ -105,6 +107,7 @@ private:
     void nothing() noexcept {
         target = Pose{};
         fits = false;
+        fragment = -1.0;
         partner = -1.0;
         verdict = static_cast<double>(FitVerdict::no_match);
         score = 0.0;
@@ -121,7 +124,7 @@ private:
     int was_ = -1;
 };
 
-TACTUS_NODE(FragmentMatcher, scene, held, engaged, target, fits, partner, verdict, score, margin, rms, faces, plan,
-            partners, reach, least_score, points)
+TACTUS_NODE(FragmentMatcher, scene, held, engaged, target, fits, fragment, partner, verdict, score, margin, rms, faces,
+            plan, partners, reach, least_score, points)
 
 }  // namespace tactus::nodes

@@ -63,7 +63,12 @@ public:
     }
     /// The rows since `next` are a step.
     void done() noexcept {
-        if (overflowed_) return;
+        if (overflowed_) {
+            // Half a step is none.
+            rows_.resize(first_);
+            seconds_.resize(first_);
+            return;
+        }
         steps_.push_back({head_, first_, rows_.size()});
         head_ = tip_ = static_cast<int>(steps_.size()) - 1;
     }

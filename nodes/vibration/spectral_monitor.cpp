@@ -30,12 +30,13 @@ struct SpectralMonitor {
             setup.fail("signals slower than 223 Hz carry too little of a vibration to be compared");
         comparison_ = LiveComparison(reference_rate, output_rate, memory);
         name_ = setup.name;
+        scores_ = comparison_.scores();
         tell();
     }
 
     void process(const Tick& tick) noexcept {
-        comparison_.push_reference(reference.values());
-        comparison_.push_output(output.values());
+        const int whole = comparison_.push_reference(reference.values()) + comparison_.push_output(output.values());
+        if (whole > 0) scores_ = comparison_.scores();
         tell();
         if (scores_.heard) heard_s_ += tick.elapsed_seconds();
         if (alike.get()) alike_s_ += tick.elapsed_seconds();
@@ -54,7 +55,6 @@ private:
     static constexpr double least_rate = 223.0;  // Hz
 
     void tell() noexcept {
-        scores_ = comparison_.scores();
         distance = scores_.lsd_db;
         likeness = scores_.cosine_500;
         worst_band = scores_.third_octave_max_db;

@@ -96,7 +96,11 @@ TEST_CASE("a body is taken and let go at any point without a jump in force") {
     coupling.feed<double>("strength", [&](std::int64_t k) { return strength[at(k)]; });
     // A number cannot be fed to a parameter here: the place is held from the first tick on, but not the body.
     coupling.set("held", "1");
-    coupling.disconnect("target").disconnect("guided").disconnect("has_target").disconnect("settle");
+    coupling.disconnect("target")
+        .disconnect("guided")
+        .disconnect("has_target")
+        .disconnect("target_of")
+        .disconnect("settle");
     coupling.prepare();
     coupling.run(1200);
     const auto felt = coupling.values<Wrench>("wrench");

@@ -58,6 +58,7 @@ struct Session {
     std::int64_t settle = 1'000'000, release = 1'000'000, undo = 1'000'000, redo = 1'000'000, join = 1'000'000,
                  split = 1'000'000;
     Pose at = beside, fit;
+    double target_of = 1.0;
 
     void run(std::int64_t ticks) {
         const auto press = [this](const char* input, const std::int64_t* when) {
@@ -69,7 +70,7 @@ struct Session {
         node.feed<bool>("holding", [this](std::int64_t k) { return k < release; });
         node.feed<Pose>("target", fit * home_of(1));
         node.feed<bool>("fits", true);
-        node.feed<double>("partner", 0.0);
+        node.feed<double>("partner", 0.0).feed<double>("target_of", target_of);
         for (const char* number : {"score", "margin", "rms"}) node.feed<double>(number, 0.5);
         node.disconnect("lock");
         press("settle", &settle);
@@ -161,6 +162,15 @@ TEST_CASE("what a run did is undone and redone, and undoing is part of its plan"
     CHECK(again.plan().place().head == 2);
 }
 
+TEST_CASE("a fragment is not settled where another one would fit") {
+    Session session;
+    session.settle = 100;
+    session.target_of = 0.0;
+    session.run(150);
+    CHECK_FALSE(session.node.last<bool>("settled"));
+    CHECK(off(session.file_pose(1), session.fit) > 1.0 * mm);
+}
+
 TEST_CASE("joined fragments are one unit of the scene until they are split") {
     Session session;
     session.join = 100;
@@ -175,17 +185,34 @@ TEST_CASE("joined fragments are one unit of the scene until they are split") {
     both.split = 200;
     both.run(300);
     CHECK(both.scene().objects[1].unit == -1);
-    CHECK(both.plan().steps.size() == 4);
+    // Where it was joined is a step before the join.
+    const std::vector<PlanStep> steps = both.plan().steps;
+    REQUIRE(steps.size() == 5);
+    const auto joined = std::ranges::find(steps, StepKind::group, &PlanStep::kind);
+    REQUIRE(joined != steps.end());
+    REQUIRE(joined != steps.begin());
+    CHECK((joined - 1)->kind == StepKind::place);
 }
 
-TEST_CASE("rows of a run that are no steps of the plan are refused") {
+TEST_CASE("rows of a run that are no steps of the plan are refused, and those before them are kept") {
     StepRow row;
     row.fragment = 7.0;
     const double second[] = {0.0};
-    CHECK_THROWS_WITH(with_steps(broken()->plan, {&row, 1}, second), Catch::Contains("7 is no fragment"));
+    CasePlan plan = broken()->plan;
+    CHECK_THROWS_WITH(apply_steps(plan, {&row, 1}, second), Catch::Contains("7 is no fragment"));
     row.fragment = 1.0;
     row.after = 3.0;
-    CHECK_THROWS_AS(with_steps(broken()->plan, {&row, 1}, second), Error);
+    CHECK_THROWS_AS(apply_steps(plan, {&row, 1}, second), Error);
+    StepRow rows[2];
+    rows[0].kind = static_cast<double>(StepKind::lock);
+    rows[0].fragment = 1.0;
+    rows[1] = rows[0];
+    rows[1].step = 1.0;
+    rows[1].fragment = 7.0;
+    const double both[] = {0.0, 1.0};
+    const std::size_t before = plan.steps.size();
+    CHECK_THROWS_AS(apply_steps(plan, rows, both), Error);
+    CHECK(plan.steps.size() == before + 1);
 }
 
 TEST_CASE("the matcher finds where a fragment fits from beside it, and says that a copy of its partner does not") {
@@ -257,7 +284,7 @@ TEST_CASE(
     const Pose home = now.objects[1].pose;
     NodeHarness node("quasi_static_coupling", servo);
     node.set("held", "1");
-    for (const char* open : {"grip", "holding", "strength", "has_target"}) node.disconnect(open);
+    for (const char* open : {"grip", "holding", "strength", "has_target", "target_of"}) node.disconnect(open);
     node.feed("scene", now);
     node.feed<Pose>("device", [home](std::int64_t k) {
         // From one second on the hand pulls away at 100 mm/s.
