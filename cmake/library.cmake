@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # The library stands beside the command: patches copied from assets/library, bones and recordings computed.
-file(GLOB patches CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/assets/library/patches/*.toml)
+set(patch_folder ${PROJECT_SOURCE_DIR}/assets/library/patches)
+file(GLOB_RECURSE patches CONFIGURE_DEPENDS RELATIVE ${patch_folder} ${patch_folder}/*.toml)
 foreach(patch ${patches})
-  get_filename_component(name ${patch} NAME)
-  configure_file(${patch} ${CMAKE_BINARY_DIR}/library/patches/${name} COPYONLY)
+  configure_file(${patch_folder}/${patch} ${CMAKE_BINARY_DIR}/library/patches/${patch} COPYONLY)
 endforeach()
 
 # The bone and the saw that come with Tactus are computed, not kept; again only when their generator has changed.
@@ -26,7 +26,7 @@ add_custom_command(
           saw-vibration --in actuator.drive --out handle.out --amplitude 100 -o ${equaliser}.csv --json > ${equaliser}.json
   COMMAND ${CMAKE_COMMAND} -E env TSAN_OPTIONS=ignore_noninstrumented_modules=1 $<TARGET_FILE:tactus> equalise
           ${equaliser}.csv -o ${equaliser}.toml --kind linear --volts 0.004 --json >> ${equaliser}.json
-  DEPENDS tactus ${PROJECT_SOURCE_DIR}/assets/library/patches/saw-vibration.toml
+  DEPENDS tactus ${patch_folder}/saw-vibration.toml ${patch_folder}/parts/handle.toml
   COMMENT "Measuring the bundled actuator and making its equaliser"
   VERBATIM)
 

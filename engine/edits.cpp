@@ -4,6 +4,7 @@
 #include "engine/engine.hpp"
 
 #include "dsp/core/error.hpp"
+#include "graph/sub_patch.hpp"
 
 #include <fmt/format.h>
 
@@ -25,8 +26,8 @@ Flicks Engine::furthest() const {
     return furthest;
 }
 
-void Engine::edit(std::function<Plan()> make, std::string text, std::function<void(const EditOutcome&)> told) {
-    waiting_ = WaitingEdit{std::move(make), std::move(text), std::move(told)};
+void Engine::edit(std::function<Plan()> make, std::function<void(const EditOutcome&)> told) {
+    waiting_ = WaitingEdit{std::move(make), std::move(told)};
 }
 
 void Engine::tend_edits() {
@@ -65,7 +66,7 @@ void Engine::hand_over(std::unique_ptr<Generation> next) {
     const Flicks when = furthest() + switch_lead;
     if (seconds(when) >= options_.seconds) throw Error("the run is over before the edit could take effect");
     keep_opened();
-    if (options_.take) options_.take->edit(next->number, when, making_->text, next->plan.patch);
+    if (options_.take) options_.take->edit(next->number, when, next->plan.patch);
     const std::size_t known = groups_.size();
     adopt_groups(*next, when);
     for (std::size_t g = 0; g < next->groups.size(); ++g) {
@@ -126,7 +127,8 @@ void Engine::close_ended() {
     }
 }
 
-Flicks Engine::set(const std::string& node, const std::string& param, const std::string& text) {
+Flicks Engine::set(const std::string& given_node, const std::string& given_param, const std::string& text) {
+    const auto [node, param] = end_within(now_->plan.patch, given_node, given_param);
     std::vector<std::string> names;
     for (const auto& live : now_->nodes) names.push_back(live->name);
     const int at = now_->find(node);

@@ -2,6 +2,7 @@
 #include "engine/engine.hpp"
 
 #include "dsp/core/realtime.hpp"
+#include "graph/sub_patch.hpp"
 
 #include <fmt/format.h>
 
@@ -18,7 +19,7 @@ constexpr Flicks fade_lead = flicks_per_second / 50;
 /// Over all that a patch says and a command line changed.
 std::uint64_t hash_of(const Patch& patch) {
     Hash hash;
-    hash.add_text(patch.text);
+    hash.add_text(bundle_text(patch));
     for (const PatchNode& node : patch.nodes)
         for (const OptionText& setting : node.settings) {
             hash.add_text(node.name);

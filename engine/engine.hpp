@@ -78,10 +78,10 @@ public:
     /// Runs in real time, one thread per group. Throws Error. Engines run once.
     void run_live(const LiveOptions& options);
 
-    /// While a live run goes on, from `watch`: `make` compiles a plan on another thread, which then takes over; `text`
-    /// is what the take keeps of it. `told` hears of the outcome from the control thread. Edits wait for each other;
-    /// of those that wait the last one counts.
-    void edit(std::function<Plan()> make, std::string text, std::function<void(const EditOutcome&)> told);
+    /// While a live run goes on, from `watch`: `make` compiles a plan on another thread, which then takes over.
+    /// `told` hears of the outcome from the control thread. Edits wait for each other; of those that wait the last one
+    /// counts.
+    void edit(std::function<Plan()> make, std::function<void(const EditOutcome&)> told);
     /// While a live run goes on, from `watch`: sets a parameter, "0.8 N/mm", two quanta ahead. Returns the logical time.
     /// Throws Error on unknown names, structural or driven parameters, and values out of range.
     Flicks set(const std::string& node, const std::string& param, const std::string& text);
@@ -118,7 +118,6 @@ public:
 private:
     struct WaitingEdit {
         std::function<Plan()> make;
-        std::string text;
         std::function<void(const EditOutcome&)> told;
     };
     struct LiveRun;

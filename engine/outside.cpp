@@ -164,7 +164,8 @@ RecordStream& EngineOutside::record(const StreamFormat& wanted, const SourceLoca
 /// One whose node an edit took away: it plays on, and only one thread ever writes to it.
 SoundCard* EngineOutside::spare_card(const StreamFormat& format) const {
     for (const auto& card : cards)
-        if (card->serves(group_, format.period) && std::ranges::find(cards_in_use_, card.get()) == cards_in_use_.end())
+        if (!card->is_lost() && card->serves(group_, format.period) &&
+            std::ranges::find(cards_in_use_, card.get()) == cards_in_use_.end())
             return card.get();
     return nullptr;
 }

@@ -36,7 +36,7 @@ public:
     AudioStatistics statistics() const { return sink_->statistics(); }
     const CardFollower& follower() const { return follower_; }
     std::int64_t largest_callback() const { return largest_; }
-    bool is_lost() const { return lost_; }
+    bool is_lost() const { return lost_; }  ///< from any thread
     /// Logical time of the first loss.
     const std::optional<Flicks>& lost_at() const { return lost_at_; }
     int losses() const { return losses_; }
@@ -53,7 +53,7 @@ private:
     // Control thread.
     std::uint64_t written_ = 0;
     std::int64_t written_ns_ = 0, skipped_ = 0, largest_ = 0, seen_frames_ = 0, seen_ns_ = 0;
-    bool lost_ = false;
+    std::atomic<bool> lost_{false};
     std::optional<Flicks> lost_at_;
     int losses_ = 0;
 };

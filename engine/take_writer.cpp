@@ -5,6 +5,7 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/group_runtime.hpp"
+#include "graph/sub_patch.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -138,7 +139,7 @@ TakeWriter::~TakeWriter() {
 }
 
 void TakeWriter::begin(const Patch& patch, std::uint64_t plan_hash) {
-    write_whole_file(folder_ / "patch-0.toml", patch.text);
+    write_whole_file(folder_ / "patch-0.toml", bundle_text(patch));
     Json json{{"format", 1},
               {"patch", fs::absolute(about_.patch_file).string()},
               {"title", patch.title},
@@ -211,9 +212,9 @@ std::unique_ptr<Stream> TakeWriter::stream(const std::string& port, const ValueT
     return std::make_unique<Stream>(format, std::make_unique<TakeEnd>(folder_, info, type, opened));
 }
 
-void TakeWriter::edit(std::int64_t number, Flicks when, const std::string& text, const Patch& patch) {
+void TakeWriter::edit(std::int64_t number, Flicks when, const Patch& patch) {
     const std::string file = fmt::format("patch-{}.toml", number);
-    write_whole_file(folder_ / file, text);
+    write_whole_file(folder_ / file, bundle_text(patch));
     line(Json{{"plan", number}, {"file", file}, {"when_flicks", when}, {"assets", assets_json(patch)}}.dump());
 }
 

@@ -51,7 +51,7 @@ public:
     void begin(const Patch& patch, std::uint64_t plan_hash);
     void device(const DeviceSlot& slot);
     std::unique_ptr<Stream> stream(const std::string& port, const ValueType& type, const GroupRuntime& group);
-    void edit(std::int64_t number, Flicks when, const std::string& text, const Patch& patch);
+    void edit(std::int64_t number, Flicks when, const Patch& patch);
     void change(std::int64_t id, std::int64_t plan, const std::string& node, const std::string& param, double value);
     void record(const TimingRecord& record) { log_->write(record); }
     /// What each group had reached (index in the log, activation, logical time) before the last records were written.

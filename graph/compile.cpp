@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/compile.hpp"
 
+#include "graph/sub_patch.hpp"
+
 namespace tactus {
 
 std::optional<Plan> compile(const Patch& patch, Catalogue catalogue, Problems& problems) {
     Plan plan;
     plan.patch = patch;
+    const std::size_t earlier = problems.list.size();
+    flatten(plan.patch, problems);
+    if (problems.list.size() > earlier) return std::nullopt;
     resolve_nodes(plan, catalogue, problems);
     form_groups(plan, problems);
     resolve_wires(plan, problems);

@@ -39,7 +39,7 @@ public:
     void asset(std::string_view name, AssetParam& a) override {
         node_.assets.push_back(&a);
         offer(name, [&a](const OptionText& given) {
-            a.name = given.text;
+            a.name = given.text.empty() ? given.text : given.scope + given.text;
             a.where = given.where;
         });
     }

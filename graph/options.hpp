@@ -17,6 +17,7 @@ struct OptionText {
     std::string name;
     std::string text;
     SourceLocation where;
+    std::string scope = {};  ///< in front of an asset's name: where in a flattened patch the option was written
 };
 
 /// The options of one thing. Ask for each value once, then call `finish`.

@@ -4,6 +4,7 @@
 #include "dsp/core/units.hpp"
 #include "graph/patch_depth.hpp"
 #include "graph/patch_wire.hpp"
+#include "graph/sub_patch.hpp"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -17,8 +18,8 @@ namespace tactus {
 
 namespace {
 
-const std::array<std::string, 9> top_level{"title",  "about",  "wires",   "quantum", "seed",
-                                           "assets", "groups", "devices", "nodes"};
+const std::array<std::string, 13> top_level{"title",   "about", "wires",  "quantum", "seed",       "assets", "groups",
+                                            "devices", "nodes", "inputs", "outputs", "parameters", "parts"};
 
 class PatchReader {
 public:
@@ -46,6 +47,7 @@ public:
             return std::move(patch_);
         }
         for (const auto& [key, value] : root) entry(key, value);
+        if (const toml::array* parts = root["parts"].as_array(); parts && !parts->empty()) end_text(*parts, root);
         sort_by_place(patch_.nodes);
         sort_by_place(patch_.assets);
         sort_by_place(patch_.devices);
@@ -84,6 +86,10 @@ private:
         else if (name == "groups") for_each(value, name, [this](const auto& k, const toml::node& v) { group(k, v); });
         else if (name == "devices") for_each(value, name, [this](const auto& k, const toml::node& v) { device(k, v); });
         else if (name == "nodes") for_each(value, name, [this](const auto& k, const toml::node& v) { node(k, v); });
+        else if (name == "inputs" || name == "parameters" || name == "outputs") {
+            auto& ends = name == "inputs" ? patch_.inputs : name == "outputs" ? patch_.outputs : patch_.parameters;
+            for_each(value, name, [&](const toml::key& k, const toml::node& v) { offer(k, v, name, ends); });
+        } else if (name == "parts") parts(value);
         else
             problems_.add(at(key.source()),
                           fmt::format("unknown key '{}' at the top of a patch{}", name, did_you_mean(name, top_level)));
@@ -156,6 +162,58 @@ private:
         const auto* number = value.as_integer();
         if (!number || number->get() < 0) return problems_.add(at(value), "'seed' is a whole number, not negative");
         patch_.seed = static_cast<std::uint64_t>(number->get());
+    }
+
+    void offer(const toml::key& key, const toml::node& value, std::string_view table, std::vector<PatchEnd>& ends) {
+        const auto one = [&](const toml::node& item) {
+            const auto* text = item.as_string();
+            const std::string_view end = text ? std::string_view(text->get()) : "";
+            const std::size_t dot = end.find('.');
+            if (dot == std::string_view::npos || !is_name(end.substr(0, dot)) || !is_name(end.substr(dot + 1)))
+                return problems_.add(at(item), fmt::format("'{}' names what it stands for: \"node.{}\"", key.str(),
+                                                           table == "parameters" ? "parameter" : "port"));
+            ends.push_back(
+                {std::string(key.str()), std::string(end.substr(0, dot)), std::string(end.substr(dot + 1)), at(item)});
+        };
+        if (const toml::array* list = value.as_array(); list && table != "outputs")
+            for (const toml::node& item : *list) one(item);
+        else one(value);
+    }
+
+    void parts(const toml::node& value) {
+        const toml::array* list = value.as_array();
+        if (!list) return problems_.add(at(value), "'parts' are tables: [[parts]] with 'path' and 'text'");
+        for (const toml::node& item : *list) {
+            const toml::table* part = item.as_table();
+            const toml::value<std::string>* path = part ? part->get_as<std::string>("path") : nullptr;
+            const toml::value<std::string>* text = part ? part->get_as<std::string>("text") : nullptr;
+            if (!path || !text || part->size() != 2 || path->get().empty()) {
+                problems_.add(at(item), "a part has a 'path' and a 'text', and nothing else");
+            } else if (std::ranges::find(patch_.parts, path->get(), &PatchPart::path) != patch_.parts.end()) {
+                problems_.add(at(item), fmt::format("the part '{}' is there already", path->get()));
+            } else {
+                patch_.parts.push_back({path->get(), text->get()});
+            }
+        }
+    }
+
+    /// What the file says itself ends where its parts begin.
+    void end_text(const toml::array& parts, const toml::table& root) {
+        const auto first = parts.front().source().begin.line;
+        for (const auto& [key, value] : root)
+            if (key.str() != "parts" && std::max(key.source().begin.line, last_line(value)) >= first)
+                return problems_.add(at(parts.front()), "[[parts]] stand at the end of a patch");
+        std::size_t end = 0;
+        for (toml::source_index line = 1; line < first; ++line) end = patch_.text.find('\n', end) + 1;
+        patch_.text.resize(end - (end > 0));  // with the end of line that a bundle puts in front
+    }
+
+    /// The last line on which something begins within `value`; tables need not stand together in a file.
+    static toml::source_index last_line(const toml::node& value) {
+        toml::source_index last = value.source().begin.line;
+        if (const toml::table* table = value.as_table())
+            for (const auto& [key, item] : *table) last = std::max({last, key.source().begin.line, last_line(item)});
+        return last;
     }
 
     void asset(const toml::key& key, const toml::node& value) {
@@ -234,7 +292,10 @@ private:
         }
         if (node.type.empty() && !is_mistyped(*table, "type"))
             problems_.add(node.where, fmt::format("node '{}' has no type", node.name));
-        if (node.rate.empty() == node.group.empty() && !is_mistyped(*table, "rate") && !is_mistyped(*table, "group"))
+        // What is within a patch has its own rate, or says that it wants one.
+        const bool may_be_without = is_sub_patch(node) && node.rate.empty() && node.group.empty();
+        if (!may_be_without && node.rate.empty() == node.group.empty() && !is_mistyped(*table, "rate") &&
+            !is_mistyped(*table, "group"))
             problems_.add(node.where, fmt::format("node '{}' needs {}", node.name,
                                                   node.rate.empty() ? "a 'rate' or a 'group'"
                                                                     : "either 'rate' or 'group', not both"));

@@ -26,7 +26,7 @@ struct PatchWire {
 
 struct PatchNode {
     std::string name, type;
-    std::string rate;   ///< "1 kHz", empty when `group` is given
+    std::string rate;   ///< "1 kHz", empty when `group` is given; "outer" within a patch that is a node
     std::string group;  ///< name of an entry of [groups], empty when `rate` is given
     SourceLocation where, type_where, rate_where;
     std::vector<OptionText> settings;  ///< every other key
@@ -51,6 +51,21 @@ struct PatchDevice {
     std::vector<OptionText> settings;
 };
 
+/// What a patch offers when it is a node of another: the name outside, and a port or parameter within. An input or a
+/// parameter may stand for several.
+struct PatchEnd {
+    std::string name, node, port;
+    SourceLocation where;
+};
+
+/// The text of a patch that is a node of this one, or of one within it.
+struct PatchPart {
+    std::string path;  ///< relative to the folder of the outermost patch, with '/', or absolute
+    std::string text;
+
+    bool operator==(const PatchPart&) const = default;
+};
+
 struct Patch {
     std::filesystem::path file;
     std::string title;
@@ -61,7 +76,10 @@ struct Patch {
     std::vector<PatchGroup> groups;
     std::vector<PatchDevice> devices;
     std::vector<PatchNode> nodes;  ///< in the order of the file
-    std::string text;              ///< the file as read
+    std::vector<PatchEnd> inputs, outputs, parameters;
+    std::vector<PatchPart> parts;
+    std::vector<PatchEnd> offered;  ///< by patches within, once flattened: "voice.level" and what it stands for
+    std::string text;               ///< the file as read, without [[parts]]
 };
 
 /// What a command line changes: `node.param=value` and `asset=path`.

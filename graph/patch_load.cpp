@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/patch.hpp"
+#include "graph/sub_patch.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 
 namespace tactus {
 
-Patch load_patch(const std::filesystem::path& file, Problems& problems) {
+namespace {
+
+/// Text of a patch file. Throws Error.
+std::string patch_text(const std::filesystem::path& file) {
     const SourceLocation where{file.string(), 0, 0};
     std::error_code failure;
     if (std::filesystem::is_directory(file, failure)) throw Error(where, "is a folder, not a patch");
@@ -26,7 +31,36 @@ Patch load_patch(const std::filesystem::path& file, Problems& problems) {
     }
     if (stream.bad()) throw Error(where, "the patch cannot be read to its end");
     text.resize(used);
-    return read_patch(text, file, problems);
+    return text;
+}
+
+}  // namespace
+
+Patch load_patch(const std::filesystem::path& file, Problems& problems) {
+    Patch patch = read_patch(patch_text(file), file, problems);
+    read_parts(patch);
+    return patch;
+}
+
+void read_parts(Patch& patch) {
+    const auto read_named = [&patch](const std::vector<PatchNode>& nodes, const std::string& from) {
+        for (const PatchNode& node : nodes) {
+            if (!is_sub_patch(node)) continue;
+            const std::string path = part_path(from, node.type);
+            if (std::ranges::find(patch.parts, path, &PatchPart::path) != patch.parts.end()) continue;
+            try {
+                patch.parts.push_back({path, patch_text(file_of_part(patch, path))});
+            } catch (const Error&) {
+                // What names it is told when the patch is flattened.
+            }
+        }
+    };
+    read_named(patch.nodes, "");
+    for (std::size_t p = 0; p < patch.parts.size(); ++p) {
+        const std::string path = patch.parts[p].path;
+        Problems told_later;
+        read_named(read_patch(patch.parts[p].text, file_of_part(patch, path), told_later).nodes, path);
+    }
 }
 
 }  // namespace tactus

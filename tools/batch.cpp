@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <exception>
 #include <mutex>
 
@@ -42,6 +43,13 @@ std::vector<std::string> run_batch(std::size_t count, int jobs, std::string_view
     });
     line.clear();
     return failures;
+}
+
+std::size_t tell_failures(const std::vector<std::string>& failures) {
+    std::size_t bad = 0;
+    for (const std::string& failure : failures)
+        if (!failure.empty()) ++bad, fmt::print(stderr, "tactus: {}\n", failure);
+    return bad;
 }
 
 std::string csv_field(const std::string& text) {

@@ -16,6 +16,9 @@ using BatchJob = std::function<void(std::size_t index, const std::function<void(
 /// Runs job(0) … job(count − 1), `jobs` at a time (0: one per core). Returns what each threw, empty where it went well.
 std::vector<std::string> run_batch(std::size_t count, int jobs, std::string_view what, const BatchJob& job);
 
+/// Prints what went wrong on standard error. Returns how many there are.
+std::size_t tell_failures(const std::vector<std::string>& failures);
+
 /// "[####    ] 3 of 8 files"
 std::string progress_bar(std::size_t finished, std::size_t count, std::string_view what);
 

@@ -79,11 +79,9 @@ int compare_many(const CompareChoice& choice, const Thresholds& thresholds) {
             const fs::path varied = fs::is_directory(choice.output) ? one.output : one.reference;
             write_figure(draw_comparison(pairs[i]), fs::path(choice.plot) / (varied.filename().string() + ".svg"));
         });
-    std::size_t passed = 0, bad = 0;
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-        if (failures[i].empty()) passed += pairs[i].verdict.passed();
-        else ++bad, fmt::print(stderr, "tactus: {}\n", failures[i]);
-    }
+    const std::size_t bad = tell_failures(failures);
+    std::size_t passed = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) passed += failures[i].empty() && pairs[i].verdict.passed();
     const std::size_t failed = pairs.size() - passed - bad;
     if (!choice.table.empty()) write_whole_file(choice.table, comparison_table(pairs, failures));
     if (!choice.report.empty()) {
@@ -93,7 +91,7 @@ int compare_many(const CompareChoice& choice, const Thresholds& thresholds) {
         for (std::size_t i = 0; i < pairs.size(); ++i) {
             if (!failures[i].empty()) continue;
             last = &pairs[i];
-            body += fmt::format("<h2 id=\"p{}\">{}</h2>\n", i, html::escaped(pairs[i].output.filename().string())) +
+            body += fmt::format("<h2 id=\"p{}\">{}</h2>\n", i, html::escaped(pair_name(pairs[i], pairs))) +
                     comparison_section(pairs[i], fmt::format("p{}x", i));
         }
         if (last) body += comparison_method(*last);

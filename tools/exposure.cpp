@@ -227,12 +227,7 @@ int exposure_verb(const ExposureChoice& choice) {
         run_batch(files.size(), choice.jobs, "files", [&](std::size_t i, const std::function<void(double)>& progress) {
             operations[i] = analyse(files[i], choice, durations[std::min(i, durations.size() - 1)], progress);
         });
-    bool bad = false;
-    for (const std::string& failure : failures) {
-        if (failure.empty()) continue;
-        bad = true;
-        fmt::print(stderr, "tactus: {}\n", failure);
-    }
+    const bool bad = tell_failures(failures) > 0;
     if (!choice.table.empty()) write_table(choice, operations, files, failures);
     if (bad && files.size() == 1) return bad_input;
     const std::optional<double> a8 = daily(operations, failures);

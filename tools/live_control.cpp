@@ -2,6 +2,7 @@
 #include "tools/live_control.hpp"
 
 #include "dsp/core/error.hpp"
+#include "graph/sub_patch.hpp"
 
 #include <fmt/format.h>
 
@@ -17,6 +18,7 @@ LiveControl::LiveControl(Engine& engine, PatchChoice choice, AssetCache& assets,
       say_(std::move(say)),
       file_(find_patch(choice_.patch)),
       watch_(file_) {
+    watch_.follow(part_files(engine.plan().patch));
     if (!watch_.is_working())
         say_(fmt::format("{} cannot be watched; edits take effect at the next start", file_.string()));
     try {
@@ -33,15 +35,18 @@ void LiveControl::tend() {
 
 void LiveControl::take_over_file() {
     // Read here: what the take keeps is what is compiled, even if the file changes again.
-    std::string text;
+    Patch patch;
     try {
         Problems unread;
-        text = load_patch(file_, unread).text;
+        patch = load_patch(file_, unread);
     } catch (const Error& error) {
         return say_(error.what());
     }
     if (saved) saved();
-    if (text != engine_.plan().patch.text && text != expected_) edit(std::move(text));
+    watch_.follow(part_files(patch));
+    const Patch& runs = engine_.plan().patch;
+    const bool is_known = patch.text == runs.text || patch.text == expected_;
+    if (!is_known || patch.parts != runs.parts) edit(std::move(patch.text));
 }
 
 void LiveControl::edit(std::string text) {
@@ -54,7 +59,7 @@ void LiveControl::edit(std::string text) {
         for (const Error& problem : problems.list) all += fmt::format("{}{}", all.empty() ? "" : "\n", problem.what());
         throw Error(all);
     };
-    engine_.edit(make, text, [this](const EditOutcome& outcome) {
+    engine_.edit(make, [this](const EditOutcome& outcome) {
         if (outcome.error) say_(fmt::format("{}\nthe edit was not made; the patch runs on as it was", *outcome.error));
         else
             say_(fmt::format("edit {} takes over at {:.3f} s; {} of {} nodes go on", outcome.generation,

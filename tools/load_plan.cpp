@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/load_plan.hpp"
 
+#include "graph/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
 
 #include <fmt/format.h>
@@ -42,6 +43,7 @@ fs::path find_patch(const std::string& name) {
 
 std::optional<Plan> plan_of(Patch patch, const PatchOverrides& overrides, std::optional<std::uint64_t> seed,
                             AssetCache* assets, Problems& problems) {
+    read_parts(patch);
     apply_overrides(patch, overrides, problems);
     if (seed) patch.seed = *seed;
     // Without a sound text, what the compiler would say is mostly echo.

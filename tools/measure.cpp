@@ -5,6 +5,7 @@
 #include "devices/audio/duplex.hpp"
 #include "engine/engine.hpp"
 #include "graph/patch_measure.hpp"
+#include "graph/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/load_plan.hpp"
 #include "tools/scratch_folder.hpp"
@@ -48,6 +49,7 @@ Answer through_patch(const MeasureChoice& choice) {
     Problems problems;
     Patch patch = load_patch(find_patch(choice.patch), problems);
     apply_overrides(patch, choice.overrides, problems);
+    flatten(patch, problems);
     throw_problems(problems);
     if (choice.seed) patch.seed = *choice.seed;
     const auto setting = [](const char* name, double value, const char* unit) {

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace tactus {
 
@@ -17,13 +19,21 @@ public:
     PatchWatch(const PatchWatch&) = delete;
     PatchWatch& operator=(const PatchWatch&) = delete;
 
-    bool is_working() const { return descriptor_ >= 0; }
-    /// True once per save: the file was closed or renamed, and then left alone for 100 ms. Never waits.
+    bool is_working() const { return !files_.empty(); }
+    /// From now on these count as well, and no others that were told before: the patches within.
+    void follow(const std::vector<std::filesystem::path>& files);
+    /// True once per save: a file was closed or renamed, and then left alone for 100 ms. Never waits.
     bool was_saved();
 
 private:
-    std::filesystem::path name_;
+    struct Watched {
+        int folder;  ///< as inotify numbers it
+        std::string name;
+    };
+    void watch(const std::filesystem::path& file);
+
     int descriptor_ = -1;
+    std::vector<Watched> files_;  ///< the patch first
     std::optional<std::chrono::steady_clock::time_point> touched_;
 };
 

@@ -2,6 +2,7 @@
 #include "tools/rig_run.hpp"
 
 #include "engine/engine.hpp"
+#include "graph/sub_patch.hpp"
 #include "tools/load_plan.hpp"
 
 #include <fmt/format.h>
@@ -67,7 +68,8 @@ std::string only_node(const Patch& patch, const std::string& type) {
 
 RigNodes find_rig_nodes(const PatchChoice& choice) {
     Problems problems;
-    const Patch patch = load_patch(find_patch(choice.patch), problems);
+    Patch patch = load_patch(find_patch(choice.patch), problems);
+    flatten(patch, problems);
     throw_problems(problems);
     return {only_node(patch, "gripper_input"), only_node(patch, "admittance_controller"),
             only_node(patch, "gripper_output"), only_node(patch, "test_rig")};

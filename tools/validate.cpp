@@ -105,12 +105,13 @@ int validate_verb(const ValidateChoice& choice) {
             validate(validation, i, choice, pictures && validation.runs[i].level_db == choice.levels.front());
         });
     Count count;
+    count.bad = tell_failures(failures);
     for (std::size_t i = 0; i < failures.size(); ++i) {
         ValidationRun& run = validation.runs[i];
         run.failure = failures[i];
-        if (run.failure.empty()) ++(run.pair.verdict.passed() ? count.passed : count.failed);
-        else ++count.bad, fmt::print(stderr, "tactus: {}\n", run.failure);
-        if (!choice.plot.empty() && run.failure.empty())
+        if (!run.failure.empty()) continue;
+        ++(run.pair.verdict.passed() ? count.passed : count.failed);
+        if (!choice.plot.empty())
             write_figure(draw_comparison(run.pair), (choice.plot / (run.file_name() + ".svg")).string());
     }
     if (!choice.table.empty()) write_whole_file(choice.table, validation_csv(validation));

@@ -3,6 +3,7 @@
 
 #include "assets/sound/sound.hpp"
 #include "engine/engine.hpp"
+#include "graph/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/load_plan.hpp"
 #include "tools/scratch_folder.hpp"
@@ -55,6 +56,7 @@ Validation plan_validation(const ValidateChoice& choice, const Thresholds& thres
     Problems problems;
     validation.source = load_patch(find_patch(choice.patch), problems);
     apply_overrides(validation.source, choice.overrides, problems);
+    flatten(validation.source, problems);
     throw_problems(problems);
     if (choice.seed) validation.source.seed = *choice.seed;
     validation.path = find_saw_path(validation.source, choice.saw, choice.out_port, catalogue());

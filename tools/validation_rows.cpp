@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/batch.hpp"
-#include "tools/html_report.hpp"
+#include "tools/comparison_rows.hpp"
 #include "tools/validation.hpp"
 
 #include <fmt/format.h>
@@ -55,8 +55,8 @@ std::string validation_csv(const Validation& validation) {
         out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},\n", run.pair.verdict.passed() ? "pass" : "fail",
                            fmt::join(run.pair.verdict.failed(), " "), c.lsd_db, c.cosine_500, c.cosine_1000,
                            shown(c.harmonic_error_db, "{}"), c.third_octave_max_db, c.spectrogram_similarity,
-                           shown(c.st_sim, "{}"), shown(c.spqi, "{}"), shown(c.coherence_mean, "{}"),
-                           c.gain_db, run.pair.verdict.added.size(), run.pair.verdict.missing.size());
+                           shown(c.st_sim, "{}"), shown(c.spqi, "{}"), shown(c.coherence_mean, "{}"), c.gain_db,
+                           run.pair.verdict.added.size(), run.pair.verdict.missing.size());
     }
     return out;
 }
@@ -64,9 +64,8 @@ std::string validation_csv(const Validation& validation) {
 std::string validation_table(const Validation& validation) {
     std::string out =
         "<table><tr><th>saw</th><th class=\"n\">Hz</th><th class=\"n\">N</th><th class=\"n\">level, dB</th>"
-        "<th class=\"n\">drive, V rms</th><th class=\"n\">peak, V</th><th>verdict</th><th class=\"n\">LSD, dB</th>"
-        "<th class=\"n\">cosine</th><th class=\"n\">worst order, dB</th><th class=\"n\">worst band, dB</th>"
-        "<th class=\"n\">softer by, dB</th><th>fails by</th></tr>\n";
+        "<th class=\"n\">drive, V rms</th><th class=\"n\">peak, V</th>" +
+        score_heading + "</tr>\n";
     for (const ValidationRun& run : validation.runs) {
         const Recording& r = *run.recording;
         out += fmt::format(
@@ -74,17 +73,7 @@ std::string validation_table(const Validation& validation) {
             "<td class=\"n\">{}</td><td class=\"n\">{}</td>",
             r.cutting ? "cutting" : "free air", r.rate, r.cutting ? fmt::format("{:g}", r.load) : "", run.level_db,
             shown(run.drive_rms, "{:.3f}"), shown(run.drive_peak, "{:.3f}"));
-        if (!run.failure.empty()) {
-            out += fmt::format("<td class=\"fail\" colspan=\"7\">{}</td></tr>\n", html::escaped(run.failure));
-            continue;
-        }
-        const Comparison& c = run.pair.comparison;
-        const bool passed = run.pair.verdict.passed();
-        out += fmt::format(
-            "<td class=\"{0}\">{0}</td><td class=\"n\">{1:.2f}</td><td class=\"n\">{2:.4f}</td><td class=\"n\">{3}</td>"
-            "<td class=\"n\">{4:.2f}</td><td class=\"n\">{5:.1f}</td><td>{6}</td></tr>\n",
-            passed ? "pass" : "fail", c.lsd_db, c.cosine_500, shown(c.harmonic_error_db, "{:.2f}"),
-            c.third_octave_max_db, c.gain_db, fmt::join(run.pair.verdict.failed(), ", "));
+        out += score_cells(run.pair, run.failure) + "</tr>\n";
     }
     return out + "</table>\n";
 }

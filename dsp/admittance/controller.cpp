@@ -12,9 +12,19 @@ constexpr double most_force = 1e6, most_position = 1e3;  // N, m
 
 }  // namespace
 
+/// Finding the limit takes hundreds of eigenvalues; where the object rests and which gain is wanted do not change it.
+double AdmittanceControl::limit_for(const ControllerSettings& settings) const noexcept {
+    LoopModel loop = settings.loop;
+    ObjectSettings object = settings.object;
+    loop.gain = settings_.loop.gain;
+    object.rest = settings_.object.rest;
+    if (limit_ > 0.0 && loop == settings_.loop && object == settings_.object) return limit_;
+    return gain_limit(settings.loop, settings.object);
+}
+
 bool AdmittanceControl::set(const ControllerSettings& settings) noexcept {
     if (!settings.object.is_renderable()) return false;
-    const double limit = gain_limit(settings.loop, settings.object);
+    const double limit = limit_for(settings);
     const double gain = settings.loop.gain > 0.0 ? settings.loop.gain : settings.gain_share * limit;
     if (!settings.allow_unstable && !(gain > 0.0 && gain < limit)) return false;
     if (engaged_) {

@@ -20,6 +20,8 @@ struct ControllerSettings {
     double stuck_speed = 0.04;  ///< m/s; told to run faster than this …
     double stuck_travel = 0.008;  ///< … and so far, m, while the encoder does not change at all, it is stuck …
     double stall_force = 2.0;  ///< N … unless the hand holds against it with this much: then the motor may be stalled
+
+    bool operator==(const ControllerSettings&) const = default;
 };
 
 class AdmittanceControl {
@@ -42,6 +44,7 @@ public:
     double limit() const noexcept { return limit_; }  ///< of the gain, 1/s
 
 private:
+    double limit_for(const ControllerSettings& settings) const noexcept;
     bool is_stuck(double force, double position, bool slips) noexcept;
     double follow(double force, double position, int periods) noexcept;
 

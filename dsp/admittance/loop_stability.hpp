@@ -22,6 +22,8 @@ struct LoopModel {
     double feed_forward_lag = 0.0;        ///< s, time constant of its smoothing
     bool is_wall = false;                 ///< the object does not move; stiffness, damping and mass mean nothing
     double stiffness = 1000.0, damping = 0.0, mass = 0.0;  ///< of the object: N/m, N·s/m, kg
+
+    bool operator==(const LoopModel&) const = default;
 };
 
 inline constexpr std::size_t most_loop_states = 14;

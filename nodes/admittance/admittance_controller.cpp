@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 
@@ -72,15 +71,15 @@ struct AdmittanceController {
                             gain.value, hand_stiffness * 1e-3, limit));
         }
         name_ = setup.name;
-        seen_ = values();
+        seen_ = wanted_settings;
         asked_ = recover;
         tell(0.0);
     }
 
     void process(const Tick& tick) noexcept {
-        if (const auto now = values(); now != seen_) {
+        if (const ControllerSettings now = settings(); now != seen_) {
             seen_ = now;
-            refused_ = !control_.set(settings());
+            refused_ = !control_.set(now);
             refusals_ += refused_;
         }
         if (recover.value != asked_) control_.recover();
@@ -108,11 +107,6 @@ struct AdmittanceController {
     }
 
 private:
-    std::array<double, 16> values() const noexcept {
-        return {stiffness, damping,          mass,      rest,  free_damping,   gain,  gain_share,  feed_forward,
-                max_speed, feed_forward_lag, motor_lag, delay, hand_stiffness, blend, least_speed, stall_force};
-    }
-
     ControllerSettings settings() const noexcept {
         ControllerSettings s;
         s.object.kind = object.is("wall")    ? ObjectKind::wall
@@ -156,7 +150,7 @@ private:
 
     AdmittanceControl control_;
     std::string name_;
-    std::array<double, 16> seen_{};
+    ControllerSettings seen_;
     double period_ = 1.0 / 150.0, asked_ = 0.0, held_s_ = 0.0, saturated_s_ = 0.0;
     Fault last_ = Fault::none;
     std::int64_t faults_ = 0, refusals_ = 0;

@@ -128,7 +128,7 @@ TEST_CASE("a storm of edits under load is repeated to the bit from its take") {
             if (told + failed >= storm) stop = true;
             if (!engine.is_settled() || stop) return;
             const std::string text = edited(++next);
-            engine.edit([text] { return compile_text(text); }, text,
+            engine.edit([text] { return compile_text(text); },
                         [&](const EditOutcome& outcome) { (outcome.error ? failed : told) += 1; });
             engine.set("b", "gain", fmt::format("{:.4f}", 0.001 * static_cast<double>(next % 900)));
         };
@@ -193,7 +193,7 @@ TEST_CASE("an edit that cannot be made leaves the old plan running") {
     live.watch = [&] {
         if (asked || engine.progress_seconds() < 0.05) return;
         asked = true;
-        engine.edit([]() -> Plan { throw Error({"test.toml", 3, 4}, "no node 'x'"); }, "",
+        engine.edit([]() -> Plan { throw Error({"test.toml", 3, 4}, "no node 'x'"); },
                     [&](const EditOutcome& outcome) {
                         if (outcome.error) errors.push_back(*outcome.error);
                     });

@@ -228,3 +228,46 @@ TEST_CASE("a patch is edited and its parameters are set while it runs; the take 
     CHECK(folder.tactus("set 'ball.stiffness=0.3 N/mm'").err.find("no patch runs") != std::string::npos);
     ::unsetenv("XDG_RUNTIME_DIR");
 }
+
+TEST_CASE("a patch within is edited by its own file, set by what it offers, and kept in the take") {
+    Folder folder;
+    const std::string within = R"([outputs]
+signal = "tone.signal"
+[parameters]
+pitch = "tone.frequency"
+[nodes.tone]
+type = "sine"
+rate = "outer"
+)";
+    const fs::path patch = folder.write("outer.toml", R"(wires = [ "voice.signal -> loud.in" ]
+[nodes.voice]
+type = "patch:voice.toml"
+rate = "48 kHz"
+pitch = "300 Hz"
+[nodes.loud]
+type = "gain"
+rate = "48 kHz"
+)");
+    const fs::path part = folder.write("voice.toml", within), take = folder.path / "take";
+    Run run(folder, patch.string() + " --record " + take.string() + " --out " + (folder.path / "out").string());
+    REQUIRE(wait_for([&] { return fs::exists(folder.path / "tactus") && !fs::is_empty(folder.path / "tactus"); }));
+    ::setenv("XDG_RUNTIME_DIR", folder.path.c_str(), 1);
+    const Outcome set = folder.tactus("set 'voice.pitch=440 Hz'");
+    INFO(set.err);
+    CHECK(set.code == 0);
+    folder.write("voice.toml", within + "amplitude = 0.25\n");
+    const auto err = [&] { return slurp(folder.path / "run.err"); };
+    REQUIRE(wait_for([&] { return err().find("edit 1 takes over") != std::string::npos; }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    INFO(err());
+    CHECK(run.stop(SIGINT) == 0);
+    ::unsetenv("XDG_RUNTIME_DIR");
+
+    fs::remove(part);
+    CHECK(folder.tactus("check " + patch.string()).err.find("there is no patch") != std::string::npos);
+    const Outcome replay = folder.tactus("replay " + take.string() + " --json");
+    INFO(replay.out << replay.err);
+    REQUIRE(replay.code == 0);
+    CHECK(json::parse(replay.out)["edits"] == 1);
+    CHECK(json::parse(replay.out)["identical"] == true);
+}

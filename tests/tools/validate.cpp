@@ -82,7 +82,7 @@ TEST_CASE("validate: with its equaliser the bundled handle has the vibration of 
     REQUIRE(outcome.code == 0);
     const json answer = json::parse(outcome.out);
     CHECK(answer["verdict"] == "pass");
-    CHECK(answer["out"] == "handle.out");
+    CHECK(answer["out"] == "handle:sum.out");
     CHECK(answer["synthesised"] == true);
     REQUIRE(answer["runs"].size() == 4);
     int free_air = 0;
@@ -159,8 +159,8 @@ TEST_CASE("validate says what is missing") {
     refused("saw-vibration", "--reference");
     refused("saw-vibration --reference none.toml", "none.toml");
     refused("touch-sphere --reference " + bundled_set(), "--saw NODE");
-    refused("saw-vibration --saw handle --reference " + bundled_set(), "type 'saw'");
-    refused("saw-vibration --out handle.in1 --reference " + bundled_set(), "input");
+    refused("saw-vibration --saw equaliser --reference " + bundled_set(), "type 'saw'");
+    refused("saw-vibration --out handle:sum.in1 --reference " + bundled_set(), "input");
     refused("saw-vibration --out load.value --reference " + bundled_set(), "signal");
 }
 

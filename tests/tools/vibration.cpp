@@ -335,6 +335,7 @@ TEST_CASE("measure and equalise refuse what makes no sense with one line") {
         {"measure saw-vibration --in actuatr.drive --out handle.out", "did you mean 'actuator'?"},
         {"measure saw-vibration --in actuator.drive --out actuator.drive", "is an input"},
         {"measure saw-vibration --in felt.in --out saw.signal", "no signal 'in'"},
+        {"measure saw-vibration --in handle.in --out handle.out", "leads to several ports"},
         {"measure saw-vibration --in speaker.signal --out handle.out", "no wires lead"},
         {"measure saw-vibration --in actuator.drive --out handle.out --last 30000", "half the node's rate"},
         {"measure saw-vibration --in actuator.drive --out handle.out --first 50 --last 20", "higher"},
