@@ -211,6 +211,8 @@ void Engine::run_live(const LiveOptions& options) {
         try {
             drain_log();
             drain_streams();
+            for (const auto& stream : outside_.streams)
+                if (std::string news = stream->news(); !news.empty()) outside_.notices.push_back(std::move(news));
             tend_pause();
             tend_edits();
             watch_devices();

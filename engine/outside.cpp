@@ -3,6 +3,7 @@
 
 #include "devices/audio/portaudio.hpp"
 #include "devices/haptic/catalogue.hpp"
+#include "engine/kept_end.hpp"
 
 #include <fmt/format.h>
 
@@ -154,7 +155,10 @@ RecordStream& EngineOutside::record(const StreamFormat& wanted, const SourceLoca
     if (!is_sound && format.type->columns.empty())
         throw Error(where, fmt::format("a {} cannot be recorded as numbers", format.type->name));
     std::unique_ptr<StreamEnd> end = std::make_unique<NowhereEnd>();
-    if (folder_)
+    if (folder_ && format.keeper) {
+        format.keeper->open((*folder_ / format.file).string());
+        end = std::make_unique<KeptEnd>(format.keeper, format.type->size);
+    } else if (folder_)
         end = is_sound ? make_sound_end(*folder_ / format.file, format) : make_csv_end(*folder_ / format.file, format);
     opened_.streams.push_back(std::make_unique<Stream>(format, std::move(end)));
     uses_->streams.push_back(opened_.streams.back().get());

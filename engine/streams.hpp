@@ -25,6 +25,8 @@ public:
     virtual void take(std::int64_t first, const std::byte* values, std::size_t count) = 0;
     /// Completes the file; throws Error.
     virtual void finish() = 0;
+    /// What the user should know, once; mostly nothing.
+    virtual std::string news() { return {}; }
 };
 
 /// A sound file: one float channel, silence where activations are missing.
@@ -45,6 +47,7 @@ public:
     /// Completes the file and gives back all memory. Nobody writes any more; again: nothing.
     void finish();
     bool is_finished() const { return !end_; }
+    std::string news() const { return end_ ? end_->news() : std::string(); }
 
     const StreamFormat& format() const { return format_; }
     std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }

@@ -8,8 +8,10 @@
 #include "graph/device.hpp"
 
 #include <any>
+#include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -56,12 +58,28 @@ public:
     virtual bool write(std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept = 0;
 };
 
+/// Puts a stream's values where they are safe, in a form of its own. Called by one thread, never in a tick: it may wait
+/// for a disk.
+class StreamKeeper {
+public:
+    virtual ~StreamKeeper() = default;
+    /// Before the run, with the stream's file. Throws Error.
+    virtual void open(const std::string& path) = 0;
+    /// Values of activations first, first + 1, …
+    virtual void take(std::int64_t first, const std::byte* values, std::size_t count) = 0;
+    /// All that was taken is safe when it returns. Throws Error; it is called again then.
+    virtual void save() = 0;
+    /// After the run. Throws Error.
+    virtual void finish() = 0;
+};
+
 /// What a recorded stream holds. Signals become sound files, all else CSV with the time in front.
 struct StreamFormat {
     std::string file;  ///< name within the run's folder: "haptuator.wav", "force.csv"
     std::string unit;  ///< of one full value, "m/s^2"
     const ValueType* type = nullptr;
     Flicks period = 0;
+    std::shared_ptr<StreamKeeper> keeper{};  ///< who writes the file; none: the engine does
 };
 
 /// The interfaces through which `prepare` sees what is outside of the patch.
@@ -76,11 +94,11 @@ public:
 };
 
 struct Setup {
-    std::string name;           ///< of the node, as in the patch
-    SourceLocation where;       ///< of the node in the patch
-    Flicks period = 0;          ///< of its group
-    int max_frames = 1;         ///< most activations one call may run
-    std::uint64_t seed = 0;     ///< for its random numbers; differs per node
+    std::string name;  ///< of the node, as in the patch
+    SourceLocation where;  ///< of the node in the patch
+    Flicks period = 0;  ///< of its group
+    int max_frames = 1;  ///< most activations one call may run
+    std::uint64_t seed = 0;  ///< for its random numbers; differs per node
     Outside* outside = nullptr;
 
     double rate() const { return rate_of(period); }

@@ -13,6 +13,7 @@
     X(BladeContact, contact)            \
     X(Body, contact)                    \
     X(Brush, planning)                  \
+    X(Button, input)                    \
     X(Carve, contact)                   \
     X(CaseScene, planning)              \
     X(Constant, input)                  \

@@ -4,7 +4,7 @@
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/fragment_file.hpp"
-#include "tools/paint_file.hpp"
+#include "assets/fracture/paint_file.hpp"
 #include "tools/snap_options.hpp"
 #include "tools/verbs.hpp"
 

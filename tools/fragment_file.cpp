@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/fragment_file.hpp"
 
-#include "assets/bone/import.hpp"
+#include "assets/plan/case_bones.hpp"
 #include "tools/workers.hpp"
 
 namespace tactus {
 
-Bone bone_of_file(const std::filesystem::path& path) {
-    if (file_of_bone(path).extension() == ".vdb") return load_bone(path);
-    ImportOptions options;
-    options.input = path;
-    options.run = on_threads();
-    return import_bone(options);
-}
+Bone bone_of_file(const std::filesystem::path& path) { return bone_from_file(path, on_threads()); }
 
 PoseNumbers numbers_of(const Pose& pose) {
     const Vec3 p = pose.position * 1e3;

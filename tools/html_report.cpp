@@ -12,7 +12,8 @@ constexpr const char* style =
 h1{font-size:1.5rem}h2{font-size:1.15rem;margin-top:2.2rem}table{border-collapse:collapse;font-size:13px}
 td,th{padding:.25rem .6rem;border-bottom:1px solid #e3e6ea;text-align:left;vertical-align:top}
 td.n,th.n{text-align:right}
-svg{max-width:100%;height:auto}.small{color:#6b7280;font-size:13px}.pass{color:#1b7a3d}.fail{color:#b81d24})";
+figure{margin:0}.two{display:grid;grid-template-columns:1fr 1fr;gap:1rem}
+img,svg{max-width:100%;height:auto}.small{color:#6b7280;font-size:13px}.pass{color:#1b7a3d}.fail{color:#b81d24})";
 
 void replace_all(std::string& text, std::string_view what, const std::string& by) {
     for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())

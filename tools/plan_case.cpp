@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/plan_case.hpp"
 
-#include "assets/fracture/propose_paint.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/operator/hand.hpp"
 #include "tools/fragment_file.hpp"
+#include "tools/workers.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -28,25 +28,13 @@ bool is_mesh(const std::filesystem::path& path) {
 }  // namespace
 
 CaseFragment load_fragment(const PlanFragment& fragment, const std::filesystem::path& folder, Paint paint) {
-    CaseFragment loaded;
-    try {
-        loaded.bone = bone_of_file(file_of(fragment.file, folder));
-        if (loaded.bone.points.empty()) loaded.bone.points = sample_surface(loaded.bone.distance, {});
-        if (loaded.bone.points.empty()) throw Error("has no surface");
-        loaded.was_painted = std::ranges::any_of(
-            loaded.bone.points, [](const SurfacePoint& p) { return p.label == surface_label::fracture; });
-        if (!loaded.was_painted && paint == Paint::or_proposed) propose_fracture(loaded.bone.points);
-        loaded.map = make_voxmap(loaded.bone.distance);
-    } catch (const Error& error) {
-        throw Error(fmt::format("fragment '{}': {}", fragment.name, error.what()));
-    }
+    CaseFragment loaded{fragment_bone(fragment, folder, paint, on_threads()), {}};
+    loaded.map = make_voxmap(loaded.bone.distance);
     return loaded;
 }
 
 std::vector<CaseFragment> load_fragments(const CasePlan& plan, const std::filesystem::path& folder, Paint paint) {
-    if (const auto problems = changed_files(plan, folder); !problems.empty())
-        throw Error(fmt::format("{}{}; put the file back, or make a plan of the new one", problems.front(),
-                                problems.size() > 1 ? fmt::format(" (and {} more)", problems.size() - 1) : ""));
+    check_files(plan, folder);
     std::vector<CaseFragment> all;
     for (const PlanFragment& fragment : plan.fragments) all.push_back(load_fragment(fragment, folder, paint));
     return all;

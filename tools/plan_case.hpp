@@ -2,8 +2,9 @@
 // What the verbs of a plan share: fragments from their files, poses as text and JSON.
 #pragma once
 
-#include "assets/bone/bone.hpp"
+#include "assets/plan/case_bones.hpp"
 #include "assets/plan/plan_file.hpp"
+#include "assets/plan/plan_lock.hpp"
 #include "dsp/contact/voxmap.hpp"
 #include "dsp/distance/iso_surface.hpp"
 #include "tools/fragment_file.hpp"
@@ -16,13 +17,9 @@
 namespace tactus {
 
 /// A fragment ready to be looked at. Its points are never empty.
-struct CaseFragment {
-    Bone bone;
+struct CaseFragment : FragmentBone {
     Voxmap map;
-    bool was_painted = false;  ///< in its file; else the paint is a proposal
 };
-
-enum class Paint { as_filed, or_proposed };
 
 /// From its file. Throws Error naming the fragment.
 CaseFragment load_fragment(const PlanFragment& fragment, const std::filesystem::path& folder,
@@ -47,6 +44,14 @@ Pose pose_of_text(const std::string& text, std::string_view option);
 
 /// Distance and angle of a pose from none, for people: mm and degrees.
 double angle_deg(const Pose& pose);
+
+/// A plan that is being changed: nobody else changes it meanwhile.
+struct OpenPlan {
+    PlanLock lock;
+    CasePlan plan;
+
+    explicit OpenPlan(const std::filesystem::path& path) : lock(path), plan(load_case_plan(path)) {}
+};
 
 /// Adds a step with the time of day and saves the plan.
 void do_step(CasePlan& plan, PlanStep step, const std::filesystem::path& path);

@@ -52,12 +52,6 @@ void add_file_of(CasePlan& plan, const std::string& text, const fs::path& folder
     }
 }
 
-std::string free_group_name(const CasePlan& plan) {
-    const PlanState state = state_of(plan);
-    for (int n = 1;; ++n)
-        if (std::string name = fmt::format("group {}", n); state.find_group(name) == Arrangement::none) return name;
-}
-
 StepKind kind_of(const std::string& verb) {
     for (int n = 0; n <= static_cast<int>(StepKind::mirror); ++n)
         if (name_of(static_cast<StepKind>(n)) == verb) return static_cast<StepKind>(n);
@@ -70,7 +64,8 @@ int say(const PlanChoice& choice) {
 }
 
 int go(const PlanChoice& choice, HistoryPlace (*way)(std::span<const int>, HistoryPlace), const char* end) {
-    CasePlan plan = load_case_plan(choice.plan);
+    OpenPlan open(choice.plan);
+    CasePlan& plan = open.plan;
     const auto before = plan.before();
     int moved = 0;
     for (; moved < choice.steps; ++moved) {
@@ -89,11 +84,21 @@ int go(const PlanChoice& choice, HistoryPlace (*way)(std::span<const int>, Histo
     return moved > 0 ? done : answer_is_no;
 }
 
+int list_alternatives(const PlanChoice& choice) {
+    if (choice.json) return plan_show(choice);
+    const CasePlan plan = load_case_plan(choice.plan);
+    for (const PlanAlternative& a : plan.alternatives)
+        fmt::print("{} {}: {} steps\n", &a == &plan.alternatives[static_cast<std::size_t>(plan.current)] ? '*' : ' ',
+                   a.name, steps_to(plan.before(), a.place.head).size());
+    return done;
+}
+
 }  // namespace
 
 int plan_new(const PlanChoice& choice) {
     if (fs::exists(choice.plan))
         throw Error(fmt::format("{}: is there already; a plan is never written over", choice.plan.string()));
+    const PlanLock lock(choice.plan);
     CasePlan plan;
     plan.title = choice.title.empty() ? choice.plan.stem().stem().string() : choice.title;
     for (const std::string& text : choice.names) add_file_of(plan, text, choice.plan.parent_path());
@@ -103,19 +108,21 @@ int plan_new(const PlanChoice& choice) {
 }
 
 int plan_move(const PlanChoice& choice) {
-    CasePlan plan = load_case_plan(choice.plan);
+    OpenPlan open(choice.plan);
+    CasePlan& plan = open.plan;
     const int fragment = find_fragment(plan, choice.names.front());
     do_step(plan, placing(plan, fragment, pose_of_text(choice.pose, "--pose"), "command"), choice.plan);
     return say(choice);
 }
 
 int plan_arrange(const PlanChoice& choice, const std::string& verb) {
-    CasePlan plan = load_case_plan(choice.plan);
+    OpenPlan open(choice.plan);
+    CasePlan& plan = open.plan;
     PlanStep step;
     step.kind = kind_of(verb);
     step.by = "command";
     step.fragments = numbers_of_fragments(plan, choice.names);
-    step.group = step.kind == StepKind::group && choice.group.empty() ? free_group_name(plan) : choice.group;
+    step.group = step.kind == StepKind::group && choice.group.empty() ? free_group_name(state_of(plan)) : choice.group;
     do_step(plan, std::move(step), choice.plan);
     return say(choice);
 }
@@ -124,18 +131,12 @@ int plan_undo(const PlanChoice& choice) { return go(choice, undone, "nothing is 
 int plan_redo(const PlanChoice& choice) { return go(choice, redone, "nothing is left to redo"); }
 
 int plan_alternative(const PlanChoice& choice) {
-    CasePlan plan = load_case_plan(choice.plan);
+    if (choice.alternative.empty()) return list_alternatives(choice);
+    OpenPlan open(choice.plan);
+    CasePlan& plan = open.plan;
     const auto find = [&plan](const std::string& name) {
         return std::ranges::find(plan.alternatives, name, &PlanAlternative::name);
     };
-    if (choice.alternative.empty()) {
-        if (choice.json) return plan_show(choice);
-        for (const PlanAlternative& a : plan.alternatives)
-            fmt::print("{} {}: {} steps\n",
-                       &a == &plan.alternatives[static_cast<std::size_t>(plan.current)] ? '*' : ' ', a.name,
-                       steps_to(plan.before(), a.place.head).size());
-        return done;
-    }
     auto found = find(choice.alternative);
     if (choice.remove) {
         if (found == plan.alternatives.end() || found - plan.alternatives.begin() == plan.current)

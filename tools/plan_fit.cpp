@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numbers>
 
@@ -110,7 +111,8 @@ PlanStep step_of(const CasePlan& plan, const FragmentMatch& match, const char* b
 }  // namespace
 
 int plan_snap(const PlanChoice& choice) {
-    CasePlan plan = load_case_plan(choice.plan);
+    OpenPlan open(choice.plan);
+    CasePlan& plan = open.plan;
     const int moving = find_fragment(plan, choice.names[0]);
     const int only = choice.names.size() > 1 ? find_fragment(plan, choice.names[1]) : Arrangement::none;
     const Arrangement a = state_of(plan).arrangement;
@@ -139,7 +141,8 @@ int plan_snap(const PlanChoice& choice) {
 }
 
 int plan_settle(const PlanChoice& choice) {
-    CasePlan plan = load_case_plan(choice.plan);
+    OpenPlan open(choice.plan);
+    CasePlan& plan = open.plan;
     std::vector<int> numbers;
     for (const std::string& name : choice.names) numbers.push_back(find_fragment(plan, name));
     if (numbers.empty()) {
@@ -154,21 +157,17 @@ int plan_settle(const PlanChoice& choice) {
         for (const int n : numbers) {
             const Arrangement a = state_of(plan).arrangement;
             const FragmentMatch match = matching.matcher->near(n, poses_of(a), partners_of(a, n, Arrangement::none));
-            if (match.verdict == FitVerdict::fit) {
-                PlanStep step = step_of(plan, match, "settle");
-                step.time = time_of_day();
-                add_step(plan, std::move(step));
-            }
+            if (match.verdict == FitVerdict::fit) do_step(plan, step_of(plan, match, "settle"), choice.plan);
             rows.push_back(match_json(plan, match, a.pose(n), matching.loaded[static_cast<std::size_t>(n)]));
             if (!choice.json) say(plan, match);
         }
-    save_case_plan(plan, choice.plan);
     if (choice.json) fmt::print("{}\n", rows.dump(2));
     return std::ranges::all_of(rows, [](const Json& row) { return row["placed"] == true; }) ? done : answer_is_no;
 }
 
 int plan_mirror(const PlanChoice& choice) {
-    CasePlan plan = load_case_plan(choice.plan);
+    OpenPlan open(choice.plan);
+    CasePlan& plan = open.plan;
     const std::filesystem::path folder = choice.plan.parent_path();
     std::vector<int> numbers;
     for (const std::string& name : choice.names) numbers.push_back(find_fragment(plan, name));

@@ -110,10 +110,41 @@ std::vector<PictureMesh> scene_of(const Case& c, const PlanState& state) {
 
 std::string pictures(const Case& c) {
     const std::vector<PictureMesh> scanned = scene_of(c, state_of(c.plan, -1)), planned = scene_of(c, c.state);
-    return "<h2>Pictures</h2>\n" + picture_of(scanned, Vec3(0.25, 1.0, -0.35), "As scanned, from the front") +
+    return "<h2>Pictures</h2>\n<div class=\"two\">\n" +
+           picture_of(scanned, Vec3(0.25, 1.0, -0.35), "As scanned, from the front") +
            picture_of(planned, Vec3(0.25, 1.0, -0.35), "As planned, from the front") +
            picture_of(planned, Vec3(-0.35, -1.0, -0.3), "As planned, from behind") +
-           picture_of(planned, Vec3(0.1, 0.3, -1.0), "As planned, from above");
+           picture_of(planned, Vec3(0.1, 0.3, -1.0), "As planned, from above") + "</div>\n";
+}
+
+/// What the colours of the maps say.
+std::string gap_legend() {
+    std::string stops;
+    for (int n = -2; n <= 4; ++n) {
+        const Vec3 c = 255.0 * gap_colour(0.25e-3 * n);
+        stops += fmt::format(",rgb({:.0f},{:.0f},{:.0f})", c.x, c.y, c.z);
+    }
+    return fmt::format(
+        "<p class=\"small\">0.5 mm in each other or more <span style=\"display:inline-block;width:12rem;height:.8rem;"
+        "background:linear-gradient(90deg{})\"></span> 1 mm apart or more; white: they touch; grey: nothing faces it"
+        "</p>\n",
+        stops);
+}
+
+/// Without the sign of a zero.
+double shown(double millimetres) { return std::round(millimetres * 100.0) / 100.0 + 0.0; }
+
+/// Where each fragment goes, as other programs are told it too.
+std::string places(const Case& c) {
+    std::string out =
+        "<h2>Places</h2>\n<p>p_plan = R p_scan + t, LPS, mm; R as a unit quaternion w x y z.</p>\n<table><tr><th>"
+        "fragment</th><th>t, mm</th><th>R</th></tr>\n";
+    for (std::size_t n = 0; n < c.fragments.size(); ++n) {
+        const auto [t, q] = numbers_of(c.pose(n));
+        out += fmt::format("<tr><td>{}</td><td>{:.3f} {:.3f} {:.3f}</td><td>{:.6f} {:.6f} {:.6f} {:.6f}</td></tr>\n",
+                           html::escaped(c.name(n)), t[0], t[1], t[2], q[0], q[1], q[2], q[3]);
+    }
+    return out + "</table>\n";
 }
 
 std::string fragments_table(const Case& c) {
@@ -165,9 +196,7 @@ std::string gap_map(const Case& c, std::size_t i, std::size_t j, const SurfaceGa
     if (!(glm::length(towards) > 0.0)) return "";
     const Vec3 direction = -glm::normalize(towards);
     const Vec3 tilted = std::abs(direction.z) > 0.95 ? glm::normalize(direction + Vec3(0.3, 0.0, 0.0)) : direction;
-    return picture_of({mesh}, tilted,
-                      fmt::format("{} as {} faces it: white touches, red gapes 1 mm or more, blue lies inside",
-                                  c.name(i), c.name(j)));
+    return picture_of({mesh}, tilted, fmt::format("{} as {} faces it", c.name(i), c.name(j)));
 }
 
 std::string gaps(const Case& c) {
@@ -182,7 +211,7 @@ std::string gaps(const Case& c) {
                 "class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.1f}"
                 "</td></tr>\n",
                 html::escaped(c.name(i)), html::escaped(c.name(j)), gap.facing_area * 1e6, gap.contact_area * 1e6,
-                gap.median * 1e3, gap.p95 * 1e3, gap.deepest * 1e3,
+                shown(gap.median * 1e3), shown(gap.p95 * 1e3), gap.deepest * 1e3,
                 overlap_volume(c.fragments[i].bone.distance, c.pose(i), c.fragments[j].map, c.pose(j)) * 1e9);
             if (gap.facing_area > 20e-6) maps += gap_map(c, i, j, gap);
         }
@@ -190,7 +219,7 @@ std::string gaps(const Case& c) {
     return "<h2>Gaps and overlaps</h2>\n<table><tr><th>fragment</th><th>and</th><th class=\"n\">facing, mm²</th><th "
            "class=\"n\">touching, mm²</th><th class=\"n\">median gap, mm</th><th class=\"n\">95 %, mm</th><th "
            "class=\"n\">deepest, mm</th><th class=\"n\">overlap, mm³</th></tr>\n" +
-           rows + "</table>\n" + maps;
+           rows + "</table>\n" + gap_legend() + "<div class=\"two\">\n" + maps + "</div>\n";
 }
 
 std::string steps(const Case& c) {
@@ -242,9 +271,9 @@ int plan_report(const PlanChoice& choice) {
             if (stem.ends_with(ending)) stem.resize(stem.size() - std::string(ending).size());
         out = choice.plan.parent_path() / (stem + ".html");
     }
-    std::string shown;
+    std::string pages;
     try {
-        shown = pictures(c) + gaps(c);
+        pages = pictures(c) + gaps(c);
     } catch (const Error& error) {
         throw Error(fmt::format("no pictures can be made: {}", error.what()));
     }
@@ -252,7 +281,7 @@ int plan_report(const PlanChoice& choice) {
         fmt::format("<p>Alternative '{}', {} fragments. Research use; not a medical device.</p>\n",
                     html::escaped(c.plan.alternatives[static_cast<std::size_t>(c.plan.current)].name),
                     c.fragments.size()) +
-        fragments_table(c) + mirror(c) + shown + steps(c) + alternatives(c.plan);
+        fragments_table(c) + mirror(c) + pages + places(c) + steps(c) + alternatives(c.plan);
     write_whole_file(out, html::page(c.plan.title, body));
     if (choice.json) fmt::print("{}\n", nlohmann::ordered_json{{"report", out.string()}}.dump(2));
     else fmt::print("{}\n", out.string());

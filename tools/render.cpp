@@ -71,7 +71,6 @@ int render_verb(const RenderChoice& choice) {
     std::vector<std::string> files = write_pictures(report, choice.out);
     for (std::string& file : write_bones(report, choice.out)) files.push_back(std::move(file));
     if (frames) files.insert(files.end(), frames->files().begin(), frames->files().end());
-    for (std::string& file : write_plans(report, choice.out)) files.push_back(std::move(file));
     files.push_back("summary.json");
     const std::string summary = summary_json(engine, report, options.seconds, false, files);
     write_whole_file(choice.out / "summary.json", summary);

@@ -2,7 +2,6 @@
 #include "tools/results.hpp"
 
 #include "assets/bone/bone.hpp"
-#include "assets/plan/plan_file.hpp"
 #include "devices/display/legend.hpp"
 #include "devices/display/picture_maker.hpp"
 #include "devices/display/png.hpp"
@@ -83,17 +82,6 @@ std::vector<std::string> write_bones(const Report& report, const std::filesystem
         if (!bone) continue;
         save_bone(**bone, folder / (name + ".vdb"));
         files.push_back(name + ".vdb");
-    }
-    return files;
-}
-
-std::vector<std::string> write_plans(const Report& report, const std::filesystem::path& folder) {
-    std::vector<std::string> files;
-    for (const auto& [name, result] : report.results) {
-        const auto* plan = std::any_cast<std::shared_ptr<const CasePlan>>(&result);
-        if (!plan) continue;
-        save_case_plan(**plan, folder / (name + ".plan.json"));
-        files.push_back(name + ".plan.json");
     }
     return files;
 }

@@ -17,7 +17,4 @@ std::vector<std::string> write_pictures(const Report& report, const std::filesys
 /// The bones of the report as they were cut, one bone file each. Returns the names of the files written.
 std::vector<std::string> write_bones(const Report& report, const std::filesystem::path& folder);
 
-/// The plans of the report with the steps of the run, as NAME.plan.json each. Returns the names of the files written.
-std::vector<std::string> write_plans(const Report& report, const std::filesystem::path& folder);
-
 }  // namespace tactus

@@ -63,7 +63,6 @@ void RunSession::finish() {
     const Report report = engine_->report();
     std::vector<std::string> files = write_pictures(report, folder_);
     for (std::string& file : write_bones(report, folder_)) files.push_back(std::move(file));
-    for (std::string& file : write_plans(report, folder_)) files.push_back(std::move(file));
     files.push_back("summary.json");
     const double ran = engine_->progress_seconds();
     json_ = tactus::summary_json(*engine_, report, ran, true, files);

@@ -6,7 +6,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/snap/fit.hpp"
 #include "tools/fragment_file.hpp"
-#include "tools/paint_file.hpp"
+#include "assets/fracture/paint_file.hpp"
 #include "tools/snap_options.hpp"
 #include "tools/verbs.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/fracture/paint.hpp"
 
-#include <glm/geometric.hpp>
+#include "dsp/planning/surface_brush.hpp"
 
 #include <vector>
 
@@ -16,16 +16,13 @@ std::size_t paint_fracture(std::span<SurfacePoint> points, const Voxmap& bone, c
         p.label = surface_label::fracture;
         inside.push_back(p.position);
     }
-    std::size_t count = inside.size();
-    if (!(spill > 0.0)) return count;
-    for (SurfacePoint& p : points) {
-        if (p.label == surface_label::fracture) continue;
-        for (const Vec3& q : inside)
-            if (glm::dot(p.position - q, p.position - q) < spill * spill) {
-                p.label = surface_label::fracture;
-                ++count;
-                break;
-            }
+    if (!(spill > 0.0)) return inside.size();
+    SurfaceBrush brush({points.begin(), points.end()});
+    for (const Vec3& place : inside) brush.stroke(place, spill, surface_label::fracture);
+    std::size_t count = 0;
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        count += brush.points()[n].label == surface_label::fracture;
+        points[n].label = brush.points()[n].label;
     }
     return count;
 }

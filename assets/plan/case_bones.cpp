@@ -13,29 +13,53 @@
 
 namespace tactus {
 
+Bone bone_from_file(const std::filesystem::path& path, const RunJobs& run) {
+    if (file_of_bone(path).extension() == ".vdb") return load_bone(path);
+    ImportOptions options;
+    options.input = path;
+    options.run = run;
+    return import_bone(options);
+}
+
+FragmentBone fragment_bone(const PlanFragment& fragment, const std::filesystem::path& folder, Paint paint,
+                           const RunJobs& run) {
+    FragmentBone loaded;
+    try {
+        loaded.bone = bone_from_file(file_of(fragment.file, folder), run);
+        std::vector<SurfacePoint>& points = loaded.bone.points;
+        if (points.empty()) points = sample_surface(loaded.bone.distance, {});
+        if (points.empty()) throw Error("has no surface");
+        loaded.was_painted =
+            std::ranges::any_of(points, [](const SurfacePoint& p) { return p.label == surface_label::fracture; });
+        if (!loaded.was_painted && paint == Paint::or_proposed) propose_fracture(points);
+    } catch (const Error& error) {
+        throw Error(fmt::format("fragment '{}': {}", fragment.name, error.what()));
+    }
+    return loaded;
+}
+
+void check_files(const CasePlan& plan, const std::filesystem::path& folder) {
+    const auto problems = changed_files(plan, folder);
+    if (!problems.empty())
+        throw Error(fmt::format("{}{}; put the file back, or make a plan of the new one", problems.front(),
+                                problems.size() > 1 ? fmt::format(" (and {} more)", problems.size() - 1) : ""));
+}
+
 CaseBones load_case(const std::filesystem::path& path) {
     CaseBones made;
     made.plan = load_case_plan(path);
     const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-    if (const auto problems = changed_files(made.plan, folder); !problems.empty())
-        throw Error(fmt::format("{}: {}", path.string(), problems.front()));
-    for (PlanFragment& fragment : made.plan.fragments) {
-        const std::filesystem::path file = file_of(fragment.file, folder);
-        fragment.file = file.string();
-        try {
-            ImportOptions options;
-            options.input = file;
-            Bone bone = file_of_bone(file).extension() == ".vdb" ? load_bone(file) : import_bone(options);
-            if (bone.points.empty()) bone.points = sample_surface(bone.distance, {});
-            if (bone.points.empty()) throw Error("has no surface");
-            if (std::ranges::none_of(bone.points,
-                                     [](const SurfacePoint& p) { return p.label == surface_label::fracture; }))
-                propose_fracture(bone.points);
-            made.bones.push_back(std::move(bone));
-        } catch (const Error& error) {
-            throw Error(fmt::format("fragment '{}': {}", fragment.name, error.what()));
-        }
+    try {
+        check_files(made.plan, folder);
+    } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", path.string(), error.message()));
     }
+    for (PlanFragment& fragment : made.plan.fragments) {
+        made.bones.push_back(fragment_bone(fragment, folder, Paint::or_proposed).bone);
+        fragment.file = file_of(fragment.file, folder).string();
+    }
+    for (PlanStep& step : made.plan.steps)
+        if (step.mirror) step.mirror->file = file_of(step.mirror->file, folder).string();
     return made;
 }
 

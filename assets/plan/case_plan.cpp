@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <memory>
 
 namespace tactus {
 
@@ -48,10 +49,20 @@ void place(const CasePlan& plan, const PlanStep& step, PlanState& state) {
         if (!is_valid(step.poses[n])) refuse(step, fmt::format("the pose of '{}' is none", name));
         if (state.arrangement.is_locked(step.fragments[n])) refuse(step, fmt::format("'{}' is locked", name));
     }
-    for (std::size_t n = 0; n < step.poses.size(); ++n) {
-        state.arrangement.place(step.fragments[n], step.poses[n]);
-        state.fits[static_cast<std::size_t>(step.fragments[n])] = n == 0 ? step.fit : std::nullopt;
-    }
+    Arrangement& a = state.arrangement;
+    const auto fit_of = [&state](int fragment) -> auto& { return state.fits[static_cast<std::size_t>(fragment)]; };
+    for (std::size_t n = 0; n < step.poses.size(); ++n) a.place(step.fragments[n], step.poses[n]);
+    // What was fitted to one that stays behind fits no more.
+    for (const int fragment : step.fragments)
+        if (std::ranges::find(step.fragments, a.fitted_to(fragment)) == step.fragments.end()) {
+            a.fit(fragment, Arrangement::none);
+            fit_of(fragment).reset();
+        }
+    if (!step.fit) return;
+    const auto partner = std::ranges::find(plan.fragments, step.fit->partner, &PlanFragment::name);
+    a.fit(step.fragments[0],
+          partner == plan.fragments.end() ? Arrangement::none : static_cast<int>(partner - plan.fragments.begin()));
+    fit_of(step.fragments[0]) = step.fit;
 }
 
 void forget_groups_that_are_gone(PlanState& state) {
@@ -121,10 +132,52 @@ void apply(const CasePlan& plan, const PlanStep& step, PlanState& state) {
     forget_groups_that_are_gone(state);
 }
 
+namespace {
+
+PlanState as_scanned(const CasePlan& plan) {
+    const Arrangement arrangement(plan.fragments.size());
+    return {arrangement, std::vector<std::string>(arrangement.most_groups()),
+            std::vector<std::optional<PlanFit>>(plan.fragments.size()), std::nullopt};
+}
+
+}  // namespace
+
+void visit_steps(const CasePlan& plan, const std::function<void(int, const PlanState&, const PlanState&)>& visit) {
+    const std::vector<int> before = plan.before();
+    // Of each step, and of the start, which is number 0 here: what follows it at once, and how much does in all.
+    std::vector<std::vector<int>> next(before.size() + 1);
+    std::vector<std::size_t> following(before.size() + 1, 0);
+    const auto slot = [](int step) { return static_cast<std::size_t>(step + 1); };
+    for (std::size_t n = before.size(); n-- > 0;) following[slot(before[n])] += following[n + 1] + 1;
+    for (std::size_t n = 0; n < before.size(); ++n) next[slot(before[n])].push_back(static_cast<int>(n));
+    struct Open {
+        std::shared_ptr<const PlanState> from;
+        int step;
+    };
+    std::vector<Open> open;
+    // The longest way is gone last, so that few states wait at any time, whatever the tree.
+    const auto reach = [&](const std::shared_ptr<const PlanState>& state, int at) {
+        auto& steps = next[slot(at)];
+        std::ranges::stable_sort(steps, std::ranges::greater{}, [&](int n) { return following[slot(n)]; });
+        for (const int n : steps) open.push_back({state, n});
+    };
+    reach(std::make_shared<PlanState>(as_scanned(plan)), -1);
+    while (!open.empty()) {
+        const Open now = std::move(open.back());
+        open.pop_back();
+        auto to = std::make_shared<PlanState>(*now.from);
+        try {
+            apply(plan, plan.steps[static_cast<std::size_t>(now.step)], *to);
+        } catch (const Error& error) {
+            throw Error(fmt::format("cannot be followed to step {}: {}", now.step, error.message()));
+        }
+        visit(now.step, *now.from, *to);
+        reach(to, now.step);
+    }
+}
+
 PlanState state_of(const CasePlan& plan, int head) {
-    Arrangement arrangement(plan.fragments.size());
-    PlanState state{arrangement, std::vector<std::string>(arrangement.most_groups()),
-                    std::vector<std::optional<PlanFit>>(plan.fragments.size()), std::nullopt};
+    PlanState state = as_scanned(plan);
     for (const int n : steps_to(plan.before(), head)) apply(plan, plan.steps[static_cast<std::size_t>(n)], state);
     return state;
 }
@@ -133,10 +186,21 @@ PlanState state_of(const CasePlan& plan) { return state_of(plan, plan.place().he
 
 void add_step(CasePlan& plan, PlanStep step) {
     PlanState state = state_of(plan);
-    apply(plan, step, state);
+    add_step(plan, state, std::move(step));
+}
+
+void add_step(CasePlan& plan, PlanState& state, PlanStep step) {
+    PlanState next = state;
+    apply(plan, step, next);
+    state = std::move(next);
     step.before = plan.place().head;
     plan.steps.push_back(std::move(step));
     plan.place() = after_step(static_cast<int>(plan.steps.size()) - 1);
+}
+
+std::string free_group_name(const PlanState& state) {
+    for (int n = 1;; ++n)
+        if (std::string name = fmt::format("group {}", n); state.find_group(name) == Arrangement::none) return name;
 }
 
 int find_fragment(const CasePlan& plan, std::string_view name) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The plan of a case: which fragments there are, and every step that was done with them. Nothing is ever thrown away:
-// undo
-// goes back along the steps, a new step after it begins a branch, and named alternatives stand at any of them.
+// undo goes back along the steps, a new step after it begins a branch, and named alternatives stand at any of them.
 #pragma once
 
 #include "dsp/planning/arrangement.hpp"
@@ -10,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -97,8 +97,17 @@ PlanState state_of(const CasePlan& plan);
 /// changed.
 void apply(const CasePlan& plan, const PlanStep& step, PlanState& state);
 
+/// Calls visit(number, from, to) once for every step, on whichever way it lies, with the states it leads between; the
+/// step before it comes earlier. Throws Error for the first step that cannot be applied.
+void visit_steps(const CasePlan& plan, const std::function<void(int, const PlanState&, const PlanState&)>& visit);
+
 /// Checks a step, adds it after the current head and moves the head there. Throws Error and leaves the plan as it was.
 void add_step(CasePlan& plan, PlanStep step);
+/// The same with the state at the head, which is changed along: many steps cost no more than each of them.
+void add_step(CasePlan& plan, PlanState& state, PlanStep step);
+
+/// "group 1", or the next number that no group has.
+std::string free_group_name(const PlanState& state);
 
 /// Number of the fragment of that name. Throws Error listing near ones.
 int find_fragment(const CasePlan& plan, std::string_view name);

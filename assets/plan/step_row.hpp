@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps of a plan as numbers alone: what a node may write from its tick, and what its record is read back from.
+// Steps of a plan as numbers alone: what a node may write from its tick, and how they become steps again.
 #pragma once
 
 #include "assets/plan/case_plan.hpp"
 
 #include <array>
-#include <filesystem>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -17,11 +16,11 @@ inline constexpr int row_goes_to = 100;
 
 /// One fragment of one step. Rows of one step follow each other.
 struct StepRow {
-    double step = 0.0;    ///< number of the step, counted from 0 in the run
-    double after =
-        -1.0;  ///< the step of the run that it follows; -1: where the plan stood before. Of row_goes_to: the head
+    double step = 0.0;    ///< number that the step has in the plan
+    double after = -1.0;  ///< number of the step that it follows, -1: none. Of row_goes_to: the one gone to
     double kind = 0.0;    ///< a StepKind, or row_goes_to
     double by = 0.0;      ///< 0: the hand, 1: settled at a fit
+    double left = 0.0;    ///< rows of this step that follow
     double fragment = 0.0;
     double x = 0.0, y = 0.0, z = 0.0;              ///< m
     double qw = 1.0, qx = 0.0, qy = 0.0, qz = 0.0;
@@ -35,16 +34,31 @@ struct StepRow {
         qw = p.orientation.w, qx = p.orientation.x, qy = p.orientation.y, qz = p.orientation.z;
     }
 };
-inline constexpr std::size_t step_row_columns = 20;
+inline constexpr std::size_t step_row_columns = 21;
 static_assert(sizeof(StepRow) == step_row_columns * sizeof(double));
 extern const std::array<std::string_view, step_row_columns> step_row_names;
 
-/// Adds the steps of a run to its plan, their time counted in `seconds` from its start, one per row. Throws Error at the
-/// first row that is no step of this plan; the steps before it are in the plan then.
-void apply_steps(CasePlan& plan, std::span<const StepRow> rows, std::span<const double> seconds);
+/// The steps of a run, added to its plan as their rows come.
+class RunSteps {
+public:
+    /// The run begins where the plan stands.
+    explicit RunSteps(CasePlan plan);
 
-/// Reads what 'record' wrote of a run: a CSV file, complete or as a crash left it. `seconds` gets the time of each row.
-/// Throws Error for files that hold something else.
-std::vector<StepRow> read_step_rows(const std::filesystem::path& path, std::vector<double>& seconds);
+    /// A row, `second` from the start of the run. The step is in the plan once its last row is there. Throws Error for
+    /// what is no step of this plan; it is left out then, and the plan goes on without it.
+    void add(const StepRow& row, double second);
+
+    const CasePlan& plan() const { return plan_; }
+
+private:
+    void go(int head);
+    int head_of(double number, std::size_t count) const;
+    void finish_step(double second);
+
+    CasePlan plan_;
+    PlanState state_;  // at the head
+    std::vector<int> numbers_;  // in the plan, of each number of the run
+    std::vector<StepRow> rows_;  // of the step that is not whole yet
+};
 
 }  // namespace tactus

@@ -41,6 +41,10 @@ bool Arrangement::move(int fragment, const Pose& to) noexcept {
         moved.orientation = glm::normalize(moved.orientation);
     }
     at(fragment).pose = wanted;
+    for (int other = 0; other < static_cast<int>(size()); ++other) {
+        const int partner = fitted_to(other);
+        if (partner != none && move_together(fragment, other) && !move_together(fragment, partner)) fit(other, none);
+    }
     return true;
 }
 

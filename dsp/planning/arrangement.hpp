@@ -11,11 +11,21 @@
 namespace tactus {
 
 /// Fragments with poses, in groups that may hold groups. Fragments and groups are numbered from 0. Memory is taken by
-/// the
-/// constructor and not later, so that a node may keep one.
+/// the constructor and not later, so that a node may keep one.
 class Arrangement {
 public:
     static constexpr int none = -1;
+
+    struct Place {
+        Pose pose;
+        int group = none;
+        int fitted_to = none;  ///< the fragment that it was fitted to, as long as it has not moved off
+        bool locked = false, hidden = false;
+    };
+    struct Group {
+        int parent = none;
+        bool exists = false;
+    };
 
     explicit Arrangement(std::size_t fragments);
 
@@ -23,6 +33,7 @@ public:
     const Pose& pose(int fragment) const noexcept { return at(fragment).pose; }
     bool is_locked(int fragment) const noexcept { return at(fragment).locked; }
     bool is_hidden(int fragment) const noexcept { return at(fragment).hidden; }
+    int fitted_to(int fragment) const noexcept { return at(fragment).fitted_to; }
     /// The innermost group of a fragment, the group that holds a group; `none` when there is none.
     int group_of(int fragment) const noexcept { return at(fragment).group; }
     int parent_of(int group) const noexcept { return groups_[static_cast<std::size_t>(group)].parent; }
@@ -37,13 +48,14 @@ public:
 
     /// Places one fragment and leaves all others: what a recorded step says.
     void place(int fragment, const Pose& pose) noexcept { at(fragment).pose = pose; }
+    /// It lies where it fits this one; `none`: it does not.
+    void fit(int fragment, int partner) noexcept { at(fragment).fitted_to = partner; }
     /// Moves a fragment to `pose` and all that move with it by the same motion; a pose that is none and what is locked
-    /// stay. Returns whether it moved.
+    /// stay. What leaves its partner behind is fitted no more. Returns whether it moved.
     bool move(int fragment, const Pose& pose) noexcept;
 
     /// A new group of these fragments and all that move with them: groups among them stay and are held by it. Returns
-    /// its
-    /// number, or `none` for less than two things to join.
+    /// its number, or `none` for less than two things to join.
     int join(std::span<const int> fragments) noexcept;
     /// A fragment, or the outermost group that it is in, becomes part of a group. False when it is part of it already.
     bool add(int group, int fragment) noexcept;
@@ -55,17 +67,13 @@ public:
     void lock(int fragment, bool locked) noexcept { at(fragment).locked = locked; }
     void hide(int fragment, bool hidden) noexcept { at(fragment).hidden = hidden; }
 
-private:
-    struct Place {
-        Pose pose;
-        int group = none;
-        bool locked = false, hidden = false;
-    };
-    struct Group {
-        int parent = none;
-        bool exists = false;
-    };
+    // All that is known of a fragment and of a group, for those who remember what was.
+    const Place& fragment(int n) const noexcept { return at(n); }
+    const Group& group(int n) const noexcept { return groups_[static_cast<std::size_t>(n)]; }
+    void restore(int fragment, const Place& place) noexcept { at(fragment) = place; }
+    void restore(int group, const Group& was) noexcept { groups_[static_cast<std::size_t>(group)] = was; }
 
+private:
     Place& at(int fragment) noexcept { return places_[static_cast<std::size_t>(fragment)]; }
     const Place& at(int fragment) const noexcept { return places_[static_cast<std::size_t>(fragment)]; }
     int top_of(int group) const noexcept;

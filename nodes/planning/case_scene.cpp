@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "assets/plan/step_row.hpp"
 #include "dsp/planning/arrangement.hpp"
+#include "dsp/planning/step_tree.hpp"
 #include "dsp/snap/fit.hpp"
 #include "graph/assets.hpp"
 #include "graph/node.hpp"
@@ -19,8 +19,8 @@ namespace tactus::nodes {
 struct CaseScene {
     static constexpr auto about =
         "The fragments of a plan as one scene. The one in the hand goes where the coupling has it, with all that is "
-        "grouped with it; letting go, settling, joining, splitting and locking are steps that can be undone, and every "
-        "step is recorded as it is done.";
+        "grouped with it; letting go, settling, joining, splitting, locking and hiding are steps that can be undone, "
+        "those that the plan had before as well. Every step is in the plan's file soon after it is done.";
 
     In<Pose> moved{optional, "where the coupling has the body at place 'which'", "m"};
     In<double> which{optional, "place of the body in the hand, -1 without one"};
@@ -36,13 +36,15 @@ struct CaseScene {
     In<bool> join{optional, "pressed: what is held moves with its partner from now on"};
     In<bool> split{optional, "pressed: what is held leaves all groups"};
     In<bool> lock{optional, "pressed: what is held is locked, or unlocked"};
+    In<bool> hide{optional, "pressed: what was held last is hidden"};
+    In<bool> show{optional, "pressed: all that is hidden is there again"};
     In<bool> undo{optional, "pressed: one step back"};
     In<bool> redo{optional, "pressed: one step on"};
     Out<tactus::Scene> scene{"for grasp, coupling and fragment_matcher"};
     Out<double> steps{"done so far, without those that were undone"};
     Out<bool> settled{"the body in the hand has been put where it fits"};
     Asset<CaseBones> plan{"the plan with its fragments; new steps follow where it stands"};
-    Text file{"plan-steps.csv", "name of the record of steps within the folder of the run"};
+    Text file{"case.plan.json", "name of the plan with the steps of the run, within the run's folder; empty: none"};
     Param loose{"8 mm", "0.1 mm", "100 mm",
                 "a settled body that the hand takes farther than this from where it had it is free again"};
 
@@ -52,41 +54,37 @@ struct CaseScene {
         name_ = setup.name;
         parts_.clear();
         for (const Bone& bone : plan->bones) parts_.push_back(body_of(bone));
-        const PlanState state = state_of(plan->plan);
-        base_fitted_.clear();
-        base_ = std::make_unique<Arrangement>(state.arrangement);
-        now_ = std::make_unique<Arrangement>(state.arrangement);
-        for (std::size_t n = 0; n < parts_.size(); ++n) base_fitted_.push_back(state.fits[n].has_value());
-        fitted_ = base_fitted_;
-        log_ = std::make_unique<StepLog>(parts_.size());
-        if (!file.value.empty())
-            stream_ = &setup.outside->record({file.value, "", &step_row_type, setup.period}, setup.where);
+        now_ = std::make_unique<Arrangement>(state_of(plan->plan).arrangement);
+        kept_ = std::make_unique<Arrangement>(*now_);
+        tree_ = std::make_unique<StepTree>(parts_.size(), plan->plan.steps.size(), most_steps);
+        visit_steps(plan->plan, [this](int n, const PlanState& from, const PlanState& to) {
+            tree_->put(n, plan->plan.steps[static_cast<std::size_t>(n)].before, from.arrangement, to.arrangement);
+        });
+        tree_->stand(plan->plan.place());
+        if (!file.value.empty()) {
+            keeper_ = std::make_shared<StepKeeper>(plan->plan, setup.period);
+            stream_ = &setup.outside->record({file.value, "", &step_row_type, setup.period, keeper_}, setup.where);
+        }
+        arrange_scene();
         tell();
     }
 
     void process(const Tick& tick) noexcept {
-        const bool was_holding = holding_;
-        follow();
+        follow(tick);
         press(tick);
-        if (was_holding && !holding_) keep_last(tick);
-        if (!holding_) settled_ = false;
         tell();
     }
 
     void report(Report& report) const {
-        report.set(name_, "steps", static_cast<double>(log_->count()));
-        if (log_->overflowed()) report.set(name_, "steps_not_kept", 1.0);
-        const auto done = std::make_shared<CasePlan>(plan->plan);
-        try {
-            apply_steps(*done, log_->rows(), log_->seconds());
-        } catch (const Error& error) {
-            // What was done before it is kept all the same.
-            report.set(name_, "error", std::string(error.what()));
-        }
-        report.results[name_] = std::shared_ptr<const CasePlan>(done);
+        report.set(name_, "steps", static_cast<double>(tree_->count()) - static_cast<double>(plan->plan.steps.size()));
+        if (not_kept_) report.set(name_, "steps_not_kept", 1.0);
+        if (keeper_ && !keeper_->trouble().empty()) report.set(name_, "error", keeper_->trouble());
     }
 
 private:
+    // A step a second for nine hours; what a run does beyond that is kept, but those before are not undone any more.
+    static constexpr std::size_t most_steps = 32768;
+
     static std::shared_ptr<const BodyParts> body_of(const Bone& bone) {
         std::vector<SurfacePoint> points = bone.points;
         Vec3 middle(0.0);
@@ -108,34 +106,31 @@ private:
     }
 
     /// The body in the hand, and its group, where the coupling has it.
-    void follow() noexcept {
+    void follow(const Tick& tick) noexcept {
         const int place = held();
         const bool wanted = place >= 0 && (!holding.connected || holding.get());
-        if (wanted && (place != last_ || !holding_)) settled_ = false;
+        if (holding_ && (!wanted || place != last_)) keep_last(tick);
+        if (!wanted || place != last_ || !holding_) settled_ = false;
         holding_ = wanted;
         if (!wanted) return;
         last_ = place;
         if (!is_valid(moved.get())) return;
         const Pose here = file_pose(place, {moved->position, glm::normalize(moved->orientation)});
         if (settled_) {
-            const Vec3& middle = parts_[static_cast<std::size_t>(place)]->home.position;
             // What was in the way of the hand when it settled counts for nothing.
-            if (!(glm::length(here.apply(middle) - let_at_) > loose)) return;
+            if (!(glm::length(middle_at(here) - let_at_) > loose)) return;
             settled_ = false;
         }
-        now_->move(place, here);
-        fitted_[static_cast<std::size_t>(place)] = 0;
+        if (now_->move(place, here)) show_unit(place);
     }
 
     void press(const Tick& tick) noexcept {
-        if (edge(settle, 0) && holding_ && has_fit() && moved.connected && is_valid(moved.get())) {
-            if (now_->move(last_, file_pose(last_, {target->position, glm::normalize(target->orientation)}))) {
-                settled_ = true;
-                const Vec3& middle = parts_[static_cast<std::size_t>(last_)]->home.position;
-                let_at_ = file_pose(last_, {moved->position, glm::normalize(moved->orientation)}).apply(middle);
-                fitted_[static_cast<std::size_t>(last_)] = 1;
-                placed(tick, last_, 1.0);
-            }
+        if (edge(settle, 0) && holding_ && has_fit() && moved.connected && is_valid(moved.get()) &&
+            now_->move(last_, file_pose(last_, {target->position, glm::normalize(target->orientation)}))) {
+            now_->fit(last_, partner_place());
+            settled_ = true;
+            let_at_ = middle_at(file_pose(last_, {moved->position, glm::normalize(moved->orientation)}));
+            placed(tick, 1.0);
         }
         if (edge(join, 1) && last_ >= 0) {
             const int other = partner_place();
@@ -143,19 +138,26 @@ private:
             keep_held(tick);
             if (other >= 0 && now_->join(both) != Arrangement::none) arranged(tick, StepKind::group, other);
         }
-        if (edge(split, 2) && last_ >= 0 && now_->remove(last_)) arranged(tick, StepKind::remove, -1);
+        if (edge(split, 2) && last_ >= 0) {
+            keep_held(tick);
+            if (now_->remove(last_)) arranged(tick, StepKind::remove, -1);
+        }
         if (edge(lock, 3) && last_ >= 0) {
             keep_held(tick);
             now_->lock(last_, !now_->is_locked(last_));
             arranged(tick, now_->is_locked(last_) ? StepKind::lock : StepKind::unlock, -1);
         }
+        if (edge(hide, 6) && last_ >= 0 && !now_->is_hidden(last_)) {
+            keep_held(tick);
+            now_->hide(last_, true);
+            arranged(tick, StepKind::hide, -1);
+        }
+        if (edge(show, 7)) show_all(tick);
         const bool back = edge(undo, 4), on = edge(redo, 5);
-        if (!holding_ && back != on && (back ? log_->undo() : log_->redo())) {
-            restore();
-            StepRow row;
-            row.step = static_cast<double>(log_->count());
-            row.after = static_cast<double>(log_->head());
-            row.kind = row_goes_to;
+        if (!holding_ && back != on && (back ? tree_->undo(*now_) : tree_->redo(*now_))) {
+            *kept_ = *now_;
+            arrange_scene();
+            StepRow row = next(static_cast<double>(row_goes_to));
             write(tick, row);
         }
     }
@@ -171,7 +173,7 @@ private:
         if (holding_) keep_last(tick);
     }
     void keep_last(const Tick& tick) noexcept {
-        if (!settled_ && last_ >= 0 && now_->can_move(last_)) placed(tick, last_, 0.0);
+        if (!settled_ && last_ >= 0 && now_->can_move(last_)) placed(tick, 0.0);
     }
 
     int partner_place() const noexcept {
@@ -185,9 +187,17 @@ private:
         return pressed;
     }
 
-    /// A fragment and all that moves with it stand where they are now.
-    void placed(const Tick& tick, int fragment, double by) noexcept {
-        StepRow row = log_->next(StepKind::place);
+    StepRow next(double kind) const noexcept {
+        StepRow row;
+        row.step = static_cast<double>(tree_->count());
+        row.after = static_cast<double>(tree_->head());
+        row.kind = kind;
+        return row;
+    }
+
+    /// The one in the hand and all that moves with it stand where they are now.
+    void placed(const Tick& tick, double by) noexcept {
+        StepRow row = next(static_cast<double>(StepKind::place));
         row.by = by;
         if (by > 0.0) {
             row.other = partner_place();
@@ -196,82 +206,112 @@ private:
             row.margin = margin.connected ? margin.get() : 0.0;
             row.rms = rms.connected ? rms.get() : 0.0;
         }
-        for (int n = -1; n < static_cast<int>(parts_.size()); ++n) {
-            const int one = n < 0 ? fragment : n;
-            if (n == fragment || !now_->move_together(fragment, one)) continue;
+        const auto count = static_cast<int>(parts_.size());
+        for (int n = 0; n < count; ++n) row.left += n != last_ && now_->move_together(last_, n);
+        for (int n = -1; n < count; ++n) {
+            const int one = n < 0 ? last_ : n;
+            if (n == last_ || !now_->move_together(last_, one)) continue;
             row.fragment = one;
             row.set(now_->pose(one));
             write(tick, row);
+            row.left -= 1.0;
         }
-        log_->done();
+        done();
+        show_unit(last_);
     }
 
     void arranged(const Tick& tick, StepKind kind, int other) noexcept {
-        StepRow row = log_->next(kind);
+        StepRow row = next(static_cast<double>(kind));
         row.fragment = last_;
         row.other = other;
         write(tick, row);
-        log_->done();
+        done();
+        arrange_scene();
+    }
+
+    void show_all(const Tick& tick) noexcept {
+        StepRow row = next(static_cast<double>(StepKind::show));
+        const auto count = static_cast<int>(parts_.size());
+        for (int n = 0; n < count; ++n) row.left += now_->is_hidden(n);
+        if (row.left == 0.0) return;
+        keep_held(tick);
+        row.step = static_cast<double>(tree_->count());
+        row.after = static_cast<double>(tree_->head());
+        for (int n = 0; n < count; ++n) {
+            if (!now_->is_hidden(n)) continue;
+            now_->hide(n, false);
+            row.fragment = n;
+            row.left -= 1.0;
+            write(tick, row);
+        }
+        done();
+        arrange_scene();
     }
 
     void write(const Tick& tick, const StepRow& row) noexcept {
-        log_->add(row, tick.time_seconds());
-        if (stream_) stream_->write(tick.index, &row, 1, sizeof row);
+        if (stream_ && !stream_->write(tick.index, &row, 1, sizeof row)) not_kept_ = true;
     }
 
-    /// What the steps up to the head come to.
-    void restore() noexcept {
-        *now_ = *base_;
-        std::ranges::copy(base_fitted_, fitted_.begin());
-        for (const StepRow& row : log_->rows_to_head()) {
-            const auto fragment = static_cast<int>(row.fragment);
-            const int both[] = {fragment, static_cast<int>(row.other)};
-            switch (static_cast<StepKind>(static_cast<int>(row.kind))) {
-                case StepKind::place:
-                    now_->place(fragment, row.pose());
-                    fitted_[static_cast<std::size_t>(fragment)] = row.verdict >= 0.0;
-                    break;
-                case StepKind::group: now_->join(both); break;
-                case StepKind::remove: now_->remove(fragment); break;
-                case StepKind::lock: now_->lock(fragment, true); break;
-                case StepKind::unlock: now_->lock(fragment, false); break;
-                default: break;
-            }
+    /// What has been done since the last step is a step.
+    void done() noexcept {
+        tree_->add(*kept_, *now_);
+        *kept_ = *now_;
+    }
+
+    Vec3 middle_at(const Pose& pose) const noexcept {
+        return pose.apply(parts_[static_cast<std::size_t>(last_)]->home.position);
+    }
+
+    /// All of the scene anew.
+    void arrange_scene() noexcept {
+        scene_.count = parts_.size();
+        for (std::size_t n = 0; n < parts_.size(); ++n) {
+            const int fragment = static_cast<int>(n);
+            SceneObject& object = scene_.objects[n];
+            object.body = now_->is_hidden(fragment) ? Body{} : parts_[n]->body();
+            object.body.home = parts_[n]->home;
+            object.unit = now_->outermost(fragment);
+            show_place(fragment);
         }
+        is_changed_ = true;
+    }
+    /// Only where one and those that move with it are.
+    void show_unit(int fragment) noexcept {
+        for (int n = 0; n < static_cast<int>(parts_.size()); ++n)
+            if (now_->move_together(fragment, n)) show_place(n);
+        is_changed_ = true;
+    }
+    void show_place(int fragment) noexcept {
+        SceneObject& object = scene_.objects[static_cast<std::size_t>(fragment)];
+        object.pose = now_->pose(fragment) * parts_[static_cast<std::size_t>(fragment)]->home;
+        object.stands = now_->is_locked(fragment) || now_->fitted_to(fragment) != Arrangement::none;
     }
 
     void tell() noexcept {
-        tactus::Scene out;
-        out.count = parts_.size();
-        for (std::size_t n = 0; n < parts_.size(); ++n) {
-            const int fragment = static_cast<int>(n);
-            const BodyParts& part = *parts_[n];
-            const bool is_there = !now_->is_hidden(fragment);
-            out.objects[n] = {is_there ? part.body() : Body{}, now_->pose(fragment) * part.home,
-                              now_->outermost(fragment), now_->is_locked(fragment) || fitted_[n] != 0};
-            out.objects[n].body.home = part.home;
+        if (is_changed_) {
+            ++scene_.version;
+            scene_.content_hash = hash_of(scene_);
+            is_changed_ = false;
         }
-        out.version = ++version_;
-        out.content_hash = hash_of(out);
-        scene = out;
-        steps = static_cast<double>(log_->done_to_head());
+        scene = scene_;
+        steps = static_cast<double>(tree_->done());
         settled = settled_;
     }
 
     std::vector<std::shared_ptr<const BodyParts>> parts_;
-    std::unique_ptr<Arrangement> base_, now_;
-    std::vector<char> base_fitted_, fitted_;
-    std::unique_ptr<StepLog> log_;
+    std::unique_ptr<Arrangement> kept_, now_;  // after the last step, and with what the hand does since
+    std::unique_ptr<StepTree> tree_;
+    std::shared_ptr<StepKeeper> keeper_;
     RecordStream* stream_ = nullptr;
     std::string name_;
-    std::int64_t version_ = 0;
+    tactus::Scene scene_;
     int last_ = -1;
     Vec3 let_at_{0.0};  // where the hand had the middle of a body when it was settled
-    bool holding_ = false, settled_ = false;
-    bool was_[6] = {};
+    bool holding_ = false, settled_ = false, is_changed_ = false, not_kept_ = false;
+    bool was_[8] = {};
 };
 
 TACTUS_NODE(CaseScene, moved, which, holding, target, fits, target_of, partner, score, margin, rms, settle, join, split,
-            lock, undo, redo, scene, steps, settled, plan, file, loose)
+            lock, hide, show, undo, redo, scene, steps, settled, plan, file, loose)
 
 }  // namespace tactus::nodes

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps that are done in a run: kept for undo, and as a stream of rows.
+// The steps of a run on their way from the tick to the plan's file.
 #pragma once
 
-#include "assets/plan/step_row.hpp"
+#include "assets/plan/plan_keeper.hpp"
+#include "graph/setup.hpp"
 #include "graph/value.hpp"
 
-#include <algorithm>
-#include <cstddef>
 #include <cstring>
+#include <memory>
 #include <new>
-#include <span>
-#include <vector>
+#include <string>
+#include <utility>
 
 namespace tactus::nodes {
 
@@ -27,92 +27,33 @@ inline const ValueType step_row_type{
     .load_asset = nullptr,
 };
 
-/// The tree of a run's steps. Takes its memory when made; what is done beyond that is recorded, but not undone.
-class StepLog {
+/// Gives the rows of a stream to the plan's keeper.
+class StepKeeper : public StreamKeeper {
 public:
-    explicit StepLog(std::size_t fragments) {
-        const std::size_t most = most_steps + 16 * fragments;
-        rows_.reserve(most);
-        seconds_.reserve(most);
-        steps_.reserve(most_steps);
-        way_.reserve(most);
-    }
+    StepKeeper(const CasePlan& plan, Flicks period) : plan_(plan), period_(period) {}
 
-    std::size_t count() const noexcept { return steps_.size(); }
-    int head() const noexcept { return head_; }
-    bool overflowed() const noexcept { return overflowed_; }
-    std::span<const StepRow> rows() const noexcept { return rows_; }
-    std::span<const double> seconds() const noexcept { return seconds_; }
-
-    /// The row that a new step begins with.
-    StepRow next(StepKind kind) noexcept {
-        StepRow row;
-        row.step = static_cast<double>(steps_.size());
-        row.after = head_;
-        row.kind = static_cast<double>(kind);
-        first_ = rows_.size();
-        return row;
-    }
-    void add(const StepRow& row, double second) noexcept {
-        if (rows_.size() == rows_.capacity() || steps_.size() == steps_.capacity()) {
-            overflowed_ = true;
-            return;
+    void open(const std::string& path) override { plan_keeper_.emplace(std::move(plan_), path); }
+    void take(std::int64_t first, const std::byte* values, std::size_t count) override {
+        for (std::size_t n = 0; n < count; ++n) {
+            StepRow row;
+            std::memcpy(static_cast<void*>(&row), values + n * sizeof row, sizeof row);
+            plan_keeper_->add(row, seconds((first + static_cast<std::int64_t>(n)) * period_));
         }
-        rows_.push_back(row);
-        seconds_.push_back(second);
     }
-    /// The rows since `next` are a step.
-    void done() noexcept {
-        if (overflowed_) {
-            // Half a step is none.
-            rows_.resize(first_);
-            seconds_.resize(first_);
-            return;
-        }
-        steps_.push_back({head_, first_, rows_.size()});
-        head_ = tip_ = static_cast<int>(steps_.size()) - 1;
+    void save() override { plan_keeper_->save(); }
+    void finish() override {
+        plan_keeper_->finish();
+        trouble_ = plan_keeper_->trouble();
+        plan_keeper_.reset();
     }
-    bool undo() noexcept {
-        if (head_ < 0) return false;
-        head_ = steps_[static_cast<std::size_t>(head_)].before;
-        return true;
-    }
-    bool redo() noexcept {
-        int n = tip_;
-        while (n >= 0 && n != head_ && steps_[static_cast<std::size_t>(n)].before != head_)
-            n = steps_[static_cast<std::size_t>(n)].before;
-        if (n < 0 || n == head_) return false;
-        head_ = n;
-        return true;
-    }
-    int done_to_head() const noexcept {
-        int count = 0;
-        for (int n = head_; n >= 0; n = steps_[static_cast<std::size_t>(n)].before) ++count;
-        return count;
-    }
-    /// The rows of all steps up to the head, in their order.
-    std::span<const StepRow> rows_to_head() noexcept {
-        way_.clear();
-        for (int n = head_; n >= 0; n = steps_[static_cast<std::size_t>(n)].before)
-            for (std::size_t r = steps_[static_cast<std::size_t>(n)].end;
-                 r-- > steps_[static_cast<std::size_t>(n)].first;)
-                way_.push_back(rows_[r]);
-        std::reverse(way_.begin(), way_.end());
-        return way_;
-    }
+    /// What was left out of the plan, when the run is over; mostly nothing.
+    const std::string& trouble() const { return trouble_; }
 
 private:
-    static constexpr std::size_t most_steps = 4096;
-    struct Step {
-        int before;
-        std::size_t first, end;
-    };
-    std::vector<StepRow> rows_, way_;
-    std::vector<double> seconds_;
-    std::vector<Step> steps_;
-    std::size_t first_ = 0;
-    int head_ = -1, tip_ = -1;
-    bool overflowed_ = false;
+    CasePlan plan_;
+    Flicks period_;
+    std::optional<PlanKeeper> plan_keeper_;
+    std::string trouble_;
 };
 
 }  // namespace tactus::nodes

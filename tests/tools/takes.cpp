@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Takes, replay, and changes to a patch that runs, as scripts use them.
-#include "tests/tools/run_command.hpp"
+#include "tests/tools/background_run.hpp"
 
 #include <sndfile.h>
 #include <catch2/catch.hpp>
@@ -51,41 +51,6 @@ type = "constant"
 rate = "60 Hz"
 number = 0.5
 )";
-
-/// A run in the background.
-class Run {
-public:
-    Run(const Folder& folder, const std::string& arguments) {
-        process_ = ::fork();
-        if (process_ != 0) return;
-        const std::string command = "exec " + std::string(TACTUS_COMMAND) + " run " + arguments + " >" +
-                                    (folder.path / "run.out").string() + " 2>" + (folder.path / "run.err").string();
-        ::setenv("XDG_RUNTIME_DIR", folder.path.c_str(), 1);
-        ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
-        ::_exit(127);
-    }
-    ~Run() {
-        if (process_ > 0) stop(SIGKILL);
-    }
-    int stop(int signal) {
-        int status = 0;
-        ::kill(process_, signal);
-        ::waitpid(process_, &status, 0);
-        process_ = -1;
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    }
-
-private:
-    pid_t process_ = -1;
-};
-
-bool wait_for(const std::function<bool()>& condition) {
-    for (int i = 0; i < 600; ++i) {
-        if (condition()) return true;
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    }
-    return false;
-}
 
 void flip_byte(const fs::path& path, std::int64_t from_end) {
     std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);

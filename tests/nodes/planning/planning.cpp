@@ -59,6 +59,7 @@ struct Session {
                  split = 1'000'000;
     Pose at = beside, fit;
     double target_of = 1.0;
+    std::vector<const char*> buttons{"lock", "hide", "show"};  ///< that nobody presses
 
     void run(std::int64_t ticks) {
         const auto press = [this](const char* input, const std::int64_t* when) {
@@ -72,7 +73,7 @@ struct Session {
         node.feed<bool>("fits", true);
         node.feed<double>("partner", 0.0).feed<double>("target_of", target_of);
         for (const char* number : {"score", "margin", "rms"}) node.feed<double>(number, 0.5);
-        node.disconnect("lock");
+        for (const char* button : buttons) node.disconnect(button);
         press("settle", &settle);
         press("undo", &undo);
         press("redo", &redo);
@@ -87,8 +88,12 @@ struct Session {
         const SceneObject& o = now.objects[static_cast<std::size_t>(n)];
         return o.pose * o.body.home.inverse();
     }
+    /// What the rows come to that left the node.
     CasePlan plan() const {
-        return *std::any_cast<std::shared_ptr<const CasePlan>>(node.report().results.begin()->second);
+        RunSteps steps(broken()->plan);
+        const auto& stream = *node.outside.records[0];
+        for (const StepRow& row : stream.values<StepRow>()) steps.add(row, 0.0);
+        return steps.plan();
     }
 };
 
@@ -113,19 +118,12 @@ TEST_CASE("a settled fragment stands where it fits when it is let go, and the st
     session.fit = {Vec3(0.1, 0.2, -0.1) * mm, rotation_by({0.001, 0.0, 0.002})};
     session.run(400);
     CHECK(off(session.file_pose(1), session.fit) < 1e-12);
-    CHECK(session.node.last<double>("steps") == 1.0);
+    CHECK(session.node.last<double>("steps") == 3.0);
     const CasePlan plan = session.plan();
     REQUIRE(plan.steps.size() == 3);
     CHECK(plan.steps[2].by == "settle");
     CHECK(plan.steps[2].fit->partner == "left");
-    CHECK(*plan.steps[2].run_second == Approx(0.1));
-    // Told to the stream as it was done, and read back as the same pose.
-    REQUIRE(session.node.outside.records.size() == 1);
-    const auto& stream = *session.node.outside.records[0];
-    REQUIRE(stream.used == sizeof(StepRow));
-    StepRow row;
-    std::memcpy(static_cast<void*>(&row), stream.bytes.data(), sizeof row);
-    CHECK(same_bits(row.pose(), plan.steps[2].poses[0]));
+    CHECK(same_bits(session.file_pose(1), plan.steps[2].poses[0]));
     CHECK(session.scene().objects[1].stands);
     CHECK_FALSE(session.scene().objects[2].stands);
 }
@@ -146,7 +144,7 @@ TEST_CASE("what a run did is undone and redone, and undoing is part of its plan"
     session.undo = 300;
     session.run(310);
     CHECK(off(session.file_pose(1)) < 1e-12);
-    CHECK(session.node.last<double>("steps") == 0.0);
+    CHECK(session.node.last<double>("steps") == 2.0);
     CasePlan plan = session.plan();
     CHECK(plan.steps.size() == 3);
     CHECK(plan.place().head == 1);
@@ -194,25 +192,78 @@ TEST_CASE("joined fragments are one unit of the scene until they are split") {
     CHECK((joined - 1)->kind == StepKind::place);
 }
 
-TEST_CASE("rows of a run that are no steps of the plan are refused, and those before them are kept") {
-    StepRow row;
-    row.fragment = 7.0;
-    const double second[] = {0.0};
-    CasePlan plan = broken()->plan;
-    CHECK_THROWS_WITH(apply_steps(plan, {&row, 1}, second), Catch::Contains("7 is no fragment"));
-    row.fragment = 1.0;
-    row.after = 3.0;
-    CHECK_THROWS_AS(apply_steps(plan, {&row, 1}, second), Error);
-    StepRow rows[2];
-    rows[0].kind = static_cast<double>(StepKind::lock);
-    rows[0].fragment = 1.0;
-    rows[1] = rows[0];
-    rows[1].step = 1.0;
-    rows[1].fragment = 7.0;
-    const double both[] = {0.0, 1.0};
-    const std::size_t before = plan.steps.size();
-    CHECK_THROWS_AS(apply_steps(plan, rows, both), Error);
-    CHECK(plan.steps.size() == before + 1);
+TEST_CASE("a run undoes and redoes the steps that its plan had before, and goes on from there") {
+    Session session;
+    session.release = 0;
+    session.undo = 100;
+    session.redo = 200;
+    session.run(150);
+    // The last one put the copy away.
+    CHECK(off(session.file_pose(2)) < 1e-12);
+    CHECK(session.plan().place().head == 0);
+    session.node.run(100);
+    CHECK(off(session.file_pose(2), broken()->plan.steps[1].poses[0]) < 1e-12);
+    CHECK(session.plan().place().head == 1);
+    CHECK(session.plan().steps.size() == 2);
+}
+
+TEST_CASE("what is hidden leaves the scene until all is shown again, and both are steps") {
+    Session session;
+    session.release = 50;
+    session.node.feed<bool>("hide", [](std::int64_t k) { return k >= 100 && k < 105; });
+    session.node.feed<bool>("show", [](std::int64_t k) { return k >= 200 && k < 205; });
+    session.buttons = {"lock"};
+    session.run(150);
+    CHECK(session.scene().objects[1].body.shell == nullptr);
+    CHECK(session.scene().objects[0].body.shell != nullptr);
+    session.node.run(100);
+    CHECK(session.scene().objects[1].body.shell != nullptr);
+    const std::vector<PlanStep> steps = session.plan().steps;
+    REQUIRE(steps.size() == 5);
+    CHECK(steps[3].kind == StepKind::hide);
+    CHECK(steps[4].kind == StepKind::show);
+    CHECK(steps[4].fragments == std::vector<int>{1});
+}
+
+TEST_CASE("a scene that nothing moves keeps its version, and one that the hand moves does not") {
+    Session session;
+    session.release = 100;
+    session.run(300);
+    const auto scenes = session.node.values<Scene>("scene");
+    CHECK(scenes[90].version > scenes[50].version);
+    CHECK(scenes[299].version == scenes[200].version);
+    CHECK(scenes[299].content_hash == hash_of(scenes[299]));
+}
+
+TEST_CASE("a row of a run that is no step of its plan is refused, and the steps around it are kept") {
+    RunSteps steps(broken()->plan);
+    const auto lock = [](double step, double after, double fragment) {
+        StepRow row;
+        row.step = step;
+        row.after = after;
+        row.kind = static_cast<double>(StepKind::lock);
+        row.fragment = fragment;
+        return row;
+    };
+    steps.add(lock(2.0, 1.0, 1.0), 0.0);
+    CHECK_THROWS_WITH(steps.add(lock(3.0, 2.0, 7.0), 0.1), Catch::Contains("7 is no fragment"));
+    CHECK_THROWS_AS(steps.add(lock(4.0, 9.0, 2.0), 0.2), Error);
+    CHECK_THROWS_AS(steps.add(lock(4.0, 3.0, 2.0), 0.2), Error);
+    CHECK_THROWS_AS(steps.add(lock(1e300, 3.0, 2.0), 0.2), Error);
+    // It follows the one that was left out, so it follows the one before that; number 6 never came.
+    steps.add(lock(7.0, 3.0, 2.0), 0.3);
+    // The first of two rows, and then no second one.
+    StepRow half;
+    half.step = 8.0;
+    half.after = 7.0;
+    half.left = 1.0;
+    steps.add(half, 0.4);
+    steps.add(lock(9.0, 7.0, 0.0), 0.5);
+    const CasePlan& plan = steps.plan();
+    REQUIRE(plan.steps.size() == 5);
+    CHECK(plan.steps[3].before == 2);
+    CHECK(plan.steps[3].fragments == std::vector<int>{2});
+    CHECK(plan.steps[4].before == 3);
 }
 
 TEST_CASE("the matcher finds where a fragment fits from beside it, and says that a copy of its partner does not") {

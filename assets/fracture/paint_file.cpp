@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/paint_file.hpp"
+#include "assets/fracture/paint_file.hpp"
 
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/planning/faces.hpp"
+#include "dsp/planning/surface_brush.hpp"
 #include "dsp/snap/neighbours.hpp"
 
 #include <fmt/format.h>
@@ -33,17 +34,14 @@ std::vector<Vec3> strokes_of(const Json& json, const char* key, const std::strin
     return strokes;
 }
 
-void brush(std::span<SurfacePoint> points, const std::vector<Vec3>& strokes, double radius, std::uint8_t label) {
-    for (const Vec3& centre : strokes)
-        for (SurfacePoint& p : points)
-            if (glm::dot(p.position - centre, p.position - centre) <= radius * radius) p.label = label;
-}
-
 }  // namespace
 
 void paint_from_file(std::span<SurfacePoint> points, const std::filesystem::path& path, bool keep) {
-    const std::string file = path.string();
-    const Json json = Json::parse(read_whole_file(path), nullptr, false);
+    paint_from_text(points, read_whole_file(path), path.string(), keep);
+}
+
+void paint_from_text(std::span<SurfacePoint> points, std::string_view text, const std::string& file, bool keep) {
+    const Json json = Json::parse(text, nullptr, false);
     if (!json.is_object() || (!json.contains("paint") && !json.contains("erase")))
         throw Error(fmt::format(
             "{}: expected {{\"radius_mm\": r, \"paint\": [[x, y, z], ...], \"erase\": [[x, y, z], ...]}}", file));
@@ -55,8 +53,10 @@ void paint_from_file(std::span<SurfacePoint> points, const std::filesystem::path
     const auto paint = strokes_of(json, "paint", file), erase = strokes_of(json, "erase", file);
     if (!keep)
         for (SurfacePoint& p : points) p.label = surface_label::none;
-    brush(points, paint, radius, surface_label::fracture);
-    brush(points, erase, radius, surface_label::none);
+    SurfaceBrush brush({points.begin(), points.end()});
+    for (const Vec3& place : paint) brush.stroke(place, radius, surface_label::fracture);
+    for (const Vec3& place : erase) brush.stroke(place, radius, surface_label::none);
+    std::ranges::copy(brush.points(), points.begin());
 }
 
 std::vector<PaintedFace> painted_faces(std::span<const SurfacePoint> points) {

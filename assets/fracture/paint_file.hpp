@@ -7,15 +7,18 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tactus {
 
 /// Reads {"radius_mm": r, "paint": [[x, y, z], ...], "erase": [[x, y, z], ...]} and labels the points within the
-/// radius of a
-/// stroke as fracture; those within it of an erasing stroke are none then. Labels that no stroke meets are taken off
+/// radius of a stroke as fracture; those within it of an erasing stroke are none then. Labels that no stroke meets are taken off
 /// unless `keep`. Throws Error.
 void paint_from_file(std::span<SurfacePoint> points, const std::filesystem::path& path, bool keep = false);
+
+/// The same of a file's text; `file` is its name in messages.
+void paint_from_text(std::span<SurfacePoint> points, std::string_view text, const std::string& file, bool keep = false);
 
 /// A painted face, for people: m.
 struct PaintedFace {
