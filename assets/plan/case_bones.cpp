@@ -33,7 +33,9 @@ FragmentBone fragment_bone(const PlanFragment& fragment, const std::filesystem::
             std::ranges::any_of(points, [](const SurfacePoint& p) { return p.label == surface_label::fracture; });
         if (!loaded.was_painted && paint == Paint::or_proposed) propose_fracture(points);
     } catch (const Error& error) {
-        throw Error(fmt::format("fragment '{}': {}", fragment.name, error.what()));
+        const bool is_bone = file_of_bone(fragment.file).extension() == ".vdb";
+        throw Error(fmt::format("fragment '{}': {}{}", fragment.name, error.what(),
+                                is_bone ? "" : "; a plan also takes the .vdb that 'tactus import' makes of it"));
     }
     return loaded;
 }
