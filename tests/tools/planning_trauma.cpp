@@ -9,11 +9,15 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <numbers>
 #include <sstream>
+#include <string>
+#include <vector>
 
 using namespace tactus;
 using nlohmann::json;
@@ -54,6 +58,48 @@ Pose pose_in(const json& j) {
     const json &p = j["position_m"], &q = j["quaternion_wxyz"];
     return {Vec3(p[0].get<double>(), p[1].get<double>(), p[2].get<double>()),
             {q[0].get<double>(), q[1].get<double>(), q[2].get<double>(), q[3].get<double>()}};
+}
+
+/// What the hand does and when: 'TIME s: place | buttons', one line each.
+struct HandLine {
+    double time;
+    std::string place, buttons;
+    bool has(const char* button) const { return buttons.find(button) != std::string::npos; }
+};
+
+std::vector<HandLine> hand_lines() {
+    std::vector<HandLine> lines;
+    std::ifstream file(case_folder() / "hand.txt");
+    for (std::string line; std::getline(file, line);) {
+        const auto colon = line.find(':'), bar = line.find('|');
+        if (colon == std::string::npos || bar == std::string::npos || line.starts_with('#')) continue;
+        lines.push_back({std::stod(line), line.substr(colon, bar - colon), line.substr(bar)});
+    }
+    return lines;
+}
+
+/// The force before the limiter, one per millisecond.
+std::vector<Vec3> forces(const fs::path& path) {
+    std::vector<Vec3> all;
+    std::ifstream file(path);
+    std::string line;
+    std::getline(file, line);
+    while (std::getline(file, line)) {
+        Vec3 f;
+        double t = 0.0;
+        REQUIRE(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf", &t, &f.x, &f.y, &f.z) == 4);
+        all.push_back(f);
+    }
+    return all;
+}
+
+/// From one millisecond to the next, the most within so many after `time`.
+double step_after(const std::vector<Vec3>& force, double time, double milliseconds) {
+    double most = 0.0;
+    for (auto k = static_cast<std::size_t>(time * 1e3);
+         k < force.size() && static_cast<double>(k) < time * 1e3 + milliseconds; ++k)
+        if (k > 0) most = std::max(most, glm::length(force[k] - force[k - 1]));
+    return most;
 }
 
 }  // namespace
@@ -97,6 +143,29 @@ TEST_CASE("render planning-trauma: every piece within 0.3 mm and 0.55 degrees, t
     }
     CAPTURE(worst * 1e3, worst_turn);
     CHECK(chain < 0.5e-3);
+    // What the hand feels: hardly ever limited, still when the hand is, no step when it takes, asks, or lets go.
+    CHECK(summary["contact"]["limited_ticks"].get<double>() < 1e-3 * summary["force"]["ticks"].get<double>());
+    const std::vector<Vec3> force = forces(out / "force.csv");
+    const std::vector<HandLine> hand = hand_lines();
+    REQUIRE(force.size() == 90'000);
+    double ripple = 0.0, taken = 0.0, asked = 0.0, settling = 0.0;
+    int stills = 0;
+    for (std::size_t n = 1; n < hand.size() && hand[n].time < 89.0; ++n) {
+        const HandLine &last = hand[n - 1], &now = hand[n];
+        if (last.has("trigger") != now.has("trigger")) taken = std::max(taken, step_after(force, now.time, 100.0));
+        if (last.has("second") != now.has("second")) asked = std::max(asked, step_after(force, now.time, 100.0));
+        if (last.has("third") != now.has("third")) settling = std::max(settling, step_after(force, now.time, 5.0));
+        if (last.place != now.place || now.time - last.time < 0.15 || !last.has("trigger")) continue;
+        ++stills;
+        const auto end = static_cast<std::size_t>(now.time * 1e3);
+        for (std::size_t k = end - 100; k < end; ++k) ripple = std::max(ripple, glm::length(force[k] - force[end - 1]));
+    }
+    CAPTURE(ripple, taken, asked, settling, stills);
+    CHECK(stills > 50);
+    CHECK(ripple < 5e-3);
+    CHECK(taken < 0.02);
+    CHECK(asked < 0.02);
+    CHECK(settling < 0.1);
     // A process of its own opens the plan and has the same poses; so has the take that is replayed.
     const json shown = json::parse(folder.tactus("plan show " + (out / "case.plan.json").string() + " --json").out);
     CHECK(shown["problems"].empty());
