@@ -165,9 +165,11 @@ std::string fragments_table(const Case& c) {
         if (const auto& fit = c.state.fits[n])
             out += fmt::format(
                 "<td>{}</td><td class=\"{}\">{}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td "
-                "class=\"n\">{:.3f}</td><td class=\"n\">{:.0f}</td>",
+                "class=\"n\">{:.3f}</td><td class=\"n\">{}</td>",
                 html::escaped(fit->partner), fit->verdict == "fit" ? "pass" : "fail", html::escaped(fit->verdict),
-                fit->score, fit->margin, fit->rms * 1e3, fit->overlap * 1e6);
+                fit->score, fit->margin, fit->rms * 1e3,
+                // A live step does not know it.
+                fit->overlap > 0.0 ? fmt::format("{:.0f}", fit->overlap * 1e6) : "–");
         else out += "<td>–</td><td>–</td><td></td><td></td><td></td><td></td>";
         const int number = static_cast<int>(n);
         std::string marks;
