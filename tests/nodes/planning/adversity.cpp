@@ -24,9 +24,11 @@ namespace {
 constexpr double mm = 1e-3;
 constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
 
-double largest_step(const std::vector<Wrench>& felt) {
+/// From one tick to the next, from `first` on.
+double largest_step(const std::vector<Wrench>& felt, std::size_t first) {
     double most = 0.0;
-    for (std::size_t k = 1; k < felt.size(); ++k) most = std::max(most, glm::length(felt[k].force - felt[k - 1].force));
+    for (std::size_t k = first; k < felt.size(); ++k)
+        most = std::max(most, glm::length(felt[k].force - felt[k - 1].force));
     return most;
 }
 
@@ -79,7 +81,8 @@ TEST_CASE("bone that is carved away at the break while a fragment snaps to it ch
     node.prepare();
     node.run(1600);
     CHECK(node.finite());
-    CHECK(largest_step(node.values<Wrench>("wrench")) < 0.3);
+    // It has snapped before the carving begins.
+    CHECK(largest_step(node.values<Wrench>("wrench"), 250) < 0.1);
     // What is left of the break still holds it in its place.
     const Pose rest = node.last<Pose>("pose");
     double off = 0.0;
