@@ -276,6 +276,10 @@ TEST_CASE("what cannot be planned is refused in one line, and nothing is lost") 
     const std::string whole = slurp(boxes.plan);
     boxes.folder.write("metres.stl", box_stl(Vec3(0.0), Vec3(0.010, 0.012, 0.014), false));
     boxes.folder.write("open.stl", box_stl(Vec3(0.0), Vec3(10.0, 12.0, 14.0), true));
+    std::string fin = box_stl(Vec3(0.0), Vec3(10.0, 12.0, 14.0), false);
+    fin.insert(fin.find("endsolid"),
+               "facet normal 0 0 0\nouter loop\nvertex 10 0 0\nvertex 10 12 0\nvertex 20 6 0\nendloop\nendfacet\n");
+    boxes.folder.write("fin.stl", fin);
     boxes.folder.write("cut.plan.json", whole.substr(0, whole.size() / 2));
     std::string later = whole;
     later.replace(later.find("\"version\": 1"), 12, "\"version\": 9");
@@ -286,6 +290,7 @@ TEST_CASE("what cannot be planned is refused in one line, and nothing is lost") 
         {"new " + fresh + " " + boxes.file("a.stl") + " a=" + boxes.file("b.stl"), "there is a fragment 'a' already"},
         {"new " + fresh + " " + boxes.file("metres.stl"), "--unit"},
         {"new " + fresh + " " + boxes.file("open.stl"), "fragment 'open'"},
+        {"new " + fresh + " " + boxes.file("fin.stl"), "fragment 'fin'"},
         {"new " + fresh + " " + boxes.file("none.stl"), "no such file"},
         {"show " + boxes.file("cut.plan.json"), "ends in the middle"},
         {"undo " + boxes.file("later.plan.json"), "version 9"},
@@ -299,6 +304,17 @@ TEST_CASE("what cannot be planned is refused in one line, and nothing is lost") 
         CHECK(done.code == 2);
         CHECK(std::ranges::count(done.err, '\n') == 1);
         CHECK_THAT(done.err, Catch::Contains(message));
+    }
+    // A fragment whose file is gone: nothing begins, neither by command nor live.
+    std::filesystem::remove(boxes.file("b.stl"));
+    for (const std::string& command :
+         {"plan gap " + boxes.plan, "plan export " + boxes.plan + " --out " + boxes.file("out"),
+          "run planning-trauma --audio none --asset case=" + boxes.plan + " --out " + boxes.file("run")}) {
+        const Outcome done = boxes.folder.tactus(command);
+        INFO(command << "\n" << done.err);
+        CHECK(done.code == 2);
+        CHECK(std::ranges::count(done.err, '\n') == 1);
+        CHECK_THAT(done.err, Catch::Contains("fragment 'b'") && Catch::Contains("b.stl is missing"));
     }
     CHECK(slurp(boxes.plan) == whole);
     CHECK(slurp(boxes.file("later.plan.json")) == later);
