@@ -49,8 +49,11 @@ void give(KeptEnd& end, std::int64_t first, std::vector<double> values) {
 }
 
 bool soon(const std::function<bool()>& is_so) {
-    for (int n = 0; n < 3000 && !is_so(); ++n) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    return is_so();
+    for (int n = 0; n < 3000; ++n) {
+        if (is_so()) return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
 }
 
 }  // namespace
