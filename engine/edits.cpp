@@ -118,6 +118,8 @@ void Engine::close_ended() {
         if (group->is_over()) end_thread(*group);
     for (const auto& [name, tap] : taps_)
         if (tap.stream && tap.group->is_over()) tap.stream->finish();
+    for (const Tap& tap : ending_taps_)
+        if (tap.stream && tap.group->is_over()) tap.stream->finish();
     list_open_taps();
     for (const auto& stream : outside_.streams) {
         const bool in_use = std::ranges::any_of(now_->nodes, [&](const auto& node) {

@@ -49,19 +49,16 @@ Engine::Engine(Plan plan, const EngineOptions& options)
                 .take = {},
                 .observer = options.observer} {
     if (options_.devices) outside_.imitate(*options_.devices);
-    if (options_.take && !options_.tap)
+    if (options_.take && !options_.tap) {
         options_.tap = [this](const std::string& port, const ValueType& type, const GroupRuntime& group) {
             return options_.take->stream(port, type, group);
         };
-    if (options_.tap) {
-        workshop_.take = [this](const std::string& port, const ValueType& type,
-                                const GroupRuntime& group) -> RecordStream* {
-            const std::string name = fmt::format("{} {} {}", port, group.index, type.name);
-            Tap& tap = taps_[name];
-            if (!tap.stream) tap = {options_.tap(port, type, group), &group};
-            return tap.stream.get();
+        wants_record_ = records_ = was_recorded_ = options_.record_values;
+    } else records_ = true;
+    if (options_.tap)
+        workshop_.take = [this](const std::string& port, const ValueType& type, const GroupRuntime& group) {
+            return records_ ? tap_of(port, type, group) : nullptr;
         };
-    }
     if (options_.replay && options_.replay->plan_hash != plan_hash_)
         throw Error("the timing log was made with another patch or other settings; replay needs the same");
     if (options_.take) options_.take->begin(plan.patch, plan_hash_);
@@ -70,6 +67,13 @@ Engine::Engine(Plan plan, const EngineOptions& options)
     keep_opened();
     adopt_groups(*now_, 0);
     for (std::size_t g = 0; g < now_->groups.size(); ++g) now_->groups[g]->scheduled.push_back(now_->programs[g].get());
+}
+
+RecordStream* Engine::tap_of(const std::string& port, const ValueType& type, const GroupRuntime& group) {
+    const std::string name = fmt::format("{} {} {}", port, group.index, type.name);
+    Tap& tap = taps_[name];
+    if (!tap.stream) tap = {options_.tap(port, type, group), &group};
+    return tap.stream.get();
 }
 
 /// What the nodes of a new generation opened belongs to the run from now on.
@@ -83,8 +87,11 @@ void Engine::keep_opened() {
 
 void Engine::list_open_taps() {
     open_taps_.clear();
-    for (const auto& [name, tap] : taps_)
+    const auto list = [this](const Tap& tap) {
         if (tap.stream && !tap.stream->is_finished()) open_taps_.push_back(tap.stream.get());
+    };
+    for (const auto& [name, tap] : taps_) list(tap);
+    for (const Tap& tap : ending_taps_) list(tap);
 }
 
 Engine::~Engine() = default;
@@ -232,12 +239,18 @@ void Engine::drain_log() {
         progress.push_back({group->index, done, done * group->plan->period});
     }
     TimingRecord record;
-    for (const auto& ring : log_rings_)
-        while (ring->pop(record)) {
-            if (log_) log_->write(record);
-            if (options_.take) options_.take->record(record);
-        }
-    if (options_.take) options_.take->checkpoint(progress);
+    try {
+        for (const auto& ring : log_rings_)
+            while (ring->pop(record)) {
+                if (log_) log_->write(record);
+                if (options_.take) options_.take->record(record);
+            }
+        if (options_.take) options_.take->checkpoint(progress);
+    } catch (const Error& error) {
+        // Nobody has asked for it yet: the run goes on without.
+        if (was_recorded_ || log_ || !options_.take) throw;
+        give_up_journal(error.what());
+    }
 }
 
 void Engine::finish() {
@@ -246,10 +259,11 @@ void Engine::finish() {
     for (const auto& card : outside_.cards) card->close();
     if (!options_.take) return;
     options_.take->finish(port_hashes());
-    for (const auto& [name, tap] : taps_)
+    for (auto& [name, tap] : taps_) ending_taps_.push_back(std::move(tap));
+    for (const Tap& tap : ending_taps_)
         if (tap.stream && tap.stream->dropped() > 0)
             throw Error(fmt::format("the take is not whole: {} values of {} were lost because the disk was too slow",
-                                    tap.stream->dropped(), name));
+                                    tap.stream->dropped(), tap.stream->format().file));
 }
 
 void Engine::fail(std::exception_ptr error) {

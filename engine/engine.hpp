@@ -32,6 +32,8 @@ struct EngineOptions {
     const TimingLog* replay = nullptr;  ///< repeat what timing decided in a live run
     const std::vector<RecordedDevice>* devices = nullptr;  ///< stand-ins for the devices of the run that is repeated
     TakeWriter* take = nullptr;  ///< records the run
+    bool record_values = true;  ///< the take has them from the beginning; else from `Engine::record` on
+    std::uint64_t longest_journal = std::uint64_t{4} << 30;  ///< bytes of decisions kept while no values are recorded
     Observer* observer = nullptr;  ///< looks on; changes nothing
     bool live = false;
     AudioChoice audio;  ///< live only
@@ -88,6 +90,13 @@ public:
     /// While a live run goes on, from `watch`: forces fade to zero and logical time stops, or it goes on and forces come
     /// in anew. A take repeats it to the bit.
     void pause(bool wanted) { wants_pause_ = wanted; }
+    /// While a live run with a take goes on, from `watch`: from a moment a little ahead on, the same for all groups, the
+    /// take holds every value, or no more. What timing decided it holds from the beginning, so it repeats the run up to
+    /// there. No tick is disturbed. Throws Error when the take was given up.
+    void record(bool wanted);
+    bool is_recording() const { return options_.take && wants_record_; }
+    /// Some values are in the take.
+    bool was_recorded() const { return was_recorded_; }
     enum class Pausing : std::uint8_t { runs, fades, stands };
     Pausing pausing() const;
     /// No edit is on its way.
@@ -136,6 +145,11 @@ private:
     void live_worker(GroupRuntime& group);
     void start_thread(GroupRuntime& group);
     void tend_pause();
+    void tend_record();
+    void begin_record();
+    void end_record();
+    void give_up_journal(const std::string& why);
+    RecordStream* tap_of(const std::string& port, const ValueType& type, const GroupRuntime& group);
     void tend_edits();
     void hand_over(std::unique_ptr<Generation> next);
     void retire();
@@ -154,7 +168,9 @@ private:
         const GroupRuntime* group;
     };
     std::map<std::string, Tap> taps_;  // by output, group and type: one writing thread each
+    std::vector<Tap> ending_taps_;  // of stretches that are over
     std::vector<Stream*> open_taps_;  // those that may still be written
+    bool wants_record_ = false, records_ = false, was_recorded_ = false;
     std::vector<std::shared_ptr<GroupRuntime>> groups_;
     std::unique_ptr<Generation> now_, before_;
     std::vector<std::unique_ptr<Generation>> scheduled_;  // offline: all that come before `now_`

@@ -385,9 +385,9 @@ private:
     ObservedPort& observed(LiveNode& node, std::size_t output, const std::string& name) {
         if (node.seen.size() <= output) {
             const GroupRuntime& group = *node.group;
-            node.seen.push_back(workshop_.observer->open(
-                {name, group.plan->name, group.plan->period, group.plan->has_audio ? group.max_frames : 1},
-                *node.outputs[output]->type, node.outputs[output]->data));
+            node.seen.push_back(
+                workshop_.observer->open({name, group.plan->period, group.plan->has_audio ? group.max_frames : 1},
+                                         *node.outputs[output]->type, node.outputs[output]->data));
         }
         return *node.seen[output];
     }

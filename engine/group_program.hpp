@@ -11,6 +11,7 @@
 #include "graph/device.hpp"
 #include "graph/setup.hpp"
 
+#include <atomic>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -79,10 +80,15 @@ struct PublishedOutput {
     bool is_signal = false;
     Hash hash;
     SignalHash samples;
-    RecordStream* take = nullptr;  ///< where every value is recorded, or null
+    /// Where every value is recorded, or null: the control thread may set another while the group runs.
+    alignas(std::atomic_ref<RecordStream*>::required_alignment) RecordStream* take = nullptr;
     ObservedPort* seen = nullptr;  ///< where an observer finds it, or null
     std::string name;  ///< "node.port"
     int before = -1;  ///< the same output in the program before, whose hash goes on
+
+    static_assert(std::atomic_ref<RecordStream*>::is_always_lock_free);
+    void record_into(RecordStream* stream) noexcept { std::atomic_ref(take).store(stream, std::memory_order_release); }
+    RecordStream* recorded_into() noexcept { return std::atomic_ref(take).load(std::memory_order_acquire); }
 
     /// After `ran` activations of the group.
     std::uint64_t value(std::int64_t ran) const {

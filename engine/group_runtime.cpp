@@ -273,9 +273,9 @@ void GroupRuntime::hash_outputs(const Step& step, int frames) noexcept {
 
 void GroupRuntime::record_outputs(const Step& step, int frames) noexcept {
     for (std::uint32_t k = step.first_output; k < step.first_output + step.output_count; ++k) {
-        const PublishedOutput& output = program_->published[k];
-        if (output.take)
-            output.take->write(next_, output.port->data, static_cast<std::size_t>(frames), output.port->stride);
+        PublishedOutput& output = program_->published[k];
+        if (RecordStream* const stream = output.recorded_into())
+            stream->write(next_, output.port->data, static_cast<std::size_t>(frames), output.port->stride);
         if (output.seen)
             output.seen->see(next_, output.port->data, static_cast<std::size_t>(frames), output.port->stride);
     }

@@ -214,6 +214,7 @@ void Engine::run_live(const LiveOptions& options) {
             for (const auto& stream : outside_.streams)
                 if (std::string news = stream->news(); !news.empty()) outside_.notices.push_back(std::move(news));
             tend_pause();
+            tend_record();
             tend_edits();
             watch_devices();
             tend_cards();

@@ -36,7 +36,10 @@ std::shared_ptr<const SeenBody> copy_of(const Body& body, const std::string& por
 }  // namespace
 
 SeenBone::SeenBone(const BoneSnapshot& from)
-    : layout(from.layout()), version(from.version), changed_at(from.root->distance.size(), 1) {
+    : layout(from.layout()),
+      version(from.version),
+      first_version(from.version),
+      changed_at(from.root->distance.size(), 1) {
     const auto copy = [](const std::vector<const float*>& bricks, std::vector<std::unique_ptr<float[]>>& own,
                          std::vector<const float*>& table) {
         for (const float* brick : bricks) {

@@ -85,7 +85,6 @@ class ObservedPort {
 public:
     struct Identity {
         std::string name;  ///< "node.port"
-        std::string group;
         Flicks period = 0;
         int max_frames = 1;
     };

@@ -16,7 +16,7 @@ constexpr std::size_t most_gathered = std::size_t{1} << 20;
 
 std::shared_ptr<ObservedPort> Observer::open(ObservedPort::Identity identity, const ValueType& type,
                                              const std::byte* initial) {
-    auto port = std::make_shared<ObservedPort>(std::move(identity), type, initial, pace_ == Pace::lossless, &pressing_);
+    auto port = std::make_shared<ObservedPort>(std::move(identity), type, initial, pace_ != Pace::live, &pressing_);
     const std::lock_guard hold(lock_);
     Named& named = named_[port->identity.name];
     if (named.readings.empty()) order_.push_back(port->identity.name);
@@ -26,6 +26,8 @@ std::shared_ptr<ObservedPort> Observer::open(ObservedPort::Identity identity, co
     reading.value = port->initial_value;
     reading.gathered.per_value = std::max<std::size_t>(type.columns.size(), 1);
     if (port->initial_bone) reading.bone = std::move(port->initial_bone);
+    if (pace_ == Pace::kept && reading.bone) reading.bone->borrowed = reading.past_bone = std::make_shared<PastBone>();
+    else if (pace_ == Pace::kept) reading.past_values = std::make_unique<PastValues>(port->value_size());
     port->watch(named.watch);
     return port;
 }
@@ -49,19 +51,22 @@ std::vector<Observer::Port> Observer::ports() const {
         const auto& readings = named_.at(name).readings;
         for (auto reading = readings.rbegin(); reading != readings.rend(); ++reading)
             if (const auto port = reading->port.lock()) {
-                ports.push_back({name, &port->type, port->identity.group, port->identity.period});
+                ports.push_back({name, &port->type, port->identity.period});
                 break;
             }
     }
     return ports;
 }
 
-void Observer::watch(const std::string& name, Watch how) {
+void Observer::watch(const std::string& name, Watch how, const void* who) {
     const std::lock_guard hold(lock_);
     Named& named = named_[name];
-    named.watch = how;
+    if (how == Watch::nothing) named.wishes.erase(who);
+    else named.wishes[who] = how;
+    named.watch = Watch::nothing;
+    for (const auto& [other, wish] : named.wishes) named.watch = std::max(named.watch, wish);
     for (const Reading& reading : named.readings)
-        if (const auto port = reading.port.lock()) port->watch(how);
+        if (const auto port = reading.port.lock()) port->watch(named.watch);
 }
 
 void Observer::drain_locked() {
@@ -82,7 +87,14 @@ void Observer::advance(Flicks until) {
     for (auto& [name, named] : named_) {
         std::erase_if(named.readings, [](const Reading& old) { return old.port.expired(); });
         for (Reading& reading : named.readings)
-            if (const auto port = reading.port.lock()) take_in(reading, *port, named.watch, until);
+            if (const auto port = reading.port.lock()) {
+                if (pace_ != Pace::kept) {
+                    take_in(reading, *port, named.watch, until);
+                    continue;
+                }
+                keep(reading, *port);
+                look_back(reading, *port, until);
+            }
     }
     std::erase_if(order_, [this](const std::string& name) { return named_.at(name).readings.empty(); });
 }
@@ -104,6 +116,30 @@ void Observer::take_in(Reading& reading, const ObservedPort& port, Watch how, Fl
     }
     reading.waiting.erase(reading.waiting.begin(), reading.waiting.begin() + static_cast<std::ptrdiff_t>(reading.used));
     reading.used = 0;
+}
+
+void Observer::keep(Reading& reading, const ObservedPort& port) {
+    const Flicks period = port.identity.period;
+    for (ObservedPort::Piece& piece : reading.waiting) {
+        if (reading.past_bone) reading.past_bone->add(piece.index * period, piece);
+        else
+            for (std::size_t i = 0; i < piece.count; ++i)
+                reading.past_values->add((piece.index + static_cast<std::int64_t>(i)) * period,
+                                         piece.values.data() + i * port.value_size());
+    }
+    reading.waiting.clear();
+}
+
+void Observer::look_back(Reading& reading, const ObservedPort& port, Flicks until) {
+    if (reading.past_bone) {
+        reading.past_bone->show(until, *reading.bone);
+        reading.has_begun = reading.past_bone->has_begun(until);
+        return;
+    }
+    const std::optional<Flicks> when = reading.past_values->at(until, reading.value.data());
+    reading.has_begun = when.has_value();
+    reading.when = when.value_or(0);
+    if (!when) reading.value = port.initial_value;
 }
 
 void Observer::put_in_place(Reading& reading, const ObservedPort& port, const ObservedPort::Piece& all) {
@@ -188,6 +224,17 @@ std::vector<std::shared_ptr<const SeenBody>> Observer::bodies() const {
         for (const Reading& reading : named_.at(name).readings)
             if (const auto port = reading.port.lock(); port && port->body) bodies.push_back(port->body);
     return bodies;
+}
+
+std::size_t Observer::kept_bytes() const {
+    const std::lock_guard hold(lock_);
+    std::size_t bytes = 0;
+    for (const auto& [name, named] : named_)
+        for (const Reading& reading : named.readings) {
+            if (reading.past_bone) bytes += reading.past_bone->bytes();
+            if (reading.past_values) bytes += reading.past_values->bytes();
+        }
+    return bytes;
 }
 
 std::uint64_t Observer::lost(const std::string& name) const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "engine/observed_port.hpp"
+#include "engine/past_values.hpp"
 #include "engine/seen_values.hpp"
 
 #include <atomic>
@@ -34,6 +35,7 @@ public:
     enum class Pace : std::uint8_t {
         live,  ///< what comes is seen when it is looked at; what is not fetched in time is lost
         lossless,  ///< offline runs: nothing is lost, and `advance` says up to when things are seen
+        kept,  ///< the same, and all is kept: `advance` goes back, too. What was seen last is not fetched
     };
     explicit Observer(Pace pace = Pace::live) : pace_(pace) {}
 
@@ -41,15 +43,14 @@ public:
     struct Port {
         std::string name;  ///< "node.port"
         const ValueType* type = nullptr;
-        std::string group;
         Flicks period = 0;
     };
     /// In the order in which nodes were made; with an edit on its way, the new nodes' too.
     std::vector<Port> ports() const;
 
-    /// Says how closely an output is looked at from now on, also one that an edit is yet to bring. Lossless observers
-    /// say so before the run.
-    void watch(const std::string& port, Watch how);
+    /// Says how closely `who` looks at an output from now on, also at one that an edit is yet to bring. Of several who
+    /// look, the closest counts. Lossless observers say so before the run.
+    void watch(const std::string& port, Watch how, const void* who = nullptr);
 
     /// Once per picture, before looking: takes in what has come, of logical times up to `until` when lossless.
     void advance(Flicks until = std::numeric_limits<Flicks>::max());
@@ -74,6 +75,8 @@ public:
     /// What the bodies of all nodes are made of: new ones when an edit brings them.
     std::vector<std::shared_ptr<const SeenBody>> bodies() const;
 
+    /// Memory that is kept of what went by, bytes.
+    std::size_t kept_bytes() const;
     /// Values of an output that went by unseen.
     std::uint64_t lost(const std::string& port) const;
 
@@ -82,7 +85,7 @@ public:
     std::shared_ptr<ObservedPort> open(ObservedPort::Identity identity, const ValueType& type,
                                        const std::byte* initial);
     /// Lossless: rings are filling up, whoever is outside of a tick is to call `drain`.
-    bool wants_drain() const noexcept { return pace_ == Pace::lossless && pressing_.load(std::memory_order_relaxed); }
+    bool wants_drain() const noexcept { return pace_ != Pace::live && pressing_.load(std::memory_order_relaxed); }
     void drain();
 
 private:
@@ -94,13 +97,16 @@ private:
         std::size_t used_of_first = 0;  // values of the first piece that are done
         std::vector<std::byte> value;  // lossless: as of `advance`
         Flicks when = 0;
-        bool has_begun = false;                    // something was applied
+        bool has_begun = false;  // something was applied
         SeenValues gathered;
         std::shared_ptr<SeenBone> bone;
         std::vector<ObservedPort::Piece> unfinished;  // bricks whose version is not complete
+        std::unique_ptr<PastValues> past_values;  // if kept, either of them
+        std::shared_ptr<PastBone> past_bone;
     };
     struct Named {
-        Watch watch = Watch::nothing;
+        std::map<const void*, Watch> wishes;
+        Watch watch = Watch::nothing;  // the closest of them
         std::vector<Reading> readings;  // an edit can make a node anew: the newest last
     };
 
@@ -113,6 +119,8 @@ private:
     const Reading* newest(const Named& named) const;
     bool read_latest(const std::string& port, const ValueType& type, std::byte* value, Flicks& when) const;
     void take_in(Reading& reading, const ObservedPort& port, Watch how, Flicks until);
+    static void keep(Reading& reading, const ObservedPort& port);
+    static void look_back(Reading& reading, const ObservedPort& port, Flicks until);
     static void put_in_place(Reading& reading, const ObservedPort& port, const ObservedPort::Piece& all);
     void gather(Reading& reading, const ObservedPort& port, const ObservedPort::Piece& piece, Flicks until, Watch how);
     void drain_locked();

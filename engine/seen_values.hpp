@@ -55,13 +55,13 @@ struct SeenBody {
 struct SeenBone {
     BrickLayout layout;
     BoneRoot root;  ///< its bricks, and `layout`
-    std::int64_t version = 0;
+    std::int64_t version = 0, first_version = 0;
     Flicks when = 0;
     std::uint64_t update = 1;  ///< rises whenever bricks change
     std::vector<std::uint64_t> changed_at;  ///< per brick: the update that changed it last; 1: as it began
     std::vector<std::unique_ptr<float[]>> distance, density;  ///< own copies, null where none is stored
+    std::shared_ptr<const void> borrowed;  ///< keeps bricks of `root` that are not its own
 
-    SeenBone() = default;
     /// Copies everything. Throws std::bad_alloc at most.
     explicit SeenBone(const BoneSnapshot& from);
     SeenBone(const SeenBone&) = delete;

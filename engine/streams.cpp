@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -108,7 +109,13 @@ Stream::Stream(StreamFormat format, std::unique_ptr<StreamEnd> end)
 
 bool Stream::write(std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept {
     const std::size_t size = format_.type->size;
-    const Piece piece{first, count};
+    const std::int64_t begin = std::max(first, from_),
+                       end = std::min(first + static_cast<std::int64_t>(count), until());
+    // Past its end it may have been completed already.
+    if (begin >= end) return true;
+    values = static_cast<const std::byte*>(values) + static_cast<std::ptrdiff_t>(begin - first) * stride;
+    count = static_cast<std::size_t>(end - begin);
+    const Piece piece{begin, count};
     const std::size_t bytes = sizeof piece + count * size;
     if (count > longest_piece || ring_->space() < bytes) {
         dropped_.fetch_add(count, std::memory_order_relaxed);

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -38,6 +39,11 @@ class Stream : public RecordStream {
 public:
     Stream(StreamFormat format, std::unique_ptr<StreamEnd> end);
 
+    /// Keeps activations from … until − 1 of those that are written. Before anybody writes.
+    void begin_at(std::int64_t from) { from_ = from; }
+    /// Any thread.
+    void end_at(std::int64_t until) noexcept { until_.store(until, std::memory_order_relaxed); }
+    std::int64_t until() const noexcept { return until_.load(std::memory_order_relaxed); }
     bool write(std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept override;
 
     /// Moves what has gathered to its end. Any thread outside of a tick. Throws Error.
@@ -64,6 +70,8 @@ private:
     std::unique_ptr<Ring<std::byte>> ring_;
     std::vector<std::byte> packed_, drained_;  // of the writer, of the drainer
     std::mutex draining_;
+    std::int64_t from_ = 0;
+    std::atomic<std::int64_t> until_{std::numeric_limits<std::int64_t>::max()};
     std::atomic<std::uint64_t> dropped_{0};
 };
 

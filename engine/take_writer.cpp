@@ -244,6 +244,15 @@ void TakeWriter::checkpoint(const std::vector<Progress>& progress) {
     log_->flush();
 }
 
+void TakeWriter::move_to(const fs::path& folder) {
+    std::error_code failure;
+    // Renaming would replace a folder that is empty.
+    if (fs::exists(folder)) throw Error(fmt::format("{}: is there already; choose another name", folder.string()));
+    fs::rename(folder_, folder, failure);
+    if (failure) throw Error(fmt::format("{}: cannot make the take: {}", folder.string(), failure.message()));
+    folder_ = folder;
+}
+
 void TakeWriter::finish(const std::vector<std::pair<std::string, std::uint64_t>>& port_hashes) {
     log_->finish();
     Json json{{"ports", Json::object()}};

@@ -64,6 +64,10 @@ public:
     void finish(const std::vector<std::pair<std::string, std::uint64_t>>& port_hashes);
 
     const std::filesystem::path& folder() const { return folder_; }
+    /// Gives the folder another name, on the same disk, while it grows. Throws Error.
+    void move_to(const std::filesystem::path& folder);
+    /// Bytes of its log by now.
+    std::uint64_t size() const { return log_ ? log_->size() : 0; }
 
 private:
     void line(const std::string& json);

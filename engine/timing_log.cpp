@@ -57,6 +57,7 @@ void TimingLogWriter::write(const TimingRecord& record) {
     TimingRecord* clean = new (bytes) TimingRecord;
     *clean = record;
     if (std::fwrite(bytes, sizeof bytes, 1, file_) != 1) fail();
+    bytes_ += sizeof bytes;
 }
 
 void TimingLogWriter::flush() {

@@ -22,12 +22,12 @@ enum class TimingKind : std::uint8_t {
     skipped,        ///< activations tick … tick + count − 1 never ran
     dropped,        ///< publications tick … tick + count − 1 towards link `source` found no room
     parameter,      ///< from activation tick on, the parameter change numbered `value` holds
-    fade,           ///< from activation tick on, forces fade: `source` 0, because the plan will change; 1, because of a
-                    ///< pause, which `value` 1 begins and 0 ends
-    plan,           ///< from activation tick on, the plan numbered `value` runs
-    progress,       ///< all before tick is in the log; where a log that was cut off can be trusted to
-    end,            ///< the group ran up to tick − 1
-    whole,          ///< the last record of a log that was written to its end
+    fade,  ///< from activation tick on, forces fade: `source` 0, because the plan will change; 1, because of a
+    ///< pause, which `value` 1 begins and 0 ends
+    plan,  ///< from activation tick on, the plan numbered `value` runs
+    progress,  ///< all before tick is in the log; where a log that was cut off can be trusted to
+    end,  ///< the group ran up to tick − 1
+    whole,  ///< the last record of a log that was written to its end
 };
 
 /// Written by the group that decides, in its own order.
@@ -47,7 +47,7 @@ struct TimingLog {
     double seconds = 0.0;  ///< as asked for
     bool is_whole = true;  ///< false: the run was cut off, and the log ends where all groups were known to be
     std::vector<std::vector<TimingRecord>> groups;
-    Flicks cut = 0;        ///< of a run that was cut off: logical time up to which it can be repeated
+    Flicks cut = 0;  ///< of a run that was cut off: logical time up to which it can be repeated
 
     /// `may_be_cut` accepts a log that stops anywhere, as after a crash. Throws Error when the file is missing, not a
     /// log, or was not written to its end.
@@ -74,12 +74,14 @@ public:
     /// Hands what was written to the system: a crash of the program loses nothing of it.
     void flush();
     void finish();
+    std::uint64_t size() const { return bytes_; }
 
 private:
     [[noreturn]] void fail() const;
 
     std::filesystem::path path_, part_;
     std::FILE* file_ = nullptr;
+    std::uint64_t bytes_ = 0;
 };
 
 }  // namespace tactus

@@ -39,8 +39,6 @@ std::optional<std::string> PatchEditor::apply(const Edit& edit) {
     return std::nullopt;
 }
 
-void PatchEditor::replace(std::string text) { keep(std::move(text)); }
-
 void PatchEditor::undo() {
     if (!can_undo()) return;
     const Step& step = steps_[--done_];
@@ -55,8 +53,12 @@ void PatchEditor::redo() {
     ++version_;
 }
 
+bool PatchEditor::is_changed_elsewhere() const {
+    return std::filesystem::exists(file_) && read_whole_file(file_) != saved_;
+}
+
 void PatchEditor::save() {
-    if (std::filesystem::exists(file_) && read_whole_file(file_) != saved_)
+    if (is_changed_elsewhere())
         throw Error(fmt::format("{}: somebody else has changed the file; it is taken over before yours can be saved",
                                 file_.string()));
     std::error_code failure;

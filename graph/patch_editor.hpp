@@ -28,8 +28,6 @@ public:
 
     /// Makes an edit. What it returns, when it is refused, is why; the text is as it was then.
     std::optional<std::string> apply(const Edit& edit);
-    /// The same without asking whether it compiles, for a text that already runs.
-    void replace(std::string text);
     bool can_undo() const { return done_ > 0; }
     bool can_redo() const { return done_ < steps_.size(); }
     void undo();
@@ -37,6 +35,8 @@ public:
 
     /// The file holds the text.
     bool is_saved() const { return text_ == saved_; }
+    /// Somebody else has changed the file since it was read or saved. Throws Error when it cannot be read.
+    bool is_changed_elsewhere() const;
     /// Writes beside the file and renames; a link stays one. Throws Error when somebody else changed the file since.
     void save();
     /// Takes over a file that was saved elsewhere, as an edit. False: the file holds nothing new.

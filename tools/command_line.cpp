@@ -372,6 +372,14 @@ int command_line(int argc, char** argv) {
         ->capture_default_str()
         ->check(CLI::Range(1, 100));
     bench_view_app->add_flag("--json", bench.json, "as JSON");
+    ScrubBenchChoice bench_scrub;
+    CLI::App* bench_scrub_app =
+        bench_app->add_subcommand("scrub", "time to jump to any instant of a take, its bones and bodies included");
+    bench_scrub_app->add_option("take", bench_scrub.take, "folder that --record made")->required();
+    bench_scrub_app->add_option("--jumps", bench_scrub.jumps, "how many")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 100'000));
+    bench_scrub_app->add_flag("--json", bench_scrub.json, "as JSON");
     SnapBenchChoice bench_snap;
     add_snap_bench(*bench_app, bench_snap);
 
@@ -389,6 +397,7 @@ int command_line(int argc, char** argv) {
         if (*bench_engine_app) return bench_engine_verb(bench);
         if (*bench_contact_app) return bench_contact_verb(bench);
         if (*bench_view_app) return bench_view_verb(bench);
+        if (*bench_scrub_app) return bench_scrub_verb(bench_scrub);
         if (bench_app->got_subcommand("snap")) return bench_snap_verb(bench_snap);
         if (*devices_app) return devices_verb(devices_json);
         if (app.got_subcommand("spectrum")) return spectrum_verb(analysis.spectrum);

@@ -42,11 +42,10 @@ void LiveControl::take_over_file() {
     } catch (const Error& error) {
         return say_(error.what());
     }
-    if (saved) saved();
     watch_.follow(part_files(patch));
+    if (saved) return saved();
     const Patch& runs = engine_.plan().patch;
-    const bool is_known = patch.text == runs.text || patch.text == expected_;
-    if (!is_known || patch.parts != runs.parts) edit(std::move(patch.text));
+    if (patch.text != runs.text || patch.parts != runs.parts) edit(std::move(patch.text));
 }
 
 void LiveControl::edit(std::string text) {
@@ -61,9 +60,11 @@ void LiveControl::edit(std::string text) {
     };
     engine_.edit(make, [this](const EditOutcome& outcome) {
         if (outcome.error) say_(fmt::format("{}\nthe edit was not made; the patch runs on as it was", *outcome.error));
-        else
+        else {
+            watch_.follow(part_files(engine_.plan().patch));
             say_(fmt::format("edit {} takes over at {:.3f} s; {} of {} nodes go on", outcome.generation,
                              seconds(outcome.when), outcome.kept, outcome.nodes));
+        }
     });
 }
 

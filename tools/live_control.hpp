@@ -24,9 +24,7 @@ public:
 
     /// From there, too: this text takes over, as if it had been saved.
     void edit(std::string text);
-    /// A text that runs already, by single parameters: when it is saved, nothing is to be done.
-    void expect(std::string text) { expected_ = std::move(text); }
-    /// Who hears of a save, whatever becomes of it.
+    /// Who takes over what was saved, instead of this.
     std::function<void()> saved;
 
 private:
@@ -40,7 +38,6 @@ private:
     std::filesystem::path file_;
     PatchWatch watch_;
     std::unique_ptr<ControlSocket> socket_;
-    std::string expected_;
 };
 
 }  // namespace tactus

@@ -8,9 +8,16 @@
 
 #include <fmt/format.h>
 
+#include <signal.h>
+#include <unistd.h>
+
 #include <chrono>
+#include <cstdlib>
+#include <utility>
 
 namespace tactus {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -38,8 +45,45 @@ RunSession::RunSession(const RunChoice& choice, AssetCache& assets, Observer* ob
     if (!choice.record.empty()) {
         take_ = make_take(choice, choice.record, options.seconds, true);
         options.take = take_.get();
-    }
+    } else if (choice.keeps_journal) begin_journal(options);
     engine_ = std::make_unique<Engine>(std::move(plan), options);
+}
+
+RunSession::~RunSession() { drop_journal(); }
+
+/// A take without values, which becomes one with them when that is asked for.
+void RunSession::begin_journal(EngineOptions& options) {
+    constexpr std::string_view name = "journal-";
+    std::error_code ignored;
+    // What runs that were killed have left.
+    for (const auto& entry : fs::directory_iterator(folder_, ignored)) {
+        const std::string file = entry.path().filename().string();
+        if (!file.starts_with(name)) continue;
+        const int owner = std::atoi(file.c_str() + name.size());
+        if (owner > 0 && (owner == ::getpid() || ::kill(owner, 0) != 0)) fs::remove_all(entry.path(), ignored);
+    }
+    take_ = make_take(choice_, folder_ / fmt::format("{}{}", name, ::getpid()), options.seconds, true);
+    options.take = take_.get();
+    options.record_values = false;
+    is_journal_ = true;
+}
+
+void RunSession::drop_journal() {
+    if (!std::exchange(is_journal_, false)) return;
+    std::error_code ignored;
+    fs::remove_all(take_->folder(), ignored);
+}
+
+void RunSession::record(const fs::path& folder) {
+    engine_->record(true);
+    if (!is_journal_) return;
+    try {
+        take_->move_to(folder);
+        is_journal_ = false;
+    } catch (const Error&) {
+        engine_->record(false);
+        throw;
+    }
 }
 
 void RunSession::run(const Hooks& hooks, const std::atomic<bool>& stop) {
@@ -60,6 +104,7 @@ void RunSession::run(const Hooks& hooks, const std::atomic<bool>& stop) {
 
 void RunSession::finish() {
     engine_->finish();
+    drop_journal();
     const Report report = engine_->report();
     std::vector<std::string> files = write_pictures(report, folder_);
     for (std::string& file : write_bones(report, folder_)) files.push_back(std::move(file));

@@ -18,6 +18,7 @@ class RunSession {
 public:
     /// Loads the patch and its assets and prepares all nodes; `observer` may be null. Throws Error.
     RunSession(const RunChoice& choice, AssetCache& assets, Observer* observer = nullptr);
+    ~RunSession();
 
     struct Hooks {
         std::function<void()> tend;  ///< about every 20 ms, on the thread that runs
@@ -25,6 +26,10 @@ public:
     };
     /// Runs until its time is over or `stop` is set. Throws Error.
     void run(const Hooks& hooks, const std::atomic<bool>& stop);
+    /// From Hooks::tend: the run is recorded from now on, in that folder when it is the first time; or no more. Throws
+    /// Error.
+    void record(const std::filesystem::path& folder);
+    void stop_recording() { engine_->record(false); }
     /// Completes recordings and writes pictures, bones and the summary. Throws Error.
     void finish();
 
@@ -37,9 +42,13 @@ public:
     const std::string& summary_text() const { return text_; }
 
 private:
+    void begin_journal(EngineOptions& options);
+    void drop_journal();
+
     RunChoice choice_;
     AssetCache& assets_;
     std::filesystem::path folder_;
+    bool is_journal_ = false;  // the take is not asked for yet
     std::unique_ptr<TakeWriter> take_;
     std::unique_ptr<Engine> engine_;
     std::unique_ptr<LiveControl> control_;

@@ -49,6 +49,7 @@ struct RunChoice : PatchChoice {
     std::string audio;         ///< "", "file", "none", "default" or part of a card's name
     double audio_margin = 10;  ///< ms
     std::filesystem::path out, log, record;
+    bool keeps_journal = false;  ///< so that recording can begin within the run
     bool edits = true;  ///< take over the patch file when it is saved, and listen to 'set'
     ViewChoice view;
 };
@@ -174,6 +175,12 @@ struct BenchChoice {
     bool json = false;
 };
 
+struct ScrubBenchChoice {
+    std::filesystem::path take;
+    int jumps = 1000;
+    bool json = false;
+};
+
 struct InfoChoice {
     std::filesystem::path input;
     std::filesystem::path out;  ///< of the picture: a file, or a folder for INPUT.png; empty: none
@@ -204,6 +211,7 @@ int info_verb(const InfoChoice& choice);
 int bench_engine_verb(const BenchChoice& choice);
 int bench_contact_verb(const BenchChoice& choice);
 int bench_view_verb(const BenchChoice& choice);
+int bench_scrub_verb(const ScrubBenchChoice& choice);
 
 /// Parses the command line and runs the verb.
 int command_line(int argc, char** argv);

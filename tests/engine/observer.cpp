@@ -190,7 +190,7 @@ TEST_CASE("an observer that begins late, or sleeps until its ring is full, has t
     BoneEditor editor(grid, grid, {.band = 100.0, .max_dirty = 4913});
     const BoneSnapshot initial = editor.current();
     Observer observer;
-    const auto port = observer.open({"carve.bone", "60 Hz", flicks_per_second / 60, 1}, value::snapshot<BoneSnapshot>,
+    const auto port = observer.open({"carve.bone", flicks_per_second / 60, 1}, value::snapshot<BoneSnapshot>,
                                     reinterpret_cast<const std::byte*>(&initial));
     std::int64_t tick = 0;
     const auto run = [&](int ticks, int step) {

@@ -161,3 +161,47 @@ TEST_CASE("a run that is to end while it pauses goes on to its end") {
     CHECK(stop);
     CHECK(engine.progress_seconds() < 4.0);
 }
+
+TEST_CASE(
+    "a node of a new rate that an edit brings while a run pauses waits with the others, and the take repeats it") {
+    const auto folder = scratch("pause-edit");
+    const std::string more = held + "[nodes.fresh]\ntype = \"chaos\"\nrate = \"200 Hz\"\n";
+    TakeWriter take(folder, {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 0.6, .live = true});
+    EngineOptions options;
+    options.seconds = 0.6;
+    options.live = true;
+    options.take = &take;
+    Engine engine(compile_text(held), options);
+    LiveOptions live;
+    int stage = 0;
+    std::int64_t ran_while_paused = 0;
+    std::chrono::steady_clock::time_point asked;
+    const auto fresh = [&]() -> const GroupRuntime& { return *engine.groups().back(); };
+    live.watch = [&] {
+        if (stage == 0 && engine.progress_seconds() > 0.2) {
+            engine.pause(true);
+            stage = 1;
+        } else if (stage == 1 && engine.pausing() == Engine::Pausing::stands) {
+            engine.edit([&] { return compile_text(more); }, {});
+            stage = 2;
+        } else if (stage == 2 && engine.edits() == 1) {
+            asked = std::chrono::steady_clock::now();
+            stage = 3;
+        } else if (stage == 3 && Seconds(std::chrono::steady_clock::now() - asked).count() > 0.1) {
+            ran_while_paused = fresh().telemetry.ticks;
+            engine.pause(false);
+            stage = 4;
+        }
+    };
+    engine.run_live(live);
+    engine.finish();
+    REQUIRE(stage == 4);
+    REQUIRE(engine.groups().size() == 4);
+    CHECK(fresh().plan->period == flicks_per_second / 200);
+    CHECK(ran_while_paused == 0);
+    CHECK(fresh().telemetry.ticks > 0);
+    const Repetition again = repeat(folder, 2);
+    if (again.difference) FAIL(again.difference->port << " differs at tick " << again.difference->tick);
+    CHECK(again.hashes == engine.port_hashes());
+    std::filesystem::remove_all(folder);
+}

@@ -50,7 +50,7 @@ TEST_CASE("a cut is in the next picture, and only its bricks were meshed") {
     Observer observer;
     const BoneSnapshot initial = editor.current();
     const auto port =
-        observer.open({"carve.bone", "60 Hz", at_60_hz, 1}, value::snapshot<BoneSnapshot>, bytes_of(initial));
+        observer.open({"carve.bone", at_60_hz, 1}, value::snapshot<BoneSnapshot>, bytes_of(initial));
     PictureMaker maker(64, 64);
     SceneOutline outline;
     outline.bones = {{"carve.bone"}};
@@ -83,8 +83,8 @@ TEST_CASE("a pose or a force that is not a number is told, and not drawn") {
     Observer observer;
     const Pose good;
     const Wrench none;
-    const auto pose = observer.open({"hand.pose", "1 kHz", at_60_hz, 1}, value::pose, bytes_of(good));
-    const auto wrench = observer.open({"tip.wrench", "1 kHz", at_60_hz, 1}, value::wrench, bytes_of(none));
+    const auto pose = observer.open({"hand.pose", at_60_hz, 1}, value::pose, bytes_of(good));
+    const auto wrench = observer.open({"tip.wrench", at_60_hz, 1}, value::wrench, bytes_of(none));
     PictureMaker maker(64, 64);
     SceneOutline outline;
     outline.balls = {{"hand.pose", "", "tip.wrench", 0.005}};
@@ -115,8 +115,8 @@ TEST_CASE("what an edit took away leaves the picture, and what it brings comes i
     if (!can_render()) return;
     Observer observer;
     const Pose here;
-    const auto a = observer.open({"a.pose", "1 kHz", at_60_hz, 1}, value::pose, bytes_of(here));
-    const auto b = observer.open({"b.pose", "1 kHz", at_60_hz, 1}, value::pose, bytes_of(here));
+    const auto a = observer.open({"a.pose", at_60_hz, 1}, value::pose, bytes_of(here));
+    const auto b = observer.open({"b.pose", at_60_hz, 1}, value::pose, bytes_of(here));
     PictureMaker maker(64, 64);
     SceneOutline first, second;
     first.balls = {{"a.pose", "", "", 0.005}};

@@ -5,6 +5,7 @@
 #include "engine/observer.hpp"
 #include "engine/take_reader.hpp"
 #include "graph/plan.hpp"
+#include "tools/view/axis.hpp"
 
 #include <array>
 #include <map>
@@ -21,6 +22,9 @@ struct Trace {
     std::vector<std::vector<double>> columns;  ///< by column, as long as `times`
     std::vector<std::string> names;            ///< of the columns
 };
+
+/// Drops what is older than `before`, now and then rather than always: it moves all that stays.
+void forget(Trace& trace, double before);
 
 class Feed {
 public:
@@ -78,8 +82,10 @@ public:
     std::vector<Port> ports() const override;
     double now() const override { return now_; }
     void set_now(double seconds) { now_ = seconds; }
-    /// What the longest stream holds, s.
+    /// To the end of the last recorded stretch, s.
     double length() const { return length_; }
+    /// When values were recorded, in order, s.
+    const std::vector<Range>& recorded() const { return recorded_; }
     void follow(const std::set<std::string>& looked_at, const std::set<std::string>& traced) override;
     Latest latest(const std::string& port) const override;
     const Trace* trace(const std::string& port) const override;
@@ -92,10 +98,13 @@ private:
         Trace trace;
     };
     void read(const std::string& port, double begin, double end, Trace& into) const;
+    void extend(const std::string& port, Cut& cut, double begin) const;
 
     const Take& take_;
     double now_ = 0.0, length_ = 0.0;
-    std::map<std::string, std::vector<const TakeStreamInfo*>> streams_;  // an edit may end one and begin another
+    std::vector<Range> recorded_;
+    std::map<std::string, std::vector<const TakeStreamInfo*>>
+        streams_;  // an edit or a pause in recording begins another
     std::map<std::string, Latest> latest_;
     std::map<std::string, Cut> cuts_;
     double latest_at_ = -1.0;

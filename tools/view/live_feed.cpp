@@ -17,15 +17,14 @@ Feed::Latest as_columns(const std::optional<Seen<T>>& seen, const ValueType& typ
     return latest;
 }
 
-/// Drops what is older than `before`, now and then rather than always: it moves all that stays.
+}  // namespace
+
 void forget(Trace& trace, double before) {
     const auto first = std::ranges::lower_bound(trace.times, before) - trace.times.begin();
     if (first < static_cast<std::ptrdiff_t>(trace.times.size()) / 4) return;
     trace.times.erase(trace.times.begin(), trace.times.begin() + first);
     for (auto& column : trace.columns) column.erase(column.begin(), column.begin() + first);
 }
-
-}  // namespace
 
 std::vector<Feed::Port> LiveFeed::ports() const {
     std::vector<Port> ports;
@@ -37,19 +36,18 @@ std::vector<Feed::Port> LiveFeed::ports() const {
 
 void LiveFeed::follow(const std::set<std::string>& looked_at, const std::set<std::string>& traced) {
     for (const std::string& port : watched_)
-        if (!looked_at.contains(port) && !traced.contains(port)) observer_->watch(port, Watch::nothing);
-    std::set<std::string> watched;
+        if (!looked_at.contains(port) && !traced.contains(port)) observer_->watch(port, Watch::nothing, this);
+    std::set<std::string> watched = traced;
     for (const std::string& port : looked_at) {
         if (traced.contains(port)) continue;
-        if (!watched_.contains(port) || traces_.contains(port)) observer_->watch(port, Watch::latest);
+        if (!watched_.contains(port) || traces_.contains(port)) observer_->watch(port, Watch::latest, this);
         watched.insert(port);
     }
-    for (const std::string& port : traced) {
-        // Always anew: others, who need only the latest value, may have said so meanwhile.
-        observer_->watch(port, Watch::every);
-        traces_[port];
-        watched.insert(port);
-    }
+    for (const std::string& port : traced)
+        if (!traces_.contains(port)) {
+            observer_->watch(port, Watch::every, this);
+            traces_[port];
+        }
     std::erase_if(traces_, [&](const auto& item) { return !traced.contains(item.first); });
     watched_ = std::move(watched);
     observer_->advance();

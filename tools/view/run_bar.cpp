@@ -57,10 +57,9 @@ void run_buttons(Workbench& bench, const RunStatus& status) {
                     "Pause: forces fade, then logical time stands still (Space)"))
         bench.pause(!paused);
     ImGui::EndDisabled();
-    const char* tip = bench.is_recording() ? "Begin anew without recording"
-                                           : "Begin anew and record: a take is repeated from its beginning";
-    if (sign_button("##record", Sign::record, tone::bad, bench.is_recording(), tip))
-        bench.record(!bench.is_recording());
+    const char* tip = status.is_recording ? "End the recording" : runs ? "Record from now on" : "Run and record";
+    if (sign_button("##record", Sign::record, tone::bad, runs && status.is_recording, tip))
+        bench.record(!(runs && status.is_recording));
     static const char* const names[] = {"loading", "runs", "forces fade", "paused", "not running"};
     const ImU32 ink = status.state == State::runs ? tone::good : status.state == State::stands ? tone::warm : tone::dim;
     words(names[static_cast<std::size_t>(status.state)], ink);
@@ -92,9 +91,16 @@ void take_line(Workbench& bench, TakeBench& take) {
     if (sign_button("##play", take.is_playing() ? Sign::pause : Sign::play, tone::good, false, "Play the take (Space)"))
         take.play(!take.is_playing());
     words(fmt::format("{:.3f} s of {:.3f} s", take.time(), take.length()), tone::text);
-    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 15.0f * ImGui::GetFontSize());
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 17.0f * ImGui::GetFontSize());
     if (ImGui::SliderFloat("##time", &at, 0.0f, static_cast<float>(take.length()), "%.3f s"))
         take.go_to(static_cast<double>(at));
+    // What was recorded, beneath the line of time.
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    for (const Range& stretch : take.feed().recorded()) {
+        const auto x = [&](double t) { return low.x + static_cast<float>(t / take.length()) * (high.x - low.x); };
+        ImGui::GetWindowDrawList()->AddRectFilled({x(stretch.low), high.y - 3.0f}, {x(stretch.high), high.y},
+                                                  tone::bad);
+    }
     ImGui::SameLine();
     words(take.scene_note(), tone::dim);
     ImGui::NewLine();

@@ -171,9 +171,10 @@ bool Script::wait_for(const Line& line, Desk& desk, Window& window) {
     }
     if (waited > longest_wait) throw Error(fmt::format("'{}' did not come about within {} s", what, longest_wait));
     if (what == "scene") return !desk.take() || desk.take()->scene_is_there();
-    // until SECONDS | until paused | until over
+    // until SECONDS | until paused | until recording | until over
     const auto status = desk.bench().status();
     if (word(line, 1) == "paused") return status->state == RunStatus::State::stands;
+    if (word(line, 1) == "recording") return status->is_recording;
     if (word(line, 1) == "over") return status->state == RunStatus::State::over;
     if (status->state == RunStatus::State::over) throw Error("the run is over: " + status->failure);
     return status->state != RunStatus::State::loading && status->time >= number(line, 1);

@@ -9,8 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 
 namespace tactus::view {
 
@@ -21,7 +19,7 @@ struct Outdated {};
 
 /// What is seen of a run is there for as long as the run is.
 struct Repetition {
-    Observer observer{Observer::Pace::lossless};
+    Observer observer{Observer::Pace::kept};
     std::unique_ptr<ReplayedTake> run;
 };
 
@@ -50,80 +48,76 @@ TakeBench::TakeBench(const std::filesystem::path& folder)
 TakeBench::~TakeBench() { ends_ = true; }
 
 void TakeBench::go_to(double seconds) {
-    const double at = std::clamp(seconds, 0.0, length());
-    feed_.set_now(at);
-    const std::lock_guard lock(lock_);
-    wanted_ = at;
+    feed_.set_now(std::clamp(seconds, 0.0, length()));
+    show_scene();
 }
 
 void TakeBench::tend(double elapsed) {
-    if (!is_playing_) return;
-    if (time() >= length()) is_playing_ = false;
-    else go_to(time() + elapsed);
+    if (is_playing_ && time() >= length()) is_playing_ = false;
+    if (is_playing_) go_to(time() + elapsed);
+    else show_scene();
+}
+
+void TakeBench::show_scene() {
+    const std::shared_ptr<Observer> observer = scene();
+    if (!observer) return;
+    // What the repetition has not reached as a whole is not looked at.
+    observer->advance(static_cast<Flicks>(std::min(time(), repeated()) * static_cast<double>(flicks_per_second)));
 }
 
 std::shared_ptr<Observer> TakeBench::scene() const {
     const std::lock_guard lock(lock_);
-    return made_scene_;
+    return scene_;
 }
 
-double TakeBench::scene_time() const {
+double TakeBench::repeated() const {
     const std::lock_guard lock(lock_);
-    return made_;
+    return repeated_;
 }
 
 bool TakeBench::scene_is_there() const {
     const std::lock_guard lock(lock_);
-    return made_ == wanted_ || !problem_.empty();
+    return is_whole_ || repeated_ > time();
 }
 
 std::string TakeBench::scene_note() const {
     const std::lock_guard lock(lock_);
     if (!problem_.empty()) return problem_;
-    if (made_ < 0.0) return "bone: running the take again …";
-    if (made_ == wanted_) return "";
-    return fmt::format("bone as at {:.2f} s …", made_);
+    if (is_whole_) return "";
+    if (repeated_ < 0.0) return "scene: preparing the run …";
+    return fmt::format("scene: the run is repeated, {:.1f} s by now", repeated_);
 }
 
 void TakeBench::work() {
-    while (!ends_) {
-        double wanted = 0.0;
+    const auto repetition = std::make_shared<Repetition>();
+    try {
+        EngineOptions options;
+        options.observer = &repetition->observer;
+        options.hash = options.time_nodes = false;
+        // At least one tick of everything: what nodes begin with is only there when they were prepared.
+        options.seconds = std::max(length(), 1e-3);
+        repetition->run = std::make_unique<ReplayedTake>(take_, options, assets_);
+        for (const std::string& port : scene_ports_) repetition->observer.watch(port, Watch::latest, this);
         {
             const std::lock_guard lock(lock_);
-            wanted = wanted_;
+            scene_ = std::shared_ptr<Observer>(repetition, &repetition->observer);
+            repeated_ = 0.0;
         }
-        if (wanted == scene_time()) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(30));
-            continue;
-        }
-        try {
-            repeat_until(wanted);
-        } catch (const Outdated&) {
-        } catch (const std::exception& error) {
+        Engine& engine = repetition->run->engine();
+        engine.render(1, [&](double) {
+            if (ends_) throw Outdated();
             const std::lock_guard lock(lock_);
-            problem_ = error.what();
-            made_ = wanted;
-        }
+            repeated_ = engine.progress_seconds();
+        });
+        const std::lock_guard lock(lock_);
+        repeated_ = length();
+        is_whole_ = true;
+    } catch (const Outdated&) {
+    } catch (const std::exception& error) {
+        const std::lock_guard lock(lock_);
+        problem_ = error.what();
+        is_whole_ = true;
     }
-}
-
-void TakeBench::repeat_until(double seconds) {
-    const auto repetition = std::make_shared<Repetition>();
-    Observer& observer = repetition->observer;
-    EngineOptions options;
-    options.observer = &observer;
-    options.hash = options.time_nodes = false;
-    // At least one tick of everything: what nodes begin with is only there when they were prepared.
-    options.seconds = std::max(seconds, 1e-3);
-    repetition->run = std::make_unique<ReplayedTake>(take_, options, assets_);
-    for (const std::string& port : scene_ports_) observer.watch(port, Watch::latest);
-    repetition->run->engine().render(1, [&](double) {
-        if (ends_) throw Outdated();
-    });
-    observer.advance();
-    const std::lock_guard lock(lock_);
-    made_scene_ = std::shared_ptr<Observer>(repetition, &observer);
-    made_ = seconds;
 }
 
 }  // namespace tactus::view

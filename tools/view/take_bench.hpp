@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A take that is looked at, at any instant: its values from its recordings, its bones by running it again up to there.
+// A take that is looked at, at any instant: its values from its recordings, its bones from one repetition of the run, of
+// which all that changed is kept.
 #pragma once
 
 #include "engine/observer.hpp"
@@ -11,7 +12,6 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <set>
 #include <string>
 #include <thread>
@@ -34,15 +34,16 @@ public:
     /// Once per picture: `elapsed` s of real time since the last.
     void tend(double elapsed);
 
-    /// What the run had made of the scene by the time of `scene_time`, null before it was there once.
+    /// What the run had made of the scene by then, null before it is there at all.
     std::shared_ptr<Observer> scene() const;
-    double scene_time() const;
+    /// The run was repeated up to here, s; beyond, the scene stands still.
+    double repeated() const;
     bool scene_is_there() const;  ///< of the time that is shown
     std::string scene_note() const;
 
 private:
     void work();
-    void repeat_until(double seconds);
+    void show_scene();
 
     Take take_;
     TakeFeed feed_;
@@ -50,8 +51,9 @@ private:
     const std::set<std::string> scene_ports_;
     bool is_playing_ = false;
     mutable std::mutex lock_;
-    double wanted_ = 0.0, made_ = -1.0;
-    std::shared_ptr<Observer> made_scene_;
+    double repeated_ = -1.0;
+    bool is_whole_ = false;
+    std::shared_ptr<Observer> scene_;
     std::string problem_;
     std::atomic<bool> ends_{false};
     std::jthread thread_;

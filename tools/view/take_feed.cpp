@@ -17,6 +17,17 @@ const ValueType* type_named(std::string_view name) {
     return nullptr;
 }
 
+/// Stretches that meet as one.
+std::vector<Range> joined(std::vector<Range> stretches) {
+    std::ranges::sort(stretches, {}, &Range::low);
+    std::vector<Range> whole;
+    for (const Range& next : stretches) {
+        if (!whole.empty() && next.low <= whole.back().high) whole.back().high = std::max(whole.back().high, next.high);
+        else whole.push_back(next);
+    }
+    return whole;
+}
+
 }  // namespace
 
 TakeFeed::TakeFeed(const Take& take) : take_(take) {
@@ -24,7 +35,13 @@ TakeFeed::TakeFeed(const Take& take) : take_(take) {
         if (!type_named(info.type)) continue;  // of what is large only a hash is kept
         streams_[info.port].push_back(&info);
         const TakeStreamReader reader(take.folder / info.file, info);
-        length_ = std::max(length_, seconds((info.start + reader.frames()) * info.period));
+        const double begin = seconds(info.start * info.period);
+        recorded_.push_back({begin, seconds((info.start + reader.frames()) * info.period)});
+    }
+    recorded_ = joined(std::move(recorded_));
+    if (!recorded_.empty()) {
+        length_ = recorded_.back().high;
+        now_ = recorded_.front().low;
     }
     for (auto& [port, infos] : streams_)
         std::ranges::sort(infos, {}, [](const auto* info) { return info->start * info->period; });
@@ -38,7 +55,6 @@ std::vector<Feed::Port> TakeFeed::ports() const {
 }
 
 void TakeFeed::read(const std::string& port, double begin, double end, Trace& into) const {
-    into = {};
     const auto found = streams_.find(port);
     if (found == streams_.end()) return;
     for (const TakeStreamInfo* info : found->second) {
@@ -79,10 +95,19 @@ void TakeFeed::follow(const std::set<std::string>& looked_at, const std::set<std
         Cut& cut = cuts_[port];
         const double begin = std::max(0.0, now_ - traced_s);
         if (cut.begin == begin && cut.end == now_) continue;
+        extend(port, cut, begin);
         cut.begin = begin;
         cut.end = now_;
-        read(port, begin, now_, cut.trace);
     }
+}
+
+/// Reads on where time goes on, and anew where it jumps.
+void TakeFeed::extend(const std::string& port, Cut& cut, double begin) const {
+    const bool goes_on = now_ > cut.end && begin >= cut.begin && begin < cut.end && !cut.trace.times.empty();
+    if (!goes_on) cut.trace = {};
+    const double half = 0.5 * seconds(streams_.contains(port) ? streams_.at(port).back()->period : 0);
+    read(port, goes_on ? std::max(begin, cut.trace.times.back() + half) : begin, now_, cut.trace);
+    forget(cut.trace, begin);
 }
 
 Feed::Latest TakeFeed::latest(const std::string& port) const {

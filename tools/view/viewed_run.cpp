@@ -97,6 +97,9 @@ void ViewedRun::look_at(RunSession& session) {
     status.state = states[static_cast<std::size_t>(engine.pausing())];
     status.time = engine.progress_seconds();
     status.edits = engine.edits();
+    status.is_recording = engine.is_recording();
+    for (const auto& notices = engine.outside().notices; told_notices_ < notices.size(); ++told_notices_)
+        say(notices[told_notices_]);
     for (const auto& group : engine.groups()) {
         if (group->is_over()) continue;
         status.groups.push_back(status_of(*group));
@@ -128,6 +131,7 @@ void ViewedRun::say(const std::string& text) {
 
 void ViewedRun::ask(std::function<void(RunSession&)> what) {
     const std::lock_guard lock(lock_);
+    if (over_) return;
     asked_.push_back(std::move(what));
 }
 
@@ -142,14 +146,22 @@ void ViewedRun::edit(const std::string& text) {
     });
 }
 
-void ViewedRun::expect(const std::string& text) {
-    ask([text](RunSession& session) {
-        if (session.control()) session.control()->expect(text);
+void ViewedRun::pause(bool wanted) {
+    ask([wanted](RunSession& session) { session.engine().pause(wanted); });
+}
+
+void ViewedRun::record(const std::filesystem::path& folder) {
+    ask([this, folder](RunSession& session) {
+        session.record(folder);
+        say(fmt::format("recording into {}, from {:.2f} s on", folder.string(), session.engine().progress_seconds()));
     });
 }
 
-void ViewedRun::pause(bool wanted) {
-    ask([wanted](RunSession& session) { session.engine().pause(wanted); });
+void ViewedRun::stop_recording() {
+    ask([this](RunSession& session) {
+        session.stop_recording();
+        say(fmt::format("recorded up to {:.2f} s", session.engine().progress_seconds()));
+    });
 }
 
 std::string ViewedRun::summary_json() const {

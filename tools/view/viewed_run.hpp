@@ -7,6 +7,7 @@
 #include "tools/verbs.hpp"
 
 #include <atomic>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -39,6 +40,7 @@ struct RunStatus {
     std::vector<NodeStatus> nodes;
     std::vector<std::string> faults;
     std::int64_t edits = 0;
+    bool is_recording = false;
     std::string failure;  ///< why it is over before its time
 };
 
@@ -59,8 +61,10 @@ public:
 
     void set(const std::string& node, const std::string& param, const std::string& value);
     void edit(const std::string& text);
-    void expect(const std::string& text);
     void pause(bool wanted);
+    /// From now on, in that folder when it is the first time.
+    void record(const std::filesystem::path& folder);
+    void stop_recording();
     void stop() { stop_ = true; }
 
     /// After its end: what the command prints.
@@ -82,6 +86,7 @@ private:
     std::vector<std::string> messages_;
     std::shared_ptr<const RunStatus> status_ = std::make_shared<RunStatus>();
     int tends_ = 0;
+    std::size_t told_notices_ = 0;
     std::string json_, text_;
     std::unique_ptr<RunSession> session_;  // also when it is over: what was seen last stays to be seen
     std::atomic<bool> stop_{false}, over_{false}, saved_{false};

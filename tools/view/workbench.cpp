@@ -88,14 +88,20 @@ void Workbench::adopt() {
     ++plan_version_;
 }
 
-/// Lets the run take over what the text says now.
-void Workbench::follow(const Plan* before) {
+/// The text has changed by itself: taken back, or saved elsewhere.
+void Workbench::adopt_text() {
+    if (const auto problem = check(editor_->text())) tell(*problem, true);
+    adopt();
+    follow();
+}
+
+/// Lets the run take over what the text says now; one that does not compile changes nothing.
+void Workbench::follow() {
     if (!run_ || !plan_) return;
-    const std::string text(without_mark(editor_->text()));
-    const PatchChange change = before ? change_between(*before, *plan_) : PatchChange{{}, true};
+    const PatchChange change = followed_ ? change_between(*followed_, *plan_) : PatchChange{{}, true};
     for (const PatchChange::Setting& s : change.settings) run_->set(s.node, s.param, s.value);
-    if (change.needs_edit) run_->edit(text);
-    run_->expect(text);
+    if (change.needs_edit) run_->edit(std::string(without_mark(editor_->text())));
+    followed_ = plan_;
 }
 
 bool Workbench::edit(const PatchEditor::Edit& how, std::string done) {
@@ -105,9 +111,8 @@ bool Workbench::edit(const PatchEditor::Edit& how, std::string done) {
         return false;
     }
     if (editor_->version() == version) return true;
-    const std::unique_ptr<Plan> before = std::move(plan_);
     adopt();
-    follow(before.get());
+    follow();
     tell(std::move(done));
     return true;
 }
@@ -148,25 +153,24 @@ bool Workbench::disconnect(const std::string& to) {
 bool Workbench::undo() {
     if (!editor_->can_undo()) return false;
     editor_->undo();
-    const std::unique_ptr<Plan> before = std::move(plan_);
-    if (const auto problem = check(editor_->text())) tell(*problem, true);
-    adopt();
-    follow(before.get());
+    adopt_text();
     return true;
 }
 
 bool Workbench::redo() {
     if (!editor_->can_redo()) return false;
     editor_->redo();
-    const std::unique_ptr<Plan> before = std::move(plan_);
-    if (const auto problem = check(editor_->text())) tell(*problem, true);
-    adopt();
-    follow(before.get());
+    adopt_text();
     return true;
 }
 
 bool Workbench::save() {
     try {
+        if (editor_->is_changed_elsewhere()) {
+            take_over_file();
+            tell("not saved: undo brings your own text back, and then it can be saved", true);
+            return false;
+        }
         editor_->save();
         tell(fmt::format("saved {}", editor_->file().string()));
         return true;
@@ -242,9 +246,14 @@ void Workbench::run() {
     ++runs_;
     RunChoice choice = choice_;
     choice.patch = editor_->file().string();
+    choice.keeps_journal = true;
+    has_take_ = !choice.record.empty();
     run_ = std::make_unique<ViewedRun>(choice, assets_, *observer_);
+    // The next run is another take.
+    choice_.record.clear();
     // The run begins with the file; what is not saved takes over at once.
-    if (!editor_->is_saved()) follow(nullptr);
+    followed_ = editor_->is_saved() ? plan_ : nullptr;
+    if (!followed_) follow();
 }
 
 void Workbench::stop() {
@@ -256,15 +265,20 @@ void Workbench::pause(bool wanted) {
 }
 
 void Workbench::record(bool wanted) {
-    run_.reset();
-    choice_.record.clear();
-    if (wanted) {
-        const std::string stem = editor_->file().stem().string();
-        fs::path folder;
-        for (int i = 1; folder.empty() || fs::exists(folder); ++i) folder = fmt::format("{}-take-{}", stem, i);
-        choice_.record = last_take_ = folder;
-        tell(fmt::format("the run begins anew and is recorded in {}", folder.string()));
+    const bool runs = run_ && !run_->is_over();
+    if (!wanted) {
+        if (runs) run_->stop_recording();
+        return;
     }
+    if (!runs || !has_take_) {
+        const std::string stem = editor_->file().stem().string();
+        last_take_.clear();
+        for (int i = 1; last_take_.empty() || fs::exists(last_take_); ++i)
+            last_take_ = choice_.out.parent_path() / fmt::format("{}-take-{}", stem, i);
+    }
+    has_take_ = true;
+    if (runs) return run_->record(last_take_);
+    choice_.record = last_take_;
     run();
 }
 
@@ -280,12 +294,23 @@ std::shared_ptr<const RunStatus> Workbench::status() const {
 void Workbench::tend() {
     if (!run_) return;
     for (std::string& text : run_->messages()) tell(std::move(text));
-    if (!run_->file_was_saved()) return;
+    if (run_->file_was_saved()) take_over_file();
+}
+
+bool Workbench::has_same_parts() {
+    check(editor_->text());
+    return checked_ && checked_->patch.parts == plan_->patch.parts;
+}
+
+/// As an edit, which can be taken back.
+void Workbench::take_over_file() {
     try {
-        if (!editor_->reload()) return;
-        if (const auto problem = check(editor_->text())) return tell(*problem, true);
-        adopt();
+        const bool is_new = editor_->reload();
+        // A patch within it may have been saved instead.
+        const bool is_known = !is_new && plan_ && (plan_->patch.parts.empty() || has_same_parts());
+        if (is_known) return;
         tell("the file was saved elsewhere; it is taken over");
+        adopt_text();
     } catch (const Error& error) {
         tell(error.what(), true);
     }

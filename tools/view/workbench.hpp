@@ -76,16 +76,15 @@ public:
     void run();
     void stop();
     void pause(bool wanted);
-    /// Begins the run anew, recorded: a take can be repeated from its beginning only. Again: anew and not recorded.
+    /// From now on, or no more. What runs is not disturbed; where nothing runs, a run begins.
     void record(bool wanted);
-    bool is_recording() const { return !choice_.record.empty(); }
+    bool is_recording() const { return status()->is_recording; }
     const std::filesystem::path& take() const { return last_take_; }
     ViewedRun* running() { return run_.get(); }
     std::shared_ptr<const RunStatus> status() const;
     std::shared_ptr<Observer> observer() const { return observer_; }
     /// Rises with every run that begins: what was seen of the one before is over.
     int runs() const { return runs_; }
-    const RunChoice& choice() const { return choice_; }
 
     /// Once per picture.
     void tend();
@@ -98,12 +97,17 @@ private:
     bool edit(const PatchEditor::Edit& how, std::string done);
     std::optional<std::string> check(std::string_view text);
     void adopt();
-    void follow(const Plan* before);
+    void adopt_text();
+    void follow();
+    void take_over_file();
+    bool has_same_parts();
 
     RunChoice choice_;
     AssetCache assets_;
     std::unique_ptr<PatchEditor> editor_;
-    std::unique_ptr<Plan> plan_, checked_;
+    std::unique_ptr<Plan> checked_;
+    std::shared_ptr<const Plan> plan_;
+    std::shared_ptr<const Plan> followed_;  // what the run was brought to last
     PatchPicture picture_;
     std::int64_t plan_version_ = 0;
     std::deque<Message> messages_;
@@ -112,6 +116,7 @@ private:
     std::unique_ptr<ViewedRun> run_;
     std::filesystem::path last_take_;
     int runs_ = 0;
+    bool has_take_ = false;  // the run was recorded, at least in part
 };
 
 }  // namespace tactus::view

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/workbench.hpp"
+#include "engine/take_reader.hpp"
 #include "tests/tools/run_command.hpp"
 #include "tests/tools/view/voice.hpp"
 #include "tools/load_plan.hpp"
+#include "tools/view/feed.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -134,6 +136,128 @@ TEST_CASE("edits at the bench reach the run: parameters as such, all else as a n
     REQUIRE(come_about([&] { return bench.running()->is_over(); }));
     CHECK(bench.status()->failure.empty());
     CHECK(bench.running()->summary_json().find("output_hash") != std::string::npos);
+}
+
+TEST_CASE(
+    "a file saved elsewhere is taken over by what runs, parameters that were turned among it, and can be undone") {
+    const Folder folder;
+    const RunChoice choice = choice_in(folder);
+    Workbench bench(choice);
+    bench.run();
+    const auto status = [&] {
+        bench.tend();
+        return bench.status();
+    };
+    REQUIRE(come_about([&] { return status()->time > 0.1; }));
+    // Turned in the window, then written back from outside: the run must hear of it, though the patch it began with says
+    // the same as the file does now.
+    REQUIRE(bench.set("level", "number", "0.9"));
+    const auto loudness = [&] {
+        bench.observer()->watch("level.value", Watch::latest);
+        return bench.observer()->latest<double>("level.value").value_or(Seen<double>{}).value;
+    };
+    REQUIRE(come_about([&] { return status(), loudness() == 0.9; }));
+    folder.write("voice.toml", voice + "# from elsewhere\n");
+    REQUIRE(come_about([&] { return status(), loudness() == 0.5; }));
+    CHECK(bench.editor().text() == voice + "# from elsewhere\n");
+    CHECK(status()->edits == 0);
+    folder.write("voice.toml", voice + "[nodes.more]\ntype = \"constant\"\nrate = \"60 Hz\"\n");
+    REQUIRE(come_about([&] { return status()->edits == 1; }));
+    CHECK(bench.picture().find("more") >= 0);
+    folder.write("voice.toml", voice + "oops");
+    REQUIRE(come_about([&] { return status(), !bench.plan(); }));
+    CHECK(bench.undo());
+    REQUIRE(bench.plan());
+    CHECK(bench.picture().find("more") >= 0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    CHECK(status()->edits == 1);
+    CHECK(status()->state == RunStatus::State::runs);
+}
+
+TEST_CASE(
+    "a bench without a run takes over a file changed elsewhere when it is to be saved, and then it can be saved") {
+    const Folder folder;
+    const RunChoice choice = choice_in(folder);
+    Workbench bench(choice);
+    REQUIRE(bench.set("tone", "frequency", "220 Hz"));
+    const std::string mine = bench.editor().text();
+    folder.write("voice.toml", voice + "# from elsewhere\n");
+    CHECK_FALSE(bench.save());
+    CHECK(bench.messages().back().text.find("undo") != std::string::npos);
+    CHECK(bench.editor().text() == voice + "# from elsewhere\n");
+    CHECK(slurp(choice.patch) == bench.editor().text());
+    REQUIRE(bench.undo());
+    CHECK(bench.editor().text() == mine);
+    CHECK(bench.save());
+    CHECK(slurp(choice.patch) == mine);
+}
+
+TEST_CASE("record pressed while a patch runs leaves the run alone and makes a take that repeats it") {
+    const Folder folder;
+    Workbench bench(choice_in(folder));
+    CHECK(bench.take().empty());
+    bench.run();
+    const auto status = [&] {
+        bench.tend();
+        return bench.status();
+    };
+    REQUIRE(come_about([&] { return status()->time > 0.3; }));
+    CHECK_FALSE(bench.is_recording());
+    REQUIRE(bench.set("tone", "frequency", "220 Hz"));
+    bench.record(true);
+    REQUIRE(come_about([&] { return status()->is_recording; }));
+    CHECK(bench.runs() == 1);
+    const double pressed = status()->time;
+    REQUIRE(come_about([&] { return status()->time > pressed + 0.3; }));
+    REQUIRE(bench.connect("level.value", "loud.factor", "linear"));
+    REQUIRE(come_about([&] { return status()->edits == 1; }));
+    bench.record(false);
+    REQUIRE(come_about([&] { return !status()->is_recording; }));
+    REQUIRE(come_about([&] { return status()->time > pressed + 1.0; }));
+    bench.stop();
+    REQUIRE(come_about([&] { return bench.running()->is_over(); }));
+    CHECK(bench.status()->failure.empty());
+    CHECK(bench.take() == folder.path / "voice-take-1");
+    const Take take = Take::load(bench.take());
+    CHECK(take.streams.size() == 3);
+    const TakeFeed feed(take);
+    REQUIRE(feed.recorded().size() == 1);
+    CHECK(feed.recorded()[0].low > 0.25);
+    CHECK(feed.recorded()[0].high < pressed + 1.0);
+    const test::Outcome again = folder.tactus("replay " + bench.take().string() + " --json");
+    INFO(again.out << again.err);
+    CHECK(again.code == 0);
+    // Nothing is left of what was kept in case.
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path / "out"))
+        CHECK(entry.path().filename().string().find("journal") == std::string::npos);
+    // Once more: another run, recorded from its beginning.
+    bench.record(true);
+    CHECK(bench.take() == folder.path / "voice-take-2");
+    REQUIRE(come_about([&] { return status()->time > 0.1; }));
+    CHECK(bench.is_recording());
+}
+
+TEST_CASE("an output that two look at stays looked at when one of them turns away") {
+    const Folder folder;
+    Workbench bench(choice_in(folder));
+    bench.run();
+    REQUIRE(come_about([&] { return bench.tend(), bench.status()->time > 0.1; }));
+    Observer& observer = *bench.observer();
+    const int other = 0;
+    observer.watch("level.value", Watch::latest, &other);
+    {
+        LiveFeed feed(bench.observer());
+        feed.follow({"level.value"}, {});
+        feed.follow({}, {"level.value"});
+        CHECK(come_about([&] {
+            feed.follow({}, {"level.value"});
+            return feed.trace("level.value") && feed.trace("level.value")->times.size() > 3;
+        }));
+        feed.follow({}, {});
+    }
+    const auto when = [&] { return observer.latest<double>("level.value")->when; };
+    const Flicks then = when();
+    CHECK(come_about([&] { return when() > then; }));
 }
 
 TEST_CASE("a run whose patch is broken ends with the reason and leaves the bench to mend it") {
