@@ -13,6 +13,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <numbers>
 
@@ -77,6 +78,8 @@ Pose pose_of_text(const std::string& text, std::string_view option) {
     if (!is_valid(pose)) throw Error(fmt::format("{} needs finite numbers and a quaternion of unit length", option));
     return {pose.position, glm::normalize(pose.orientation)};
 }
+
+double shown_mm(double millimetres) { return std::round(millimetres * 100.0) / 100.0 + 0.0; }
 
 double angle_deg(const Pose& pose) {
     return glm::length(rotation_between({1.0, 0.0, 0.0, 0.0}, pose.orientation)) * 180.0 / std::numbers::pi;

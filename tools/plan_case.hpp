@@ -42,6 +42,9 @@ Json pose_json(const Pose& pose) {
 /// "X,Y,Z,QW,QX,QY,QZ" in mm. Throws Error naming the option.
 Pose pose_of_text(const std::string& text, std::string_view option);
 
+/// To two decimals, without the sign of a zero.
+double shown_mm(double millimetres);
+
 /// Distance and angle of a pose from none, for people: mm and degrees.
 double angle_deg(const Pose& pose);
 

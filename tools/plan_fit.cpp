@@ -13,7 +13,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <numbers>
 
@@ -270,8 +269,9 @@ int plan_gap(const PlanChoice& choice) {
                 "{} and {}: {:.0f} mm² face each other, {:.0f} mm² touch; gap {:.2f} mm (95 %: {:.2f} mm), "
                 "{:.1f} mm³ in each other, {:.2f} mm deep\n",
                 p["fragments"][0].get<std::string>(), p["fragments"][1].get<std::string>(),
-                p["facing_mm2"].get<double>(), p["contact_mm2"].get<double>(), p["gap_median_mm"].get<double>(),
-                p["gap_p95_mm"].get<double>(), p["overlap_mm3"].get<double>(), p["deepest_mm"].get<double>());
+                p["facing_mm2"].get<double>(), p["contact_mm2"].get<double>(),
+                shown_mm(p["gap_median_mm"].get<double>()), p["gap_p95_mm"].get<double>(),
+                p["overlap_mm3"].get<double>(), p["deepest_mm"].get<double>());
     return done;
 }
 

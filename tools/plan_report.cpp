@@ -131,9 +131,6 @@ std::string gap_legend() {
         stops);
 }
 
-/// Without the sign of a zero.
-double shown(double millimetres) { return std::round(millimetres * 100.0) / 100.0 + 0.0; }
-
 /// Where each fragment goes, as other programs are told it too.
 std::string places(const Case& c) {
     std::string out =
@@ -213,7 +210,7 @@ std::string gaps(const Case& c) {
                 "class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.1f}"
                 "</td></tr>\n",
                 html::escaped(c.name(i)), html::escaped(c.name(j)), gap.facing_area * 1e6, gap.contact_area * 1e6,
-                shown(gap.median * 1e3), shown(gap.p95 * 1e3), gap.deepest * 1e3,
+                shown_mm(gap.median * 1e3), shown_mm(gap.p95 * 1e3), gap.deepest * 1e3,
                 overlap_volume(c.fragments[i].bone.distance, c.pose(i), c.fragments[j].map, c.pose(j)) * 1e9);
             if (gap.facing_area > 20e-6) maps += gap_map(c, i, j, gap);
         }
