@@ -18,8 +18,10 @@ std::shared_ptr<ObservedPort> Observer::open(ObservedPort::Identity identity, co
                                              const std::byte* initial) {
     auto port = std::make_shared<ObservedPort>(std::move(identity), type, initial, pace_ != Pace::live, &pressing_);
     const std::lock_guard hold(lock_);
-    Named& named = named_[port->identity.name];
-    if (named.readings.empty()) order_.push_back(port->identity.name);
+    const auto at = named_.try_emplace(port->identity.name).first;
+    Named& named = at->second;
+    if (named.readings.empty()) order_.push_back(at);
+    ++ports_version_;
     std::erase_if(named.readings, [](const Reading& old) { return old.port.expired(); });
     Reading& reading = named.readings.emplace_back();
     reading.port = port;
@@ -47,11 +49,11 @@ const Observer::Reading* Observer::newest(const Named& named) const {
 std::vector<Observer::Port> Observer::ports() const {
     const std::lock_guard hold(lock_);
     std::vector<Port> ports;
-    for (const std::string& name : order_) {
-        const auto& readings = named_.at(name).readings;
+    for (const auto& named : order_) {
+        const auto& readings = named->second.readings;
         for (auto reading = readings.rbegin(); reading != readings.rend(); ++reading)
             if (const auto port = reading->port.lock()) {
-                ports.push_back({name, &port->type, port->identity.period});
+                ports.push_back({named->first, &port->type, port->identity.period});
                 break;
             }
     }
@@ -71,9 +73,14 @@ void Observer::watch(const std::string& name, Watch how, const void* who) {
 
 void Observer::drain_locked() {
     pressing_.store(false, std::memory_order_relaxed);
-    for (auto& [name, named] : named_)
-        for (Reading& reading : named.readings)
-            if (const auto port = reading.port.lock()) port->drain(reading.waiting);
+    for (const auto& named : order_)
+        for (Reading& reading : named->second.readings)
+            // What nobody looks at, nor ever did, has nothing to give.
+            if (named->second.watch != Watch::nothing || !reading.waiting.empty() || reading.was_watched)
+                if (const auto port = reading.port.lock()) {
+                    reading.was_watched = true;
+                    port->drain(reading.waiting);
+                }
 }
 
 void Observer::drain() {
@@ -84,19 +91,26 @@ void Observer::drain() {
 void Observer::advance(Flicks until) {
     const std::lock_guard hold(lock_);
     drain_locked();
-    for (auto& [name, named] : named_) {
-        std::erase_if(named.readings, [](const Reading& old) { return old.port.expired(); });
-        for (Reading& reading : named.readings)
-            if (const auto port = reading.port.lock()) {
-                if (pace_ != Pace::kept) {
-                    take_in(reading, *port, named.watch, until);
-                    continue;
-                }
-                keep(reading, *port);
-                look_back(reading, *port, until);
+    bool are_gone = false;
+    for (const auto& at : order_) {
+        Named& named = at->second;
+        if (std::erase_if(named.readings, [](const Reading& old) { return old.port.expired(); }) > 0) {
+            ++ports_version_;
+            are_gone = are_gone || named.readings.empty();
+        }
+        for (Reading& reading : named.readings) {
+            if (!reading.was_watched) continue;
+            const auto port = reading.port.lock();
+            if (!port) continue;
+            if (pace_ != Pace::kept) {
+                take_in(reading, *port, named.watch, until);
+                continue;
             }
+            keep(reading, *port);
+            look_back(reading, *port, until);
+        }
     }
-    std::erase_if(order_, [this](const std::string& name) { return named_.at(name).readings.empty(); });
+    if (are_gone) std::erase_if(order_, [](const auto& at) { return at->second.readings.empty(); });
 }
 
 void Observer::take_in(Reading& reading, const ObservedPort& port, Watch how, Flicks until) {
@@ -220,8 +234,8 @@ std::shared_ptr<const SeenBone> Observer::bone(const std::string& name) const {
 std::vector<std::shared_ptr<const SeenBody>> Observer::bodies() const {
     const std::lock_guard hold(lock_);
     std::vector<std::shared_ptr<const SeenBody>> bodies;
-    for (const std::string& name : order_)
-        for (const Reading& reading : named_.at(name).readings)
+    for (const auto& named : order_)
+        for (const Reading& reading : named->second.readings)
             if (const auto port = reading.port.lock(); port && port->body) bodies.push_back(port->body);
     return bodies;
 }

@@ -47,6 +47,8 @@ public:
     };
     /// In the order in which nodes were made; with an edit on its way, the new nodes' too.
     std::vector<Port> ports() const;
+    /// Rises when `ports` gives others: a patch can have tens of thousands.
+    std::int64_t ports_version() const { return ports_version_.load(std::memory_order_relaxed); }
 
     /// Says how closely `who` looks at an output from now on, also at one that an edit is yet to bring. Of several who
     /// look, the closest counts. Lossless observers say so before the run.
@@ -97,6 +99,7 @@ private:
         std::size_t used_of_first = 0;  // values of the first piece that are done
         std::vector<std::byte> value;  // lossless: as of `advance`
         Flicks when = 0;
+        bool was_watched = false;  // something may wait, or have waited
         bool has_begun = false;  // something was applied
         SeenValues gathered;
         std::shared_ptr<SeenBone> bone;
@@ -127,8 +130,9 @@ private:
 
     const Pace pace_;
     mutable std::mutex lock_;  // never taken in a tick
-    std::map<std::string, Named> named_;
-    std::vector<std::string> order_;
+    std::map<std::string, Named> named_;  // for ever
+    std::vector<std::map<std::string, Named>::iterator> order_;  // those that are there
+    std::atomic<std::int64_t> ports_version_{0};
     std::atomic<bool> pressing_{false};
 };
 

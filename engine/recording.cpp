@@ -43,11 +43,10 @@ void Engine::tend_record() {
 
 void Engine::begin_record() {
     records_ = was_recorded_ = true;
-    std::vector<std::pair<PublishedOutput*, Stream*>> begun;
+    std::vector<std::pair<PublishedOutput*, RecordStream*>> begun;
     for (std::size_t g = 0; g < now_->groups.size(); ++g)
         for (PublishedOutput& output : now_->programs[g]->published)
-            begun.emplace_back(&output,
-                               static_cast<Stream*>(tap_of(output.name, *output.port->type, *now_->groups[g])));
+            begun.emplace_back(&output, tap_of(output.name, *output.port->type, *now_->groups[g]));
     list_open_taps();
     const Flicks from = furthest() + record_lead;
     for (const auto& [name, tap] : taps_) tap.stream->begin_at(ceil_div(from, tap.group->plan->period));

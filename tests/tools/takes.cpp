@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Takes, replay, and changes to a patch that runs, as scripts use them.
 #include "tests/tools/background_run.hpp"
+#include "tests/tools/patches.hpp"
 
 #include <sndfile.h>
 #include <catch2/catch.hpp>
@@ -21,36 +22,6 @@ using namespace tactus::test;
 using nlohmann::json;
 
 namespace {
-
-const std::string touch = R"(title = "touch"
-wires = [
-  "hand.pose -> ball.pose",
-  "ball.wrench -> out.wrench",
-  "tone.signal -> loud.in",
-  "level.value -> loud.factor",
-]
-[nodes.hand]
-type = "device_input"
-rate = "1 kHz"
-device = "simulated"
-[nodes.ball]
-type = "sphere_contact"
-rate = "1 kHz"
-[nodes.out]
-type = "device_output"
-rate = "1 kHz"
-device = "simulated"
-[nodes.tone]
-type = "sine"
-rate = "48 kHz"
-[nodes.loud]
-type = "gain"
-rate = "48 kHz"
-[nodes.level]
-type = "constant"
-rate = "60 Hz"
-number = 0.5
-)";
 
 void flip_byte(const fs::path& path, std::int64_t from_end) {
     std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);

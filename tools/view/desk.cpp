@@ -2,6 +2,7 @@
 #include "tools/view/desk.hpp"
 
 #include "tools/view/run_bar.hpp"
+#include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
 #include <imgui.h>
@@ -11,7 +12,8 @@
 namespace tactus::view {
 
 Desk::Desk(Window& window, Workbench& bench, TakeBench* take)
-    : bench_(bench),
+    : window_(window),
+      bench_(bench),
       take_(take),
       fonts_{window.body, window.bold, window.large, window.scale()},
       patch_(bench),
@@ -123,6 +125,8 @@ void Desk::ask_farewell() {
 void Desk::draw() {
     follow_run();
     looked_at_.clear();
+    fonts_ = {window_.body, window_.bold, window_.large, window_.scale()};
+    forget_spots();
     ImGui::NewFrame();
     ImGui::PushFont(fonts_.body);
     const ImGuiViewport* viewport = ImGui::GetMainViewport();
@@ -133,7 +137,7 @@ void Desk::draw() {
                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
     shortcuts();
     run_bar(bench_, take_, fonts_);
-    const double gap = 6.0 * fonts_.scale, messages = 50.0 * fonts_.scale;
+    const double gap = 6.0 * fonts_.scale, messages = 38.0 * fonts_.scale;
     const double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
     const double height = static_cast<double>(ImGui::GetContentRegionAvail().y) - messages - 2.0 * gap;
     const double left = left_ * width;
@@ -173,13 +177,18 @@ void Desk::draw() {
     ImGui::BeginChild("node", ImVec2(0, 0), false, ImGuiWindowFlags_AlwaysUseWindowPadding);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({8.0 * fonts_.scale, 5.0 * fonts_.scale}));
     if (ImGui::BeginTabBar("tabs")) {
-        if (ImGui::BeginTabItem("Node")) {
+        const auto tab = [](const char* label, ImGuiTabItemFlags flags) {
+            const bool is_open = ImGui::BeginTabItem(label, nullptr, flags);
+            mark_spot(label);
+            return is_open;
+        };
+        if (tab("Node", 0)) {
             nodes_.draw_parameters(patch_.selected, fonts_);
             ImGui::EndTabItem();
         }
         const ImGuiTabItemFlags front = nodes_.wants_catalogue ? ImGuiTabItemFlags_SetSelected : 0;
         nodes_.wants_catalogue = false;
-        if (ImGui::BeginTabItem("Add a node", nullptr, front)) {
+        if (tab("Add a node", front)) {
             nodes_.draw_catalogue(patch_.selected, fonts_);
             ImGui::EndTabItem();
         }

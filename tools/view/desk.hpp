@@ -26,6 +26,7 @@ public:
     Workbench& bench() { return bench_; }
     TakeBench* take() { return take_; }
     PatchPanel& patch() { return patch_; }
+    const PatchPanel& patch() const { return patch_; }
     NodePanel& nodes() { return nodes_; }
     Scopes& scopes() { return scopes_; }
     ScenePanel& scene() { return scene_; }
@@ -42,6 +43,7 @@ private:
     void ask_farewell();
     void shortcuts();
 
+    Window& window_;
     Workbench& bench_;
     TakeBench* take_;
     std::unique_ptr<LiveFeed> live_;

@@ -12,6 +12,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace tactus::view {
@@ -41,6 +42,8 @@ public:
 
     virtual ~Feed() = default;
     virtual std::vector<Port> ports() const = 0;
+    /// Rises when there are others.
+    virtual std::int64_t ports_version() const { return 0; }
     virtual double now() const = 0;  ///< s
     /// Once per picture: which outputs are wanted at all, and which with every value.
     virtual void follow(const std::set<std::string>& looked_at, const std::set<std::string>& traced) = 0;
@@ -56,6 +59,7 @@ public:
     explicit LiveFeed(std::shared_ptr<Observer> observer) : observer_(std::move(observer)) {}
 
     std::vector<Port> ports() const override;
+    std::int64_t ports_version() const override { return observer_->ports_version(); }
     double now() const override { return now_; }
     void set_now(double seconds) { now_ = seconds; }
     void follow(const std::set<std::string>& looked_at, const std::set<std::string>& traced) override;
@@ -67,10 +71,10 @@ public:
 private:
     std::shared_ptr<Observer> observer_;
     double now_ = 0.0;
-    int pictures_ = 0;
     std::set<std::string> watched_;
     std::map<std::string, Trace> traces_;
-    std::map<std::string, const ValueType*, std::less<>> types_;
+    std::unordered_map<std::string, const ValueType*> types_;
+    std::int64_t listed_ = -1;  ///< version of the ports in `types_`
 };
 
 /// Of a take at a time that is set: `latest` is what held then, traces end then.

@@ -51,9 +51,8 @@ void LiveFeed::follow(const std::set<std::string>& looked_at, const std::set<std
     std::erase_if(traces_, [&](const auto& item) { return !traced.contains(item.first); });
     watched_ = std::move(watched);
     observer_->advance();
-    // A patch can have tens of thousands of outputs; those of an edit may be known half a second later.
-    constexpr int refreshed_every = 30;
-    if (pictures_++ % refreshed_every == 0 || types_.empty()) {
+    if (listed_ != observer_->ports_version()) {
+        listed_ = observer_->ports_version();
         types_.clear();
         for (const Observer::Port& port : observer_->ports()) types_.emplace(port.name, port.type);
     }

@@ -2,6 +2,7 @@
 #include "tools/view/node_panel.hpp"
 
 #include "nodes/catalogue.hpp"
+#include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
 #include <fmt/format.h>
@@ -42,15 +43,37 @@ std::string explanation(const ParameterField& field) {
     return text;
 }
 
+/// Whether a slider of equal steps would leave no room for what is common.
+bool is_logarithmic(const ParameterField& field) {
+    if (field.least > 0.0) return field.most / field.least > 1e3;
+    return field.least == 0.0 && field.normal > 0.0 && field.most / field.normal > 100.0;
+}
+
+/// Where the default lies, under the slider that was drawn last.
+void mark_default(const ParameterField& field) {
+    if (!(field.most > field.least)) return;
+    const auto share = [&](double x) {
+        if (!is_logarithmic(field)) return (x - field.least) / (field.most - field.least);
+        // Beside zero, the slider begins at the last digit that it shows.
+        const double least = field.least > 0.0 ? field.least : 1e-5;
+        return std::log(std::max(x, least) / least) / std::log(field.most / least);
+    };
+    const Point low = point(ImGui::GetItemRectMin()), high = point(ImGui::GetItemRectMax());
+    const double grab = static_cast<double>(ImGui::GetStyle().GrabMinSize);
+    const double x = low.x + 0.5 * grab + std::clamp(share(field.normal), 0.0, 1.0) * (high.x - low.x - grab);
+    ImGui::GetWindowDrawList()->AddLine(vec({x, high.y - 4.0}), vec({x, high.y}), tone::dim, 2.0f);
+}
+
 }  // namespace
 
 void NodePanel::quantity(const ParameterField& field, const std::string& node) {
     const std::string id = node + "." + field.name;
     double value = turning_ == id ? turned_to_ : field.value;
-    const bool is_wide = field.least > 0.0 && field.most / field.least > 1e3;
+    const bool is_wide = is_logarithmic(field);
     const std::string format = fmt::format("%.5g {}", field.unit == "%" ? "%%" : field.unit);
     const bool moved = ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &field.least, &field.most,
                                            format.c_str(), is_wide ? ImGuiSliderFlags_Logarithmic : 0);
+    mark_spot(field.name);
     if (moved) {
         turning_ = id;
         turned_to_ = std::clamp(value, field.least, field.most);
@@ -58,6 +81,7 @@ void NodePanel::quantity(const ParameterField& field, const std::string& node) {
     }
     const bool ended = ImGui::IsItemDeactivatedAfterEdit();
     tip(explanation(field) + "\nCtrl-click to type");
+    mark_default(field);
     if (ended && turning_ == id) {
         turning_.clear();
         bench_.set(node, field.name, quantity_text(turned_to_, field.unit));
@@ -86,7 +110,9 @@ void NodePanel::field(const ParameterField& field, const std::string& node) {
             break;
         case Kind::flag: {
             bool on = field.text == "true";
-            if (ImGui::Checkbox("##value", &on)) bench_.set(node, field.name, on ? "true" : "false");
+            const bool turned = ImGui::Checkbox("##value", &on);
+            mark_spot(field.name);
+            if (turned) bench_.set(node, field.name, on ? "true" : "false");
             tip(explanation(field));
             break;
         }
@@ -98,6 +124,7 @@ void NodePanel::field(const ParameterField& field, const std::string& node) {
                 turning_ = id;
                 typed_ = text;
             }
+            mark_spot(field.name);
             const bool ended = ImGui::IsItemDeactivatedAfterEdit();
             tip(explanation(field));
             if (ended && turning_ == id) {
@@ -109,8 +136,16 @@ void NodePanel::field(const ParameterField& field, const std::string& node) {
     }
     ImGui::EndDisabled();
     ImGui::TableNextColumn();
+    if (field.kind == Kind::quantity) {
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextDisabled("%s", fmt::format("{:.4g} … {:.4g}", field.least, field.most).c_str());
+        tip(explanation(field));
+    }
+    ImGui::TableNextColumn();
     if (field.is_set && !is_read_only) {
-        if (ImGui::SmallButton("↺")) bench_.reset(node, field.name);
+        const bool pressed = ImGui::SmallButton("↺");
+        mark_spot("reset " + field.name);
+        if (pressed) bench_.reset(node, field.name);
         tip("back to the default, " + (field.standard.empty() ? "none" : field.standard));
     }
 }
@@ -131,6 +166,7 @@ void NodePanel::draw_parameters(std::string& selected, const Fonts& fonts) {
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.55f);
     ImGui::InputText("##name", &renaming_, is_read_only ? ImGuiInputTextFlags_ReadOnly : 0);
     const bool renamed = ImGui::IsItemDeactivatedAfterEdit() && renaming_ != selected;
+    mark_spot("name");
     ImGui::PopFont();
     ImGui::SameLine();
     ImGui::TextDisabled("%s, %s", node.type.c_str(),
@@ -143,9 +179,10 @@ void NodePanel::draw_parameters(std::string& selected, const Fonts& fonts) {
                         100.0 * time->share));
     ImGui::Spacing();
     if (fields_.empty()) dim("no parameters");
-    if (ImGui::BeginTable("fields", 3, ImGuiTableFlags_SizingStretchProp)) {
-        ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 0.36f);
-        ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 0.64f);
+    if (ImGui::BeginTable("fields", 4, ImGuiTableFlags_SizingStretchProp)) {
+        ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 0.30f);
+        ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 0.48f);
+        ImGui::TableSetupColumn("range", ImGuiTableColumnFlags_WidthStretch, 0.22f);
         ImGui::TableSetupColumn("reset", ImGuiTableColumnFlags_WidthFixed, 1.6f * ImGui::GetFontSize());
         const std::string name = selected;
         const std::vector<ParameterField> fields = fields_;
@@ -218,6 +255,7 @@ void NodePanel::draw_catalogue(std::string& selected, const Fonts& fonts) {
         std::ranges::transform(all, all.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
         if (all.find(wanted) == std::string::npos) continue;
         if (ImGui::Selectable(type->name.c_str())) chosen = type->name;
+        mark_spot("type " + type->name);
         tip(std::string(type->about));
         ImGui::SameLine(11.0f * ImGui::GetFontSize());
         ImGui::TextDisabled("%.*s", static_cast<int>(type->about.size()), type->about.data());

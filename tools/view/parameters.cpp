@@ -69,6 +69,7 @@ std::vector<ParameterField> parameters_of(const Plan& plan, int index) {
     for (std::size_t i = 0; i < fields.size(); ++i) {
         ParameterField& field = fields[i];
         field.standard = standards[i].text;
+        field.normal = standards[i].value;
         field.is_set = patched != plan.patch.nodes.end() &&
                        std::ranges::find(patched->settings, field.name, &OptionText::name) != patched->settings.end();
         if (field.kind == Kind::asset)

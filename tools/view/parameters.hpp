@@ -20,7 +20,7 @@ struct ParameterField {
     bool is_driven = false;
     // Of a quantity, in its unit:
     std::string unit;
-    double value = 0.0, least = 0.0, most = 0.0;
+    double value = 0.0, least = 0.0, most = 0.0, normal = 0.0;  ///< normal: by default
     std::vector<std::string> options;  ///< of a choice; of an asset those the patch names
 };
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 namespace tactus::view {
 
@@ -16,6 +17,7 @@ namespace {
 constexpr double rounding = 6.0, text_size = 13.0, small_size = 10.5;
 constexpr double readable = 5.5;  ///< pixels: smaller text is left out
 constexpr double red_for_s = 1.5;
+constexpr ImU32 lane_ground = colour(0x171d26);
 constexpr double smallest_box = 9.0, smallest_curve = 0.12;  ///< pixels; zoom: from here on the form is left out
 
 }  // namespace
@@ -46,13 +48,50 @@ void PatchPanel::look_at(const std::string& name) {
     fits_ = true;
 }
 
+std::optional<Point> PatchPanel::place_of(const std::string& name) const {
+    const std::size_t dot = name.find('.');
+    const int index = bench_.picture().find(name.substr(0, dot));
+    if (index < 0) return std::nullopt;
+    const PictureNode& node = bench_.picture().nodes[static_cast<std::size_t>(index)];
+    std::optional<Point> at;
+    if (dot == std::string::npos) at = Point{node.box.middle().x, node.box.top + 0.3 * title_height};
+    for (const auto* ports : {&node.inputs, &node.outputs})
+        for (const PicturePort& port : *ports)
+            if (dot != std::string::npos && port.name == name.substr(dot + 1)) at = port.at;
+    if (!at) return std::nullopt;
+    const Point seen = canvas_.to_pixel(*at);
+    if (!Box{0.0, 0.0, width_, height_}.contains(seen)) return std::nullopt;
+    return seen + corner_;
+}
+
 void PatchPanel::notice_new_plan() {
     if (plan_version_ == bench_.plan_version()) return;
     // Indices are of the picture before.
     wiring_ = {};
     hovered_ = menu_ = {};
+    // A picture that was fitted stays so.
+    if (follows_size_) fits_ = false;
     plan_version_ = bench_.plan_version();
+    times_.clear();
     if (!selected.empty() && bench_.picture().find(selected) < 0) selected.clear();
+}
+
+/// Some times a second there is another, and a patch can have ten thousand nodes.
+void PatchPanel::notice_status() {
+    auto status = bench_.status();
+    const auto& nodes = bench_.picture().nodes;
+    if (status == status_ && times_.size() == nodes.size()) return;
+    status_ = std::move(status);
+    for (const GroupStatus& group : status_->groups) {
+        Health& health = health_[group.name];
+        if (group.missed > health.missed) health.since = ImGui::GetTime();
+        health.missed = group.missed;
+    }
+    std::unordered_map<std::string_view, const NodeStatus*> by_name;
+    for (const NodeStatus& node : status_->nodes) by_name[node.name] = &node;
+    times_.assign(nodes.size(), nullptr);
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+        if (const auto found = by_name.find(nodes[n].name); found != by_name.end()) times_[n] = found->second;
 }
 
 void PatchPanel::draw(const Feed* feed, const Fonts& fonts, std::set<std::string>& looked_at) {
@@ -76,28 +115,19 @@ void PatchPanel::draw(const Feed* feed, const Fonts& fonts, std::set<std::string
     handle_mouse();
     notice_new_plan();
 
-    const auto status = bench_.status();
-    const double now = ImGui::GetTime();
-    for (const GroupStatus& group : status->groups) {
-        Health& health = health_[group.name];
-        if (group.missed > health.missed) health.since = now;
-        health.missed = group.missed;
-    }
-    std::map<std::string_view, const NodeStatus*> times;
-    for (const NodeStatus& node : status->nodes) times[node.name] = &node;
-
+    notice_status();
     const Painter paint(ImGui::GetWindowDrawList(), fonts);
     const ImVec2 low = vec(corner_), high = vec(corner_ + size);
     paint.list()->PushClipRect(low, high, true);
     const Box visible = canvas_.visible(width_, height_);
-    draw_lanes(paint, *status);
+    draw_lanes(paint);
     draw_wires(paint, visible);
+    draw_heads(paint, *status_);
     drawn_nodes = 0;
-    for (const PictureNode& node : picture.nodes) {
-        if (!node.box.meets(visible)) continue;
+    for (std::size_t n = 0; n < picture.nodes.size(); ++n) {
+        if (!picture.nodes[n].box.meets(visible)) continue;
         ++drawn_nodes;
-        const auto time = times.find(node.name);
-        draw_node(paint, node, time == times.end() ? nullptr : time->second, feed, looked_at);
+        draw_node(paint, picture.nodes[n], times_[n], feed, looked_at);
     }
     draw_wiring(paint);
     if (!bench_.plan())
@@ -107,29 +137,49 @@ void PatchPanel::draw(const Feed* feed, const Fonts& fonts, std::set<std::string
     menus();
 }
 
-void PatchPanel::draw_lanes(const Painter& paint, const RunStatus& status) {
+void PatchPanel::draw_lanes(const Painter& paint) {
     const PatchPicture& picture = bench_.picture();
     const double z = canvas_.zoom;
     for (const PictureLane& lane : picture.lanes) {
         const Box box = screen(Box{picture.bounds.left, lane.top, picture.bounds.right, lane.bottom});
         const bool late = is_late(lane.name);
-        paint.box(box, colour(0x171d26), 8.0 * z);
+        paint.box(box, lane_ground, 8.0 * z);
         paint.frame(box, late ? tone::bad : tone::lane_edge, 8.0 * z, late ? 2.0 : 1.0);
-        if (text_size * z < readable) continue;
-        Point at = screen(Point{picture.bounds.left + 16, lane.top + 8});
-        paint.text(at, text_size * z, tone::text, lane.name, true);
-        at.x += paint.width_of(lane.name, text_size * z, true) + 12.0 * z;
-        paint.text({at.x, at.y + 1.5 * z}, small_size * z, tone::dim, lane.note);
-        at.x += paint.width_of(lane.note, small_size * z) + 16.0 * z;
+    }
+}
+
+/// Above the wires that pass between lanes.
+void PatchPanel::draw_heads(const Painter& paint, const RunStatus& status) {
+    const PatchPicture& picture = bench_.picture();
+    const double z = canvas_.zoom;
+    if (text_size * z < readable) return;
+    struct Words {
+        std::string text;
+        double size;
+        ImU32 ink;
+        bool is_heavy;
+    };
+    for (const PictureLane& lane : picture.lanes) {
+        std::vector<Words> words{{lane.name, text_size * z, tone::text, true},
+                                 {lane.note, small_size * z, tone::dim, false}};
         const auto group = std::ranges::find(status.groups, lane.name, &GroupStatus::name);
-        if (group == status.groups.end() || group->ticks == 0) continue;
-        const std::string figures = fmt::format("{:.1f} µs a call, load {:.1f} %, late {:.3f} ms (99 %)",
-                                                group->execution_us, 100.0 * group->load, group->late_p99_ms);
-        paint.text({at.x, at.y + 1.5 * z}, small_size * z, tone::dim, figures);
-        if (group->missed == 0) continue;
-        at.x += paint.width_of(figures, small_size * z) + 12.0 * z;
-        paint.text({at.x, at.y + 1.5 * z}, small_size * z, late ? tone::bad : tone::warm,
-                   fmt::format("{} missed", group->missed), true);
+        if (group != status.groups.end() && group->ticks > 0) {
+            words.push_back({fmt::format("{:.1f} µs a call, load {:.1f} %, late {:.3f} ms (99 %)", group->execution_us,
+                                         100.0 * group->load, group->late_p99_ms),
+                             small_size * z, tone::dim, false});
+            if (group->missed > 0)
+                words.push_back({fmt::format("{} missed", group->missed), small_size * z,
+                                 is_late(lane.name) ? tone::bad : tone::warm, true});
+        }
+        const Point begin = screen(Point{picture.bounds.left + 16, lane.top + 8});
+        double wide = 0.0;
+        for (const Words& w : words) wide += paint.width_of(w.text, w.size, w.is_heavy) + 14.0 * z;
+        paint.box({begin.x - 4.0 * z, begin.y - 1.0 * z, begin.x + wide - 6.0 * z, begin.y + 17.0 * z}, lane_ground);
+        Point at = begin;
+        for (const Words& w : words) {
+            paint.text({at.x, at.y + (text_size * z - w.size) * 0.7}, w.size, w.ink, w.text, w.is_heavy);
+            at.x += paint.width_of(w.text, w.size, w.is_heavy) + 14.0 * z;
+        }
     }
 }
 
@@ -172,13 +222,17 @@ void PatchPanel::draw_node(const Painter& paint, const PictureNode& node, const 
     const Box box = screen(node.box);
     const bool is_chosen = node.name == selected;
     if (box.height() < smallest_box) return paint.box(box, is_chosen ? tone::chosen : tone::node_edge);
+    if (text_size * z < readable) {
+        // Many at once, and too small for round corners to be seen.
+        paint.box(box, is_chosen ? tone::chosen : tone::node_edge);
+        return paint.box({box.left + 1.0, box.top + title_height * z, box.right - 1.0, box.bottom - 1.0}, tone::node);
+    }
     paint.box(box, tone::node, rounding * z);
     Box head = box;
     head.bottom = box.top + (title_height - 6.0) * z;
     paint.list()->AddRectFilled(vec({head.left, head.top}), vec({head.right, head.bottom}), tone::node_head,
                                 static_cast<float>(rounding * z), ImDrawFlags_RoundCornersTop);
     paint.frame(box, is_chosen ? tone::chosen : tone::node_edge, rounding * z, is_chosen ? 2.0 : 1.0);
-    if (text_size * z < readable) return;
     double room = node_width * z - 16.0 * z;
     if (status && status->mean_us > 0.0) {
         const std::string time = fmt::format("{:.{}f} µs", status->mean_us, status->mean_us < 10.0 ? 1 : 0);
@@ -236,7 +290,8 @@ void PatchPanel::draw_ports(const Painter& paint, const PictureNode& node, const
             continue;
         }
         const std::string text = short_value(*port.type, latest, port.unit);
-        paint.text({at.x + 8.0 * z, at.y - 1.35 * size}, 0.95 * size, faded(ink, 0.95), text);
+        paint.text({at.x + 8.0 * z, at.y - 1.35 * size}, 0.95 * size, faded(ink, 0.95),
+                   paint.shortened(text, 0.95 * size, (column_gap - 12.0) * z));
     }
 }
 

@@ -8,8 +8,11 @@
 #include "tools/view/workbench.hpp"
 
 #include <map>
+#include <memory>
+#include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace tactus::view {
 
@@ -26,6 +29,8 @@ public:
     void fit() { fits_ = false; }
     /// Brings a node into the middle.
     void look_at(const std::string& node);
+    /// Where "node", "node.output" or "node.input" is seen, none: not in sight.
+    std::optional<Point> place_of(const std::string& name) const;
     /// What was drawn last, for those who ask whether all was.
     std::size_t drawn_nodes = 0, drawn_wires = 0;
 
@@ -40,7 +45,9 @@ private:
     };
 
     void notice_new_plan();
-    void draw_lanes(const Painter& paint, const RunStatus& status);
+    void notice_status();
+    void draw_lanes(const Painter& paint);
+    void draw_heads(const Painter& paint, const RunStatus& status);
     void draw_wires(const Painter& paint, const Box& visible);
     void draw_node(const Painter& paint, const PictureNode& node, const NodeStatus* status, const Feed* feed,
                    std::set<std::string>& looked_at);
@@ -63,6 +70,8 @@ private:
     std::int64_t plan_version_ = -1;
     Wiring wiring_;
     Hit hovered_, menu_;
+    std::shared_ptr<const RunStatus> status_;
+    std::vector<const NodeStatus*> times_;  ///< of `status_`, by the picture's nodes
     std::map<std::string, Health> health_;
     std::map<std::string, double> meters_;  ///< of signals: the largest of late
     std::string new_name_;

@@ -13,7 +13,7 @@ namespace tactus::view {
 
 namespace {
 
-constexpr double column_gap = 66, row_gap = 18, lane_head = 30, lane_padding = 14, lane_gap = 14, left_edge = 16;
+constexpr double value_room = 60, row_gap = 18, lane_head = 30, lane_padding = 14, lane_gap = 14, left_edge = 16;
 
 void fill_node(const PlanNode& node, PictureNode& made) {
     made.name = node.name;
@@ -99,7 +99,7 @@ public:
             top = lane.bottom + lane_gap;
             picture_.lanes.push_back(lane);
         }
-        picture_.bounds = {0.0, 0.0, right_ + left_edge, std::max(top - lane_gap, 1.0)};
+        picture_.bounds = {0.0, 0.0, right_ + left_edge + value_room, std::max(top - lane_gap, 1.0)};
     }
 
 private:

@@ -51,7 +51,7 @@ struct PatchPicture {
     int find(std::string_view node) const;  ///< −1: none
 };
 
-inline constexpr double title_height = 38.0, port_height = 17.0, node_width = 158.0;
+inline constexpr double title_height = 38.0, port_height = 17.0, node_width = 158.0, column_gap = 100.0;
 
 PatchPicture picture_of(const Plan& plan);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/run_bar.hpp"
 
+#include "tools/view/spots.hpp"
 #include "tools/view/take_bench.hpp"
 #include "tools/view/theme.hpp"
 
@@ -32,8 +33,16 @@ bool sign_button(const char* id, Sign sign, ImU32 ink, bool is_on, const char* t
         list->AddRectFilled({c.x - r, c.y - r}, {c.x - 0.3f * r, c.y + r}, ink, 1.0f);
         list->AddRectFilled({c.x + 0.3f * r, c.y - r}, {c.x + r, c.y + r}, ink, 1.0f);
     }
+    mark_spot(id + 2);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip);
     ImGui::SameLine();
+    return pressed;
+}
+
+/// A button with a word, which is its name for scripts, too.
+bool button(const char* label) {
+    const bool pressed = ImGui::Button(label);
+    mark_spot(label);
     return pressed;
 }
 
@@ -65,7 +74,7 @@ void run_buttons(Workbench& bench, const RunStatus& status) {
     words(names[static_cast<std::size_t>(status.state)], ink);
     if (!runs && !bench.take().empty() && std::filesystem::exists(bench.take() / "result.json")) {
         ImGui::BeginDisabled(!bench.editor().is_saved());
-        if (ImGui::Button("Look at the take")) bench.wants_take = true;
+        if (button("Look at the take")) bench.wants_take = true;
         ImGui::EndDisabled();
         ImGui::SameLine();
     }
@@ -84,7 +93,7 @@ void run_buttons(Workbench& bench, const RunStatus& status) {
 
 void take_line(Workbench& bench, TakeBench& take) {
     if (bench.has_patch_behind) {
-        if (ImGui::Button("Back to the patch")) bench.wants_patch = true;
+        if (button("Back to the patch")) bench.wants_patch = true;
         ImGui::SameLine();
     }
     float at = static_cast<float>(take.time());
@@ -94,6 +103,7 @@ void take_line(Workbench& bench, TakeBench& take) {
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 17.0f * ImGui::GetFontSize());
     if (ImGui::SliderFloat("##time", &at, 0.0f, static_cast<float>(take.length()), "%.3f s"))
         take.go_to(static_cast<double>(at));
+    mark_spot("time");
     // What was recorded, beneath the line of time.
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     for (const Range& stretch : take.feed().recorded()) {
@@ -102,7 +112,10 @@ void take_line(Workbench& bench, TakeBench& take) {
                                                   tone::bad);
     }
     ImGui::SameLine();
-    words(take.scene_note(), tone::dim);
+    constexpr std::size_t room = 34;
+    const std::string note = take.scene_note();
+    words(note.size() > room ? note.substr(0, room) + "..." : note, tone::dim);
+    if (note.size() > room && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", note.c_str());
     ImGui::NewLine();
 }
 
@@ -114,20 +127,22 @@ void run_bar(Workbench& bench, TakeBench* take, const Fonts& fonts) {
     ImGui::PopFont();
     if (take) return take_line(bench, *take);
     run_buttons(bench, *bench.status());
-    const float right = 19.0f * ImGui::GetFontSize();
-    ImGui::SameLine(std::max(ImGui::GetCursorPosX(), ImGui::GetWindowWidth() - right));
+    const char* const save = bench.editor().is_saved() ? "Saved" : "Save";
+    const ImGuiStyle& style = ImGui::GetStyle();
+    float wide = 3.0f * 2.0f * style.FramePadding.x + 2.0f * style.ItemSpacing.x + style.WindowPadding.x;
+    for (const char* label : {"Undo", "Redo", save}) wide += ImGui::CalcTextSize(label).x;
+    ImGui::SameLine(std::max(ImGui::GetCursorPosX(), ImGui::GetWindowWidth() - wide));
     ImGui::BeginDisabled(!bench.editor().can_undo());
-    if (ImGui::Button("Undo")) bench.undo();
+    if (button("Undo")) bench.undo();
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::BeginDisabled(!bench.editor().can_redo());
-    if (ImGui::Button("Redo")) bench.redo();
+    if (button("Redo")) bench.redo();
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::BeginDisabled(bench.editor().is_saved());
-    if (ImGui::Button(bench.editor().is_saved() ? "Saved" : "Save")) bench.save();
+    if (button(save)) bench.save();
     ImGui::EndDisabled();
-    ImGui::NewLine();
 }
 
 }  // namespace tactus::view

@@ -3,6 +3,7 @@
 
 #include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/view/spots.hpp"
 #include "tools/view/theme.hpp"
 
 #include <fmt/format.h>
@@ -92,6 +93,7 @@ void Scopes::write(std::size_t index, const Feed& feed, const std::filesystem::p
 
 void Scopes::head(Scope& scope, std::size_t index, const Feed& feed, bool& closes) {
     const float unit = ImGui::GetFontSize();
+    const auto mark = [index](const char* what) { mark_spot(fmt::format("scope {} {}", index, what)); };
     ImGui::SetNextItemWidth(13.0f * unit);
     if (ImGui::BeginCombo("##port", scope.port.c_str())) {
         ImGui::InputTextWithHint("##search", "search", &search_);
@@ -111,6 +113,7 @@ void Scopes::head(Scope& scope, std::size_t index, const Feed& feed, bool& close
         scope.computed_at = -1.0;
         scope.cursors.clear();
     }
+    mark("kind");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(5.0f * unit);
     auto span = static_cast<float>(scope.span);
@@ -121,6 +124,7 @@ void Scopes::head(Scope& scope, std::size_t index, const Feed& feed, bool& close
     }
     ImGui::SameLine();
     ImGui::Checkbox("freeze", &scope.is_frozen);
+    mark("freeze");
     const auto save_as = [&](const char* ending) {
         std::filesystem::path path;
         for (int i = 1; path.empty() || std::filesystem::exists(path); ++i)
@@ -132,18 +136,24 @@ void Scopes::head(Scope& scope, std::size_t index, const Feed& feed, bool& close
         }
     };
     ImGui::SameLine();
-    if (ImGui::SmallButton("CSV")) save_as(".csv");
+    const bool wants_csv = ImGui::SmallButton("CSV");
+    mark("CSV");
+    if (wants_csv) save_as(".csv");
     ImGui::SameLine();
-    if (ImGui::SmallButton("PNG")) save_as(".png");
+    const bool wants_png = ImGui::SmallButton("PNG");
+    mark("PNG");
+    if (wants_png) save_as(".png");
     ImGui::SameLine();
-    if (ImGui::SmallButton("×")) closes = true;
+    closes = ImGui::SmallButton("×");
+    mark("close");
 }
 
-void Scopes::body(Scope& scope, const Fonts& fonts, double height) {
+void Scopes::body(Scope& scope, std::size_t index, const Fonts& fonts, double height) {
     const Painter paint(ImGui::GetWindowDrawList(), fonts);
     const Point corner = point(ImGui::GetCursorScreenPos());
     const double width = static_cast<double>(ImGui::GetContentRegionAvail().x), s = fonts.scale, small = 11.0 * s;
     ImGui::InvisibleButton("plot", vec({width, height}));
+    mark_spot(fmt::format("scope {} plot", index));
     const Box all{corner.x, corner.y, corner.x + width, corner.y + height};
     const Box inner{all.left + 52.0 * s, all.top + 6.0 * s, all.right - 8.0 * s, all.bottom - 18.0 * s};
     paint.box(all, colour(0x0f1319), 4.0 * s);
@@ -217,9 +227,10 @@ void Scopes::body(Scope& scope, const Fonts& fonts, double height) {
 
 void Scopes::draw(const Feed* feed, const Fonts& fonts) {
     // There may be tens of thousands.
-    if (feed && (ports_.empty() || ImGui::GetTime() - listed_at_ > 0.5)) {
+    if (feed && (feed != listed_of_ || listed_ != feed->ports_version())) {
+        listed_of_ = feed;
+        listed_ = feed->ports_version();
         ports_ = feed->ports();
-        listed_at_ = ImGui::GetTime();
     }
     if (ImGui::Button("+ scope") && feed)
         for (const Feed::Port& port : ports_) {
@@ -250,7 +261,7 @@ void Scopes::draw(const Feed* feed, const Fonts& fonts) {
         bool closes = false;
         head(scopes_[i], i, *feed, closes);
         refresh(scopes_[i], *feed, std::max(50, static_cast<int>(ImGui::GetContentRegionAvail().x) - 60));
-        body(scopes_[i], fonts, height);
+        body(scopes_[i], i, fonts, height);
         if (closes) closed = i;
         ImGui::PopID();
     }

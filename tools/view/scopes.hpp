@@ -46,7 +46,7 @@ public:
 private:
     void refresh(Scope& scope, const Feed& feed, int pixels);
     void head(Scope& scope, std::size_t index, const Feed& feed, bool& closes);
-    void body(Scope& scope, const Fonts& fonts, double height);
+    void body(Scope& scope, std::size_t index, const Fonts& fonts, double height);
     Display display(const std::string& port) const;
     double rate(const std::string& port) const;
 
@@ -54,7 +54,8 @@ private:
     std::vector<Scope> scopes_;
     Spectrum reference_;
     std::vector<Feed::Port> ports_;
-    double listed_at_ = -1.0;
+    const Feed* listed_of_ = nullptr;  ///< whose `ports_` are, and which version of them
+    std::int64_t listed_ = -1;
     std::string search_, wanted_reference_;
 };
 

@@ -5,6 +5,7 @@
 #include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/view/desk.hpp"
+#include "tools/view/spots.hpp"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -22,11 +23,12 @@ namespace {
 constexpr double longest_wait = 60.0;  // s, of what should come by itself
 
 const std::vector<std::string> commands{
-    "open",      "run",        "stop",    "pause",      "resume", "record", "select",    "set",    "reset",
-    "add",       "wire",       "connect", "remove",     "rename", "undo",   "redo",      "save",   "scope",
-    "reference", "freeze",     "export",  "disconnect", "fit",    "look",   "catalogue", "goto",   "scene",
-    "hover",     "click",      "drag",    "wheel",      "wait",   "until",  "frames",    "size",   "minimise",
-    "restore",   "screenshot", "close",   "say",        "from",   "stereo", "clip",      "measure"};
+    "open",      "run",        "stop",    "pause",      "resume", "record", "select",    "set",     "reset",
+    "add",       "wire",       "connect", "remove",     "rename", "undo",   "redo",      "save",    "scope",
+    "reference", "freeze",     "export",  "disconnect", "fit",    "look",   "catalogue", "goto",    "scene",
+    "hover",     "click",      "drag",    "wheel",      "wait",   "until",  "frames",    "size",    "minimise",
+    "restore",   "screenshot", "close",   "say",        "from",   "stereo", "clip",      "measure", "check",
+    "scale",     "press",      "double",  "slide",      "pull",   "type",   "key",       "cost"};
 
 std::vector<std::string> words_of(const std::string& line) {
     std::vector<std::string> words;
@@ -83,13 +85,80 @@ double Script::number(const Line& line, std::size_t i) const {
     return value;
 }
 
+namespace {
+
+/// "ctrl+z", "enter", "delete", "space".
+Script::Keys key_named(const std::string& name) {
+    Script::Keys keys;
+    keys.is_active = true;
+    std::string key = name;
+    if (key.starts_with("ctrl+")) {
+        keys.ctrl = true;
+        key.erase(0, 5);
+    }
+    if (key == "enter") keys.key = ImGui::GetKeyIndex(ImGuiKey_Enter);
+    else if (key == "delete") keys.key = ImGui::GetKeyIndex(ImGuiKey_Delete);
+    else if (key == "space") keys.key = ImGui::GetKeyIndex(ImGuiKey_Space);
+    else if (key.size() == 1) keys.key = std::toupper(static_cast<unsigned char>(key[0]));
+    else throw Error(fmt::format("no key '{}'", name));
+    return keys;
+}
+
+/// Letters, then keys: held in one picture, free in the next.
+void press_keys(const Script::Keys& keys) {
+    ImGuiIO& io = ImGui::GetIO();
+    if (!keys.text.empty()) io.AddInputCharactersUTF8(keys.text.c_str());
+    if (!keys.is_active) return;
+    io.KeyCtrl = keys.ctrl;
+    if (keys.key >= 0) io.KeysDown[keys.key] = keys.is_down;
+}
+
+}  // namespace
+
 void Script::move_mouse() const {
+    press_keys(keys_);
     if (!mouse_) return;
     ImGuiIO& io = ImGui::GetIO();
     io.MousePos = ImVec2(static_cast<float>(mouse_->at.x), static_cast<float>(mouse_->at.y));
     io.MouseDown[0] = mouse_->left;
     io.MouseDown[1] = mouse_->right;
     io.MouseWheel = static_cast<float>(mouse_->wheel);
+    // A machine that draws slowly takes long between two presses.
+    io.MouseDoubleClickTime = 5.0f;
+}
+
+namespace {
+
+/// Where "record", "saw.load" or "blade" stands.
+Point place(const std::string& name, const Desk& desk) {
+    if (const auto box = spot(name)) return box->middle();
+    if (const auto at = desk.patch().place_of(name)) return *at;
+    throw Error(fmt::format("'{}' is not in sight", name));
+}
+
+}  // namespace
+
+/// Press, double press, slide and pull: as slowly as hands are, because what is under the mouse is known a picture late.
+bool Script::use_hand(const Line& line, Desk& desk) {
+    constexpr int looks = 3, presses = 5, arrives = 12, lets_go = 14, done_at = 17;
+    const std::string& what = line.words.front();
+    if (pictures_ < looks) {
+        mouse_ = Mouse{};
+        return false;
+    }
+    if (pictures_ == looks) {
+        from_ = to_ = place(word(line, 1), desk);
+        if (what == "slide") {
+            const auto box = spot(word(line, 1));
+            to_.x = box ? box->left + number(line, 2) * box->width() : from_.x;
+        }
+        if (what == "pull") to_ = place(word(line, 2), desk);
+    }
+    const double way = std::clamp((pictures_ - presses) / static_cast<double>(arrives - presses), 0.0, 1.0);
+    bool down = pictures_ >= presses && pictures_ < (what == "press" ? presses + 3 : lets_go);
+    if (what == "double") down = pictures_ == presses || pictures_ == presses + 2;
+    mouse_ = Mouse{from_ + (to_ - from_) * way, down, false, 0.0};
+    return pictures_ >= done_at;
 }
 
 void Script::step(Desk& desk, Window& window) {
@@ -165,6 +234,27 @@ bool Script::wait_for(const Line& line, Desk& desk, Window& window) {
         mouse_ = Mouse{from + (to - from) * share, pictures_ >= 1 && pictures_ < 10, false, 0.0};
         return pictures_ >= 12;
     }
+    if (what == "press" || what == "double" || what == "slide" || what == "pull") return use_hand(line, desk);
+    if (what == "type") {
+        keys_ = {};
+        if (pictures_ == 1) keys_.text = word(line, 1);
+        return pictures_ >= 4;
+    }
+    if (what == "key") {
+        keys_ = key_named(word(line, 1));
+        keys_.is_down = pictures_ >= 1 && pictures_ < 3;
+        keys_.ctrl = keys_.ctrl && keys_.is_down;
+        if (pictures_ < 6) return false;
+        keys_ = {};
+        return true;
+    }
+    if (what == "cost") {
+        if (pictures_ == 0) cost_began_ = window.drawn_s();
+        if (pictures_ < static_cast<int>(number(line, 1))) return false;
+        fmt::print(stderr, "{} pictures, {:.2f} ms each\n", pictures_,
+                   1e3 * (window.drawn_s() - cost_began_) / pictures_);
+        return true;
+    }
     if (what == "wheel") {
         mouse_ = Mouse{{number(line, 1), number(line, 2)}, false, false, pictures_ == 1 ? number(line, 3) : 0.0};
         return pictures_ >= 3;
@@ -184,7 +274,8 @@ bool Script::perform(const Line& line, Desk& desk, Window& window) {
     Workbench& bench = desk.bench();
     const std::string& what = line.words.front();
     const auto is = [&](auto... names) { return ((what == names) || ...); };
-    if (is("wait", "frames", "screenshot", "click", "drag", "wheel", "scene", "until"))
+    if (is("wait", "frames", "screenshot", "click", "drag", "wheel", "scene", "until", "press", "double", "slide",
+           "pull", "type", "key", "cost"))
         return wait_for(line, desk, window);
     if (is("set", "reset", "connect", "disconnect", "remove", "rename", "undo", "redo", "save", "wire", "add")) {
         const bool made = edit(line, desk);
@@ -215,6 +306,7 @@ bool Script::perform(const Line& line, Desk& desk, Window& window) {
         desk.take()->go_to(number(line, 1));
     } else if (is("hover")) mouse_ = Mouse{{number(line, 1), number(line, 2)}, false, false, 0.0};
     else if (is("size")) window.resize(static_cast<int>(number(line, 1)), static_cast<int>(number(line, 2)));
+    else if (is("scale")) window.rescale(number(line, 1));
     else if (is("minimise", "restore")) window.minimise(what == "minimise");
     else if (is("from")) {
         const auto view = view_of_name(word(line, 1));
@@ -223,6 +315,7 @@ bool Script::perform(const Line& line, Desk& desk, Window& window) {
     } else if (is("stereo")) desk.scene().stereo = static_cast<StereoMode>(static_cast<int>(number(line, 1)));
     else if (is("clip")) desk.scene().clip(static_cast<int>(number(line, 1)), number(line, 2));
     else if (is("measure")) desk.scene().is_measuring = true;
+    else if (is("check")) bench.check_saved();
     else if (is("say")) bench.tell(word(line, 1));
     else if (is("open")) {
         if (open) open(word(line, 1));

@@ -31,6 +31,13 @@ public:
     bool is_done() const { return next_ >= lines_.size(); }
     bool wants_to_close() const { return closes_; }
 
+    /// What stands on a keyboard.
+    struct Keys {
+        std::string text;
+        int key = -1;
+        bool is_active = false, is_down = false, ctrl = false;
+    };
+
 private:
     struct Line {
         int number = 0;
@@ -46,6 +53,7 @@ private:
     /// False: not done yet, asks again after the next picture.
     bool perform(const Line& line, Desk& desk, Window& window);
     bool edit(const Line& line, Desk& desk);
+    bool use_hand(const Line& line, Desk& desk);
     bool wait_for(const Line& line, Desk& desk, Window& window);
     const std::string& word(const Line& line, std::size_t i) const;
     double number(const Line& line, std::size_t i) const;
@@ -56,6 +64,9 @@ private:
     std::optional<double> since_;  ///< when the line that waits began, s
     int pictures_ = 0;  ///< since then
     std::optional<Mouse> mouse_;
+    Point from_, to_;  ///< of the hand
+    Keys keys_;
+    double cost_began_ = 0.0;
     bool closes_ = false;
 };
 

@@ -83,7 +83,7 @@ bool TakeBench::scene_is_there() const {
 std::string TakeBench::scene_note() const {
     const std::lock_guard lock(lock_);
     if (!problem_.empty()) return problem_;
-    if (is_whole_) return "";
+    if (is_whole_) return doubt_;
     if (repeated_ < 0.0) return "scene: preparing the run …";
     return fmt::format("scene: the run is repeated, {:.1f} s by now", repeated_);
 }
@@ -91,6 +91,12 @@ std::string TakeBench::scene_note() const {
 void TakeBench::work() {
     const auto repetition = std::make_shared<Repetition>();
     try {
+        std::vector<std::string> doubts = take_.changed_assets();
+        if (doubts.empty()) doubts = take_.differences();
+        if (!doubts.empty()) {
+            const std::lock_guard lock(lock_);
+            doubt_ = "the scene may be another: " + doubts.front();
+        }
         EngineOptions options;
         options.observer = &repetition->observer;
         options.hash = options.time_nodes = false;

@@ -54,7 +54,7 @@ private:
     double repeated_ = -1.0;
     bool is_whole_ = false;
     std::shared_ptr<Observer> scene_;
-    std::string problem_;
+    std::string problem_, doubt_;
     std::atomic<bool> ends_{false};
     std::jthread thread_;
 };

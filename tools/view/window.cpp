@@ -28,6 +28,12 @@ std::string last_error;
 
 void keep_error(int, const char* text) { last_error = text; }
 
+double scale_of_screen(GLFWwindow* window) {
+    float across = 1.0f, down = 1.0f;
+    glfwGetWindowContentScale(window, &across, &down);
+    return std::clamp(static_cast<double>(across), 1.0, 4.0);
+}
+
 }  // namespace
 
 Window::Library::Library() {
@@ -48,9 +54,8 @@ Window::Window(const std::string& title, int width, int height, double scale) {
     if (!window_) throw Error(fmt::format("no window with OpenGL 3.3 can be opened: {}", last_error));
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
-    float across = 1.0f, down = 1.0f;
-    glfwGetWindowContentScale(window_, &across, &down);
-    scale_ = scale > 0.0 ? scale : std::clamp(static_cast<double>(across), 1.0, 4.0);
+    follows_screen_ = scale == 0.0;
+    scale_ = scale > 0.0 ? scale : scale_of_screen(window_);
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;  // nothing is written beside the patch
@@ -87,6 +92,17 @@ void Window::load_fonts() {
     }
 }
 
+void Window::rescale(double scale) {
+    scale_ = scale;
+    body = bold = large = nullptr;
+    ImGui::GetIO().Fonts->Clear();
+    load_fonts();
+    ImGui_ImplOpenGL3_DestroyFontsTexture();
+    ImGui_ImplOpenGL3_CreateFontsTexture();
+    ImGui::GetStyle() = ImGuiStyle();
+    apply_theme(scale_);
+}
+
 bool Window::begin() {
     glfwPollEvents();
     if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED)) {
@@ -95,6 +111,9 @@ bool Window::begin() {
     }
     glfwGetFramebufferSize(window_, &width_, &height_);
     if (width_ < 1 || height_ < 1) return false;
+    // It may have been moved to another screen.
+    if (const double scale = scale_of_screen(window_); follows_screen_ && scale != scale_) rescale(scale);
+    began_s_ = glfwGetTime();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     return true;
@@ -121,6 +140,7 @@ void Window::end() {
                         shown_.rgb.data() + (static_cast<std::size_t>(height_) - 1 - y) * row);
     }
     glfwSwapBuffers(window_);
+    drawn_s_ += glfwGetTime() - began_s_;
 }
 
 bool Window::wants_to_close() const { return glfwWindowShouldClose(window_) != 0; }

@@ -30,9 +30,13 @@ public:
     void set_title(const std::string& title);
     void resize(int width, int height);
     void minimise(bool wanted);
+    /// Contents of another size, as on a screen with other pixels. Before `begin`.
+    void rescale(double scale);
     int width() const { return width_; }  ///< pixels
     int height() const { return height_; }
     double scale() const { return scale_; }
+    /// Spent between `begin` and `end` so far, s.
+    double drawn_s() const { return drawn_s_; }
     /// Keeps what the next `end` shows, in `picture`.
     void want_picture();
     const Image& picture() const { return shown_; }
@@ -52,6 +56,8 @@ private:
     GLFWwindow* window_ = nullptr;
     int width_ = 0, height_ = 0;
     double scale_ = 1.0;
+    bool follows_screen_ = false;  // its scale
+    double began_s_ = 0.0, drawn_s_ = 0.0;
     Image shown_;
     bool wants_picture_ = false;
 };

@@ -180,6 +180,16 @@ bool Workbench::save() {
     }
 }
 
+void Workbench::check_saved() {
+    Problems problems;
+    const std::optional<Plan> saved =
+        plan_of(load_patch(editor_->file(), problems), choice_.overrides, choice_.seed, nullptr, problems);
+    throw_problems(problems);
+    const PatchChange change = plan_ && saved ? change_between(*plan_, *saved) : PatchChange{{}, true};
+    if (change.needs_edit || !change.settings.empty())
+        throw Error(fmt::format("{}: compiles to another plan than the one shown", editor_->file().string()));
+}
+
 void Workbench::turn(const std::string& node, const std::string& param, const std::string& value) {
     if (run_) run_->set(node, param, value);
 }

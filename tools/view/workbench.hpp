@@ -69,6 +69,8 @@ public:
     /// A name of that kind that no node has yet.
     std::string free_name(const std::string& type) const;
 
+    /// Throws Error unless the file compiles to the plan that is shown.
+    void check_saved();
     /// Why that wire cannot be, or nothing.
     std::optional<std::string> objection(const std::string& from, const std::string& to) const;
 

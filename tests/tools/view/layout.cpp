@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nodes/catalogue.hpp"
+#include "tests/tools/patches.hpp"
 #include "tools/view/axis.hpp"
 #include "tools/view/canvas.hpp"
 #include "tools/view/parameters.hpp"
@@ -16,39 +17,9 @@
 
 using namespace tactus;
 using namespace tactus::view;
+using tactus::test::touch;
 
 namespace {
-
-const std::string touch = R"(title = "touch"
-wires = [
-  "hand.pose -> ball.pose",
-  "ball.wrench -> out.wrench",
-  "tone.signal -> loud.in",
-  "level.value -> loud.factor as linear",
-]
-[nodes.hand]
-type = "device_input"
-rate = "1 kHz"
-device = "simulated"
-[nodes.ball]
-type = "sphere_contact"
-rate = "1 kHz"
-stiffness = "0.5 N/mm"
-[nodes.out]
-type = "device_output"
-rate = "1 kHz"
-device = "simulated"
-[nodes.tone]
-type = "sine"
-rate = "48 kHz"
-[nodes.loud]
-type = "gain"
-rate = "48 kHz"
-[nodes.level]
-type = "constant"
-rate = "60 Hz"
-number = 0.5
-)";
 
 Plan plan_of_text(const std::string& text) {
     Problems problems;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A take that is looked at, at any instant and in any order.
+#include "tests/tools/patches.hpp"
 #include "tests/tools/run_command.hpp"
-#include "tests/tools/view/voice.hpp"
 #include "tools/replayed_take.hpp"
 #include "tools/view/take_bench.hpp"
 

@@ -1,84 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The window as people use it, on a display without a screen: a script does what hands would.
 #include "assets/file/whole_file.hpp"
-#include "tests/tools/run_command.hpp"
-#include "tests/tools/view/display.hpp"
-#include "tests/tools/view/voice.hpp"
-
-#include <fmt/format.h>
-#include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
-
-#define STB_IMAGE_IMPLEMENTATION
-#define STB_IMAGE_STATIC
-#define STBI_ONLY_PNG
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#pragma GCC diagnostic ignored "-Wsign-compare"
-#include <stb/stb_image.h>
-#pragma GCC diagnostic pop
-
-#include <array>
-#include <cmath>
-#include <filesystem>
-#include <set>
-#include <string>
+#include "tests/tools/patches.hpp"
+#include "tests/tools/view/on_display.hpp"
 
 namespace fs = std::filesystem;
 using namespace tactus::test;
 using nlohmann::json;
-
-namespace {
-
-/// Runs the command on that display, with a time limit of its own.
-Outcome on(const Display& display, const Folder& folder, const std::string& arguments) {
-    const std::string command = "cd " + folder.path.string() + " && " + display.environment() + "timeout 100 " +
-                                std::string(TACTUS_COMMAND) + " " + arguments + " >stdout 2>stderr";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(folder.path / "stdout"), slurp(folder.path / "stderr")};
-}
-
-struct Pixels {
-    int width = 0, height = 0;
-    std::size_t colours = 0;  ///< different ones
-    double brightness = 0.0;  ///< 0 to 1, mean
-};
-
-Pixels look_at(const fs::path& png) {
-    Pixels seen;
-    int parts = 0;
-    unsigned char* data = stbi_load(png.c_str(), &seen.width, &seen.height, &parts, 3);
-    if (!data) return seen;
-    std::set<int> colours;
-    const int count = seen.width * seen.height;
-    for (int i = 0; i < count; ++i) {
-        colours.insert(data[3 * i] << 16 | data[3 * i + 1] << 8 | data[3 * i + 2]);
-        seen.brightness += (data[3 * i] + data[3 * i + 1] + data[3 * i + 2]) / 765.0 / count;
-    }
-    seen.colours = colours.size();
-    stbi_image_free(data);
-    return seen;
-}
-
-/// A picture of the whole window with contents: dark panels, letters with smooth edges, curves.
-void check_picture(const fs::path& png, int width, int height) {
-    INFO(png.string());
-    const Pixels seen = look_at(png);
-    CHECK(seen.width == width);
-    CHECK(seen.height == height);
-    CHECK(seen.colours > 300);
-    CHECK((seen.brightness > 0.04 && seen.brightness < 0.6));
-}
-
-}  // namespace
-
-#define NEEDS_DISPLAY(display)                                                      \
-    const Display display;                                                          \
-    if (!display.is_there()) {                                                      \
-        WARN("Xvfb is not installed (apt install xvfb): the window is not tested"); \
-        return;                                                                     \
-    }
 
 TEST_CASE("in the window a parameter is turned, a node added, wired, taken back and saved, while the patch runs") {
     NEEDS_DISPLAY(display)
@@ -128,7 +56,7 @@ close
     const json summary = json::parse(done.out);
     CHECK(summary["seconds"].get<double>() > 0.2);
     check_picture(folder.path / "window.png", 1600, 1000);
-    CHECK(look_at(folder.path / "spectrum.png").width > 600);
+    CHECK(read_picture(folder.path / "spectrum.png").width > 600);
     CHECK(slurp(folder.path / "wave.csv").starts_with("time s,"));
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/workbench.hpp"
 #include "engine/take_reader.hpp"
+#include "tests/tools/patches.hpp"
 #include "tests/tools/run_command.hpp"
-#include "tests/tools/view/voice.hpp"
 #include "tools/load_plan.hpp"
 #include "tools/view/feed.hpp"
 

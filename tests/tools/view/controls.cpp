@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// The window by its own controls: buttons, sliders and wires under the mouse, keys; and what it looks like, beside
+// pictures that were looked at once.
+#include "tests/tools/patches.hpp"
+#include "tests/tools/view/on_display.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fs = std::filesystem;
+using namespace tactus::test;
+using nlohmann::json;
+
+namespace {
+
+/// Share of squares of 8 pixels whose mean colour is another, apart from the scene in space, whose looks have tests of
+/// their own.
+double difference(const Picture& a, const Picture& b) {
+    constexpr int side = 8;
+    int differ = 0, all = 0;
+    for (int y = 0; y + side <= a.height; y += side)
+        for (int x = 0; x + side <= a.width; x += side) {
+            if (x > 0.63 * a.width && y < 0.6 * a.height) continue;
+            double worst = 0.0;
+            for (int part = 0; part < 3; ++part) {
+                double sum = 0.0;
+                for (int j = 0; j < side; ++j)
+                    for (int i = 0; i < side; ++i) sum += a.at(x + i, y + j, part) - b.at(x + i, y + j, part);
+                worst = std::max(worst, std::abs(sum) / (side * side));
+            }
+            differ += worst > 10.0;
+            ++all;
+        }
+    return static_cast<double>(differ) / all;
+}
+
+/// Beside the picture in this folder; one that is missing, or that looks otherwise, is left for a person to look at.
+void check_golden(const fs::path& made, const std::string& name) {
+    const fs::path golden = fs::path(TACTUS_SOURCE_DIR) / "tests/tools/view/golden" / (name + ".png");
+    const Picture seen = read_picture(made), known = read_picture(golden);
+    INFO(made.string() << " beside " << golden.string());
+    REQUIRE(seen.width == known.width);
+    REQUIRE(seen.height == known.height);
+    const double share = difference(seen, known);
+    if (share >= 0.01) {
+        const fs::path kept = fs::temp_directory_path() / ("tactus-golden-" + name + ".png");
+        fs::copy_file(made, kept, fs::copy_options::overwrite_existing);
+        WARN("kept as " << kept.string());
+    }
+    CHECK(share < 0.01);
+}
+
+}  // namespace
+
+TEST_CASE("every control of the window does what it says when it is pressed") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    folder.write("voice.toml", voice);
+    folder.write("script", R"(until 0.2
+press tone
+slide frequency 0.8
+frames 3
+screenshot turned.png
+press "reset frequency"
+press Undo
+press "Add a node"
+press "type constant"
+key ctrl+z
+press "type constant"
+pull constant.value loud.factor
+! connect level.value loud.in
+pull level.value loud.in
+double loud.out
+frames 30
+press "scope 0 plot"
+press "scope 0 CSV"
+press "scope 0 kind"
+frames 20
+press "scope 0 PNG"
+press "scope 0 freeze"
+press record
+until recording
+wait 0.4
+press record
+wait 0.2
+press pause
+until paused
+press pause
+wait 0.2
+press Save
+check
+frames 3
+screenshot driven.png
+press stop
+until over
+frames 3
+press "Look at the take"
+frames 5
+scene
+slide time 0.5
+frames 5
+screenshot take.png
+press play
+frames 5
+press "Back to the patch"
+frames 5
+close
+)");
+    const Outcome done =
+        on(display, folder, "run voice.toml --view --view-script script --audio file --out out --json");
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    const std::string saved = slurp(folder.path / "voice.toml");
+    INFO(saved);
+    // The slider's value came back with undo; the file says what the window showed.
+    CHECK(saved.find("frequency = \"440 Hz\"   # a") == std::string::npos);
+    CHECK(saved.find("# the way of the sound") != std::string::npos);
+    CHECK(saved.find("\"constant.value -> loud.factor\"") != std::string::npos);
+    CHECK(saved.find("level.value") == std::string::npos);
+    CHECK(on(display, folder, "check voice.toml").code == 0);
+    CHECK(slurp(folder.path / "loud.out-1.csv").starts_with("time s,"));
+    CHECK(read_picture(folder.path / "loud.out-1.png").width > 600);
+    const Outcome again = on(display, folder, "replay voice-take-1 --json");
+    INFO(again.out << again.err);
+    CHECK(again.code == 0);
+    for (const char* picture : {"turned.png", "driven.png", "take.png"})
+        check_picture(folder.path / picture, 1600, 1000);
+}
+
+TEST_CASE(
+    "every patch of the library is edited, saved, recorded and scrubbed in the window, and compiles as it was shown") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(fs::path(TACTUS_COMMAND).parent_path() / "library/patches"))
+        if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
+    REQUIRE(names.size() >= 9);
+    // Copies beside the library's: assets are named from where the patch is.
+    const fs::path library = fs::path(TACTUS_COMMAND).parent_path() / "library";
+    fs::create_directories(folder.path / "library/patches");
+    for (const auto& entry : fs::directory_iterator(library)) {
+        if (entry.path().filename() == "patches") continue;
+        fs::create_symlink(fs::absolute(entry.path()), folder.path / "library" / entry.path().filename());
+    }
+    for (const auto& entry : fs::directory_iterator(library / "patches")) {
+        if (entry.path().extension() == ".toml")
+            fs::copy_file(entry.path(), folder.path / "library/patches" / entry.path().filename());
+        else fs::create_symlink(fs::absolute(entry.path()), folder.path / "library/patches" / entry.path().filename());
+    }
+    std::string script;
+    for (const std::string& name : names) {
+        const Outcome listed = on(display, folder, "check library/patches/" + name + ".toml --json");
+        INFO(listed.err);
+        REQUIRE(listed.code == 0);
+        const json groups = json::parse(listed.out)["groups"];
+        script += fmt::format(R"(open library/patches/{0}.toml
+frames 3
+add constant "{1}"
+select constant
+frames 2
+set constant.number 0.25
+add range "{1}"
+wire constant.value in
+set range.out_high 2
+reset range.out_high
+run
+until 0.05
+record
+until recording
+wait 0.1
+record off
+undo
+redo
+save
+check
+frames 2
+screenshot {0}.png
+stop
+until over
+open {0}-take-1
+frames 2
+goto 0.1
+frames 2
+screenshot {0}-take.png
+)",
+                              name, groups.back()["name"].get<std::string>());
+    }
+    folder.write("script", script + "close\n");
+    const Outcome done =
+        on(display, folder,
+           "run library/patches/touch-sphere.toml --view --view-script script --audio file --out out --json", 400);
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    for (const std::string& name : names) {
+        check_picture(folder.path / (name + ".png"), 1600, 1000);
+        check_picture(folder.path / (name + "-take.png"), 1600, 1000);
+        const std::string after = slurp(folder.path / "library/patches" / (name + ".toml"));
+        CHECK(after.find("[nodes.range]") != std::string::npos);
+        CHECK(after.find("number = 0.25") != std::string::npos);
+        CHECK(on(display, folder, "check library/patches/" + name + ".toml").code == 0);
+    }
+}
+
+TEST_CASE("a take at an instant looks as it did when somebody looked") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    REQUIRE(on(display, folder, "render saw-training --seconds 1.2 --record take --out out").code == 0);
+    folder.write("script", R"(size 1400 900
+scope hand_out.applied
+scope actuator.signal spectrum
+goto 1.1
+scene
+select blade
+frames 8
+screenshot saw.png
+catalogue filter
+frames 4
+screenshot catalogue.png
+close
+)");
+    const Outcome small = on(display, folder, "view take --view-script script --view-scale 1");
+    INFO(small.err);
+    REQUIRE(small.code == 0);
+    check_golden(folder.path / "saw.png", "take");
+    check_golden(folder.path / "catalogue.png", "catalogue");
+    folder.write("script",
+                 "size 1700 1100\nscope hand_out.applied\ngoto 1.1\nscene\nselect blade\nframes 8\nscreenshot "
+                 "large.png\nclose\n");
+    REQUIRE(on(display, folder, "view take --view-script script --view-scale 1.5").code == 0);
+    check_golden(folder.path / "large.png", "large");
+}

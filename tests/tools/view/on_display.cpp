@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/tools/view/on_display.hpp"
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#pragma GCC diagnostic ignored "-Wsign-compare"
+#include <stb/stb_image.h>
+#pragma GCC diagnostic pop
+
+#include <numeric>
+
+namespace tactus::test {
+
+Outcome on(const Display& display, const Folder& folder, const std::string& arguments, int most_s) {
+    const std::string command = fmt::format("cd {} && {} timeout {} {} {} >stdout 2>stderr", folder.path.string(),
+                                            display.environment(), most_s, TACTUS_COMMAND, arguments);
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(folder.path / "stdout"), slurp(folder.path / "stderr")};
+}
+
+std::size_t Picture::colours() const {
+    std::set<int> seen;
+    for (std::size_t i = 0; i + 2 < rgb.size(); i += 3) seen.insert(rgb[i] << 16 | rgb[i + 1] << 8 | rgb[i + 2]);
+    return seen.size();
+}
+
+double Picture::brightness() const {
+    if (rgb.empty()) return 0.0;
+    return std::accumulate(rgb.begin(), rgb.end(), 0.0) / (255.0 * static_cast<double>(rgb.size()));
+}
+
+Picture read_picture(const std::filesystem::path& png) {
+    Picture picture;
+    int parts = 0;
+    unsigned char* data = stbi_load(png.c_str(), &picture.width, &picture.height, &parts, 3);
+    if (!data) return picture;
+    picture.rgb.assign(data, data + static_cast<std::ptrdiff_t>(3) * picture.width * picture.height);
+    stbi_image_free(data);
+    return picture;
+}
+
+void check_picture(const std::filesystem::path& png, int width, int height) {
+    INFO(png.string());
+    const Picture seen = read_picture(png);
+    CHECK(seen.width == width);
+    CHECK(seen.height == height);
+    CHECK(seen.colours() > 300);
+    CHECK((seen.brightness() > 0.04 && seen.brightness() < 0.6));
+}
+
+}  // namespace tactus::test

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command with its window on a display without a screen, and what its pictures hold.
+#pragma once
+
+#include "tests/tools/run_command.hpp"
+#include "tests/tools/view/display.hpp"
+
+#include <fmt/format.h>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace tactus::test {
+
+/// Runs the command in the folder on that display, for at most so long.
+Outcome on(const Display& display, const Folder& folder, const std::string& arguments, int most_s = 100);
+
+struct Picture {
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> rgb;
+
+    int at(int x, int y, int part) const {
+        return rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) +
+                   static_cast<std::size_t>(part)];
+    }
+    std::size_t colours() const;  ///< different ones
+    double brightness() const;    ///< mean, 0 to 1
+};
+/// Without pixels when it is no picture.
+Picture read_picture(const std::filesystem::path& png);
+
+/// A picture of the whole window with contents: dark panels, letters with smooth edges, curves.
+void check_picture(const std::filesystem::path& png, int width, int height);
+
+}  // namespace tactus::test
+
+#define NEEDS_DISPLAY(display)                                                      \
+    const Display display;                                                          \
+    if (!display.is_there()) {                                                      \
+        WARN("Xvfb is not installed (apt install xvfb): the window is not tested"); \
+        return;                                                                     \
+    }

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/spots.hpp"
+
+#include "tools/view/painter.hpp"
+
+#include <unordered_map>
+#include <utility>
+
+namespace tactus::view {
+
+namespace {
+
+using Spots = std::unordered_map<std::string, Box>;
+
+/// Of this picture, and of the one before.
+std::pair<Spots, Spots>& spots() {
+    static std::pair<Spots, Spots> both;
+    return both;
+}
+
+}  // namespace
+
+void mark_spot(const std::string& name) {
+    if (!ImGui::IsItemVisible()) return;
+    const Point low = point(ImGui::GetItemRectMin()), high = point(ImGui::GetItemRectMax());
+    spots().first[name] = {low.x, low.y, high.x, high.y};
+}
+
+std::optional<Box> spot(const std::string& name) {
+    const Spots& drawn = spots().second;
+    const auto found = drawn.find(name);
+    if (found == drawn.end()) return std::nullopt;
+    return found->second;
+}
+
+void forget_spots() {
+    std::swap(spots().first, spots().second);
+    spots().first.clear();
+}
+
+}  // namespace tactus::view
