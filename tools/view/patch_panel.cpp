@@ -129,6 +129,7 @@ void PatchPanel::draw(const Feed* feed, const Fonts& fonts, std::set<std::string
         ++drawn_nodes;
         draw_node(paint, picture.nodes[n], times_[n], feed, looked_at);
     }
+    draw_deliveries(paint, visible);
     draw_wiring(paint);
     if (!bench_.plan())
         paint.text(corner_ + Point{16, 14}, text_size * unit_, tone::bad, "the patch does not compile; see below");
@@ -213,6 +214,34 @@ void PatchPanel::draw_wires(const Painter& paint, const Box& visible) {
         const int dashes = std::clamp(static_cast<int>(length / (13.0 * z)), 4, 160);
         for (int d = 0; d < dashes; ++d)
             paint.line(on_curve(c, (d + 0.0) / dashes), on_curve(c, (d + 0.62) / dashes), ink, width);
+    }
+}
+
+/// What the wires of the chosen node carry, and how late.
+void PatchPanel::draw_deliveries(const Painter& paint, const Box& visible) {
+    const PatchPicture& picture = bench_.picture();
+    const double z = canvas_.zoom, size = small_size * z;
+    const int chosen = picture.find(selected);
+    if (chosen < 0 || size < readable) return;
+    std::vector<Box> taken;
+    for (const PictureWire& wire : picture.wires) {
+        if ((wire.from != chosen && wire.to != chosen) || !wire.bounds.meets(visible)) continue;
+        const PictureNode& from = picture.nodes[static_cast<std::size_t>(wire.from)];
+        const ValueType* type = from.outputs[static_cast<std::size_t>(wire.output)].type;
+        // Within a tick there is no delay to tell, and the colour tells the type.
+        if (!wire.crosses && wire.latency == 0) continue;
+        const std::string text = fmt::format("{}, {}", type ? type->name : "any", describe(wire));
+        const double wide = paint.width_of(text, size);
+        const Point middle = screen(on_curve(wire.curve, 0.5));
+        Box box{middle.x - 0.5 * wide - 4.0 * z, middle.y - 8.0 * z, middle.x + 0.5 * wide + 4.0 * z,
+                middle.y + 8.0 * z};
+        while (std::ranges::any_of(taken, [&](const Box& other) { return other.meets(box); })) {
+            box.top += 17.0 * z;
+            box.bottom += 17.0 * z;
+        }
+        taken.push_back(box);
+        paint.box(box, colour(0x0c1015, 230), 4.0 * z);
+        paint.text({box.left + 4.0 * z, box.top + 1.5 * z}, size, colour_of(type), text);
     }
 }
 

@@ -49,6 +49,7 @@ private:
     void draw_lanes(const Painter& paint);
     void draw_heads(const Painter& paint, const RunStatus& status);
     void draw_wires(const Painter& paint, const Box& visible);
+    void draw_deliveries(const Painter& paint, const Box& visible);
     void draw_node(const Painter& paint, const PictureNode& node, const NodeStatus* status, const Feed* feed,
                    std::set<std::string>& looked_at);
     void draw_ports(const Painter& paint, const PictureNode& node, const Feed* feed, std::set<std::string>& looked_at);
