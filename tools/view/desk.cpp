@@ -56,11 +56,11 @@ void Desk::panel(const char* id, double width, double height) {
         ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_AlwaysUseWindowPadding);
 }
 
-void Desk::splitter(const char* id, bool upright, double& share, double whole) {
+void Desk::splitter(const char* id, bool upright, double height, double& share, double whole) {
     const double thick = 6.0 * fonts_.scale;
     if (upright) ImGui::SameLine(0.0f, 0.0f);
-    const Point size = upright ? Point{thick, static_cast<double>(ImGui::GetContentRegionAvail().y)}
-                               : Point{static_cast<double>(ImGui::GetContentRegionAvail().x), thick};
+    const Point size =
+        upright ? Point{thick, height} : Point{static_cast<double>(ImGui::GetContentRegionAvail().x), thick};
     ImGui::InvisibleButton(id, vec({std::max(size.x, 1.0), std::max(size.y, 1.0)}));
     if (ImGui::IsItemHovered() || ImGui::IsItemActive())
         ImGui::SetMouseCursor(upright ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
@@ -153,7 +153,7 @@ void Desk::draw() {
     ImGui::PopStyleVar();
     ImGui::EndChild();
     ImGui::PopStyleVar();
-    splitter("between patch and scopes", false, patch_height_, height);
+    splitter("between patch and scopes", false, 0.0, patch_height_, height);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, vec({6.0 * fonts_.scale, 6.0 * fonts_.scale}));
     ImGui::BeginChild("scopes", ImVec2(0, 0), false, ImGuiWindowFlags_AlwaysUseWindowPadding);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({6.0 * fonts_.scale, 4.0 * fonts_.scale}));
@@ -163,7 +163,7 @@ void Desk::draw() {
     ImGui::EndChild();
     ImGui::PopStyleVar();
     ImGui::EndChild();
-    splitter("between left and right", true, left_, width);
+    splitter("between left and right", true, height, left_, width);
     ImGui::BeginChild("right", vec({0.0, height}));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, vec({6.0 * fonts_.scale, 6.0 * fonts_.scale}));
     panel("scene", 0.0, scene_height_ * height);
@@ -172,7 +172,7 @@ void Desk::draw() {
     ImGui::PopStyleVar();
     ImGui::EndChild();
     ImGui::PopStyleVar();
-    splitter("between scene and node", false, scene_height_, height);
+    splitter("between scene and node", false, 0.0, scene_height_, height);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, vec({8.0 * fonts_.scale, 6.0 * fonts_.scale}));
     ImGui::BeginChild("node", ImVec2(0, 0), false, ImGuiWindowFlags_AlwaysUseWindowPadding);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({8.0 * fonts_.scale, 5.0 * fonts_.scale}));

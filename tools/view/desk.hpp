@@ -37,7 +37,8 @@ public:
 
 private:
     void follow_run();
-    void splitter(const char* id, bool upright, double& share, double whole);
+    /// `height` of one that stands upright; others are as wide as their place.
+    void splitter(const char* id, bool upright, double height, double& share, double whole);
     void panel(const char* id, double width, double height);
     void show_messages(double height);
     void ask_farewell();
