@@ -10,6 +10,12 @@
 
 namespace tactus {
 
+Mat4 matrix_of(const Pose& pose) {
+    Mat4 matrix = glm::mat4_cast(pose.orientation);
+    matrix[3] = glm::dvec4(pose.position, 1.0);
+    return matrix;
+}
+
 std::optional<glm::dvec2> Projection::seen(const Vec3& world) const {
     const glm::dvec4 clip = to_clip * (to_eye * glm::dvec4(world, 1.0));
     if (!(clip.w > 0.0)) return std::nullopt;
@@ -113,9 +119,7 @@ double OrbitCamera::metres_per_pixel(int height) const {
 
 Projection OrbitCamera::projection(double aspect, const Bounds& scene) const {
     Projection projection;
-    const Pose to_eye = Pose{eye(), orientation}.inverse();
-    projection.to_eye = glm::mat4_cast(to_eye.orientation);
-    projection.to_eye[3] = glm::dvec4(to_eye.position, 1.0);
+    projection.to_eye = matrix_of(Pose{eye(), orientation}.inverse());
     const auto [near, far] = depth_range(projection.to_eye, scene);
     projection.to_clip = glm::perspective(vertical_field_of_view_rad, aspect, near, far);
     return projection;

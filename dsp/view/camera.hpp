@@ -15,6 +15,9 @@ namespace tactus {
 
 using Mat4 = glm::dmat4;
 
+/// What takes local coordinates to the surrounding frame.
+Mat4 matrix_of(const Pose& pose);
+
 /// How the world gets into a picture: into the frame of the eye (x right, y up, z towards the eye), then to clip space.
 struct Projection {
     Mat4 to_eye{1.0}, to_clip{1.0};

@@ -6,17 +6,12 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace tactus {
 
 namespace {
-
-Mat4 matrix_of(const Pose& pose) {
-    Mat4 matrix = glm::mat4_cast(pose.orientation);
-    matrix[3] = glm::dvec4(pose.position, 1.0);
-    return matrix;
-}
 
 void check(const Screen& screen) {
     const double width = glm::length(screen.right()), height = glm::length(screen.up());
@@ -37,6 +32,12 @@ Bounds moved(const Bounds& box, const Mat4& by) {
 }  // namespace
 
 Vec3 Screen::normal() const { return glm::normalize(glm::cross(right(), up())); }
+
+std::optional<StereoMode> stereo_of_name(std::string_view name) {
+    const auto found = std::ranges::find(stereo_names, name);
+    if (found == stereo_names.end()) return std::nullopt;
+    return static_cast<StereoMode>(found - stereo_names.begin());
+}
 
 double Plane::height(const Vec3& position) const { return glm::dot(position - point, normal); }
 
@@ -84,12 +85,30 @@ Eyes eyes_of(const Pose& head, double between) {
     return {head.position - half, head.position + half};
 }
 
+Pose DisplayRig::place_before(std::size_t screen, double away) const {
+    const Screen& seen = screens[screen];
+    check(seen);
+    const Vec3 right = glm::normalize(seen.right()), up = glm::normalize(seen.up()), normal = seen.normal();
+    const Vec3 middle = seen.low_left + 0.5 * (seen.right() + seen.up());
+    if (!is_mirrored(screen)) return {middle + away * normal, glm::quat_cast(Mat3(right, up, normal))};
+    const auto turned = [this](const Vec3& v) { return v - 2.0 * glm::dot(v, mirror->normal) * mirror->normal; };
+    // The image in the mirror has left and right swapped, or it stands on its head: whichever lets up be up, or, where
+    // the image lies flat, far be up.
+    const Vec3 high = turned(up), back = turned(normal);
+    const double way = (std::abs(high.z) > 0.1 ? high.z : high.y) < 0.0 ? -1.0 : 1.0;
+    return {mirror->reflected(middle + away * normal), glm::quat_cast(Mat3(-way * turned(right), way * high, back))};
+}
+
+Mat4 DisplayRig::seen_world() const {
+    return matrix_of(Pose{visuo_haptic_offset, {1.0, 0.0, 0.0, 0.0}} * haptic_world) * Mat4(haptic_stretch);
+}
+
 RigView DisplayRig::view(std::size_t screen, const Vec3& eye, const Bounds& scene) const {
-    const Mat4 placed = matrix_of(Pose{visuo_haptic_offset, {1.0, 0.0, 0.0, 0.0}} * haptic_world);
+    const Mat4 placed = seen_world();
     const Bounds world = moved(scene, placed);
     RigView view{screen, eye, {}};
-    view.projection =
-        mirror ? through_mirror(screens[screen], *mirror, eye, world) : through_screen(screens[screen], eye, world);
+    view.projection = is_mirrored(screen) ? through_mirror(screens[screen], *mirror, eye, world)
+                                          : through_screen(screens[screen], eye, world);
     view.projection.to_eye = view.projection.to_eye * placed;
     return view;
 }

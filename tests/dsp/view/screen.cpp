@@ -158,3 +158,30 @@ TEST_CASE("dsp: screens without area, skewed ones and eyes behind them are refus
     CHECK_THROWS_WITH(through_screen(good, Vec3(std::nan("")), {}), Catch::Contains("in front"));
     CHECK_THROWS_AS((DisplayRig{{good}, {}, 0.063, {}, {}}.views({Vec3(std::nan("")), {1, 0, 0, 0}}, true, {})), Error);
 }
+
+TEST_CASE(
+    "dsp: a head before a screen, or before its image in a mirror, looks straight at it with its eyes the right way") {
+    DisplayRig rig;
+    rig.screens = {{{-0.26, 0.15, 0.15}, {0.26, 0.15, 0.15}, {-0.26, -0.15, 0.15}}, leaning()};
+    rig.mirror = Plane{{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}};
+    rig.screens[1].in_mirror = false;
+    for (std::size_t screen = 0; screen < 2; ++screen) {
+        const Pose head = rig.place_before(screen, 0.6);
+        CHECK(is_valid(head));
+        const Vec3 ahead = head.position - 0.6 * head.rotate({0.0, 0.0, 1.0});
+        Vec3 middle = rig.screens[screen].low_left + 0.5 * (rig.screens[screen].right() + rig.screens[screen].up());
+        if (screen == 0) middle = rig.mirror->reflected(middle);
+        CHECK(glm::length(ahead - middle) < 1e-12);
+        // What is nearer than the screen is seen by the left eye farther to the right.
+        const Vec3 near = head.position - 0.4 * head.rotate({0.0, 0.0, 1.0});
+        const Eyes eyes = eyes_of(head, 0.064);
+        const auto left = rig.view(screen, eyes.left, around(near)).projection.seen(near);
+        const auto right = rig.view(screen, eyes.right, around(near)).projection.seen(near);
+        REQUIRE((left && right));
+        CHECK(left->x - right->x > 0.05);
+    }
+    // The image of a flat monitor lies beneath the mirror; who sits at its near side has y ahead.
+    CHECK(rig.place_before(0, 0.6).rotate({1.0, 0.0, 0.0}).x == Approx(1.0));
+    CHECK(rig.is_mirrored(0));
+    CHECK_FALSE(rig.is_mirrored(1));
+}
