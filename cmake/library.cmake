@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-# The library stands beside the command: patches copied from assets/library, bones and recordings computed.
-set(patch_folder ${PROJECT_SOURCE_DIR}/assets/library/patches)
-file(GLOB_RECURSE patches CONFIGURE_DEPENDS RELATIVE ${patch_folder} ${patch_folder}/*.toml)
-foreach(patch ${patches})
-  configure_file(${patch_folder}/${patch} ${CMAKE_BINARY_DIR}/library/patches/${patch} COPYONLY)
+# The library stands beside the command: patches and display rigs copied from assets/library, bones and recordings computed.
+foreach(kind patches rigs)
+  set(folder ${PROJECT_SOURCE_DIR}/assets/library/${kind})
+  file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE ${folder} ${folder}/*.toml)
+  foreach(file ${files})
+    configure_file(${folder}/${file} ${CMAKE_BINARY_DIR}/library/${kind}/${file} COPYONLY)
+  endforeach()
 endforeach()
 
 # The bone and the saw that come with Tactus are computed, not kept; again only when their generator has changed.

@@ -44,6 +44,7 @@
     X(Saw, vibration)                   \
     X(Scene, contact)                   \
     X(Shape, contact)                   \
+    X(SimulatedHead, input)             \
     X(Sine, input)                      \
     X(SnapToFit, coupling)              \
     X(SpectralMonitor, vibration)       \

@@ -2,6 +2,8 @@
 // Which pictures `render` makes.
 #pragma once
 
+#include "tools/sight_choice.hpp"
+
 #include <string>
 
 namespace tactus {
@@ -11,9 +13,8 @@ struct FrameChoice {
     int frames = 0;                ///< how many, 0: none
     std::string view_from = "iso";  ///< a name or number of dsp/view/camera.hpp
     std::string size = "1280x800";
-    std::string stereo = "mono";   ///< or side-by-side, anaglyph
     std::string clip;              ///< "x", "-y", "z=12 mm": what is above along that axis is taken away
-    std::string head;              ///< a pose output: the head before a screen 0.3 m high, in metres from its middle
+    SightChoice sight;
 };
 
 }  // namespace tactus

@@ -6,6 +6,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
 #include "tools/scene_model.hpp"
+#include "tools/sight.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -18,8 +19,6 @@
 namespace tactus {
 
 namespace {
-
-constexpr double screen_height = 0.3;  // m
 
 std::pair<int, int> parse_size(const std::string& text) {
     int width = 0, height = 0;
@@ -38,13 +37,6 @@ NamedView parse_view(const std::string& text) {
     const std::vector<std::string> names(view_names.begin(), view_names.end());
     throw Error(fmt::format("--view-from takes front, back, left, right, top, bottom, iso or 1 to 7, not '{}'{}", text,
                             did_you_mean(text, names)));
-}
-
-StereoMode parse_stereo(const std::string& text) {
-    if (text == "mono") return StereoMode::mono;
-    if (text == "side-by-side") return StereoMode::side_by_side;
-    if (text == "anaglyph") return StereoMode::anaglyph;
-    throw Error(fmt::format("--stereo takes mono, side-by-side or anaglyph, not '{}'", text));
 }
 
 /// "x", "-y" or "z=12 mm": the axis, and where along it; nowhere: through the middle.
@@ -68,6 +60,11 @@ struct Clip {
     }
 };
 
+std::string file_part(std::string name) {
+    std::ranges::replace(name, ' ', '-');
+    return name;
+}
+
 }  // namespace
 
 struct FrameWriter::State {
@@ -75,7 +72,7 @@ struct FrameWriter::State {
     double seconds;
     std::filesystem::path folder;
     NamedView view;
-    StereoMode stereo;
+    Sight sight;
     std::optional<Clip> clip;
     Observer observer{Observer::Pace::lossless};
     PictureMaker maker;
@@ -90,33 +87,32 @@ struct FrameWriter::State {
           seconds(length),
           folder(std::move(where)),
           view(parse_view(wanted.view_from)),
-          stereo(parse_stereo(wanted.stereo)),
+          sight(wanted.sight),
           maker(parse_size(wanted.size).first, parse_size(wanted.size).second),
           model(std::move(outline), observer, maker.renderer()) {
         if (!wanted.clip.empty()) clip.emplace(wanted.clip);
-        if (!wanted.head.empty()) observer.watch(wanted.head, Watch::latest);
+        for (std::size_t i = 0; i < sight.screens(); ++i)
+            if (sight.mode_of(i) == StereoMode::quad_buffer)
+                throw Error("a picture file has no buffer for each eye: --stereo side-by-side or anaglyph");
+        sight.follow(model.outline());
+        for (const std::string& port : sight.ports()) observer.watch(port, Watch::latest);
     }
 
     double time_of(int frame) const { return seconds * frame / choice.frames; }
 
     double aspect() const {
-        const int width = stereo == StereoMode::side_by_side ? maker.width() / 2 : maker.width();
+        const int width = sight.mode_of(0) == StereoMode::side_by_side ? maker.width() / 2 : maker.width();
         return static_cast<double>(width) / maker.height();
     }
 
-    std::vector<DrawnView> views(const Picture& picture) {
-        if (choice.head.empty()) return views_of(camera, picture.bounds, maker.width(), maker.height(), stereo);
-        const auto head = observer.latest<Pose>(choice.head);
-        if (!head)
-            throw Error(fmt::format("--head: there is no pose output '{}'; name one as in \"hand.pose\"", choice.head));
-        // The scene in its true size, its middle in the screen, turned as the camera has it.
-        DisplayRig rig;
-        const double high = 0.5 * screen_height, wide = high * aspect();
-        rig.screens = {{{-wide, -high, 0.0}, {wide, -high, 0.0}, {-wide, high, 0.0}}};
-        const Quat turned = glm::conjugate(camera.orientation);
-        rig.haptic_world = {-(turned * camera.target), turned};
-        const auto eyes = rig.views(head->value, stereo != StereoMode::mono, picture.bounds);
-        return views_of(eyes, maker.width(), maker.height(), stereo);
+    /// Where the head is must be seen from the first picture on.
+    void check_head() const {
+        if (sight.head.empty() || observer.latest<Pose>(sight.head)) return;
+        std::vector<std::string> poses;
+        for (const Observer::Port& port : observer.ports())
+            if (port.type == &value::pose) poses.push_back(port.name);
+        throw Error(fmt::format("--head: there is no pose output '{}'{}; there are {}", sight.head,
+                                did_you_mean(sight.head, poses), fmt::join(poses, ", ")));
     }
 
     void draw(int frame) {
@@ -129,16 +125,23 @@ struct FrameWriter::State {
             is_aimed = !model.bounds().empty();
         }
         if (clip) picture.clip = clip->plane(model.bounds());
-        Image image = maker.draw(picture, views(picture));
-        if (stereo == StereoMode::mono) {
+        check_head();
+        sight.update(observer);
+        for (std::size_t screen = 0; screen < sight.screens(); ++screen) {
+            const auto views = sight.views(screen, camera, picture.bounds, maker.width(), maker.height());
+            Image image = maker.draw(picture, views);
             Legend legend = model.legend();
             legend.title = fmt::format("{}, {:.2f} s", legend.title, time_of(frame));
-            add_legend(image, legend);
-            if (choice.head.empty()) add_scale_bar(image, camera.metres_per_pixel(image.height));
+            legend.warnings.insert(legend.warnings.end(), sight.warnings().begin(), sight.warnings().end());
+            add_legend(image, legend, views, sight.text_of(screen));
+            if (!sight.is_off_axis() && sight.mode_of(0) == StereoMode::mono)
+                add_scale_bar(image, camera.metres_per_pixel(image.height));
+            std::string name = fmt::format("frame_{:04}", frame);
+            if (sight.screens() > 1) name += "_" + file_part(sight.rig()->screens[screen].name);
+            name += ".png";
+            write_png(image, (folder / name).string());
+            files.push_back(name);
         }
-        const std::string name = fmt::format("frame_{:04}.png", frame);
-        write_png(image, (folder / name).string());
-        files.push_back(name);
     }
 };
 

@@ -23,11 +23,14 @@ fs::path library_folder() {
     return failure ? fs::path("library") : self.parent_path() / "library";
 }
 
-fs::path find_patch(const std::string& name) {
+namespace {
+
+/// A file as it is, or one of a folder of the library.
+fs::path find_bundled(const std::string& name, const char* what, const char* where) {
     // A folder may well have a patch's name: that of its results.
     const bool is_folder = fs::is_directory(name);
     if (fs::exists(name) && !is_folder) return name;
-    const fs::path folder = library_folder() / "patches";
+    const fs::path folder = library_folder() / where;
     if (const fs::path bundled = folder / (name + ".toml"); fs::exists(bundled)) return bundled;
     std::vector<std::string> names;
     std::error_code ignored;
@@ -36,10 +39,16 @@ fs::path find_patch(const std::string& name) {
     std::ranges::sort(names);
     std::string list;
     for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
-    throw Error(fmt::format("no patch '{}': {} one of the library ({}){}", name,
+    throw Error(fmt::format("no {} '{}': {} one of the library ({}){}", what, name,
                             is_folder ? "a folder, and not" : "neither a file nor",
                             list.empty() ? "which is empty; build first" : list, did_you_mean(name, names)));
 }
+
+}  // namespace
+
+fs::path find_patch(const std::string& name) { return find_bundled(name, "patch", "patches"); }
+
+fs::path find_rig(const std::string& name) { return find_bundled(name, "rig", "rigs"); }
 
 std::optional<Plan> plan_of(Patch patch, const PatchOverrides& overrides, std::optional<std::uint64_t> seed,
                             AssetCache* assets, Problems& problems) {

@@ -18,6 +18,9 @@ std::filesystem::path library_folder();
 /// File of a patch given by path, or by name in the library. Throws Error listing what the library has.
 std::filesystem::path find_patch(const std::string& name);
 
+/// File of a display rig given by path, or by name in the library. Throws Error listing what the library has.
+std::filesystem::path find_rig(const std::string& name);
+
 /// The plan of a patch: what the command line overrides, `seed` when given, compiled; with its assets when there is a
 /// cache. Problems are collected, those of reading among them; with any, there may be no plan.
 std::optional<Plan> plan_of(Patch patch, const PatchOverrides& overrides, std::optional<std::uint64_t> seed,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/scene_model.hpp"
 
+#include "assets/bone/bone.hpp"
 #include "devices/display/shapes.hpp"
+#include "dsp/core/error.hpp"
 #include "tools/body_surface.hpp"
 #include "tools/scene_colours.hpp"
 
@@ -28,6 +30,8 @@ SceneModel::SceneModel(SceneOutline outline, Observer& observer, SceneRenderer& 
 
 SceneModel::~SceneModel() {
     for (const auto& [name, bone] : bones_) renderer_.meshes().remove(bone.mesh);
+    for (const auto& [path, bone] : still_bones_)
+        if (bone.mesh >= 0) renderer_.meshes().remove(bone.mesh);
     for (const auto& [hash, body] : bodies_) renderer_.meshes().remove(body.mesh);
     for (const auto& [name, mesh] : shapes_) renderer_.meshes().remove(mesh);
     renderer_.meshes().remove(notes_mesh_);
@@ -45,6 +49,12 @@ void SceneModel::follow(SceneOutline outline) {
         const bool gone =
             std::ranges::none_of(outline_.bones, [&](const auto& kept) { return kept.port == bone.first; });
         if (gone) meshes.remove(bone.second.mesh);
+        return gone;
+    });
+    std::erase_if(still_bones_, [&](const auto& bone) {
+        const bool gone = std::ranges::find(outline_.still_bones, bone.first, &SceneOutline::StillBone::path) ==
+                          outline_.still_bones.end();
+        if (gone && bone.second.mesh >= 0) meshes.remove(bone.second.mesh);
         return gone;
     });
     std::erase_if(bodies_, [&](const auto& body) {
@@ -88,7 +98,7 @@ double SceneModel::number_of(const std::string& port, double otherwise) const {
 
 void SceneModel::show(MeshPool::Mesh mesh, const Pose& pose, const Bounds& local, double opacity, bool is_clipped,
                       bool is_fitted) {
-    picture_.meshes.push_back({mesh, pose, opacity, is_clipped});
+    picture_.meshes.push_back({mesh, pose, opacity, is_clipped, is_clipped && opacity >= 1.0});
     if (local.empty()) return;
     for (const Vec3& corner : local.corners()) {
         picture_.bounds.add(pose.apply(corner));
@@ -108,6 +118,7 @@ Picture& SceneModel::update() {
     deepest_ = 0.0;
     if (is_fitting_) bounds_ = {};
     show_bones();
+    show_still_bones();
     show_bodies();
     show_blades();
     show_balls();
@@ -141,6 +152,35 @@ void SceneModel::show_bones() {
         }
         bone.update = seen->update;
         show(bone.mesh, {}, bone.bounds);
+        if (legend_.scales.empty()) legend_.scales.push_back(density_scale(mesher_.colours));
+    }
+}
+
+void SceneModel::show_still_bones() {
+    for (const auto& [name, path] : outline_.still_bones) {
+        auto known = still_bones_.find(path);
+        if (known == still_bones_.end()) {
+            StillMesh& bone = (known = still_bones_.emplace(path, StillMesh{}).first)->second;
+            try {
+                const Bone loaded = load_bone(path);
+                const BoneEditor editor(loaded.distance, loaded.density,
+                                        {.band = 0.003, .max_dirty = 1, .max_versions = 1});
+                bone.mesh = renderer_.meshes().make();
+                for (std::uint32_t brick = 0; brick < static_cast<std::uint32_t>(editor.layout().brick_count());
+                     ++brick) {
+                    mesher_.make(editor.current(), brick, patch_);
+                    renderer_.meshes().set_part(bone.mesh, brick, patch_);
+                    bone.bounds.add(bounds_of(patch_));
+                }
+            } catch (const Error& error) {
+                bone.problem = fmt::format("{} is not drawn: {}", name, error.message());
+            }
+        }
+        if (!known->second.problem.empty()) {
+            legend_.warnings.push_back(known->second.problem);
+            continue;
+        }
+        show(known->second.mesh, {}, known->second.bounds);
         if (legend_.scales.empty()) legend_.scales.push_back(density_scale(mesher_.colours));
     }
 }

@@ -32,6 +32,8 @@ public:
     /// to where it is. What it returns stays valid until the next call; a clip plane set in it stays.
     Picture& update();
 
+    const SceneOutline& outline() const { return outline_; }
+
     /// The colours of the picture, the forces and depths of this moment, and what could not be drawn.
     const Legend& legend() const { return legend_; }
     /// Of what stands still and of where tools began: what a camera is fitted to.
@@ -63,6 +65,7 @@ private:
     void show(MeshPool::Mesh mesh, const Pose& pose, const Bounds& local, double opacity = 1.0, bool is_clipped = true,
               bool is_fitted = true);
     void show_bones();
+    void show_still_bones();
     void show_bodies();
     void show_blades();
     void show_balls();
@@ -77,6 +80,12 @@ private:
     BrickSurface mesher_;
     SurfacePatch patch_, notes_;
     std::map<std::string, BoneMesh> bones_;
+    struct StillMesh {
+        MeshPool::Mesh mesh = -1;
+        Bounds bounds;
+        std::string problem;  ///< why it is not there
+    };
+    std::map<std::string, StillMesh> still_bones_;  // by path
     std::map<std::uint64_t, BodyMesh> bodies_;
     std::map<std::string, MeshPool::Mesh> shapes_;
     std::unordered_set<std::uint64_t> shown_;  // content of the bodies in the last picture

@@ -2,6 +2,7 @@
 #include "tools/scene_outline.hpp"
 
 #include "dsp/coupling/scene.hpp"
+#include "graph/assets.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -112,14 +113,49 @@ void look_at(const NodeView& view, SceneOutline& outline) {
                                    view.output("thumb_position", value::number),
                                    view.output("finger_force", value::number),
                                    {}});
+    if (const std::string frame = view.output("frame", value::pose), device = view.source("device"),
+        scale = view.output("force_scale", value::number);
+        !frame.empty() && !device.empty() && !scale.empty())
+        outline.places.push_back({device, frame, scale});
     if (const std::string height = view.output("height", value::number);
         !height.empty() && view.has_input("hand", value::pose))
         outline.weights.push_back({view.source("hand"), height});
 }
 
+/// Bones that come straight from a file: wired to a node, or named by one that makes nothing to see of them.
+void add_still_bones(const Plan& plan, SceneOutline& outline) {
+    const auto path_of = [&](const std::string& asset) -> std::string {
+        const auto found = std::ranges::find(plan.patch.assets, asset, &PatchAsset::name);
+        return found == plan.patch.assets.end() ? std::string() : found->path.string();
+    };
+    std::map<std::string, std::string> wired, named;  // path to name
+    std::set<std::string> seen;
+    for (const PlanWire& wire : plan.wires) {
+        if (wire.from_node >= 0 || wire.to_input < 0) continue;
+        const PlanNode& to = plan.nodes[static_cast<std::size_t>(wire.to_node)];
+        if (to.inputs[static_cast<std::size_t>(wire.to_input)].port->type == &bone_type)
+            wired.emplace(path_of(wire.asset), wire.asset);
+    }
+    for (const PlanNode& node : plan.nodes) {
+        const bool shows = std::ranges::any_of(node.outputs, [](const PlanOutput& out) {
+            const ValueType* type = out.port->type;
+            return type == &bone_type || type == &body_type || type == &scene_type;
+        });
+        for (const AssetParam* asset : node.assets) {
+            if (asset->name.empty() || asset->type_name != AssetLoader<Bone>::name) continue;
+            if (shows) seen.insert(path_of(asset->name));
+            else named.emplace(path_of(asset->name), asset->name);
+        }
+    }
+    for (const auto& [path, name] : named)
+        if (!seen.contains(path)) wired.emplace(path, name);
+    for (const auto& [path, name] : wired)
+        if (!path.empty()) outline.still_bones.push_back({name, path});
+}
+
 }  // namespace
 
-bool SceneOutline::empty() const { return ports().empty() && fixed_balls.empty(); }
+bool SceneOutline::empty() const { return ports().empty() && fixed_balls.empty() && still_bones.empty(); }
 
 std::vector<std::string> SceneOutline::ports() const {
     std::set<std::string> all;
@@ -139,6 +175,7 @@ SceneOutline outline_of(const Plan& plan) {
     SceneOutline outline;
     outline.title = plan.patch.title;
     for (std::size_t i = 0; i < plan.nodes.size(); ++i) look_at(NodeView(plan, static_cast<int>(i)), outline);
+    add_still_bones(plan, outline);
     // A gripper on an arm goes where the arm goes.
     for (auto& fingers : outline.fingers)
         if (!outline.weights.empty()) fingers.hand = outline.weights.front().hand;

@@ -19,6 +19,10 @@ struct SceneOutline {
     struct Bone {
         std::string port;
     };
+    /// A bone that stays as it is: a file that nodes are given, and none of them carves or moves.
+    struct StillBone {
+        std::string name, path;
+    };
     /// An output that is a scene; `bodies` are the outputs that give its places.
     struct Bodies {
         std::string port;
@@ -61,8 +65,14 @@ struct SceneOutline {
         std::string pose;
     };
 
+    /// How a device stands in the scene: its handle, the same place with the device's axes in the scene, and the scale.
+    struct Place {
+        std::string device, frame, scale;
+    };
+
     std::string title;
     std::vector<Bone> bones;
+    std::vector<StillBone> still_bones;
     std::vector<Bodies> scenes;
     std::vector<Held> held;
     std::vector<Blade> blades;
@@ -71,6 +81,7 @@ struct SceneOutline {
     std::vector<Fingers> fingers;
     std::vector<Weight> weights;
     std::vector<Handle> handles;
+    std::vector<Place> places;  ///< nothing to see by themselves
 
     bool empty() const;
     /// Every output that it speaks of, each once.

@@ -26,7 +26,21 @@ double width_of(const std::string& text, bool bold = false) {
 }
 
 /// Dimensions that follow a picture's, so that text is readable in large and small ones.
-double scale_for(const Image& image) { return std::clamp(std::min(image.width, image.height) / 600.0, 0.55, 4.0); }
+double scale_for(int width, int height) { return std::clamp(std::min(width, height) / 600.0, 0.55, 4.0); }
+
+Image turn(Image image, Turned turned) {
+    const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
+    std::uint8_t* const rgb = image.rgb.data();
+    if (turned == Turned::upside_down)
+        for (std::size_t y = 0; y < height / 2; ++y)
+            std::swap_ranges(rgb + 3 * y * width, rgb + 3 * (y + 1) * width, rgb + 3 * (height - 1 - y) * width);
+    if (turned == Turned::left_right)
+        for (std::size_t y = 0; y < height; ++y)
+            for (std::size_t x = 0; x < width / 2; ++x)
+                std::swap_ranges(rgb + 3 * (y * width + x), rgb + 3 * (y * width + x + 1),
+                                 rgb + 3 * (y * width + width - 1 - x));
+    return image;
+}
 
 /// Onto `image` at (x, y), as opaque as told.
 void lay_over(Image& image, const Image& over, int x, int y, double opacity) {
@@ -92,12 +106,15 @@ Image legend_image(const Legend& legend, double scale) {
     return figure.image(scale);
 }
 
-void add_legend(Image& image, const Legend& legend) {
+void add_legend(Image& image, const Legend& legend) { add_legend(image, legend, 0, image.width, Turned::none); }
+
+void add_legend(Image& image, const Legend& legend, int x, int width, Turned turned) {
     if (legend.empty()) return;
-    const double scale = scale_for(image);
-    const Image box = legend_image(legend, scale);
+    const double scale = scale_for(width, image.height);
+    const Image box = turn(legend_image(legend, scale), turned);
     const int gap = static_cast<int>(margin * scale);
-    lay_over(image, box, gap, image.height - box.height - gap, 0.9);
+    lay_over(image, box, turned == Turned::left_right ? x + width - box.width - gap : x + gap,
+             turned == Turned::upside_down ? gap : image.height - box.height - gap, 0.9);
 }
 
 void add_scale_bar(Image& image, double metres_per_pixel) {
@@ -105,7 +122,7 @@ void add_scale_bar(Image& image, double metres_per_pixel) {
     const double wanted = 0.16 * image.width * metres_per_pixel;
     const double decade = std::pow(10.0, std::floor(std::log10(wanted)));
     const double length = decade * (wanted >= 5.0 * decade ? 5.0 : wanted >= 2.0 * decade ? 2.0 : 1.0);
-    const double scale = scale_for(image), pixels = length / metres_per_pixel;
+    const double scale = scale_for(image.width, image.height), pixels = length / metres_per_pixel;
     const std::string text =
         length < 0.9995e-3 ? fmt::format("{:g} um", length * 1e6) : fmt::format("{:g} mm", length * 1e3);
     const double width = std::max(pixels / scale, width_of(text)) + 2.0 * margin;

@@ -4,6 +4,7 @@
 
 #include "devices/display/offscreen.hpp"
 #include "dsp/view/brick_surface.hpp"
+#include "dsp/view/screen.hpp"
 
 #include <string>
 #include <vector>
@@ -35,6 +36,8 @@ Image legend_image(const Legend& legend, double scale);
 
 /// Puts the legend into the lower left corner, a tenth of what is behind shining through.
 void add_legend(Image& image, const Legend& legend);
+/// The same in `width` columns from `x` on, in the corner that is the lower left one for who sees the picture.
+void add_legend(Image& image, const Legend& legend, int x, int width, Turned turned);
 
 /// A bar of a round length in the lower right corner. `metres_per_pixel` holds at the depth of what is looked at.
 void add_scale_bar(Image& image, double metres_per_pixel);

@@ -19,12 +19,6 @@ namespace tactus {
 
 namespace {
 
-Mat4 matrix_of(const Pose& pose) {
-    Mat4 matrix = glm::mat4_cast(pose.orientation);
-    matrix[3] = glm::dvec4(pose.position, 1.0);
-    return matrix;
-}
-
 void set(GLint location, const Mat4& value) {
     const glm::mat4 single(value);
     glUniformMatrix4fv(location, 1, GL_FALSE, glm::value_ptr(single));
@@ -95,18 +89,21 @@ std::vector<DrawnView> views_of(const OrbitCamera& camera, const Bounds& scene, 
     return views_of(both, width, height, mode);
 }
 
-std::vector<DrawnView> views_of(std::span<const RigView> eyes, int width, int height, StereoMode mode) {
+std::vector<DrawnView> views_of(std::span<const RigView> eyes, int width, int height, StereoMode mode, Turned turned) {
     if (eyes.size() < 2 || mode == StereoMode::mono)
-        return {{eyes.front().projection, 0, 0, width, height, Channel::all}};
+        return {{eyes.front().projection, 0, 0, width, height, Channel::all, turned}};
     const Projection &left = eyes[0].projection, &right = eyes[1].projection;
+    const int half = width / 2;
     switch (mode) {
         case StereoMode::side_by_side:
-            return {{left, 0, 0, width / 2, height, Channel::all},
-                    {right, width / 2, 0, width - width / 2, height, Channel::all}};
+            return {{left, 0, 0, half, height, Channel::all, turned},
+                    {right, half, 0, width - half, height, Channel::all, turned}};
         case StereoMode::anaglyph:
-            return {{left, 0, 0, width, height, Channel::red}, {right, 0, 0, width, height, Channel::cyan}};
+            return {{left, 0, 0, width, height, Channel::red, turned},
+                    {right, 0, 0, width, height, Channel::cyan, turned}};
         default:
-            return {{left, 0, 0, width, height, Channel::back_left}, {right, 0, 0, width, height, Channel::back_right}};
+            return {{left, 0, 0, width, height, Channel::back_left, turned},
+                    {right, 0, 0, width, height, Channel::back_right, turned}};
     }
 }
 
@@ -139,6 +136,11 @@ void SceneRenderer::draw_meshes(const Picture& picture, const Projection& projec
                 pool_->draw(drawn.mesh);
             }
             glDisable(GL_CULL_FACE);
+        } else if (drawn.is_closed && !picture.clip) {
+            glEnable(GL_CULL_FACE);
+            glCullFace(GL_BACK);
+            pool_->draw(drawn.mesh);
+            glDisable(GL_CULL_FACE);
         } else {
             pool_->draw(drawn.mesh);
         }
@@ -149,7 +151,7 @@ void SceneRenderer::draw_meshes(const Picture& picture, const Projection& projec
 void SceneRenderer::draw_hidden(const Picture& picture, const Projection& projection) {
     Picture hidden;
     for (const DrawnMesh& drawn : picture.meshes)
-        if (drawn.shines_through) hidden.meshes.push_back({drawn.mesh, drawn.pose, 0.3, false});
+        if (drawn.shines_through) hidden.meshes.push_back({drawn.mesh, drawn.pose, 0.3, false, false, false});
     if (hidden.meshes.empty()) return;
     glDepthFunc(GL_GREATER);
     glDepthMask(GL_FALSE);
@@ -188,6 +190,8 @@ void SceneRenderer::draw(const Picture& picture, std::span<const DrawnView> view
         if (view.channel == Channel::back_left) glDrawBuffer(GL_BACK_LEFT);
         if (view.channel == Channel::back_right) glDrawBuffer(GL_BACK_RIGHT);
         glColorMask(red, cyan, cyan, GL_TRUE);
+        const float across = view.turned == Turned::left_right ? -1.0f : 1.0f,
+                    upwards = view.turned == Turned::upside_down ? -1.0f : 1.0f;
         glViewport(view.x, view.y, view.width, view.height);
         glScissor(view.x, view.y, view.width, view.height);
         glDepthMask(GL_TRUE);
@@ -197,11 +201,14 @@ void SceneRenderer::draw(const Picture& picture, std::span<const DrawnView> view
         programs_->background.use();
         set(programs_->background.uniform("sky"), picture.sky);
         set(programs_->background.uniform("ground"), picture.ground);
+        glUniform1f(programs_->background.uniform("upwards"), upwards);
         glBindVertexArray(programs_->no_attributes);
         glDrawArrays(GL_TRIANGLES, 0, 3);
         glEnable(GL_DEPTH_TEST);
         glEnable(GL_CLIP_DISTANCE0);
         glFrontFace(view.projection.is_mirrored ? GL_CW : GL_CCW);
+        programs_->mesh.use();
+        glUniform2f(programs_->mesh.uniform("way"), across, upwards);
         draw_meshes(picture, view.projection, false);
         draw_points(picture, view.projection);
         glEnable(GL_BLEND);

@@ -21,6 +21,7 @@ struct DrawnMesh {
     Pose pose;
     double opacity = 1.0;  ///< below 1 what is behind shines through
     bool is_clipped = true;  ///< by the picture's clip plane
+    bool is_closed = false;  ///< nobody sees it from within: what looks away need not be drawn
     bool shines_through = false;  ///< faintly seen also where something stands before it: arrows, axes
 };
 
@@ -43,17 +44,16 @@ struct DrawnView {
     Projection projection;
     int x = 0, y = 0, width = 0, height = 0;
     Channel channel = Channel::all;
+    Turned turned = Turned::none;  ///< light and background come from above for who sees it
 };
-
-/// How two eyes share one target. `quad_buffer` needs a context with stereo buffers.
-enum class StereoMode : std::uint8_t { mono, side_by_side, anaglyph, quad_buffer };
 
 /// The views of a camera: one, or two eyes `separation` m apart that meet at the camera's target. By default the eyes
 /// are a thirtieth of the distance apart, which is easy on them.
 std::vector<DrawnView> views_of(const OrbitCamera& camera, const Bounds& scene, int width, int height, StereoMode mode,
                                 std::optional<double> separation = {});
 /// The views of a rig that shows one screen in the target: the projections of one eye, or of the left and the right one.
-std::vector<DrawnView> views_of(std::span<const RigView> eyes, int width, int height, StereoMode mode);
+std::vector<DrawnView> views_of(std::span<const RigView> eyes, int width, int height, StereoMode mode,
+                                Turned turned = Turned::none);
 
 /// What is seen at a place of the picture.
 struct Picked {

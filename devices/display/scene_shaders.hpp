@@ -6,9 +6,10 @@ namespace tactus::scene_shaders {
 
 inline constexpr const char* background_vertex = R"(#version 330 core
 out float height;
+uniform float upwards;
 void main() {
     vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-    height = 0.5 + 0.5 * corner.y;
+    height = 0.5 + 0.5 * corner.y * upwards;
     gl_Position = vec4(corner, 0.0, 1.0);
 })";
 
@@ -37,13 +38,14 @@ void main() {
 })";
 
 // The lights stand with the camera: a key from upper left, a fill from the right, and one from behind that draws a fine
-// bright rim. A section is flat: it is the inner side of the far wall that is seen there.
+// bright rim; `way` turns them where the picture is seen in a mirror. A section is flat: it is the inner side of the far wall that is seen there.
 inline constexpr const char* mesh_fragment = R"(#version 330 core
 in vec3 eye_position, eye_normal;
 in vec4 surface;
 uniform float opacity;
 uniform vec3 section;
 uniform bool is_cut;
+uniform vec2 way;
 out vec4 colour;
 void main() {
     if (is_cut && !gl_FrontFacing) {
@@ -54,10 +56,10 @@ void main() {
     vec3 v = normalize(-eye_position);
     // The triangle's own normal decides which side is seen: an interpolated one may point away at the rim.
     if (dot(n, cross(dFdx(eye_position), dFdy(eye_position))) < 0.0) n = -n;
-    vec3 key = normalize(vec3(-0.45, 0.65, 0.65));
-    vec3 fill = normalize(vec3(0.85, 0.05, 0.35));
+    vec3 key = normalize(vec3(-0.45 * way.x, 0.65 * way.y, 0.65));
+    vec3 fill = normalize(vec3(0.85 * way.x, 0.05 * way.y, 0.35));
     float diffuse = 0.78 * max(dot(n, key), 0.0) + 0.24 * max(dot(n, fill), 0.0);
-    float ambient = 0.17 + 0.08 * n.y;
+    float ambient = 0.17 + 0.08 * n.y * way.y;
     float gloss = 0.10 * pow(max(dot(n, normalize(key + v)), 0.0), 48.0);
     float edge = 1.0 - max(dot(n, v), 0.0);
     float rim = 0.10 * pow(edge, 4.0);

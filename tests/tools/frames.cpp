@@ -4,9 +4,13 @@
 
 #include "devices/display/gl_context.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/view/camera.hpp"
 
+#include <fmt/format.h>
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 
@@ -144,4 +148,154 @@ TEST_CASE("what a picture cannot be made of is said in one line") {
     const std::string none = error("--frames 1");
     ::unsetenv("__EGL_VENDOR_LIBRARY_FILENAMES");
     CHECK(none.find("libegl-mesa0") != std::string::npos);
+}
+
+namespace {
+
+/// A patch whose hand stands still at a place, in a scene turned, shifted and scaled against the device.
+const char* const still_hand = R"(title = "A ball in the hand"
+wires = ["hand.pose -> place.device", "place.pose -> ball.pose", "felt.on_hand -> out.wrench",
+         "ball.wrench -> felt.wrench", "place.pose -> felt.tool", "place.frame -> felt.frame",
+         "place.force_scale -> felt.scale"]
+[devices.still]
+driver = "scripted"
+targets = "0 s: 40 -25 15 mm"
+[nodes.hand]
+type = "device_input"
+rate = "1 kHz"
+device = "still"
+[nodes.place]
+type = "workspace"
+rate = "1 kHz"
+origin = "10 mm, 20 mm, 30 mm"
+rotation = "20 deg, 30 deg, 40 deg"
+scale = "1.5"
+grip_rotation = "0 deg, 0 deg, 0 deg"
+[nodes.ball]
+type = "sphere_contact"
+rate = "1 kHz"
+centre = "1 m, 1 m, 1 m"
+radius = "1 mm"
+tool_radius = "4 mm"
+[nodes.felt]
+type = "device_wrench"
+rate = "1 kHz"
+[nodes.out]
+type = "device_output"
+rate = "1 kHz"
+[nodes.head]
+type = "simulated_head"
+rate = "60 Hz"
+position = "30 mm, -450 mm, 350 mm"
+sway = "200 mm, 30 mm, 40 mm"
+frequency = "1 Hz"
+)";
+
+/// Mean of the pixels that are as orange as the ball, in columns from `begin` to `end`; rows count from the lowest.
+std::array<double, 2> orange(const Pixels& picture, int begin, int end) {
+    double x = 0.0, y = 0.0, sum = 0.0;
+    for (int v = 0; v < picture.height; ++v)
+        for (int u = begin; u < end; ++u) {
+            const unsigned char* p = picture.rgb.data() + 3 * (v * picture.width + u);
+            const double share = std::clamp((p[0] - p[2]) / 60.0, 0.0, 1.0);
+            x += share * (u + 0.5 - begin);
+            y += share * (picture.height - v - 0.5);
+            sum += share;
+        }
+    REQUIRE(sum > 20.0);
+    return {x / sum, y / sum};
+}
+
+}  // namespace
+
+TEST_CASE(
+    "frames through a rig show the tool within half a pixel of where the hand feels it, in a mirror, for both eyes") {
+    if (!can_render()) return;
+    const Folder folder;
+    folder.write("still.toml", still_hand);
+    // A monitor of 520 x 292.5 mm that looks down on a horizontal mirror, and one to the left of it, of another shape.
+    folder.write("rig.toml", R"(between_eyes = "64 mm"
+[device]
+position = "-20 mm, 30 mm, -140 mm"
+rotation = "0 deg, 0 deg, 15 deg"
+[mirror]
+point = "0 mm, 0 mm, 0 mm"
+normal = [0, 0, 1]
+[[screens]]
+name = "above"
+low_left  = "-260 mm, 146.25 mm, 150 mm"
+low_right = "260 mm, 146.25 mm, 150 mm"
+high_left = "-260 mm, -146.25 mm, 150 mm"
+[[screens]]
+name = "the back wall"
+low_left  = "-400 mm, 300 mm, -200 mm"
+low_right = "400 mm, 300 mm, -200 mm"
+high_left = "-400 mm, 300 mm, 300 mm"
+in_mirror = false
+stereo = "mono"
+)");
+    constexpr int wide = 1280, high = 720;
+    const Outcome outcome = folder.tactus("render " + (folder.path / "still.toml").string() +
+                                          " --seconds 1.2 --frames 3 --stereo side-by-side" + " --rig " +
+                                          (folder.path / "rig.toml").string() +
+                                          " --head head.pose --size 1280x720 --out " + (folder.path / "out").string());
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    const double turn = 15.0 * 3.14159265358979 / 180.0;
+    // Where the hand is in the world of the viewer: neither origin nor scale of the scene matter.
+    const double felt[3] = {-0.020 + std::cos(turn) * 0.040 + std::sin(turn) * 0.025,
+                            0.030 + std::sin(turn) * 0.040 - std::cos(turn) * 0.025, -0.140 + 0.015};
+    for (int frame = 1; frame <= 3; ++frame) {
+        const double time = 0.4 * frame, angle = 2.0 * 3.14159265358979 * time;
+        const Vec3 head(0.030 + 0.2 * std::sin(angle), -0.450 + 0.03 * std::sin(1.3 * angle),
+                        0.350 + 0.04 * std::sin(0.7 * angle));
+        OrbitCamera looking;
+        looking.look_along(-head);
+        const Vec3 right = looking.orientation * Vec3(0.032, 0.0, 0.0);
+        const Pixels above(folder.path / fmt::format("out/frame_{:04}_above.png", frame));
+        for (int eye = 0; eye < 2; ++eye) {
+            const Vec3 at = head + (eye == 0 ? -1.0 : 1.0) * right;
+            // The image of the monitor lies 150 mm beneath the mirror.
+            const double t = (-0.150 - at.z) / (felt[2] - at.z);
+            const double x = (at.x + t * (felt[0] - at.x) + 0.260) / 0.520,
+                         y = (0.14625 - (at.y + t * (felt[1] - at.y))) / 0.2925;
+            const auto [u, v] = orange(above, eye * wide / 2, (eye + 1) * wide / 2);
+            CHECK(u == Approx(x * wide / 2).margin(0.5));
+            CHECK(v == Approx(y * high).margin(0.5));
+        }
+        const Pixels wall(folder.path / fmt::format("out/frame_{:04}_the-back-wall.png", frame));
+        const double t = (0.300 - head.y) / (felt[1] - head.y);
+        const auto [u, v] = orange(wall, 0, wide);
+        CHECK(u == Approx((head.x + t * (felt[0] - head.x) + 0.4) / 0.8 * wide).margin(0.5));
+        CHECK(v == Approx((head.z + t * (felt[2] - head.z) + 0.2) / 0.5 * high).margin(0.5));
+    }
+}
+
+TEST_CASE("stereo pictures have a legend for each eye at one place, and an offset moves what is seen") {
+    if (!can_render()) return;
+    const Folder folder;
+    folder.write("still.toml", still_hand);
+    folder.write("rig.toml", R"([[screens]]
+low_left  = "-260 mm, 0 mm, -150 mm"
+low_right = "260 mm, 0 mm, -150 mm"
+high_left = "-260 mm, 0 mm, 150 mm"
+)");
+    const std::string render = "render " + (folder.path / "still.toml").string() + " --seconds 0.1 --frames 1 --rig " +
+                               (folder.path / "rig.toml").string() + " --size 800x300 --out " +
+                               (folder.path / "out").string();
+    const auto picture = [&](const std::string& how) {
+        REQUIRE(folder.tactus(render + " " + how).code == 0);
+        return Pixels(folder.path / "out/frame_0001.png");
+    };
+    const Pixels both = picture("--stereo side-by-side");
+    // The white ground of the legend, lower left of each half.
+    for (const int x : {12, 412}) {
+        const unsigned char* p = both.rgb.data() + 3 * (280 * 800 + x);
+        CHECK(static_cast<int>(p[0]) > 240);
+    }
+    const double before = orange(picture("--stereo mono"), 0, 800)[0];
+    const double after = orange(picture("--stereo mono --offset \"-100 mm, 0 mm, 0 mm\""), 0, 800)[0];
+    CHECK(before - after == Approx(100.0 * 800.0 / 520.0 * 600.0 / (600.0 - 25.0)).margin(3.0));
+    CHECK(folder.tactus(render + " --offset study").code == 0);
+    CHECK(folder.tactus(render + " --offset far").err.find("study") != std::string::npos);
 }
