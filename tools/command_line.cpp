@@ -25,11 +25,63 @@ void add_patch_options(CLI::App& verb, PatchChoice& choice) {
     verb.add_option("--seed", choice.seed, "seed of the random numbers");
 }
 
+/// Of pictures and of the window; they need `what`.
+void add_sight_options(CLI::App& verb, SightChoice& choice, CLI::Option* what) {
+    const auto add = [&](const char* name, auto& value, const char* about) {
+        CLI::Option* option = verb.add_option(name, value, about);
+        if (what) option->needs(what);
+        return option;
+    };
+    add("--stereo", choice.stereo, "mono, side-by-side, anaglyph; windows: quad-buffer as well")->capture_default_str();
+    add("--head", choice.head, "a pose output that is the viewer's head; without --rig before a screen 0.3 m high");
+    add("--rig", choice.rig,
+        "where screens, mirror and device stand, as 'calibrate' writes it: what is seen is where it is felt");
+    add("--offset", choice.offset, "of what is seen against what is felt: none, study (0.3 m), \"X mm, Y mm, Z mm\"");
+}
+
 void add_view_options(CLI::App& verb, ViewChoice& choice) {
     verb.add_option("--view-script", choice.script, "do in the window what the lines of this file say");
     verb.add_option("--reference", choice.reference, "sound file whose spectrum stands beneath the signals'");
+    add_sight_options(verb, choice.sight, nullptr);
     verb.add_option("--view-scale", choice.scale, "size of letters and controls (default: as the screen says)")
         ->check(CLI::Range(0.5, 4.0));
+}
+
+void add_calibrate(CLI::App& app, CalibrateChoice& choice) {
+    CLI::App* verb = app.add_subcommand(
+        "calibrate", "find where screens, mirror and device stand, by touching them with the device: a file for --rig");
+    verb->add_option("-o,--out", choice.out, "the rig, TOML")->required();
+    auto* device =
+        verb->add_option("--device", choice.device, "driver of the device that touches; 'devices' lists them");
+    verb->add_option("--touches", choice.touches, "a CSV of touches instead of a device")->excludes(device);
+    verb->add_option("--option", choice.device_options, "of the device's driver: NAME=VALUE")->allow_extra_args(false);
+    verb->add_option("--tip", choice.tip, "what touches, in the frame of the handle")->capture_default_str();
+    verb->add_option("--screen", choice.screens, "a screen whose marks are touched; more than once: several")
+        ->allow_extra_args(false);
+    verb->add_option("--image", choice.images, "a screen whose marks are touched where the mirror shows them")
+        ->allow_extra_args(false);
+    verb->add_flag("--mirror", choice.mirror, "touch the mirror as well");
+    verb->add_option("--places", choice.places,
+                     "CSV (x_mm, y_mm, z_mm) of places that are known in the viewer's world");
+    verb->add_option("--tracker", choice.tracker, "driver that tells where the tip is in the viewer's world, instead");
+    verb->add_option("--tracker-option", choice.tracker_options, "of that driver: NAME=VALUE")->allow_extra_args(false);
+    verb->add_option("--grid", choice.grid, "marks along each side of a screen")
+        ->capture_default_str()
+        ->check(CLI::Range(2, 9));
+    verb->add_option("--points", choice.points, "touches of the mirror, and of the workspace with a tracker")
+        ->capture_default_str()
+        ->check(CLI::Range(4, 100));
+    verb->add_option("--show", choice.show, "show the marks on this monitor, from 1")->check(CLI::Range(1, 64));
+    verb->add_flag("--affine", choice.affine, "take up scales and skews of the device");
+    verb->add_option("--tolerance", choice.tolerance, "a touch farther off what the others say is refused")
+        ->capture_default_str();
+    verb->add_option("--base", choice.base, "a rig that stays as it is where nothing is touched");
+    verb->add_option("--keep", choice.keep, "write the touches as CSV, for --touches");
+    verb->add_flag("--json", choice.json, "as JSON");
+    verb->callback([&choice] {
+        if (choice.device.empty() == choice.touches.empty())
+            throw Error("say what touches: --device DRIVER, or --touches FILE");
+    });
 }
 
 void add_import(CLI::App& app, ImportChoice& choice) {
@@ -233,9 +285,8 @@ void add_frame_options(CLI::App& app, FrameChoice& choice) {
     };
     add("--view-from", choice.view_from, "front, back, left, right, top, bottom or iso");
     add("--size", choice.size, "of the pictures, WIDTHxHEIGHT");
-    add("--stereo", choice.stereo, "mono, side-by-side or anaglyph");
     add("--clip", choice.clip, "take away what is above along an axis: x, -y, \"z=12 mm\"");
-    add("--head", choice.head, "a pose output that is the viewer's head before a screen 0.3 m high");
+    add_sight_options(app, choice.sight, frames);
 }
 
 }  // namespace
@@ -328,6 +379,8 @@ int command_line(int argc, char** argv) {
     CLI::App* devices_app = app.add_subcommand("devices", "haptic drivers and sound outputs of this machine");
     devices_app->add_flag("--json", devices_json, "as JSON");
 
+    CalibrateChoice calibrate;
+    add_calibrate(app, calibrate);
     ImportChoice import;
     add_import(app, import);
     InfoChoice info;
@@ -399,6 +452,7 @@ int command_line(int argc, char** argv) {
         if (*bench_view_app) return bench_view_verb(bench);
         if (*bench_scrub_app) return bench_scrub_verb(bench_scrub);
         if (bench_app->got_subcommand("snap")) return bench_snap_verb(bench_snap);
+        if (app.got_subcommand("calibrate")) return calibrate_verb(calibrate);
         if (*devices_app) return devices_verb(devices_json);
         if (app.got_subcommand("spectrum")) return spectrum_verb(analysis.spectrum);
         if (app.got_subcommand("orders")) return orders_verb(analysis.orders);

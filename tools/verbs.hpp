@@ -5,6 +5,7 @@
 
 #include "assets/bone/import.hpp"
 #include "graph/patch.hpp"
+#include "tools/calibrate_choice.hpp"
 #include "tools/frame_choice.hpp"
 #include "tools/record_options.hpp"
 
@@ -41,6 +42,7 @@ struct ViewChoice {
     std::filesystem::path script;             ///< what is done in the window, instead of by hand
     std::filesystem::path reference;          ///< sound file whose spectrum stands behind the signals'
     double scale = 0.0;                       ///< of the window's contents, 0: what the screen says
+    SightChoice sight;
 };
 
 struct RunChoice : PatchChoice {
@@ -203,6 +205,7 @@ int replay_verb(const ReplayChoice& choice);
 int check_verb(const PatchChoice& choice);
 int draw_verb(const PatchChoice& choice, const std::filesystem::path& out);
 int nodes_verb(const std::string& type, bool json);
+int calibrate_verb(const CalibrateChoice& choice);
 int devices_verb(bool json);
 int import_verb(const ImportChoice& choice);
 int export_verb(const ExportChoice& choice);
