@@ -36,6 +36,16 @@ picture scene-pop-through pop-through --seconds 2 --frames 1 --view-from front
 picture scene-gripper gripper-on-arm --seconds 4 --frames 1
 picture scene-stereo fragments --seconds 2.2 --frames 1 --stereo side-by-side --size 1280x500
 
+# Rigs of screens: both eyes of the one in the mirror, and the outer directions of the other.
+picture rig-mirror look-around --seconds 6 --frames 1 --rig mirror --head head.pose --stereo side-by-side --size 1280x500
+if [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" rig-directions "* ]]; then
+    "$tactus" render look-around --seconds 6 --frames 1 --rig directions --size 480x360 --out "$folder/directions" >/dev/null
+    for n in 1 4; do
+        mv "$folder/directions/frame_0001_direction-$n.png" "$docs/rig-direction-$n.png"
+        echo "rig-direction-$n.png"
+    done
+fi
+
 # The window needs a display; where there is none, one without a screen does.
 if [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" window "* ]]; then
     command=$(readlink -f "$tactus")

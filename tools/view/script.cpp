@@ -28,7 +28,8 @@ const std::vector<std::string> commands{
     "reference", "freeze",     "export",  "disconnect", "fit",    "look",   "catalogue", "goto",    "scene",
     "hover",     "click",      "drag",    "wheel",      "wait",   "until",  "frames",    "size",    "minimise",
     "restore",   "screenshot", "close",   "say",        "from",   "stereo", "clip",      "measure", "check",
-    "scale",     "press",      "double",  "slide",      "pull",   "type",   "key",       "cost"};
+    "scale",     "press",      "double",  "slide",      "pull",   "type",   "key",       "cost",    "head",
+    "rig",       "offset",     "screens"};
 
 std::vector<std::string> words_of(const std::string& line) {
     std::vector<std::string> words;
@@ -312,7 +313,11 @@ bool Script::perform(const Line& line, Desk& desk, Window& window) {
         const auto view = view_of_name(word(line, 1));
         if (!view) throw Error(fmt::format("no view '{}'", word(line, 1)));
         desk.scene().look_from(*view);
-    } else if (is("stereo")) desk.scene().stereo = static_cast<StereoMode>(static_cast<int>(number(line, 1)));
+    } else if (is("stereo")) desk.scene().use_stereo(word(line, 1));
+    else if (is("head")) desk.scene().use_head(line.words.size() > 1 ? line.words[1] : "");
+    else if (is("rig")) desk.scene().use_rig(line.words.size() > 1 ? line.words[1] : "");
+    else if (is("offset")) desk.scene().use_offset(word(line, 1));
+    else if (is("screens")) desk.scene().show_screens(line.words.size() < 2 || line.words[1] != "off");
     else if (is("clip")) desk.scene().clip(static_cast<int>(number(line, 1)), number(line, 2));
     else if (is("measure")) desk.scene().is_measuring = true;
     else if (is("check")) bench.check_saved();

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
@@ -67,6 +68,26 @@ void TextureTarget::end() {
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_);
     glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+void TextureTarget::lay(const Image& image, int x, int y, Turned turned) {
+    const int left = std::max(x, 0), low = std::max(y, 0);
+    const int wide = std::min(x + image.width, width_) - left, high = std::min(y + image.height, height_) - low;
+    if (wide < 1 || high < 1) return;
+    // OpenGL's first row is the lowest, an image's the highest.
+    std::vector<std::uint8_t> part;
+    part.reserve(3 * static_cast<std::size_t>(wide) * static_cast<std::size_t>(high));
+    for (int v = low; v < low + high; ++v)
+        for (int u = left; u < left + wide; ++u) {
+            const int across = turned == Turned::left_right ? image.width - 1 - (u - x) : u - x;
+            const int down = turned == Turned::upside_down ? v - y : image.height - 1 - (v - y);
+            const std::uint8_t* const pixel = image.pixel(across, down);
+            part.insert(part.end(), pixel, pixel + 3);
+        }
+    glBindTexture(GL_TEXTURE_2D, texture_);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexSubImage2D(GL_TEXTURE_2D, 0, left, low, wide, high, GL_RGB, GL_UNSIGNED_BYTE, part.data());
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
 }
 
 }  // namespace tactus::view

@@ -2,6 +2,9 @@
 // A picture on the graphics card that a panel shows: drawn into with smooth edges, then a texture.
 #pragma once
 
+#include "devices/display/offscreen.hpp"
+#include "dsp/view/screen.hpp"
+
 #include <cstdint>
 
 namespace tactus::view {
@@ -18,6 +21,9 @@ public:
     void begin(int width, int height);
     /// Gives the window back and resolves what was drawn.
     void end();
+
+    /// After `end`: puts an image on top, its lower left corner at (x, y) from the lower left.
+    void lay(const Image& image, int x, int y, Turned turned);
 
     std::uint32_t texture() const { return texture_; }  ///< its first row is the lowest
     int width() const { return width_; }

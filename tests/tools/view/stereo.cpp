@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stereo, heads and rigs in the window, as people use them.
+#include "tests/tools/run_command.hpp"
+#include "tests/tools/view/display.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+using namespace tactus::test;
+using nlohmann::json;
+
+namespace {
+
+Outcome on(const Display& display, const Folder& folder, const std::string& arguments) {
+    const std::string command = "cd " + folder.path.string() + " && " + display.environment() + "timeout 100 " +
+                                std::string(TACTUS_COMMAND) + " " + arguments + " >stdout 2>stderr";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(folder.path / "stdout"), slurp(folder.path / "stderr")};
+}
+
+const char* const rig = R"([[screens]]
+name = "left projector"
+low_left  = "-260 mm, 0 mm, -150 mm"
+low_right = "260 mm, 0 mm, -150 mm"
+high_left = "-260 mm, 0 mm, 150 mm"
+eyes = "left"
+window = [0, 0, 400, 300]
+[[screens]]
+name = "right projector"
+low_left  = "-260 mm, 0 mm, -150 mm"
+low_right = "260 mm, 0 mm, -150 mm"
+high_left = "-260 mm, 0 mm, 150 mm"
+eyes = "right"
+window = [400, 0, 400, 300]
+)";
+
+/// A head that sways before a ball.
+const char* const look_around = R"(title = "Look around"
+wires = ["hand.pose -> ball.pose"]
+[devices.still]
+driver = "scripted"
+targets = "0 s: 40 -25 15 mm"
+[nodes.hand]
+type = "device_input"
+rate = "1 kHz"
+device = "still"
+[nodes.ball]
+type = "sphere_contact"
+rate = "1 kHz"
+radius = "20 mm"
+[nodes.head]
+type = "simulated_head"
+rate = "60 Hz"
+frequency = "1 Hz"
+)";
+
+}  // namespace
+
+#define NEEDS_DISPLAY(display)                                                      \
+    const Display display;                                                          \
+    if (!display.is_there()) {                                                      \
+        WARN("Xvfb is not installed (apt install xvfb): the window is not tested"); \
+        return;                                                                     \
+    }
+
+TEST_CASE("in the window the scene is seen in stereo, with a head, through a rig and in windows of their own") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    folder.write("patch.toml", look_around);
+    folder.write("rig.toml", rig);
+    folder.write("script", R"(until 0.1
+frames 3
+screenshot mono.png
+stereo side-by-side
+frames 3
+screenshot side.png
+stereo anaglyph
+frames 3
+screenshot anaglyph.png
+head head.pose
+frames 4
+screenshot head.png
+stereo mono
+rig rig.toml
+frames 4
+screenshot rig.png
+offset study
+frames 4
+screenshot offset.png
+! set head.frequency "1 mm"
+screens off
+frames 2
+rig
+screens on
+frames 4
+screens off
+frames 2
+stop
+until over
+close
+)");
+    const Outcome done =
+        on(display, folder, "run patch.toml --view --view-script script --audio file --out out --json");
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    std::string before;
+    for (const char* name : {"mono", "side", "anaglyph", "head", "rig", "offset"}) {
+        const std::string now = slurp(folder.path / (std::string(name) + ".png"));
+        CHECK(now.size() > 10000);
+        CHECK(now != before);
+        before = now;
+    }
+}
+
+TEST_CASE("the command line opens the windows of a rig, and a driver without two buffers is told from one with") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    folder.write("patch.toml", look_around);
+    folder.write("rig.toml", rig);
+    folder.write("script", "until 0.3\nframes 5\nscreenshot rig.png\nstop\nuntil over\nclose\n");
+    const std::string run = "run patch.toml --view --view-script script --audio file --out out --json ";
+    const Outcome through = on(display, folder, run + "--rig rig.toml --head head.pose --offset study");
+    INFO(through.err);
+    CHECK(through.code == 0);
+    // Without buffers for two eyes it says so in the window and shows them side by side.
+    CHECK(on(display, folder, run + "--stereo quad-buffer").code == 0);
+    CHECK(on(display, folder, run + "--rig nowhere.toml").code == 2);
+    CHECK(on(display, folder, run + "--stereo cross-eyed").err.find("side-by-side") != std::string::npos);
+    // A monitor that is not there is told, and the run goes on.
+    folder.write("far.toml", std::string(rig) + "monitor = 9\n");
+    CHECK(on(display, folder, run + "--rig far.toml").code == 0);
+}
+
+TEST_CASE("a window that draws a rig changes no bit of what a patch computes") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    folder.write("patch.toml", look_around);
+    folder.write("rig.toml", rig);
+    const auto hash_of = [&](const std::string& how) {
+        const Outcome done = on(display, folder, how);
+        INFO(done.err);
+        REQUIRE(done.code == 0);
+        const json summary = json::parse(done.out);
+        std::int64_t late = 0;
+        for (const json& group : summary["groups"])
+            late += group["misses"].get<std::int64_t>() + group["skipped"].get<std::int64_t>() +
+                    group["dropped"].get<std::int64_t>();
+        return std::pair(summary["output_hash"].get<std::string>(), late);
+    };
+    const auto [seen, late] =
+        hash_of("run patch.toml --view --rig rig.toml --head head.pose --seconds 1 --audio file --out out --json");
+    const auto plain = hash_of("render patch.toml --seconds 1 --out out --json").first;
+    if (late > 0) WARN("the machine was too busy for the live run to keep its schedule");
+    else CHECK(seen == plain);
+}
