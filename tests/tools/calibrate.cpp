@@ -207,7 +207,7 @@ TEST_CASE("a simulated hand touches the marks of a screen; one that went wrong i
     const Folder folder;
     // A screen of 400 x 250 mm, upright; the second mark is missed by 30 mm, and touched right at the end.
     std::string script = "0 s: 0 0 0 mm |\n";
-    const auto press = [&, time = 1.0](double x, double z) mutable {
+    auto press = [&, time = 1.0](double x, double z) mutable {
         script += fmt::format("{} s: {} 100 {} mm |\n{} s: {} 100 {} mm | trigger\n{} s: {} 100 {} mm |\n", time, x, z,
                               time + 0.8, x, z, time + 1.3, x, z);
         time += 2.3;

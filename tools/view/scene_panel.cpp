@@ -100,12 +100,13 @@ void ScenePanel::tend_screens() {
     const Windows wanted = std::exchange(windows_, Windows::as_they_are);
     if (wanted == Windows::as_they_are) return;
     needs_picture_ = true;
+    note_.clear();
     screens_.close();
     if (wanted == Windows::none) return;
     try {
         screens_.open(sight_, wanted == Windows::all);
     } catch (const Error& error) {
-        bench_.tell(error.what(), true);
+        bench_.tell(note_ = error.what(), true);
         if (sight_.stereo == StereoMode::quad_buffer) sight_.stereo = StereoMode::side_by_side;
     }
 }

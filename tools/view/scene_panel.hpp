@@ -74,7 +74,7 @@ private:
     double clip_share_ = 0.5;
     std::string rig_file_, offset_ = "as the rig says";
     std::vector<Vec3> marks_;
-    std::string problem_;
+    std::string problem_, note_;  ///< note: why a screen is not shown as it was wanted
 };
 
 }  // namespace tactus::view
