@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace tactus {
 
@@ -111,6 +112,10 @@ SceneRenderer::SceneRenderer() {
     check_version();
     programs_ = std::make_unique<Programs>();
     pool_ = std::make_unique<MeshPool>();
+    const GLubyte* const name = glGetString(GL_RENDERER);
+    const std::string_view driver = name ? reinterpret_cast<const char*>(name) : "";
+    is_software_ =
+        driver.find("llvmpipe") != std::string_view::npos || driver.find("softpipe") != std::string_view::npos;
 }
 
 SceneRenderer::~SceneRenderer() = default;

@@ -67,6 +67,9 @@ public:
     SceneRenderer();
     ~SceneRenderer();
 
+    /// Drawn by the processor (Mesa's llvmpipe and softpipe).
+    bool is_software() const { return is_software_; }
+
     MeshPool& meshes() { return *pool_; }
 
     /// Draws every view after clearing its rectangle. Meshes whose pose is not finite are left out. Leaves depth test,
@@ -84,6 +87,7 @@ private:
 
     std::unique_ptr<Programs> programs_;
     std::unique_ptr<MeshPool> pool_;
+    bool is_software_ = false;
 };
 
 }  // namespace tactus

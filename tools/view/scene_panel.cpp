@@ -19,6 +19,7 @@ namespace {
 // A picture of the scene costs far more than one of the panels: so many a second are enough while nobody moves it, and
 // fewer where it takes more than a third of the time. A head that moves wants all there are.
 constexpr double picture_every_s = 1.0 / 30.0, most_wait_s = 1.0;
+constexpr std::size_t many_triangles = 300'000;
 
 }  // namespace
 
@@ -237,6 +238,7 @@ void ScenePanel::render(int width, int height) {
         normal[clip_axis_] = 1.0;
         picture.clip = Plane{box.low + clip_share_ * (box.high - box.low), normal};
     }
+    screens_.samples = renderer_->is_software() && model_->triangles() > many_triangles ? 1 : 4;
     screens_.draw(*renderer_, picture, sight_, camera, model_->legend());
 }
 

@@ -130,12 +130,12 @@ void SceneScreens::draw(SceneRenderer& renderer, const Picture& picture, Sight& 
         const bool has_two = tile.views.front().channel == Channel::back_left;
         if (has_two) {
             for (DrawnView& view : tile.views) view.channel = Channel::all;
-            target.right.begin(width, height);
+            target.right.begin(width, height, samples);
             renderer.draw(picture, std::span(tile.views).subspan(1));
             target.right.end();
             tile.views.resize(1);
         }
-        target.left.begin(width, height);
+        target.left.begin(width, height, samples);
         renderer.draw(picture, tile.views);
         target.left.end();
         tile.texture = target.left.texture();

@@ -35,6 +35,8 @@ public:
     /// Closes those whose close button was pressed.
     void tend();
 
+    /// Per pixel. Many small triangles are costly to sample more than once where there is no graphics card.
+    int samples = 4;
     /// Draws the scene for all screens and shows it in their windows.
     void draw(SceneRenderer& renderer, const Picture& picture, Sight& sight, const OrbitCamera& camera,
               const Legend& legend);

@@ -24,13 +24,14 @@ void TextureTarget::remove() {
     frame_ = 0;
 }
 
-void TextureTarget::make(int width, int height) {
+void TextureTarget::make(int width, int height, int wanted) {
     remove();
     width_ = width;
     height_ = height;
+    samples_ = wanted;
     GLint most_samples = 0;
     glGetIntegerv(GL_MAX_SAMPLES, &most_samples);
-    const int samples = std::min(most_samples, 4);
+    const int samples = std::min(most_samples, wanted);
     glGenRenderbuffers(2, buffers_);
     glGenFramebuffers(1, &frame_);
     glBindFramebuffer(GL_FRAMEBUFFER, frame_);
@@ -54,8 +55,8 @@ void TextureTarget::make(int width, int height) {
         throw Error(fmt::format("the graphics driver cannot make a picture of {} x {} pixels", width, height));
 }
 
-void TextureTarget::begin(int width, int height) {
-    if (!frame_ || width != width_ || height != height_) make(width, height);
+void TextureTarget::begin(int width, int height, int samples) {
+    if (!frame_ || width != width_ || height != height_ || samples != samples_) make(width, height, samples);
     glBindFramebuffer(GL_FRAMEBUFFER, frame_);
     glViewport(0, 0, width, height);
     glDisable(GL_SCISSOR_TEST);

@@ -17,8 +17,8 @@ public:
     TextureTarget(const TextureTarget&) = delete;
     TextureTarget& operator=(const TextureTarget&) = delete;
 
-    /// From here on everything is drawn into it. A new size makes it anew. Throws Error.
-    void begin(int width, int height);
+    /// From here on everything is drawn into it, with up to `samples` per pixel. A new size makes it anew. Throws Error.
+    void begin(int width, int height, int samples = 4);
     /// Gives the window back and resolves what was drawn.
     void end();
 
@@ -30,10 +30,10 @@ public:
     int height() const { return height_; }
 
 private:
-    void make(int width, int height);
+    void make(int width, int height, int samples);
     void remove();
 
-    int width_ = 0, height_ = 0;
+    int width_ = 0, height_ = 0, samples_ = 0;
     std::uint32_t frame_ = 0, resolved_ = 0, texture_ = 0, buffers_[2] = {};
 };
 
