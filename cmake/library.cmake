@@ -28,7 +28,7 @@ add_custom_command(
           saw-vibration --in actuator.drive --out handle.out --amplitude 100 -o ${equaliser}.csv --json > ${equaliser}.json
   COMMAND ${CMAKE_COMMAND} -E env TSAN_OPTIONS=ignore_noninstrumented_modules=1 $<TARGET_FILE:tactus> equalise
           ${equaliser}.csv -o ${equaliser}.toml --kind linear --volts 0.004 --json >> ${equaliser}.json
-  DEPENDS tactus ${PROJECT_SOURCE_DIR}/assets/library/patches/saw-vibration.toml ${patch_folder}/parts/handle.toml
+  DEPENDS tactus ${PROJECT_SOURCE_DIR}/assets/library/patches/saw-vibration.toml ${PROJECT_SOURCE_DIR}/assets/library/patches/parts/handle.toml
   COMMENT "Measuring the bundled actuator and making its equaliser"
   VERBATIM)
 
