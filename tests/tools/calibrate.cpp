@@ -79,7 +79,7 @@ class Beholder {
 public:
     explicit Beholder(const fs::path& rig) : sight_({"quad-buffer", "head.pose", rig, {}}) {
         const Pose nowhere;
-        port_ = observer_.open({"head.pose", "60 Hz", flicks_per_second / 60, 1}, value::pose, bytes_of(nowhere));
+        port_ = observer_.open({"head.pose", flicks_per_second / 60, 1}, value::pose, bytes_of(nowhere));
         observer_.watch("head.pose", Watch::latest);
     }
     std::vector<DrawnView> look(const Pose& head, const Bounds& scene) {
