@@ -69,10 +69,8 @@ int import_verb(const ImportChoice& choice) {
     options.run = on_threads();
     if (!choice.label.empty()) return import_label_map(choice, options, progress, line);
     if (!choice.ct.empty()) throw Error("--ct goes with a label map: say which label with --label N or --label all");
-    ImportSummary summary;
-    const Bone bone = import_bone(options, progress, &summary);
+    const ImportSummary summary = import_bone_file(options, choice.out, progress);
     line.clear();
-    save_bone(bone, choice.out);
     nlohmann::ordered_json json = json_of(summary);
     json["file"] = choice.out.string();
     if (choice.json) fmt::print("{}\n", json.dump(2));

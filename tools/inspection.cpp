@@ -3,10 +3,11 @@
 
 #include "assets/bone/labels.hpp"
 #include "assets/mesh/mesh.hpp"
-#include "assets/volume/scan_volume.hpp"
+#include "assets/volume/lps_layers.hpp"
 #include "dsp/distance/components.hpp"
 #include "dsp/distance/resample.hpp"
 #include "dsp/distance/surface_net.hpp"
+#include "tools/workers.hpp"
 
 #include <glm/common.hpp>
 
@@ -119,21 +120,23 @@ void inspect_labels(Inspection& found, const ScanVolume& volume) {
 }
 
 Inspection inspect_volume(const std::filesystem::path& path, const std::string& series) {
-    ScanVolume volume = read_volume(path, {series});
+    const std::unique_ptr<SliceReader> reader = open_volume(path, {series});
+    LpsLayers layers(*reader, on_threads());
+    if (layers.is_turned()) layers.settle();
     Inspection found;
-    found.kind = name_of(volume.kind);
-    found.frame = name_of(volume.file_frame);
-    found.hu = name_of(volume.hu);
-    found.size = volume.size;
-    found.spacing_mm = in_mm(volume.spacing());
-    found.uniform = volume.uniform;
-    found.tilt_deg = volume.tilt_deg();
-    found.notes = volume.notes;
-    found.histogram = histogram_of(volume.values, 24);
-    found.range = {found.histogram.low, found.histogram.high};
-    ScanVolume about = volume;
-    about.values.clear();
-    found.grey = lps_grid(std::move(volume));
+    found.grey = whole_of(layers);
+    layers.settle();
+    const ScanVolume& about = reader->about;
+    found.kind = name_of(about.kind);
+    found.frame = name_of(about.file_frame);
+    found.hu = name_of(about.hu);
+    found.size = about.size;
+    found.spacing_mm = in_mm(about.spacing());
+    found.uniform = about.uniform;
+    found.tilt_deg = about.tilt_deg();
+    found.notes = about.notes;
+    found.histogram = histogram_of(found.grey.values, 24);
+    found.range = {layers.tally().low, layers.tally().high};
     if (about.kind == VolumeKind::labels) inspect_labels(found, about);
     else inspect_ct(found);
     return found;

@@ -2,6 +2,7 @@
 #include "assets/bone/bone.hpp"
 
 #include "assets/bone/point_bytes.hpp"
+#include "assets/bone/sparse_bone.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
@@ -30,7 +31,10 @@ constexpr std::size_t seal_size = seal_mark.size() + 8;
 constexpr std::string_view provenance_prefix = "provenance.";
 // Files without this number hold one bone whose name and provenance stand in the file's own metadata.
 constexpr const char* format_key = "tactus_format";
-constexpr std::int32_t newest_format = 2;
+// Format 3 stores only what lies near the bone; what is not stored has the grid's background value.
+constexpr std::int32_t newest_format = 3, sparse_format = 3, dense_format = 2;
+// A sparse file may claim so many samples for each that it stores, and so many in all.
+constexpr double most_claimed = 4096.0, most_samples = 1e9;
 constexpr const char* points_key = "points";
 // Magic (8), file version (4), library version (8) and one flag stand before OpenVDB's identifier.
 constexpr std::size_t identifier_offset = 21, identifier_size = 36;
@@ -52,8 +56,8 @@ void for_each_block(const std::array<int, 3>& size, Visit visit) {
                                                               std::min(k + side, size[2])));
 }
 
-openvdb::FloatGrid::Ptr to_vdb(const Grid& grid, const std::string& name) {
-    auto vdb = openvdb::FloatGrid::create(0.0f);
+openvdb::FloatGrid::Ptr empty_vdb(const Grid& grid, const std::string& name, float background) {
+    auto vdb = openvdb::FloatGrid::create(background);
     vdb->setName(name);
     openvdb::Mat4d map = openvdb::Mat4d::identity();
     map.preScale(openvdb::Vec3d(grid.spacing.x, grid.spacing.y, grid.spacing.z));
@@ -62,6 +66,11 @@ openvdb::FloatGrid::Ptr to_vdb(const Grid& grid, const std::string& name) {
     vdb->insertMeta("size", openvdb::Vec3IMetadata({grid.size[0], grid.size[1], grid.size[2]}));
     vdb->insertMeta("origin", openvdb::Vec3DMetadata({grid.origin.x, grid.origin.y, grid.origin.z}));
     vdb->insertMeta("spacing", openvdb::Vec3DMetadata({grid.spacing.x, grid.spacing.y, grid.spacing.z}));
+    return vdb;
+}
+
+openvdb::FloatGrid::Ptr to_vdb(const Grid& grid, const std::string& name) {
+    auto vdb = empty_vdb(grid, name, 0.0f);
     // Every sample is active, so that compression keeps its bits.
     for_each_block(grid.size, [&](const openvdb::Coord& first, const openvdb::Coord& end) {
         auto* leaf = vdb->tree().touchLeaf(first);
@@ -72,7 +81,36 @@ openvdb::FloatGrid::Ptr to_vdb(const Grid& grid, const std::string& name) {
     return vdb;
 }
 
-Grid from_vdb(const openvdb::FloatGrid& vdb, const std::string& file) {
+struct VdbPair {
+    openvdb::FloatGrid::Ptr distance, density;
+};
+
+// Blocks are freed on the way, so that a bone is not in memory twice.
+VdbPair to_vdb(SparseBone& bone) {
+    VdbPair vdb{empty_vdb(bone.layout, "distance", bone.outside), empty_vdb(bone.layout, "density", 0.0f)};
+    constexpr int side = SparseBone::side;
+    static_assert(side == openvdb::FloatTree::LeafNodeType::DIM);
+    const auto [nx, ny, nz] = bone.blocks_per_axis();
+    for (int bz = 0; bz < nz; ++bz)
+        for (int by = 0; by < ny; ++by)
+            for (int bx = 0; bx < nx; ++bx) {
+                std::unique_ptr<SparseBone::Block> block = std::move(bone.blocks[bone.block_index(bx, by, bz)]);
+                if (!block) continue;
+                const openvdb::Coord first(bx * side, by * side, bz * side);
+                auto *distance = vdb.distance->tree().touchLeaf(first), *density = vdb.density->tree().touchLeaf(first);
+                for (int z = 0; z < std::min(side, bone.layout.size[2] - first.z()); ++z)
+                    for (int y = 0; y < std::min(side, bone.layout.size[1] - first.y()); ++y)
+                        for (int x = 0; x < std::min(side, bone.layout.size[0] - first.x()); ++x) {
+                            const auto n = static_cast<std::size_t>((z * side + y) * side + x);
+                            const openvdb::Coord at = first.offsetBy(x, y, z);
+                            distance->setValueOn(at, block->distance[n]);
+                            density->setValueOn(at, block->density[n]);
+                        }
+            }
+    return vdb;
+}
+
+Grid from_vdb(const openvdb::FloatGrid& vdb, bool is_sparse, const std::string& file) {
     Grid grid;
     const auto size = vdb.metaValue<openvdb::Vec3i>("size");
     const auto origin = vdb.metaValue<openvdb::Vec3d>("origin");
@@ -80,8 +118,9 @@ Grid from_vdb(const openvdb::FloatGrid& vdb, const std::string& file) {
     grid.size = {size.x(), size.y(), size.z()};
     grid.origin = {origin.x(), origin.y(), origin.z()};
     grid.spacing = {spacing.x(), spacing.y(), spacing.z()};
+    const double claimed = double(size.x()) * size.y() * size.z(), held = double(vdb.activeVoxelCount());
     if (size.x() < 1 || size.y() < 1 || size.z() < 1 ||
-        double(size.x()) * size.y() * size.z() != double(vdb.activeVoxelCount()))
+        (is_sparse ? claimed > most_claimed * held || claimed > most_samples : claimed != held))
         throw Error(fmt::format("{}: grid '{}' does not hold the samples its size asks for", file, vdb.getName()));
     if (!is_finite(grid.origin) || !is_finite(grid.spacing) ||
         !(std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}) > 0.0))
@@ -89,10 +128,11 @@ Grid from_vdb(const openvdb::FloatGrid& vdb, const std::string& file) {
     grid.values.resize(grid.count());
     for_each_block(grid.size, [&](const openvdb::Coord& first, const openvdb::Coord& end) {
         const auto* leaf = vdb.tree().probeConstLeaf(first);
+        const float elsewhere = leaf ? 0.0f : vdb.tree().getValue(first);
         for (int k = first.z(); k < end.z(); ++k)
             for (int j = first.y(); j < end.y(); ++j)
                 for (int i = first.x(); i < end.x(); ++i)
-                    grid.at(i, j, k) = leaf ? leaf->getValue({i, j, k}) : vdb.tree().getValue({i, j, k});
+                    grid.at(i, j, k) = leaf ? leaf->getValue({i, j, k}) : elsewhere;
     });
     return grid;
 }
@@ -121,20 +161,37 @@ void add_text(openvdb::MetaMap& meta, const std::string& key, const std::string&
     meta.insertMeta(key, openvdb::StringMetadata(value));
 }
 
+void add_place(Hash& hash, const Grid& grid) {
+    hash.add_bytes(grid.size.data(), sizeof grid.size);
+    hash.add_bytes(&grid.origin, sizeof grid.origin);
+    hash.add_bytes(&grid.spacing, sizeof grid.spacing);
+}
+
 // One that is made from the content keeps equal bones equal as files; OpenVDB draws a random one.
+std::string identifier_of(const Hash& hash) {
+    const std::uint64_t content = hash.value();
+    return fmt::format("{:08x}-{:04x}-4000-8000-{:012x}", content >> 32, content & 0xffff, content >> 16);
+}
+
 std::string identifier_of(std::span<const Bone> bones) {
     Hash hash;
     for (const Bone& bone : bones) {
         hash.add_text(bone.name);
         for (const Grid* grid : {&bone.distance, &bone.density}) {
-            hash.add_bytes(grid->size.data(), sizeof grid->size);
-            hash.add_bytes(&grid->origin, sizeof grid->origin);
-            hash.add_bytes(&grid->spacing, sizeof grid->spacing);
+            add_place(hash, *grid);
             hash.add_bytes(grid->values.data(), grid->values.size() * sizeof(float));
         }
     }
-    const std::uint64_t content = hash.value();
-    return fmt::format("{:08x}-{:04x}-4000-8000-{:012x}", content >> 32, content & 0xffff, content >> 16);
+    return identifier_of(hash);
+}
+
+std::string identifier_of(const SparseBone& bone, const Bone& about) {
+    Hash hash;
+    hash.add_text(about.name);
+    add_place(hash, bone.layout);
+    for (const auto& block : bone.blocks)
+        if (block) hash.add_bytes(block.get(), sizeof *block);
+    return identifier_of(hash);
 }
 
 // Takes what OpenVDB writes to `path` + ".part" in blocks, so that a large bone is not in memory once more, with another
@@ -208,26 +265,27 @@ private:
     bool sealed_ = false;
 };
 
-void serialise(std::span<const Bone> bones, std::ostream& out) {
-    openvdb::GridPtrVec grids;
-    for (const Bone& bone : bones) {
-        const std::string prefix = bones.size() > 1 ? bone.name + "." : "";
-        const auto distance = to_vdb(bone.distance, prefix + "distance");
-        const auto density = to_vdb(bone.density, prefix + "density");
-        distance->setGridClass(openvdb::GRID_LEVEL_SET);
-        add_text(*distance, "quantity", "distance");
-        add_text(*density, "quantity", "density");
-        for (const auto& grid : {distance, density}) add_text(*grid, "bone", bone.name);
-        distance->insertMeta("colour", openvdb::Vec3DMetadata({bone.colour.x, bone.colour.y, bone.colour.z}));
-        if (!bone.points.empty()) add_text(*distance, points_key, to_bytes(bone.points));
-        for (const auto& [key, value] : bone.provenance)
-            add_text(*distance, std::string(provenance_prefix) + key, value);
-        grids.push_back(distance);
-        grids.push_back(density);
-    }
+void add_meta(const VdbPair& vdb, const Bone& bone) {
+    vdb.distance->setGridClass(openvdb::GRID_LEVEL_SET);
+    add_text(*vdb.distance, "quantity", "distance");
+    add_text(*vdb.density, "quantity", "density");
+    for (const auto& grid : {vdb.distance, vdb.density}) add_text(*grid, "bone", bone.name);
+    vdb.distance->insertMeta("colour", openvdb::Vec3DMetadata({bone.colour.x, bone.colour.y, bone.colour.z}));
+    if (!bone.points.empty()) add_text(*vdb.distance, points_key, to_bytes(bone.points));
+    for (const auto& [key, value] : bone.provenance)
+        add_text(*vdb.distance, std::string(provenance_prefix) + key, value);
+}
+
+void write(const openvdb::GridPtrVec& grids, std::int32_t format, std::string identifier,
+           const std::filesystem::path& path) {
+    SealedFile file(path, std::move(identifier));
+    std::ostream out(&file);
+    // What the file throws must reach the caller.
+    out.exceptions(std::ios::badbit);
     openvdb::MetaMap meta;
-    meta.insertMeta(format_key, openvdb::Int32Metadata(newest_format));
+    meta.insertMeta(format_key, openvdb::Int32Metadata(format));
     openvdb::io::Stream(out).write(grids, meta);
+    file.seal();
 }
 
 std::string text_of(const openvdb::MetaMap& meta, const std::string& key) {
@@ -252,10 +310,7 @@ std::vector<Bone> deserialise(std::string bytes, const std::string& file) {
     if (version < 1 || version > newest_format)
         throw Error(
             fmt::format("{}: bone file of format {}; this program reads up to {}", file, version, newest_format));
-    struct Parts {
-        openvdb::FloatGrid::Ptr distance, density;
-    };
-    std::vector<std::pair<std::string, Parts>> found;
+    std::vector<std::pair<std::string, VdbPair>> found;
     for (const auto& base : *grids) {
         const auto vdb = openvdb::gridPtrCast<openvdb::FloatGrid>(base);
         if (!vdb) continue;
@@ -279,9 +334,9 @@ std::vector<Bone> deserialise(std::string bytes, const std::string& file) {
             bone.colour = {colour->value().x(), colour->value().y(), colour->value().z()};
         if (const std::string points = text_of(*parts.distance, points_key); !points.empty())
             bone.points = points_from(points, file);
-        bone.distance = from_vdb(*parts.distance, file);
+        bone.distance = from_vdb(*parts.distance, version >= sparse_format, file);
         parts.distance.reset();
-        bone.density = from_vdb(*parts.density, file);
+        bone.density = from_vdb(*parts.density, version >= sparse_format, file);
         parts.density.reset();
     }
     if (bones.empty()) throw Error(fmt::format("{}: a bone file holds the float grids 'distance' and 'density'", file));
@@ -306,12 +361,23 @@ BonePath split(const std::filesystem::path& path) {
 void save_bones(std::span<const Bone> bones, const std::filesystem::path& path) {
     check(bones);
     openvdb::initialize();
-    SealedFile file(path, identifier_of(bones));
-    std::ostream out(&file);
-    // What the file throws must reach the caller.
-    out.exceptions(std::ios::badbit);
-    serialise(bones, out);
-    file.seal();
+    openvdb::GridPtrVec grids;
+    for (const Bone& bone : bones) {
+        const std::string prefix = bones.size() > 1 ? bone.name + "." : "";
+        const VdbPair vdb{to_vdb(bone.distance, prefix + "distance"), to_vdb(bone.density, prefix + "density")};
+        add_meta(vdb, bone);
+        grids.push_back(vdb.distance);
+        grids.push_back(vdb.density);
+    }
+    write(grids, dense_format, identifier_of(bones), path);
+}
+
+void save_bone(SparseBone bone, const Bone& about, const std::filesystem::path& path) {
+    openvdb::initialize();
+    const std::string identifier = identifier_of(bone, about);
+    const VdbPair vdb = to_vdb(bone);
+    add_meta(vdb, about);
+    write({vdb.distance, vdb.density}, sparse_format, identifier, path);
 }
 
 void save_bone(const Bone& bone, const std::filesystem::path& path) { save_bones({&bone, 1}, path); }

@@ -4,56 +4,27 @@
 #include "dsp/core/error.hpp"
 #include "dsp/distance/components.hpp"
 #include "dsp/distance/iso_distance.hpp"
+#include "dsp/volume/compact_slice.hpp"
+#include "dsp/volume/grid_part.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <utility>
+#include <vector>
 
 namespace tactus {
 
 namespace {
 
 constexpr int margin = 4;
-constexpr float air = -1000.0f;
 constexpr double air_around = 5e-3;  // m
 constexpr double density_slope = 1.067, density_offset = 131.0;
 
 using Box = Components::Box;
-
-// The samples of `in` from box.first to box.last, which may reach outside: there stands `value`.
-Grid cut_out(const Grid& in, const Box& box, float value) {
-    Grid out{{}, in.position(box.first[0], box.first[1], box.first[2]), in.spacing, {}};
-    for (std::size_t a = 0; a < 3; ++a) out.size[a] = box.last[a] - box.first[a] + 1;
-    out.values.assign(out.count(), value);
-    const int x0 = std::max(box.first[0], 0), x1 = std::min(box.last[0], in.size[0] - 1);
-    for (int k = std::max(box.first[2], 0); k <= std::min(box.last[2], in.size[2] - 1); ++k)
-        for (int j = std::max(box.first[1], 0); j <= std::min(box.last[1], in.size[1] - 1); ++j)
-            std::copy_n(&in.values[in.index(x0, j, k)], x1 - x0 + 1,
-                        &out.values[out.index(x0 - box.first[0], j - box.first[1], k - box.first[2])]);
-    return out;
-}
-
-// What stands around the volume (which covers the samples of `inner`): what touches the border at or above iso is
-// mirrored about it, which puts the face half a voxel out.
-void close_border(Grid& grey, const Box& inner, float iso) {
-    const auto& size = grey.size;
-    for (int k = 0; k < size[2]; ++k)
-        for (int j = 0; j < size[1]; ++j)
-            for (int i = 0; i < size[0]; ++i) {
-                const int x = std::clamp(i, inner.first[0], inner.last[0]);
-                const int y = std::clamp(j, inner.first[1], inner.last[1]);
-                const int z = std::clamp(k, inner.first[2], inner.last[2]);
-                if (y == j && z == k && x == i) {
-                    i = inner.last[0];  // nothing to do up to the far border
-                    continue;
-                }
-                const float edge = grey.at(x, y, z);
-                grey.at(i, j, k) = edge >= iso ? std::min(2.0f * iso - edge, iso - 1.0f) : edge;
-            }
-}
 
 // Samples of air that bone is given around it, along each axis.
 std::array<int, 3> reach_of(const Vec3& spacing) {
@@ -63,72 +34,233 @@ std::array<int, 3> reach_of(const Vec3& spacing) {
     return reach;
 }
 
-// Only that part of the volume where bone can be, so that what follows needs memory for no more. Smoothing raises no
-// sample above its neighbours: `passes` samples away from the last one at the threshold there is no bone.
-Grid part_with_bone(Grid hu, float iso, int passes) {
-    Box box{hu.size, {-1, -1, -1}};
-    for (int k = 0; k < hu.size[2]; ++k)
-        for (int j = 0; j < hu.size[1]; ++j) {
-            const float* row = &hu.values[hu.index(0, j, k)];
-            const float* end = row + hu.size[0];
-            const float* first = std::find_if(row, end, [iso](float v) { return v >= iso; });
-            if (first == end) continue;
-            const float* last = end - 1;
-            while (!(*last >= iso)) --last;
-            const std::array<int, 3> low{static_cast<int>(first - row), j, k}, high{static_cast<int>(last - row), j, k};
-            for (std::size_t a = 0; a < 3; ++a) {
-                box.first[a] = std::min(box.first[a], low[a]);
-                box.last[a] = std::max(box.last[a], high[a]);
-            }
-        }
-    if (box.last[0] < 0) return hu;
-    const std::array<int, 3> reach = reach_of(hu.spacing);
-    std::size_t part = 1;
-    for (std::size_t a = 0; a < 3; ++a) {
-        box.first[a] = std::max(0, box.first[a] - reach[a] - passes - 1);
-        box.last[a] = std::min(hu.size[a] - 1, box.last[a] + reach[a] + passes + 1);
-        part *= static_cast<std::size_t>(box.last[a] - box.first[a] + 1);
-    }
-    // A copy of nearly all of it would cost more than it saves.
-    return 2 * part > hu.count() ? std::move(hu) : cut_out(hu, box, air);
-}
-
 // Samples around the components that are kept: some millimetres of air, but only four layers outside the volume, which
 // tell a face where the scan ends.
-Box room_around(const Components& components, std::size_t keep, const Grid& hu) {
+Box room_around(const Components& components, std::size_t keep, const Grid& layout) {
     Box room = components.boxes.front();
     for (std::size_t n = 1; n < components.boxes.size() && (keep == 0 || n < keep); ++n)
         for (std::size_t a = 0; a < 3; ++a) {
             room.first[a] = std::min(room.first[a], components.boxes[n].first[a]);
             room.last[a] = std::max(room.last[a], components.boxes[n].last[a]);
         }
-    const std::array<int, 3> reach = reach_of(hu.spacing);
+    const std::array<int, 3> reach = reach_of(layout.spacing);
     for (std::size_t a = 0; a < 3; ++a) {
         room.first[a] = std::max(room.first[a] - reach[a], -margin);
-        room.last[a] = std::min(room.last[a] + reach[a], hu.size[a] - 1 + margin);
+        room.last[a] = std::min(room.last[a] + reach[a], layout.size[a] - 1 + margin);
     }
     return room;
 }
 
 // The same runs counted from the room's first sample; what lies outside of it is left out.
-Components moved_into(Components components, const Box& room) {
-    for (SampleRun& run : components.runs) {
-        run.begin = std::max(run.begin, room.first[0]) - room.first[0];
-        run.end = std::min(run.end, room.last[0] + 1) - room.first[0];
-        run.j -= room.first[1];
-        run.k -= room.first[2];
-    }
-    std::erase_if(components.runs, [&](const SampleRun& run) {
-        return run.begin >= run.end || run.j < 0 || run.k < 0 || run.j > room.last[1] - room.first[1] ||
-               run.k > room.last[2] - room.first[2];
-    });
-    return components;
+Components moved_into(const Components& components, const Box& room) {
+    Components moved;
+    RunRows& rows = moved.rows;
+    for (std::size_t a = 0; a < 3; ++a) rows.size[a] = room.last[a] - room.first[a] + 1;
+    const auto& from = components.rows;
+    for (int k = room.first[2]; k <= room.last[2]; ++k)
+        for (int j = room.first[1]; j <= room.last[1]; ++j) {
+            if (j >= 0 && k >= 0 && j < from.size[1] && k < from.size[2])
+                for (SampleRun run : from.row(j, k)) {
+                    run.begin = std::max(run.begin, room.first[0]) - room.first[0];
+                    run.end = std::min(run.end, room.last[0] + 1) - room.first[0];
+                    if (run.begin < run.end) rows.runs.push_back(run);
+                }
+            rows.start.push_back(rows.runs.size());
+        }
+    return moved;
 }
 
 int smoothing_passes(const Vec3& spacing) {
     const double voxel = std::max({spacing.x, spacing.y, spacing.z}), wanted = 0.3e-3;
     return static_cast<int>(std::clamp(std::floor(3.0 * wanted * wanted / (voxel * voxel)), 0.0, 3.0));
 }
+
+// Samples of a layer that are worked on at one time; with what lies around them and beside them this makes some 25 bytes each.
+constexpr std::size_t samples_at_once = std::size_t{8} << 20;
+
+int layers_at_once(const Grid& layout) {
+    const std::size_t layer = layout.index(0, 0, 1), wanted = samples_at_once / std::max<std::size_t>(layer, 1);
+    const auto layers = static_cast<std::size_t>(layout.size[2]), most = std::clamp<std::size_t>(wanted, 1, layers);
+    const std::size_t slabs = (layers + most - 1) / most, each = (layers + slabs - 1) / slabs;
+    return SparseBone::side * static_cast<int>((each + SparseBone::side - 1) / SparseBone::side);
+}
+
+struct Source {
+    const HuLayers& hu;
+    float iso;
+    int passes;
+    const RunJobs& run;
+
+    int layers() const { return hu.layout.size[2]; }
+
+    // A box along x and y and what smoothing needs around it, so that its samples get the bits that the whole would.
+    void widen(std::array<int, 2>& low, std::array<int, 2>& high) const {
+        for (std::size_t a = 0; a < 2; ++a) {
+            low[a] = std::max(low[a] - 2 * passes - 1, 0);
+            high[a] = std::min(high[a] + 2 * passes + 1, hu.layout.size[a] - 1);
+        }
+    }
+
+    Grid smooth(Grid slab) const {
+        for (int pass = 0; pass < passes; ++pass) slab = smoothed(std::move(slab), run);
+        return slab;
+    }
+
+    // The box along x and y around what reaches iso in a slab; high < low where nothing does.
+    void box_of(const Grid& slab, std::array<int, 2>& low, std::array<int, 2>& high) const {
+        std::vector<std::array<int, 4>> boxes(static_cast<std::size_t>(slab.size[2]));
+        run(slab.size[2], [&](int k) {
+            std::array<int, 4>& box = boxes[static_cast<std::size_t>(k)];
+            box = {slab.size[0], slab.size[1], -1, -1};
+            for (int j = 0; j < slab.size[1]; ++j) {
+                const float* row = &slab.values[slab.index(0, j, k)];
+                const float* end = row + slab.size[0];
+                const float* first = std::find_if(row, end, [this](float v) { return v >= iso; });
+                if (first == end) continue;
+                const float* last = end - 1;
+                while (!(*last >= iso)) --last;
+                box = {std::min(box[0], static_cast<int>(first - row)), std::min(box[1], j),
+                       std::max(box[2], static_cast<int>(last - row)), j};
+            }
+        });
+        low = {slab.size[0], slab.size[1]}, high = {-1, -1};
+        for (const auto& box : boxes)
+            for (std::size_t a = 0; a < 2; ++a) {
+                low[a] = std::min(low[a], box[a]);
+                high[a] = std::max(high[a], box[a + 2]);
+            }
+    }
+
+    // What reaches iso once smoothed, over the whole volume.
+    RunRows runs(int at_once, const ImportInLayers& how) const {
+        RunRows rows{hu.layout.size, {0}, {}};
+        for (int k = 0; k < layers(); k += at_once) {
+            const int count = std::min(at_once, layers() - k), below = std::min(passes, k);
+            Grid slab = hu.layers(k - below, std::min(count + below + passes, layers() - k + below),
+                                  {{0, 0}, {hu.layout.size[0] - 1, hu.layout.size[1] - 1}});
+            std::array<int, 2> low{}, high{};
+            if (passes > 0) box_of(slab, low, high);
+            if (passes > 0 && high[0] >= 0) {
+                widen(low, high);
+                const Grid part = smooth(window_of(slab, low, high));
+                for (int z = 0; z < part.size[2]; ++z)
+                    for (int y = 0; y < part.size[1]; ++y)
+                        std::copy_n(&part.values[part.index(0, y, z)], part.size[0],
+                                    &slab.values[slab.index(low[0], low[1] + y, z)]);
+            }
+            append_above(rows, slab, iso, below, count, run);
+            how.progress(0.45 * (k + count) / layers());
+        }
+        return rows;
+    }
+};
+
+// Grey values and HU of the layers of the room around a bone, made on request.
+struct Room {
+    const Source& source;
+    const Box& box;
+    const Components& components;  // in samples of the room, as the hollows
+    const RunRows& hollows;
+    std::size_t keep;
+    std::map<int, CompactSlice> hu{};  // by layer of the room, inside of the volume
+
+    // Samples of the volume in the room, along each axis.
+    std::array<int, 3> inner_first() const {
+        return {std::max(box.first[0], 0), std::max(box.first[1], 0), std::max(box.first[2], 0)};
+    }
+    std::array<int, 3> inner_last() const {
+        const auto& size = source.hu.layout.size;
+        return {std::min(box.last[0], size[0] - 1), std::min(box.last[1], size[1] - 1),
+                std::min(box.last[2], size[2] - 1)};
+    }
+
+    Grid layout() const {
+        const Grid& all = source.hu.layout;
+        Grid room{{}, all.position(box.first[0], box.first[1], box.first[2]), all.spacing, {}};
+        for (std::size_t a = 0; a < 3; ++a) room.size[a] = box.last[a] - box.first[a] + 1;
+        return room;
+    }
+
+    // What stands around the volume: what touches the border at or above iso is mirrored about it, which puts the face
+    // half a voxel out.
+    float beyond(float edge) const {
+        return edge >= source.iso ? std::min(2.0f * source.iso - edge, source.iso - 1.0f) : edge;
+    }
+
+    Grid grey(int first, int count) {
+        const int last_layer = source.layers() - 1, passes = source.passes;
+        const int a = std::clamp(first + box.first[2], 0, last_layer),
+                  b = std::clamp(first + count - 1 + box.first[2], 0, last_layer);
+        const int below = std::min(passes, a), above = std::min(passes, last_layer - b);
+        const std::array<int, 3> inner = inner_first(), inner_end = inner_last();
+        std::array<int, 2> low{inner[0], inner[1]}, high{inner_end[0], inner_end[1]};
+        source.widen(low, high);
+        Grid part = source.hu.layers(a - below, b - a + 1 + below + above, {low, high});
+        const std::array<int, 2> at{inner[0] - low[0], inner[1] - low[1]};
+        remember(part, at, first, count, a - below);
+        part = source.smooth(std::move(part));
+
+        Grid out = layout();
+        out.size[2] = count;
+        out.values.resize(out.count());
+        const std::array<int, 2> to{inner_end[0] - low[0], inner_end[1] - low[1]};
+        source.run(count, [&](int n) {
+            const int z = first + n + box.first[2];
+            const bool in_z = z >= 0 && z <= last_layer;
+            const int from = std::clamp(z, 0, last_layer) - (a - below);
+            for (int j = 0; j < out.size[1]; ++j) {
+                const int y = std::clamp(j + box.first[1] - low[1], at[1], to[1]);
+                const bool in_y = y == j + box.first[1] - low[1];
+                const float* row = &part.values[part.index(0, y, from)];
+                float* into = &out.values[out.index(0, j, n)];
+                for (int i = 0; i < out.size[0]; ++i) {
+                    const int x = std::clamp(i + box.first[0] - low[0], at[0], to[0]);
+                    const bool in = in_z && in_y && x == i + box.first[0] - low[0];
+                    into[i] = in ? row[x] : beyond(row[x]);
+                }
+            }
+        });
+        if (keep > 0) keep_largest(out, source.iso, components, keep, first);
+        fill_hollows(out, source.iso, hollows, first);
+        return out;
+    }
+
+    // Keeps the HU of new layers until their density is asked for.
+    void remember(const Grid& part, const std::array<int, 2>& at, int first, int count, int part_first) {
+        const std::array<int, 3> inner = inner_first(), inner_end = inner_last();
+        std::vector<float> values;
+        for (int n = first; n < first + count; ++n) {
+            const int z = n + box.first[2];
+            if (z < inner[2] || z > inner_end[2]) continue;
+            values.clear();
+            for (int j = 0; j <= inner_end[1] - inner[1]; ++j) {
+                const float* row = &part.values[part.index(at[0], at[1] + j, z - part_first)];
+                values.insert(values.end(), row, row + (inner_end[0] - inner[0] + 1));
+            }
+            hu[n] = CompactSlice(values);
+        }
+    }
+
+    // Density of layers whose grey values were made; afterwards their HU are forgotten.
+    Grid density(int first, int count) {
+        Grid out = layout();
+        out.size[2] = count;
+        out.values.assign(out.count(), 0.0f);
+        const std::array<int, 3> inner = inner_first(), inner_end = inner_last();
+        const auto width = static_cast<std::size_t>(inner_end[0] - inner[0] + 1);
+        source.run(count, [&](int n) {
+            const auto found = hu.find(first + n);
+            if (found == hu.end()) return;
+            for (int y = inner[1]; y <= inner_end[1]; ++y) {
+                float* row = &out.values[out.index(inner[0] - box.first[0], y - box.first[1], n)];
+                found->second.copy(static_cast<std::size_t>(y - inner[1]) * width, {row, width});
+                for (std::size_t i = 0; i < width; ++i) row[i] = density_of_hu(row[i]);
+            }
+        });
+        hu.erase(hu.begin(), hu.lower_bound(first + count));
+        return out;
+    }
+};
 
 }  // namespace
 
@@ -147,40 +279,55 @@ std::string density_calibration() {
         density_slope, density_offset);
 }
 
-HuBone bone_from_hu(Grid hu, const BoneSurface& surface, const RunJobs& run) {
+SparseHuBone sparse_bone_from_hu(const HuLayers& hu, const BoneSurface& surface, const RunJobs& run,
+                                 const ImportInLayers& how) {
     const float iso = surface.threshold;
-    const int passes = smoothing_passes(hu.spacing);
-    hu = part_with_bone(std::move(hu), iso, passes);
-    Grid smooth;
-    for (int pass = passes; pass > 0; --pass)
-        smooth = smoothed(smooth.values.empty() ? Grid(hu) : std::move(smooth), run);
-    const Grid& seen = smooth.values.empty() ? hu : smooth;
-    Components components = components_above(seen, iso);
-    if (components.voxels.empty())
+    const Source source{hu, iso, smoothing_passes(hu.layout.spacing), run};
+    RunRows rows = source.runs(how.at_once > 0 ? how.at_once : layers_at_once(hu.layout), how);
+    how.check_values();
+    Components found = components_of(std::move(rows));
+    if (found.voxels.empty())
         throw Error(
             fmt::format("nothing in the volume reaches {} HU, so there is no bone; lower the threshold or move "
                         "the crop box",
                         iso));
-    HuBone result;
-    result.components = components.voxels.size();
-    const Box room = room_around(components, surface.keep, hu);
-    Box inner{};
-    for (std::size_t a = 0; a < 3; ++a) {
-        inner.first[a] = std::max(-room.first[a], 0);
-        inner.last[a] = std::min(room.last[a], hu.size[a] - 1) - room.first[a];
-    }
-    Grid grey = cut_out(seen, room, air);
-    smooth = {};
-    result.bone.density = cut_out(hu, room, air);
-    hu = {};
-    close_border(grey, inner, iso);
-    if (surface.keep > 0) keep_largest(grey, iso, moved_into(std::move(components), room), surface.keep);
-    if (surface.fill) fill_hollows(grey, iso);
-    result.bone.distance = distance_to_iso(grey, iso, run);
-    for (float& value : result.bone.density.values) value = density_of_hu(value);
-    result.bone.provenance["frame"] = "LPS";
-    result.bone.provenance["calibration"] = density_calibration();
-    result.bone.provenance["threshold"] = fmt::format("{} HU", iso);
+    SparseHuBone result;
+    result.components = found.voxels.size();
+    const Box box = room_around(found, surface.keep, hu.layout);
+    const Components components = moved_into(std::exchange(found, {}), box);
+    const RunRows no_hollows{components.rows.size, std::vector<std::size_t>(components.rows.start.size(), 0), {}};
+    const RunRows hollows = surface.fill ? hollows_of(components, surface.keep) : no_hollows;
+    Room room{source, box, components, hollows, surface.keep};
+    const Vec3& h = hu.layout.spacing;
+    const double reach = std::max(air_around, 6.0 * std::max({h.x, h.y, h.z}));
+    result.bone = SparseBone(room.layout(), static_cast<float>(reach));
+    const Grid layout = room.layout();
+    const int at_once = how.at_once > 0 ? (how.at_once + SparseBone::side - 1) / SparseBone::side * SparseBone::side
+                                        : layers_at_once(layout);
+    distance_to_iso(
+        layout, iso, {reach, at_once}, [&](int first, int count) { return room.grey(first, count); },
+        [&](int first, const Grid& distance) {
+            result.bone.add_layers(first, distance, room.density(first, distance.size[2]), run);
+            how.progress(0.45 + 0.55 * (first + distance.size[2]) / layout.size[2]);
+        },
+        run);
+    result.provenance["frame"] = "LPS";
+    result.provenance["calibration"] = density_calibration();
+    result.provenance["threshold"] = fmt::format("{} HU", iso);
+    return result;
+}
+
+HuBone bone_from_hu(Grid hu, const BoneSurface& surface, const RunJobs& run) {
+    const Grid layout{hu.size, hu.origin, hu.spacing, {}};
+    const auto layers = [&hu](int first, int count, const HuLayers::Window& window) {
+        Grid all{{hu.size[0], hu.size[1], count}, hu.position(0, 0, first), hu.spacing, {}};
+        all.values.assign(hu.values.begin() + static_cast<std::ptrdiff_t>(hu.index(0, 0, first)),
+                          hu.values.begin() + static_cast<std::ptrdiff_t>(hu.index(0, 0, first + count)));
+        return window_of(all, window.low, window.high);
+    };
+    SparseHuBone made = sparse_bone_from_hu({layout, layers}, surface, run);
+    HuBone result{dense_of(made.bone), made.components};
+    result.bone.provenance = std::move(made.provenance);
     return result;
 }
 

@@ -2,6 +2,9 @@
 #include "assets/bone/import.hpp"
 
 #include "assets/bone/import_steps.hpp"
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
 
 namespace tactus {
 
@@ -13,24 +16,88 @@ std::string bone_name(const std::filesystem::path& input) {
     return (last.extension() == ".gz" ? last.stem() : last).stem().string();
 }
 
+// Before minutes are spent on it, and before a patient's file is lost.
+void check_output(const ImportOptions& options, const std::filesystem::path& out) {
+    std::error_code ignored;
+    for (const std::filesystem::path& source : {options.input, options.ct})
+        if (!source.empty() && std::filesystem::equivalent(source, out, ignored))
+            throw Error(fmt::format("{}: would be overwritten by the bone; give another name with -o", out.string()));
+    const std::filesystem::path folder = out.has_parent_path() ? out.parent_path() : ".";
+    if (!std::filesystem::is_directory(folder, ignored))
+        throw Error(fmt::format("{}: cannot be written: there is no folder {}", out.string(), folder.string()));
+    if (std::filesystem::is_directory(out, ignored))
+        throw Error(fmt::format("{}: is a folder; name the file that the bone goes to", out.string()));
+}
+
+void describe(Bone& bone, const ImportOptions& options, const ImportSummary& found) {
+    add_provenance(bone, options, found, hash_of_source(options.input));
+    bone.name = bone_name(options.input);
+    bone.provenance["component"] = options.component;
+    bone.provenance["fill"] = options.fill ? "true" : "false";
+    if (!options.crop.empty()) bone.provenance["crop"] = options.crop + " mm";
+}
+
+SparseImport import_scan(const ImportOptions& options, const ImportReport& report, ImportSummary& found) {
+    SparseImport made = import_ct(options, report, found);
+    report(0.86, "measuring");
+    measure(made.bone, found, options.run);
+    if (options.pointshell) {
+        report(0.9, "points");
+        made.about.distance = dense_distance_of(made.bone);
+        add_points(made.about, options, found);
+        made.about.distance = {};
+    }
+    describe(made.about, options, found);
+    return made;
+}
+
+Bone import_surface(const ImportOptions& options, const ImportReport& report, ImportSummary& found) {
+    Bone bone = import_mesh(options, report, found);
+    report(0.9, "measuring");
+    measure(bone, found);
+    add_points(bone, options, found);
+    describe(bone, options, found);
+    return bone;
+}
+
 }  // namespace
 
 Bone import_bone(const ImportOptions& options, const ImportProgress& progress, ImportSummary* summary) {
     check_options(options);
     const ImportReport report{progress};
     ImportSummary found;
-    Bone bone = is_volume_file(options.input) ? import_ct(options, report, found) : import_mesh(options, report, found);
-    report(0.9, "measuring");
-    measure(bone, found);
-    add_points(bone, options, found);
-    add_provenance(bone, options, found, hash_of_source(options.input));
-    bone.name = bone_name(options.input);
-    bone.provenance["component"] = options.component;
-    bone.provenance["fill"] = options.fill ? "true" : "false";
-    if (!options.crop.empty()) bone.provenance["crop"] = options.crop + " mm";
+    Bone bone;
+    if (is_volume_file(options.input)) {
+        SparseImport made = import_scan(options, report, found);
+        bone = dense_of(made.bone);
+        bone.name = std::move(made.about.name);
+        bone.provenance = std::move(made.about.provenance);
+        bone.points = std::move(made.about.points);
+    } else {
+        bone = import_surface(options, report, found);
+    }
     if (summary) *summary = found;
     report(1.0, "done");
     return bone;
+}
+
+ImportSummary import_bone_file(const ImportOptions& options, const std::filesystem::path& out,
+                               const ImportProgress& progress) {
+    check_options(options);
+    check_output(options, out);
+    const ImportReport report{progress};
+    ImportSummary found;
+    if (is_volume_file(options.input)) {
+        SparseImport made = import_scan(options, report, found);
+        report(0.92, "writing");
+        save_bone(std::move(made.bone), made.about, out);
+    } else {
+        const Bone bone = import_surface(options, report, found);
+        report(0.92, "writing");
+        save_bone(bone, out);
+    }
+    report(1.0, "done");
+    return found;
 }
 
 }  // namespace tactus

@@ -38,6 +38,7 @@ struct ImportOptions {
     std::optional<double> pointshell;  ///< m: also spread points over the surface, about one per spacing²
     bool pointshell_by_curvature = false;  ///< closer together where the surface turns
     RunJobs run = run_in_turn;  ///< on which threads; the result has the same bits on any
+    int layers_at_once = 0;  ///< of a CT, in memory; 0: some million samples. The result has the same bits with any
 };
 
 /// What was imported, for people and programs.
@@ -52,7 +53,7 @@ struct ImportSummary {
         double min = 0.0, max = 0.0, mean = 0.0;
     } density;  ///< kg/m³ over the samples inside
     std::size_t components = 0;  ///< found, before any were left out
-    std::size_t points = 0;      ///< of the pointshell
+    std::size_t points = 0;  ///< of the pointshell
     std::vector<std::string> notes;  ///< what was set right or assumed, one sentence each
 };
 
@@ -61,6 +62,11 @@ using ImportProgress = std::function<void(double, std::string_view)>;
 
 /// Reads, checks and converts. Throws Error for input that cannot be a bone, saying what to do. `summary` may be null.
 Bone import_bone(const ImportOptions& options, const ImportProgress& progress = {}, ImportSummary* summary = nullptr);
+
+/// The same straight into a bone file. A CT then takes memory for a few of its layers and for what lies near the bone, not
+/// for all of it; see LpsLayers for files that cannot be read layer by layer.
+ImportSummary import_bone_file(const ImportOptions& options, const std::filesystem::path& out,
+                               const ImportProgress& progress = {});
 
 struct ImportedBone {
     Bone bone;

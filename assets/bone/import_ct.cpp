@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/from_hu.hpp"
 #include "assets/bone/import_steps.hpp"
+#include "assets/volume/lps_layers.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/distance/resample.hpp"
+#include "dsp/volume/grid_part.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,7 +13,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <set>
+#include <memory>
 #include <utility>
 
 namespace tactus {
@@ -19,6 +21,7 @@ namespace tactus {
 namespace {
 
 constexpr double mm = 1e-3;
+constexpr double most_ct_voxels = 4e9;  // they are never all in memory
 
 struct Range {
     Vec3 low{-std::numeric_limits<double>::infinity()}, high{std::numeric_limits<double>::infinity()};  // m
@@ -56,74 +59,102 @@ Grid ct_layout(const Grid& ct, const Range& crop, std::optional<double> spacing)
         layout.origin[axis] = low;
         layout.size[a] = static_cast<int>(steps) + 1;
     }
-    check_layout(layout);
+    check_layout(layout, most_ct_voxels);
     return layout;
 }
 
 // "1 (femur), 2": what the structures of a label map are called.
-std::string list_of_labels(const ScanVolume& volume) {
-    std::set<int> found;
-    for (const float value : volume.values)
-        if (value > 0.0f && value <= 65535.0f) found.insert(static_cast<int>(value));
+std::string list_of_labels(const ScanVolume& about, const Tally& tally) {
     std::vector<std::string> words;
-    for (const int label : found) {
-        const auto named = std::find_if(volume.segments.begin(), volume.segments.end(),
+    for (const int label : tally.labels) {
+        if (label == 0) continue;
+        const auto named = std::find_if(about.segments.begin(), about.segments.end(),
                                         [&](const Segment& s) { return s.label == label && !s.name.empty(); });
-        words.push_back(named == volume.segments.end() ? std::to_string(label)
-                                                       : fmt::format("{} ({})", label, named->name));
+        words.push_back(named == about.segments.end() ? std::to_string(label)
+                                                      : fmt::format("{} ({})", label, named->name));
         if (words.size() == 12) break;
     }
-    return words.empty() ? "it holds none"
-                         : fmt::format("it holds {}{}", fmt::join(words, ", "), found.size() > 12 ? ", ..." : "");
+    return words.empty()
+               ? "it holds none"
+               : fmt::format("it holds {}{}", fmt::join(words, ", "), tally.labels.size() > 13 ? ", ..." : "");
 }
 
 }  // namespace
 
-void require_hu(ScanVolume& volume, const ImportOptions& options, const std::filesystem::path& file) {
-    if (options.rescale) {
-        for (float& value : volume.values)
-            value = static_cast<float>(options.rescale->first * double(value) + options.rescale->second);
-        volume.hu = HuKind::calibrated;
-    }
-    if (volume.hu != HuKind::scanner) return;
-    const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
+void require_hu(ScanVolume& about, const Tally& tally, const ImportOptions& options,
+                const std::filesystem::path& file) {
+    if (options.rescale) about.hu = HuKind::calibrated;
+    if (about.hu != HuKind::scanner) return;
     throw Error(
         fmt::format("{}: values {:g} to {:g} are not HU (no air near -1000): scanner numbers. Say which of them are "
                     "which HU, as in --hu-calibration 60:-1000,1100:40 (air and water or muscle), or convert the "
                     "file first",
-                    file.string(), *low, *high));
+                    file.string(), tally.low, tally.high));
 }
 
-Bone import_ct(const ImportOptions& options, const ImportReport& report, ImportSummary& summary) {
+SparseImport import_ct(const ImportOptions& options, const ImportReport& report, ImportSummary& summary) {
     const Range crop = parse_crop(options.crop);
     const std::size_t keep = parse_component(options.component);
     report(0.0, "reading");
-    ScanVolume volume = read_volume(options.input, {options.series});
-    if (volume.kind == VolumeKind::labels && !options.rescale)
-        throw Error(
-            fmt::format("{}: a label map, not a CT: its values are numbers of structures. Say which of them is the "
-                        "bone with --label N or its name, or --label all for one bone each ({})",
-                        options.input.string(), list_of_labels(volume)));
-    require_hu(volume, options, options.input);
-    summary.hu = name_of(volume.hu);
-    summary.notes = volume.notes;
-    const Frame file_frame = volume.file_frame;
-    const std::string encoding = volume.encoding;
-    const bool turned = is_turned(volume);
-    Grid ct = lps_grid(std::move(volume));
+    const std::unique_ptr<SliceReader> reader = open_volume(options.input, {options.series});
+    ScanVolume& about = reader->about;
+    LpsLayers source(*reader, options.run);
+    source.set_line(options.rescale);
+    const auto check = [&] {
+        source.settle();
+        if (about.kind == VolumeKind::labels && !options.rescale)
+            throw Error(
+                fmt::format("{}: a label map, not a CT: its values are numbers of structures. Say which of them is the "
+                            "bone with --label N or its name, or --label all for one bone each ({})",
+                            options.input.string(), list_of_labels(about, source.tally())));
+        require_hu(about, source.tally(), options, options.input);
+    };
+    if (source.is_turned()) check();
+    const Grid& ct = source.layout();
     const Grid layout = ct_layout(ct, crop, options.spacing);
-    report(0.2, "resampling");
-    Grid hu = resampled(std::move(ct), layout);
-    report(0.4, "surface and distance");
-    HuBone made = bone_from_hu(std::move(hu), {static_cast<float>(options.threshold), keep, options.fill}, options.run);
+    // Samples of the file itself need not be made anew, so only what is looked at is fetched.
+    const bool same = ct.size == layout.size && ct.origin == layout.origin && ct.spacing == layout.spacing;
+    const auto layers = [&](int first, int count, const HuLayers::Window& window) {
+        if (same) return source.layers(first, count, {window.low, window.high});
+        // Whole layers are resampled, but not many at one time.
+        constexpr int at_once = 16;
+        Grid all;
+        for (int k = first; k < first + count; k += at_once) {
+            const LayerRange wanted{k, std::min(at_once, first + count - k)}, from = layers_for(ct, layout, wanted);
+            Grid part =
+                window_of(resampled_layers(source.layers(from.first, from.count), ct, layout, wanted, options.run),
+                          window.low, window.high);
+            if (all.values.empty()) {
+                all = std::move(part);
+                all.values.reserve(static_cast<std::size_t>(count) * all.index(0, 0, 1));
+                continue;
+            }
+            all.values.insert(all.values.end(), part.values.begin(), part.values.end());
+            all.size[2] += part.size[2];
+        }
+        return all;
+    };
+    const HuLayers hu{layout, layers};
+    ImportInLayers how;
+    how.at_once = options.layers_at_once;
+    how.check_values = check;
+    how.progress = [&](double share) {
+        report(0.85 * share, share < 0.45 ? "reading and finding bone" : "surface and distance");
+    };
+    SparseHuBone made =
+        sparse_bone_from_hu(hu, {static_cast<float>(options.threshold), keep, options.fill}, options.run, how);
+    summary.hu = name_of(about.hu);
+    summary.notes = about.notes;
     summary.components = made.components;
-    made.bone.provenance["encoding"] = encoding;
-    made.bone.provenance["file_frame"] = name_of(file_frame);
-    if (turned) made.bone.provenance["axes"] = "turned; resampled to LPS";
+    SparseImport result{std::move(made.bone), {}};
+    result.about.provenance = std::move(made.provenance);
+    auto& provenance = result.about.provenance;
+    provenance["encoding"] = about.encoding;
+    provenance["file_frame"] = name_of(about.file_frame);
+    if (source.is_turned()) provenance["axes"] = "turned; resampled to LPS";
     if (options.rescale)
-        made.bone.provenance["rescale"] =
-            fmt::format("HU = {} * value + {}", options.rescale->first, options.rescale->second);
-    return std::move(made.bone);
+        provenance["rescale"] = fmt::format("HU = {} * value + {}", options.rescale->first, options.rescale->second);
+    return result;
 }
 
 }  // namespace tactus

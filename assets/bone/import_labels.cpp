@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/import_steps.hpp"
 #include "assets/bone/labels.hpp"
+#include "assets/volume/lps_layers.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/distance/components.hpp"
 
@@ -8,6 +9,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
 
 namespace tactus {
 
@@ -39,39 +44,110 @@ std::size_t pieces_of(Grid distance) {
     return components_above(distance, 0.0f).voxels.size();
 }
 
+constexpr double air_around = 5e-3;  // m
+
+// The samples at the ends of each label.
+std::map<int, Components::Box> boxes_of(LpsLayers& source) {
+    constexpr int at_once = 16;
+    const auto& size = source.layout().size;
+    std::map<int, Components::Box> boxes;
+    for (int k = 0; k < size[2]; k += at_once) {
+        const Grid slab = source.layers(k, std::min(at_once, size[2] - k));
+        int last = 0;
+        Components::Box* box = nullptr;
+        for (int z = 0; z < slab.size[2]; ++z)
+            for (int y = 0; y < slab.size[1]; ++y)
+                for (int x = 0; x < slab.size[0]; ++x) {
+                    const float value = slab.at(x, y, z);
+                    // What is no label is refused later, when all of it is known.
+                    if (!(value > 0.0f && value <= 65535.0f) || boxes.size() > 1000) continue;
+                    const std::array<int, 3> at{x, y, k + z};
+                    if (const int label = static_cast<int>(value); label != last || !box) {
+                        box = &boxes.insert({label, {at, at}}).first->second;
+                        last = label;
+                    }
+                    for (std::size_t a = 0; a < 3; ++a) {
+                        box->first[a] = std::min(box->first[a], at[a]);
+                        box->last[a] = std::max(box->last[a], at[a]);
+                    }
+                }
+    }
+    return boxes;
+}
+
+// The labels that there are, ascending. Throws Error when the values are none.
+std::vector<int> labels_of(const Tally& tally, const std::string& file) {
+    if (!tally.whole)
+        throw Error(
+            fmt::format("{}: values of {:g} to {:g} are no labels: labels are whole numbers from 0 to 65535; leave "
+                        "--label out for a CT",
+                        file, tally.low, tally.high));
+    if (tally.labels.size() > 1000)
+        throw Error(
+            fmt::format("{}: more than 1000 different values are no labels but an image; leave --label out", file));
+    std::vector<int> labels(tally.labels.begin(), tally.labels.end());
+    std::erase(labels, 0);
+    return labels;
+}
+
+// Samples of `source` around those of `box`, which count on `layout`; `more` samples beyond the air that a bone is given.
+Grid part_around(LpsLayers& source, const Grid& layout, const Components::Box& box, int more) {
+    const Grid& all = source.layout();
+    std::array<int, 3> low{}, high{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        const double air = air_around + (7.0 + more) * std::max(layout.spacing[axis], all.spacing[axis]);
+        const double from = layout.origin[axis] + box.first[a] * layout.spacing[axis] - air - all.origin[axis];
+        const double to = layout.origin[axis] + box.last[a] * layout.spacing[axis] + air - all.origin[axis];
+        low[a] = std::clamp(static_cast<int>(std::floor(from / all.spacing[axis])), 0, all.size[a] - 1);
+        high[a] = std::clamp(static_cast<int>(std::ceil(to / all.spacing[axis])), low[a], all.size[a] - 1);
+    }
+    return part_of(source, low, high);
+}
+
 }  // namespace
 
 std::vector<ImportedBone> import_labels(const ImportOptions& options, const ImportProgress& progress) {
     check_options(options);
     if (!options.crop.empty()) throw Error("a crop box is for CT volumes; a label map's bones are cut out already");
     const ImportReport report{progress};
+    const std::string file = options.input.string();
     report(0.0, "reading");
-    ScanVolume volume = read_volume(options.input, {options.series});
-    volume.kind = VolumeKind::labels;
-    const std::vector<Segment> named = volume.segments;
-    const std::vector<std::string> notes = volume.notes;
-    const Grid map = lps_grid(std::move(volume));
-    const std::vector<Segment> chosen = choose_segments(options.label, labels_in(map), named, options.input.string());
+    const std::unique_ptr<SliceReader> reader = open_volume(options.input, {options.series});
+    LpsLayers source(*reader, options.run);
+    reader->about.kind = VolumeKind::labels;
+    if (source.is_turned()) source.settle();
+    const std::map<int, Components::Box> boxes = boxes_of(source);
+    source.settle();
+    const std::vector<Segment> chosen =
+        choose_segments(options.label, labels_of(source.tally(), file), reader->about.segments, file);
     LabelBone how;
     how.spacing = options.spacing;
-    Grid ct;
+    std::unique_ptr<SliceReader> grey;
+    std::optional<LpsLayers> ct;
     HuKind hu = HuKind::none;
     if (!options.ct.empty()) {
-        ScanVolume grey = read_volume(options.ct);
-        require_hu(grey, options, options.ct);
-        hu = grey.hu;
-        ct = lps_grid(std::move(grey));
-        how.hu = &ct;
+        grey = open_volume(options.ct);
+        ct.emplace(*grey, options.run);
+        ct->set_line(options.rescale);
+        ct->settle();
+        require_hu(grey->about, ct->tally(), options, options.ct);
+        hu = grey->about.hu;
         how.hu_is_masked = hu == HuKind::masked;
     }
     const std::string source_hash = hash_of_source(options.input);
     std::vector<ImportedBone> bones;
     for (const Segment& segment : chosen) {
         report(0.1 + 0.9 * static_cast<double>(bones.size()) / static_cast<double>(chosen.size()), segment.name);
+        // Only what lies around one label is in memory at one time.
+        const Components::Box& box = boxes.at(segment.label);
+        const Grid map = part_around(source, source.layout(), box, 0);
+        const Grid values = ct ? part_around(*ct, source.layout(), box, 4) : Grid{};
+        how.hu = ct ? &values : nullptr;
         ImportedBone made;
         made.bone = bone_of_label(map, segment, how, options.run);
         made.summary.hu = name_of(hu);
-        made.summary.notes = notes;
+        made.summary.notes = reader->about.notes;
         made.summary.components = pieces_of(made.bone.distance);
         measure(made.bone, made.summary);
         add_points(made.bone, options, made.summary);

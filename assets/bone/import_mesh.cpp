@@ -18,6 +18,7 @@ namespace tactus {
 namespace {
 
 constexpr double mm = 1e-3;
+constexpr double most_mesh_voxels = 4e8;
 
 double unit_of(const ImportOptions& options, double extent) {
     if (options.unit) {
@@ -94,7 +95,7 @@ Bone import_mesh(const ImportOptions& options, const ImportReport& report, Impor
         if (steps > 100000.0) throw Error("the spacing gives more than 100000 voxels along an axis; use a larger one");
         layout.size[static_cast<std::size_t>(axis)] = static_cast<int>(steps);
     }
-    check_layout(layout);
+    check_layout(layout, most_mesh_voxels);
     report(0.3, "distance");
     Bone bone;
     bone.distance = signed_distance(layout, mesh, options.run);

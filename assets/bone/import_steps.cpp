@@ -20,7 +20,6 @@ namespace tactus {
 namespace {
 
 constexpr double mm = 1e-3;
-constexpr double most_voxels = 4e8;
 
 // A file, or all files of a folder by their names.
 std::vector<std::filesystem::path> source_files(const std::filesystem::path& input) {
@@ -52,13 +51,13 @@ std::size_t parse_component(const std::string& text) {
     return count;
 }
 
-void check_layout(const Grid& layout) {
+void check_layout(const Grid& layout, double most) {
     double count = 1.0;
     for (const int n : layout.size) count *= n;
-    if (count > most_voxels)
+    if (count > most)
         throw Error(
             fmt::format("{:.0f} voxels at {:.3g} mm are too many (at most {:.0f}); use a larger spacing or a crop box",
-                        count, layout.spacing.x / mm, most_voxels));
+                        count, layout.spacing.x / mm, most));
 }
 
 void measure(const Bone& bone, ImportSummary& summary) {
@@ -83,6 +82,18 @@ void measure(const Bone& bone, ImportSummary& summary) {
     summary.density.min = low;
     summary.density.max = high;
     summary.density.mean = sum / static_cast<double>(inside);
+}
+
+void measure(const SparseBone& bone, ImportSummary& summary, const RunJobs& run) {
+    const BoneMeasures found = measures_of(bone, run);
+    if (found.inside == 0) throw Error("the bone is thinner than a voxel everywhere; use a smaller spacing");
+    summary.frame = "LPS";
+    summary.size = bone.layout.size;
+    for (int axis = 0; axis < 3; ++axis)
+        summary.voxel_mm[static_cast<std::size_t>(axis)] = bone.layout.spacing[axis] / mm;
+    summary.bone_volume_mm3 = found.volume / (mm * mm * mm);
+    summary.surface_area_mm2 = found.area / (mm * mm);
+    summary.density = {found.least, found.most, found.mean};
 }
 
 void add_points(Bone& bone, const ImportOptions& options, ImportSummary& summary) {

@@ -3,7 +3,8 @@
 #pragma once
 
 #include "assets/bone/import.hpp"
-#include "assets/volume/scan_volume.hpp"
+#include "assets/bone/sparse_bone.hpp"
+#include "assets/volume/slice_reader.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -20,8 +21,14 @@ struct ImportReport {
     }
 };
 
+/// A bone's samples, and what is known about it beside them.
+struct SparseImport {
+    SparseBone bone;
+    Bone about;  ///< without samples
+};
+
 /// Bone and density of a CT, or of a closed mesh; neither named nor measured yet.
-Bone import_ct(const ImportOptions& options, const ImportReport& report, ImportSummary& summary);
+SparseImport import_ct(const ImportOptions& options, const ImportReport& report, ImportSummary& summary);
 Bone import_mesh(const ImportOptions& options, const ImportReport& report, ImportSummary& summary);
 
 /// Throws Error for options that no file could be imported with.
@@ -30,14 +37,15 @@ void check_options(const ImportOptions& options);
 /// How many of the largest components "largest", "all" or a number keeps; 0 for all. Throws Error for anything else.
 std::size_t parse_component(const std::string& text);
 
-/// Throws Error for more voxels than a bone may have.
-void check_layout(const Grid& layout);
+/// Throws Error for more voxels than `most`.
+void check_layout(const Grid& layout, double most);
 
-/// Turns scanner numbers to HU where a line is given. Throws Error when the numbers cannot be HU and none is.
-void require_hu(ScanVolume& volume, const ImportOptions& options, const std::filesystem::path& file);
+/// What a line given for scanner numbers makes them. Throws Error when the numbers cannot be HU and none is.
+void require_hu(ScanVolume& about, const Tally& tally, const ImportOptions& options, const std::filesystem::path& file);
 
 /// Fills in frame, size, volume, area and densities. Throws Error for a bone without a sample inside.
 void measure(const Bone& bone, ImportSummary& summary);
+void measure(const SparseBone& bone, ImportSummary& summary, const RunJobs& run);
 
 /// Spreads the points that the options ask for.
 void add_points(Bone& bone, const ImportOptions& options, ImportSummary& summary);

@@ -3,15 +3,19 @@
 #include "assets/volume/dicom_images.hpp"
 #include "assets/volume/readers.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/volume/compact_slice.hpp"
 
 #include <glm/geometric.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <optional>
+#include <span>
 
 namespace tactus {
 
@@ -24,7 +28,8 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(
              folder, std::filesystem::directory_options::skip_permission_denied)) {
-        if (!entry.is_regular_file() || !is_dicom_file(entry.path())) continue;
+        // A table of contents holds no pictures, whole or not.
+        if (!entry.is_regular_file() || entry.path().filename() == "DICOMDIR" || !is_dicom_file(entry.path())) continue;
         files.push_back(entry.path());
         if (files.size() > most_files)
             throw Error(fmt::format("{}: more than {} DICOM files; name the folder of one examination", folder.string(),
@@ -43,7 +48,8 @@ Images collect(const std::filesystem::path& path) {
         const auto folder = std::filesystem::absolute(path).parent_path();
         Images all;
         for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-            if (!entry.is_regular_file() || !is_dicom_file(entry.path())) continue;
+            if (!entry.is_regular_file() || entry.path().filename() == "DICOMDIR" || !is_dicom_file(entry.path()))
+                continue;
             Images found = dicom_images(entry.path());
             if (!found.empty() && found.front().series == own.front().series)
                 all.insert(all.end(), found.begin(), found.end());
@@ -162,49 +168,73 @@ void check_complete(const Slices& slices, const std::string& place) {
                         where(slices.images[at]), slices.height[at] - slices.height[at - 1], usual));
 }
 
-// One slice of the result from four of the file that are unevenly spaced: a cubic with the slopes of a parabola.
-void interpolate(const Slices& slices, const std::vector<float>& from, std::size_t each, double height, float* out) {
-    const auto& h = slices.height;
-    const auto above = std::upper_bound(h.begin() + 1, h.end() - 1, height);
-    const std::size_t b = static_cast<std::size_t>(above - h.begin()), a = b - 1;
-    const std::size_t before = a > 0 ? a - 1 : a, after = b + 1 < h.size() ? b + 1 : b;
-    const double gap = h[b] - h[a], t = std::clamp((height - h[a]) / gap, 0.0, 1.0);
-    const auto slope = [&](std::size_t n, std::size_t i, std::size_t low, std::size_t high) {
-        const auto value = [&](std::size_t s) { return double(from[s * each + i]); };
-        if (low == n) return (value(high) - value(n)) / (h[high] - h[n]);
-        if (high == n) return (value(n) - value(low)) / (h[n] - h[low]);
-        const double down = (value(n) - value(low)) / (h[n] - h[low]), up = (value(high) - value(n)) / (h[high] - h[n]);
-        const double share = (h[n] - h[low]) / (h[high] - h[low]);
-        return (1.0 - share) * down + share * up;
-    };
-    for (std::size_t i = 0; i < each; ++i) {
-        const double y0 = from[a * each + i], y1 = from[b * each + i];
-        const double m0 = slope(a, i, before, b) * gap, m1 = slope(b, i, a, after) * gap;
-        out[i] =
-            static_cast<float>(y0 + t * (m0 + t * (3.0 * (y1 - y0) - 2.0 * m0 - m1 + t * (2.0 * (y0 - y1) + m0 + m1))));
-    }
-}
+// The values of a series' slices, decoded when they are asked for. A file of several frames is decoded once and kept.
+class Samples {
+public:
+    Samples(const Slices& slices, std::size_t each) : slices_(slices), each_(each) {}
 
-std::vector<float> evened(const Slices& slices, const std::vector<float>& from, std::size_t each, int count,
-                          double gap) {
-    std::vector<float> values(each * static_cast<std::size_t>(count));
-    for (int n = 0; n < count; ++n)
-        interpolate(slices, from, each, slices.height.front() + n * gap, &values[each * static_cast<std::size_t>(n)]);
-    return values;
-}
-
-std::vector<float> load(const Slices& slices, std::size_t each) {
-    std::vector<float> values(slices.images.size() * each);
-    std::map<std::filesystem::path, std::vector<std::size_t>> by_file;
-    for (std::size_t n = 0; n < slices.images.size(); ++n) by_file[slices.images[n].file].push_back(n);
-    for (const auto& [file, members] : by_file) {
-        const Images all = dicom_images(file);
-        const std::vector<float> frames = dicom_samples(all);
-        for (const std::size_t n : members)
-            std::copy_n(&frames[each * static_cast<std::size_t>(slices.images[n].frame)], each, &values[n * each]);
+    void read(std::size_t n, std::span<float> values) {
+        const DicomImage& image = slices_.images[n];
+        if (!image.is_one_of_several) {
+            const std::vector<float> samples = dicom_samples({image});
+            std::copy_n(samples.begin(), each_, values.begin());
+            return;
+        }
+        std::vector<CompactSlice>& frames = frames_[image.file];
+        if (frames.empty()) {
+            const std::vector<float> samples = dicom_samples(dicom_images(image.file));
+            for (std::size_t at = 0; at < samples.size(); at += each_)
+                frames.emplace_back(std::span(samples).subspan(at, each_));
+        }
+        frames.at(static_cast<std::size_t>(image.frame)).copy(0, values);
     }
-    return values;
-}
+
+private:
+    const Slices& slices_;
+    std::size_t each_;
+    std::map<std::filesystem::path, std::vector<CompactSlice>> frames_;
+};
+
+// Evenly spaced slices from four of the file each: a cubic with the slopes of a parabola.
+class Evened {
+public:
+    Evened(const Slices& slices, std::size_t each) : h_(slices.height), each_(each) {}
+
+    void read(double height, Samples& samples, std::span<float> out) {
+        const auto above = std::upper_bound(h_.begin() + 1, h_.end() - 1, height);
+        const std::size_t b = static_cast<std::size_t>(above - h_.begin()), a = b - 1;
+        const std::size_t before = a > 0 ? a - 1 : a, after = b + 1 < h_.size() ? b + 1 : b;
+        std::erase_if(slices_, [&](const auto& entry) { return entry.first < before || entry.first > after; });
+        for (std::size_t n = before; n <= after; ++n)
+            if (std::vector<float>& slice = slices_[n]; slice.empty()) {
+                slice.resize(each_);
+                samples.read(n, slice);
+            }
+        const double gap = h_[b] - h_[a], t = std::clamp((height - h_[a]) / gap, 0.0, 1.0);
+        std::array<const float*, 4> from{};
+        for (std::size_t n = before; n <= after; ++n) from[n - before] = slices_[n].data();
+        const auto slope = [&](std::size_t n, std::size_t low, std::size_t high, std::size_t i) {
+            const auto value = [&](std::size_t s) { return double(from[s - before][i]); };
+            if (low == n) return (value(high) - value(n)) / (h_[high] - h_[n]);
+            if (high == n) return (value(n) - value(low)) / (h_[n] - h_[low]);
+            const double down = (value(n) - value(low)) / (h_[n] - h_[low]),
+                         up = (value(high) - value(n)) / (h_[high] - h_[n]);
+            const double share = (h_[n] - h_[low]) / (h_[high] - h_[low]);
+            return (1.0 - share) * down + share * up;
+        };
+        for (std::size_t i = 0; i < each_; ++i) {
+            const double y0 = from[a - before][i], y1 = from[b - before][i];
+            const double m0 = slope(a, before, b, i) * gap, m1 = slope(b, a, after, i) * gap;
+            out[i] = static_cast<float>(
+                y0 + t * (m0 + t * (3.0 * (y1 - y0) - 2.0 * m0 - m1 + t * (2.0 * (y0 - y1) + m0 + m1))));
+        }
+    }
+
+private:
+    const std::vector<double>& h_;
+    std::size_t each_;
+    std::map<std::size_t, std::vector<float>> slices_;
+};
 
 // Steps between slices may lean (a tilted gantry) but must lie on one line.
 Vec3 line_through(const Slices& slices, const std::string& place) {
@@ -220,6 +250,74 @@ Vec3 line_through(const Slices& slices, const std::string& place) {
     return per_mm;
 }
 
+class DicomSlices final : public SliceReader {
+public:
+    DicomSlices(const std::filesystem::path& path, const ReadOptions& options) {
+        const std::string place = path.string();
+        Images chosen = choose(collect(path), options.series, place);
+        check_alike(chosen, place);
+        const std::size_t found = chosen.size();
+        slices_ = in_order(std::move(chosen), place);
+        check_complete(slices_, place);
+        const Vec3 per_mm = line_through(slices_, place);
+
+        about.format = "DICOM";
+        about.source = path.filename().empty() ? path.parent_path().filename().string() : path.filename().string();
+        const DicomImage& first = slices_.images.front();
+        about.encoding = first.syntax;
+        const auto count = static_cast<int>(slices_.images.size());
+        const double all = slices_.height.back() - slices_.height.front(), mean = all / (count - 1);
+        double shortest = all;
+        for (std::size_t n = 1; n < slices_.height.size(); ++n) {
+            const double gap = slices_.height[n] - slices_.height[n - 1];
+            shortest = std::min(shortest, gap);
+            if (std::abs(gap - mean) > 0.01 * mean + 0.005) about.uniform = false;
+        }
+        // Not finer than a quarter of the mean: one close pair must not multiply the volume.
+        const double wanted = about.uniform ? mean : std::max(shortest, 0.25 * mean);
+        const int layers = about.uniform ? count : static_cast<int>(std::lround(all / wanted)) + 1;
+        gap_ = all / (layers - 1);
+        about.size = {first.columns, first.rows, layers};
+        checked_count({first.columns, first.rows, std::max(layers, count)}, place);
+        about.map.step[0] = glm::normalize(first.along_row) * (first.column_spacing * 1e-3);
+        about.map.step[1] = glm::normalize(first.along_column) * (first.row_spacing * 1e-3);
+        about.map.step[2] = per_mm * (gap_ * 1e-3);
+        about.map.origin = *first.position * 1e-3;
+        check_map(about.map, place);
+        if (!about.uniform)
+            about.notes.push_back(
+                fmt::format("slices {:.3g} mm apart at the closest and {:.3g} mm on the mean were "
+                            "interpolated to {:.3g} mm",
+                            shortest, mean, gap_));
+        if (found > slices_.images.size())
+            about.notes.push_back(fmt::format("{} images were there twice", found - slices_.images.size()));
+        if (first.is_inverted)
+            about.notes.push_back("MONOCHROME1: meant to be shown inverted; its values are taken as they are");
+        samples_.emplace(slices_, slice_size());
+        evened_.emplace(slices_, slice_size());
+    }
+
+    void read(int k, std::span<float> values) override {
+        if (about.uniform) samples_->read(static_cast<std::size_t>(k), values);
+        else evened_->read(slices_.height.front() + k * gap_, *samples_, values);
+    }
+
+    void settle(const Tally& tally) override {
+        settle_meaning(about, tally, false);
+        const DicomImage& first = slices_.images.front();
+        const bool rescaled = first.has_rescale && (first.rescale_type.empty() || first.rescale_type == "HU");
+        if (first.modality == "CT" && about.hu == HuKind::scanner && rescaled && first.intercept != 0.0)
+            about.hu = HuKind::calibrated;
+        if (first.has_rescale && !rescaled) about.hu = HuKind::scanner;
+    }
+
+private:
+    Slices slices_;
+    double gap_ = 0.0;  // mm
+    std::optional<Samples> samples_;
+    std::optional<Evened> evened_;
+};
+
 }  // namespace
 
 bool is_dicom_file(const std::filesystem::path& path) {
@@ -228,59 +326,8 @@ bool is_dicom_file(const std::filesystem::path& path) {
     return file.read(mark, sizeof mark) && std::string_view(mark + 128, 4) == "DICM";
 }
 
-ScanVolume read_dicom(const std::filesystem::path& path, const ReadOptions& options) {
-    const std::string place = path.string();
-    Images chosen = choose(collect(path), options.series, place);
-    check_alike(chosen, place);
-    const std::size_t found = chosen.size();
-    const Slices slices = in_order(std::move(chosen), place);
-    check_complete(slices, place);
-    const Vec3 per_mm = line_through(slices, place);
-
-    ScanVolume volume;
-    volume.format = "DICOM";
-    volume.source = path.filename().empty() ? path.parent_path().filename().string() : path.filename().string();
-    const DicomImage& first = slices.images.front();
-    volume.encoding = first.syntax;
-    const auto count = static_cast<int>(slices.images.size());
-    const double all = slices.height.back() - slices.height.front(), mean = all / (count - 1);
-    double shortest = all;
-    for (std::size_t n = 1; n < slices.height.size(); ++n) {
-        const double gap = slices.height[n] - slices.height[n - 1];
-        shortest = std::min(shortest, gap);
-        if (std::abs(gap - mean) > 0.01 * mean + 0.005) volume.uniform = false;
-    }
-    // Not finer than a quarter of the mean: one close pair must not multiply the volume.
-    const double wanted = volume.uniform ? mean : std::max(shortest, 0.25 * mean);
-    const int layers = volume.uniform ? count : static_cast<int>(std::lround(all / wanted)) + 1;
-    const double gap = all / (layers - 1);
-    volume.size = {first.columns, first.rows, layers};
-    const std::size_t total = checked_count({first.columns, first.rows, std::max(layers, count)}, place);
-    volume.map.step[0] = glm::normalize(first.along_row) * (first.column_spacing * 1e-3);
-    volume.map.step[1] = glm::normalize(first.along_column) * (first.row_spacing * 1e-3);
-    volume.map.step[2] = per_mm * (gap * 1e-3);
-    volume.map.origin = *first.position * 1e-3;
-    check_map(volume.map, place);
-
-    const std::size_t each = total / static_cast<std::size_t>(std::max(layers, count));
-    volume.values = load(slices, each);
-    if (!volume.uniform) {
-        volume.values = evened(slices, volume.values, each, layers, gap);
-        volume.notes.push_back(
-            fmt::format("slices {:.3g} mm apart at the closest and {:.3g} mm on the mean were "
-                        "interpolated to {:.3g} mm",
-                        shortest, mean, gap));
-    }
-    if (found > slices.images.size())
-        volume.notes.push_back(fmt::format("{} images were there twice", found - slices.images.size()));
-    if (first.is_inverted)
-        volume.notes.push_back("MONOCHROME1: meant to be shown inverted; its values are taken as they are");
-    settle_meaning(volume, false);
-    const bool rescaled = first.has_rescale && (first.rescale_type.empty() || first.rescale_type == "HU");
-    if (first.modality == "CT" && volume.hu == HuKind::scanner && rescaled && first.intercept != 0.0)
-        volume.hu = HuKind::calibrated;
-    if (first.has_rescale && !rescaled) volume.hu = HuKind::scanner;
-    return volume;
+std::unique_ptr<SliceReader> open_dicom(const std::filesystem::path& path, const ReadOptions& options) {
+    return std::make_unique<DicomSlices>(path, options);
 }
 
 }  // namespace tactus

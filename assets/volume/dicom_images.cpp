@@ -186,6 +186,7 @@ std::vector<DicomImage> dicom_images(const std::filesystem::path& file) {
         const bool enhanced = set.FindDataElement(gdcm::Tag(0x5200, 0x9230));
         for (int frame = 0; frame < static_cast<int>(frames); ++frame) {
             image.frame = frame;
+            image.is_one_of_several = frames > 1.0;
             images.push_back(image);
             if (enhanced) take_functional_groups(set, static_cast<std::size_t>(frame), images.back());
         }

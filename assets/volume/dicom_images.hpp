@@ -16,6 +16,7 @@ namespace tactus {
 struct DicomImage {
     std::filesystem::path file;
     int frame = 0;                      ///< from 0
+    bool is_one_of_several = false;     ///< the file has more frames
     std::string instance, series, description, modality, rescale_type, syntax;
     int rows = 0, columns = 0;
     std::optional<Vec3> position;       ///< centre of the first sample

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // InVesalius projects: a gzip'ed tar of a property list, raw samples, and masks and surfaces, which are not read.
-#include "assets/volume/packed_file.hpp"
 #include "assets/volume/readers.hpp"
+#include "assets/volume/sample_stream.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -42,13 +42,20 @@ std::optional<Entry> next_entry(PackedFile& file, const std::string& name) {
 
 std::uint64_t padded(std::uint64_t size) { return (size + 511) / 512 * 512; }
 
-// Moves on to the file called `wanted`; returns its size.
-std::optional<std::uint64_t> find(PackedFile& file, const std::string& wanted, const std::string& name) {
+struct Place {
+    std::uint64_t at, size;  // bytes of the archive
+};
+
+// Moves on to the file called `wanted`.
+std::optional<Place> find(PackedFile& file, const std::string& wanted, const std::string& name) {
+    std::uint64_t at = 0;
     while (const auto entry = next_entry(file, name)) {
-        if (entry->name == wanted) return entry->size;
+        at += 512;
+        if (entry->name == wanted) return Place{at, entry->size};
         if (static_cast<double>(entry->size) > file.most_bytes())
             throw Error(fmt::format("{}: cut short: {} bytes in it cannot be there", name, entry->size));
         file.skip(padded(entry->size));
+        at += padded(entry->size);
     }
     return {};
 }
@@ -103,57 +110,69 @@ std::string property_list(const std::filesystem::path& path) {
     const std::string name = path.string();
     PackedFile file(path);
     if (!file.is_packed()) throw Error(fmt::format("{}: no InVesalius project: not packed with gzip", name));
-    const auto size = find(file, "main.plist", name);
-    if (!size || *size > 1'000'000)
+    const auto found = find(file, "main.plist", name);
+    if (!found || found->size > 1'000'000)
         throw Error(fmt::format("{}: no InVesalius project: main.plist is missing or too long", name));
-    std::string list(*size, '\0');
+    std::string list(found->size, '\0');
     file.read(list);
     return list;
 }
 
+class Inv3Slices final : public SliceReader {
+public:
+    explicit Inv3Slices(const std::filesystem::path& path) {
+        const std::string name = path.string(), list = property_list(path);
+        const std::string_view matrix = value_of(list, "matrix");
+        const std::vector<double> shape = numbers_in(value_of(matrix, "shape")),
+                                  spacing = numbers_in(value_of(list, "spacing"));
+        if (shape.size() != 3 || spacing.size() != 3)
+            throw Error(fmt::format(
+                "{}: main.plist does not give the matrix's shape and the spacing, three numbers each", name));
+        for (const double n : shape)
+            if (!(n >= 1.0 && n <= 1e6)) throw Error(fmt::format("{}: {:g} samples along an axis cannot be", name, n));
+        const SampleType type = type_of(value_of(matrix, "dtype"), name);
+        integers_ = type.is_integer();
+        about.format = "InVesalius";
+        about.source = path.filename().string();
+        about.encoding = "gzip";
+        // The shape counts slices, rows, columns. Rows run from back to front, slices from the feet up.
+        for (std::size_t n = 0; n < 3; ++n) about.size[n] = static_cast<int>(shape[2 - n]);
+        const std::size_t count = checked_count({about.size[0], about.size[1], about.size[2]}, name);
+        about.map.step = Mat3(0.0);
+        for (int axis = 0; axis < 3; ++axis)
+            about.map.step[axis][axis] = spacing[static_cast<std::size_t>(axis)] * (axis == 1 ? -1e-3 : 1e-3);
+        check_map(about.map, name);
+        about.notes.push_back("the project does not say where the patient lay; its first voxel is the origin");
+        const std::size_t masks = entries_of(value_of(list, "masks")),
+                          surfaces = entries_of(value_of(list, "surfaces"));
+        if (masks + surfaces > 0)
+            about.notes.push_back(fmt::format(
+                "its {} masks and {} surfaces are not read, only the scan; export a mask from InVesalius as "
+                "NIfTI and import that with --label 1",
+                masks, surfaces));
+
+        PackedFile file(path);
+        const auto found = find(file, std::string(value_of(matrix, "filename")), name);
+        if (!found) throw Error(fmt::format("{}: the matrix's file is missing in it", name));
+        if (found->size != count * type.bytes() || static_cast<double>(found->size) > file.most_bytes())
+            throw Error(fmt::format("{}: cut short: its shape asks for {} voxels, {} bytes are there", name, count,
+                                    found->size));
+        stream_.emplace(std::vector{SampleStream::Piece{path, 0, found->at, count}}, type, false, true);
+    }
+
+    void read(int k, std::span<float> values) override {
+        stream_->read(static_cast<std::size_t>(k) * values.size(), values);
+    }
+    bool in_any_order() const override { return false; }
+    void settle(const Tally& tally) override { settle_meaning(about, tally, integers_); }
+
+private:
+    std::optional<SampleStream> stream_;
+    bool integers_ = false;
+};
+
 }  // namespace
 
-ScanVolume read_inv3(const std::filesystem::path& path) {
-    const std::string name = path.string(), list = property_list(path);
-    const std::string_view matrix = value_of(list, "matrix");
-    const std::vector<double> shape = numbers_in(value_of(matrix, "shape")),
-                              spacing = numbers_in(value_of(list, "spacing"));
-    if (shape.size() != 3 || spacing.size() != 3)
-        throw Error(
-            fmt::format("{}: main.plist does not give the matrix's shape and the spacing, three numbers each", name));
-    for (const double n : shape)
-        if (!(n >= 1.0 && n <= 1e6)) throw Error(fmt::format("{}: {:g} samples along an axis cannot be", name, n));
-    const SampleType type = type_of(value_of(matrix, "dtype"), name);
-
-    ScanVolume volume;
-    volume.format = "InVesalius";
-    volume.source = path.filename().string();
-    volume.encoding = "gzip";
-    // The shape counts slices, rows, columns. Rows run from back to front, slices from the feet up.
-    for (std::size_t n = 0; n < 3; ++n) volume.size[n] = static_cast<int>(shape[2 - n]);
-    const std::size_t count = checked_count({volume.size[0], volume.size[1], volume.size[2]}, name);
-    volume.map.step = Mat3(0.0);
-    for (int axis = 0; axis < 3; ++axis)
-        volume.map.step[axis][axis] = spacing[static_cast<std::size_t>(axis)] * (axis == 1 ? -1e-3 : 1e-3);
-    check_map(volume.map, name);
-    volume.notes.push_back("the project does not say where the patient lay; its first voxel is the origin");
-    const std::size_t masks = entries_of(value_of(list, "masks")), surfaces = entries_of(value_of(list, "surfaces"));
-    if (masks + surfaces > 0)
-        volume.notes.push_back(
-            fmt::format("its {} masks and {} surfaces are not read, only the scan; export a mask from InVesalius as "
-                        "NIfTI and import that with --label 1",
-                        masks, surfaces));
-
-    PackedFile file(path);
-    const auto size = find(file, std::string(value_of(matrix, "filename")), name);
-    if (!size) throw Error(fmt::format("{}: the matrix's file is missing in it", name));
-    if (*size != count * type.bytes() || static_cast<double>(*size) > file.most_bytes())
-        throw Error(fmt::format("{}: cut short: its shape asks for {} voxels, {} bytes are there", name, count, *size));
-    volume.values.resize(count);
-    read_samples(file, type, false, volume.values);
-    file.finish();
-    settle_meaning(volume, type.is_integer());
-    return volume;
-}
+std::unique_ptr<SliceReader> open_inv3(const std::filesystem::path& path) { return std::make_unique<Inv3Slices>(path); }
 
 }  // namespace tactus

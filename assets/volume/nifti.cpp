@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // NIfTI-1 and NIfTI-2, one file with header and samples. Layout of the headers: nifti1.h and nifti2.h of the NIfTI
 // Data Format Working Group.
-#include "assets/volume/packed_file.hpp"
 #include "assets/volume/readers.hpp"
+#include "assets/volume/sample_stream.hpp"
 #include "dsp/core/error.hpp"
 
 #include <glm/geometric.hpp>
@@ -160,42 +160,59 @@ void read_geometry(const Header& h, ScanVolume& volume, const std::string& name)
     }
 }
 
+class NiftiSlices final : public SliceReader {
+public:
+    explicit NiftiSlices(const std::filesystem::path& path) {
+        const std::string name = path.string();
+        PackedFile file(path);
+        Fields fields;
+        const Header h = header_of(file, fields, name);
+        if (h.dim[0] < 3 || h.dim[0] > 7) throw Error(fmt::format("{}: has {} axes, a volume has 3", name, h.dim[0]));
+        for (std::size_t n = 4; n <= static_cast<std::size_t>(h.dim[0]); ++n)
+            if (h.dim[n] != 1)
+                throw Error(
+                    fmt::format("{}: holds a series of {} volumes; take one of them out first", name, h.dim[n]));
+        const SampleType type = type_of(h.datatype, name);
+        const std::size_t count = checked_count({h.dim[1], h.dim[2], h.dim[3]}, name);
+        const auto header_size = static_cast<double>(fields.bytes.size());
+        if (!(h.vox_offset >= header_size && h.vox_offset <= 1e8))
+            throw Error(fmt::format("{}: the samples cannot start at byte {:g}", name, h.vox_offset));
+        if (h.vox_offset + static_cast<double>(count * type.bytes()) > file.most_bytes())
+            throw Error(
+                fmt::format("{}: cut short: its header asks for {} voxels, more than the file can hold", name, count));
+        about.format = "NIfTI";
+        about.source = path.filename().string();
+        about.encoding = file.is_packed() ? "gzip" : "raw";
+        for (std::size_t n = 0; n < 3; ++n) about.size[n] = static_cast<int>(h.dim[n + 1]);
+        read_geometry(h, about, name);
+        const auto start = static_cast<std::uint64_t>(h.vox_offset);
+        const bool packed = file.is_packed();
+        stream_.emplace(std::vector{SampleStream::Piece{path, packed ? 0 : start, packed ? start : 0, count}}, type,
+                        fields.swapped, packed);
+        scaled_ = std::isfinite(h.slope) && h.slope != 0.0 && (h.slope != 1.0 || h.intercept != 0.0);
+        slope_ = h.slope, intercept_ = h.intercept;
+        integers_ = type.is_integer() && !scaled_;
+        if (h.intent == label_intent) about.kind = VolumeKind::labels;
+    }
+
+    void read(int k, std::span<float> values) override {
+        stream_->read(static_cast<std::size_t>(k) * values.size(), values);
+        if (scaled_)
+            for (float& value : values) value = static_cast<float>(slope_ * double(value) + intercept_);
+    }
+    bool in_any_order() const override { return stream_->in_any_order(); }
+    void settle(const Tally& tally) override { settle_meaning(about, tally, integers_); }
+
+private:
+    std::optional<SampleStream> stream_;
+    bool scaled_ = false, integers_ = false;
+    double slope_ = 1.0, intercept_ = 0.0;
+};
+
 }  // namespace
 
-ScanVolume read_nifti(const std::filesystem::path& path) {
-    const std::string name = path.string();
-    PackedFile file(path);
-    Fields fields;
-    const Header h = header_of(file, fields, name);
-    if (h.dim[0] < 3 || h.dim[0] > 7) throw Error(fmt::format("{}: has {} axes, a volume has 3", name, h.dim[0]));
-    for (std::size_t n = 4; n <= static_cast<std::size_t>(h.dim[0]); ++n)
-        if (h.dim[n] != 1)
-            throw Error(fmt::format("{}: holds a series of {} volumes; take one of them out first", name, h.dim[n]));
-    const SampleType type = type_of(h.datatype, name);
-    const std::size_t count = checked_count({h.dim[1], h.dim[2], h.dim[3]}, name);
-    const auto header_size = static_cast<double>(fields.bytes.size());
-    if (!(h.vox_offset >= header_size && h.vox_offset <= 1e8))
-        throw Error(fmt::format("{}: the samples cannot start at byte {:g}", name, h.vox_offset));
-    if (h.vox_offset + static_cast<double>(count * type.bytes()) > file.most_bytes())
-        throw Error(
-            fmt::format("{}: cut short: its header asks for {} voxels, more than the file can hold", name, count));
-
-    ScanVolume volume;
-    volume.format = "NIfTI";
-    volume.source = path.filename().string();
-    volume.encoding = file.is_packed() ? "gzip" : "raw";
-    for (std::size_t n = 0; n < 3; ++n) volume.size[n] = static_cast<int>(h.dim[n + 1]);
-    read_geometry(h, volume, name);
-    file.skip(static_cast<std::uint64_t>(h.vox_offset) - fields.bytes.size());
-    volume.values.resize(count);
-    read_samples(file, type, fields.swapped, volume.values);
-    file.finish();
-    const bool scaled = std::isfinite(h.slope) && h.slope != 0.0 && (h.slope != 1.0 || h.intercept != 0.0);
-    if (scaled)
-        for (float& value : volume.values) value = static_cast<float>(h.slope * double(value) + h.intercept);
-    if (h.intent == label_intent) volume.kind = VolumeKind::labels;
-    settle_meaning(volume, type.is_integer() && !scaled);
-    return volume;
+std::unique_ptr<SliceReader> open_nifti(const std::filesystem::path& path) {
+    return std::make_unique<NiftiSlices>(path);
 }
 
 }  // namespace tactus

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "assets/volume/packed_file.hpp"
 #include "assets/volume/readers.hpp"
+#include "assets/volume/sample_stream.hpp"
 #include "dsp/core/error.hpp"
 
 #include <teem/nrrd.h>
@@ -96,6 +96,7 @@ std::string value_of(const Nrrd& nrrd, const std::string& key) {
 struct Layered {
     Segment segment;
     int layer = 0;
+    int label = 0;  // in its layer
 };
 
 // What 3D Slicer says about the structures of a .seg.nrrd: Segment0_Name, Segment0_LabelValue, Segment0_Color, ...
@@ -113,29 +114,6 @@ std::vector<Layered> segments_of(const Nrrd& nrrd) {
             entry.segment.colour = glm::clamp(c, 0.0, 1.0);
     }
     return found;
-}
-
-// Segments that overlap are stored in layers; in one label map each gets a number of its own, later ones on top.
-void flatten(const std::vector<float>& layered, std::size_t layers, std::vector<Layered>& segments,
-             ScanVolume& volume) {
-    volume.values.assign(volume.count(), 0.0f);
-    std::size_t covered = 0;
-    for (std::size_t s = 0; s < segments.size(); ++s) {
-        const float label = static_cast<float>(segments[s].segment.label);
-        const auto layer = static_cast<std::size_t>(segments[s].layer);
-        if (segments[s].layer < 0 || layer >= layers)
-            throw Error(fmt::format("{}: segment {} is in layer {}, but there are {}", volume.source, s,
-                                    segments[s].layer, layers));
-        for (std::size_t n = 0; n < volume.values.size(); ++n)
-            if (layered[n * layers + layer] == label) {
-                covered += volume.values[n] != 0.0f;
-                volume.values[n] = static_cast<float>(s + 1);
-            }
-        segments[s].segment.label = static_cast<int>(s) + 1;
-    }
-    volume.notes.push_back(fmt::format("{} layers of segments became one label map, numbered from 1", layers));
-    if (covered > 0)
-        volume.notes.push_back(fmt::format("{} voxels lie in several segments; the last one has them", covered));
 }
 
 void check_header(const Nrrd& header, const NrrdIoState& io, const std::filesystem::path& path, unsigned first) {
@@ -201,72 +179,135 @@ std::uint64_t start_of_samples(const std::filesystem::path& path, std::uint64_t 
 }
 
 // Samples of plain or gzip'ed files, in blocks: teem would hold the whole file beside them, and forgets zlib's buffers
-// where packing is damaged. False for what only teem reads.
-bool read_in_blocks(const Nrrd& header, const NrrdIoState& io, const std::filesystem::path& path,
-                    std::span<float> values) {
+// where packing is damaged. None for what only teem reads.
+std::optional<SampleStream> stream_of(const Nrrd& header, const NrrdIoState& io, const std::filesystem::path& path,
+                                      std::size_t samples) {
     const bool is_gzip = io.encoding == nrrdEncodingGzip;
     const std::optional<SampleType> type = type_of(header.type);
-    if (!type || (!is_gzip && io.encoding != nrrdEncodingRaw)) return false;
+    if (!type || (!is_gzip && io.encoding != nrrdEncodingRaw)) return {};
     const bool is_apart = io.dataFNArr && io.dataFNArr->len > 0;
     const std::size_t files = is_apart ? io.dataFNArr->len : 1;
-    if (values.size() % files != 0)
+    if (samples % files != 0)
         throw Error(fmt::format("{}: its samples do not fill {} data files evenly", path.string(), files));
     if (is_gzip && io.byteSkip < 0)
         throw Error(
             fmt::format("{}: bytes of a packed file cannot be skipped from its end; unpack it with 'unu save "
                         "-f nrrd -e raw'",
                         path.string()));
-    const std::size_t piece = values.size() / files;
     const bool swapped = io.endian != airEndianUnknown && io.endian != airMyEndian() && type->bytes() > 1;
+    std::vector<SampleStream::Piece> pieces;
     for (std::size_t n = 0; n < files; ++n) {
-        const std::filesystem::path data = is_apart ? path.parent_path() / io.dataFN[n] : path;
-        const double bytes = static_cast<double>(piece) * static_cast<double>(type->bytes());
-        PackedFile file(data, start_of_samples(data, is_apart ? 0 : end_of_header(path), io, bytes), is_gzip);
-        if (is_gzip) file.skip(static_cast<std::uint64_t>(io.byteSkip));
-        read_samples(file, *type, swapped, values.subspan(n * piece, piece));
-        file.finish();
+        SampleStream::Piece piece{is_apart ? path.parent_path() / io.dataFN[n] : path, 0, 0, samples / files};
+        const double bytes = static_cast<double>(piece.samples) * static_cast<double>(type->bytes());
+        piece.start = start_of_samples(piece.file, is_apart ? 0 : end_of_header(path), io, bytes);
+        if (is_gzip) piece.skip = static_cast<std::uint64_t>(io.byteSkip);
+        pieces.push_back(std::move(piece));
     }
-    return true;
+    return SampleStream(std::move(pieces), *type, swapped, is_gzip);
 }
+
+class NrrdSlices final : public SliceReader {
+public:
+    explicit NrrdSlices(const std::filesystem::path& path) {
+        const std::string file = path.string();
+        std::error_code failure;
+        if (!std::filesystem::is_regular_file(path, failure)) throw Error(fmt::format("{}: no such file", file));
+        const NrrdPointer header(nrrdNew(), nrrdNuke);
+        const IoPointer io(nrrdIoStateNew(), nrrdIoStateNix);
+        nrrdIoStateSet(io.get(), nrrdIoStateSkipData, 1);
+        if (nrrdLoad(header.get(), file.c_str(), io.get())) refuse(file);
+        segments_ = segments_of(*header);
+        const unsigned first = header->dim == 4 && !segments_.empty() ? 1 : 0;
+        if (header->dim != 3 + first)
+            throw Error(
+                fmt::format("{}: has {} axes, a CT volume has 3 (take one frame with 'unu slice')", file, header->dim));
+        about.format = "NRRD";
+        about.source = path.filename().string();
+        about.encoding = io->encoding->name;
+        read_geometry(*header, first, about, file);
+        check_header(*header, *io, path, first);
+        for (unsigned axis = 0; axis < 3; ++axis) about.size[axis] = static_cast<int>(header->axis[first + axis].size);
+        layers_ = first == 1 ? header->axis[0].size : 1;
+        integers_ = nrrdTypeIsIntegral[header->type] != 0;
+        flatten_segments();
+        stream_ = stream_of(*header, *io, path, about.count() * layers_);
+        if (!stream_) read_by_teem(file);
+    }
+
+    void read(int k, std::span<float> values) override {
+        const std::size_t first = static_cast<std::size_t>(k) * values.size() * layers_;
+        if (layers_ == 1) return take(first, values);
+        std::vector<float> layered(values.size() * layers_);
+        take(first, layered);
+        std::fill(values.begin(), values.end(), 0.0f);
+        const bool counts = k == counted_;
+        for (std::size_t s = 0; s < segments_.size(); ++s) {
+            const Layered& segment = segments_[s];
+            const auto label = static_cast<float>(segment.label), in_one = static_cast<float>(segment.segment.label);
+            for (std::size_t n = 0; n < values.size(); ++n)
+                if (layered[n * layers_ + static_cast<std::size_t>(segment.layer)] == label) {
+                    if (counts) covered_ += values[n] != 0.0f;
+                    values[n] = in_one;
+                }
+        }
+        counted_ += counts;
+    }
+
+    bool in_any_order() const override { return !stream_ || stream_->in_any_order(); }
+
+    void settle(const Tally& tally) override {
+        if (covered_ > 0)
+            about.notes.push_back(fmt::format("{} voxels lie in several segments; the last one has them", covered_));
+        covered_ = 0;
+        settle_meaning(about, tally, integers_);
+    }
+
+private:
+    [[noreturn]] static void refuse(const std::string& file) {
+        throw Error(fmt::format("{}: cannot be read as NRRD: {}", file, teem_message()));
+    }
+
+    // Segments that overlap are stored in layers; in one label map each gets a number of its own, later ones on top.
+    void flatten_segments() {
+        for (std::size_t s = 0; s < segments_.size(); ++s) {
+            Layered& segment = segments_[s];
+            segment.label = segment.segment.label;
+            if (layers_ > 1) {
+                if (segment.layer < 0 || static_cast<std::size_t>(segment.layer) >= layers_)
+                    throw Error(fmt::format("{}: segment {} is in layer {}, but there are {}", about.source, s,
+                                            segment.layer, layers_));
+                segment.segment.label = static_cast<int>(s) + 1;
+            }
+            about.segments.push_back(segment.segment);
+        }
+        if (layers_ > 1)
+            about.notes.push_back(fmt::format("{} layers of segments became one label map, numbered from 1", layers_));
+    }
+
+    // Text and bzip2: all at once.
+    void read_by_teem(const std::string& file) {
+        const NrrdPointer nrrd(nrrdNew(), nrrdNuke);
+        if (nrrdLoad(nrrd.get(), file.c_str(), nullptr)) refuse(file);
+        const auto lookup = nrrdFLookup[nrrd->type];
+        whole_.resize(about.count() * layers_);
+        for (std::size_t n = 0; n < whole_.size(); ++n) whole_[n] = lookup(nrrd->data, n);
+    }
+
+    void take(std::size_t first, std::span<float> values) {
+        if (stream_) stream_->read(first, values);
+        else std::copy_n(whole_.begin() + static_cast<std::ptrdiff_t>(first), values.size(), values.begin());
+    }
+
+    std::vector<Layered> segments_;
+    std::optional<SampleStream> stream_;
+    std::vector<float> whole_;
+    std::size_t layers_ = 1, covered_ = 0;
+    int counted_ = 0;  // slices whose covered voxels are counted
+    bool integers_ = false;
+};
 
 }  // namespace
 
-ScanVolume read_nrrd(const std::filesystem::path& path) {
-    const std::string file = path.string();
-    std::error_code failure;
-    if (!std::filesystem::is_regular_file(path, failure)) throw Error(fmt::format("{}: no such file", file));
-    const auto refuse = [&] { throw Error(fmt::format("{}: cannot be read as NRRD: {}", file, teem_message())); };
-
-    const NrrdPointer header(nrrdNew(), nrrdNuke);
-    const IoPointer io(nrrdIoStateNew(), nrrdIoStateNix);
-    nrrdIoStateSet(io.get(), nrrdIoStateSkipData, 1);
-    if (nrrdLoad(header.get(), file.c_str(), io.get())) refuse();
-    std::vector<Layered> segments = segments_of(*header);
-    const unsigned first = header->dim == 4 && !segments.empty() ? 1 : 0;
-    if (header->dim != 3 + first)
-        throw Error(
-            fmt::format("{}: has {} axes, a CT volume has 3 (take one frame with 'unu slice')", file, header->dim));
-    ScanVolume volume;
-    volume.format = "NRRD";
-    volume.source = path.filename().string();
-    volume.encoding = io->encoding->name;
-    read_geometry(*header, first, volume, file);
-    check_header(*header, *io, path, first);
-
-    for (unsigned axis = 0; axis < 3; ++axis) volume.size[axis] = static_cast<int>(header->axis[first + axis].size);
-    const std::size_t layers = first == 1 ? header->axis[0].size : 1;
-    std::vector<float> values(volume.count() * layers);
-    if (!read_in_blocks(*header, *io, path, values)) {
-        const NrrdPointer nrrd(nrrdNew(), nrrdNuke);
-        if (nrrdLoad(nrrd.get(), file.c_str(), nullptr)) refuse();
-        const auto lookup = nrrdFLookup[nrrd->type];
-        for (std::size_t n = 0; n < values.size(); ++n) values[n] = lookup(nrrd->data, n);
-    }
-    if (layers > 1 && first == 1) flatten(values, layers, segments, volume);
-    else volume.values = std::move(values);
-    for (const Layered& entry : segments) volume.segments.push_back(entry.segment);
-    settle_meaning(volume, nrrdTypeIsIntegral[header->type] != 0);
-    return volume;
-}
+std::unique_ptr<SliceReader> open_nrrd(const std::filesystem::path& path) { return std::make_unique<NrrdSlices>(path); }
 
 }  // namespace tactus

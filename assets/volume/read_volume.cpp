@@ -38,17 +38,21 @@ Format format_of(const std::filesystem::path& path) {
 
 bool is_volume_file(const std::filesystem::path& path) { return format_of(path) != Format::none; }
 
-ScanVolume read_volume(const std::filesystem::path& path, const ReadOptions& options) {
+std::unique_ptr<SliceReader> open_volume(const std::filesystem::path& path, const ReadOptions& options) {
     if (!std::filesystem::exists(path)) throw Error(fmt::format("{}: no such file", path.string()));
     switch (format_of(path)) {
-        case Format::nrrd: return read_nrrd(path);
-        case Format::nifti: return read_nifti(path);
-        case Format::inv3: return read_inv3(path);
-        case Format::dicom: return read_dicom(path, options);
+        case Format::nrrd: return open_nrrd(path);
+        case Format::nifti: return open_nifti(path);
+        case Format::inv3: return open_inv3(path);
+        case Format::dicom: return open_dicom(path, options);
         case Format::none: break;
     }
     throw Error(fmt::format(
         "{}: no volume that can be read: a DICOM folder or file, .nrrd, .nhdr, .nii, .nii.gz or .inv3", path.string()));
+}
+
+ScanVolume read_volume(const std::filesystem::path& path, const ReadOptions& options) {
+    return read_all(*open_volume(path, options));
 }
 
 }  // namespace tactus

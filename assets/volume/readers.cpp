@@ -19,19 +19,15 @@ constexpr double most_voxels = 1e9;
 constexpr int highest_label = 255;
 
 // Small whole numbers, most of them background. A masked CT also has many zeros, but grey values beyond 255.
-bool looks_like_labels(const std::vector<float>& values) {
-    std::vector<bool> seen(highest_label + 1, false);
-    std::size_t distinct = 0;
-    std::size_t background = 0;
-    for (const float value : values) {
-        if (!(value >= 0.0f && value <= float(highest_label)) || value != std::floor(value)) return false;
-        background += value == 0.0f;
-        if (const auto label = static_cast<std::size_t>(value); !seen[label]) {
-            seen[label] = true;
-            ++distinct;
-        }
-    }
-    return distinct >= 2 && distinct <= 128 && background * 2 > values.size();
+bool looks_like_labels(const Tally& tally) {
+    return tally.whole && tally.high <= float(highest_label) && tally.labels.size() >= 2 &&
+           tally.labels.size() <= 128 && tally.zeros * 2 > tally.count;
+}
+
+HuKind guess_hu(const Tally& tally) {
+    if (tally.count > 0 && tally.low <= -500.0f) return HuKind::calibrated;
+    return tally.zeros * 2 > tally.count && tally.border_zeros * 100 >= tally.border * 99 ? HuKind::masked
+                                                                                          : HuKind::scanner;
 }
 
 }  // namespace
@@ -65,11 +61,10 @@ void check_map(const SampleMap<Frame::lps>& map, const std::string& file) {
                         file));
 }
 
-void settle_meaning(ScanVolume& volume, bool integers) {
-    for (const float value : volume.values)
-        if (!std::isfinite(value)) throw Error(fmt::format("{}: a voxel's value is not a number", volume.source));
-    if (!volume.segments.empty() || (integers && looks_like_labels(volume.values))) volume.kind = VolumeKind::labels;
-    volume.hu = volume.kind == VolumeKind::labels ? HuKind::none : guess_hu(volume);
+void settle_meaning(ScanVolume& volume, const Tally& tally, bool integers) {
+    if (!tally.finite) throw Error(fmt::format("{}: a voxel's value is not a number", volume.source));
+    if (!volume.segments.empty() || (integers && looks_like_labels(tally))) volume.kind = VolumeKind::labels;
+    volume.hu = volume.kind == VolumeKind::labels ? HuKind::none : guess_hu(tally);
 }
 
 }  // namespace tactus

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "assets/volume/scan_volume.hpp"
+#include "assets/volume/slice_reader.hpp"
 
 #include <array>
 #include <cstdint>
@@ -11,11 +12,11 @@
 
 namespace tactus {
 
-ScanVolume read_nrrd(const std::filesystem::path& path);
-ScanVolume read_nifti(const std::filesystem::path& path);
-ScanVolume read_inv3(const std::filesystem::path& path);
+std::unique_ptr<SliceReader> open_nrrd(const std::filesystem::path& path);
+std::unique_ptr<SliceReader> open_nifti(const std::filesystem::path& path);
+std::unique_ptr<SliceReader> open_inv3(const std::filesystem::path& path);
 /// One file, or a folder and what lies in it.
-ScanVolume read_dicom(const std::filesystem::path& path, const ReadOptions& options);
+std::unique_ptr<SliceReader> open_dicom(const std::filesystem::path& path, const ReadOptions& options);
 /// By the mark behind the preamble.
 bool is_dicom_file(const std::filesystem::path& path);
 
@@ -24,7 +25,8 @@ std::size_t checked_count(const std::array<std::int64_t, 3>& size, const std::st
 /// Throws Error unless every spacing is between 0.001 and 100 mm and the axes span a volume.
 void check_map(const SampleMap<Frame::lps>& map, const std::string& file);
 /// Throws Error when a value is not a number. Sets kind and hu from the values where the file did not say: whole
-/// numbers from 0 to 255, most of them 0, are labels if the samples were `integers`.
-void settle_meaning(ScanVolume& volume, bool integers);
+/// numbers from 0 to 255, most of them 0, are labels if the samples were `integers`. What else numbers can be: air near
+/// -1000 shows HU; a masked volume has zeros all around and in most places; all else is scanner numbers.
+void settle_meaning(ScanVolume& volume, const Tally& tally, bool integers);
 
 }  // namespace tactus

@@ -70,15 +70,7 @@ ScanVolume read_volume(const std::filesystem::path& path, const ReadOptions& opt
 /// True for files and folders that read_volume would try; false for meshes, bones and everything else.
 bool is_volume_file(const std::filesystem::path& path);
 
-/// The same volume on axes of LPS: mirrored and permuted axes are sorted, turned and sheared ones interpolated onto the
-/// box around them (cubic; labels: the nearest sample), the outside being its lowest value.
-/// Throws Error when that box has more than 300 million samples.
+/// The same volume on axes of LPS, see LpsLayers.
 Grid lps_grid(ScanVolume volume);
-/// Whether lps_grid must interpolate.
-bool is_turned(const ScanVolume& volume);
-
-/// What numbers can be, by looking at them: air near -1000 shows HU; a masked volume has zeros all around and in most
-/// places; all else is scanner numbers.
-HuKind guess_hu(const ScanVolume& volume);
 
 }  // namespace tactus

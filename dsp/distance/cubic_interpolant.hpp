@@ -9,9 +9,11 @@
 
 namespace tactus {
 
-/// Places are in samples from the grid's origin; outside, the border is repeated. Gradients are per m.
+/// Places are in samples from the grid's origin; outside, the border is repeated. Gradients are per m. Of a volume of
+/// `layers` layers the grid may hold only some, from `first` on; places count from the whole volume's first layer.
 struct CubicInterpolant {
     const Grid& grid;
+    int first = 0, layers = grid.size[2];
 
     struct Sample {
         double value;
@@ -19,7 +21,9 @@ struct CubicInterpolant {
     };
 
     Sample operator()(const Vec3& at) const {
-        Axis x(at.x, grid.size[0]), y(at.y, grid.size[1]), z(at.z, grid.size[2]);
+        Axis x(at.x, grid.size[0]), y(at.y, grid.size[1]), z(at.z, layers);
+        // Also safe where layers are asked for that are not held.
+        for (int& layer : z.index) layer = std::clamp(layer - first, 0, grid.size[2] - 1);
         const bool inner = x.inner && y.inner && z.inner;
         // Sums over y and z first, four neighbours along x side by side.
         float value[4] = {}, along_y[4] = {}, along_z[4] = {};

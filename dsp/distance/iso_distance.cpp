@@ -30,10 +30,12 @@ Vec3 onto_surface(const CubicInterpolant::Sample& f, double iso, double reach) {
     return length > reach ? step * (reach / length) : step;
 }
 
+// `grey` are layers of the volume from `first` on; all places count from the volume's first layer.
 struct Finder {
     const Grid& grey;
+    int first, layers;  // held from here on; of the whole volume
     float iso;
-    CubicInterpolant f{grey};
+    CubicInterpolant f{grey, first, layers};
     double cell = std::min({grey.spacing.x, grey.spacing.y, grey.spacing.z});
     double widest = std::max({grey.spacing.x, grey.spacing.y, grey.spacing.z});
     glm::vec3 h{grey.spacing};
@@ -63,7 +65,7 @@ struct Finder {
     void points_of_layer(int k, Points& points) const {
         const auto width = static_cast<std::size_t>(grey.size[0]), layer = grey.index(0, 0, 1);
         for (int j = 0; j + 1 < grey.size[1]; ++j) {
-            const float* row = &grey.values[grey.index(0, j, k)];
+            const float* row = &grey.values[grey.index(0, j, k - first)];
             for (int i = 0; i + 1 < grey.size[0]; ++i, ++row) {
                 const std::array<float, 8> value{
                     row[0],     row[1],         row[width],         row[width + 1],
@@ -78,17 +80,6 @@ struct Finder {
                 points.normal.push_back(glm::vec3(length > 0.0 ? -slope / length : Vec3(0.0)));
             }
         }
-    }
-
-    Points all_points(const RunJobs& run) const {
-        std::vector<Points> layers(static_cast<std::size_t>(std::max(grey.size[2] - 1, 0)));
-        run(static_cast<int>(layers.size()), [&](int k) { points_of_layer(k, layers[static_cast<std::size_t>(k)]); });
-        Points all;
-        for (const Points& layer : layers) {
-            all.at.insert(all.at.end(), layer.at.begin(), layer.at.end());
-            all.normal.insert(all.normal.end(), layer.normal.begin(), layer.normal.end());
-        }
-        return all;
     }
 
     // Distance to the point of the surface nearest to `at`, from a near guess: steps onto the surface, and along it
@@ -120,10 +111,13 @@ struct Finder {
     }
 };
 
+// What is known around the samples of some layers: grey values, and which point of the surface is nearest.
 struct Field {
     const Finder& finder;
     const Points& points;
     const std::vector<std::int32_t>& nearest;
+    int first, end;  // layers that `nearest` covers
+    double reach;
     float band = static_cast<float>(3.0 * finder.widest);
     float around2 =
         (band + 1.5f * static_cast<float>(finder.widest)) * (band + 1.5f * static_cast<float>(finder.widest));
@@ -149,8 +143,10 @@ struct Field {
         std::array<float, 3> apart2{};
     };
 
+    std::int32_t nearest_at(int x, int y, int z) const { return nearest[finder.grey.index(x, y, z - first)]; }
+
     void offer(Candidates& found, const glm::vec3& at, int x, int y, int z) const {
-        const std::int32_t id = nearest[finder.grey.index(x, y, z)];
+        const std::int32_t id = nearest_at(x, y, std::clamp(z, first, end - 1));
         if (id == found.id[0] || id == found.id[1] || id == found.id[2]) return;
         const float d = apart2(at, id);
         for (std::size_t n = 0; n < 3; ++n)
@@ -162,15 +158,6 @@ struct Field {
             }
     }
 
-    Candidates candidates(int i, int j, int k) const {
-        const glm::vec3 at(i, j, k);
-        Candidates found;
-        offer(found, at, i, j, k);
-        if (found.apart2[0] < around2) neighbours(found, at, i, j, k);
-        walk(found, at);
-        return found;
-    }
-
     void neighbours(Candidates& found, const glm::vec3& at, int i, int j, int k) const {
         const auto& size = finder.grey.size;
         if (i > 0) offer(found, at, i - 1, j, k);
@@ -178,7 +165,7 @@ struct Field {
         if (k > 0) offer(found, at, i, j, k - 1);
         if (i + 1 < size[0]) offer(found, at, i + 1, j, k);
         if (j + 1 < size[1]) offer(found, at, i, j + 1, k);
-        if (k + 1 < size[2]) offer(found, at, i, j, k + 1);
+        if (k + 1 < finder.layers) offer(found, at, i, j, k + 1);
     }
 
     void walk(Candidates& found, const glm::vec3& at) const {
@@ -190,7 +177,7 @@ struct Field {
             const glm::vec3 foot = at - points.normal[n] * glm::dot(d, points.normal[n]) / finder.h;
             offer(found, at, std::clamp(static_cast<int>(foot.x + 0.5f), 0, size[0] - 1),
                   std::clamp(static_cast<int>(foot.y + 0.5f), 0, size[1] - 1),
-                  std::clamp(static_cast<int>(foot.z + 0.5f), 0, size[2] - 1));
+                  std::clamp(static_cast<int>(foot.z + 0.5f), 0, finder.layers - 1));
             if (found.id[0] == before) break;
         }
     }
@@ -209,17 +196,129 @@ struct Field {
         return least;
     }
 
-    void layer(int k, Grid& out) const {
+    // All points that can count for a sample this far from the surface lie in the layers at hand: those below its feet
+    // are as far away once more.
+    bool is_sure(int k, double away) const {
+        const double need = 2.0 * away + 6.0 * finder.widest, h = finder.grey.spacing.z;
+        return (first == 0 || (k - first) * h >= need) && (end == finder.layers || (end - 1 - k) * h >= need);
+    }
+
+    // Distances of layer k; false where more layers around it must be at hand.
+    bool layer(int k, float* out) const {
         const Grid& grid = finder.grey;
         for (int j = 0; j < grid.size[1]; ++j)
-            for (int i = 0; i < grid.size[0]; ++i) {
+            for (int i = 0; i < grid.size[0]; ++i, ++out) {
                 const glm::vec3 at(i, j, k);
-                const Candidates found = candidates(i, j, k);
+                const bool inside = grid.at(i, j, k - finder.first) >= finder.iso;
+                Candidates found;
+                const bool has_point = nearest_at(i, j, k) >= 0;
+                if (has_point) offer(found, at, i, j, k);
+                const double away =
+                    has_point ? std::sqrt(double(found.apart2[0])) : std::numeric_limits<double>::infinity();
+                if (!inside && away >= reach + finder.widest) {
+                    *out = static_cast<float>(reach);
+                    continue;
+                }
+                if (!is_sure(k, away)) return false;
+                if (!has_point) {
+                    *out = inside ? -std::numeric_limits<float>::infinity() : static_cast<float>(reach);
+                    continue;
+                }
+                if (found.apart2[0] < around2) neighbours(found, at, i, j, k);
+                walk(found, at);
                 float value = to_disc(at, found.id[0]);
                 if (value < band)
                     if (const double d = exact(at, found); std::isfinite(d)) value = static_cast<float>(d);
-                out.at(i, j, k) = grid.at(i, j, k) >= finder.iso ? -value : value;
+                *out = inside ? -value : std::min(value, static_cast<float>(reach));
             }
+        return true;
+    }
+};
+
+// A volume's layers that are in memory, and the points of its surface that were found so far.
+struct Slabs {
+    const Grid& layout;
+    float iso;
+    const DistanceInLayers& how;
+    const LayersOfGrey& source;
+    const RunJobs& run;
+    Grid held{};  // from layer `first` on
+    int first = 0;
+    std::vector<Points> cells{};  // between each layer and the next
+    double widest = std::max({layout.spacing.x, layout.spacing.y, layout.spacing.z});
+    double cell = std::min({layout.spacing.x, layout.spacing.y, layout.spacing.z});
+
+    int layers() const { return layout.size[2]; }
+    int held_end() const { return first + held.size[2]; }
+    Finder finder() const { return {held, first, layers(), iso}; }
+
+    // Around a sample in the band: where steps from a point near it can lead, with the cubic's own support.
+    int around() const { return static_cast<int>(std::ceil((10.0 * widest + 11.0 * cell) / layout.spacing.z)) + 3; }
+
+    // Holds the layers from `from` up to `end`, and knows the points of all cells below `end` - 3.
+    void hold(int from, int end) {
+        from = std::max(from, first);
+        end = std::min(end, layers());
+        const std::size_t layer = layout.index(0, 0, 1);
+        if (const int gone = std::min(from, held_end()) - first; gone > 0) {
+            held.values.erase(held.values.begin(), held.values.begin() + static_cast<std::ptrdiff_t>(
+                                                                             static_cast<std::size_t>(gone) * layer));
+            held.size[2] -= gone;
+            first += gone;
+        }
+        if (end <= held_end()) return;
+        if (held.values.empty()) {
+            held = source(held_end(), end - held_end());
+            held.origin = layout.origin;
+        } else {
+            const Grid more = source(held_end(), end - held_end());
+            held.values.insert(held.values.end(), more.values.begin(), more.values.end());
+            held.size[2] += more.size[2];
+        }
+        find_points(held_end() == layers() ? layers() - 1 : held_end() - 3);
+    }
+
+    void find_points(int end) {
+        const int begin = static_cast<int>(cells.size());
+        if (end <= begin) return;
+        cells.resize(static_cast<std::size_t>(end));
+        const Finder finder = this->finder();
+        run(end - begin, [&](int n) {
+            Points& points = cells[static_cast<std::size_t>(begin + n)];
+            finder.points_of_layer(begin + n, points);
+            points.at.shrink_to_fit();
+            points.normal.shrink_to_fit();
+        });
+    }
+
+    // Those of the cells between the layers from `from` up to `end`.
+    Points points_between(int from, int end) const {
+        Points all;
+        std::size_t count = 0;
+        for (int k = from; k + 1 < end; ++k) count += cells[static_cast<std::size_t>(k)].at.size();
+        all.at.reserve(count);
+        all.normal.reserve(count);
+        for (int k = from; k + 1 < end; ++k) {
+            const Points& points = cells[static_cast<std::size_t>(k)];
+            all.at.insert(all.at.end(), points.at.begin(), points.at.end());
+            all.normal.insert(all.normal.end(), points.normal.begin(), points.normal.end());
+        }
+        return all;
+    }
+
+    // Distances of the layers from k0 up to k1 with points of `beside` layers on both sides; false if that is too few.
+    bool distances(int k0, int k1, int beside, Grid& out) {
+        const int from = std::max(0, k0 - beside), end = std::min(layers(), k1 + beside);
+        hold(k0 - around(), std::max(end + 3, k1 + around()));
+        const Points points = points_between(from, end);
+        Grid window{{layout.size[0], layout.size[1], end - from}, layout.origin, layout.spacing, {}};
+        const std::vector<std::int32_t> nearest = nearest_points(window, points.at, run, from);
+        const Finder finder = this->finder();
+        const Field field{finder, points, nearest, from, end, how.reach};
+        std::vector<char> sure(static_cast<std::size_t>(k1 - k0));
+        run(k1 - k0,
+            [&](int n) { sure[static_cast<std::size_t>(n)] = field.layer(k0 + n, &out.values[out.index(0, 0, n)]); });
+        return std::find(sure.begin(), sure.end(), 0) == sure.end();
     }
 };
 
@@ -267,19 +366,28 @@ Grid smoothed(Grid grid, const RunJobs& run) {
     return grid;
 }
 
-Grid distance_to_iso(const Grid& grey, float iso, const RunJobs& run) {
-    const Finder finder{grey, iso};
-    const Points points = finder.all_points(run);
-    Grid out{grey.size, grey.origin, grey.spacing, {}};
-    if (points.at.empty()) {
-        const bool inside = !grey.values.empty() && grey.values.front() >= iso;
-        out.values.assign(grey.count(), std::numeric_limits<float>::infinity() * (inside ? -1.0f : 1.0f));
-        return out;
+void distance_to_iso(const Grid& layout, float iso, const DistanceInLayers& how, const LayersOfGrey& grey,
+                     const TakeLayers& take, const RunJobs& run) {
+    Slabs slabs{layout, iso, how, grey, run};
+    const int layers = layout.size[2], at_once = how.at_once > 0 ? how.at_once : layers;
+    int beside = layers;
+    if (std::isfinite(how.reach))
+        beside =
+            std::min(layers, static_cast<int>(std::ceil((2.0 * how.reach + 8.0 * slabs.widest) / layout.spacing.z)));
+    for (int k = 0; k < layers; k += at_once) {
+        const int end = std::min(k + at_once, layers);
+        Grid out{{layout.size[0], layout.size[1], end - k}, layout.position(0, 0, k), layout.spacing, {}};
+        out.values.resize(out.count());
+        while (!slabs.distances(k, end, beside, out)) beside = std::min(layers, 2 * beside);
+        take(k, out);
     }
-    out.values.resize(grey.count());
-    const std::vector<std::int32_t> nearest = nearest_points(grey, points.at, run);
-    const Field field{finder, points, nearest};
-    run(grey.size[2], [&](int k) { field.layer(k, out); });
+}
+
+Grid distance_to_iso(const Grid& grey, float iso, const RunJobs& run) {
+    Grid out;
+    distance_to_iso(
+        grey, iso, {}, [&grey](int, int) { return grey; }, [&out](int, const Grid& distance) { out = distance; }, run);
+    out.origin = grey.origin;
     return out;
 }
 

@@ -15,9 +15,15 @@ struct Pass {
     std::span<const glm::vec3> points;
     std::vector<std::int32_t>& nearest;
     int axis;
+    int first_layer;
+
+    // What samples of an axis count from.
+    int start(int other) const { return other == 2 ? first_layer : 0; }
 
     // Where the columns of an axis stand that has not been passed yet: in the middle of the cells that hold the points.
-    double place(int other, int index) const { return other > axis ? index + 0.5 : index; }
+    double place(int other, int index) const {
+        return other > axis ? start(other) + index + 0.5 : start(other) + index;
+    }
 
     struct Envelope {
         std::vector<std::int32_t> in, out, point;
@@ -37,7 +43,7 @@ struct Pass {
             if (id < 0 || id == last) continue;
             last = id;
             const glm::vec3& p = points[static_cast<std::size_t>(id)];
-            const double a = h * std::clamp(double(p[axis]), double(n), n + 1.0);
+            const double cell = n + start(axis), a = h * std::clamp(double(p[axis]), cell, cell + 1.0);
             const double d1 = h1 * (double(p[first]) - at[first]), d2 = h2 * (double(p[second]) - at[second]);
             const double c = d1 * d1 + d2 * d2;
             double from = -std::numeric_limits<double>::infinity();
@@ -59,7 +65,9 @@ struct Pass {
         }
         int at_parabola = 0;
         for (int n = 0; n < length; ++n) {
-            while (at_parabola + 1 < count && e.from[static_cast<std::size_t>(at_parabola + 1)] <= n * h) ++at_parabola;
+            while (at_parabola + 1 < count &&
+                   e.from[static_cast<std::size_t>(at_parabola + 1)] <= (n + start(axis)) * h)
+                ++at_parabola;
             e.out[static_cast<std::size_t>(n * tile + lane)] =
                 count > 0 ? e.point[static_cast<std::size_t>(at_parabola)] : -1;
         }
@@ -99,19 +107,21 @@ struct Pass {
 
 }  // namespace
 
-std::vector<std::int32_t> nearest_points(const Grid& layout, std::span<const glm::vec3> points, const RunJobs& run) {
+std::vector<std::int32_t> nearest_points(const Grid& layout, std::span<const glm::vec3> points, const RunJobs& run,
+                                         int first) {
     std::vector<std::int32_t> nearest(layout.count(), -1);
     for (std::size_t n = 0; n < points.size(); ++n) {
         std::array<int, 3> cell{};
         for (int axis = 0; axis < 3; ++axis) {
             const auto a = static_cast<std::size_t>(axis);
-            cell[a] = std::clamp(static_cast<int>(points[n][axis]), 0, std::max(layout.size[a] - 2, 0));
+            const int start = axis == 2 ? first : 0;
+            cell[a] = std::clamp(static_cast<int>(points[n][axis]) - start, 0, std::max(layout.size[a] - 2, 0));
         }
         std::int32_t& slot = nearest[layout.index(cell[0], cell[1], cell[2])];
         if (slot < 0) slot = static_cast<std::int32_t>(n);
     }
     for (int axis = 0; axis < 3; ++axis) {
-        const Pass pass{layout, points, nearest, axis};
+        const Pass pass{layout, points, nearest, axis, first};
         run(layout.size[axis == 2 ? 1 : 2], [&pass](int outer_index) { pass.slab(outer_index); });
     }
     return nearest;

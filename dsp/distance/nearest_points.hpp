@@ -19,6 +19,9 @@ namespace tactus {
 /// memory are proportional to the samples. Within one row of cells the choice is by the distance to the row's middle,
 /// so on a surface the point found may lie a few samples beside the nearest one; its distance is then too long by less
 /// than half a sample, and looking around it finds the nearest. The result does not depend on how jobs are run.
-std::vector<std::int32_t> nearest_points(const Grid& layout, std::span<const glm::vec3> points, const RunJobs& run);
+/// `layout` may be some layers of a larger volume, from `first` on: points then count from the whole volume's first
+/// layer, and samples nearer to one of them than to either end of the layers know what the whole volume's would.
+std::vector<std::int32_t> nearest_points(const Grid& layout, std::span<const glm::vec3> points, const RunJobs& run,
+                                         int first = 0);
 
 }  // namespace tactus

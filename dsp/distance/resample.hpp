@@ -2,6 +2,7 @@
 // Samples of one grid at the places of another.
 #pragma once
 
+#include "dsp/core/jobs.hpp"
 #include "dsp/volume/grid.hpp"
 
 namespace tactus {
@@ -11,5 +12,18 @@ namespace tactus {
 /// along all axes keep their bits, and the memory when all of them do.
 Grid resampled(const Grid& grid, const Grid& layout);
 Grid resampled(Grid&& grid, const Grid& layout);
+
+/// Neighbouring layers of a volume.
+struct LayerRange {
+    int first, count;
+};
+
+/// Layers of a volume like `from` that resampled_layers needs for those of `layout`.
+LayerRange layers_for(const Grid& from, const Grid& layout, LayerRange wanted);
+
+/// The same for some layers only, to the same bits: `grid` holds those that layers_for names. Values of `from` and
+/// `layout` are not read.
+Grid resampled_layers(Grid grid, const Grid& from, const Grid& layout, LayerRange wanted,
+                      const RunJobs& run = run_in_turn);
 
 }  // namespace tactus

@@ -154,6 +154,43 @@ TEST_CASE("the distance has the same bits whoever runs its jobs") {
     CHECK(distance_to_iso(smoothed(grey, threads), 0.0f, threads).values == alone.values);
 }
 
+TEST_CASE("worked on a few layers at a time, the distance has the bits of the whole up to its reach") {
+    // Lumps of all sizes, and deep inside a block, where the nearest surface is farther than the reach.
+    for (const Vec3 spacing : {Vec3(4e-4), Vec3(3.5e-4, 3.5e-4, 6e-4)}) {
+        Grid grey = lumps(spacing, 5);
+        const int rows = grey.size[1], layers = 3 * grey.size[2];
+        grey.size[2] = layers;
+        const std::vector<float> once = grey.values;
+        for (int n = 0; n < 2; ++n) grey.values.insert(grey.values.end(), once.begin(), once.end());
+        for (int k = 20; k < layers - 12; ++k)
+            for (int j = 2; j < rows - 2; ++j)
+                for (int i = 20; i < grey.size[0] - 1; ++i)
+                    grey.at(i, j, k) = std::max(grey.at(i, j, k), 1e-3f * float(std::min(i - 20, 10)));
+        const Grid whole = distance_to_iso(grey, 0.0f);
+        for (const double reach : {8.0 * spacing.z, 1.0})
+            for (const int at_once : {1, 8, 24, 1000}) {
+                CAPTURE(spacing.z, reach, at_once);
+                std::size_t other = 0, next = 0;
+                distance_to_iso(
+                    Grid{grey.size, grey.origin, grey.spacing, {}}, 0.0f, {reach, at_once},
+                    [&](int first, int count) {
+                        Grid part{{grey.size[0], rows, count}, grey.position(0, 0, first), grey.spacing, {}};
+                        const auto layer = static_cast<std::ptrdiff_t>(grey.index(0, 0, 1));
+                        part.values.assign(grey.values.begin() + first * layer,
+                                           grey.values.begin() + (first + count) * layer);
+                        return part;
+                    },
+                    [&](int first, const Grid& part) {
+                        CHECK(grey.index(0, 0, first) == next);
+                        for (const float d : part.values)
+                            other += d != std::min(whole.values[next++], static_cast<float>(reach));
+                    });
+                CHECK(next == whole.count());
+                CHECK(other == 0);
+            }
+    }
+}
+
 TEST_CASE("volumes that are all bone, all air or one sample thick have a distance and no fault") {
     for (const std::array<int, 3> size : {std::array<int, 3>{5, 4, 3}, {1, 1, 1}, {7, 1, 1}, {6, 5, 1}}) {
         Grid grid{size, Vec3(0.0), Vec3(1e-3), {}};

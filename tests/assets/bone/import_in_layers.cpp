@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// A CT is never in memory as a whole; what comes out must not show it.
+#include "assets/bone/bone.hpp"
+#include "assets/bone/import.hpp"
+#include "assets/bone/sparse_bone.hpp"
+#include "assets/file/whole_file.hpp"
+#include "assets/volume/lps_layers.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/random.hpp"
+#include "tests/assets/bone/temporary_folder.hpp"
+#include "tests/assets/volume/written_volume.hpp"
+
+#include <zlib.h>
+#include <glm/geometric.hpp>
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <thread>
+
+using namespace tactus;
+
+namespace {
+
+// A bent tube with a closed hollow and a pebble beside it, noise; 40 x 36 x 90 samples.
+WrittenVolume scan(const Vec3& voxel_mm) {
+    WrittenVolume v;
+    v.size = {40, 36, 90};
+    v.step = Mat3(Vec3(voxel_mm.x, 0, 0), Vec3(0, voxel_mm.y, 0), Vec3(0, 0, voxel_mm.z));
+    v.origin = {-10.0, 40.0, -300.0};
+    const Random random{3};
+    std::uint64_t n = 0;
+    v.fill([&](const Vec3& p) {
+        const Vec3 u = (p - v.origin) / voxel_mm;
+        const double bend = 18.0 + 5.0 * std::sin(u.z / 20.0);
+        const double tube = 11.0 - std::hypot(u.x - bend, u.y - 17.0);
+        const double hollow = glm::length((u - Vec3(bend, 17.0, 45.0)) * Vec3(1.0, 1.0, 0.3)) - 7.0;
+        const double ends = std::min(u.z - 6.0, 80.0 - u.z);
+        const double pebble = 3.5 - glm::length(u - Vec3(35.0, 31.0, 40.0));
+        const double inside = std::max(std::min({tube, hollow, ends}), pebble);
+        return 2.0 *
+               std::round(0.5 * (std::clamp(300.0 + 700.0 * inside, -1000.0, 1400.0) + 30.0 * random.normal(n++)));
+    });
+    return v;
+}
+
+RunJobs on_three_threads() {
+    return [](int count, const std::function<void(int)>& job) {
+        std::vector<std::thread> all;
+        for (int t = 0; t < 3; ++t)
+            all.emplace_back([&job, count, t] {
+                for (int n = t; n < count; n += 3) job(n);
+            });
+        for (std::thread& thread : all) thread.join();
+    };
+}
+
+void check_same(const Bone& a, const Bone& b) {
+    CHECK(a.distance.size == b.distance.size);
+    CHECK(a.distance.values == b.distance.values);
+    CHECK(a.density.values == b.density.values);
+}
+
+std::string packed(const std::string& bytes, const std::filesystem::path& through) {
+    const gzFile file = gzopen(through.c_str(), "wb");
+    gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size()));
+    gzclose(file);
+    return read_whole_file(through);
+}
+
+}  // namespace
+
+TEST_CASE("a CT gives the same bone to the bit however many of its layers are worked on at one time, on any threads") {
+    const TemporaryFolder folder;
+    // Smoothed three times, once, not at all; cropped, with other voxels.
+    for (const Vec3 voxel : {Vec3(0.25), Vec3(0.45, 0.45, 0.5), Vec3(0.8, 0.8, 1.0)}) {
+        write_whole_file(folder / "ct.nrrd", nrrd_bytes(scan(voxel)));
+        for (const bool changed : {false, true}) {
+            ImportOptions options;
+            options.input = folder / "ct.nrrd";
+            if (changed) options.spacing = 0.7e-3 * voxel.z, options.crop = "-1000:1000,-1000:1000,-299:-200";
+            if (changed) options.component = "all";
+            options.layers_at_once = 10000;
+            ImportSummary all;
+            const Bone whole = import_bone(options, {}, &all);
+            CHECK(all.components == 2);
+            for (const int layers : {1, 8, 40, 0}) {
+                CAPTURE(voxel.z, changed, layers);
+                options.layers_at_once = layers;
+                options.run = layers == 8 ? on_three_threads() : run_in_turn;
+                ImportSummary part;
+                check_same(import_bone(options, {}, &part), whole);
+                CHECK(part.bone_volume_mm3 == all.bone_volume_mm3);
+                CHECK(part.density.mean == all.density.mean);
+            }
+        }
+    }
+}
+
+TEST_CASE("layers of a packed, mirrored, permuted, tilted or turned file are those of the whole, in any order") {
+    const TemporaryFolder folder;
+    const WrittenVolume plain = scan(Vec3(0.45, 0.45, 0.5));
+    const auto with = [&](const Mat3& step) {
+        WrittenVolume v = plain;
+        v.step = step;
+        return v;
+    };
+    const WrittenVolume volumes[] = {plain, with(Mat3(Vec3(-0.45, 0, 0), Vec3(0, 0.45, 0), Vec3(0, 0, -0.5))),
+                                     with(Mat3(Vec3(0, 0.45, 0), Vec3(0, 0, -0.45), Vec3(0.5, 0, 0))),
+                                     with(Mat3(Vec3(0.45, 0, 0), Vec3(0, 0.45, 0), Vec3(0, 0.15, 0.5))),
+                                     with(Mat3(Vec3(0.4, 0.2, 0), Vec3(-0.2, 0.4, 0.1), Vec3(0.05, -0.1, -0.5)))};
+    for (const WrittenVolume& v : volumes) {
+        const std::string bytes = nrrd_bytes(v);
+        const std::size_t end = bytes.find("\n\n") + 2;
+        std::string header = bytes.substr(0, end);
+        header.replace(header.find("encoding: raw"), 13, "encoding: gzip");
+        write_whole_file(folder / "packed.nrrd", header + packed(bytes.substr(end), folder / "samples.gz"));
+        write_whole_file(folder / "plain.nrrd", bytes);
+        const Grid whole = lps_grid(read_volume(folder / "plain.nrrd"));
+        for (const char* name : {"plain.nrrd", "packed.nrrd"}) {
+            const auto reader = open_volume(folder / name);
+            LpsLayers layers(*reader, on_three_threads());
+            layers.settle();
+            REQUIRE(layers.layout().size == whole.size);
+            for (const int first : {0, 3, 20, 5, whole.size[2] - 4}) {
+                CAPTURE(name, first, v.step[2].z);
+                const Grid part = layers.layers(first, 4);
+                const auto from = whole.values.begin() + static_cast<std::ptrdiff_t>(whole.index(0, 0, first));
+                CHECK(std::equal(part.values.begin(), part.values.end(), from));
+            }
+            CHECK(layers.tally().count == v.hu.size());
+        }
+    }
+}
+
+TEST_CASE(
+    "a bone file that is written from a CT holds what is near the bone, and is read back as the import gives it") {
+    const TemporaryFolder folder;
+    write_whole_file(folder / "ct.nrrd", nrrd_bytes(scan(Vec3(0.45, 0.45, 0.5))));
+    ImportOptions options;
+    options.input = folder / "ct.nrrd";
+    options.pointshell = 1e-3;
+    const ImportSummary summary = import_bone_file(options, folder / "bone.vdb");
+    const Bone bone = import_bone(options), read = load_bone(folder / "bone.vdb");
+    check_same(read, bone);
+    CHECK(read.provenance == bone.provenance);
+    CHECK(read.points.size() == summary.points);
+    CHECK(read.name == "ct");
+    import_bone_file(options, folder / "again.vdb");
+    CHECK(read_whole_file(folder / "bone.vdb") == read_whole_file(folder / "again.vdb"));
+    // Nothing is farther than 5 mm away; what is not stored is so far.
+    CHECK(*std::max_element(bone.distance.values.begin(), bone.distance.values.end()) == 5e-3f);
+}

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much memory the import of a large CT takes, as the system counts it.
+#include "tests/tools/run_command.hpp"
+
+#include <sys/resource.h>
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+using namespace tactus::test;
+
+namespace {
+
+constexpr int width = 320, ball = 12;
+
+// A masked CT of so many layers, written as a file with holes: zeros, and a ball of 1000 HU near each end.
+void write_ct(const fs::path& path, int layers) {
+    std::ofstream file(path, std::ios::binary);
+    file << "NRRD0005\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: " << width << ' ' << width
+         << ' ' << layers
+         << "\nspace directions: (0.45,0,0) (0,0.45,0) (0,0,0.45)\nspace origin: (0,0,0)\nendian: little\n"
+         << "encoding: raw\n\n";
+    const std::streamoff start = file.tellp();
+    const auto at = [&](int i, int j, int k) {
+        return start + 2 * ((static_cast<std::streamoff>(k) * width + j) * width + i);
+    };
+    for (const int middle : {40, layers - 40})
+        for (int k = -ball; k <= ball; ++k)
+            for (int j = -ball; j <= ball; ++j) {
+                const int half = static_cast<int>(std::sqrt(std::max(0, ball * ball - j * j - k * k)));
+                const std::vector<std::int16_t> row(static_cast<std::size_t>(2 * half + 1), std::int16_t{1000});
+                file.seekp(at(width / 2 - half, width / 2 + j, middle + k));
+                file.write(reinterpret_cast<const char*>(row.data()), static_cast<std::streamsize>(2 * row.size()));
+            }
+    file.seekp(at(width, width - 1, layers - 1) - 2);
+    file.write("\0\0", 2);
+}
+
+// Peak of what a child held, in MB.
+double peak_of_import(const fs::path& ct, const fs::path& out) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::freopen("/dev/null", "w", stdout);
+        ::freopen("/dev/null", "w", stderr);
+        ::execl(TACTUS_COMMAND, TACTUS_COMMAND, "import", ct.c_str(), "--component", "all", "-o", out.c_str(), nullptr);
+        ::_exit(127);
+    }
+    int status = 0;
+    struct rusage used{};
+    REQUIRE(::wait4(child, &status, 0, &used) == child);
+    REQUIRE(WIFEXITED(status));
+    REQUIRE(WEXITSTATUS(status) == 0);
+    return static_cast<double>(used.ru_maxrss) / 1024.0;
+}
+
+}  // namespace
+
+TEST_CASE("the memory that an import takes does not grow with the layers of the CT") {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    WARN("skipped: sanitizers hold memory of their own");
+#else
+    const Folder folder;
+    write_ct(folder.path / "ct.nrrd", 300);
+    const double small = peak_of_import(folder.path / "ct.nrrd", folder.path / "bone.vdb");
+    write_ct(folder.path / "ct.nrrd", 900);
+    const double large = peak_of_import(folder.path / "ct.nrrd", folder.path / "bone.vdb");
+    const double samples = 1e-6 * width * width * 600;  // millions more
+    CAPTURE(small, large, samples);
+    // As floats the volume would take 245 MB more.
+    CHECK(large - small < 0.4 * samples);
+    CHECK(fs::file_size(folder.path / "bone.vdb") < 2000000);
+#endif
+}
