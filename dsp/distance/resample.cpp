@@ -93,7 +93,8 @@ LayerRange all_of(const Grid& layout, int axis) { return {0, layout.size[static_
 LayerRange layers_for(const Grid& from, const Grid& layout, LayerRange wanted) {
     if (is_same(from, layout, 2) || wanted.count < 1) return wanted;
     std::size_t low = std::numeric_limits<std::size_t>::max(), high = 0;
-    for (const int row : {wanted.first, wanted.first + wanted.count - 1})
+    // Every row: one that meets a sample exactly needs no others, its neighbour does.
+    for (int row = wanted.first; row < wanted.first + wanted.count; ++row)
         for (const std::size_t n : taps_of(from, layout, 2, row).index)
             low = std::min(low, n), high = std::max(high, n);
     return {static_cast<int>(low), static_cast<int>(high - low) + 1};
