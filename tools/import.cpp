@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/bone.hpp"
+#include "assets/bone/import_steps.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/terminal.hpp"
 #include "tools/verbs.hpp"
@@ -39,6 +40,7 @@ std::string text_of(const ImportSummary& s) {
 
 int import_label_map(const ImportChoice& choice, const ImportOptions& options, const ImportProgress& progress,
                      LiveLine& line) {
+    check_output(options, choice.out);
     std::vector<ImportedBone> made = import_labels(options, progress);
     line.clear();
     std::vector<Bone> bones;

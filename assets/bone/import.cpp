@@ -2,9 +2,6 @@
 #include "assets/bone/import.hpp"
 
 #include "assets/bone/import_steps.hpp"
-#include "dsp/core/error.hpp"
-
-#include <fmt/format.h>
 
 namespace tactus {
 
@@ -14,19 +11,6 @@ namespace {
 std::string bone_name(const std::filesystem::path& input) {
     const std::filesystem::path last = input.filename().empty() ? input.parent_path().filename() : input.filename();
     return (last.extension() == ".gz" ? last.stem() : last).stem().string();
-}
-
-// Before minutes are spent on it, and before a patient's file is lost.
-void check_output(const ImportOptions& options, const std::filesystem::path& out) {
-    std::error_code ignored;
-    for (const std::filesystem::path& source : {options.input, options.ct})
-        if (!source.empty() && std::filesystem::equivalent(source, out, ignored))
-            throw Error(fmt::format("{}: would be overwritten by the bone; give another name with -o", out.string()));
-    const std::filesystem::path folder = out.has_parent_path() ? out.parent_path() : ".";
-    if (!std::filesystem::is_directory(folder, ignored))
-        throw Error(fmt::format("{}: cannot be written: there is no folder {}", out.string(), folder.string()));
-    if (std::filesystem::is_directory(out, ignored))
-        throw Error(fmt::format("{}: is a folder; name the file that the bone goes to", out.string()));
 }
 
 void describe(Bone& bone, const ImportOptions& options, const ImportSummary& found) {

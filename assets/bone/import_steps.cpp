@@ -41,6 +41,18 @@ void check_options(const ImportOptions& options) {
         throw Error("the density of a mesh must be above 0 and below 100000 kg/m3");
 }
 
+void check_output(const ImportOptions& options, const std::filesystem::path& out) {
+    std::error_code ignored;
+    for (const std::filesystem::path& source : {options.input, options.ct})
+        if (!source.empty() && std::filesystem::equivalent(source, out, ignored))
+            throw Error(fmt::format("{}: would be overwritten by the bone; give another name with -o", out.string()));
+    const std::filesystem::path folder = out.has_parent_path() ? out.parent_path() : ".";
+    if (!std::filesystem::is_directory(folder, ignored))
+        throw Error(fmt::format("{}: cannot be written: there is no folder {}", out.string(), folder.string()));
+    if (std::filesystem::is_directory(out, ignored))
+        throw Error(fmt::format("{}: is a folder; name the file that the bone goes to", out.string()));
+}
+
 std::size_t parse_component(const std::string& text) {
     if (text == "largest") return 1;
     if (text == "all") return 0;

@@ -34,6 +34,10 @@ Bone import_mesh(const ImportOptions& options, const ImportReport& report, Impor
 /// Throws Error for options that no file could be imported with.
 void check_options(const ImportOptions& options);
 
+/// Throws Error when `out` is one of the sources, or cannot be written: before minutes are spent on it, and before a
+/// patient's file is lost.
+void check_output(const ImportOptions& options, const std::filesystem::path& out);
+
 /// How many of the largest components "largest", "all" or a number keeps; 0 for all. Throws Error for anything else.
 std::size_t parse_component(const std::string& text);
 

@@ -22,7 +22,8 @@ using namespace tactus;
 
 namespace {
 
-// A bent tube with a closed hollow and a pebble beside it, noise; 40 x 36 x 90 samples.
+// A bent tube with a closed hollow and a pebble beside it, noise; 40 x 36 x 90
+// samples.
 WrittenVolume scan(const Vec3& voxel_mm) {
     WrittenVolume v;
     v.size = {40, 36, 90};
@@ -57,7 +58,7 @@ RunJobs on_three_threads() {
 
 void check_same(const Bone& a, const Bone& b) {
     CHECK(a.distance.size == b.distance.size);
-    // Not as vectors: a failure would print millions of numbers.
+  // Not as vectors: a failure would print millions of numbers.
     const bool same_distance = a.distance.values == b.distance.values,
                same_density = a.density.values == b.density.values;
     CHECK(same_distance);
@@ -71,11 +72,13 @@ std::string packed(const std::string& bytes, const std::filesystem::path& throug
     return read_whole_file(through);
 }
 
-}  // namespace
+} // namespace
 
-TEST_CASE("a CT gives the same bone to the bit however many of its layers are worked on at one time, on any threads") {
+TEST_CASE(
+    "a CT gives the same bone to the bit however many of its layers are "
+    "worked on at one time, on any threads") {
     const TemporaryFolder folder;
-    // Smoothed three times, once, not at all; cropped, with other voxels.
+  // Smoothed three times, once, not at all; cropped, with other voxels.
     for (const Vec3 voxel : {Vec3(0.25), Vec3(0.45, 0.45, 0.5), Vec3(0.8, 0.8, 1.0)}) {
         write_whole_file(folder / "ct.nrrd", nrrd_bytes(scan(voxel)));
         for (const bool changed : {false, true}) {
@@ -100,7 +103,9 @@ TEST_CASE("a CT gives the same bone to the bit however many of its layers are wo
     }
 }
 
-TEST_CASE("layers of a packed, mirrored, permuted, tilted or turned file are those of the whole, in any order") {
+TEST_CASE(
+    "layers of a packed, mirrored, permuted, tilted or turned file are "
+    "those of the whole, in any order") {
     const TemporaryFolder folder;
     const WrittenVolume plain = scan(Vec3(0.45, 0.45, 0.5));
     const auto with = [&](const Mat3& step) {
@@ -137,7 +142,8 @@ TEST_CASE("layers of a packed, mirrored, permuted, tilted or turned file are tho
 }
 
 TEST_CASE(
-    "a bone file that is written from a CT holds what is near the bone, and is read back as the import gives it") {
+    "a bone file that is written from a CT holds what is near the bone, "
+    "and is read back as the import gives it") {
     const TemporaryFolder folder;
     write_whole_file(folder / "ct.nrrd", nrrd_bytes(scan(Vec3(0.45, 0.45, 0.5))));
     ImportOptions options;
@@ -151,6 +157,26 @@ TEST_CASE(
     CHECK(read.name == "ct");
     import_bone_file(options, folder / "again.vdb");
     CHECK(read_whole_file(folder / "bone.vdb") == read_whole_file(folder / "again.vdb"));
-    // Nothing is farther than 5 mm away; what is not stored is so far.
+  // Nothing is farther than 5 mm away; what is not stored is so far.
     CHECK(*std::max_element(bone.distance.values.begin(), bone.distance.values.end()) == 5e-3f);
+}
+
+TEST_CASE(
+    "an import that would lose its source, or could not be written, is "
+    "refused before it begins") {
+    const TemporaryFolder folder;
+    const std::string bytes = nrrd_bytes(scan(Vec3(0.8)));
+    write_whole_file(folder / "ct.nrrd", bytes);
+    ImportOptions options;
+    options.input = folder / "ct.nrrd";
+    bool began = false;
+    const ImportProgress progress = [&began](double, std::string_view) { began = true; };
+    using Catch::Matchers::Contains;
+    std::filesystem::create_symlink(folder / "ct.nrrd", folder / "same.vdb");
+    for (const char* out : {"ct.nrrd", "./ct.nrrd", "same.vdb"})
+        CHECK_THROWS_WITH(import_bone_file(options, folder / out, progress), Contains("would be overwritten"));
+    CHECK_THROWS_WITH(import_bone_file(options, folder / "none/bone.vdb", progress), Contains("there is no folder"));
+    CHECK_THROWS_WITH(import_bone_file(options, folder.path, progress), Contains("is a folder"));
+    CHECK_FALSE(began);
+    CHECK(read_whole_file(folder / "ct.nrrd") == bytes);
 }
