@@ -16,7 +16,8 @@ namespace {
 
 constexpr int width = 320, ball = 12;
 
-// A masked CT of so many layers, written as a file with holes: zeros, and a ball of 1000 HU near each end.
+// A masked CT of so many layers, written as a file with holes: zeros, and a ball of 1000 HU in two opposite corners, so
+// that the box around them is all of it.
 void write_ct(const fs::path& path, int layers) {
     std::ofstream file(path, std::ios::binary);
     file << "NRRD0005\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: " << width << ' ' << width
@@ -27,12 +28,13 @@ void write_ct(const fs::path& path, int layers) {
     const auto at = [&](int i, int j, int k) {
         return start + 2 * ((static_cast<std::streamoff>(k) * width + j) * width + i);
     };
-    for (const int middle : {40, layers - 40})
+    for (const bool top : {false, true})
         for (int k = -ball; k <= ball; ++k)
             for (int j = -ball; j <= ball; ++j) {
                 const int half = static_cast<int>(std::sqrt(std::max(0, ball * ball - j * j - k * k)));
                 const std::vector<std::int16_t> row(static_cast<std::size_t>(2 * half + 1), std::int16_t{1000});
-                file.seekp(at(width / 2 - half, width / 2 + j, middle + k));
+                const int across = top ? width - 40 : 40, middle = top ? layers - 40 : 40;
+                file.seekp(at(across - half, across + j, middle + k));
                 file.write(reinterpret_cast<const char*>(row.data()), static_cast<std::streamsize>(2 * row.size()));
             }
     file.seekp(at(width, width - 1, layers - 1) - 2);
