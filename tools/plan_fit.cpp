@@ -48,12 +48,6 @@ struct Matching {
         for (const CaseFragment& f : loaded) surfaces.push_back({f.bone.points, &f.bone.distance});
         MatcherSettings settings;
         settings.most_points = 2000;
-        for (const CaseFragment& f : loaded) {
-            // Coarse scans know their surfaces no better than their voxels.
-            const Vec3& h = f.bone.distance.spacing;
-            settings.finest = std::max(settings.finest, 0.6 * std::max({h.x, h.y, h.z}));
-            settings.sigma = std::max(settings.sigma, 0.5 * std::max({h.x, h.y, h.z}));
-        }
         matcher = std::make_unique<FragmentMatcher>(surfaces, settings);
     }
 };

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/planning/fragment_matcher.hpp"
 
-#include "dsp/coupling/quasi_static.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/operator/hand.hpp"
 #include "dsp/planning/faces.hpp"
 #include "dsp/snap/carried.hpp"
+#include "dsp/snap/fit_steps.hpp"
 #include "dsp/snap/hold.hpp"
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -19,76 +22,13 @@ namespace {
 
 constexpr int spins = 16;
 constexpr std::size_t coarse_points = 160;
-constexpr std::uint8_t own_label = 200;  // of the face that is being made
 
-QuasiStaticSettings free_solver(double gyration) {
-    QuasiStaticSettings s;
-    s.springs = {{0.0, 1.0}, {0.0, 1.0}};
-    s.iterations = 1;
-    s.tolerance = 1e-7;
-    s.reach = s.gyration = gyration;
-    return s;
-}
-
-void set_law(FitEnergy& energy, double scale, double power, std::size_t points) noexcept {
-    energy.law = {};
-    energy.law.reach = 1.0;
-    energy.law.scale = scale;
-    energy.law.power = power;
-    const std::size_t all = std::min(energy.moving().position.size(), energy.fixed().position.size());
-    energy.law.stride = std::max<std::size_t>(1, all / points);
-}
-
-Pose anneal(FitEnergy& energy, const Pose& start, double widest, double finest, int stages,
-            std::size_t points) noexcept {
-    QuasiStaticCoupling solver;
-    solver.settings = free_solver(energy.moving().gyration);
-    solver.reset(start);
-    for (int stage = 0; stage < stages; ++stage) {
-        const double progress = static_cast<double>(stage) / (stages - 1);
-        const double scale = widest * std::pow(finest / widest, progress);
-        set_law(energy, scale, 1.0 + 2.0 * progress, points);
-        solver.settings.step = std::max(scale, 0.3e-3);
-        const Pose pose = solver.state().proxy;
-        energy.look(pose);
-        solver.update(pose, energy);
-    }
-    return solver.state().proxy;
-}
-
-Vec3 direction_of(const Vec3& normal) {
-    const double length = glm::length(normal);
-    return length > 1e-6 ? normal / length : Vec3(0.0, 0.0, 1.0);
-}
-
-Quat shortest_turn(const Vec3& from, const Vec3& to) {
-    const Vec3 axis = glm::cross(from, to);
-    const double sine = glm::length(axis), cosine = glm::dot(from, to);
-    if (sine < 1e-9) {
-        if (cosine > 0.0) return {1.0, 0.0, 0.0, 0.0};
-        const Vec3 other = std::abs(from.x) < 0.5 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
-        return glm::angleAxis(std::numbers::pi, glm::normalize(glm::cross(from, other)));
-    }
-    return glm::angleAxis(std::atan2(sine, cosine), axis / sine);
-}
-
-double apart(const Pose& a, const Pose& b, double gyration) noexcept {
-    return glm::length(a.position - b.position) +
-           gyration * glm::length(rotation_between(a.orientation, b.orientation));
-}
-
-/// One face as a surface of its own: the other faces of the fragment are bone to it, not paint.
+/// One face as a surface of its own, with at most so many points.
 FitSurface surface_of(const FragmentSurface& fragment, std::span<const std::size_t> face, std::size_t most) {
-    std::vector<SurfacePoint> points(fragment.points.begin(), fragment.points.end());
-    for (const std::size_t n : face) points[n].label = own_label;
     FitSurfaceOptions options;
-    options.paint = own_label;
     options.reach = 6e-3;
-    options.most_samples = 400'000;
-    FitSurface made = make_fit_surface(points, *fragment.distance, options);
-    // Beside a face there may be another one, which is no outer contour.
-    made.outline.clear();
-    made.outline_normal.clear();
+    options.most_samples = 1'000'000;
+    FitSurface made = make_fit_face(fragment.points, face, *fragment.distance, options);
     const std::size_t stride = (made.position.size() + most - 1) / most;
     if (stride < 2) return made;
     std::size_t kept = 0;
@@ -107,9 +47,8 @@ FitSurface surface_of(const FragmentSurface& fragment, std::span<const std::size
 
 }  // namespace
 
-/// Several pairs of faces of one moving fragment, as the solver asks for one contact. Its handle stands at `centre`
-/// of the
-/// fragment, wherever its file has its origin.
+/// Several pairs of faces of one moving fragment, as the solver asks for one contact, each with an energy of the same
+/// number. Its handle stands at `centre` of the fragment, wherever its file has its origin.
 class FragmentMatcher::Together {
 public:
     Together(FragmentMatcher& matcher, std::span<const Pair> pairs, std::span<const Pose> poses, const Vec3& centre)
@@ -119,14 +58,16 @@ public:
     Pose body(const Pose& handle) const noexcept { return {handle.apply(-centre_), handle.orientation}; }
 
     void look(const Pose& at) noexcept {
-        for (const Pair& pair : pairs_) energy(pair).look(matcher_.centres(pair, body(at), poses_));
+        for (std::size_t n = 0; n < pairs_.size(); ++n)
+            matcher_.energies_[n].look(matcher_.centres(pairs_[n], body(at), poses_));
     }
     ContactSum operator()(const Pose& at, ContactParts parts) noexcept {
         ContactSum all;
-        for (const Pair& pair : pairs_) {
+        for (std::size_t k = 0; k < pairs_.size(); ++k) {
+            const Pair& pair = pairs_[k];
             const Face &m = matcher_.faces_[pair.moving], &f = matcher_.faces_[pair.fixed];
             const ContactSum one =
-                carried(energy(pair)(matcher_.centres(pair, body(at), poses_), parts),
+                carried(matcher_.energies_[k](matcher_.centres(pair, body(at), poses_), parts),
                         glm::mat3_cast(poses_[static_cast<std::size_t>(f.fragment)].orientation),
                         at.rotate(m.surface.centre - centre_), std::min(m.surface.area, f.surface.area) * 1e4);
             all.energy += one.energy;
@@ -138,8 +79,6 @@ public:
     double clearance(const Pose&) const noexcept { return 0.0; }
 
 private:
-    FitEnergy& energy(const Pair& pair) noexcept { return matcher_.energy(pair.moving, pair.fixed); }
-
     FragmentMatcher& matcher_;
     std::span<const Pair> pairs_;
     std::span<const Pose> poses_;
@@ -148,20 +87,37 @@ private:
 
 FragmentMatcher::FragmentMatcher(std::span<const FragmentSurface> fragments, const MatcherSettings& wanted)
     : settings(wanted) {
+    for (const FragmentSurface& fragment : fragments)
+        if (fragment.distance) widen_for(settings.fit, fragment.distance->spacing);
     for (std::size_t n = 0; n < fragments.size(); ++n)
         for (const auto& face : split_faces(fragments[n].points)) {
             if (face.size() < 40) continue;
             faces_.push_back({static_cast<int>(n), surface_of(fragments[n], face, settings.most_points)});
         }
-    energies_.resize(faces_.size() * faces_.size());
-    for (std::size_t a = 0; a < faces_.size(); ++a)
-        for (std::size_t b = 0; b < faces_.size(); ++b)
-            if (faces_[a].fragment != faces_[b].fragment)
-                energies_[a * faces_.size() + b] = std::make_unique<FitEnergy>(faces_[a].surface, faces_[b].surface);
-    pairs_.reserve(energies_.size());
-    joined_.reserve(energies_.size());
+    if (faces_.size() > settings.most_faces)
+        throw Error(
+            fmt::format("the fragments have {} painted faces and at most {} can be matched: paint less, or "
+                        "leave out fragments",
+                        faces_.size(), settings.most_faces));
+    std::size_t points = 0, outline = 0;
+    for (const Face& face : faces_) {
+        points = std::max(points, face.surface.position.size());
+        outline = std::max(outline, face.surface.outline.size());
+    }
+    const std::size_t joined = std::max<std::size_t>(settings.most_joined, 1);
+    for (std::size_t n = 0; n < joined && !faces_.empty(); ++n)
+        energies_.emplace_back(faces_.front().surface, faces_.front().surface).reserve(points, outline);
+    pairs_.reserve(faces_.size() * faces_.size());
+    joined_.reserve(joined);
+    stood_.reserve(fragments.size());
     solved_.reserve(std::max<std::size_t>(settings.most_pairs, 1));
     free_.free.reserve(6);
+}
+
+FitEnergy& FragmentMatcher::energy(std::size_t slot, const Pair& pair) noexcept {
+    FitEnergy& one = energies_[slot];
+    one.rebind(faces_[pair.moving].surface, faces_[pair.fixed].surface);
+    return one;
 }
 
 std::size_t FragmentMatcher::faces_of(int fragment) const noexcept {
@@ -181,13 +137,15 @@ Pose FragmentMatcher::centres(const Pair& pair, const Pose& moving, std::span<co
 }
 
 FragmentMatcher::Solved FragmentMatcher::solve(const Pair& pair, std::span<const Pose> starts) noexcept {
-    FitEnergy& e = energy(pair.moving, pair.fixed);
+    FitEnergy& e = energy(0, pair);
+    const FitSettings& fit = settings.fit;
     const double gyration = e.moving().gyration;
+    int steps = 0;
     std::array<Candidate, 2> best;
+    set_law(e, 0.0, coarse_points);
     for (const Pose& start : starts) {
-        Candidate c{anneal(e, start, settings.widest, 2.0 * settings.finest, 24, coarse_points), 0.0};
-        set_law(e, settings.finest, 3.0, coarse_points);
-        c.score = e.quality(c.pose, 2.0 * settings.sigma).score;
+        Candidate c{anneal(e, start, {fit.widest, 2.0 * fit.finest, 24, fit.power}, steps), 0.0};
+        c.score = e.quality(c.pose, 2.0 * fit.sigma).score;
         // The same place again counts once.
         if (best[0].score >= 0.0 && apart(c.pose, best[0].pose, gyration) < 1e-3) {
             if (c.score > best[0].score) best[0] = c;
@@ -195,11 +153,11 @@ FragmentMatcher::Solved FragmentMatcher::solve(const Pair& pair, std::span<const
         else if (c.score > best[1].score) best[1] = c;
     }
     Solved solved{pair, {}, 0.0};
+    set_law(e, 0.0, settings.most_points);
     for (Candidate& c : best) {
         if (!(c.score >= 0.0)) continue;
-        c.pose = anneal(e, c.pose, 4.0 * settings.finest, settings.finest, 14, settings.most_points);
-        set_law(e, settings.finest, 3.0, settings.most_points);
-        c.score = e.quality(c.pose, settings.sigma).score;
+        c.pose = anneal(e, c.pose, {4.0 * fit.finest, fit.finest, 14, fit.power}, steps);
+        c.score = e.quality(c.pose, fit.sigma).score;
         if (c.score > solved.best.score) {
             if (solved.best.score >= 0.0 && apart(c.pose, solved.best.pose, gyration) > 1e-3)
                 solved.second = solved.best.score;
@@ -235,7 +193,7 @@ const FragmentMatch& FragmentMatcher::near(int moving, std::span<const Pose> pos
         const FitSurface &a = faces_[pair.moving].surface, &b = faces_[pair.fixed].surface;
         const Pose from = centres(pair, held, poses);
         const Vec3 about = direction_of(b.mean_normal);
-        const Quat opposed = shortest_turn(from.rotate(direction_of(a.mean_normal)), -about) * from.orientation;
+        const Quat flat_on = opposed(a, b, from.orientation);
         // Where it is; middles on each other as it is, flat on, and turned a little either way; and flat on where it
         // is, also shifted: the middles of faces that share but a part do not belong on each other.
         const Vec3 beside = from.position - glm::dot(from.position, about) * about;
@@ -244,14 +202,14 @@ const FragmentMatch& FragmentMatcher::near(int moving, std::span<const Pose> pos
         const Vec3 u = 2.5e-3 * across, v = 2.5e-3 * glm::cross(about, across);
         const std::array<Pose, 10> starts{{from,
                                            {Vec3(0.0), from.orientation},
-                                           {Vec3(0.0), opposed},
-                                           {Vec3(0.0), glm::angleAxis(0.3, about) * opposed},
-                                           {Vec3(0.0), glm::angleAxis(-0.3, about) * opposed},
-                                           {beside, opposed},
-                                           {beside + u, opposed},
-                                           {beside - u, opposed},
-                                           {beside + v, opposed},
-                                           {beside - v, opposed}}};
+                                           {Vec3(0.0), flat_on},
+                                           {Vec3(0.0), glm::angleAxis(0.3, about) * flat_on},
+                                           {Vec3(0.0), glm::angleAxis(-0.3, about) * flat_on},
+                                           {beside, flat_on},
+                                           {beside + u, flat_on},
+                                           {beside - u, flat_on},
+                                           {beside + v, flat_on},
+                                           {beside - v, flat_on}}};
         solved_.push_back(solve(pair, starts));
     }
     // In their order of worth; a chance fit far from where the fragment is held is none that the hand meant.
@@ -285,10 +243,11 @@ void FragmentMatcher::begin_search() noexcept {
 
 const FragmentMatch& FragmentMatcher::search(int moving, std::span<const Pose> poses,
                                              std::span<const char> stands) noexcept {
-    if (found_.moving != moving || left_ == 0) {
+    if (!same_search(moving, stands)) {
         found_ = {};
         found_.moving = moving;
         next_ = 0;
+        stood_.assign(stands.begin(), stands.end());
     }
     pairs_.clear();
     for (std::size_t m = 0; m < faces_.size(); ++m)
@@ -305,31 +264,38 @@ const FragmentMatch& FragmentMatcher::search(int moving, std::span<const Pose> p
     left_ = pairs_.size() - next_;
     const FitSurface &a = faces_[pair.moving].surface, &b = faces_[pair.fixed].surface;
     const Vec3 about = direction_of(b.mean_normal);
-    const Quat opposed = shortest_turn(direction_of(a.mean_normal), -about);
+    const Quat flat_on = opposed(a, b, {1.0, 0.0, 0.0, 0.0});
     std::array<Pose, spins> starts;
     for (int n = 0; n < spins; ++n)
         starts[static_cast<std::size_t>(n)] = {Vec3(0.0),
-                                               glm::angleAxis(2.0 * std::numbers::pi * n / spins, about) * opposed};
+                                               glm::angleAxis(2.0 * std::numbers::pi * n / spins, about) * flat_on};
     solved_.clear();
     solved_.push_back(solve(pair, starts));
     match_ = {};
     match_.moving = moving;
     lead(solved_.front(), poses, stands);
     const auto worth = [](const FragmentMatch& m) { return m.quality.score * std::sqrt(m.quality.overlap); };
-    if (worth(match_) > worth(found_)) found_ = match_;
+    if (worth(match_) > worth(found_)) {
+        found_ = match_;
+        found_beside_ = poses[static_cast<std::size_t>(match_.partner)].inverse() * match_.pose;
+    }
+    // Its partner may have been moved since.
+    if (found_.partner != Arrangement::none)
+        found_.pose = poses[static_cast<std::size_t>(found_.partner)] * found_beside_;
     return found_;
 }
 
-void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std::span<const char> stands) noexcept {
-    if (!(best.best.score > 0.0)) return;
-    Pose at = world(best.pair, best.best.pose, poses);
-    match_.partner = faces_[best.pair.fixed].fragment;
-    // All faces that lie well there take part.
+bool FragmentMatcher::same_search(int moving, std::span<const char> stands) noexcept {
+    return left_ > 0 && found_.moving == moving && std::ranges::equal(stood_, stands);
+}
+
+void FragmentMatcher::join(const Solved& best, const Pose& at, std::span<const Pose> poses,
+                           std::span<const char> stands) noexcept {
     joined_.clear();
     joined_.push_back(best.pair);
     for (std::size_t m = 0; m < faces_.size(); ++m)
-        for (std::size_t f = 0; f < faces_.size(); ++f) {
-            if (faces_[m].fragment != match_.moving || !energies_[m * faces_.size() + f] ||
+        for (std::size_t f = 0; f < faces_.size() && joined_.size() < energies_.size(); ++f) {
+            if (faces_[m].fragment != match_.moving || faces_[f].fragment == match_.moving ||
                 !stands[static_cast<std::size_t>(faces_[f].fragment)] ||
                 (m == best.pair.moving && f == best.pair.fixed))
                 continue;
@@ -337,46 +303,57 @@ void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std:
             const Pose there = centres(pair, at, poses);
             const double reach = faces_[m].surface.gyration + faces_[f].surface.gyration;
             if (glm::length(there.position) > reach) continue;
-            FitEnergy& e = energy(m, f);
-            set_law(e, settings.finest, 3.0, coarse_points);
-            if (e.quality(there, 1.5 * settings.sigma).score > settings.least_share * best.best.score)
+            FitEnergy& e = energy(0, pair);
+            set_law(e, 0.0, coarse_points);
+            if (e.quality(there, 1.5 * settings.fit.sigma).score > settings.least_share * best.best.score)
                 joined_.push_back(pair);
         }
     match_.faces = static_cast<int>(joined_.size());
+}
+
+void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std::span<const char> stands) noexcept {
+    if (!(best.best.score > 0.0)) return;
+    const FitSettings& fit = settings.fit;
+    Pose at = world(best.pair, best.best.pose, poses);
+    match_.partner = faces_[best.pair.fixed].fragment;
+    // All faces that lie well there take part.
+    join(best, at, poses, stands);
+    for (std::size_t n = 0; n < joined_.size(); ++n) set_law(energy(n, joined_[n]), 0.0, settings.most_points);
+    const auto at_scale = [&](double scale) {
+        for (std::size_t n = 0; n < joined_.size(); ++n) {
+            energies_[n].law.scale = scale;
+            energies_[n].law.power = fit.power;
+        }
+    };
     Together together(*this, joined_, poses, faces_[best.pair.moving].surface.centre);
     QuasiStaticCoupling solver;
     solver.settings = free_solver(faces_[best.pair.moving].surface.gyration);
     solver.settings.reach = 0.02;
     solver.settings.step = 0.3e-3;
     solver.reset(together.handle(at));
-    for (int stage = 0; stage < 24; ++stage) {
-        const double scale = settings.finest * (stage < 8 ? 3.0 - 0.25 * stage : 1.0);
-        for (const Pair& pair : joined_) set_law(energy(pair.moving, pair.fixed), scale, 3.0, settings.most_points);
+    const auto step = [&] {
         const Pose before = solver.state().proxy;
         together.look(before);
-        if (solver.update(before, together).iterations == 0 && stage > 8) break;
+        return solver.update(before, together).iterations;
+    };
+    for (int stage = 0; stage < 18; ++stage) {
+        at_scale(fit.finest * (stage < 8 ? 3.0 - 0.25 * stage : 1.0));
+        if (step() == 0 && stage > 8) break;
+    }
+    for (int n = 1; n <= polish_steps; ++n) {
+        for (std::size_t k = 0; k < joined_.size(); ++k) set_polish(energies_[k], fit, n);
+        step();
     }
     at = together.body(solver.state().proxy);
     match_.pose = at;
-    FitEnergy& e = energy(best.pair.moving, best.pair.fixed);
-    set_law(e, settings.finest, 3.0, settings.most_points);
-    match_.quality = e.quality(centres(best.pair, at, poses), settings.sigma);
+    at_scale(fit.finest);
+    match_.quality = energies_[0].quality(centres(best.pair, at, poses), fit.sigma);
     match_.margin = match_.quality.score > 0.0 ? std::clamp(1.0 - best.second / match_.quality.score, 0.0, 1.0) : 0.0;
     free_.free.clear();
     together.look(solver.state().proxy);
     find_free(free_, together(solver.state().proxy, ContactParts::all).stiffness,
-              faces_[best.pair.moving].surface.gyration, settings.least_hold);
-    judge();
-}
-
-void FragmentMatcher::judge() noexcept {
-    const FitQuality& q = match_.quality;
-    if (q.score < settings.least_score || q.rms > settings.most_rms * settings.sigma)
-        match_.verdict = FitVerdict::no_match;
-    else if (!free_.free.empty()) match_.verdict = FitVerdict::sliding;
-    else if (match_.margin < settings.least_margin) match_.verdict = FitVerdict::ambiguous;
-    else if (q.penetration > settings.most_penetration) match_.verdict = FitVerdict::blocked;
-    else match_.verdict = FitVerdict::fit;
+              faces_[best.pair.moving].surface.gyration, fit.least_hold);
+    match_.verdict = judge(match_.quality, !free_.free.empty(), match_.margin, fit);
 }
 
 }  // namespace tactus

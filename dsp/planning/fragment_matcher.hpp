@@ -2,15 +2,11 @@
 // Which of the fragments that stand does a fragment fit, and where: a solver for the background, in bounded time and
 // without memory of its own making once it is constructed.
 //
-// A fragment from the middle of a bone has a face for each neighbour it broke from. Pairs of faces that are near and
-// look
-// against each other where the fragment is held are fitted one by one, by the two-sided robust energy of
-// fit_energy.hpp with
-// a scale that narrows. What fits best leads; then all faces that fit there are fitted together, so that an error of
-// one
-// does not add to that of the next. When nothing near fits, every face is tried on every other in all ways round, a
-// pair or
-// two at a time.
+// A fragment from the middle of a bone has a face for each neighbour it broke from. Pairs of faces that are near and look
+// against each other where the fragment is held are fitted one by one, by the two-sided robust energy of fit_energy.hpp
+// with a scale that narrows. What fits best leads; then all faces that fit there are fitted together, so that an error of
+// one does not add to that of the next. When nothing near fits, every face is tried on every other in all ways round, a
+// pair or two at a time.
 #pragma once
 
 #include "dsp/planning/arrangement.hpp"
@@ -18,7 +14,6 @@
 #include "dsp/snap/fit_energy.hpp"
 
 #include <cstddef>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -39,27 +34,33 @@ struct FragmentMatch {
     int faces = 0;  ///< pairs of faces that were fitted together
 };
 
+/// Faces of a fragment from the middle are smaller than whole fractures: less of them has to match.
+inline FitSettings settings_of_faces() noexcept {
+    FitSettings settings;
+    settings.widest = 3e-3;
+    settings.outline = 0.0;
+    settings.least_score = 0.2;
+    settings.most_penetration = 0.6e-3;
+    return settings;
+}
+
 struct MatcherSettings {
+    FitSettings fit = settings_of_faces();  ///< widened for the coarsest of the fragments' scans
     double near = 15e-3;  ///< m: middles of faces that are tried on each other; the farthest that one is moved
     double most_turn = 0.7;  ///< rad, the farthest that it is turned
-    double widest = 3e-3, finest = 0.25e-3;  ///< m, scale of the robust kernel
-    double sigma = 0.2e-3;  ///< m, of the score
-    double least_score = 0.2;  ///< below it nothing matches
     double least_share = 0.5;  ///< of the leading score: what other faces must have to take part
-    double least_margin = 0.1;
-    double most_rms = 0.8;  ///< as share of sigma
-    double most_penetration = 0.6e-3;  ///< m
-    double least_hold = 0.008;
     std::size_t most_pairs = 6;  ///< of faces that one call fits, nearest first
+    std::size_t most_joined = 16;  ///< pairs of faces that are fitted together at most
     std::size_t most_points = 700;  ///< of each face that take part
+    std::size_t most_faces = 400;  ///< of all fragments; each takes some megabytes
 };
 
 class FragmentMatcher {
 public:
     MatcherSettings settings;
 
-    /// Throws Error when a fragment's points and distances do not belong together. A fragment without paint fits
-    /// nothing.
+    /// Throws Error when a fragment's points and distances do not belong together, and when all have more than
+    /// `most_faces`. A fragment without paint fits nothing. Memory grows with the number of faces.
     explicit FragmentMatcher(std::span<const FragmentSurface> fragments, const MatcherSettings& wanted = {});
 
     std::size_t faces() const noexcept { return faces_.size(); }
@@ -67,7 +68,8 @@ public:
 
     /// From where it is. `stands`: which fragments count as partners; the moving one does not.
     const FragmentMatch& near(int moving, std::span<const Pose> poses, std::span<const char> stands) noexcept;
-    /// Wherever it is: the next pair of faces in turn, in all ways round. Returns the best match since `begin_search`.
+    /// Wherever it is: the next pair of faces in turn, in all ways round. Returns the best match since `begin_search`,
+    /// beside its partner wherever that is now; other fragments that stand: a new search.
     const FragmentMatch& search(int moving, std::span<const Pose> poses, std::span<const char> stands) noexcept;
     void begin_search() noexcept;
     /// Pairs of faces that `search` still has to try; 0: it starts over.
@@ -93,22 +95,23 @@ private:
     };
     class Together;
 
-    FitEnergy& energy(std::size_t moving, std::size_t fixed) noexcept {
-        return *energies_[moving * faces_.size() + fixed];
-    }
+    FitEnergy& energy(std::size_t slot, const Pair& pair) noexcept;
     Pose world(const Pair& pair, const Pose& centres, std::span<const Pose> poses) const noexcept;
     Pose centres(const Pair& pair, const Pose& moving, std::span<const Pose> poses) const noexcept;
     Solved solve(const Pair& pair, std::span<const Pose> starts) noexcept;
+    void join(const Solved& best, const Pose& at, std::span<const Pose> poses, std::span<const char> stands) noexcept;
     void lead(const Solved& best, std::span<const Pose> poses, std::span<const char> stands) noexcept;
-    void judge() noexcept;
+    bool same_search(int moving, std::span<const char> stands) noexcept;
 
     std::vector<Face> faces_;
-    std::vector<std::unique_ptr<FitEnergy>> energies_;
+    std::vector<FitEnergy> energies_;  ///< the first for one pair at a time, all for those that are fitted together
     std::vector<Pair> pairs_;
     std::vector<Solved> solved_;
     std::vector<Pair> joined_;
     FragmentMatch match_, found_;
     Fit free_;
+    Pose found_beside_;  ///< of the match found, in its partner's frame
+    std::vector<char> stood_;  ///< when the search began
     std::size_t left_ = 0, next_ = 0;
 };
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/snap/fit.hpp"
 
-#include "dsp/coupling/quasi_static.hpp"
+#include "dsp/operator/hand.hpp"
+#include "dsp/snap/fit_steps.hpp"
 #include "dsp/snap/hold.hpp"
 
 #include <glm/geometric.hpp>
@@ -22,106 +23,24 @@ struct Candidate {
     double score = 0.0;
 };
 
-/// Springs that pull at nothing: the solver lowers the fit's energy alone.
-QuasiStaticSettings free_solver(const FitSurface& moving) {
-    QuasiStaticSettings s;
-    s.springs = {{0.0, 1.0}, {0.0, 1.0}};
-    s.iterations = 1;
-    s.tolerance = 1e-7;
-    s.reach = s.gyration = moving.gyration;
-    return s;
-}
-
-/// `stages` steps while the scale narrows from `widest` to `finest`, weights looked at anew before each.
-Pose anneal(FitEnergy& energy, const Pose& start, double widest, double finest, int stages, const FitSettings& settings,
-            int& iterations) noexcept {
-    QuasiStaticCoupling solver;
-    solver.settings = free_solver(energy.moving());
-    solver.reset(start);
-    for (int stage = 0; stage < stages; ++stage) {
-        const double progress = stages > 1 ? static_cast<double>(stage) / (stages - 1) : 1.0;
-        energy.law.scale = widest * std::pow(finest / widest, progress);
-        energy.law.power = 1.0 + (settings.power - 1.0) * progress;
-        solver.settings.step = std::max(energy.law.scale, 0.3e-3);
-        energy.look(solver.state().proxy);
-        const Pose pose = solver.state().proxy;
-        iterations += solver.update(pose, energy).iterations;
-    }
-    return solver.state().proxy;
-}
-
-/// At the fine scale until the steps are done.
-Pose refine(FitEnergy& energy, const Pose& start, const FitSettings& settings, int& iterations) noexcept {
-    QuasiStaticCoupling solver;
-    solver.settings = free_solver(energy.moving());
-    solver.settings.step = 0.3e-3;
-    solver.reset(start);
-    energy.law.scale = settings.finest;
-    energy.law.power = settings.power;
-    for (int n = 0; n < 30; ++n) {
-        const Pose before = solver.state().proxy;
-        energy.look(before);
-        const int steps = solver.update(before, energy).iterations;
-        iterations += steps;
-        const Vec3 turn = rotation_between(before.orientation, solver.state().proxy.orientation);
-        const double way =
-            glm::length(solver.state().proxy.position - before.position) + glm::length(turn) * energy.moving().gyration;
-        if (steps == 0 || way < 1e-7) break;
-    }
-    return solver.state().proxy;
-}
-
-void set_law(FitEnergy& energy, const FitSettings& settings, bool coarse) {
-    FitLaw& law = energy.law;
-    law = {};
-    law.reach = 1.0;
-    law.outline = settings.outline;
-    const std::size_t points = std::min(energy.moving().position.size(), energy.fixed().position.size());
-    law.stride = coarse ? std::max<std::size_t>(1, points / coarse_points) : 1;
-}
-
-/// The shortest turn that takes direction `from` to `to`.
-Quat shortest_turn(const Vec3& from, const Vec3& to) {
-    const Vec3 axis = glm::cross(from, to);
-    const double sine = glm::length(axis), cosine = glm::dot(from, to);
-    if (sine < 1e-9) {
-        if (cosine > 0.0) return {1.0, 0.0, 0.0, 0.0};
-        const Vec3 other = std::abs(from.x) < 0.5 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
-        return glm::angleAxis(std::numbers::pi, glm::normalize(glm::cross(from, other)));
-    }
-    return glm::angleAxis(std::atan2(sine, cosine), axis / sine);
-}
-
-Vec3 direction_of(const Vec3& normal) {
-    const double length = glm::length(normal);
-    return length > 1e-6 ? normal / length : Vec3(0.0, 0.0, 1.0);
-}
-
 /// The start, the same with the middles of the paints on each other and their normals opposed, and turns around that.
 std::vector<Pose> starts_near(const FitSurface& moving, const FitSurface& fixed, const Pose& start) {
     std::vector<Pose> starts{start, {Vec3(0.0), start.orientation}};
-    const Quat opposed =
-        shortest_turn(start.rotate(direction_of(moving.mean_normal)), -direction_of(fixed.mean_normal)) *
-        start.orientation;
-    starts.push_back({Vec3(0.0), opposed});
+    const Quat flat_on = opposed(moving, fixed, start.orientation);
+    starts.push_back({Vec3(0.0), flat_on});
     const Vec3 about = direction_of(fixed.mean_normal);
     for (const double spin : {-0.5, -0.25, 0.25, 0.5})
-        starts.push_back({Vec3(0.0), glm::angleAxis(spin, about) * opposed});
+        starts.push_back({Vec3(0.0), glm::angleAxis(spin, about) * flat_on});
     return starts;
 }
 
 std::vector<Pose> starts_everywhere(const FitSurface& moving, const FitSurface& fixed) {
     const Vec3 about = direction_of(fixed.mean_normal);
-    const Quat opposed = shortest_turn(direction_of(moving.mean_normal), -about);
+    const Quat flat_on = opposed(moving, fixed, {1.0, 0.0, 0.0, 0.0});
     std::vector<Pose> starts;
     for (int n = 0; n < spins; ++n)
-        starts.push_back({Vec3(0.0), glm::angleAxis(2.0 * std::numbers::pi * n / spins, about) * opposed});
+        starts.push_back({Vec3(0.0), glm::angleAxis(2.0 * std::numbers::pi * n / spins, about) * flat_on});
     return starts;
-}
-
-double apart(const Candidate& a, const Candidate& b, double gyration) {
-    return glm::length(a.pose.position - b.pose.position) +
-           gyration * glm::length(rotation_between(a.pose.orientation, b.pose.orientation));
 }
 
 /// Best first; of those within `nearer` of each other only the best stays.
@@ -129,17 +48,23 @@ void keep_distinct(std::vector<Candidate>& all, double gyration, double nearer) 
     std::ranges::stable_sort(all, std::ranges::greater{}, &Candidate::score);
     std::vector<Candidate> kept;
     for (const Candidate& c : all)
-        if (std::ranges::none_of(kept, [&](const Candidate& k) { return apart(c, k, gyration) < nearer; }))
+        if (std::ranges::none_of(kept, [&](const Candidate& k) { return apart(c.pose, k.pose, gyration) < nearer; }))
             kept.push_back(c);
     all = kept;
 }
 
+bool is_within_reach(const Pose& pose, const Pose& start, const FitSettings& settings) {
+    return glm::length(pose.position - start.position) < settings.most_way &&
+           glm::length(rotation_between(start.orientation, pose.orientation)) < settings.most_turn;
+}
+
 std::vector<Candidate> coarse(FitEnergy& energy, const std::vector<Pose>& starts, const FitSettings& settings,
                               int& iterations) {
-    set_law(energy, settings, true);
+    set_law(energy, settings.outline, coarse_points);
     std::vector<Candidate> found;
     for (const Pose& start : starts) {
-        const Pose pose = anneal(energy, start, settings.widest, 2.0 * settings.finest, 25, settings, iterations);
+        const Pose pose =
+            anneal(energy, start, {settings.widest, 2.0 * settings.finest, 25, settings.power}, iterations);
         found.push_back({pose, energy.quality(pose, 2.0 * settings.sigma).score});
     }
     keep_distinct(found, energy.moving().gyration, 1e-3);
@@ -148,10 +73,10 @@ std::vector<Candidate> coarse(FitEnergy& energy, const std::vector<Pose>& starts
 
 void fine(FitEnergy& energy, std::vector<Candidate>& candidates, std::size_t most, const FitSettings& settings,
           int& iterations) {
-    set_law(energy, settings, false);
+    set_law(energy, settings.outline);
     if (candidates.size() > most) candidates.resize(most);
     for (Candidate& c : candidates) {
-        c.pose = anneal(energy, c.pose, 4.0 * settings.finest, settings.finest, 10, settings, iterations);
+        c.pose = anneal(energy, c.pose, {4.0 * settings.finest, settings.finest, 10, settings.power}, iterations);
         c.pose = refine(energy, c.pose, settings, iterations);
         c.score = energy.quality(c.pose, settings.sigma).score;
     }
@@ -181,21 +106,21 @@ Pose follow_thesis(FitEnergy& energy, const Pose& start, const FitSettings& sett
     return solver.state().proxy;
 }
 
-FitVerdict judge(const Fit& fit, const FitSettings& settings) {
-    // Surfaces that do not belong together cross each other: what is near is spread evenly over all distances.
-    if (fit.quality.score < settings.least_score || fit.quality.rms > settings.most_rms * settings.sigma)
-        return FitVerdict::no_match;
-    if (!fit.free.empty()) return FitVerdict::sliding;
-    if (fit.margin < settings.least_margin) return FitVerdict::ambiguous;
-    if (fit.quality.penetration > settings.most_penetration) return FitVerdict::blocked;
-    return FitVerdict::fit;
-}
-
 }  // namespace
 
 std::string_view name_of(FitVerdict verdict) {
     constexpr std::string_view names[] = {"fit", "sliding", "ambiguous", "no_match", "blocked"};
     return names[static_cast<std::size_t>(verdict)];
+}
+
+FitVerdict judge(const FitQuality& quality, bool is_free, double margin, const FitSettings& settings) noexcept {
+    // Surfaces that do not belong together cross each other: what is near is spread evenly over all distances.
+    if (quality.score < settings.least_score || quality.rms > settings.most_rms * settings.sigma)
+        return FitVerdict::no_match;
+    if (is_free) return FitVerdict::sliding;
+    if (margin < settings.least_margin) return FitVerdict::ambiguous;
+    if (quality.penetration > settings.most_penetration) return FitVerdict::blocked;
+    return FitVerdict::fit;
 }
 
 Pose between_centres(const FitSurface& moving, const FitSurface& fixed, const Pose& bodies) {
@@ -207,19 +132,24 @@ Pose between_bodies(const FitSurface& moving, const FitSurface& fixed, const Pos
 }
 
 Pose settle(FitEnergy& energy, const Pose& start, const FitSettings& settings, int* iterations) noexcept {
-    set_law(energy, settings, false);
+    set_law(energy, settings.outline);
     int count = 0;
     const Pose pose = refine(energy, between_centres(energy.moving(), energy.fixed(), start), settings, count);
     if (iterations) *iterations += count;
     return between_bodies(energy.moving(), energy.fixed(), pose);
 }
 
-FitSettings settings_for(const FitSurface& moving, const FitSurface& fixed) {
-    const auto coarsest = [](const Vec3& h) { return std::max({h.x, h.y, h.z}); };
-    const double h = std::max(coarsest(moving.field.grid.spacing), coarsest(fixed.field.grid.spacing));
-    FitSettings settings;
+void widen_for(FitSettings& settings, const Vec3& spacing) noexcept {
+    const double h = std::max({spacing.x, spacing.y, spacing.z});
     settings.finest = std::max(settings.finest, 0.6 * h);
     settings.sigma = std::max(settings.sigma, 0.5 * h);
+    settings.polish = std::max(settings.polish, 0.2 * h);
+}
+
+FitSettings settings_for(const FitSurface& moving, const FitSurface& fixed) {
+    FitSettings settings;
+    widen_for(settings, moving.field.grid.spacing);
+    widen_for(settings, fixed.field.grid.spacing);
     return settings;
 }
 
@@ -237,11 +167,15 @@ Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& star
     } else {
         if (mode == FitMode::thesis) {
             found = {{follow_thesis(energy, from, settings, fit.iterations), 0.0}};
-            set_law(energy, settings, false);
+            set_law(energy, settings.outline);
             found[0].score = energy.quality(found[0].pose, settings.sigma).score;
         } else {
             found = coarse(energy, starts_near(moving, fixed, from), settings, fit.iterations);
-            fine(energy, found, 3, settings, fit.iterations);
+            // What the spins found within a hand's reach of the start counts as found from there.
+            for (const Candidate& c : elsewhere)
+                if (is_within_reach(c.pose, from, settings)) found.push_back(c);
+            keep_distinct(found, radius, 1e-3);
+            fine(energy, found, 4, settings, fit.iterations);
         }
         fine(energy, elsewhere, 3, settings, fit.iterations);
     }
@@ -249,8 +183,8 @@ Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& star
     double second = 0.0;
     for (const auto* list : {&found, &elsewhere})
         for (const Candidate& c : *list)
-            if (apart(c, best, radius) > 1e-3) second = std::max(second, c.score);
-    set_law(energy, settings, false);
+            if (apart(c.pose, best.pose, radius) > 1e-3) second = std::max(second, c.score);
+    set_law(energy, settings.outline);
     fit.quality = energy.quality(best.pose, settings.sigma);
     fit.margin = best.score > 0.0 ? std::clamp(1.0 - second / best.score, 0.0, 1.0) : 0.0;
     energy.law.scale = settings.finest;
@@ -258,7 +192,7 @@ Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& star
     energy.look(best.pose);
     find_free(fit, energy(best.pose, ContactParts::all).stiffness, radius, settings.least_hold);
     fit.pose = between_bodies(moving, fixed, best.pose);
-    fit.verdict = judge(fit, settings);
+    fit.verdict = judge(fit.quality, !fit.free.empty(), fit.margin, settings);
     return fit;
 }
 
@@ -277,16 +211,16 @@ Fit find_fit(std::span<const FitSurface> moving, std::span<const FitSurface> fix
             fixed_face = &f;
         }
     Fit fit = fits[best];
-    const Candidate chosen{between_centres(*moving_face, *fixed_face, fit.pose), fit.quality.score};
+    const Pose chosen = between_centres(*moving_face, *fixed_face, fit.pose);
     for (std::size_t n = 0; n < fits.size(); ++n) {
         fit.iterations += n == best ? 0 : fits[n].iterations;
-        const Candidate other{between_centres(*moving_face, *fixed_face, fits[n].pose), 0.0};
+        const Pose other = between_centres(*moving_face, *fixed_face, fits[n].pose);
         // Patches that fit by chance are small: they count by what they cover of the best one.
         const double area = std::min(1.0, fits[n].quality.overlap / std::max(fit.quality.overlap, 1e-12));
         if (n != best && apart(other, chosen, moving_face->gyration) > 1e-3 && fit.quality.score > 0.0)
             fit.margin = std::min(fit.margin, std::max(0.0, 1.0 - area * fits[n].quality.score / fit.quality.score));
     }
-    fit.verdict = judge(fit, settings_for(*moving_face, *fixed_face));
+    fit.verdict = judge(fit.quality, !fit.free.empty(), fit.margin, settings_for(*moving_face, *fixed_face));
     return fit;
 }
 

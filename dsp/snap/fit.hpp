@@ -37,6 +37,9 @@ struct FreeDirection {
 struct FitSettings {
     double widest = 4e-3, finest = 0.25e-3;  ///< m, scale of the robust kernel
     double power = 3.0;  ///< of the collinearity once the scale is fine
+    double polish = 0.07e-3;  ///< m, scale of the last steps: where bone is lost, a wider one pulls into the gap
+    double polish_power = 12.0;  ///< of the collinearity in the last steps
+    double most_way = 25e-3, most_turn = 1.05;  ///< m and rad: an extended fit is no farther from its start
     double outline = 0.3;  ///< weight of the outer contour
     double sigma = 0.2e-3;  ///< m, of the score
     double pull = 30.0;  ///< N, thesis: of all painted points together
@@ -47,7 +50,10 @@ struct FitSettings {
     double most_penetration = 0.5e-3;  ///< m
 };
 
-/// The defaults, wider where the scans are coarser than 0.4 mm.
+/// Coarse scans know their surfaces no better than their voxels: no scale stays finer than these tell.
+void widen_for(FitSettings& settings, const Vec3& spacing) noexcept;
+
+/// The defaults, widened for both fields.
 FitSettings settings_for(const FitSurface& moving, const FitSurface& fixed);
 
 struct Fit {
@@ -59,6 +65,9 @@ struct Fit {
     std::array<double, 6> hold{};  ///< mean square slope along the directions, ascending
     int iterations = 0;  ///< steps of the solver, all starts together
 };
+
+/// What a fit is worth: the first of no_match, sliding (`is_free`), ambiguous (`margin`) and blocked that holds, or fit.
+FitVerdict judge(const FitQuality& quality, bool is_free, double margin, const FitSettings& settings) noexcept;
 
 /// `start`: the moving body in the fixed body's frame, in the frames of their files. Deterministic.
 Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& start, FitMode mode,

@@ -58,13 +58,33 @@ double median_of(std::vector<double>& values, std::size_t count, double share) n
 
 }  // namespace
 
-FitEnergy::FitEnergy(const FitSurface& moving, const FitSurface& fixed)
-    : moving_(moving), fixed_(fixed), sides_{Side{&moving, &fixed, {}, {}}, Side{&fixed, &moving, {}, {}}} {
+FitEnergy::FitEnergy(const FitSurface& moving, const FitSurface& fixed) {
+    reserve(std::max(moving.position.size(), fixed.position.size()),
+            std::max(moving.outline.size(), fixed.outline.size()));
+    rebind(moving, fixed);
+}
+
+void FitEnergy::reserve(std::size_t points, std::size_t outline) {
     for (Side& side : sides_) {
+        side.weight.reserve(points);
+        side.seen.reserve(points);
+    }
+    links_.reserve(outline);
+    depths_.reserve(2 * (points + outline));
+}
+
+void FitEnergy::rebind(const FitSurface& moving, const FitSurface& fixed) noexcept {
+    moving_ = &moving;
+    fixed_ = &fixed;
+    for (std::size_t s = 0; s < 2; ++s) {
+        Side& side = sides_[s];
+        side.points = s == 0 ? moving_ : fixed_;
+        side.field = s == 0 ? fixed_ : moving_;
         side.weight.assign(side.points->position.size(), 0.0);
         side.seen.assign(side.points->position.size(), {});
     }
     links_.resize(moving.outline.size());
+    link_count_ = 0;
     depths_.resize(moving.position.size() + fixed.position.size() + moving.outline.size() + fixed.outline.size());
 }
 
@@ -86,23 +106,23 @@ void FitEnergy::look(Side& side, const Pose& into) noexcept {
 
 void FitEnergy::link(const Pose& pose) noexcept {
     link_count_ = 0;
-    if (!(law.outline > 0.0) || fixed_.outline.empty() || moving_.outline.empty()) return;
+    if (!(law.outline > 0.0) || fixed_->outline.empty() || moving_->outline.empty()) return;
     const Mat3 turn = glm::mat3_cast(pose.orientation);
-    const double each = law.outline * law.strength / static_cast<double>(moving_.outline.size());
+    const double each = law.outline * law.strength / static_cast<double>(moving_->outline.size());
     const std::size_t step = law.stride > 1 ? 2 : 1;
-    for (std::size_t i = 0; i < moving_.outline.size(); i += step) {
-        const Vec3 x = pose.position + turn * moving_.outline[i];
+    for (std::size_t i = 0; i < moving_->outline.size(); i += step) {
+        const Vec3 x = pose.position + turn * moving_->outline[i];
         double least = std::numeric_limits<double>::infinity();
         std::size_t nearest = 0;
-        for (std::size_t j = 0; j < fixed_.outline.size(); j += step) {
-            const Vec3 apart = x - fixed_.outline[j];
+        for (std::size_t j = 0; j < fixed_->outline.size(); j += step) {
+            const Vec3 apart = x - fixed_->outline[j];
             const double d2 = glm::dot(apart, apart);
             if (d2 < least) least = d2, nearest = j;
         }
-        const Vec3 normal = turn * moving_.outline_normal[i], other = fixed_.outline_normal[nearest];
+        const Vec3 normal = turn * moving_->outline_normal[i], other = fixed_->outline_normal[nearest];
         const double alike = glm::dot(normal, other);
         if (!(alike > 0.0)) continue;
-        links_[link_count_++] = {moving_.outline[i], fixed_.outline[nearest], 0.5 * (normal + other),
+        links_[link_count_++] = {moving_->outline[i], fixed_->outline[nearest], 0.5 * (normal + other),
                                  each * static_cast<double>(step) * alike / (1.0 + least / outline_reach2)};
     }
 }

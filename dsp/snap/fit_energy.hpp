@@ -60,8 +60,13 @@ public:
     /// Both must live as long as this. Memory is taken here and not later.
     FitEnergy(const FitSurface& moving, const FitSurface& fixed);
 
-    const FitSurface& moving() const noexcept { return moving_; }
-    const FitSurface& fixed() const noexcept { return fixed_; }
+    /// Room for other surfaces of up to so many points and outline points.
+    void reserve(std::size_t points, std::size_t outline);
+    /// Two other surfaces; takes no memory when there is room.
+    void rebind(const FitSurface& moving, const FitSurface& fixed) noexcept;
+
+    const FitSurface& moving() const noexcept { return *moving_; }
+    const FitSurface& fixed() const noexcept { return *fixed_; }
 
     /// Takes weights and partners as they are at this pose: of the moving centre's frame in the fixed centre's.
     void look(const Pose& pose) noexcept;
@@ -76,7 +81,7 @@ public:
 
 private:
     struct Side {
-        const FitSurface *points, *field;
+        const FitSurface *points = nullptr, *field = nullptr;
         std::vector<double> weight;
         std::vector<Sample> seen;  ///< of the field, at the pose last looked at
     };
@@ -92,8 +97,8 @@ private:
              Reading reading) noexcept;
     void add_outline(ContactSum& sum, const Pose& pose) const noexcept;
 
-    const FitSurface &moving_, &fixed_;
-    std::array<Side, 2> sides_;
+    const FitSurface *moving_ = nullptr, *fixed_ = nullptr;
+    std::array<Side, 2> sides_{};
     std::vector<Link> links_;
     std::vector<double> depths_;
     std::size_t link_count_ = 0;

@@ -20,6 +20,7 @@ namespace {
 constexpr std::size_t least_points = 30;
 constexpr double edge = 1.5e-3;  // m: nearer to the paint no point is taken for the outline
 constexpr double across = 0.6;   // of an outline's normal along that of the paint, at most
+constexpr std::uint8_t own_label = 200;  // of the one face of several that is being made
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 struct Box {
@@ -127,7 +128,8 @@ void take_outline(FitSurface& made, std::span<const SurfacePoint> points, const 
     std::vector<Vec3> positions, normals;
     for (const SurfacePoint& point : points) {
         const Vec3 p = point.position - made.centre;
-        if (point.label == options.paint || !(glm::length(point.normal) > 0.5)) continue;
+        if (point.label == options.paint || point.label == options.other_paint) continue;
+        if (!(glm::length(point.normal) > 0.5)) continue;
         if (glm::any(glm::lessThan(p, box.low)) || glm::any(glm::greaterThan(p, box.high))) continue;
         // The edge itself is rounded, and part of what was not painted may be fracture all the same.
         if (std::abs(glm::dot(glm::normalize(point.normal), axis)) > across) continue;
@@ -182,14 +184,18 @@ std::vector<FitSurface> make_fit_faces(std::span<const SurfacePoint> points, con
         faces.push_back(make_fit_surface(points, distance, options));
         return faces;
     }
-    std::vector<SurfacePoint> one(points.begin(), points.end());
-    for (const auto& patch : patches) {
-        for (SurfacePoint& p : one)
-            if (p.label == options.paint) p.label = surface_label::none;
-        for (const std::size_t i : patch) one[i].label = options.paint;
-        faces.push_back(make_fit_surface(one, distance, options));
-    }
+    for (const auto& patch : patches) faces.push_back(make_fit_face(points, patch, distance, options));
     return faces;
+}
+
+FitSurface make_fit_face(std::span<const SurfacePoint> points, std::span<const std::size_t> face, const Grid& distance,
+                         const FitSurfaceOptions& options) {
+    std::vector<SurfacePoint> one(points.begin(), points.end());
+    for (const std::size_t i : face) one[i].label = own_label;
+    FitSurfaceOptions own = options;
+    own.paint = own_label;
+    own.other_paint = options.paint;
+    return make_fit_surface(one, distance, own);
 }
 
 }  // namespace tactus

@@ -14,6 +14,7 @@ namespace tactus {
 
 struct FitSurfaceOptions {
     std::uint8_t paint = surface_label::fracture;  ///< label of the points that are to fit
+    std::uint8_t other_paint = surface_label::fracture;  ///< of other faces: neither paint nor outer contour
     double reach = 12e-3;  ///< m: how far from painted points the field goes on: no pull from farther away
     double outline = 6e-3;  ///< m: points this near to the paint, not painted, show how the outer contour goes on
     std::size_t most_outline = 240;  ///< points of the outline, spread evenly
@@ -50,5 +51,9 @@ FitSurface make_live_fit_surface(std::span<const SurfacePoint> points, const Gri
 /// less than 30 points are left out; throws Error as above when none is left.
 std::vector<FitSurface> make_fit_faces(std::span<const SurfacePoint> points, const Grid& distance,
                                        const FitSurfaceOptions& options = {});
+
+/// One face of several, by the indices of its points: points of other faces are neither its paint nor its outline.
+FitSurface make_fit_face(std::span<const SurfacePoint> points, std::span<const std::size_t> face, const Grid& distance,
+                         const FitSurfaceOptions& options = {});
 
 }  // namespace tactus

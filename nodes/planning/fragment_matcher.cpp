@@ -82,7 +82,7 @@ private:
         }
         const std::span<const Pose> poses(poses_.data(), count);
         const std::span<const char> stands(stands_.data(), count);
-        matcher_->settings.least_score = least_score;
+        matcher_->settings.fit.least_score = least_score;
         FragmentMatch match = matcher_->near(place, poses, stands);
         if (match.verdict != FitVerdict::fit && reach.index == 1) {
             if (was_ != place) matcher_->begin_search();
