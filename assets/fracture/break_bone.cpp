@@ -4,6 +4,7 @@
 #include "assets/fracture/rough_surface.hpp"
 #include "dsp/contact/voxmap.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/planning/main_axes.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -75,13 +76,12 @@ Grid cropped(const Grid& solid) {
     return small;
 }
 
-/// Longest axis of a set of points: the direction that power iteration settles on.
+/// Longest axis of a set of points.
 Vec3 long_axis(const std::vector<Vec3>& points, const Vec3& middle) {
     Mat3 spread(0.0);
     for (const Vec3& p : points) spread += glm::outerProduct(p - middle, p - middle);
-    Vec3 axis(0.62, 0.53, 0.58);
-    for (int n = 0; n < 200; ++n) axis = glm::normalize(spread * axis);
-    return axis;
+    const Vec3 axis = main_axes(spread)[0];
+    return glm::dot(axis, Vec3(0.62, 0.53, 0.58)) < 0.0 ? -axis : axis;
 }
 
 Vec3 any_normal_to(const Vec3& axis) {

@@ -4,6 +4,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/coupling/symmetric6.hpp"
 #include "dsp/operator/hand.hpp"
+#include "dsp/planning/main_axes.hpp"
 #include "dsp/snap/neighbours.hpp"
 
 #include <glm/geometric.hpp>
@@ -33,7 +34,7 @@ struct Spread {
     double gyration = 0.0;
 };
 
-/// Middle and main axes of the surface, by Jacobi's rotations.
+/// Middle and main axes of the surface.
 Spread spread_of(std::span<const SurfacePoint> points) {
     Spread spread;
     double area = 0.0;
@@ -45,23 +46,7 @@ Spread spread_of(std::span<const SurfacePoint> points) {
         m += p.area / area * glm::outerProduct(r, r);
     }
     spread.gyration = std::sqrt(m[0][0] + m[1][1] + m[2][2]);
-    Mat3 v(1.0);
-    for (int sweep = 0; sweep < 20; ++sweep)
-        for (int p = 0; p < 2; ++p)
-            for (int q = p + 1; q < 3; ++q) {
-                if (m[p][q] == 0.0) continue;
-                const double theta = 0.5 * std::atan2(2.0 * m[p][q], m[q][q] - m[p][p]);
-                Mat3 turn(1.0);
-                turn[p][p] = turn[q][q] = std::cos(theta);
-                turn[q][p] = std::sin(theta);
-                turn[p][q] = -std::sin(theta);
-                m = glm::transpose(turn) * m * turn;
-                v = v * turn;
-            }
-    std::array<int, 3> order{0, 1, 2};
-    std::ranges::sort(order, [&](int a, int b) { return m[a][a] > m[b][b]; });
-    spread.axes = Mat3(v[order[0]], v[order[1]], v[order[2]]);
-    if (glm::determinant(spread.axes) < 0.0) spread.axes[2] = -spread.axes[2];
+    spread.axes = main_axes(m);
     return spread;
 }
 
@@ -129,6 +114,30 @@ Pose anneal(const std::vector<SurfacePoint>& moving, const RegistrationTarget& f
     return pose;
 }
 
+/// How much of a surface lies on the target: mean of exp(−d² / 2s²).
+double lies_on(const std::vector<SurfacePoint>& points, const RegistrationTarget& fixed, const Pose& pose, double s) {
+    double sum = 0.0, area = 0.0;
+    for (const SurfacePoint& p : points) {
+        const double d = fixed.distance(pose.apply(p.position));
+        sum += p.area * std::exp(-0.5 * d * d / (s * s));
+        area += p.area;
+    }
+    return sum / area;
+}
+
+/// The eight parts of a surface about its middle, along its main axes.
+std::array<std::vector<SurfacePoint>, 8> parts_of(const std::vector<SurfacePoint>& points) {
+    const Spread spread = spread_of(points);
+    std::array<std::vector<SurfacePoint>, 8> parts;
+    for (const SurfacePoint& p : points) {
+        const Vec3 r = p.position - spread.middle;
+        std::size_t part = 0;
+        for (int axis = 0; axis < 3; ++axis) part = 2 * part + (glm::dot(r, spread.axes[axis]) > 0.0 ? 1 : 0);
+        parts[part].push_back(p);
+    }
+    return parts;
+}
+
 }  // namespace
 
 RegistrationTarget::RegistrationTarget(std::span<const SurfacePoint> points)
@@ -160,7 +169,29 @@ Registration register_surface(std::span<const SurfacePoint> moving, const Regist
     const Registration far = from_scale(settings.widest, settings.finest);
     // A part that is displaced turns the whole as long as it is within sight: what lies well already is found from near.
     const Registration near = from_scale(0.5 * settings.finest, 0.5 * settings.finest);
-    return near.median < far.median ? near : far;
+    Registration best = near.median < far.median ? near : far;
+    if (!settings.by_parts) return best;
+    // Where much of it is elsewhere the whole lies between two places. Each part by itself finds one of them, and the
+    // place where most of the whole lies on the target is the one.
+    const double tight = 0.25 * settings.finest;
+    double most = lies_on(some, fixed, best.pose, tight);
+    const Pose from = best.pose;
+    for (const std::vector<SurfacePoint>& part : parts_of(some)) {
+        if (part.size() < 50) continue;
+        RegistrationSettings scales = settings;
+        scales.widest = 4.0 * settings.finest;
+        scales.finest = 0.5 * settings.finest;
+        scales.stages = 30;
+        const Pose alone = anneal(part, fixed, from, scales);
+        scales.widest = scales.finest = 0.5 * settings.finest;
+        const Pose pose = anneal(some, fixed, alone, scales);
+        const double share = lies_on(some, fixed, pose, tight);
+        if (!(share > 1.02 * most)) continue;
+        most = share;
+        best.pose = pose;
+        judge(best, some, fixed, start, settings.finest);
+    }
+    return best;
 }
 
 Registration register_from_anywhere(std::span<const SurfacePoint> moving, std::span<const SurfacePoint> fixed_points,
@@ -171,6 +202,7 @@ Registration register_from_anywhere(std::span<const SurfacePoint> moving, std::s
     coarse.most_points = std::max<std::size_t>(200, settings.most_points / 8);
     coarse.finest = 3.0 * settings.finest;
     coarse.stages = settings.stages / 2;
+    coarse.by_parts = false;
     Registration best;
     for (int n = 0; n < 24; ++n) {
         // Main axes along each other in the four ways that are turns, each also turned about the longest by sixths.
@@ -184,18 +216,28 @@ Registration register_from_anywhere(std::span<const SurfacePoint> moving, std::s
     return register_surface(moving, fixed, best.pose, settings);
 }
 
+namespace {
+
+/// The patch with the most area of what is marked and hangs together with gaps below `gap`.
+std::vector<std::size_t> largest_patch(std::span<const SurfacePoint> points, const std::vector<char>& marked,
+                                       double gap) {
+    const auto patches = patches_of(points, gap, [&](std::size_t n) { return marked[n] != 0; });
+    const auto area_of = [&](const std::vector<std::size_t>& patch) {
+        double area = 0.0;
+        for (const std::size_t n : patch) area += points[n].area;
+        return area;
+    };
+    if (patches.empty()) return {};
+    return *std::ranges::max_element(patches, {}, area_of);
+}
+
+}  // namespace
+
 std::vector<std::size_t> displaced_region(std::span<const SurfacePoint> moving, const Pose& pose,
                                           const RegistrationTarget& fixed, double away, double gap, double margin) {
     std::vector<char> is_away(moving.size());
     for (std::size_t n = 0; n < moving.size(); ++n) is_away[n] = fixed.distance(pose.apply(moving[n].position)) > away;
-    const auto patches = patches_of(moving, gap, [&](std::size_t n) { return is_away[n] != 0; });
-    const auto area_of = [&](const std::vector<std::size_t>& patch) {
-        double area = 0.0;
-        for (const std::size_t n : patch) area += moving[n].area;
-        return area;
-    };
-    if (patches.empty()) return {};
-    const auto& largest = *std::ranges::max_element(patches, {}, area_of);
+    const auto largest = largest_patch(moving, is_away, gap);
     std::vector<char> taken(moving.size(), 0);
     const Neighbours neighbours(moving, std::max(margin, 1e-9));
     for (const std::size_t n : largest) neighbours.around(n, [&](std::size_t m) { taken[m] = 1; });
@@ -203,6 +245,16 @@ std::vector<std::size_t> displaced_region(std::span<const SurfacePoint> moving, 
     for (std::size_t n = 0; n < taken.size(); ++n)
         if (taken[n]) region.push_back(n);
     return region;
+}
+
+std::vector<std::size_t> region_nearer(std::span<const SurfacePoint> moving, const Pose& rest, const Pose& own,
+                                       const RegistrationTarget& fixed, double nearer, double away, double gap) {
+    std::vector<char> fits_better(moving.size());
+    for (std::size_t n = 0; n < moving.size(); ++n) {
+        const double there = fixed.distance(own.apply(moving[n].position));
+        fits_better[n] = there < away && there + nearer < fixed.distance(rest.apply(moving[n].position));
+    }
+    return largest_patch(moving, fits_better, gap);
 }
 
 }  // namespace tactus

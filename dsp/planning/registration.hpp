@@ -15,6 +15,7 @@ struct RegistrationSettings {
     double widest = 20e-3, finest = 1e-3;  ///< m, scale of the robust kernel: what lies far beyond it hardly pulls
     int stages = 60;
     std::size_t most_points = 4000;  ///< of the moving surface that take part, spread over the list
+    bool by_parts = false;  ///< much of it may lie elsewhere than the rest: the place that most of it agrees on
 };
 
 struct Registration {
@@ -54,5 +55,10 @@ Registration register_from_anywhere(std::span<const SurfacePoint> moving, std::s
 /// gaps below `gap`: the largest such patch by area, grown by `margin` over its neighbours.
 std::vector<std::size_t> displaced_region(std::span<const SurfacePoint> moving, const Pose& pose,
                                           const RegistrationTarget& fixed, double away, double gap, double margin);
+
+/// The largest patch of points that lie within `away` (m) of the fixed surface at pose `own`, and nearer to it there than
+/// at `rest` by `nearer` (m): all that moved with a part whose place is known.
+std::vector<std::size_t> region_nearer(std::span<const SurfacePoint> moving, const Pose& rest, const Pose& own,
+                                       const RegistrationTarget& fixed, double nearer, double away, double gap);
 
 }  // namespace tactus

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A hip that was really broken, by its own faces and against the other side; and a pelvis with a shifted part. Runs
-// only where
-// TACTUS_SHARED_DATA names a folder with these published scans.
+// only where TACTUS_SHARED_DATA names a folder with these published scans.
 #include "tests/tools/run_command.hpp"
 
 #include <catch2/catch.hpp>
@@ -62,6 +61,16 @@ TEST_CASE("the shifted part of a pelvis is found and laid on its reference by it
     REQUIRE(done.code == 0);
     const json found = json::parse(done.out);
     CHECK(found["median_mm"].get<double>() < 0.6);
-    CHECK(found["region"]["away"]["distance_mm"].get<double>() == Approx(3.05).margin(0.5));
-    CHECK(found["region"]["away"]["angle_deg"].get<double>() == Approx(0.5).margin(0.5));
+    // An estimate by plain ICP of points said 3.05 mm and 0.5 degrees, and so does ours.
+    const json& region = found["region"];
+    const json& plain = region["point_to_point"];
+    CHECK(plain["away"]["distance_mm"].get<double>() == Approx(3.05).margin(0.5));
+    CHECK(plain["away"]["angle_deg"].get<double>() == Approx(0.5).margin(0.5));
+    // That stops short: points lie near others before they lie on their own. Distances to triangles, computed apart from
+    // this code (robust Gauss-Newton in NumPy on exact distances, region and pose in turns), give 3.82 mm and 1.43
+    // degrees, with a median of 0.10 mm, which is what the part that did not move has, where plain ICP leaves 0.21 mm.
+    CHECK(region["away"]["distance_mm"].get<double>() == Approx(3.82).margin(0.3));
+    CHECK(region["away"]["angle_deg"].get<double>() == Approx(1.43).margin(0.3));
+    CHECK(region["median_mm"].get<double>() < 0.13);
+    CHECK(region["median_mm"].get<double>() < 0.85 * plain["median_mm"].get<double>());
 }

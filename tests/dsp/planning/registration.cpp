@@ -5,7 +5,9 @@
 #include "dsp/core/random.hpp"
 #include "dsp/operator/hand.hpp"
 #include "dsp/planning/gap.hpp"
+#include "dsp/planning/main_axes.hpp"
 #include "dsp/planning/mirror.hpp"
+#include "dsp/planning/point_registration.hpp"
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
@@ -163,4 +165,59 @@ TEST_CASE("gap and overlap of two balls are those of the formula") {
     const Pose far{Vec3(1.0, 2.0, -1.0), rotation_by({0.3, 0.2, 0.1})};
     CHECK(overlap_volume(still, far * inside, map, far) == Approx(caps).epsilon(0.03));
     CHECK(gap_between(points, far * inside, map, far).deepest == Approx(deep.deepest).epsilon(1e-6));
+}
+
+TEST_CASE("main axes of a turned box are its edges, longest first, and a rotation") {
+    const Quat turn = rotation_by({0.4, -1.1, 0.7});
+    const Mat3 r = glm::mat3_cast(turn);
+    const Mat3 axes =
+        main_axes(r * Mat3(Vec3(2.0, 0.0, 0.0), Vec3(0.0, 9.0, 0.0), Vec3(0.0, 0.0, 5.0)) * glm::transpose(r));
+    CHECK(std::abs(glm::dot(axes[0], r[1])) == Approx(1.0));
+    CHECK(std::abs(glm::dot(axes[1], r[2])) == Approx(1.0));
+    CHECK(std::abs(glm::dot(axes[2], r[0])) == Approx(1.0));
+    CHECK(glm::determinant(axes) == Approx(1.0));
+}
+
+TEST_CASE("where a third of a surface is elsewhere, the place that most of it agrees on is found") {
+    const auto fixed = lump_points(60);
+    auto moving = lump_points(53, 0.2);
+    const Pose shift{Vec3(2.5, 1.0, 1.5) * mm, rotation_by({0.0, 0.03, 0.02})};
+    for (SurfacePoint& p : moving)
+        if (p.position.z > 3.0 * mm) p = moved({p}, shift)[0];
+    const RegistrationTarget target(fixed);
+    const Registration bulk =
+        register_surface(moving, target, {Vec3(1.0, 2.0, -1.0) * mm, rotation_by({0.02, 0.0, 0.0})},
+                         {.widest = 10e-3, .finest = 0.8e-3, .by_parts = true});
+    CHECK(off(bulk.pose, {}) < 0.4 * mm);
+    // All that moved is told from the rest once its motion is known, also what slid along the surface.
+    const auto region = region_nearer(moving, bulk.pose, shift.inverse(), target, 0.1 * mm, 0.5 * mm, 3.0 * mm);
+    std::size_t right = 0, moved_points = 0;
+    for (const std::size_t n : region) right += shift.inverse().apply(moving[n].position).z > 3.0 * mm;
+    for (const SurfacePoint& p : moving) moved_points += shift.inverse().apply(p.position).z > 3.0 * mm;
+    CHECK(right > 0.9 * static_cast<double>(region.size()));
+    CHECK(right > 0.5 * static_cast<double>(moved_points));
+}
+
+TEST_CASE("plain registration of points stops short along a smooth surface, that of surfaces does not") {
+    // An ellipsoid that slid along itself by 3 mm: its points lie near others long before they lie on their own.
+    const auto ellipsoid = [](int rows) {
+        std::vector<SurfacePoint> points;
+        for (int i = 0; i < rows; ++i)
+            for (int j = 0; j < 2 * rows; ++j) {
+                const double v = std::numbers::pi * (i + 0.5) / rows, u = std::numbers::pi * j / rows;
+                const Vec3 d(std::sin(v) * std::cos(u), std::sin(v) * std::sin(u), std::cos(v));
+                const Vec3 axes(30.0 * mm, 18.0 * mm, 12.0 * mm);
+                points.push_back({axes * d, glm::normalize(d / axes), std::sin(v), 0});
+            }
+        return points;
+    };
+    const auto fixed = ellipsoid(40), moving = ellipsoid(37);
+    const RegistrationTarget target(fixed);
+    const Pose start{Vec3(3.0, 0.0, 0.0) * mm, {1.0, 0.0, 0.0, 0.0}};
+    const PointRegistration points = register_points(moving, target, start);
+    const Registration surface = register_surface(moving, target, start, {.widest = 4e-3, .finest = 0.5e-3});
+    CHECK(glm::length(surface.pose.position) < 0.2 * mm);
+    CHECK(glm::length(points.pose.position) > 2.0 * glm::length(surface.pose.position));
+    CHECK(points.to_surface > surface.median);
+    CHECK_THROWS_AS(register_points({}, target, {}), Error);
 }
