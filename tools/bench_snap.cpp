@@ -4,6 +4,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/operator/hand.hpp"
 #include "dsp/snap/fit.hpp"
+#include "tools/bench_snap_case.hpp"
 #include "tools/bench_snap_cases.hpp"
 #include "tools/bench_snap_live.hpp"
 #include "tools/bench_snap_peers.hpp"
@@ -42,10 +43,10 @@ struct Case {
 const std::vector<Case>& all_cases() {
     static const std::vector<Case> cases{
         {{"clean", 0.8e-3, 0.0, 0.0, 0.03}, {{4, 12}, {8, 20}, {10, 30}}},
-        {{"chipped25", 0.8e-3, 0.25, 0.0, 0.03}, {{8, 20}}},
+        {{"chipped25", 0.8e-3, 0.25, 0.0, 0.03}, {{4, 12}, {8, 20}, {10, 30}, {12, 45}}},
         {{"chipped30", 0.8e-3, 0.30, 0.0, 0.03}, {{4, 12}, {8, 20}}},
-        {{"spilled", 0.8e-3, 0.0, 2e-3, 0.03}, {{8, 20}}},
-        {{"both", 0.8e-3, 0.25, 2e-3, 0.03}, {{8, 20}}},
+        {{"spilled", 0.8e-3, 0.0, 2e-3, 0.03}, {{4, 12}, {8, 20}, {10, 30}, {12, 45}}},
+        {{"both", 0.8e-3, 0.25, 2e-3, 0.03}, {{4, 12}, {8, 20}, {10, 30}, {12, 45}}},
         {{"fine", 0.4e-3, 0.0, 0.0, 0.06}, {{4, 12}}},
     };
     return cases;
@@ -179,14 +180,58 @@ void print_live(const Json& rows) {
                    row["p99_ms"].get<double>(), 100.0 * row["success"].get<double>());
 }
 
+/// What an outlier of a chain of pieces is must be seen: the worst beside the median.
+Json whole_case_row(const Bone& bone, const WholeCase& kind, const SnapBenchChoice& choice) {
+    const WholeCaseResult r = put_together(bone, kind, choice.seed, choice.seeds);
+    return {{"case", kind.name},
+            {"method", "matcher"},
+            {"start_mm", 5.0},
+            {"start_deg", 10.0},
+            {"trials", r.error.size()},
+            {"success", static_cast<double>(r.within) / static_cast<double>(std::max<std::size_t>(r.error.size(), 1))},
+            {"median_tre_mm", median(r.error) * 1e3},
+            {"median_deg", median(r.angle)},
+            {"median_ms", median(r.seconds) * 1e3},
+            {"worst_mm", r.worst_error() * 1e3},
+            {"worst_deg", r.worst_angle()},
+            {"fitted", r.fitted},
+            {"without_neighbours", r.alone},
+            {"kerf_mm", kind.kerf * 1e3},
+            {"median_gap_mm", median(r.gap) * 1e3}};
+}
+
+void print_whole_case(const Json& row) {
+    fmt::print(
+        "{}: {} of {} pieces fit, {:.1f} % within 0.3 mm and 0.5°; error {:.3f} mm and {:.2f}° (median), {:.3f} mm and "
+        "{:.2f}° (worst); gap left {:.3f} mm; {} without neighbours; {:.0f} ms for a look\n",
+        row["case"].get<std::string>(), row["fitted"].get<int>(), row["trials"].get<int>(),
+        100.0 * row["success"].get<double>(), row["median_tre_mm"].get<double>(), row["median_deg"].get<double>(),
+        row["worst_mm"].get<double>(), row["worst_deg"].get<double>(), row["median_gap_mm"].get<double>(),
+        row["without_neighbours"].get<int>(), row["median_ms"].get<double>());
+}
+
+/// The whole cases that are asked for by name.
+Json whole_case_rows(const SnapBenchChoice& choice, const Bone& bone) {
+    Json rows = Json::array();
+    for (const WholeCase& kind : whole_cases()) {
+        if (std::ranges::count(choice.cases, kind.name) == 0) continue;
+        rows.push_back(whole_case_row(bone, kind, choice));
+        if (choice.json) continue;
+        print_whole_case(rows.back());
+        std::fflush(stdout);
+    }
+    return rows;
+}
+
 std::vector<Case> chosen_cases(const std::vector<std::string>& names) {
     if (names.empty()) return all_cases();
     std::vector<Case> chosen;
     std::vector<std::string> known;
     for (const Case& c : all_cases()) known.emplace_back(c.kind.name);
     known.emplace_back(live_case);
+    for (const WholeCase& c : whole_cases()) known.emplace_back(c.name);
     for (const std::string& name : names) {
-        if (name == live_case) continue;
+        if (name == live_case || std::ranges::count(whole_cases(), name, &WholeCase::name) > 0) continue;
         const auto found = std::ranges::find_if(all_cases(), [&](const Case& c) { return c.kind.name == name; });
         if (found == all_cases().end())
             throw Error(fmt::format("there is no case '{}'{}", name, did_you_mean(name, known)));
@@ -200,15 +245,9 @@ std::vector<Case> chosen_cases(const std::vector<std::string>& names) {
 int bench_snap_verb(const SnapBenchChoice& choice) {
     const std::vector<Case> cases = chosen_cases(choice.cases);
     const bool live = choice.cases.empty() || std::ranges::count(choice.cases, live_case) > 0;
-    if (cases.empty()) {
-        const Json rows = live_rows();
-        if (choice.json) fmt::print("{}\n", rows.dump(2));
-        else print_live(rows);
-        return done;
-    }
     const Bone bone = choice.bone.empty() ? make_mandible() : bone_of_file(choice.bone);
-    Json rows = Json::array();
-    if (!choice.json)
+    Json rows = whole_case_rows(choice, bone);
+    if (!choice.json && !cases.empty())
         fmt::print(
             "{} broken in two, scanned and painted; success: under 0.5 mm rms over the whole fragment; processor "
             "time; seeds {} to {}\n{:10} {:>9} {:22} {:>6} {:>8} {:>9} {:>7} {:>7} {}\n",

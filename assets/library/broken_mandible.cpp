@@ -51,7 +51,7 @@ struct FacePoint {
 };
 
 /// Pieces so that each, when its turn comes, has as large a face as possible against one of those before it.
-std::vector<std::size_t> order_of(const BrokenMandible& broken) {
+std::vector<std::size_t> order_of(const BrokenMandible& broken, const BrokenMandibleOptions& options) {
     const std::size_t count = broken.fragments.size();
     std::vector<std::vector<FacePoint>> paint(count);
     std::size_t faces = 0;
@@ -78,7 +78,8 @@ std::vector<std::size_t> order_of(const BrokenMandible& broken) {
             std::map<std::pair<std::size_t, std::size_t>, std::size_t> covered;
             for (const FacePoint& p : paint[n]) {
                 const FacePoint& other = standing[tree.nearest(p.position)];
-                if (glm::length(p.position - other.position) < 0.7e-3 && glm::dot(p.normal, other.normal) < -0.6)
+                if (glm::length(p.position - other.position) < 0.7e-3 + options.kerf &&
+                    glm::dot(p.normal, other.normal) < -0.6)
                     ++covered[{p.face, other.face}];
             }
             // A face that is covered as a whole shows its place better than a larger one that is not.
@@ -88,6 +89,7 @@ std::vector<std::size_t> order_of(const BrokenMandible& broken) {
                 if (best == 0 || worth > most) best = n, most = worth;
             }
         }
+        if (best == 0 && options.missing > 0) break;
         if (best == 0) throw Error("a piece of the bundled mandible touches none of the others");
         done[best] = 1;
         order.push_back(best);
@@ -155,7 +157,7 @@ void snap_and_settle(Script& script) {
 
 std::string script_of(const BrokenMandible& broken, const BrokenMandibleOptions& options, double& seconds) {
     Script script;
-    const auto order = order_of(broken);
+    const auto& order = broken.order;
     std::vector<Vec3> standing;
     const auto stand = [&](std::size_t n) {
         for (const SurfacePoint& p : broken.fragments[n].points) standing.push_back(broken.truth[n].apply(p.position));
@@ -163,13 +165,10 @@ std::string script_of(const BrokenMandible& broken, const BrokenMandibleOptions&
     stand(0);
     script.go(0.0, {middle_of(broken.fragments[order[0]].points), {1.0, 0.0, 0.0, 0.0}}, "");
     for (const std::size_t n : order) {
-        const Random random{options.seed * 7919 + n};
         const Vec3 middle = middle_of(broken.fragments[n].points);
         const Pose grip{middle, {1.0, 0.0, 0.0, 0.0}};
         const Vec3 place = broken.truth[n].apply(middle);
-        const Pose beside =
-            about(place, options.error * direction(random, 0), options.error_turn * direction(random, 3)) *
-            broken.truth[n];
+        const Pose& beside = broken.beside[n];
         script.go(0.6, grip, "");
         script.stay(0.1, "trigger");
         script.stay(0.1, "trigger");
@@ -204,6 +203,8 @@ BrokenMandible break_mandible(const Bone& bone, const BrokenMandibleOptions& opt
     const Voxmap whole = make_voxmap(bone.distance);
     const Vec3 centre =
         bone.distance.position(bone.distance.size[0] / 2, bone.distance.size[1] / 2, bone.distance.size[2] / 2);
+    if (options.missing < 0 || options.missing > options.pieces - 2) throw Error("at least two pieces must be left");
+    solids.resize(solids.size() - static_cast<std::size_t>(options.missing));
     BrokenMandible broken;
     for (std::size_t n = 0; n < solids.size(); ++n) {
         const Random random{options.seed * 1009 + n};
@@ -226,6 +227,14 @@ BrokenMandible break_mandible(const Bone& bone, const BrokenMandibleOptions& opt
         broken.truth.push_back(placement.inverse());
         broken.fragments.push_back(std::move(fragment));
     }
+    for (std::size_t n = 0; n < broken.fragments.size(); ++n) {
+        const Random random{options.seed * 7919 + n};
+        const Vec3 place = broken.truth[n].apply(middle_of(broken.fragments[n].points));
+        broken.beside.push_back(
+            about(place, options.error * direction(random, 0), options.error_turn * direction(random, 3)) *
+            broken.truth[n]);
+    }
+    broken.order = order_of(broken, options);
     broken.script = script_of(broken, options, broken.seconds);
     return broken;
 }

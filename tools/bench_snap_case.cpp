@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/bench_snap_case.hpp"
+
+#include "assets/library/broken_mandible.hpp"
+#include "dsp/operator/hand.hpp"
+#include "dsp/planning/fragment_matcher.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <time.h>
+#include <algorithm>
+#include <numbers>
+
+namespace tactus {
+
+namespace {
+
+constexpr double most_error = 0.3e-3, most_angle = 0.5;
+
+double thread_seconds() {
+    timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+void put_together_once(const BrokenMandible& broken, WholeCaseResult& result) {
+    std::vector<FragmentSurface> surfaces;
+    for (const Bone& bone : broken.fragments) surfaces.push_back({bone.points, &bone.distance});
+    FragmentMatcher matcher(surfaces);
+    std::vector<Pose> poses = broken.beside;
+    poses[0] = broken.truth[0];
+    std::vector<char> stands(poses.size(), 0);
+    std::vector<FragmentMatch> last(poses.size());
+    stands[0] = 1;
+    const auto look = [&](std::size_t n) {
+        const double begin = thread_seconds();
+        last[n] = matcher.near(static_cast<int>(n), poses, stands);
+        result.seconds.push_back(thread_seconds() - begin);
+        if (last[n].verdict == FitVerdict::fit) poses[n] = last[n].pose;
+    };
+    for (const std::size_t n : broken.order) {
+        look(n);
+        look(n);
+        stands[n] = 1;
+    }
+    for (int pass = 0; pass < 2; ++pass)
+        for (const std::size_t n : broken.order) look(n);
+    for (const std::size_t n : broken.order) {
+        Vec3 middle(0.0);
+        const auto& points = broken.fragments[n].points;
+        for (const SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
+        const double error = glm::length(poses[n].apply(middle) - broken.truth[n].apply(middle));
+        const double angle =
+            glm::length(rotation_between(broken.truth[n].orientation, poses[n].orientation)) * 180.0 / std::numbers::pi;
+        result.error.push_back(error);
+        result.angle.push_back(angle);
+        result.gap.push_back(last[n].quality.gap);
+        const bool fits = last[n].verdict == FitVerdict::fit;
+        result.fitted += fits;
+        result.within += fits && error < most_error && angle < most_angle;
+    }
+    result.alone += static_cast<int>(broken.fragments.size() - 1 - broken.order.size());
+}
+
+double greatest(const std::vector<double>& all) { return all.empty() ? 0.0 : *std::ranges::max_element(all); }
+
+}  // namespace
+
+const std::vector<WholeCase>& whole_cases() {
+    static const std::vector<WholeCase> cases{
+        {"twelve", 0.0, 0}, {"twelve-kerf", 0.3e-3, 0}, {"twelve-missing", 0.0, 2}};
+    return cases;
+}
+
+double WholeCaseResult::worst_error() const { return greatest(error); }
+double WholeCaseResult::worst_angle() const { return greatest(angle); }
+
+WholeCaseResult put_together(const Bone& bone, const WholeCase& kind, std::uint64_t seed, int seeds) {
+    WholeCaseResult result;
+    for (int n = 0; n < seeds; ++n)
+        put_together_once(
+            break_mandible(bone,
+                           {.seed = seed + static_cast<std::uint64_t>(n), .kerf = kind.kerf, .missing = kind.missing}),
+            result);
+    return result;
+}
+
+}  // namespace tactus
