@@ -23,7 +23,12 @@ int fracture_surface_verb(const FractureSurfaceChoice& choice) {
     if (bone.points.empty()) bone.points = sample_surface(bone.distance, {});
     const bool has_paint =
         std::ranges::any_of(bone.points, [](const SurfacePoint& p) { return p.label == surface_label::fracture; });
-    if (!choice.keep || !has_paint) {
+    if (!choice.facing.empty()) {
+        Bone other = bone_of_file(choice.facing);
+        if (other.points.empty()) other.points = sample_surface(other.distance, {});
+        propose_facing(bone.points, other.points,
+                       {.reach = choice.reach * 1e-3, .least_area = choice.least_area * 1e-6});
+    } else if (!choice.keep || !has_paint) {
         ProposalOptions options;
         options.roughness = choice.roughness;
         options.least_area = choice.least_area * 1e-6;

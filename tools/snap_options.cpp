@@ -47,6 +47,11 @@ void add_snap_verbs(CLI::App& app, SnapChoices& choices) {
         ->required();
     surface_app->add_option("--paint", surface.paint, "use this file of strokes instead of the proposal");
     surface_app->add_flag("--correct", surface.correct, "use its strokes on top of the proposal");
+    surface_app->add_option("--facing", surface.facing,
+                            "another fragment of the same scan: what faces it is proposed, however smooth");
+    surface_app->add_option("--reach", surface.reach, "how far that may be, mm")
+        ->capture_default_str()
+        ->check(CLI::Range(0.1, 100.0));
     surface_app->add_flag("--keep", surface.keep, "start from the paint that the bone file has");
     surface_app
         ->add_option("--roughness", surface.roughness, "from which on a place is broken: mean of 1 - cos of normals")
@@ -102,7 +107,9 @@ void add_snap_bench(CLI::App& bench, SnapBenchChoice& choice) {
     verb->add_option("--trials", choice.trials, "starts for each fracture and distance")
         ->capture_default_str()
         ->check(CLI::Range(1, 1000));
-    verb->add_option("--case", choice.cases, "clean, chipped25, chipped30, spilled, both, fine or live (default: all)")
+    verb->add_option("--case", choice.cases,
+                     "clean, chipped25, chipped30, spilled, both, fine or live (default: all of these); twelve, "
+                     "twelve-kerf, twelve-missing: a jaw in twelve pieces, by the matcher")
         ->delimiter(',');
     verb->add_option("--bone", choice.bone, "what is broken (default: the bundled jaw)");
     verb->add_flag("--pushed", choice.pushed, "starts are moved apart until bone does not lie in bone");

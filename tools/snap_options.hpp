@@ -34,8 +34,8 @@ struct SnapChoice {
 };
 
 struct FractureSurfaceChoice {
-    std::filesystem::path bone, out, paint;
-    double roughness = 0.06, least_area = 20.0;  ///< mean of 1 − cos between normals; mm²
+    std::filesystem::path bone, out, paint, facing;
+    double roughness = 0.06, least_area = 20.0, reach = 10.0;  ///< mean of 1 − cos between normals; mm²; mm
     bool correct = false, keep = false, json = false;
 };
 

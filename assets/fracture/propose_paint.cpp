@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/fracture/propose_paint.hpp"
 
+#include "dsp/core/error.hpp"
+#include "dsp/distance/point_tree.hpp"
 #include "dsp/snap/neighbours.hpp"
 
 #include <glm/geometric.hpp>
@@ -28,6 +30,21 @@ std::vector<double> roughness_of(std::span<const SurfacePoint> points, double ne
     return rough;
 }
 
+/// Labels the patches of what is broken that hang together and are large enough, and nothing else.
+std::size_t label_patches(std::span<SurfacePoint> points, const std::vector<std::uint8_t>& broken, double near,
+                          double least_area) {
+    for (SurfacePoint& p : points) p.label = surface_label::none;
+    std::size_t count = 0;
+    for (const auto& patch : patches_of(points, near, [&](std::size_t i) { return broken[i] != 0; })) {
+        double area = 0.0;
+        for (const std::size_t i : patch) area += points[i].area;
+        if (area < least_area) continue;
+        for (const std::size_t i : patch) points[i].label = surface_label::fracture;
+        count += patch.size();
+    }
+    return count;
+}
+
 }  // namespace
 
 std::size_t propose_fracture(std::span<SurfacePoint> points, const ProposalOptions& options) {
@@ -45,17 +62,28 @@ std::size_t propose_fracture(std::span<SurfacePoint> points, const ProposalOptio
         std::nth_element(nearby.begin(), middle, nearby.end());
         broken[i] = *middle > options.roughness;
     }
-    // Patches that hang together, each kept or left out as a whole.
-    for (SurfacePoint& p : points) p.label = surface_label::none;
-    std::size_t count = 0;
-    for (const auto& patch : patches_of(points, options.near, [&](std::size_t i) { return broken[i] != 0; })) {
-        double area = 0.0;
-        for (const std::size_t i : patch) area += points[i].area;
-        if (area < options.least_area) continue;
-        for (const std::size_t i : patch) points[i].label = surface_label::fracture;
-        count += patch.size();
+    return label_patches(points, broken, options.near, options.least_area);
+}
+
+std::size_t propose_facing(std::span<SurfacePoint> points, std::span<const SurfacePoint> other,
+                           const FacingOptions& options) {
+    if (other.empty()) throw Error("the other fragment has no surface");
+    constexpr double looks_back = -0.5, ahead = 0.3, touching = 1e-3;
+    std::vector<Vec3> places;
+    places.reserve(other.size());
+    for (const SurfacePoint& p : other) places.push_back(p.position);
+    const PointTree tree(places);
+    std::vector<std::uint8_t> faces(points.size(), 0);
+    double spacing = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const SurfacePoint &p = points[i], &q = other[tree.nearest(points[i].position)];
+        const Vec3 way = q.position - p.position;
+        const double away = glm::length(way);
+        spacing = std::max(spacing, std::sqrt(p.area));
+        faces[i] = away < options.reach && glm::dot(p.normal, q.normal) < looks_back &&
+                   (away < touching || glm::dot(p.normal, way) > ahead * away);
     }
-    return count;
+    return label_patches(points, faces, std::max(1.5e-3, 1.5 * spacing), options.least_area);
 }
 
 }  // namespace tactus

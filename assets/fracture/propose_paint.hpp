@@ -21,4 +21,15 @@ struct ProposalOptions {
 /// points are labelled.
 std::size_t propose_fracture(std::span<SurfacePoint> points, const ProposalOptions& options = {});
 
+struct FacingOptions {
+    double reach = 10e-3;      ///< m: how far the other fragment may be, as they lie in the scan
+    double least_area = 20e-6;  ///< m², smaller patches are left out
+};
+
+/// Labels the points that look at another fragment which looks back at them: fragments of one scan were not moved far, and
+/// grown bone rarely faces grown bone so near. For smooth or coarse scans, where broken bone is no rougher than the rest.
+/// Other labels are taken off. Returns how many points are labelled. Throws Error when `other` has no points.
+std::size_t propose_facing(std::span<SurfacePoint> points, std::span<const SurfacePoint> other,
+                           const FacingOptions& options = {});
+
 }  // namespace tactus
