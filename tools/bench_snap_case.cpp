@@ -36,12 +36,13 @@ void put_together_once(const BrokenMandible& broken, WholeCaseResult& result) {
         const double begin = thread_seconds();
         last[n] = matcher.near(static_cast<int>(n), poses, stands);
         result.seconds.push_back(thread_seconds() - begin);
-        if (last[n].verdict == FitVerdict::fit) poses[n] = last[n].pose;
+        if (last[n].verdict != FitVerdict::fit) return;
+        poses[n] = last[n].pose;
+        stands[n] = 1;
     };
     for (const std::size_t n : broken.order) {
         look(n);
-        look(n);
-        stands[n] = 1;
+        if (stands[n]) look(n);
     }
     for (int pass = 0; pass < 2; ++pass)
         for (const std::size_t n : broken.order) look(n);
