@@ -143,7 +143,7 @@ void widen_for(FitSettings& settings, const Vec3& spacing) noexcept {
     const double h = std::max({spacing.x, spacing.y, spacing.z});
     settings.finest = std::max(settings.finest, 0.6 * h);
     settings.sigma = std::max(settings.sigma, 0.5 * h);
-    settings.polish = std::max(settings.polish, 0.2 * h);
+    settings.polish = std::max(settings.polish, 0.3 * h);
 }
 
 FitSettings settings_for(const FitSurface& moving, const FitSurface& fixed) {

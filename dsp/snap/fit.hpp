@@ -37,8 +37,8 @@ struct FreeDirection {
 struct FitSettings {
     double widest = 4e-3, finest = 0.25e-3;  ///< m, scale of the robust kernel
     double power = 3.0;  ///< of the collinearity once the scale is fine
-    double polish = 0.07e-3;  ///< m, scale of the last steps: where bone is lost, a wider one pulls into the gap
-    double polish_power = 12.0;  ///< of the collinearity in the last steps
+    double polish = 0.1e-3;  ///< m, scale of the last steps: where bone is lost, a wider one pulls into the gap
+    double polish_power = 6.0;  ///< of the collinearity in the last steps
     double most_way = 25e-3, most_turn = 1.05;  ///< m and rad: an extended fit is no farther from its start
     double outline = 0.3;  ///< weight of the outer contour
     double sigma = 0.2e-3;  ///< m, of the score
