@@ -58,7 +58,9 @@ struct QuasiStaticCoupling {
         contact.set(*contact_, scene, hold_.place, in_hand);
         if (hold_.taken) take();
         guide(in_hand, tick.elapsed_seconds() / fade);
-        solver.set(solver_.settings, *contact_, sprung_);
+        // Without a kink where it begins, which the hand would feel as a knock.
+        const double sprung = sprung_ * sprung_ * (3.0 - 2.0 * sprung_);
+        solver.set(solver_.settings, *contact_, sprung);
         if (hold_.holds) solve(in_hand);
         else let_go();
         place = hold_.place;
