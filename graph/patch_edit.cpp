@@ -4,6 +4,7 @@
 #include "dsp/core/error.hpp"
 #include "graph/patch_editing.hpp"
 #include "graph/patch_wire.hpp"
+#include "graph/sub_patch.hpp"
 #include "graph/text_lines.hpp"
 
 #include <fmt/format.h>
@@ -113,21 +114,32 @@ std::string renamed(const std::string& wire, const PatchWire& read, std::string_
     return text;
 }
 
+/// What stands within a patch that is a node has no place in this text.
+void refuse_within(std::string_view name) {
+    const std::size_t end = name.find(within_node);
+    if (end == std::string_view::npos) return;
+    throw Error(fmt::format("'{}' stands within '{}': edit the file of that patch, or set what it offers", name,
+                            name.substr(0, end)));
+}
+
 }  // namespace
 
 std::string with_setting(std::string_view text, std::string_view node, std::string_view name, std::string_view value) {
+    refuse_within(node);
     Editing editing(text);
     editing.set({"nodes", std::string(node)}, name, value);
     return editing.result();
 }
 
 std::string without_setting(std::string_view text, std::string_view node, std::string_view name) {
+    refuse_within(node);
     Editing editing(text);
     editing.reset({"nodes", std::string(node)}, name);
     return editing.result();
 }
 
 std::string with_node(std::string_view text, const NewNode& node) {
+    for (const WireText& wire : node.wires) refuse_within(wire.from), refuse_within(wire.to);
     Editing editing(text);
     editing.add_table(node);
     for (const WireText& wire : node.wires) add_element(editing, wire);
@@ -135,6 +147,7 @@ std::string with_node(std::string_view text, const NewNode& node) {
 }
 
 std::string without_node(std::string_view text, std::string_view name) {
+    refuse_within(name);
     Editing editing(text);
     editing.remove_node(name);
     for (bool found = true; found;) {
@@ -153,6 +166,7 @@ std::string without_node(std::string_view text, std::string_view name) {
 }
 
 std::string with_node_named(std::string_view text, std::string_view from, std::string_view to) {
+    refuse_within(from);
     Editing editing(text);
     editing.rename(from, to);
     std::vector<WrittenWire> wires = wires_of(editing);
@@ -168,6 +182,8 @@ std::string with_node_named(std::string_view text, std::string_view from, std::s
 }
 
 std::string with_wire(std::string_view text, const WireText& wire) {
+    refuse_within(wire.from);
+    refuse_within(wire.to);
     Editing editing(text);
     for (const WrittenWire& written : wires_of(editing)) {
         if (!written.wire || written.wire->to_node + "." + written.wire->to_port != wire.to) continue;
@@ -179,6 +195,7 @@ std::string with_wire(std::string_view text, const WireText& wire) {
 }
 
 std::string without_wire(std::string_view text, std::string_view to) {
+    refuse_within(to);
     Editing editing(text);
     for (const WrittenWire& written : wires_of(editing)) {
         if (!written.wire || written.wire->to_node + "." + written.wire->to_port != to) continue;

@@ -302,3 +302,13 @@ TEST_CASE("saving replaces the file at once, through a link too, and never over 
     CHECK(editor.text().find("6 Hz") != std::string::npos);
     fs::remove_all(folder);
 }
+
+TEST_CASE("what stands within a patch that is a node is edited in its own file") {
+    using Catch::Contains;
+    CHECK_THROWS_WITH(with_setting(plain, "voice:tone", "frequency", "5 Hz"), Contains("stands within 'voice'"));
+    CHECK_THROWS_WITH(without_setting(plain, "voice:tone", "frequency"), Contains("stands within 'voice'"));
+    CHECK_THROWS_WITH(without_node(plain, "voice:tone"), Contains("stands within 'voice'"));
+    CHECK_THROWS_WITH(with_node_named(plain, "voice:tone", "b"), Contains("stands within 'voice'"));
+    CHECK_THROWS_WITH(with_wire(plain, {"voice:tone.signal", "x.in", {}}), Contains("stands within 'voice'"));
+    CHECK_THROWS_WITH(without_wire(plain, "voice:tone.in"), Contains("stands within 'voice'"));
+}
