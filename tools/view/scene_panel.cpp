@@ -112,19 +112,26 @@ void ScenePanel::tend_screens() {
     }
 }
 
+/// In the row where it fits, or else in the next one.
+static bool next_button(const char* label) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float end =
+        ImGui::GetItemRectMax().x + style.ItemSpacing.x + ImGui::CalcTextSize(label).x + 2.0f * style.FramePadding.x;
+    if (end < ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
+    return ImGui::SmallButton(label);
+}
+
 void ScenePanel::tools() {
     for (std::size_t i = 0; i < view_names.size(); ++i) {
-        if (ImGui::SmallButton(std::string(view_names[i]).c_str())) look_from(static_cast<NamedView>(i));
+        const std::string name(view_names[i]);
+        if (i == 0 ? ImGui::SmallButton(name.c_str()) : next_button(name.c_str())) look_from(static_cast<NamedView>(i));
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("key %d", static_cast<int>(i) + 1);
-        ImGui::SameLine();
     }
-    if (ImGui::SmallButton("fit")) fit();
+    if (next_button("fit")) fit();
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("key F");
-    ImGui::SameLine();
-    if (ImGui::SmallButton("reset")) reset();
+    if (next_button("reset")) reset();
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("key R: from iso, all of it, nothing cut away");
-    ImGui::SameLine();
-    if (ImGui::SmallButton(is_measuring ? "measuring" : "measure")) {
+    if (next_button(is_measuring ? "measuring" : "measure")) {
         is_measuring = !is_measuring;
         marks_.clear();
         needs_picture_ = true;
