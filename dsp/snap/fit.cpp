@@ -115,7 +115,8 @@ std::string_view name_of(FitVerdict verdict) {
 
 FitVerdict judge(const FitQuality& quality, bool is_free, double margin, const FitSettings& settings) noexcept {
     // Surfaces that do not belong together cross each other: what is near is spread evenly over all distances.
-    if (quality.score < settings.least_score || quality.rms > settings.most_rms * settings.sigma)
+    if (quality.score < settings.least_score || quality.overlap < settings.least_overlap ||
+        quality.rms > settings.most_rms * settings.sigma)
         return FitVerdict::no_match;
     if (is_free) return FitVerdict::sliding;
     if (margin < settings.least_margin) return FitVerdict::ambiguous;
@@ -144,6 +145,8 @@ void widen_for(FitSettings& settings, const Vec3& spacing) noexcept {
     settings.finest = std::max(settings.finest, 0.6 * h);
     settings.sigma = std::max(settings.sigma, 0.5 * h);
     settings.polish = std::max(settings.polish, 0.3 * h);
+    // A few dozen voxels of any two surfaces lie on each other somewhere.
+    settings.least_overlap = std::max(settings.least_overlap, 60.0 * h * h);
 }
 
 FitSettings settings_for(const FitSurface& moving, const FitSurface& fixed) {

@@ -45,6 +45,7 @@ struct FitSettings {
     double pull = 30.0;  ///< N, thesis: of all painted points together
     double least_score = 0.25;  ///< below it nothing matches
     double most_rms = 0.8;  ///< of the distances of what is covered, as share of sigma: above it nothing matches
+    double least_overlap = 0.0;  ///< m²; less of it is chance: nothing matches
     double least_margin = 0.1;  ///< to the second best pose, as share of the best score
     double least_hold = 0.008;  ///< mean square slope along a direction that still holds it
     double most_penetration = 0.5e-3;  ///< m

@@ -227,3 +227,17 @@ TEST_CASE("dsp: hardly any paint is an error, and so is none") {
     for (SurfacePoint& p : few.points) p.label = surface_label::none;
     CHECK_THROWS_AS(few.surface(), Error);
 }
+
+TEST_CASE("a few dozen voxels that lie on each other are no fit, however well they do") {
+    FitSettings settings;
+    widen_for(settings, Vec3(1e-3));
+    FitQuality quality;
+    quality.score = 0.9;
+    quality.overlap = 100e-6;
+    CHECK(judge(quality, false, 0.5, settings) == FitVerdict::fit);
+    quality.overlap = 25e-6;
+    CHECK(judge(quality, false, 0.5, settings) == FitVerdict::no_match);
+    FitSettings fine;
+    widen_for(fine, Vec3(0.3e-3));
+    CHECK(judge(quality, false, 0.5, fine) == FitVerdict::fit);
+}
