@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/patch.hpp"
 
+#include "assets/file/toml_file.hpp"
 #include "dsp/core/units.hpp"
-#include "graph/patch_depth.hpp"
 #include "graph/patch_wire.hpp"
 #include "graph/sub_patch.hpp"
 
@@ -29,23 +29,14 @@ public:
     Patch read(std::string_view text) {
         patch_.file = file_;
         patch_.text = text;
-        if (const std::optional<std::size_t> offset = overlong_key(text)) {
-            const std::string_view before = text.substr(0, *offset);
-            const std::size_t line_start = before.rfind('\n') + 1;  // npos + 1 is the start of the text
-            problems_.add({file_.string(), 1 + static_cast<int>(std::ranges::count(before, '\n')),
-                           1 + static_cast<int>(*offset - line_start)},
-                          fmt::format("a key has at most {} dots", most_dots_in_key));
-            return std::move(patch_);
-        }
-        toml::table root;
+        TomlTable parsed;
         try {
-            root = toml::parse(text, file_.string());
-        } catch (const toml::parse_error& error) {
-            const toml::source_position at = error.source().begin;
-            problems_.add({file_.string(), static_cast<int>(at.line), static_cast<int>(at.column)},
-                          fmt::format("not valid TOML: {}", error.description()));
+            parsed = parse_toml(text, file_.string());
+        } catch (const Error& error) {
+            problems_.list.push_back(error);
             return std::move(patch_);
         }
+        const toml::table& root = *parsed;
         for (const auto& [key, value] : root) entry(key, value);
         if (const toml::array* parts = root["parts"].as_array(); parts && !parts->empty()) end_text(*parts, root);
         sort_by_place(patch_.nodes);
@@ -59,9 +50,7 @@ public:
     }
 
 private:
-    SourceLocation at(const toml::source_region& region) const {
-        return {file_.string(), static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
-    }
+    SourceLocation at(const toml::source_region& region) const { return toml_place(file_.string(), region); }
     SourceLocation at(const toml::node& node) const { return at(node.source()); }
 
     static bool comes_before(const SourceLocation& a, const SourceLocation& b) {

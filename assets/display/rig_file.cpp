@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/display/rig_file.hpp"
 
-#include "assets/file/whole_file.hpp"
+#include "assets/file/toml_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
 #include "dsp/coupling/placement.hpp"
@@ -19,17 +19,12 @@ namespace {
 
 constexpr std::size_t most_screens = 64;
 
-class RigReader {
+class RigReader : TomlFile {
 public:
-    explicit RigReader(const std::filesystem::path& path) : path_(path) {}
+    explicit RigReader(const std::filesystem::path& path) : TomlFile(path, "a display rig") {}
 
     RigFile read() {
-        toml::table root;
-        try {
-            root = toml::parse(read_whole_file(path_), path_.string());
-        } catch (const toml::parse_error& error) {
-            throw Error(at(error.source()), fmt::format("not valid TOML: {}", error.description()));
-        }
+        const toml::table& root = this->root();
         know(root, {"title", "between_eyes", "offset", "head", "device", "mirror", "screens"});
         RigFile file;
         if (const auto* node = root.get("title")) file.title = word(*node);
@@ -40,7 +35,7 @@ public:
         if (const auto* node = root.get("mirror")) read_mirror(as_table(*node), file.rig);
         const auto* screens = root.get("screens");
         if (!screens || !screens->is_array() || screens->as_array()->empty())
-            throw Error({path_.string(), 0, 0},
+            throw Error({this->file(), 0, 0},
                         "a rig needs at least one [[screens]] with low_left, low_right, high_left");
         if (screens->as_array()->size() > most_screens)
             fail(*screens, fmt::format("a rig has {} screens at most", most_screens));
@@ -129,26 +124,6 @@ private:
         }
     }
 
-    SourceLocation at(const toml::source_region& source) const {
-        return {path_.string(), static_cast<int>(source.begin.line), static_cast<int>(source.begin.column)};
-    }
-    [[noreturn]] void fail(const toml::node& node, const std::string& message) const {
-        throw Error(at(node.source()), message);
-    }
-    const toml::table& as_table(const toml::node& node) const {
-        if (!node.is_table()) fail(node, "a table is expected here");
-        return *node.as_table();
-    }
-    void know(const toml::table& table, const std::vector<std::string>& names) const {
-        for (const auto& [key, value] : table)
-            if (std::ranges::find(names, key.str()) == names.end())
-                fail(value, fmt::format("'{}' is nothing that a display rig knows{}", key.str(),
-                                        did_you_mean(key.str(), names)));
-    }
-    std::string word(const toml::node& node) const {
-        if (!node.is_string()) fail(node, "a text in quotes is expected here");
-        return node.as_string()->get();
-    }
     bool flag(const toml::node& node) const {
         if (!node.is_boolean()) fail(node, "true or false is expected here");
         return node.as_boolean()->get();
@@ -207,8 +182,6 @@ private:
         }
         return pose;
     }
-
-    std::filesystem::path path_;
 };
 
 std::string text_of(const Vec3& v) {

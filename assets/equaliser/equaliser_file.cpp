@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/equaliser/equaliser_file.hpp"
 
+#include "assets/file/toml_file.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
@@ -55,14 +56,8 @@ void save_equaliser(const Equaliser& equaliser, const std::string& title, const 
 }
 
 Equaliser load_equaliser(const std::filesystem::path& path) {
-    toml::table root;
-    try {
-        root = toml::parse(read_whole_file(path), path.string());
-    } catch (const toml::parse_error& error) {
-        throw Error(
-            {path.string(), static_cast<int>(error.source().begin.line), static_cast<int>(error.source().begin.column)},
-            fmt::format("not valid TOML: {}", error.description()));
-    }
+    const TomlTable parsed = parse_toml(read_whole_file(path), path.string());
+    const toml::table& root = *parsed;
     const SourceLocation whole{path.string(), 0, 0};
     Equaliser out;
     for (const auto& [key, node] : root) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/recording/recording_set.hpp"
 
+#include "assets/file/toml_file.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/sound/sound.hpp"
 #include "dsp/core/error.hpp"
@@ -67,13 +68,8 @@ public:
     explicit SetReader(const std::filesystem::path& path) : path_(path) {}
 
     RecordingSet read() {
-        const std::string text = read_whole_file(path_);
-        toml::table root;
-        try {
-            root = toml::parse(text, path_.string());
-        } catch (const toml::parse_error& error) {
-            throw Error(location(error.source()), fmt::format("not valid TOML: {}", error.description()));
-        }
+        const TomlTable parsed = parse_toml(read_whole_file(path_), path_.string());
+        const toml::table& root = *parsed;
         check_keys(root, set_keys, "a recording set");
         RecordingSet set;
         set.path = path_;

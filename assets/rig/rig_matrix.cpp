@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/rig/rig_matrix.hpp"
 
-#include "assets/file/whole_file.hpp"
+#include "assets/file/toml_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
 
@@ -15,17 +15,12 @@ namespace tactus {
 
 namespace {
 
-class Reader {
+class Reader : TomlFile {
 public:
-    explicit Reader(const std::filesystem::path& path) : path_(path) {}
+    explicit Reader(const std::filesystem::path& path) : TomlFile(path, "a rig") {}
 
     RigMatrix read() {
-        toml::table root;
-        try {
-            root = toml::parse(read_whole_file(path_), path_.string());
-        } catch (const toml::parse_error& error) {
-            throw Error(at(error.source()), fmt::format("not valid TOML: {}", error.description()));
-        }
+        const toml::table& root = this->root();
         RigMatrix m;
         know(root, {"motors", "rates", "amplitudes", "cycles", "objects", "crossover", "assumed"});
         if (const auto* node = root.get("motors")) m.motors = words(*node);
@@ -49,26 +44,6 @@ public:
     }
 
 private:
-    SourceLocation at(const toml::source_region& source) const {
-        return {path_.string(), static_cast<int>(source.begin.line), static_cast<int>(source.begin.column)};
-    }
-    [[noreturn]] void fail(const toml::node& node, const std::string& message) const {
-        throw Error(at(node.source()), message);
-    }
-    const toml::table& as_table(const toml::node& node) const {
-        if (!node.is_table()) fail(node, "a table is expected here");
-        return *node.as_table();
-    }
-    void know(const toml::table& table, const std::vector<std::string>& names) const {
-        for (const auto& [key, value] : table)
-            if (std::ranges::find(names, key.str()) == names.end())
-                fail(value,
-                     fmt::format("'{}' is nothing that a rig knows{}", key.str(), did_you_mean(key.str(), names)));
-    }
-    std::string word(const toml::node& node) const {
-        if (!node.is_string()) fail(node, "a text in quotes is expected here");
-        return node.as_string()->get();
-    }
     double quantity(const toml::node& node, std::string_view unit) const {
         const std::string text = word(node);
         double value = 0.0;
@@ -129,8 +104,6 @@ private:
             }
         return all;
     }
-
-    std::filesystem::path path_;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/thresholds/thresholds.hpp"
 
+#include "assets/file/toml_file.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 
@@ -36,16 +37,9 @@ const std::array<std::pair<const char*, Member>, 12> members{{
 }  // namespace
 
 Thresholds load_thresholds(const std::filesystem::path& path) {
-    const auto at = [&](const toml::source_region& source) {
-        return SourceLocation{path.string(), static_cast<int>(source.begin.line),
-                              static_cast<int>(source.begin.column)};
-    };
-    toml::table root;
-    try {
-        root = toml::parse(read_whole_file(path), path.string());
-    } catch (const toml::parse_error& error) {
-        throw Error(at(error.source()), fmt::format("not valid TOML: {}", error.description()));
-    }
+    const auto at = [&](const toml::source_region& source) { return toml_place(path.string(), source); };
+    const TomlTable parsed = parse_toml(read_whole_file(path), path.string());
+    const toml::table& root = *parsed;
     Thresholds out;
     std::vector<std::string> names;
     for (const auto& [name, member] : members) names.emplace_back(name);

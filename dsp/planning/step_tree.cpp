@@ -73,18 +73,18 @@ void StepTree::add(const Arrangement& from, const Arrangement& to) noexcept {
     place_ = after_step(static_cast<int>(steps_.size()) - 1);
 }
 
+template <class Side>
+void StepTree::restore(const Step& step, Arrangement& now, Side side) const noexcept {
+    for (std::size_t n = 0; n < step.place_count; ++n)
+        now.restore(places_[step.places + n].number, side(places_[step.places + n]));
+    for (std::size_t n = 0; n < step.group_count; ++n)
+        now.restore(groups_[step.groups + n].number, side(groups_[step.groups + n]));
+}
+
 bool StepTree::undo(Arrangement& now) noexcept {
     const HistoryPlace to = undone(before_, place_);
     if (to.head == place_.head) return false;
-    const Step& step = steps_[static_cast<std::size_t>(place_.head)];
-    for (std::size_t n = 0; n < step.place_count; ++n) {
-        const auto& change = places_[step.places + n];
-        now.restore(change.number, change.from);
-    }
-    for (std::size_t n = 0; n < step.group_count; ++n) {
-        const auto& change = groups_[step.groups + n];
-        now.restore(change.number, change.from);
-    }
+    restore(steps_[static_cast<std::size_t>(place_.head)], now, [](const auto& change) { return change.from; });
     place_ = to;
     return true;
 }
@@ -92,15 +92,7 @@ bool StepTree::undo(Arrangement& now) noexcept {
 bool StepTree::redo(Arrangement& now) noexcept {
     const HistoryPlace to = redone(before_, place_);
     if (to.head == place_.head) return false;
-    const Step& step = steps_[static_cast<std::size_t>(to.head)];
-    for (std::size_t n = 0; n < step.place_count; ++n) {
-        const auto& change = places_[step.places + n];
-        now.restore(change.number, change.to);
-    }
-    for (std::size_t n = 0; n < step.group_count; ++n) {
-        const auto& change = groups_[step.groups + n];
-        now.restore(change.number, change.to);
-    }
+    restore(steps_[static_cast<std::size_t>(to.head)], now, [](const auto& change) { return change.to; });
     place_ = to;
     return true;
 }

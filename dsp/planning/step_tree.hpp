@@ -46,6 +46,9 @@ private:
     };
     Step changes(const Arrangement& from, const Arrangement& to) noexcept;
     void forget() noexcept;
+    /// What the step changed, as it was on one side of it.
+    template <class Side>
+    void restore(const Step& step, Arrangement& now, Side side) const noexcept;
 
     std::vector<int> before_;  // within this, as history.hpp has it
     std::vector<Step> steps_;

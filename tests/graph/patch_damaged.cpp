@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files that are no patch: each gets one clear error.
-#include "graph/patch_depth.hpp"
+#include "assets/file/toml_depth.hpp"
 #include "patch_reading.hpp"
 
 #include <catch2/catch.hpp>

@@ -22,6 +22,18 @@ Outcome on(const Display& display, const Folder& folder, const std::string& argu
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(folder.path / "stdout"), slurp(folder.path / "stderr")};
 }
 
+std::pair<std::string, std::int64_t> hash_of(const Display& display, const Folder& folder,
+                                             const std::string& arguments) {
+    const Outcome done = on(display, folder, arguments);
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    const nlohmann::json summary = nlohmann::json::parse(done.out);
+    std::int64_t late = 0;
+    for (const nlohmann::json& group : summary["groups"])
+        for (const char* how : {"misses", "skipped", "dropped"}) late += group[how].get<std::int64_t>();
+    return {summary["output_hash"].get<std::string>(), late};
+}
+
 std::size_t Picture::colours() const {
     std::set<int> seen;
     for (std::size_t i = 0; i + 2 < rgb.size(); i += 3) seen.insert(rgb[i] << 16 | rgb[i + 1] << 8 | rgb[i + 2]);

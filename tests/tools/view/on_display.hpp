@@ -13,12 +13,17 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tactus::test {
 
 /// Runs the command in the folder on that display, for at most so long.
 Outcome on(const Display& display, const Folder& folder, const std::string& arguments, int most_s = 100);
+
+/// Hash of what a run put out, and how often it was late, from its --json.
+std::pair<std::string, std::int64_t> hash_of(const Display& display, const Folder& folder,
+                                             const std::string& arguments);
 
 struct Picture {
     int width = 0, height = 0;

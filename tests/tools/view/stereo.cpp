@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stereo, heads and rigs in the window, as people use them.
-#include "tests/tools/run_command.hpp"
-#include "tests/tools/view/display.hpp"
+#include "tests/tools/view/on_display.hpp"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <string>
 
 using namespace tactus::test;
-using nlohmann::json;
 
 namespace {
-
-Outcome on(const Display& display, const Folder& folder, const std::string& arguments) {
-    const std::string command = "cd " + folder.path.string() + " && " + display.environment() + "timeout 100 " +
-                                std::string(TACTUS_COMMAND) + " " + arguments + " >stdout 2>stderr";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(folder.path / "stdout"), slurp(folder.path / "stderr")};
-}
 
 const char* const rig = R"([[screens]]
 name = "left projector"
@@ -57,13 +47,6 @@ frequency = "1 Hz"
 )";
 
 }  // namespace
-
-#define NEEDS_DISPLAY(display)                                                      \
-    const Display display;                                                          \
-    if (!display.is_there()) {                                                      \
-        WARN("Xvfb is not installed (apt install xvfb): the window is not tested"); \
-        return;                                                                     \
-    }
 
 TEST_CASE("in the window the scene is seen in stereo, with a head, through a rig and in windows of their own") {
     NEEDS_DISPLAY(display)
@@ -138,20 +121,10 @@ TEST_CASE("a window that draws a rig changes no bit of what a patch computes") {
     const Folder folder;
     folder.write("patch.toml", look_around);
     folder.write("rig.toml", rig);
-    const auto hash_of = [&](const std::string& how) {
-        const Outcome done = on(display, folder, how);
-        INFO(done.err);
-        REQUIRE(done.code == 0);
-        const json summary = json::parse(done.out);
-        std::int64_t late = 0;
-        for (const json& group : summary["groups"])
-            late += group["misses"].get<std::int64_t>() + group["skipped"].get<std::int64_t>() +
-                    group["dropped"].get<std::int64_t>();
-        return std::pair(summary["output_hash"].get<std::string>(), late);
-    };
     const auto [seen, late] =
-        hash_of("run patch.toml --view --rig rig.toml --head head.pose --seconds 1 --audio file --out out --json");
-    const auto plain = hash_of("render patch.toml --seconds 1 --out out --json").first;
+        hash_of(display, folder,
+                "run patch.toml --view --rig rig.toml --head head.pose --seconds 1 --audio file --out out --json");
+    const auto plain = hash_of(display, folder, "render patch.toml --seconds 1 --out out --json").first;
     if (late > 0) WARN("the machine was too busy for the live run to keep its schedule");
     else CHECK(seen == plain);
 }

@@ -8,7 +8,7 @@
 
 namespace tactus {
 
-/// Dots that one key may have: a patch needs two, as in [nodes.hand].
+/// Dots that one key may have: no file of ours needs more than two, as in [nodes.hand].
 inline constexpr int most_dots_in_key = 32;
 
 /// Offset of the first dot that is one too many, or nothing. Dots in strings and comments do not count.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "graph/patch_depth.hpp"
+#include "assets/file/toml_depth.hpp"
 
 #include <algorithm>
 #include <cctype>
