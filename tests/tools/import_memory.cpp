@@ -71,8 +71,9 @@ TEST_CASE("the memory that an import takes does not grow with the layers of the 
     const double large = peak_of_import(folder.path / "ct.nrrd", folder.path / "bone.vdb");
     const double samples = 1e-6 * width * width * 600;  // millions more
     CAPTURE(small, large, samples);
-    // As floats the volume would take 245 MB more.
-    CHECK(large - small < 0.4 * samples);
+    // As floats the volume would take 245 MB more, as the file's numbers 123. One run differs from the next by up to
+    // 20 MB, as its threads happen to meet: a byte per sample is well apart from both.
+    CHECK(large - small < 1.0 * samples);
     CHECK(fs::file_size(folder.path / "bone.vdb") < 2000000);
 #endif
 }
