@@ -2,8 +2,11 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
 #include "tools/analysis_options.hpp"
+#include "tools/bone_options.hpp"
+#include "tools/patch_options.hpp"
 #include "tools/plan_options.hpp"
 #include "tools/snap_options.hpp"
+#include "tools/sound_options.hpp"
 #include "tools/verbs.hpp"
 
 #include <fmt/format.h>
@@ -16,14 +19,6 @@
 namespace tactus {
 
 namespace {
-
-void add_patch_options(CLI::App& verb, PatchChoice& choice) {
-    verb.add_option("patch", choice.patch, "patch file, or a name in the library such as saw-training")->required();
-    verb.add_option("--set", choice.overrides.settings, "change a parameter: NODE.PARAM=VALUE")
-        ->allow_extra_args(false);
-    verb.add_option("--asset", choice.overrides.assets, "use another file: NAME=PATH")->allow_extra_args(false);
-    verb.add_option("--seed", choice.seed, "seed of the random numbers");
-}
 
 /// Of pictures and of the window; they need `what`.
 void add_sight_options(CLI::App& verb, SightChoice& choice, CLI::Option* what) {
@@ -82,198 +77,6 @@ void add_calibrate(CLI::App& app, CalibrateChoice& choice) {
         if (choice.device.empty() == choice.touches.empty())
             throw Error("say what touches: --device DRIVER, or --touches FILE");
     });
-}
-
-void add_import(CLI::App& app, ImportChoice& choice) {
-    CLI::App* verb = app.add_subcommand(
-        "import", "make a bone from a CT (DICOM, NRRD, NIfTI, InVesalius) or a closed mesh (STL, PLY, OBJ)");
-    verb->add_option("input", choice.input, "the file")->required();
-    verb->add_option("-o,--out", choice.out, "the bone, an OpenVDB file")->required();
-    verb->add_option("--threshold", choice.threshold, "CT number from which on there is bone, HU")
-        ->capture_default_str();
-    verb->add_option("--crop", choice.crop, "x0:x1,y0:y1,z0:z1 in mm, LPS");
-    verb->add_option("--component", choice.component, "largest, all, or how many of the largest")
-        ->capture_default_str();
-    verb->add_option("--unit", choice.unit, "unit of a mesh: mm, cm or m")->check(CLI::IsMember({"mm", "cm", "m"}));
-    verb->add_option_function<double>(
-        "--spacing,--isotropic", [&choice](const double& mm) { choice.spacing = mm * 1e-3; },
-        "resample to this grid spacing, mm");
-    verb->add_option("--series", choice.series, "DICOM: the series to take, by its UID or the end of it");
-    verb->add_option_function<std::string>(
-        "--hu-calibration",
-        [&choice](const std::string& text) {
-            double a = 0.0, b = 0.0, c = 0.0, d = 0.0;
-            if (std::sscanf(text.c_str(), "%lf:%lf,%lf:%lf", &a, &b, &c, &d) != 4 || a == c || b == d)
-                throw Error("--hu-calibration takes two points VALUE:HU, as in --hu-calibration 60:-1000,1084:0");
-            const double slope = (d - b) / (c - a);
-            choice.rescale = {slope, b - slope * a};
-        },
-        "scanner numbers to HU by two points: VALUE:HU,VALUE:HU");
-    verb->add_option_function<std::string>(
-        "--rescale",
-        [&choice](const std::string& text) {
-            double slope = 0.0, intercept = 0.0;
-            if (std::sscanf(text.c_str(), "%lf,%lf", &slope, &intercept) != 2)
-                throw Error("--rescale takes SLOPE,INTERCEPT, as in --rescale 1,-1024");
-            choice.rescale = {slope, intercept};
-        },
-        "scanner numbers to HU: SLOPE,INTERCEPT");
-    verb->add_option_function<double>(
-        "--pointshell", [&choice](const double& mm) { choice.pointshell = mm * 1e-3; },
-        "also spread points over the surface for contact, this far apart, mm");
-    verb->add_flag("--by-curvature", choice.pointshell_by_curvature, "points closer together where the surface turns");
-    verb->add_option("--label", choice.label, "the file is a label map: a label's number or name, or all; a bone each");
-    verb->add_option("--ct", choice.ct, "the CT a label map was drawn on: grey values for surface and density");
-    verb->add_flag("--json", choice.json, "print a summary as JSON");
-}
-
-void add_compare(CLI::App& app, CompareChoice& choice) {
-    CLI::App* verb =
-        app.add_subcommand("compare", "is what the actuator plays what the saw did? Exit code 0: yes, 1: no");
-    verb->add_option("reference", choice.reference, "sound file or CSV log of what was wanted, or a folder")
-        ->required();
-    verb->add_option("output", choice.output,
-                     "sound file or CSV log of what came out, or a folder: files are paired by name")
-        ->required();
-    verb->add_option("--thresholds", choice.thresholds, "TOML file of what must be reached; without: see README");
-    verb->add_option("--plot", choice.plot, "a figure, .svg or .png; of folders a folder, of SVG");
-    verb->add_option("--report", choice.report, "figure, tables and how they were computed in one HTML file");
-    verb->add_option("--table", choice.table, "a row per pair, CSV");
-    verb->add_option("--jobs", choice.jobs, "pairs at a time, 0: one per core")->check(CLI::Range(0, 256));
-    verb->add_option("--reference-scale", choice.reference_scale, "units per full scale, such as m/s^2")
-        ->capture_default_str();
-    verb->add_option("--output-scale", choice.output_scale, "of the output, in the same unit")->capture_default_str();
-    verb->add_option("--channel", choice.channel, "of both files, from 1; 0: the mean of all")
-        ->capture_default_str()
-        ->check(CLI::Range(0, 1024));
-    verb->add_option("--time-column", choice.time_columns, "of CSV logs: name or number, of both files or of each")
-        ->delimiter(',')
-        ->expected(1, 2)
-        ->allow_extra_args(false);
-    verb->add_option("--column", choice.columns, "of CSV logs: name or number of what is compared, of both or of each")
-        ->delimiter(',')
-        ->expected(1, 2)
-        ->allow_extra_args(false);
-    verb->add_option("--time-unit", choice.time_unit, "of CSV logs: s, ms, us or ns")
-        ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
-    verb->add_option("--actuator", choice.actuator, "state the level gap of this actuator at its limits, of m/s^2");
-    verb->add_option("--mass", choice.mass, "that the actuator shakes, kg")->capture_default_str();
-    verb->add_option("--touch", choice.touch, "what the threshold of touch is a threshold of")
-        ->capture_default_str()
-        ->check(CLI::IsMember({"displacement", "acceleration", "none"}));
-    verb->add_option("--max-delay", choice.longest_delay, "greatest delay looked for, s")
-        ->capture_default_str()
-        ->check(CLI::Range(0.001, 100.0));
-    verb->add_flag("--json", choice.json, "as JSON");
-}
-
-void add_validate(CLI::App& app, ValidateChoice& choice) {
-    CLI::App* verb = app.add_subcommand(
-        "validate", "does the handle vibrate as the saw did, at every rate and load recorded? Exit code 0: yes, 1: no");
-    add_patch_options(*verb, choice);
-    verb->add_option("--reference", choice.set, "recording set, TOML, or one sound; the patch's saw plays it")
-        ->required();
-    verb->add_option("--level", choice.levels, "dB on top of the patch's, one or more")
-        ->capture_default_str()
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->check(CLI::Range(-80.0, 40.0));
-    verb->add_option("--saw", choice.saw, "the node that plays (default: the only one of type saw)");
-    verb->add_option("--out", choice.out_port,
-                     "NODE.PORT, the handle's vibration (default: what is recorded as handle.wav, or the actuator's)");
-    verb->add_option("--seconds", choice.seconds, "that are compared of each run")
-        ->capture_default_str()
-        ->check(CLI::Range(0.5, 600.0));
-    verb->add_option("--thresholds", choice.thresholds, "TOML file of what must be reached, as of compare");
-    verb->add_option("--touch", choice.touch, "what the threshold of touch is a threshold of")
-        ->capture_default_str()
-        ->check(CLI::IsMember({"displacement", "acceleration", "none"}));
-    verb->add_option("--report", choice.report, "figures, tables and how they were computed in one HTML file");
-    verb->add_option("--plot", choice.plot, "folder for a figure of each run, SVG");
-    verb->add_option("--table", choice.table, "a row per run, CSV");
-    verb->add_option("--jobs", choice.jobs, "runs at a time, 0: one per core")->check(CLI::Range(0, 256));
-    verb->add_flag("--json", choice.json, "as JSON");
-}
-
-void add_measure(CLI::App& app, MeasureChoice& choice) {
-    CLI::App* verb = app.add_subcommand(
-        "measure", "sweep through a patch or a sound card: response, resonance, distortion, latency");
-    verb->add_option("patch", choice.patch, "patch file, or a name in the library");
-    verb->add_option("--in", choice.in, "NODE.PORT that the sweep feeds (an input) or replaces (an output)");
-    verb->add_option("--out", choice.out_port, "NODE.PORT, the output that is recorded");
-    verb->add_option("--device", choice.device, "a sound card instead: part of its name, or 'default'");
-    verb->add_option("--output-channel", choice.output_channel, "of the card, from 1")->capture_default_str();
-    verb->add_option("--input-channel", choice.input_channel, "of the card, from 1")->capture_default_str();
-    verb->add_option("--rate", choice.rate, "of the card, Hz")->capture_default_str()->check(CLI::Range(1e3, 1e6));
-    verb->add_option("-o,--csv", choice.csv, "the response, CSV")->capture_default_str();
-    verb->add_option("--first", choice.first, "first frequency, Hz")
-        ->capture_default_str()
-        ->check(CLI::Range(0.1, 1e5));
-    verb->add_option("--last", choice.last, "last frequency, Hz")->capture_default_str()->check(CLI::Range(0.1, 1e5));
-    verb->add_option("--duration", choice.duration, "of the sweep, s")
-        ->capture_default_str()
-        ->check(CLI::Range(0.1, 1e3));
-    verb->add_option("--pause", choice.pause, "silence after it, s")
-        ->capture_default_str()
-        ->check(CLI::Range(0.05, 1e2));
-    verb->add_option("--repeats", choice.repeats, "sweeps, averaged")
-        ->capture_default_str()
-        ->check(CLI::Range(1, 1000));
-    verb->add_option("--amplitude", choice.amplitude, "of the sweep, in the unit of what it feeds; card: of full scale")
-        ->capture_default_str();
-    verb->add_option("--fit-from", choice.fit_lowest, "where the resonance is looked for, Hz")->capture_default_str();
-    verb->add_option("--fit-to", choice.fit_highest, "and up to where, Hz")->capture_default_str();
-    verb->add_option("--set", choice.overrides.settings, "change a parameter: NODE.PARAM=VALUE")
-        ->allow_extra_args(false);
-    verb->add_option("--asset", choice.overrides.assets, "use another file: NAME=PATH")->allow_extra_args(false);
-    verb->add_option("--seed", choice.seed, "seed of the random numbers");
-    verb->add_flag("--json", choice.json, "as JSON");
-}
-
-void add_equalise(CLI::App& app, EqualiseChoice& choice) {
-    CLI::App* verb = app.add_subcommand("equalise", "make a filter for the 'equaliser' node from a measured response");
-    verb->add_option("response", choice.response, "file of 'tactus measure', or a table of Hz, dB and degrees")
-        ->required();
-    verb->add_option("-o,--out", choice.out, "the filter, TOML")->required();
-    verb->add_option("--kind", choice.kind,
-                     "minimum: adds at most 2 ms; linear: undoes the phase, adds half its length")
-        ->capture_default_str()
-        ->check(CLI::IsMember({"minimum", "linear"}));
-    verb->add_option("--rate", choice.rate, "of the node that will use it, Hz")->capture_default_str();
-    verb->add_option("--from", choice.lowest, "band to be made flat, Hz")->capture_default_str();
-    verb->add_option("--to", choice.highest, "and its upper end, Hz")->capture_default_str();
-    verb->add_option("--length", choice.length, "of the impulse response, s")->capture_default_str();
-    verb->add_option("--max-boost", choice.greatest_boost_db, "greatest gain of the filter, dB")
-        ->capture_default_str()
-        ->check(CLI::Range(0.0, 60.0));
-    verb->add_option("--regularisation", choice.regularisation, "share of the mean power gain below which it lets go")
-        ->capture_default_str()
-        ->check(CLI::Range(0.0, 1.0));
-    verb->add_option("--actuator", choice.actuator, "whose voltage and current limits count")->capture_default_str();
-    verb->add_option("--volts", choice.volts, "drive voltage per unit of the response's input")->capture_default_str();
-    verb->add_option("--signal", choice.signal, "a recording to be played: how much of it the limits would cut");
-    verb->add_option("--scale", choice.scale, "units of the response's input per full scale of the recording")
-        ->capture_default_str();
-    verb->add_flag("--json", choice.json, "as JSON");
-}
-
-void add_info(CLI::App& app, InfoChoice& choice) {
-    CLI::App* verb = app.add_subcommand("info", "what is in a CT, label map, mesh or bone file");
-    verb->add_option("file", choice.input, "the file")->required();
-    verb->add_option("--series", choice.series, "DICOM: the series to look at, by its UID or the end of it");
-    verb->add_option("-o,--out", choice.out, "a PNG of three slices and the surface: a file, or a folder to put it in");
-    verb->add_flag("--json", choice.json, "as JSON");
-}
-
-void add_export(CLI::App& app, ExportChoice& choice) {
-    CLI::App* verb = app.add_subcommand("export", "write a bone, cut or not, as a mesh or a volume");
-    verb->add_option("bone", choice.input, "bone file; FILE.vdb#NAME for one of several")->required();
-    verb->add_option("-o,--out", choice.out, ".stl or .ply: the surface; .nrrd, .nii or .nii.gz: a volume")->required();
-    verb->add_option("--bone", choice.bone, "one of several bones (default: all)");
-    verb->add_option("--quantity", choice.quantity, "what a volume holds")
-        ->check(CLI::IsMember({"hu", "density", "distance"}))
-        ->capture_default_str();
-    verb->add_flag("--json", choice.json, "print a summary as JSON");
 }
 
 void add_frame_options(CLI::App& app, FrameChoice& choice) {
@@ -381,20 +184,10 @@ int command_line(int argc, char** argv) {
 
     CalibrateChoice calibrate;
     add_calibrate(app, calibrate);
-    ImportChoice import;
-    add_import(app, import);
-    InfoChoice info;
-    add_info(app, info);
-    ExportChoice bone_export;
-    add_export(app, bone_export);
-    CompareChoice compare;
-    add_compare(app, compare);
-    ValidateChoice validate;
-    add_validate(app, validate);
-    MeasureChoice measure;
-    add_measure(app, measure);
-    EqualiseChoice equalise;
-    add_equalise(app, equalise);
+    BoneChoices bones;
+    add_bone_verbs(app, bones);
+    SoundChoices sounds;
+    add_sound_verbs(app, sounds);
     AnalysisChoices analysis;
     add_analysis_verbs(app, analysis);
     SnapChoices fitting;
@@ -457,18 +250,18 @@ int command_line(int argc, char** argv) {
         if (app.got_subcommand("spectrum")) return spectrum_verb(analysis.spectrum);
         if (app.got_subcommand("orders")) return orders_verb(analysis.orders);
         if (app.got_subcommand("exposure")) return exposure_verb(analysis.exposure);
-        if (app.got_subcommand("compare")) return compare_verb(compare);
-        if (app.got_subcommand("validate")) return validate_verb(validate);
-        if (app.got_subcommand("measure")) return measure_verb(measure);
-        if (app.got_subcommand("equalise")) return equalise_verb(equalise);
+        if (app.got_subcommand("compare")) return compare_verb(sounds.compare);
+        if (app.got_subcommand("validate")) return validate_verb(sounds.validate);
+        if (app.got_subcommand("measure")) return measure_verb(sounds.measure);
+        if (app.got_subcommand("equalise")) return equalise_verb(sounds.equalise);
         if (app.got_subcommand("fracture")) return fracture_verb(fitting.fracture);
         if (app.got_subcommand("fracture-surface")) return fracture_surface_verb(fitting.surface);
         if (app.got_subcommand("register")) return register_verb(fitting.registration);
         if (app.got_subcommand("snap")) return snap_verb(fitting.snap);
         if (app.got_subcommand("plan")) return plan_verb(app, plan);
-        if (app.got_subcommand("info")) return info_verb(info);
-        if (app.got_subcommand("export")) return export_verb(bone_export);
-        return import_verb(import);
+        if (app.got_subcommand("info")) return info_verb(bones.info);
+        if (app.got_subcommand("export")) return export_verb(bones.surface);
+        return import_verb(bones.import);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? done : bad_input;
     } catch (const std::bad_alloc&) {

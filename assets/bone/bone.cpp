@@ -2,8 +2,8 @@
 #include "assets/bone/bone.hpp"
 
 #include "assets/bone/point_bytes.hpp"
+#include "assets/bone/sealed_file.hpp"
 #include "assets/bone/sparse_bone.hpp"
-#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
 
@@ -14,20 +14,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <optional>
 #include <sstream>
-#include <streambuf>
 
 namespace tactus {
 
 namespace {
 
-constexpr std::string_view seal_mark = "TACTUSBONE000001";
-constexpr std::size_t seal_size = seal_mark.size() + 8;
 constexpr std::string_view provenance_prefix = "provenance.";
 // Files without this number hold one bone whose name and provenance stand in the file's own metadata.
 constexpr const char* format_key = "tactus_format";
@@ -36,14 +30,6 @@ constexpr std::int32_t newest_format = 3, sparse_format = 3, dense_format = 2;
 // A sparse file may claim so many samples for each that it stores, and so many in all.
 constexpr double most_claimed = 4096.0, most_samples = 1e9;
 constexpr const char* points_key = "points";
-// Magic (8), file version (4), library version (8) and one flag stand before OpenVDB's identifier.
-constexpr std::size_t identifier_offset = 21, identifier_size = 36;
-
-std::uint64_t hash_of(std::string_view bytes) {
-    Hash hash;
-    hash.add_bytes(bytes.data(), bytes.size());
-    return hash.value();
-}
 
 // Calls visit(leaf, first, end) for every block of 8 x 8 x 8 samples: those of the grid in [first, end).
 template <typename Visit>
@@ -194,77 +180,6 @@ std::string identifier_of(const SparseBone& bone, const Bone& about) {
     return identifier_of(hash);
 }
 
-// Takes what OpenVDB writes to `path` + ".part" in blocks, so that a large bone is not in memory once more, with another
-// identifier and with the seal behind it. The file appears under its name by seal().
-class SealedFile final : public std::streambuf {
-public:
-    SealedFile(const std::filesystem::path& path, std::string identifier)
-        : path_(path), part_(path.string() + ".part"), identifier_(std::move(identifier)), block_(block_size, 0) {
-        errno = 0;
-        file_.open(part_, std::ios::binary | std::ios::trunc);
-        if (!file_) throw Error(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
-        setp(block_.data(), block_.data() + block_.size());
-    }
-    ~SealedFile() override {
-        std::error_code ignored;
-        if (!sealed_) std::filesystem::remove(part_, ignored);
-    }
-    SealedFile(const SealedFile&) = delete;
-    SealedFile& operator=(const SealedFile&) = delete;
-
-    void seal() {
-        flush_block();
-        const std::uint64_t hash = hash_.value();
-        file_ << seal_mark;
-        file_.write(reinterpret_cast<const char*>(&hash), sizeof hash);
-        file_.close();
-        if (!file_) fail();
-        if (std::rename(part_.c_str(), path_.c_str()) != 0) fail();
-        sealed_ = true;
-    }
-
-protected:
-    int_type overflow(int_type next) override {
-        flush_block();
-        if (!traits_type::eq_int_type(next, traits_type::eof())) sputc(traits_type::to_char_type(next));
-        return traits_type::not_eof(next);
-    }
-    // OpenVDB asks where it is; it goes nowhere else in a stream.
-    pos_type seekoff(off_type by, std::ios_base::seekdir from, std::ios_base::openmode) override {
-        if (by != 0 || from != std::ios_base::cur) return pos_type(off_type(-1));
-        return pos_type(static_cast<off_type>(written_ + static_cast<std::size_t>(pptr() - pbase())));
-    }
-
-private:
-    static constexpr std::size_t block_size = 1 << 20;  // whole words, so that the hash does not depend on it
-
-    [[noreturn]] void fail() const {
-        throw Error(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
-    }
-
-    void flush_block() {
-        const auto count = static_cast<std::size_t>(pptr() - pbase());
-        if (written_ == 0) {
-            if (count < identifier_offset + identifier_size) throw Error("OpenVDB wrote no header");
-            std::copy(identifier_.begin(), identifier_.end(), block_.begin() + identifier_offset);
-        }
-        hash_.add_bytes(block_.data(), count);
-        errno = 0;
-        file_.write(block_.data(), static_cast<std::streamsize>(count));
-        if (!file_.flush()) fail();
-        written_ += count;
-        setp(block_.data(), block_.data() + block_.size());
-    }
-
-    std::filesystem::path path_, part_;
-    std::string identifier_;
-    std::vector<char> block_;
-    std::ofstream file_;
-    Hash hash_;
-    std::size_t written_ = 0;
-    bool sealed_ = false;
-};
-
 void add_meta(const VdbPair& vdb, const Bone& bone) {
     vdb.distance->setGridClass(openvdb::GRID_LEVEL_SET);
     add_text(*vdb.distance, "quantity", "distance");
@@ -384,15 +299,7 @@ void save_bone(const Bone& bone, const std::filesystem::path& path) { save_bones
 
 std::vector<Bone> load_bones(const std::filesystem::path& path) {
     const std::string file = path.string();
-    std::string bytes = read_whole_file(path);
-    // OpenVDB trusts the sizes it reads, so only bytes that are known to be whole reach it.
-    if (bytes.size() < seal_size || bytes.compare(bytes.size() - seal_size, seal_mark.size(), seal_mark) != 0)
-        throw Error(fmt::format("{}: not a whole bone file; make it again with 'tactus import'", file));
-    std::uint64_t hash = 0;
-    std::memcpy(&hash, bytes.data() + bytes.size() - sizeof hash, sizeof hash);
-    bytes.resize(bytes.size() - seal_size);
-    if (hash_of(bytes) != hash)
-        throw Error(fmt::format("{}: damaged (its checksum differs); make it again with 'tactus import'", file));
+    std::string bytes = read_sealed(path);
     openvdb::initialize();
     try {
         std::vector<Bone> bones = deserialise(std::move(bytes), file);
