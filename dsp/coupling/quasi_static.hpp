@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tactus {
 
@@ -36,6 +37,9 @@ struct QuasiStaticSettings {
     /// m: farthest that one iteration moves any point beyond what is surely free. Half of the thinnest wall plus the
     /// thinnest held part at most, or they pass through each other.
     double step = 0.5e-3;
+    /// m: farthest that any point moves in one tick beyond what the hand does. What would jump over an edge takes as many
+    /// ticks as that needs, so that the force of the springs changes by no more than they are stretched by it.
+    double slip = std::numeric_limits<double>::infinity();
     double reach = 0.05;  ///< m, farthest point of the held body from the handle: what a turn moves
     double gyration = 0.02;  ///< m: a torque counts as the force that makes it at this lever
 };
@@ -70,7 +74,12 @@ public:
     template <HeldContactLike Contact>
     const QuasiStaticState& update(const Pose& hand, Contact&& contact) noexcept {
         state_.hand_is_valid = is_valid(hand);
-        if (state_.hand_is_valid) hand_ = {hand.position, glm::normalize(hand.orientation)};
+        left_ = settings.slip;
+        if (state_.hand_is_valid) {
+            const Pose now{hand.position, glm::normalize(hand.orientation)};
+            left_ += way_of(now.position - hand_.position, rotation_between(hand_.orientation, now.orientation));
+            hand_ = now;
+        }
         state_.iterations = 0;
         state_.evaluations = 0;
         state_.balanced = false;
@@ -79,7 +88,7 @@ public:
         while (std::isfinite(now.energy)) {
             state_.balanced = residual(now) < settings.tolerance;
             if (state_.balanced || state_.iterations >= settings.iterations || !may_evaluate() ||
-                !improve(now, contact))
+                !(left_ > least_way) || !improve(now, contact))
                 break;
             ++state_.iterations;
         }
@@ -187,16 +196,27 @@ private:
         curvature_.learn(step.way, change, known, std::max(settings.gyration, 1e-6));
         state_.proxy = trial;
         now = there;
+        left_ -= way_of(step.way);
         return true;
+    }
+
+    /// m: no point of the body moves farther by this.
+    double way_of(const Vec3& shift, const Vec3& turn) const noexcept {
+        return std::hypot(shift.x, shift.y, shift.z) +
+               std::hypot(turn.x, turn.y, turn.z) * std::max(settings.reach, 1e-6);
+    }
+    double way_of(const Vector6& step) const noexcept {
+        return way_of(Vec3(step[0], step[1], step[2]), Vec3(step[3], step[4], step[5]));
     }
 
     template <class Contact>
     void limit(Vector6& step, Contact& contact) const noexcept {
-        const double way = std::hypot(step[0], step[1], step[2]) +
-                           std::hypot(step[3], step[4], step[5]) * std::max(settings.reach, 1e-6);
-        if (!(way > settings.step)) return;
-        const double free = std::max(0.0, static_cast<double>(contact.clearance(state_.proxy)));
-        const double share = std::min(1.0, (settings.step + free) / way);
+        const double way = way_of(step);
+        double most = left_;
+        if (way > settings.step)
+            most = std::min(most, settings.step + std::max(0.0, static_cast<double>(contact.clearance(state_.proxy))));
+        if (!(way > most)) return;
+        const double share = most / way;
         for (double& s : step) s *= share;
     }
 
@@ -206,10 +226,12 @@ private:
     }
 
     static constexpr int most_halvings = 6;
+    static constexpr double least_way = 1e-9;  // m
     LearnedCurvature curvature_;
     QuasiStaticState state_;
     Pose hand_;
     Vec3 turn_{0.0};
+    double left_ = 0.0;  // m that the points may still move in this tick
 };
 
 }  // namespace tactus

@@ -5,6 +5,7 @@
 #include "graph/node.hpp"
 #include "nodes/contact/contact_parameters.hpp"
 #include "nodes/coupling/held_body.hpp"
+#include "nodes/coupling/lead.hpp"
 #include "nodes/coupling/solver_parameters.hpp"
 
 #include <glm/geometric.hpp>
@@ -42,7 +43,7 @@ struct QuasiStaticCoupling {
     Param guide_angular_stiffness{"1 N m/rad", "0 N m/rad", "100 N m/rad", "of that which turns"};
     Param guide_force{"8 N", "0 N", "100 N", "the target pulls no harder"};
     Param guide_torque{"0.3 N m", "0 N m", "20 N m", "the target turns no harder"};
-    Param fade{"100 ms", "1 ms", "10 s", "in which guidance and springs come and go"};
+    LeadParameters led;
     SolverParameters solver;
     ContactParameters contact;
 
@@ -57,10 +58,9 @@ struct QuasiStaticCoupling {
         const Pose in_hand = grip.connected && is_valid(grip.get()) ? grip.get() : Pose{grip_at, {1.0, 0.0, 0.0, 0.0}};
         contact.set(*contact_, scene, hold_.place, in_hand);
         if (hold_.taken) take();
-        guide(in_hand, tick.elapsed_seconds() / fade);
-        // Without a kink where it begins, which the hand would feel as a knock.
-        const double sprung = sprung_ * sprung_ * (3.0 - 2.0 * sprung_);
-        solver.set(solver_.settings, *contact_, sprung);
+        guide(in_hand, tick.elapsed_seconds());
+        solver.set(solver_.settings, *contact_, lead_.springs());
+        solver_.settings.slip = lead_.slip();
         if (hold_.holds) solve(in_hand);
         else let_go();
         place = hold_.place;
@@ -84,20 +84,19 @@ struct QuasiStaticCoupling {
 private:
     void take() noexcept {
         solver_.reset(device);
-        guided_contact_->share = 0.0;
-        sprung_ = 1.0;
+        lead_.take();
     }
 
-    void guide(const Pose& in_hand, double change) noexcept {
+    void guide(const Pose& in_hand, double elapsed) noexcept {
         GuidedContact& g = *guided_contact_;
         const bool is_its = !target_of.connected || target_of.get() == static_cast<double>(hold_.place);
         const bool wanted = hold_.holds && guided.connected && guided.get() && is_its &&
                             (!has_target.connected || has_target.get()) && target.connected && is_valid(target.get());
-        g.share = std::clamp(g.share + (wanted ? change : -change), 0.0, 1.0);
+        lead_.update(led, device, wanted, wanted && settle.connected && settle.get(), solver_.state().balanced,
+                     elapsed);
+        g.share = lead_.share();
         if (wanted) g.target = Pose{target->position, glm::normalize(target->orientation)} * in_hand.inverse();
         g.springs = {{guide_stiffness, guide_force}, {guide_angular_stiffness, guide_torque}};
-        const bool gives_way = wanted && settle.connected && settle.get();
-        sprung_ = std::clamp(sprung_ + (gives_way ? -change : change), 0.0, 1.0);
     }
 
     void solve(const Pose& in_hand) noexcept {
@@ -129,7 +128,7 @@ private:
 
     std::optional<HeldContact> contact_;
     std::optional<GuidedContact> guided_contact_;
-    double sprung_ = 1.0;
+    Lead lead_;
     tactus::QuasiStaticCoupling solver_;
     Hold hold_;
     Wrench last_;
@@ -140,6 +139,6 @@ private:
 
 TACTUS_NODE(QuasiStaticCoupling, device, scene, grip, holding, strength, target, guided, has_target, target_of, settle,
             wrench, pose, place, penetration, residual, in_contact, held, grip_at, guide_stiffness,
-            guide_angular_stiffness, guide_force, guide_torque, fade, solver, contact)
+            guide_angular_stiffness, guide_force, guide_torque, led, solver, contact)
 
 }  // namespace tactus::nodes

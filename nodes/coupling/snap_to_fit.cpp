@@ -7,6 +7,7 @@
 #include "graph/node.hpp"
 #include "nodes/contact/contact_parameters.hpp"
 #include "nodes/coupling/held_body.hpp"
+#include "nodes/coupling/lead.hpp"
 #include "nodes/coupling/solver_parameters.hpp"
 
 #include <algorithm>
@@ -43,7 +44,7 @@ struct SnapToFit {
     Choice mode{{"extended", "thesis"}, "extended: both paints, robust, narrowing; thesis: a steady pull of one"};
     Param force{"10 N", "0 N", "100 N", "the pull of all painted points together, at most"};
     Param reach{"4 mm", "0.1 mm", "12 mm", "no pull from farther away"};
-    Param fade{"100 ms", "1 ms", "10 s", "in which pull and springs come and go"};
+    LeadParameters led;
     SolverParameters solver;
     ContactParameters contact;
 
@@ -62,13 +63,10 @@ struct SnapToFit {
         const Pose in_hand = grip.connected && is_valid(grip.get()) ? grip.get() : Pose{};
         contact.set(*contact_, scene, hold_.place, in_hand);
         if (hold_.taken) take();
-        const double change = tick.elapsed_seconds() / fade;
-        const auto follow = [change](double value, bool wanted) {
-            return std::clamp(value + (wanted ? change : -change), 0.0, 1.0);
-        };
-        drawn_ = follow(drawn_, hold_.holds && (!engaged.connected || engaged.get()));
-        sprung_ = follow(sprung_, !(settle.connected && settle.get()));
-        solver.set(solver_.settings, *contact_, sprung_);
+        lead_.update(led, device, hold_.holds && (!engaged.connected || engaged.get()),
+                     settle.connected && settle.get(), solver_.state().balanced, tick.elapsed_seconds());
+        solver.set(solver_.settings, *contact_, lead_.springs());
+        solver_.settings.slip = lead_.slip();
         if (hold_.holds) solve(in_hand, tick.elapsed_seconds());
         else let_go();
         place = hold_.place;
@@ -94,8 +92,7 @@ private:
     void take() noexcept {
         solver_.reset(device);
         fit_->forget();
-        drawn_ = 0.0;
-        sprung_ = 1.0;
+        lead_.take();
         scale_ = 0.5 * reach;
     }
 
@@ -121,7 +118,7 @@ private:
             const auto file_of = [](const SceneObject& o) { return o.body.home.inverse(); };
             moving_file = in_hand * file_of(scene->objects[static_cast<std::size_t>(hold_.place)]);
             fixed_file = scene->objects[other].pose * file_of(scene->objects[other]);
-            fit_->look(solver_.state().proxy, moving_file, fixed_file, drawn_);
+            fit_->look(solver_.state().proxy, moving_file, fixed_file, lead_.share());
             narrow(elapsed);
         }
         const QuasiStaticState& now = solver_.update(device, *fit_);
@@ -150,7 +147,8 @@ private:
 
     /// The scale follows how far the paints are apart, so that what does not match stops counting as they meet.
     void narrow(double elapsed) noexcept {
-        const double apart = drawn_ > 0.0 ? std::sqrt(fit_->energy() / (drawn_ * energy_->law.strength)) : reach;
+        const double apart =
+            lead_.share() > 0.0 ? std::sqrt(fit_->energy() / (lead_.share() * energy_->law.strength)) : reach;
         const double wanted = std::clamp(2.0 * apart, 0.25e-3, std::max(0.25e-3, 0.5 * reach));
         scale_ += (wanted - scale_) * std::min(1.0, elapsed / 0.05);
     }
@@ -174,11 +172,12 @@ private:
     Hold hold_;
     Wrench last_;
     SizeCounts residuals_;
-    double drawn_ = 0.0, sprung_ = 1.0, scale_ = 2e-3, score_ = 0.0, deepest_ = 0.0, most_pull_ = 0.0;
+    Lead lead_;
+    double scale_ = 2e-3, score_ = 0.0, deepest_ = 0.0, most_pull_ = 0.0;
     std::uint64_t ticks_ = 0;
 };
 
 TACTUS_NODE(SnapToFit, device, scene, grip, holding, strength, engaged, settle, wrench, pose, place, score, pull,
-            penetration, residual, in_contact, moving, fixed, held, target, mode, force, reach, fade, solver, contact)
+            penetration, residual, in_contact, moving, fixed, held, target, mode, force, reach, led, solver, contact)
 
 }  // namespace tactus::nodes

@@ -143,29 +143,28 @@ TEST_CASE("render planning-trauma: every piece within 0.3 mm and 0.5 degrees, th
     }
     CAPTURE(worst * 1e3, worst_turn);
     CHECK(chain < 0.5e-3);
-    // What the hand feels: hardly ever limited, still when the hand is, no step when it takes, asks, or lets go.
+    // What the hand feels: hardly ever limited, still when the hand is, no step when it takes or lets go, and none from
+    // when it asks until the settled piece is let go, over whatever teeth the piece slips meanwhile.
     CHECK(summary["contact"]["limited_ticks"].get<double>() < 1e-3 * summary["force"]["ticks"].get<double>());
     const std::vector<Vec3> force = forces(out / "force.csv");
     const std::vector<HandLine> hand = hand_lines();
     REQUIRE(force.size() == 90'000);
-    double ripple = 0.0, taken = 0.0, asked = 0.0, settling = 0.0;
+    double ripple = 0.0, taken = 0.0, led = 0.0;
     int stills = 0;
     for (std::size_t n = 1; n < hand.size() && hand[n].time < 89.0; ++n) {
         const HandLine &last = hand[n - 1], &now = hand[n];
         if (last.has("trigger") != now.has("trigger")) taken = std::max(taken, step_after(force, now.time, 100.0));
-        if (last.has("second") != now.has("second")) asked = std::max(asked, step_after(force, now.time, 100.0));
-        if (last.has("third") != now.has("third")) settling = std::max(settling, step_after(force, now.time, 5.0));
+        if (last.has("second")) led = std::max(led, step_after(force, last.time, (now.time - last.time) * 1e3));
         if (last.place != now.place || now.time - last.time < 0.15 || !last.has("trigger")) continue;
         ++stills;
         const auto end = static_cast<std::size_t>(now.time * 1e3);
         for (std::size_t k = end - 100; k < end; ++k) ripple = std::max(ripple, glm::length(force[k] - force[end - 1]));
     }
-    CAPTURE(ripple, taken, asked, settling, stills);
+    CAPTURE(ripple, taken, led, stills);
     CHECK(stills > 50);
     CHECK(ripple < 5e-3);
     CHECK(taken < 0.02);
-    CHECK(asked < 0.02);
-    CHECK(settling < 0.1);
+    CHECK(led < 0.15);
     // A process of its own opens the plan and has the same poses; so has the take that is replayed.
     const json shown = json::parse(folder.tactus("plan show " + (out / "case.plan.json").string() + " --json").out);
     CHECK(shown["problems"].empty());
