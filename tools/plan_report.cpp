@@ -165,7 +165,7 @@ std::string fragments_table(const Case& c) {
                 "class=\"n\">{:.3f}</td><td class=\"n\">{}</td>",
                 html::escaped(fit->partner), fit->verdict == "fit" ? "pass" : "fail", html::escaped(fit->verdict),
                 fit->score, fit->margin, fit->rms * 1e3,
-                // A live step does not know it.
+                // Runs of earlier versions did not tell it.
                 fit->overlap > 0.0 ? fmt::format("{:.0f}", fit->overlap * 1e6) : "–");
         else out += "<td>–</td><td>–</td><td></td><td></td><td></td><td></td>";
         const int number = static_cast<int>(n);
@@ -231,7 +231,9 @@ std::string steps(const Case& c) {
         for (const int f : step.fragments) what += " " + c.name(static_cast<std::size_t>(f));
         if (!step.group.empty()) what += fmt::format(" as '{}'", step.group);
         if (step.fit)
-            what += fmt::format(", {} to {}, {:.3f} mm rms", step.fit->verdict, step.fit->partner, step.fit->rms * 1e3);
+            what += fmt::format(", {} to {}, {:.0f} mm² on each other, {:.3f} mm rms, gap {:.2f} mm, {:.2f} mm deep",
+                                step.fit->verdict, step.fit->partner, step.fit->overlap * 1e6, step.fit->rms * 1e3,
+                                shown_mm(step.fit->gap * 1e3), step.fit->penetration * 1e3);
         const std::string time = step.run_second ? fmt::format("{:.3f} s", *step.run_second) : step.time;
         out += fmt::format("<tr><td class=\"n\">{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", ++count,
                            html::escaped(time), html::escaped(step.by), html::escaped(what));

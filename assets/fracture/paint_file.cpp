@@ -3,6 +3,7 @@
 
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/distance/point_tree.hpp"
 #include "dsp/planning/faces.hpp"
 #include "dsp/planning/surface_brush.hpp"
 #include "dsp/snap/neighbours.hpp"
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace tactus {
 
@@ -20,18 +22,66 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double stroke_radius = 0.9e-3, stroke_step = 0.8e-3;  // m
+constexpr double stroke_radius = 0.9e-3;  // m
+constexpr double rounding = 2e-6;  // m, more than what is lost of a place and a radius in the file
+constexpr double rim_share = 0.7;  // of the way to the next bare point: the rim lies about half way
 
-std::vector<Vec3> strokes_of(const Json& json, const char* key, const std::string& file) {
-    std::vector<Vec3> strokes;
+struct Stroke {
+    Vec3 place{0.0};
+    double radius = stroke_radius;
+};
+
+double rounded_mm(double metres) { return std::round(metres * 1e6) * 1e-3; }
+
+double radius_of(const Json& millimetres, const std::string& file, const char* what) {
+    const double radius = millimetres.is_number() ? 1e-3 * millimetres.get<double>() : 0.0;
+    if (!(radius > 0.0 && radius < 0.1))
+        throw Error(fmt::format("{}: {} must be a number above 0 and below 100", file, what));
+    return radius;
+}
+
+std::vector<Stroke> strokes_of(const Json& json, const char* key, double radius, const std::string& file) {
+    std::vector<Stroke> strokes;
     if (!json.contains(key)) return strokes;
     if (!json[key].is_array()) throw Error(fmt::format("{}: '{}' is no list of places", file, key));
     for (const Json& at : json[key]) {
-        if (!at.is_array() || at.size() != 3 || !std::ranges::all_of(at, [](const Json& x) { return x.is_number(); }))
-            throw Error(fmt::format("{}: a stroke of '{}' is no list of three numbers", file, key));
-        strokes.push_back(1e-3 * Vec3(at[0].get<double>(), at[1].get<double>(), at[2].get<double>()));
+        if (!at.is_array() || (at.size() != 3 && at.size() != 4) ||
+            !std::ranges::all_of(at, [](const Json& x) { return x.is_number(); }))
+            throw Error(
+                fmt::format("{}: a stroke of '{}' is no list of three numbers, or four with its radius", file, key));
+        strokes.push_back({1e-3 * Vec3(at[0].get<double>(), at[1].get<double>(), at[2].get<double>()),
+                           at.size() == 4 ? radius_of(at[3], file, "the radius of a stroke") : radius});
     }
     return strokes;
+}
+
+/// Strokes that meet every painted point and no other one. The rim of the paint takes smaller ones than its middle.
+std::vector<Stroke> covering_strokes(std::span<const SurfacePoint> points) {
+    std::vector<SurfacePoint> painted;
+    std::vector<Vec3> bare;
+    for (const SurfacePoint& p : points)
+        if (p.label == surface_label::fracture) painted.push_back(p);
+        else bare.push_back(p.position);
+    std::vector<Stroke> all, chosen;
+    const PointTree nearest(bare);
+    for (const SurfacePoint& p : painted) {
+        const double to_bare = bare.empty() ? 1.0 : glm::length(bare[nearest.nearest(p.position)] - p.position);
+        all.push_back({p.position, std::clamp(rim_share * to_bare, rounding, stroke_radius)});
+    }
+    std::vector<std::size_t> widest_first(all.size());
+    std::iota(widest_first.begin(), widest_first.end(), std::size_t{0});
+    std::ranges::stable_sort(widest_first, [&](std::size_t a, std::size_t b) { return all[a].radius > all[b].radius; });
+    const Neighbours neighbours(painted, stroke_radius);
+    std::vector<char> covered(painted.size(), 0);
+    for (const std::size_t n : widest_first) {
+        if (covered[n]) continue;
+        // They overlap, so that a surface with other points is painted without holes.
+        neighbours.around(n, [&](std::size_t m) {
+            covered[m] |= m == n || glm::length(painted[m].position - all[n].place) < 0.9 * all[n].radius - rounding;
+        });
+        chosen.push_back(all[n]);
+    }
+    return chosen;
 }
 
 }  // namespace
@@ -45,17 +95,14 @@ void paint_from_text(std::span<SurfacePoint> points, std::string_view text, cons
     if (!json.is_object() || (!json.contains("paint") && !json.contains("erase")))
         throw Error(fmt::format(
             "{}: expected {{\"radius_mm\": r, \"paint\": [[x, y, z], ...], \"erase\": [[x, y, z], ...]}}", file));
-    if (json.contains("radius_mm") && !json["radius_mm"].is_number())
-        throw Error(fmt::format("{}: 'radius_mm' is no number", file));
-    const double radius = 1e-3 * json.value("radius_mm", 1e3 * stroke_radius);
-    if (!(radius > 0.0 && radius < 0.1))
-        throw Error(fmt::format("{}: 'radius_mm' must be above 0 and below 100", file));
-    const auto paint = strokes_of(json, "paint", file), erase = strokes_of(json, "erase", file);
+    const double radius =
+        json.contains("radius_mm") ? radius_of(json["radius_mm"], file, "'radius_mm'") : stroke_radius;
+    const auto paint = strokes_of(json, "paint", radius, file), erase = strokes_of(json, "erase", radius, file);
     if (!keep)
         for (SurfacePoint& p : points) p.label = surface_label::none;
     SurfaceBrush brush({points.begin(), points.end()});
-    for (const Vec3& place : paint) brush.stroke(place, radius, surface_label::fracture);
-    for (const Vec3& place : erase) brush.stroke(place, radius, surface_label::none);
+    for (const Stroke& s : paint) brush.stroke(s.place, s.radius, surface_label::fracture);
+    for (const Stroke& s : erase) brush.stroke(s.place, s.radius, surface_label::none);
     std::ranges::copy(brush.points(), points.begin());
 }
 
@@ -80,28 +127,18 @@ std::vector<PaintedFace> painted_faces(std::span<const SurfacePoint> points) {
 
 std::vector<PaintedFace> write_paint_file(std::span<const SurfacePoint> points, const std::string& bone,
                                           const std::filesystem::path& path) {
-    const auto rounded = [](double metres) { return std::round(metres * 1e6) * 1e-3; };
     Json json{
         {"bone", bone},           {"unit", "mm"},           {"frame", "LPS"},        {"radius_mm", stroke_radius * 1e3},
         {"paint", Json::array()}, {"erase", Json::array()}, {"faces", Json::array()}};
     const std::vector<PaintedFace> faces = painted_faces(points);
     for (const PaintedFace& f : faces)
-        json["faces"].push_back({{"area_mm2", std::round(f.area * 1e7) * 0.1},
-                                 {"middle_mm", {rounded(f.middle.x), rounded(f.middle.y), rounded(f.middle.z)}},
-                                 {"normal", {f.normal.x, f.normal.y, f.normal.z}}});
-    // A stroke for each painted point that no stroke before it is near to.
-    std::vector<SurfacePoint> painted;
-    for (const SurfacePoint& p : points)
-        if (p.label == surface_label::fracture) painted.push_back(p);
-    std::vector<char> covered(painted.size(), 0);
-    if (!painted.empty()) {
-        const Neighbours neighbours(painted, stroke_step);
-        for (std::size_t n = 0; n < painted.size(); ++n) {
-            if (covered[n]) continue;
-            neighbours.around(n, [&](std::size_t m) { covered[m] = 1; });
-            const Vec3& p = painted[n].position;
-            json["paint"].push_back({rounded(p.x), rounded(p.y), rounded(p.z)});
-        }
+        json["faces"].push_back(
+            {{"area_mm2", std::round(f.area * 1e7) * 0.1},
+             {"middle_mm", {rounded_mm(f.middle.x), rounded_mm(f.middle.y), rounded_mm(f.middle.z)}},
+             {"normal", {f.normal.x, f.normal.y, f.normal.z}}});
+    for (const auto& [p, radius] : covering_strokes(points)) {
+        json["paint"].push_back({rounded_mm(p.x), rounded_mm(p.y), rounded_mm(p.z)});
+        if (radius < stroke_radius) json["paint"].back().push_back(rounded_mm(radius));
     }
     write_whole_file(path, json.dump(1) + "\n");
     return faces;

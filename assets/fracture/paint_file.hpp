@@ -13,8 +13,8 @@
 namespace tactus {
 
 /// Reads {"radius_mm": r, "paint": [[x, y, z], ...], "erase": [[x, y, z], ...]} and labels the points within the
-/// radius of a stroke as fracture; those within it of an erasing stroke are none then. Labels that no stroke meets are taken off
-/// unless `keep`. Throws Error.
+/// radius of a stroke as fracture; those within it of an erasing stroke are none then. A stroke [x, y, z, r] has a radius
+/// of its own. Labels that no stroke meets are taken off unless `keep`. Throws Error.
 void paint_from_file(std::span<SurfacePoint> points, const std::filesystem::path& path, bool keep = false);
 
 /// The same of a file's text; `file` is its name in messages.
@@ -27,7 +27,8 @@ struct PaintedFace {
     Vec3 middle{0.0}, normal{0.0};
 };
 
-/// Writes the paint of a surface as such a file, with the faces it falls into beside. Throws Error.
+/// Writes the paint of a surface as such a file, with the faces it falls into beside. Read back onto the same surface it
+/// paints the same points. Throws Error.
 std::vector<PaintedFace> write_paint_file(std::span<const SurfacePoint> points, const std::string& bone,
                                           const std::filesystem::path& path);
 std::vector<PaintedFace> painted_faces(std::span<const SurfacePoint> points);

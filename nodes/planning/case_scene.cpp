@@ -32,6 +32,9 @@ struct CaseScene {
     In<double> score{optional, "of that fit"};
     In<double> margin{optional, "of that fit, to the second best"};
     In<double> rms{optional, "of that fit", "m"};
+    In<double> gap{optional, "of that fit", "m"};
+    In<double> penetration{optional, "of that fit", "m"};
+    In<double> overlap{optional, "of that fit", "m^2"};
     In<bool> settle{optional, "pressed: what is held is put where it fits, and stays there"};
     In<bool> join{optional, "pressed: what is held moves with its partner from now on"};
     In<bool> split{optional, "pressed: what is held leaves all groups"};
@@ -202,9 +205,13 @@ private:
         if (by > 0.0) {
             row.other = partner_place();
             row.verdict = static_cast<double>(FitVerdict::fit);
-            row.score = score.connected ? score.get() : 0.0;
-            row.margin = margin.connected ? margin.get() : 0.0;
-            row.rms = rms.connected ? rms.get() : 0.0;
+            const auto told = [](const In<double>& figure) { return figure.connected ? figure.get() : 0.0; };
+            row.score = told(score);
+            row.margin = told(margin);
+            row.rms = told(rms);
+            row.gap = told(gap);
+            row.penetration = told(penetration);
+            row.overlap = told(overlap);
         }
         const auto count = static_cast<int>(parts_.size());
         for (int n = 0; n < count; ++n) row.left += n != last_ && now_->move_together(last_, n);
@@ -311,7 +318,7 @@ private:
     bool was_[8] = {};
 };
 
-TACTUS_NODE(CaseScene, moved, which, holding, target, fits, target_of, partner, score, margin, rms, settle, join, split,
-            lock, hide, show, undo, redo, scene, steps, settled, plan, file, loose)
+TACTUS_NODE(CaseScene, moved, which, holding, target, fits, target_of, partner, score, margin, rms, gap, penetration,
+            overlap, settle, join, split, lock, hide, show, undo, redo, scene, steps, settled, plan, file, loose)
 
 }  // namespace tactus::nodes

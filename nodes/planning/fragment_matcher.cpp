@@ -29,6 +29,9 @@ struct FragmentMatcher {
     Out<double> score{"of the faces that fit best, 0 to 1"};
     Out<double> margin{"to the second best pose, as share of the best score"};
     Out<double> rms{"of the distances of what lies on each other", "m"};
+    Out<double> gap{"mean signed distance of that: positive where bone is missing between", "m"};
+    Out<double> penetration{"exceeded by 1 % of the points of both faces", "m"};
+    Out<double> overlap{"area that lies on the other", "m^2"};
     Out<double> faces{"pairs of faces that were fitted together"};
     Asset<CaseBones> plan{"the plan that the scene shows"};
     Choice partners{{"standing", "all"}, "standing: those that are locked or were fitted; all: any other"};
@@ -101,6 +104,9 @@ private:
         score = match.quality.score;
         margin = match.margin;
         rms = match.quality.rms;
+        gap = match.quality.gap;
+        penetration = match.quality.penetration;
+        overlap = match.quality.overlap;
         faces = match.faces;
     }
 
@@ -113,6 +119,9 @@ private:
         score = 0.0;
         margin = 0.0;
         rms = 0.0;
+        gap = 0.0;
+        penetration = 0.0;
+        overlap = 0.0;
         faces = 0.0;
     }
 
@@ -124,7 +133,7 @@ private:
     int was_ = -1;
 };
 
-TACTUS_NODE(FragmentMatcher, scene, held, engaged, target, fits, fragment, partner, verdict, score, margin, rms, faces,
-            plan, partners, reach, least_score, points)
+TACTUS_NODE(FragmentMatcher, scene, held, engaged, target, fits, fragment, partner, verdict, score, margin, rms, gap,
+            penetration, overlap, faces, plan, partners, reach, least_score, points)
 
 }  // namespace tactus::nodes

@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include <any>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <memory>
@@ -72,7 +73,9 @@ struct Session {
         node.feed<Pose>("target", fit * home_of(1));
         node.feed<bool>("fits", true);
         node.feed<double>("partner", 0.0).feed<double>("target_of", target_of);
-        for (const char* number : {"score", "margin", "rms"}) node.feed<double>(number, 0.5);
+        double figure = 0.1;
+        for (const char* number : {"score", "margin", "rms", "gap", "penetration", "overlap"})
+            node.feed<double>(number, figure), figure *= 2.0;
         for (const char* button : buttons) node.disconnect(button);
         press("settle", &settle);
         press("undo", &undo);
@@ -122,7 +125,10 @@ TEST_CASE("a settled fragment stands where it fits when it is let go, and the st
     const CasePlan plan = session.plan();
     REQUIRE(plan.steps.size() == 3);
     CHECK(plan.steps[2].by == "settle");
-    CHECK(plan.steps[2].fit->partner == "left");
+    const PlanFit& fit = *plan.steps[2].fit;
+    CHECK(fit.partner == "left");
+    CHECK(std::array{fit.score, fit.margin, fit.rms, fit.gap, fit.penetration, fit.overlap} ==
+          std::array{0.1, 0.2, 0.4, 0.8, 1.6, 3.2});
     CHECK(same_bits(session.file_pose(1), plan.steps[2].poses[0]));
     CHECK(session.scene().objects[1].stands);
     CHECK_FALSE(session.scene().objects[2].stands);
@@ -283,6 +289,10 @@ TEST_CASE("the matcher finds where a fragment fits from beside it, and says that
     matcher.run(2);
     REQUIRE(matcher.last<bool>("fits"));
     CHECK(matcher.last<double>("partner") == 0.0);
+    // It says how the faces lie on each other there, for the step of the plan.
+    CHECK(matcher.last<double>("overlap") > 200e-6);
+    CHECK(std::abs(matcher.last<double>("gap")) < 0.05 * mm);
+    CHECK(matcher.last<double>("penetration") < 0.1 * mm);
     CHECK(off(matcher.last<Pose>("target") * now.objects[1].body.home.inverse()) < 0.3 * mm);
     // Its own partner's copy in the hand: the same face does not fit itself.
     now.objects[2].pose = beside * now.objects[2].body.home;
