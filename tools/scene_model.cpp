@@ -21,6 +21,8 @@ namespace {
 
 std::string node_of(const std::string& port) { return port.substr(0, port.find('.')); }
 
+SurfaceGrid grid_of(const BrickLayout& layout) { return {layout.origin, layout.spacing, brick_cells}; }
+
 }  // namespace
 
 SceneModel::SceneModel(SceneOutline outline, Observer& observer, SceneRenderer& renderer)
@@ -125,7 +127,8 @@ Picture& SceneModel::update() {
     show_gripper();
     for (const auto& handle : outline_.handles)
         if (const auto pose = pose_of(handle.pose)) add_axes(notes_, *pose, 0.02);
-    renderer_.meshes().set_part(notes_mesh_, 0, notes_);
+    // Most of the time they are as they were.
+    if (notes_ != shown_notes_) renderer_.meshes().set_part(notes_mesh_, 0, shown_notes_ = notes_);
     show(notes_mesh_, {}, bounds_of(notes_), 1.0, false, !outline_.handles.empty());
     picture_.meshes.back().shines_through = true;
     is_fitting_ = is_fitting_ && bounds_.empty();
@@ -142,7 +145,7 @@ void SceneModel::show_bones() {
         const bool is_new = bone.of.lock() != seen;
         if (is_new) {
             if (bone.mesh >= 0) renderer_.meshes().remove(bone.mesh);
-            bone = {renderer_.meshes().make(), seen, 0, {}};
+            bone = {renderer_.meshes().make(grid_of(seen->layout)), seen, 0, {}};
         }
         for (const std::uint32_t brick : seen->changed_since(bone.update)) {
             mesher_.make(seen->snapshot(), brick, patch_);
@@ -165,7 +168,7 @@ void SceneModel::show_still_bones() {
                 const Bone loaded = load_bone(path);
                 const BoneEditor editor(loaded.distance, loaded.density,
                                         {.band = 0.003, .max_dirty = 1, .max_versions = 1});
-                bone.mesh = renderer_.meshes().make();
+                bone.mesh = renderer_.meshes().make(grid_of(editor.layout()));
                 for (std::uint32_t brick = 0; brick < static_cast<std::uint32_t>(editor.layout().brick_count());
                      ++brick) {
                     mesher_.make(editor.current(), brick, patch_);
@@ -196,7 +199,7 @@ SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, std::size_t pla
             make_body_surface(*body, mesh.field, group_colours[place % group_colours.size()], paint_colour);
         mesh.has_paint = surface.has_paint;
         mesh.bounds = surface.bounds;
-        mesh.mesh = renderer_.meshes().make();
+        mesh.mesh = renderer_.meshes().make({body->distance.origin, body->distance.spacing, 0});
         renderer_.meshes().set_part(mesh.mesh, 0, surface.patch);
         return &mesh;
     }

@@ -78,7 +78,7 @@ private:
     Observer& observer_;
     SceneRenderer& renderer_;
     BrickSurface mesher_;
-    SurfacePatch patch_, notes_;
+    SurfacePatch patch_, notes_, shown_notes_;
     std::map<std::string, BoneMesh> bones_;
     struct StillMesh {
         MeshPool::Mesh mesh = -1;

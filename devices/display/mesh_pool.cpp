@@ -3,9 +3,12 @@
 
 #include "devices/display/gl_program.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/view/frustum.hpp"
 
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
+
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -21,7 +24,7 @@ Bounds bounds_of(const SurfacePatch& patch) {
     return bounds;
 }
 
-std::size_t BufferShelf::room_for(std::size_t count) { return std::bit_ceil(std::max<std::size_t>(count, 64)); }
+std::size_t BufferShelf::room_for(std::size_t count) { return std::bit_ceil(std::max<std::size_t>(count, 16)); }
 
 std::size_t BufferShelf::take(std::size_t count) {
     const std::size_t room = room_for(count);
@@ -85,30 +88,31 @@ MeshPool::Mesh MeshPool::make() {
     return static_cast<Mesh>(at);
 }
 
+MeshPool::Mesh MeshPool::make(const SurfaceGrid& grid) {
+    const Mesh mesh = make();
+    meshes_[static_cast<std::size_t>(mesh)].grid = grid;
+    return mesh;
+}
+
 void MeshPool::remove(Mesh mesh) {
+    ++changes_;
     Parts& parts = meshes_[static_cast<std::size_t>(mesh)];
     for (const auto& [number, part] : parts.of) give_back(part);
     parts = Parts{};
 }
 
 void MeshPool::give_back(const Part& part) {
-    vertex_shelf_.give_back(part.first_vertex, part.vertices);
-    index_shelf_.give_back(part.first_index, part.indices);
+    for (const Place& place : part.levels) {
+        if (place.indices == 0) continue;
+        vertex_shelf_.give_back(place.first_vertex, place.vertices);
+        index_shelf_.give_back(place.first_index, place.indices);
+    }
 }
 
-void MeshPool::set_part(Mesh mesh, std::uint32_t number, const SurfacePatch& patch) {
-    if (std::ranges::any_of(patch.triangles, [&](std::uint32_t v) { return v >= patch.vertices.size(); }))
-        throw Error("a mesh for a picture names a vertex that it does not have");
-    Parts& parts = meshes_[static_cast<std::size_t>(mesh)];
-    parts.is_listed = false;
-    if (const auto known = parts.of.find(number); known != parts.of.end()) {
-        give_back(known->second);
-        parts.of.erase(known);
-    }
-    if (patch.triangles.empty()) return;
-    const Part part{vertex_shelf_.take(patch.vertices.size()), patch.vertices.size(),
-                    index_shelf_.take(patch.triangles.size()), patch.triangles.size()};
-    parts.of[number] = part;
+MeshPool::Place MeshPool::put(const SurfacePatch& patch) {
+    if (patch.triangles.empty()) return {};
+    const Place place{vertex_shelf_.take(patch.vertices.size()), patch.vertices.size(),
+                      index_shelf_.take(patch.triangles.size()), patch.triangles.size()};
     ensure(vertex_buffer_, vertex_bytes_, vertex_shelf_.end() * sizeof(SurfaceVertex));
     ensure(index_buffer_, index_bytes_, index_shelf_.end() * sizeof(std::uint32_t));
     const auto send = [](GLuint buffer, std::size_t first, const auto& values) {
@@ -117,33 +121,82 @@ void MeshPool::set_part(Mesh mesh, std::uint32_t number, const SurfacePatch& pat
         glBufferSubData(GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(first * size),
                         static_cast<GLsizeiptr>(values.size() * size), values.data());
     };
-    send(vertex_buffer_, part.first_vertex, patch.vertices);
-    send(index_buffer_, part.first_index, patch.triangles);
+    send(vertex_buffer_, place.first_vertex, patch.vertices);
+    send(index_buffer_, place.first_index, patch.triangles);
+    return place;
+}
+
+void MeshPool::set_part(Mesh mesh, std::uint32_t number, const SurfacePatch& patch) {
+    if (std::ranges::any_of(patch.triangles, [&](std::uint32_t v) { return v >= patch.vertices.size(); }))
+        throw Error("a mesh for a picture names a vertex that it does not have");
+    Parts& parts = meshes_[static_cast<std::size_t>(mesh)];
+    const auto known = parts.of.find(number);
+    if (known == parts.of.end() && patch.triangles.empty()) return;
+    ++changes_;
+    if (known != parts.of.end()) {
+        give_back(known->second);
+        parts.of.erase(known);
+    }
+    if (patch.triangles.empty()) return;
+    Part& part = parts.of[number];
+    part.bounds = bounds_of(patch);
+    part.levels[0] = put(patch);
+    if (!parts.grid) return;
+    const CoarseSurface::Levels& coarse = coarse_.make(patch, *parts.grid);
+    for (std::size_t level = 0; level < coarse.size(); ++level) part.levels[level + 1] = put(coarse[level]);
 }
 
 std::size_t MeshPool::triangles(Mesh mesh) const {
     std::size_t count = 0;
-    for (const auto& [number, part] : meshes_[static_cast<std::size_t>(mesh)].of) count += part.indices / 3;
+    for (const auto& [number, part] : meshes_[static_cast<std::size_t>(mesh)].of) count += part.levels[0].indices / 3;
     return count;
 }
 
-void MeshPool::draw(Mesh mesh) const {
-    const Parts& parts = meshes_[static_cast<std::size_t>(mesh)];
-    if (parts.of.empty()) return;
-    if (!parts.is_listed) {
-        parts.counts.clear();
-        parts.bases.clear();
-        parts.offsets.clear();
-        for (const auto& [number, part] : parts.of) {
-            parts.counts.push_back(static_cast<std::int32_t>(part.indices));
-            parts.bases.push_back(static_cast<std::int32_t>(part.first_vertex));
-            parts.offsets.push_back(reinterpret_cast<const void*>(part.first_index * sizeof(std::uint32_t)));
-        }
-        parts.is_listed = true;
+/// One level for all parts, so that they fit together.
+std::size_t MeshPool::level_for(const Parts& parts, const Mat4& to_clip, int width, int height, double grain) const {
+    if (!parts.grid || !(grain > 0.0)) return 0;
+    const auto row = [&](int n) { return Vec3(to_clip[0][n], to_clip[1][n], to_clip[2][n]); };
+    const Vec3 depth = row(3);
+    double nearest = 1e30;
+    for (const Part* part : seen_) {
+        double at = to_clip[3][3];
+        for (int axis = 0; axis < 3; ++axis)
+            at += depth[axis] * (depth[axis] > 0.0 ? part->bounds.low[axis] : part->bounds.high[axis]);
+        nearest = std::min(nearest, at);
     }
+    const double pixels_per_m =
+        0.5 * std::max(width * glm::length(row(0)), height * glm::length(row(1))) / std::max(nearest, 1e-9);
+    const Vec3& voxel = parts.grid->voxel;
+    const double voxel_pixels = std::max({voxel.x, voxel.y, voxel.z}) * pixels_per_m;
+    std::size_t level = 0;
+    while (level < CoarseSurface::factors.size() && CoarseSurface::factors[level] * voxel_pixels <= grain) ++level;
+    return level;
+}
+
+std::size_t MeshPool::draw(Mesh mesh, const Mat4& to_clip, int width, int height, double grain) const {
+    const Parts& parts = meshes_[static_cast<std::size_t>(mesh)];
+    const Frustum frustum(to_clip);
+    seen_.clear();
+    for (const auto& [number, part] : parts.of)
+        if (frustum.meets(part.bounds)) seen_.push_back(&part);
+    const std::size_t level = level_for(parts, to_clip, width, height, grain);
+    counts_.clear();
+    bases_.clear();
+    offsets_.clear();
+    std::size_t drawn = 0;
+    for (const Part* part : seen_) {
+        const Place& place = part->levels[level];
+        if (place.indices == 0) continue;
+        counts_.push_back(static_cast<std::int32_t>(place.indices));
+        bases_.push_back(static_cast<std::int32_t>(place.first_vertex));
+        offsets_.push_back(reinterpret_cast<const void*>(place.first_index * sizeof(std::uint32_t)));
+        drawn += place.indices / 3;
+    }
+    if (counts_.empty()) return 0;
     glBindVertexArray(array_);
-    glMultiDrawElementsBaseVertex(GL_TRIANGLES, parts.counts.data(), GL_UNSIGNED_INT, parts.offsets.data(),
-                                  static_cast<GLsizei>(parts.counts.size()), parts.bases.data());
+    glMultiDrawElementsBaseVertex(GL_TRIANGLES, counts_.data(), GL_UNSIGNED_INT, offsets_.data(),
+                                  static_cast<GLsizei>(counts_.size()), bases_.data());
+    return drawn;
 }
 
 }  // namespace tactus

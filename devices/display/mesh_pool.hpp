@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Meshes that stay on the graphics card. A mesh is made of parts, such as the bricks of a bone, that are replaced one by
-// one; however many parts it has, it is drawn by one call.
+// one; those of its parts that are in the picture are drawn by one call, however many they are. What is seen from afar is
+// drawn with fewer triangles where the picture may.
 #pragma once
 
 #include "dsp/view/brick_surface.hpp"
 #include "dsp/view/camera.hpp"
+#include "dsp/view/coarse_surface.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace tactus {
@@ -41,30 +45,45 @@ public:
     MeshPool& operator=(const MeshPool&) = delete;
 
     Mesh make();
+    /// One that is also kept with the cells of CoarseSurface; `grid`: what its parts are made from.
+    Mesh make(const SurfaceGrid& grid);
     void remove(Mesh mesh);
     /// Replaces one part; an empty one takes it away. Throws Error when a triangle names a vertex that is not there.
     void set_part(Mesh mesh, std::uint32_t part, const SurfacePatch& patch);
-    void draw(Mesh mesh) const;
-    std::size_t triangles(Mesh mesh) const;
+    /// Draws the parts that are within a picture of `width` × `height` pixels; `to_clip` starts from the frame of the mesh.
+    /// Its cells may be `grain` pixels wide where it is nearest, 0: all triangles. Returns how many were drawn.
+    std::size_t draw(Mesh mesh, const Mat4& to_clip, int width, int height, double grain) const;
+    std::size_t triangles(Mesh mesh) const;  ///< all of them
+    /// Rises whenever a mesh changes.
+    std::uint64_t changes() const { return changes_; }
 
 private:
-    struct Part {
+    struct Place {
         std::size_t first_vertex = 0, vertices = 0, first_index = 0, indices = 0;
+    };
+    struct Part {
+        std::array<Place, 1 + CoarseSurface::factors.size()> levels;  // all triangles first
+        Bounds bounds;
     };
     struct Parts {
         std::map<std::uint32_t, Part> of;
-        // What the driver is given, in the same order.
-        mutable std::vector<std::int32_t> counts, bases;
-        mutable std::vector<const void*> offsets;
-        mutable bool is_listed = false;
+        std::optional<SurfaceGrid> grid;
         bool is_used = false;
     };
 
+    Place put(const SurfacePatch& patch);
     void give_back(const Part& part);
+    std::size_t level_for(const Parts& parts, const Mat4& to_clip, int width, int height, double grain) const;
     void ensure(std::uint32_t& buffer, std::size_t& size, std::size_t wanted);
     void describe_vertices() const;
 
     std::vector<Parts> meshes_;
+    CoarseSurface coarse_;
+    std::uint64_t changes_ = 0;
+    // What the driver is given.
+    mutable std::vector<const Part*> seen_;
+    mutable std::vector<std::int32_t> counts_, bases_;
+    mutable std::vector<const void*> offsets_;
     BufferShelf vertex_shelf_, index_shelf_;
     std::uint32_t array_ = 0, vertex_buffer_ = 0, index_buffer_ = 0;
     std::size_t vertex_bytes_ = 0, index_bytes_ = 0;

@@ -120,7 +120,8 @@ SceneRenderer::SceneRenderer() {
 
 SceneRenderer::~SceneRenderer() = default;
 
-void SceneRenderer::draw_meshes(const Picture& picture, const Projection& projection, bool see_through) {
+void SceneRenderer::draw_meshes(const Picture& picture, const DrawnView& view, bool see_through) {
+    const Projection& projection = view.projection;
     const GlProgram& program = programs_->mesh;
     program.use();
     set(program.uniform("to_clip"), projection.to_clip);
@@ -128,39 +129,43 @@ void SceneRenderer::draw_meshes(const Picture& picture, const Projection& projec
     for (std::size_t i = 0; i < picture.meshes.size(); ++i) {
         const DrawnMesh& drawn = picture.meshes[i];
         if ((drawn.opacity < 1.0) != see_through || !is_valid(drawn.pose)) continue;
-        const Mat4 to_world = matrix_of(drawn.pose);
-        set(program.uniform("to_eye"), projection.to_eye * to_world);
+        const Mat4 to_eye = projection.to_eye * matrix_of(drawn.pose);
+        set(program.uniform("to_eye"), to_eye);
         glUniform1f(program.uniform("opacity"), static_cast<float>(drawn.opacity));
         set_clip(program, picture, drawn);
         glUniform1i(program.uniform("is_cut"), picture.clip && drawn.is_clipped ? 1 : 0);
+        const auto draw_mesh = [&] {
+            drawn_triangles_ +=
+                pool_->draw(drawn.mesh, projection.to_clip * to_eye, view.width, view.height, picture.grain);
+        };
         if (see_through) {
             // The far side first, so that a body shines through itself in one order only.
             glEnable(GL_CULL_FACE);
             for (const GLenum hidden : {GL_FRONT, GL_BACK}) {
                 glCullFace(hidden);
-                pool_->draw(drawn.mesh);
+                draw_mesh();
             }
             glDisable(GL_CULL_FACE);
         } else if (drawn.is_closed && !picture.clip) {
             glEnable(GL_CULL_FACE);
             glCullFace(GL_BACK);
-            pool_->draw(drawn.mesh);
+            draw_mesh();
             glDisable(GL_CULL_FACE);
         } else {
-            pool_->draw(drawn.mesh);
+            draw_mesh();
         }
     }
 }
 
 /// What shines through, where it lies behind something.
-void SceneRenderer::draw_hidden(const Picture& picture, const Projection& projection) {
+void SceneRenderer::draw_hidden(const Picture& picture, const DrawnView& view) {
     Picture hidden;
     for (const DrawnMesh& drawn : picture.meshes)
         if (drawn.shines_through) hidden.meshes.push_back({drawn.mesh, drawn.pose, 0.3, false, false, false});
     if (hidden.meshes.empty()) return;
     glDepthFunc(GL_GREATER);
     glDepthMask(GL_FALSE);
-    draw_meshes(hidden, projection, true);
+    draw_meshes(hidden, view, true);
     glDepthMask(GL_TRUE);
     glDepthFunc(GL_LESS);
 }
@@ -187,6 +192,7 @@ void SceneRenderer::draw_points(const Picture& picture, const Projection& projec
 }
 
 void SceneRenderer::draw(const Picture& picture, std::span<const DrawnView> views) {
+    drawn_triangles_ = 0;
     glEnable(GL_SCISSOR_TEST);
     glDisable(GL_CULL_FACE);
     for (const DrawnView& view : views) {
@@ -214,12 +220,12 @@ void SceneRenderer::draw(const Picture& picture, std::span<const DrawnView> view
         glFrontFace(view.projection.is_mirrored ? GL_CW : GL_CCW);
         programs_->mesh.use();
         glUniform2f(programs_->mesh.uniform("way"), across, upwards);
-        draw_meshes(picture, view.projection, false);
+        draw_meshes(picture, view, false);
         draw_points(picture, view.projection);
         glEnable(GL_BLEND);
         glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-        draw_meshes(picture, view.projection, true);
-        draw_hidden(picture, view.projection);
+        draw_meshes(picture, view, true);
+        draw_hidden(picture, view);
     }
     glFrontFace(GL_CCW);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -262,10 +268,11 @@ std::optional<Picked> SceneRenderer::pick(const Picture& picture, const DrawnVie
     for (std::size_t i = 0; i < picture.meshes.size(); ++i) {
         const DrawnMesh& drawn = picture.meshes[i];
         if (drawn.opacity < 1.0 || !is_valid(drawn.pose)) continue;
-        set(program.uniform("to_eye"), view.projection.to_eye * matrix_of(drawn.pose));
+        const Mat4 to_eye = view.projection.to_eye * matrix_of(drawn.pose);
+        set(program.uniform("to_eye"), to_eye);
         set_clip(program, picture, drawn);
         glUniform1ui(program.uniform("number"), static_cast<GLuint>(i + 1));
-        pool_->draw(drawn.mesh);
+        pool_->draw(drawn.mesh, to_clip * to_eye, 1, 1, 0.0);
     }
     GLuint number = 0;
     GLfloat depth = 1.0f;

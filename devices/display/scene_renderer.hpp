@@ -7,6 +7,7 @@
 #include "dsp/view/camera.hpp"
 #include "dsp/view/screen.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -25,6 +26,9 @@ struct DrawnMesh {
     bool shines_through = false;  ///< faintly seen also where something stands before it: arrows, axes
 };
 
+/// Pixels that the cells of a mesh may be wide while something moves: its outline is off by a pixel at most.
+inline constexpr double grain_of_motion = 4.0;
+
 /// Everything that is to be seen.
 struct Picture {
     std::vector<DrawnMesh> meshes;
@@ -34,6 +38,7 @@ struct Picture {
     Vec3 section{0.72, 0.56, 0.46};  ///< sRGB of a section
     Vec3 sky{0.96, 0.97, 0.98}, ground{0.78, 0.80, 0.83};  ///< sRGB of the background, above and below
     Bounds bounds;  ///< of all of it
+    double grain = 0.0;  ///< pixels that the cells of meshes may be wide, for pictures of what moves; 0: every triangle
 };
 
 /// Which part of the picture a view may write to.
@@ -75,18 +80,21 @@ public:
     /// Draws every view after clearing its rectangle. Meshes whose pose is not finite are left out. Leaves depth test,
     /// blending, scissor and clipping off, and the whole colour mask on.
     void draw(const Picture& picture, std::span<const DrawnView> views);
+    /// Triangles of the last `draw`.
+    std::size_t drawn_triangles() const { return drawn_triangles_; }
 
     /// The surface point at (x, y) of the target, pixels from the lower left; nothing where there is only background.
     std::optional<Picked> pick(const Picture& picture, const DrawnView& view, double x, double y);
 
 private:
     struct Programs;
-    void draw_meshes(const Picture& picture, const Projection& projection, bool see_through);
-    void draw_hidden(const Picture& picture, const Projection& projection);
+    void draw_meshes(const Picture& picture, const DrawnView& view, bool see_through);
+    void draw_hidden(const Picture& picture, const DrawnView& view);
     void draw_points(const Picture& picture, const Projection& projection);
 
     std::unique_ptr<Programs> programs_;
     std::unique_ptr<MeshPool> pool_;
+    std::size_t drawn_triangles_ = 0;
     bool is_software_ = false;
 };
 

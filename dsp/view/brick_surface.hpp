@@ -16,6 +16,7 @@ struct SurfaceVertex {
     std::array<float, 3> position{};
     std::array<std::int16_t, 4> normal{};
     std::array<std::uint8_t, 4> colour{255, 255, 255, 255};
+    bool operator==(const SurfaceVertex&) const = default;
 };
 static_assert(sizeof(SurfaceVertex) == 24);
 
@@ -23,6 +24,7 @@ static_assert(sizeof(SurfaceVertex) == 24);
 struct SurfacePatch {
     std::vector<SurfaceVertex> vertices;
     std::vector<std::uint32_t> triangles;  ///< three vertices each
+    bool operator==(const SurfacePatch&) const = default;
 };
 
 /// What bone of a density looks like: porous core green, dense cortex white (thesis 6.2.2), a steady mixture between.

@@ -45,9 +45,7 @@ void Desk::follow_run() {
     }
     if (!live_) return;
     live_->set_now(bench_.status()->time);
-    std::set<std::string> looked_at = looked_at_;
-    scene_.add_wanted(looked_at);
-    live_->follow(looked_at, scopes_.traced());
+    live_->follow(looked_at_, scopes_.traced());
 }
 
 void Desk::panel(const char* id, double width, double height) {
@@ -122,6 +120,17 @@ void Desk::ask_farewell() {
     ImGui::EndPopup();
 }
 
+void Desk::draw_scene(double height) {
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, vec({6.0 * fonts_.scale, 6.0 * fonts_.scale}));
+    panel("scene", 0.0, scene_height_ * height);
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({6.0 * fonts_.scale, 4.0 * fonts_.scale}));
+    scene_.draw(take_ ? take_->scene() : bench_.observer(), fonts_);
+    ImGui::PopStyleVar();
+    ImGui::EndChild();
+    ImGui::PopStyleVar();
+    splitter("between scene and node", false, 0.0, scene_height_, height);
+}
+
 void Desk::draw() {
     follow_run();
     looked_at_.clear();
@@ -165,14 +174,8 @@ void Desk::draw() {
     ImGui::EndChild();
     splitter("between left and right", true, height, left_, width);
     ImGui::BeginChild("right", vec({0.0, height}));
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, vec({6.0 * fonts_.scale, 6.0 * fonts_.scale}));
-    panel("scene", 0.0, scene_height_ * height);
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({6.0 * fonts_.scale, 4.0 * fonts_.scale}));
-    scene_.draw(take_ ? take_->scene() : bench_.observer(), fonts_);
-    ImGui::PopStyleVar();
-    ImGui::EndChild();
-    ImGui::PopStyleVar();
-    splitter("between scene and node", false, 0.0, scene_height_, height);
+    // Without anything in space the node has its place.
+    if (!scene_.is_empty()) draw_scene(height);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, vec({8.0 * fonts_.scale, 6.0 * fonts_.scale}));
     ImGui::BeginChild("node", ImVec2(0, 0), false, ImGuiWindowFlags_AlwaysUseWindowPadding);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({8.0 * fonts_.scale, 5.0 * fonts_.scale}));

@@ -40,6 +40,7 @@ private:
     /// `height` of one that stands upright; others are as wide as their place.
     void splitter(const char* id, bool upright, double height, double& share, double whole);
     void panel(const char* id, double width, double height);
+    void draw_scene(double height);
     void show_messages(double height);
     void ask_farewell();
     void shortcuts();

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <utility>
 
@@ -19,14 +18,11 @@ namespace {
 // A picture of the scene costs far more than one of the panels: so many a second are enough while nobody moves it, and
 // fewer where it takes more than a third of the time. A head that moves wants all there are.
 constexpr double picture_every_s = 1.0 / 30.0, most_wait_s = 1.0;
-constexpr std::size_t many_triangles = 300'000;
+// Where the processor draws them, what moves is drawn coarser from here on; and a picture of very many small ones is
+// smooth enough with one sample per pixel.
+constexpr std::size_t many_triangles = 60'000, very_many_triangles = 300'000;
 
 }  // namespace
-
-void ScenePanel::add_wanted(std::set<std::string>& ports) const {
-    ports.insert(wanted_.begin(), wanted_.end());
-    for (const std::string& port : sight_.ports()) ports.insert(port);
-}
 
 void ScenePanel::attempt(const std::function<void()>& what) {
     try {
@@ -101,6 +97,7 @@ void ScenePanel::tend_screens() {
     const Windows wanted = std::exchange(windows_, Windows::as_they_are);
     if (wanted == Windows::as_they_are) return;
     needs_picture_ = true;
+    motion_.forget();
     note_.clear();
     screens_.close();
     if (wanted == Windows::none) return;
@@ -110,91 +107,6 @@ void ScenePanel::tend_screens() {
         bench_.tell(note_ = error.what(), true);
         if (sight_.stereo == StereoMode::quad_buffer) sight_.stereo = StereoMode::side_by_side;
     }
-}
-
-/// In the row where it fits, or else in the next one.
-static bool next_button(const char* label) {
-    const ImGuiStyle& style = ImGui::GetStyle();
-    const float end =
-        ImGui::GetItemRectMax().x + style.ItemSpacing.x + ImGui::CalcTextSize(label).x + 2.0f * style.FramePadding.x;
-    if (end < ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
-    return ImGui::SmallButton(label);
-}
-
-void ScenePanel::tools() {
-    for (std::size_t i = 0; i < view_names.size(); ++i) {
-        const std::string name(view_names[i]);
-        if (i == 0 ? ImGui::SmallButton(name.c_str()) : next_button(name.c_str())) look_from(static_cast<NamedView>(i));
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("key %d", static_cast<int>(i) + 1);
-    }
-    if (next_button("fit")) fit();
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("key F");
-    if (next_button("reset")) reset();
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("key R: from iso, all of it, nothing cut away");
-    if (next_button(is_measuring ? "measuring" : "measure")) {
-        is_measuring = !is_measuring;
-        marks_.clear();
-        needs_picture_ = true;
-    }
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("two clicks: distance; three: angle at the second");
-    sight_tools();
-    ImGui::SameLine();
-    const float unit = ImGui::GetFontSize();
-    static const char* const axes[] = {"no clip", "clip x", "clip y", "clip z"};
-    int axis = clip_axis_ + 1;
-    ImGui::SetNextItemWidth(6.0f * unit);
-    if (ImGui::Combo("##axis", &axis, axes, 4)) clip(axis - 1, clip_share_);
-    if (clip_axis_ < 0) return;
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(-1.0f);
-    auto share = static_cast<float>(clip_share_);
-    if (ImGui::SliderFloat("##clip", &share, 0.0f, 1.0f, "%.2f")) clip(clip_axis_, static_cast<double>(share));
-}
-
-/// Stereo, head, rig, offset, windows.
-void ScenePanel::sight_tools() {
-    const float unit = ImGui::GetFontSize();
-    const auto chosen = static_cast<std::size_t>(sight_.stereo);
-    ImGui::SetNextItemWidth(7.5f * unit);
-    if (ImGui::BeginCombo("##stereo", std::string(stereo_names[chosen]).c_str())) {
-        for (std::size_t i = 0; i < stereo_names.size(); ++i)
-            if (ImGui::Selectable(std::string(stereo_names[i]).c_str(), i == chosen))
-                use_stereo(std::string(stereo_names[i]));
-        ImGui::EndCombo();
-    }
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(7.5f * unit);
-    if (ImGui::BeginCombo("##head", sight_.head.empty() ? "no head" : sight_.head.c_str())) {
-        if (ImGui::Selectable("no head", sight_.head.empty())) use_head("");
-        if (observer_)
-            for (const Observer::Port& port : observer_->ports())
-                if (port.type == &value::pose && ImGui::Selectable(port.name.c_str(), port.name == sight_.head))
-                    use_head(port.name);
-        ImGui::EndCombo();
-    }
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("the pose that is the viewer's head: the picture follows it");
-    ImGui::SameLine();
-    if (ImGui::SmallButton("screens...")) ImGui::OpenPopup("screens");
-    if (!ImGui::BeginPopup("screens")) return;
-    static char file[512] = "";
-    if (ImGui::IsWindowAppearing()) std::snprintf(file, sizeof file, "%s", rig_file_.c_str());
-    ImGui::SetNextItemWidth(24.0f * unit);
-    ImGui::InputTextWithHint("rig", "file of 'tactus calibrate'", file, sizeof file);
-    if (ImGui::Button("use")) attempt([&] { use_rig(file); });
-    ImGui::SameLine();
-    if (ImGui::Button("none")) use_rig("");
-    if (sight_.rig()) {
-        ImGui::SetNextItemWidth(12.0f * unit);
-        if (ImGui::BeginCombo("seen against felt", offset_.c_str())) {
-            for (const char* name : {"none", "study"})
-                if (ImGui::Selectable(name, offset_ == name)) use_offset(name);
-            ImGui::EndCombo();
-        }
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("study: 0.3 m to the right");
-    }
-    bool open = screens_.are_open();
-    if (ImGui::Checkbox("windows of their own", &open)) show_screens(open);
-    ImGui::EndPopup();
 }
 
 void ScenePanel::steer(int width, int height) {
@@ -223,9 +135,8 @@ void ScenePanel::render(int width, int height) {
     if (std::exchange(was_drawn_, false)) cost_s_ = static_cast<double>(ImGui::GetIO().DeltaTime);
     const double every = std::clamp((sight_.is_off_axis() ? 1.0 : 3.0) * cost_s_,
                                     sight_.is_off_axis() ? 0.0 : picture_every_s, most_wait_s);
-    if (!needs_picture_ && is_aimed_ && same_size && now - drawn_at_ < every) return;
-    drawn_at_ = now;
-    was_drawn_ = true;
+    if (!needs_picture_ && is_aimed_ && same_size && now - looked_at_ < every) return;
+    looked_at_ = now;
     needs_picture_ = false;
     width_ = width;
     height_ = height;
@@ -245,8 +156,34 @@ void ScenePanel::render(int width, int height) {
         normal[clip_axis_] = 1.0;
         picture.clip = Plane{box.low + clip_share_ * (box.high - box.low), normal};
     }
-    screens_.samples = renderer_->is_software() && model_->triangles() > many_triangles ? 1 : 4;
-    screens_.draw(*renderer_, picture, sight_, camera, model_->legend());
+    const auto views = screens_.aim(sight_, camera, picture.bounds);
+    const bool has_coarse = renderer_->is_software() && model_->triangles() > many_triangles;
+    const auto next =
+        motion_.next(looks_of(picture, renderer_->meshes().changes(), views), has_coarse, ImGui::IsItemActive(), now);
+    if (next == SceneMotion::Next::nothing) return screens_.show();
+    picture.grain = next == SceneMotion::Next::coarse ? grain_of_motion : 0.0;
+    // One fine picture of what stands still does not make those of what moves rarer.
+    was_drawn_ = next == SceneMotion::Next::coarse || !has_coarse;
+    screens_.samples = renderer_->is_software() && model_->triangles() > very_many_triangles ? 1 : 4;
+    screens_.draw(*renderer_, picture, sight_, model_->legend());
+    screens_.show();
+}
+
+/// Head and device of the sight; what the scene is made of, the model watches itself.
+void ScenePanel::watch_sight() {
+    const std::vector<std::string> wanted = sight_.ports();
+    if (wanted == watched_) return;
+    for (const std::string& port : watched_) observer_->watch(port, Watch::nothing, this);
+    for (const std::string& port : wanted) observer_->watch(port, Watch::latest, this);
+    watched_ = wanted;
+}
+
+bool ScenePanel::is_empty() {
+    if (bench_.plan() && judged_version_ != bench_.plan_version()) {
+        is_empty_ = outline_of(*bench_.plan()).empty();
+        judged_version_ = bench_.plan_version();
+    }
+    return is_empty_;
 }
 
 void ScenePanel::draw(const std::shared_ptr<Observer>& observer, const Fonts& fonts) {
@@ -256,18 +193,19 @@ void ScenePanel::draw(const std::shared_ptr<Observer>& observer, const Fonts& fo
         if (observer != observer_) {
             model_.reset();
             observer_ = observer;
+            watched_.clear();
+            motion_.forget();
             plan_version_ = -1;
         }
         if (plan_version_ != bench_.plan_version()) {
             SceneOutline outline = outline_of(*bench_.plan());
-            const std::vector<std::string> ports = outline.ports();
-            wanted_ = {ports.begin(), ports.end()};
             if (!model_) model_ = std::make_unique<SceneModel>(std::move(outline), *observer_, *renderer_);
             else model_->follow(std::move(outline));
             sight_.follow(model_->outline());
             plan_version_ = bench_.plan_version();
             is_aimed_ = false;
         }
+        watch_sight();
         tools();
         const Point corner = point(ImGui::GetCursorScreenPos()), size = point(ImGui::GetContentRegionAvail());
         // Where the screen counts several pixels as one, the picture still has them all.

@@ -8,11 +8,11 @@
 #include "tools/scene_model.hpp"
 #include "tools/sight.hpp"
 #include "tools/view/painter.hpp"
+#include "tools/view/scene_motion.hpp"
 #include "tools/view/scene_screens.hpp"
 #include "tools/view/workbench.hpp"
 
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -24,8 +24,9 @@ public:
 
     /// `observer` may be null; another one is another run.
     void draw(const std::shared_ptr<Observer>& observer, const Fonts& fonts);
-    /// Outputs that the scene needs.
-    void add_wanted(std::set<std::string>& ports) const;
+
+    /// The patch has nothing in space: no bone, body, tool or pose.
+    bool is_empty();
 
     OrbitCamera camera;
     void look_from(NamedView view);
@@ -52,6 +53,7 @@ private:
     void steer(int width, int height);
     void render(int width, int height);
     void tend_screens();
+    void watch_sight();
     void measure(Point pixel);
     void draw_marks(const Painter& paint, Point corner, double pixel);
     void draw_legend(const Painter& paint, Point corner, int height, double scale);
@@ -63,12 +65,14 @@ private:
     std::unique_ptr<SceneModel> model_;
     Sight sight_{SightChoice{}};
     SceneScreens screens_;
+    SceneMotion motion_;
     enum class Windows { as_they_are, where_rig_says, all, none } windows_ = Windows::as_they_are;
-    std::set<std::string> wanted_;
-    std::int64_t plan_version_ = -1;
+    std::vector<std::string> watched_;  ///< ports
+    std::int64_t plan_version_ = -1, judged_version_ = -1;
+    bool is_empty_ = false;
     bool is_aimed_ = false, needs_picture_ = true;
     bool was_drawn_ = false;
-    double drawn_at_ = -1.0, cost_s_ = 0.0;  ///< cost: of the last picture, with the window around it
+    double looked_at_ = -1.0, cost_s_ = 0.0;  ///< cost: of a picture, with the window around it
     int width_ = 0, height_ = 0;  ///< of the last picture, pixels
     int clip_axis_ = -1;
     double clip_share_ = 0.5;

@@ -116,19 +116,27 @@ void SceneScreens::draw_legend(std::size_t screen, TextureTarget& target, const 
     }
 }
 
-void SceneScreens::draw(SceneRenderer& renderer, const Picture& picture, Sight& sight, const OrbitCamera& camera,
-                        const Legend& legend) {
+std::vector<DrawnView> SceneScreens::aim(Sight& sight, const OrbitCamera& camera, const Bounds& scene) {
+    std::vector<DrawnView> all;
     for (std::size_t i = 0; i < tiles_.size(); ++i) {
         Tile& tile = tiles_[i];
-        Target& target = *targets_[i];
-        ScreenWindow* const window = window_of(i);
+        const ScreenWindow* const window = window_of(i);
         const bool has_size = window && window->width() > 0 && window->height() > 0;
         tile.picture_width = has_size ? window->width() : tile.width;
         tile.picture_height = has_size ? window->height() : tile.height;
+        tile.views = sight.views(i, camera, scene, tile.picture_width, tile.picture_height);
+        all.insert(all.end(), tile.views.begin(), tile.views.end());
+    }
+    return all;
+}
+
+void SceneScreens::draw(SceneRenderer& renderer, const Picture& picture, const Sight& sight, const Legend& legend) {
+    for (std::size_t i = 0; i < tiles_.size(); ++i) {
+        Tile& tile = tiles_[i];
+        Target& target = *targets_[i];
         const int width = tile.picture_width, height = tile.picture_height;
-        tile.views = sight.views(i, camera, picture.bounds, width, height);
-        const bool has_two = tile.views.front().channel == Channel::back_left;
-        if (has_two) {
+        target.has_two = tile.views.front().channel == Channel::back_left;
+        if (target.has_two) {
             for (DrawnView& view : tile.views) view.channel = Channel::all;
             target.right.begin(width, height, samples);
             renderer.draw(picture, std::span(tile.views).subspan(1));
@@ -139,10 +147,19 @@ void SceneScreens::draw(SceneRenderer& renderer, const Picture& picture, Sight& 
         renderer.draw(picture, tile.views);
         target.left.end();
         tile.texture = target.left.texture();
-        if (!window) continue;
+        if (!window_of(i)) continue;
         draw_legend(i, target.left, sight, legend, tile.views);
-        if (has_two) draw_legend(i, target.right, sight, legend, tile.views);
-        window->show(target.left.texture(), has_two ? target.right.texture() : 0, width, height, i == 0);
+        if (target.has_two) draw_legend(i, target.right, sight, legend, tile.views);
+    }
+}
+
+void SceneScreens::show() {
+    for (std::size_t i = 0; i < tiles_.size(); ++i) {
+        ScreenWindow* const window = window_of(i);
+        if (!window) continue;
+        const Target& target = *targets_[i];
+        window->show(target.left.texture(), target.has_two ? target.right.texture() : 0, target.left.width(),
+                     target.left.height(), i == 0);
     }
 }
 

@@ -35,15 +35,19 @@ public:
     /// Closes those whose close button was pressed.
     void tend();
 
+    /// Where each is seen from. Returns all views, of all screens.
+    std::vector<DrawnView> aim(Sight& sight, const OrbitCamera& camera, const Bounds& scene);
     /// Per pixel. Many small triangles are costly to sample more than once where there is no graphics card.
     int samples = 4;
-    /// Draws the scene for all screens and shows it in their windows.
-    void draw(SceneRenderer& renderer, const Picture& picture, Sight& sight, const OrbitCamera& camera,
-              const Legend& legend);
+    /// Draws the scene as it was aimed at, for all screens.
+    void draw(SceneRenderer& renderer, const Picture& picture, const Sight& sight, const Legend& legend);
+    /// What was drawn last, in their windows: what uncovers or resizes one of those has wiped it.
+    void show();
 
 private:
     struct Target {
         TextureTarget left, right;
+        bool has_two = false;
     };
     struct Opened {
         std::size_t screen = 0;
