@@ -32,11 +32,18 @@ void dim(const std::string& text) {
     ImGui::PopStyleColor();
 }
 
+/// What is as wide as numbers go has no range to speak of.
+std::string range_text(const ParameterField& field) {
+    constexpr double endless = 1e12;
+    if (field.least <= -endless && field.most >= endless) return "any number";
+    return fmt::format("{:.4g} … {:.4g}", field.least, field.most);
+}
+
 std::string explanation(const ParameterField& field) {
     std::string text = field.about;
     if (field.kind == Kind::quantity)
-        text += fmt::format("\n{} … {}, default {}", quantity_text(field.least, field.unit),
-                            quantity_text(field.most, field.unit), field.standard);
+        text += fmt::format("\n{}{}{}, default {}", range_text(field), field.unit.empty() ? "" : " ", field.unit,
+                            field.standard);
     else if (!field.standard.empty()) text += fmt::format("\ndefault {}", field.standard);
     if (field.is_driven) text += "\ndriven by a wire";
     else if (!field.is_live) text += "\nstructural: the node begins anew";
@@ -71,8 +78,11 @@ void NodePanel::quantity(const ParameterField& field, const std::string& node) {
     double value = turning_ == id ? turned_to_ : field.value;
     const bool is_wide = is_logarithmic(field);
     const std::string format = fmt::format("%.5g {}", field.unit == "%" ? "%%" : field.unit);
-    const bool moved = ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &field.least, &field.most,
-                                           format.c_str(), is_wide ? ImGuiSliderFlags_Logarithmic : 0);
+    const std::optional<double> speed = drag_speed(field);
+    const bool moved = speed ? ImGui::DragScalar("##value", ImGuiDataType_Double, &value, static_cast<float>(*speed),
+                                                 &field.least, &field.most, format.c_str())
+                             : ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &field.least, &field.most,
+                                                   format.c_str(), is_wide ? ImGuiSliderFlags_Logarithmic : 0);
     mark_spot(field.name);
     if (moved) {
         turning_ = id;
@@ -80,8 +90,9 @@ void NodePanel::quantity(const ParameterField& field, const std::string& node) {
         if (field.is_live) bench_.turn(node, field.name, quantity_text(turned_to_, field.unit));
     }
     const bool ended = ImGui::IsItemDeactivatedAfterEdit();
-    tip(explanation(field) + "\nCtrl-click to type");
-    mark_default(field);
+    tip(explanation(field) +
+        (speed ? "\ndrag: Shift is faster, Alt finer; Ctrl-click to type" : "\nCtrl-click to type"));
+    if (!speed) mark_default(field);
     if (ended && turning_ == id) {
         turning_.clear();
         bench_.set(node, field.name, quantity_text(turned_to_, field.unit));
@@ -138,7 +149,7 @@ void NodePanel::field(const ParameterField& field, const std::string& node) {
     ImGui::TableNextColumn();
     if (field.kind == Kind::quantity) {
         ImGui::AlignTextToFramePadding();
-        ImGui::TextDisabled("%s", fmt::format("{:.4g} … {:.4g}", field.least, field.most).c_str());
+        ImGui::TextDisabled("%s", range_text(field).c_str());
         tip(explanation(field));
     }
     ImGui::TableNextColumn();

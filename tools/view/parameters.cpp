@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tactus::view {
 
@@ -80,6 +81,13 @@ std::vector<ParameterField> parameters_of(const Plan& plan, int index) {
             std::ranges::any_of(plan.wires, [&](const PlanWire& w) { return w.to_input < 0 && w.param == param; });
     }
     return fields;
+}
+
+std::optional<double> drag_speed(const ParameterField& field) {
+    const double size = std::max({std::abs(field.value), std::abs(field.normal), 1.0});
+    const bool is_wide = field.least < 0.0 && field.most - field.least > 1e3 * size;
+    if (!is_wide && field.most < 1e9) return std::nullopt;
+    return 0.005 * size;
 }
 
 std::string quantity_text(double value, std::string_view unit) {

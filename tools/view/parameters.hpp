@@ -4,6 +4,7 @@
 
 #include "graph/plan.hpp"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,10 @@ struct ParameterField {
 
 /// Of one node of a plan, in the order of its declaration.
 std::vector<ParameterField> parameters_of(const Plan& plan, int node);
+
+/// Of a quantity whose range is so wide that no slider finds what is common: by how much a pixel of dragging turns it, in
+/// its unit. Relative to its value, and at least as for a value of 1. None: a slider does.
+std::optional<double> drag_speed(const ParameterField& field);
 
 /// "0.8 N/mm" for a number that a form gives.
 std::string quantity_text(double value, std::string_view unit);

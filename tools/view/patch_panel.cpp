@@ -14,11 +14,10 @@ namespace tactus::view {
 
 namespace {
 
-constexpr double rounding = 6.0, text_size = 13.0, small_size = 10.5;
-constexpr double readable = 5.5;  ///< pixels: smaller text is left out
+constexpr double rounding = 6.0;
 constexpr double red_for_s = 1.5;
 constexpr ImU32 lane_ground = colour(0x171d26);
-constexpr double smallest_box = 9.0, smallest_curve = 0.12;  ///< pixels; zoom: from here on the form is left out
+constexpr double smallest_box = 9.0;  ///< pixels: from here on its form is left out
 
 }  // namespace
 
@@ -123,12 +122,10 @@ void PatchPanel::draw(const Feed* feed, const Fonts& fonts, std::set<std::string
     draw_lanes(paint);
     draw_wires(paint, visible);
     draw_heads(paint, *status_);
-    drawn_nodes = 0;
-    for (std::size_t n = 0; n < picture.nodes.size(); ++n) {
-        if (!picture.nodes[n].box.meets(visible)) continue;
-        ++drawn_nodes;
-        draw_node(paint, picture.nodes[n], times_[n], feed, looked_at);
-    }
+    if (is_afar()) draw_stacks(paint, visible);
+    else
+        for (std::size_t n = 0; n < picture.nodes.size(); ++n)
+            if (picture.nodes[n].box.meets(visible)) draw_node(paint, picture.nodes[n], times_[n], feed, looked_at);
     draw_deliveries(paint, visible);
     draw_wiring(paint);
     if (!bench_.plan())
@@ -184,65 +181,12 @@ void PatchPanel::draw_heads(const Painter& paint, const RunStatus& status) {
     }
 }
 
-void PatchPanel::draw_wires(const Painter& paint, const Box& visible) {
-    const PatchPicture& picture = bench_.picture();
-    const double z = canvas_.zoom;
-    const int chosen = picture.find(selected);
-    drawn_wires = 0;
-    for (std::size_t w = 0; w < picture.wires.size(); ++w) {
-        const PictureWire& wire = picture.wires[w];
-        if (!wire.bounds.meets(visible)) continue;
-        ++drawn_wires;
-        const PictureNode& from = picture.nodes[static_cast<std::size_t>(wire.from)];
-        ImU32 ink = colour_of(from.outputs[static_cast<std::size_t>(wire.output)].type);
-        const bool is_hovered = hovered_ == Hit{Hit::What::wire, static_cast<int>(w), -1};
-        const bool is_near = wire.from == chosen || wire.to == chosen;
-        if (!is_hovered && !is_near) ink = faded(ink, 0.62);
-        const double width = (is_hovered ? 3.2 : is_near ? 2.4 : 1.7) * std::max(z, 0.35);
-        std::array<Point, 4> c;
-        for (std::size_t i = 0; i < 4; ++i) c[i] = screen(wire.curve[i]);
-        if (z < smallest_curve) {
-            paint.line(c[0], c[3], ink);
-            continue;
-        }
-        if (!wire.crosses || z < 0.4) {
-            paint.list()->AddBezierCubic(vec(c[0]), vec(c[1]), vec(c[2]), vec(c[3]), ink, static_cast<float>(width));
-            continue;
-        }
-        // Dashed: between groups.
-        const double length = std::hypot(c[3].x - c[0].x, c[3].y - c[0].y) * 1.15;
-        const int dashes = std::clamp(static_cast<int>(length / (13.0 * z)), 4, 160);
-        for (int d = 0; d < dashes; ++d)
-            paint.line(on_curve(c, (d + 0.0) / dashes), on_curve(c, (d + 0.62) / dashes), ink, width);
-    }
-}
-
-/// What the wires of the chosen node carry, and how late.
-void PatchPanel::draw_deliveries(const Painter& paint, const Box& visible) {
-    const PatchPicture& picture = bench_.picture();
-    const double z = canvas_.zoom, size = small_size * z;
-    const int chosen = picture.find(selected);
-    if (chosen < 0 || size < readable) return;
-    std::vector<Box> taken;
-    for (const PictureWire& wire : picture.wires) {
-        if ((wire.from != chosen && wire.to != chosen) || !wire.bounds.meets(visible)) continue;
-        const PictureNode& from = picture.nodes[static_cast<std::size_t>(wire.from)];
-        const ValueType* type = from.outputs[static_cast<std::size_t>(wire.output)].type;
-        // Within a tick there is no delay to tell, and the colour tells the type.
-        if (!wire.crosses && wire.latency == 0) continue;
-        const std::string text = fmt::format("{}, {}", type ? type->name : "any", describe(wire));
-        const double wide = paint.width_of(text, size);
-        const Point middle = screen(on_curve(wire.curve, 0.5));
-        Box box{middle.x - 0.5 * wide - 4.0 * z, middle.y - 8.0 * z, middle.x + 0.5 * wide + 4.0 * z,
-                middle.y + 8.0 * z};
-        while (std::ranges::any_of(taken, [&](const Box& other) { return other.meets(box); })) {
-            box.top += 17.0 * z;
-            box.bottom += 17.0 * z;
-        }
-        taken.push_back(box);
-        paint.box(box, colour(0x0c1015, 230), 4.0 * z);
-        paint.text({box.left + 4.0 * z, box.top + 1.5 * z}, size, colour_of(type), text);
-    }
+/// Instead of boxes whose gaps nobody sees.
+void PatchPanel::draw_stacks(const Painter& paint, const Box& visible) {
+    for (const Box& stack : bench_.picture().stacks)
+        if (stack.meets(visible)) paint.box(screen(stack), tone::node_edge);
+    if (const int chosen = bench_.picture().find(selected); chosen >= 0)
+        paint.box(screen(bench_.picture().nodes[static_cast<std::size_t>(chosen)].box), tone::chosen);
 }
 
 void PatchPanel::draw_node(const Painter& paint, const PictureNode& node, const NodeStatus* status, const Feed* feed,
@@ -322,17 +266,6 @@ void PatchPanel::draw_ports(const Painter& paint, const PictureNode& node, const
         paint.text({at.x + 8.0 * z, at.y - 1.35 * size}, 0.95 * size, faded(ink, 0.95),
                    paint.shortened(text, 0.95 * size, (column_gap - 12.0) * z));
     }
-}
-
-void PatchPanel::draw_wiring(const Painter& paint) {
-    if (wiring_.node < 0) return;
-    const PicturePort& port =
-        bench_.picture().nodes[static_cast<std::size_t>(wiring_.node)].outputs[static_cast<std::size_t>(wiring_.port)];
-    const Point mouse = point(ImGui::GetIO().MousePos), from = screen(port.at);
-    const auto curve = curve_between(from, mouse);
-    const bool refused = hovered_.what == Hit::What::input && !wiring_.objection.empty();
-    paint.list()->AddBezierCubic(vec(curve[0]), vec(curve[1]), vec(curve[2]), vec(curve[3]),
-                                 refused ? tone::bad : colour_of(port.type), 2.5f);
 }
 
 std::string short_value(const ValueType& type, const Feed::Latest& latest, const std::string& unit) {

@@ -31,10 +31,11 @@ public:
     void look_at(const std::string& node);
     /// Where "node", "node.output" or "node.input" is seen, none: not in sight.
     std::optional<Point> place_of(const std::string& name) const;
-    /// What was drawn last, for those who ask whether all was.
-    std::size_t drawn_nodes = 0, drawn_wires = 0;
 
 private:
+    static constexpr double text_size = 13.0, small_size = 10.5;  ///< at a zoom of one
+    static constexpr double readable = 5.5;  ///< pixels: smaller text is left out
+
     struct Wiring {
         int node = -1, port = -1;  ///< the output that a wire is being drawn from
         std::string checked, objection;
@@ -49,7 +50,9 @@ private:
     void draw_lanes(const Painter& paint);
     void draw_heads(const Painter& paint, const RunStatus& status);
     void draw_wires(const Painter& paint, const Box& visible);
+    void draw_piece(const Painter& paint, const BezierCurve& piece, bool dashed, ImU32 ink, double width);
     void draw_deliveries(const Painter& paint, const Box& visible);
+    void draw_stacks(const Painter& paint, const Box& visible);
     void draw_node(const Painter& paint, const PictureNode& node, const NodeStatus* status, const Feed* feed,
                    std::set<std::string>& looked_at);
     void draw_ports(const Painter& paint, const PictureNode& node, const Feed* feed, std::set<std::string>& looked_at);
@@ -61,6 +64,8 @@ private:
     std::string port_name(const Hit& hit) const;
     Point screen(Point world) const { return canvas_.to_pixel(world) + corner_; }
     Box screen(const Box& world) const;
+    /// So far off that boxes above each other run together, and wires are but a fog.
+    bool is_afar() const { return canvas_.zoom < 0.12; }
     bool is_late(const std::string& group) const;
 
     Workbench& bench_;

@@ -13,7 +13,7 @@ namespace tactus::view {
 
 namespace {
 
-constexpr double value_room = 60, row_gap = 18, lane_head = 30, lane_padding = 14, lane_gap = 14, left_edge = 16;
+constexpr double value_room = 60, row_gap = 18, lane_head = 30, lane_padding = 14, lane_gap = 14, left_edge = 40;
 
 void fill_node(const PlanNode& node, PictureNode& made) {
     made.name = node.name;
@@ -84,7 +84,8 @@ int most_rows(std::size_t nodes_of_lane) {
 
 class Arrangement {
 public:
-    Arrangement(const Plan& plan, PatchPicture& picture) : plan_(plan), picture_(picture), columns_(columns_of(plan)) {}
+    Arrangement(const Plan& plan, PatchPicture& picture)
+        : plan_(plan), picture_(picture), columns_(columns_of(plan)), depth_(plan.nodes.size()) {}
 
     void arrange() {
         double top = 0.0;
@@ -109,16 +110,20 @@ private:
         double x = left_edge, bottom = top + title_height;
         for (auto& [column, nodes] : by_column) {
             sort_by_sources(nodes);
-            double y = top;
+            double y = top, gone = 0.0;
             int row = 0;
             for (const int index : nodes) {
                 PictureNode& node = picture_.nodes[static_cast<std::size_t>(index)];
                 if (row == most_rows(group.order.size())) {
                     row = 0;
+                    gone += y - top;
                     y = top;
                     x += node_width + row_gap;
                 }
                 node.box = {x, y, x + node_width, y + height_of(node)};
+                depth_[static_cast<std::size_t>(index)] = gone + y;
+                if (row == 0) picture_.stacks.push_back(node.box);
+                picture_.stacks.back().bottom = node.box.bottom;
                 y = node.box.bottom + row_gap;
                 bottom = std::max(bottom, node.box.bottom);
                 ++row;
@@ -139,7 +144,7 @@ private:
                 const PlanWire& wire = plan_.wires[w];
                 const PictureNode& from = picture_.nodes[static_cast<std::size_t>(wire.from_node)];
                 if (from.box.width() == 0.0) continue;
-                sum += from.box.top + title_height + wire.from_output * port_height;
+                sum += depth_[static_cast<std::size_t>(wire.from_node)] + title_height + wire.from_output * port_height;
                 ++count;
             }
             height[node] = count > 0 ? sum / count : 1e9;
@@ -160,6 +165,7 @@ private:
     const Plan& plan_;
     PatchPicture& picture_;
     std::vector<int> columns_;
+    std::vector<double> depth_;  ///< how far down each node were if no column went on beside itself
     mutable std::vector<std::vector<std::size_t>> feeding_;
     double right_ = left_edge + node_width;
 };
@@ -173,17 +179,37 @@ void place_ports(PictureNode& node) {
     place(node.outputs, node.box.right);
 }
 
-double distance_to(const PictureWire& wire, Point at) {
-    constexpr int pieces = 24;
-    double least = 1e300;
-    Point a = wire.curve[0];
-    for (int i = 1; i <= pieces; ++i) {
-        const Point b = on_curve(wire.curve, static_cast<double>(i) / pieces), d = b - a, p = at - a;
-        const double length = d.x * d.x + d.y * d.y;
-        const double t = length > 0.0 ? std::clamp((p.x * d.x + p.y * d.y) / length, 0.0, 1.0) : 0.0;
-        least = std::min(least, std::hypot(p.x - t * d.x, p.y - t * d.y));
-        a = b;
+/// In a patch of more nodes nobody follows a wire by eye, and looking for ways would take long.
+constexpr std::size_t most_routed = 300;
+
+void route_wires(PatchPicture& picture) {
+    std::vector<Box> boxes;
+    std::vector<double> levels;
+    if (picture.nodes.size() <= most_routed) {
+        for (const PictureNode& node : picture.nodes) boxes.push_back(node.box);
+        for (const PictureLane& lane : picture.lanes) levels.push_back(lane.bottom + 0.5 * lane_gap);
+        // Nothing runs below the picture.
+        if (!levels.empty()) levels.back() = picture.lanes.back().bottom - 0.5 * lane_padding;
     }
+    WireRouter router(std::move(boxes), levels);
+    for (PictureWire& wire : picture.wires) {
+        const auto& outputs = picture.nodes[static_cast<std::size_t>(wire.from)].outputs;
+        const auto& inputs = picture.nodes[static_cast<std::size_t>(wire.to)].inputs;
+        constexpr int most_outputs = 256;
+        wire.way = router.way(outputs[static_cast<std::size_t>(wire.output)].at,
+                              inputs[static_cast<std::size_t>(wire.input)].at, most_outputs * wire.from + wire.output);
+        wire.bounds = bounds_of(wire.way.front());
+        for (const BezierCurve& piece : wire.way) {
+            const Box box = bounds_of(piece);
+            wire.bounds = {std::min(wire.bounds.left, box.left), std::min(wire.bounds.top, box.top),
+                           std::max(wire.bounds.right, box.right), std::max(wire.bounds.bottom, box.bottom)};
+        }
+    }
+}
+
+double distance_to(const PictureWire& wire, Point at) {
+    double least = 1e300;
+    for (const BezierCurve& piece : wire.way) least = std::min(least, distance_to(piece, at));
     return least;
 }
 
@@ -194,15 +220,7 @@ int PatchPicture::find(std::string_view node) const {
     return found == nodes.end() ? -1 : static_cast<int>(found - nodes.begin());
 }
 
-Point on_curve(const std::array<Point, 4>& c, double t) {
-    const double s = 1.0 - t;
-    return c[0] * (s * s * s) + c[1] * (3.0 * s * s * t) + c[2] * (3.0 * s * t * t) + c[3] * (t * t * t);
-}
-
-std::array<Point, 4> curve_between(Point from, Point to) {
-    const double reach = std::clamp(0.45 * std::abs(to.x - from.x), 34.0, 220.0);
-    return {from, Point{from.x + reach, from.y}, Point{to.x - reach, to.y}, to};
-}
+Point middle_of(const PictureWire& wire) { return on_curve(wire.way[wire.way.size() / 2], 0.5); }
 
 PatchPicture picture_of(const Plan& plan) {
     PatchPicture picture;
@@ -231,15 +249,7 @@ PatchPicture picture_of(const Plan& plan) {
     }
     Arrangement(plan, picture).arrange();
     for (PictureNode& node : picture.nodes) place_ports(node);
-    for (PictureWire& wire : picture.wires) {
-        wire.curve = curve_between(
-            picture.nodes[static_cast<std::size_t>(wire.from)].outputs[static_cast<std::size_t>(wire.output)].at,
-            picture.nodes[static_cast<std::size_t>(wire.to)].inputs[static_cast<std::size_t>(wire.input)].at);
-        wire.bounds = {1e300, 1e300, -1e300, -1e300};
-        for (const Point& p : wire.curve)
-            wire.bounds = {std::min(wire.bounds.left, p.x), std::min(wire.bounds.top, p.y),
-                           std::max(wire.bounds.right, p.x), std::max(wire.bounds.bottom, p.y)};
-    }
+    route_wires(picture);
     return picture;
 }
 

@@ -5,8 +5,8 @@
 
 #include "graph/plan.hpp"
 #include "tools/view/canvas.hpp"
+#include "tools/view/wire_route.hpp"
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,7 +33,7 @@ struct PictureWire {
     WireMode mode = WireMode::hold;
     Flicks latency = 0;
     bool crosses = false;  ///< from one group to another
-    std::array<Point, 4> curve;  ///< of Bézier
+    std::vector<BezierCurve> way;  ///< pieces that follow each other
     Box bounds;
 };
 
@@ -46,6 +46,7 @@ struct PatchPicture {
     std::vector<PictureLane> lanes;  ///< as the plan's groups
     std::vector<PictureNode> nodes;  ///< as the plan's
     std::vector<PictureWire> wires;  ///< those between nodes
+    std::vector<Box> stacks;  ///< around the boxes that stand above each other, for a look from afar
     Box bounds;
 
     int find(std::string_view node) const;  ///< −1: none
@@ -64,9 +65,8 @@ struct Hit {
 };
 Hit hit(const PatchPicture& picture, Point at, double reach);
 
-/// Points on a curve, ends included.
-Point on_curve(const std::array<Point, 4>& curve, double t);
-std::array<Point, 4> curve_between(Point from, Point to);
+/// In the middle piece of its way, where there is room to say something.
+Point middle_of(const PictureWire& wire);
 
 /// "hold, 1 ms": how a wire delivers.
 std::string describe(const PictureWire& wire);

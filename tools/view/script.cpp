@@ -252,8 +252,8 @@ bool Script::wait_for(const Line& line, Desk& desk, Window& window) {
     if (what == "cost") {
         if (pictures_ == 0) cost_began_ = window.drawn_s();
         if (pictures_ < static_cast<int>(number(line, 1))) return false;
-        fmt::print(stderr, "{} pictures, {:.2f} ms each\n", pictures_,
-                   1e3 * (window.drawn_s() - cost_began_) / pictures_);
+        fmt::print(stderr, "{} pictures, {:.2f} ms each, {} triangles beside the scene's\n", pictures_,
+                   1e3 * (window.drawn_s() - cost_began_) / pictures_, ImGui::GetIO().MetricsRenderIndices / 3);
         return true;
     }
     if (what == "wheel") {

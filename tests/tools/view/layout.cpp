@@ -111,7 +111,7 @@ TEST_CASE("in the picture of a patch no boxes overlap, lanes hold their nodes, w
     CHECK(picture.nodes[0].box.right < picture.nodes[1].box.left);
     CHECK(picture.nodes[1].box.right < picture.nodes[2].box.left);
     for (const PictureWire& wire : picture.wires) {
-        const Point end = on_curve(wire.curve, 1.0);
+        const Point end = on_curve(wire.way.back(), 1.0);
         const Point port =
             picture.nodes[static_cast<std::size_t>(wire.to)].inputs[static_cast<std::size_t>(wire.input)].at;
         CHECK((end.x == Approx(port.x) && end.y == Approx(port.y)));
@@ -132,7 +132,7 @@ TEST_CASE("pointing hits ports before nodes and nodes before wires, and nothing 
     CHECK(hit(picture, node.inputs[0].at, 5.0) == Hit{Hit::What::input, ball, 0});
     CHECK(hit(picture, node.outputs[0].at, 5.0) == Hit{Hit::What::output, ball, 0});
     CHECK(hit(picture, node.box.middle(), 5.0) == Hit{Hit::What::node, ball, -1});
-    CHECK(hit(picture, on_curve(picture.wires[1].curve, 0.5), 5.0) == Hit{Hit::What::wire, 1, -1});
+    CHECK(hit(picture, middle_of(picture.wires[1]), 5.0) == Hit{Hit::What::wire, 1, -1});
     CHECK(hit(picture, {-500.0, -500.0}, 5.0) == Hit{});
 }
 
@@ -151,6 +151,23 @@ TEST_CASE("a patch of 10 000 nodes has its picture at once, and a window shows f
     CHECK(std::ranges::count_if(picture.nodes, [&](const auto& n) { return n.box.meets(visible); }) < 200);
     canvas.fit(picture.bounds, 1600, 1000);
     CHECK(canvas.visible(1600, 1000).width() >= picture.bounds.width());
+}
+
+TEST_CASE("what is wider than a slider resolves is dragged, by shares of its value") {
+    ParameterField field;
+    field.least = -1e12;
+    field.most = 1e12;
+    REQUIRE(drag_speed(field));
+    // From 0 to 1 in the width of a slider; and a thousand times as fast at a thousand times the value.
+    CHECK(200.0 * *drag_speed(field) == Approx(1.0));
+    field.value = -2500.0;
+    CHECK(200.0 * *drag_speed(field) == Approx(2500.0));
+    field.least = 0.01;
+    field.most = 50.0;
+    field.value = 20.0;
+    CHECK_FALSE(drag_speed(field));
+    field.least = -60.0;
+    CHECK_FALSE(drag_speed(field));
 }
 
 TEST_CASE("a form shows every parameter with range, unit and default, and says which can be turned") {
