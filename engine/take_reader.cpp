@@ -72,6 +72,8 @@ TakeStreamInfo read_stream(const Json& json) {
     info.start = json.at("start");
     if (!info.file.starts_with("streams/") || info.file.find("..") != std::string::npos)
         throw Error(fmt::format("'{}' is no stream of the take", info.file));
+    if (info.period < 1 || info.start < 0)
+        throw Error(fmt::format("the stream of {} has no period, or begins before the run", info.port));
     return info;
 }
 

@@ -28,6 +28,17 @@ struct Closer {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
+// A byte of a damaged file may be neither false nor true, and must not be looked at as a bool.
+bool is_flag(const bool& flag) {
+    unsigned char byte = 0;
+    std::memcpy(&byte, &flag, sizeof byte);
+    return byte <= 1;
+}
+
+bool has_flags(const DeviceSample& sample) {
+    return is_flag(sample.valid) && is_flag(sample.taken) && is_flag(sample.sound_lost);
+}
+
 }  // namespace
 
 TimingLogWriter::TimingLogWriter(const std::filesystem::path& path, std::uint64_t plan_hash, double seconds, Name name)
@@ -87,7 +98,7 @@ TimingLog TimingLog::load(const std::filesystem::path& path, bool may_be_cut) {
     log.seconds = header.seconds;
     TimingRecord record;
     while (std::fread(&record, sizeof record, 1, file.get()) == 1) {
-        if (record.kind > TimingKind::whole || record.tick < 0 || record.count < 0)
+        if (record.kind > TimingKind::whole || record.tick < 0 || record.count < 0 || !has_flags(record.sample))
             fail("a record of the timing log is damaged");
         log.is_whole = record.kind == TimingKind::whole;
         if (log.is_whole) break;

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// All that is written in TOML beside patches: any text is read as each of them or refused with one message.
+#include "assets/display/rig_file.hpp"
+#include "assets/equaliser/equaliser_file.hpp"
+#include "assets/recording/recording_set.hpp"
+#include "assets/rig/rig_matrix.hpp"
+#include "assets/thresholds/thresholds.hpp"
+#include "dsp/core/error.hpp"
+#include "tests/fuzz/memory_file.hpp"
+
+#include <cstdlib>
+
+namespace {
+
+template <typename Load>
+void try_reader(const std::filesystem::path& path, Load load) {
+    try {
+        load(path);
+    } catch (const tactus::Error& error) {
+        if (error.message().empty() || error.message().find('\n') != std::string::npos) std::abort();
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const tactus::MemoryFile file(data, size, "file.toml");
+    try_reader(file.path(), [](const auto& path) { tactus::load_rig_file(path); });
+    try_reader(file.path(), [](const auto& path) { tactus::load_rig_matrix(path); });
+    try_reader(file.path(), [](const auto& path) { tactus::load_thresholds(path); });
+    try_reader(file.path(), [](const auto& path) { tactus::load_equaliser(path); });
+    try_reader(file.path(), [](const auto& path) { tactus::load_recording_set(path); });
+    return 0;
+}
