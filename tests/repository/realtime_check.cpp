@@ -77,7 +77,7 @@ TEST_CASE("the first use of a local static is seen, the second is clean") {
         static const auto table = std::make_unique<double[]>(100);
         keep(table);
     };
-    CHECK(watch(use).allocations == 1);
+    CHECK(watch(use).allocations >= 1);  // its destructor is put on a list, which may grow
     CHECK(watch(use).none());
 }
 
