@@ -13,8 +13,9 @@ void Link::prepare(Flicks slack, int producer_frames, int consumer_frames, std::
     // Slot m is wanted until the consumer's next read; latency and the lengths of calls on both sides add to that.
     const Flicks reach = consumer_period * consumer_frames + latency + slack;
     depth_ = ceil_div(reach, producer_period) + 2 + 2 * static_cast<std::int64_t>(producer_frames);
-    stamp_.assign(static_cast<std::size_t>(depth_), -1);
     const auto depth = static_cast<std::size_t>(depth_);
+    stamp_ = std::vector<std::atomic<std::int64_t>>(depth);
+    for (auto& stamp : stamp_) stamp.store(-1, std::memory_order_relaxed);
     for (LinkWire& wire : wires) {
         const std::size_t size = wire.type->size;
         wire.ring.assign(depth * size, std::byte{0});
@@ -42,7 +43,7 @@ void Link::publish(std::int64_t first, int count) noexcept {
     for (LinkWire& wire : wires)
         for (int i = 0; i < count; ++i)
             std::memcpy(wire.slot(first + i, depth_), wire.source->data + i * wire.source->stride, wire.type->size);
-    for (int i = 0; i < count; ++i) stamp_[static_cast<std::size_t>((first + i) % depth_)] = first + i;
+    for (int i = 0; i < count; ++i) stamp(first + i).store(first + i, std::memory_order_relaxed);
 }
 
 void Link::take_over() noexcept {
@@ -74,7 +75,7 @@ void Link::hold_from(std::int64_t index) noexcept {
 bool Link::holds(std::int64_t index) const noexcept {
     if (index < 0) return false;
     if (index < first_.load(std::memory_order_acquire)) return continues_ && continued->holds(index);
-    return stamp_[static_cast<std::size_t>(index % depth_)] == index;
+    return stamp(index).load(std::memory_order_relaxed) == index;
 }
 
 const std::byte* Link::value(const LinkWire& wire, std::int64_t index) const noexcept {
@@ -94,18 +95,24 @@ std::int64_t Link::oldest_version(const Output* output) const noexcept {
         // Index −1 is the value set by prepare, which counts as the oldest there is.
         if (!is_begun && !wire.before && wire.starts_from_output) return 0;
         for (std::size_t slot = 0; slot < stamp_.size(); ++slot)
-            if (stamp_[slot] >= held)
+            if (stamp_[slot].load(std::memory_order_relaxed) >= held)
                 oldest = std::min(oldest, wire.type->version(wire.ring.data() + slot * wire.type->size));
     }
     return oldest;
 }
 
+std::int64_t Link::newest_held(std::int64_t newest) const noexcept {
+    if (holds(newest)) return newest;
+    // After a standstill of either side the values that were kept may lie anywhere.
+    std::int64_t found = -1;
+    for (const auto& slot : stamp_)
+        if (const std::int64_t index = slot.load(std::memory_order_relaxed); index <= newest)
+            found = std::max(found, index);
+    return found < 0 && continues_ ? continued->newest_held(newest) : found;
+}
+
 std::int64_t Link::newest_available(std::int64_t want, std::int64_t done) const noexcept {
-    const std::int64_t newest = std::min(want, done - 1);
-    // What is older than a ring is long was overwritten.
-    for (std::int64_t index = newest; index > std::max(used_, newest - depth_ - 1); --index)
-        if (holds(index)) return index;
-    return used_;
+    return std::max(used_, newest_held(std::min(want, done - 1)));
 }
 
 void Link::gather_batch(LinkWire& wire, std::int64_t index) noexcept {

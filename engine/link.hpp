@@ -67,8 +67,14 @@ public:
     void begin_at(std::int64_t index) noexcept { first_.store(index, std::memory_order_release); }
     /// True when the slots of indices first … first + count − 1 are released. Wait-free.
     bool has_room(std::int64_t first, int count) const noexcept {
-        return first + count - 1 - depth_ <
-               std::max(oldest_.load(std::memory_order_acquire), first_.load(std::memory_order_relaxed) - 1);
+        const std::int64_t oldest = oldest_.load(std::memory_order_acquire);
+        // As long as nobody stood still, slots are taken in turn.
+        if (first + count - 1 - depth_ < std::max(oldest, first_.load(std::memory_order_relaxed) - 1)) return true;
+        for (int i = 0; i < count; ++i)
+            if (const std::int64_t there = stamp(first + i).load(std::memory_order_relaxed);
+                there >= 0 && there >= oldest)
+                return false;
+        return true;
     }
     /// Copies the outputs' values into the slots. The group's progress word publishes them. Wait-free.
     void publish(std::int64_t first, int count) noexcept;
@@ -105,12 +111,18 @@ public:
 
 private:
     bool holds(std::int64_t index) const noexcept;
+    std::int64_t newest_held(std::int64_t newest) const noexcept;
+    std::atomic<std::int64_t>& stamp(std::int64_t index) { return stamp_[static_cast<std::size_t>(index % depth_)]; }
+    const std::atomic<std::int64_t>& stamp(std::int64_t index) const {
+        return stamp_[static_cast<std::size_t>(index % depth_)];
+    }
     const std::byte* value(const LinkWire& wire, std::int64_t index) const noexcept;
     void hold_from(std::int64_t index) noexcept;
     void gather_batch(LinkWire& wire, std::int64_t index) noexcept;
 
     std::int64_t depth_ = 0;
-    std::vector<std::int64_t> stamp_;  ///< index whose values are in each slot, −1: none
+    /// Index whose values are in each slot, −1: none. What the reader may read is published by the writer's progress.
+    std::vector<std::atomic<std::int64_t>> stamp_;
     std::int64_t used_ = -1;
     bool fresh_ = false;  ///< `read` was called since the last `deliver`
     bool continues_ = false;  ///< consumer's: values before `first_` are read from `continued`
