@@ -24,6 +24,22 @@ void fill(int x, int y, int width, int height, float grey) {
 
 }  // namespace
 
+void draw_mark(const RigTouch& touch, int width, int height) {
+    glViewport(0, 0, width, height);
+    glEnable(GL_SCISSOR_TEST);
+    fill(0, 0, width, height, 0.06f);
+    if (touch.of == RigTouch::Of::screen || touch.of == RigTouch::Of::image) {
+        // Thin where they cross, so that the place is exact.
+        const int x = static_cast<int>(std::lround(touch.shown.x * width)),
+                  y = static_cast<int>(std::lround(touch.shown.y * height)), reach = height / 20;
+        fill(x - reach, y - 1, 2 * reach, 2, 1.0f);
+        fill(x - 1, y - reach, 2, 2 * reach, 1.0f);
+        fill(x - reach, y - 4, reach / 2, 8, 1.0f);
+        fill(x + reach / 2, y - 4, reach / 2, 8, 1.0f);
+    }
+    glDisable(GL_SCISSOR_TEST);
+}
+
 struct MarkWindow::State {
     GLFWwindow* window = nullptr;
     RigTouch touch;
@@ -65,19 +81,7 @@ bool MarkWindow::draw() {
         return false;
     int width = 0, height = 0;
     glfwGetFramebufferSize(state_->window, &width, &height);
-    glViewport(0, 0, width, height);
-    glEnable(GL_SCISSOR_TEST);
-    fill(0, 0, width, height, 0.06f);
-    if (state_->touch.of == RigTouch::Of::screen || state_->touch.of == RigTouch::Of::image) {
-        // Thin where they cross, so that the place is exact.
-        const int x = static_cast<int>(std::lround(state_->touch.shown.x * width)),
-                  y = static_cast<int>(std::lround(state_->touch.shown.y * height)), reach = height / 20;
-        fill(x - reach, y - 1, 2 * reach, 2, 1.0f);
-        fill(x - 1, y - reach, 2, 2 * reach, 1.0f);
-        fill(x - reach, y - 4, reach / 2, 8, 1.0f);
-        fill(x + reach / 2, y - 4, reach / 2, 8, 1.0f);
-    }
-    glDisable(GL_SCISSOR_TEST);
+    draw_mark(state_->touch, width, height);
     glfwSwapBuffers(state_->window);
     return true;
 }

@@ -9,6 +9,9 @@
 
 namespace tactus {
 
+/// A cross at the mark of a screen on black, into what is bound; for other touches nothing but black. Needs a current context.
+void draw_mark(const RigTouch& touch, int width, int height);
+
 class MarkWindow {
 public:
     /// On a monitor, from 1. Throws Error when there is no display, no such monitor or no OpenGL.

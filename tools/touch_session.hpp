@@ -2,8 +2,8 @@
 // Leads a person through touching places with the tip of a device, one after another.
 #pragma once
 
-#include "dsp/view/rig_touches.hpp"
 #include "graph/device.hpp"
+#include "tools/touch_lead.hpp"
 
 #include <functional>
 #include <memory>
@@ -19,10 +19,6 @@ public:
     TipReader(std::unique_ptr<HapticDevice> device, bool is_real, const Vec3& tip,
               std::unique_ptr<HapticDevice> tracker);
 
-    struct Touched {
-        Vec3 tip{0.0}, tracked{0.0};  ///< means over the touch, m, each in its own frame
-        double moved = 0.0;  ///< m, the farthest from the mean
-    };
     /// Waits for the button, or for `is_asked` to say yes, then reads 0.2 s. `tend` is called now and then meanwhile.
     /// Throws Error when a simulated hand has not pressed within a minute, or when the device fails.
     Touched touch(const std::function<bool()>& is_asked, const std::function<void()>& tend);
@@ -39,17 +35,14 @@ private:
     std::int64_t last_counter_ = -1;
 };
 
-/// Fills the readings of `steps` one by one: `show` tells what is to be touched now, and `say` what went wrong with a
-/// touch, which is then asked for again; so is a touch that `check`, called after the last of a part, throws as BadTouch.
-/// A place that does not come out right the third time is thrown.
+/// Leads through all steps, see TouchLead: `show` tells what is to be touched now, and `say` what was wrong with a touch.
 struct TouchSession {
     std::function<void(const RigTouch& step, std::size_t number, std::size_t of)> show;
     std::function<void(const std::string& said)> say;
     std::function<bool()> is_asked;
     std::function<void()> tend;
-    std::function<void(std::span<const RigTouch> done)> check;
 
-    void run(TipReader& tip, std::vector<RigTouch>& steps, bool has_tracker) const;
+    void run(TipReader& tip, TouchLead& lead) const;
 };
 
 }  // namespace tactus

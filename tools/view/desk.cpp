@@ -8,6 +8,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace tactus::view {
 
@@ -19,7 +20,8 @@ Desk::Desk(Window& window, Workbench& bench, TakeBench* take)
       patch_(bench),
       nodes_(bench),
       scopes_(bench),
-      scene_(bench) {
+      scene_(bench),
+      calibration_(bench, scene_) {
     patch_.is_read_only = nodes_.is_read_only = take != nullptr;
 }
 
@@ -45,7 +47,9 @@ void Desk::follow_run() {
     }
     if (!live_) return;
     live_->set_now(bench_.status()->time);
-    live_->follow(looked_at_, scopes_.traced());
+    std::set<std::string> traced = scopes_.traced();
+    calibration_.add_traced(traced);
+    live_->follow(looked_at_, traced);
 }
 
 void Desk::panel(const char* id, double width, double height) {
@@ -206,6 +210,8 @@ void Desk::draw() {
     show_messages(messages);
     ask_farewell();
     ImGui::End();
+    if (std::exchange(scene_.wants_calibration, false)) calibration_.is_open = true;
+    calibration_.draw(live_.get());
     ImGui::PopFont();
 }
 

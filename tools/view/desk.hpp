@@ -2,6 +2,7 @@
 // Everything in the window, side by side.
 #pragma once
 
+#include "tools/view/calibration_panel.hpp"
 #include "tools/view/node_panel.hpp"
 #include "tools/view/patch_panel.hpp"
 #include "tools/view/scene_panel.hpp"
@@ -55,6 +56,7 @@ private:
     NodePanel nodes_;
     Scopes scopes_;
     ScenePanel scene_;
+    CalibrationPanel calibration_;
     std::set<std::string> looked_at_;
     double left_ = 0.64, patch_height_ = 0.58, scene_height_ = 0.55;
 };

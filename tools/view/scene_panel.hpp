@@ -36,6 +36,7 @@ public:
     /// Cuts away what lies above a share of the scene's extent along an axis; axis −1: nothing.
     void clip(int axis, double share);
     bool is_measuring = false;
+    bool wants_calibration = false;  ///< asked for, for whoever leads through it
 
     // How it is looked at. All throw Error, and nothing has changed then.
     void use(const SightChoice& choice);
@@ -43,6 +44,7 @@ public:
     void use_stereo(const std::string& mode);
     void use_head(const std::string& port);
     void use_rig(const std::string& file);
+    const std::optional<RigFile>& rig() const { return sight_.rig(); }
     void use_offset(const std::string& offset);
     /// Windows of their own for the screens.
     void show_screens(bool wanted);

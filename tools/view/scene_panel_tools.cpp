@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The buttons above the scene's picture.
 #include "tools/view/scene_panel.hpp"
+#include "tools/view/spots.hpp"
 
 #include <cstdio>
 
@@ -69,6 +70,7 @@ void ScenePanel::sight_tools() {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("the pose that is the viewer's head: the picture follows it");
     ImGui::SameLine();
     if (ImGui::SmallButton("screens...")) ImGui::OpenPopup("screens");
+    mark_spot("screens...");
     if (!ImGui::BeginPopup("screens")) return;
     static char file[512] = "";
     if (ImGui::IsWindowAppearing()) std::snprintf(file, sizeof file, "%s", rig_file_.c_str());
@@ -77,6 +79,12 @@ void ScenePanel::sight_tools() {
     if (ImGui::Button("use")) attempt([&] { use_rig(file); });
     ImGui::SameLine();
     if (ImGui::Button("none")) use_rig("");
+    ImGui::SameLine();
+    if (ImGui::Button("calibrate...")) {
+        wants_calibration = true;
+        ImGui::CloseCurrentPopup();
+    }
+    mark_spot("calibrate...");
     if (sight_.rig()) {
         ImGui::SetNextItemWidth(12.0f * unit);
         if (ImGui::BeginCombo("seen against felt", offset_.c_str())) {

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/touch_lead.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace tactus {
+
+namespace {
+
+constexpr double most_moved = 1e-3;  // m, while it is read
+constexpr int most_tries = 3;
+constexpr std::size_t least_samples = 10;
+
+Vec3 mean_of(std::span<const Vec3> places) {
+    Vec3 sum(0.0);
+    for (const Vec3& place : places) sum += place;
+    return places.empty() ? sum : sum / static_cast<double>(places.size());
+}
+
+}  // namespace
+
+Touched touch_of(std::span<const Vec3> tips, std::span<const Vec3> tracked) {
+    if (tips.size() < least_samples)
+        throw Error(
+            "the device gave no valid samples while it touched; is it plugged in, and does 'tactus devices' list it?");
+    Touched touched{mean_of(tips), mean_of(tracked), 0.0};
+    for (const Vec3& tip : tips) touched.moved = std::max(touched.moved, glm::length(tip - touched.tip));
+    return touched;
+}
+
+TouchLead::TouchLead(std::vector<RigTouch> steps, bool has_tracker, Check check)
+    : steps_(std::move(steps)), tries_(steps_.size(), 0), has_tracker_(has_tracker), check_(std::move(check)) {
+    if (steps_.empty()) throw Error("there is nothing to touch");
+}
+
+bool TouchLead::is_part_done() const {
+    if (reached_ == steps_.size()) return true;
+    const RigTouch &last = steps_[reached_ - 1], &next = steps_[reached_];
+    return last.of != next.of || last.screen != next.screen;
+}
+
+std::string TouchLead::take(const Touched& touched) {
+    if (touched.moved > most_moved) {
+        const std::string moved = fmt::format(
+            "the tip moved by {:.1f} mm while it touched; hold it still for a fifth of a second and press again",
+            touched.moved * 1e3);
+        if (++tries_[due_] >= most_tries) throw Error(moved);
+        return moved;
+    }
+    RigTouch& step = steps_[due_];
+    step.reading = touched.tip;
+    if (has_tracker_ && step.of == RigTouch::Of::workspace) step.place = touched.tracked;
+    if (due_ == reached_) ++reached_;
+    due_ = reached_;
+    if (!is_part_done()) return {};
+    try {
+        check_(std::span(steps_).first(reached_));
+    } catch (const BadTouch& bad) {
+        if (++tries_[bad.touch] >= most_tries) throw;
+        due_ = bad.touch;
+        return bad.message();
+    }
+    return {};
+}
+
+}  // namespace tactus
