@@ -4,11 +4,12 @@
 #include "assets/library/broken_mandible.hpp"
 #include "dsp/operator/hand.hpp"
 #include "dsp/planning/fragment_matcher.hpp"
+#include "engine/clock.hpp"
 
 #include <glm/geometric.hpp>
 
-#include <time.h>
 #include <algorithm>
+#include <cstdint>
 #include <numbers>
 
 namespace tactus {
@@ -16,12 +17,6 @@ namespace tactus {
 namespace {
 
 constexpr double most_error = 0.3e-3, most_angle = 0.5;
-
-double thread_seconds() {
-    timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 void put_together_once(const BrokenMandible& broken, WholeCaseResult& result) {
     std::vector<FragmentSurface> surfaces;
@@ -33,9 +28,9 @@ void put_together_once(const BrokenMandible& broken, WholeCaseResult& result) {
     std::vector<FragmentMatch> last(poses.size());
     stands[0] = 1;
     const auto look = [&](std::size_t n) {
-        const double begin = thread_seconds();
+        const std::int64_t begin = thread_ns();
         last[n] = matcher.near(static_cast<int>(n), poses, stands);
-        result.seconds.push_back(thread_seconds() - begin);
+        result.seconds.push_back(1e-9 * static_cast<double>(thread_ns() - begin));
         if (last[n].verdict != FitVerdict::fit) return;
         poses[n] = last[n].pose;
         stands[n] = 1;

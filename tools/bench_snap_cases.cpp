@@ -44,6 +44,18 @@ Piece scan_piece(const Grid& solid, const Voxmap& bone, const FractureKind& kind
 
 }  // namespace
 
+const std::vector<FractureCase>& fracture_cases() {
+    static const std::vector<FractureCase> cases{
+        {{"clean", 0.8e-3, 0.0, 0.0, 0.03}, {{4, 12}, {8, 20}, {10, 30}}},
+        {{"chipped25", 0.8e-3, 0.25, 0.0, 0.03}, {{4, 12}, {8, 20}, {10, 30}, {12, 45}}},
+        {{"chipped30", 0.8e-3, 0.30, 0.0, 0.03}, {{4, 12}, {8, 20}}},
+        {{"spilled", 0.8e-3, 0.0, 2e-3, 0.03}, {{4, 12}, {8, 20}, {10, 30}, {12, 45}}},
+        {{"both", 0.8e-3, 0.25, 2e-3, 0.03}, {{4, 12}, {8, 20}, {10, 30}, {12, 45}}},
+        {{"fine", 0.4e-3, 0.0, 0.0, 0.06}, {{4, 12}}},
+    };
+    return cases;
+}
+
 FracturePair make_fracture_pair(const Grid& bone, const FractureKind& kind, std::uint64_t seed) {
     const std::vector<Grid> solids = break_bone(bone, {.seed = seed, .roughness = kind.roughness, .chips = kind.chips});
     const Voxmap map = make_voxmap(bone);

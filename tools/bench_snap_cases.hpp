@@ -19,6 +19,19 @@ struct FractureKind {
     double noise;      ///< of the scan, share of the contrast
 };
 
+/// How far beside its place a fragment starts.
+struct FractureStart {
+    double offset_mm, angle_deg;
+};
+
+struct FractureCase {
+    FractureKind kind;
+    std::vector<FractureStart> starts;
+};
+
+/// All that success is measured on, by name.
+const std::vector<FractureCase>& fracture_cases();
+
 struct FracturePair {
     std::vector<SurfacePoint> moving_points;  ///< of the whole moving piece, in its file's frame
     FitSurface moving, fixed;

@@ -6,10 +6,11 @@
 #include "dsp/operator/hand.hpp"
 #include "dsp/snap/fit.hpp"
 #include "dsp/snap/held_fit.hpp"
+#include "engine/clock.hpp"
 
-#include <time.h>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <string>
 
@@ -19,12 +20,6 @@ namespace {
 
 constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
 constexpr int all_ticks = 3000;
-
-double thread_seconds() {
-    timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// Within 2 mm and 2 degrees of the place where the fragment fits, at up to 1.1 Hz; of a handle `arm` from its middle.
 Pose wandering_hand(const Vec3& arm, double t) {
@@ -80,10 +75,10 @@ std::vector<LiveTicks> bench_snap_live() {
         double evaluations = 0.0;
         for (int n = 0; n < all_ticks; ++n) {
             const Pose hand = wandering_hand(arm, n * 1e-3);
-            const double begin = thread_seconds();
+            const std::int64_t begin = thread_ns();
             fit.look(coupling.state().proxy, grip, {}, 1.0);
             evaluations += coupling.update(hand, fit).evaluations;
-            seconds.push_back(thread_seconds() - begin);
+            seconds.push_back(1e-9 * static_cast<double>(thread_ns() - begin));
         }
         std::ranges::sort(seconds);
         const auto at = [&](double share) { return seconds[static_cast<std::size_t>(share * (all_ticks - 1))] * 1e3; };

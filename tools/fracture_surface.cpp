@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Proposes where a fragment is broken, and takes corrections by hand.
+#include "assets/fracture/paint_file.hpp"
 #include "assets/fracture/propose_paint.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/fragment_file.hpp"
-#include "assets/fracture/paint_file.hpp"
+#include "tools/intact_side.hpp"
 #include "tools/snap_options.hpp"
 #include "tools/verbs.hpp"
 
@@ -15,6 +16,55 @@
 
 namespace tactus {
 
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<SurfacePoint> points_of_fragment(const std::filesystem::path& path) {
+    const Bone bone = bone_of_file(path);
+    return bone.points.empty() ? sample_surface(bone.distance, {}) : bone.points;
+}
+
+Json residual_json(const Registration& r) { return {{"median_mm", r.median * 1e3}, {"p90_mm", r.p90 * 1e3}}; }
+
+/// What lies inside of the unbroken bone; returns how well that could be laid on the fragments.
+Json propose_by_intact(std::vector<SurfacePoint>& points, const FractureSurfaceChoice& choice) {
+    const std::vector<SurfacePoint> main = choice.main.empty() ? points : points_of_fragment(choice.main);
+    const IntactSide intact = lay_intact_side(choice.intact, choice.mirror, main);
+    const RegistrationTarget target(intact.points);
+    Json json{{"file", choice.intact.string()}, {"on_main", residual_json(intact.registration)}};
+    Pose place;
+    if (!choice.main.empty()) {
+        RegistrationSettings nearby;
+        nearby.widest = 10e-3;
+        const Registration own = register_surface(points, target, {}, nearby);
+        place = own.pose;
+        json["on_bone"] = residual_json(own);
+    }
+    IntactOptions options;
+    options.least_area = std::max(options.least_area, choice.least_area * 1e-6);
+    propose_inside(points, target, place, options);
+    return json;
+}
+
+/// Labels what is proposed by the ways that are chosen; returns what is to be said about them.
+Json propose(std::vector<SurfacePoint>& points, const FractureSurfaceChoice& choice) {
+    if (!choice.intact.empty()) {
+        Json json = propose_by_intact(points, choice);
+        if (!choice.facing.empty()) keep_patches_near(points, points_of_fragment(choice.facing), choice.reach * 1e-3);
+        return json;
+    }
+    if (!choice.facing.empty()) {
+        propose_facing(points, points_of_fragment(choice.facing),
+                       {.reach = choice.reach * 1e-3, .least_area = choice.least_area * 1e-6});
+        return nullptr;
+    }
+    propose_fracture(points, {.roughness = choice.roughness, .least_area = choice.least_area * 1e-6});
+    return nullptr;
+}
+
+}  // namespace
+
 int fracture_surface_verb(const FractureSurfaceChoice& choice) {
     const auto extension = choice.out.extension();
     if (extension != ".json" && extension != ".vdb")
@@ -23,17 +73,8 @@ int fracture_surface_verb(const FractureSurfaceChoice& choice) {
     if (bone.points.empty()) bone.points = sample_surface(bone.distance, {});
     const bool has_paint =
         std::ranges::any_of(bone.points, [](const SurfacePoint& p) { return p.label == surface_label::fracture; });
-    if (!choice.facing.empty()) {
-        Bone other = bone_of_file(choice.facing);
-        if (other.points.empty()) other.points = sample_surface(other.distance, {});
-        propose_facing(bone.points, other.points,
-                       {.reach = choice.reach * 1e-3, .least_area = choice.least_area * 1e-6});
-    } else if (!choice.keep || !has_paint) {
-        ProposalOptions options;
-        options.roughness = choice.roughness;
-        options.least_area = choice.least_area * 1e-6;
-        propose_fracture(bone.points, options);
-    }
+    Json intact;
+    if (!choice.keep || !has_paint) intact = propose(bone.points, choice);
     if (!choice.paint.empty()) paint_from_file(bone.points, choice.paint, choice.correct);
     std::vector<PaintedFace> faces;
     if (extension == ".json") faces = write_paint_file(bone.points, choice.bone.string(), choice.out);
@@ -41,7 +82,13 @@ int fracture_surface_verb(const FractureSurfaceChoice& choice) {
         faces = painted_faces(bone.points);
         save_bone(bone, choice.out);
     }
-    nlohmann::ordered_json json{{"file", choice.out.string()}, {"faces", nlohmann::ordered_json::array()}};
+    Json json{{"file", choice.out.string()}, {"faces", Json::array()}};
+    if (!intact.is_null()) json["intact"] = intact;
+    for (const char* side : {"on_main", "on_bone"})
+        if (!choice.json && intact.contains(side))
+            fmt::print("the unbroken bone lies {}: median {:.2f} mm, 90 % within {:.2f} mm\n",
+                       side == std::string_view("on_main") ? "on the main fragment" : "on this one, by itself",
+                       intact[side]["median_mm"].get<double>(), intact[side]["p90_mm"].get<double>());
     for (const PaintedFace& f : faces) {
         const Vec3 p = f.middle * 1e3;
         json["faces"].push_back({{"area_mm2", f.area * 1e6},

@@ -19,14 +19,10 @@
 
 namespace tactus {
 
-namespace {
-
 bool is_mesh(const std::filesystem::path& path) {
     const auto extension = path.extension();
     return extension == ".stl" || extension == ".ply" || extension == ".obj";
 }
-
-}  // namespace
 
 CaseFragment load_fragment(const PlanFragment& fragment, const std::filesystem::path& folder, Paint paint) {
     CaseFragment loaded{fragment_bone(fragment, folder, paint, on_threads()), {}};
@@ -83,6 +79,12 @@ double shown_mm(double millimetres) { return std::round(millimetres * 100.0) / 1
 
 double angle_deg(const Pose& pose) {
     return glm::length(rotation_between({1.0, 0.0, 0.0, 0.0}, pose.orientation)) * 180.0 / std::numbers::pi;
+}
+
+Vec3 middle_of(std::span<const SurfacePoint> points) {
+    Vec3 middle(0.0);
+    for (const SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
+    return middle;
 }
 
 void do_step(CasePlan& plan, PlanStep step, const std::filesystem::path& path) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where fragments of a plan belong: by their own fractures, and by the healthy side.
+// Where fragments of a plan belong by their own fractures.
 #include "dsp/core/error.hpp"
+#include "dsp/planning/as_scanned.hpp"
 #include "dsp/planning/fragment_matcher.hpp"
 #include "dsp/planning/gap.hpp"
-#include "dsp/planning/mirror.hpp"
+#include "tools/intact_side.hpp"
 #include "tools/plan_case.hpp"
 #include "tools/plan_options.hpp"
 #include "tools/verbs.hpp"
@@ -14,7 +15,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <numbers>
 
 namespace tactus {
 
@@ -26,15 +26,6 @@ PlanFit record_of(const FragmentMatch& match, const std::string& partner) {
     const FitQuality& q = match.quality;
     return {partner,  std::string(name_of(match.verdict)), q.score, match.margin, q.rms, q.gap, q.penetration,
             q.overlap};
-}
-
-/// Motion of the fragment's middle, mm and degrees.
-Json motion_json(const Pose& from, const Pose& to, const CaseFragment& fragment) {
-    Vec3 middle(0.0);
-    for (const SurfacePoint& p : fragment.bone.points)
-        middle += p.position / static_cast<double>(fragment.bone.points.size());
-    return {{"distance_mm", 1e3 * glm::length(to.apply(middle) - from.apply(middle))},
-            {"angle_deg", angle_deg(to * from.inverse())}};
 }
 
 /// The fragments of a plan, and the matcher that looks at them.
@@ -49,6 +40,13 @@ struct Matching {
         MatcherSettings settings;
         settings.most_points = 2000;
         matcher = std::make_unique<FragmentMatcher>(surfaces, settings);
+    }
+
+    /// A fit that only repeats the scan says nothing of where the fragment belongs.
+    bool repeats_scan(const FragmentMatch& match, std::span<const Pose> poses) const {
+        if (match.verdict != FitVerdict::fit) return false;
+        const auto moving = static_cast<std::size_t>(match.moving), partner = static_cast<std::size_t>(match.partner);
+        return is_as_scanned(loaded[moving].bone.points, poses[partner].inverse() * match.pose, loaded[partner].map);
     }
 };
 
@@ -66,12 +64,25 @@ std::vector<char> partners_of(const Arrangement& a, int moving, int only) {
     return stands;
 }
 
-Json match_json(const CasePlan& plan, const FragmentMatch& match, const Pose& from, const CaseFragment& fragment) {
+/// What was found for a fragment, and what is held against it.
+struct Found {
+    FragmentMatch match;
+    bool as_scanned = false;
+
+    Found(const FragmentMatch& made, const Matching& matching, std::span<const Pose> poses)
+        : match(made), as_scanned(matching.repeats_scan(made, poses)) {
+        if (as_scanned) match.verdict = FitVerdict::ambiguous;
+    }
+};
+
+Json match_json(const CasePlan& plan, const Found& found, const Pose& from, const CaseFragment& fragment) {
+    const FragmentMatch& match = found.match;
     const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
     return {{"fragment", name(match.moving)},
             {"partner", match.partner == Arrangement::none ? Json(nullptr) : Json(name(match.partner))},
             {"verdict", name_of(match.verdict)},
             {"placed", match.verdict == FitVerdict::fit},
+            {"as_scanned", found.as_scanned},
             {"faces", match.faces},
             {"score", match.quality.score},
             {"margin", match.margin},
@@ -80,12 +91,13 @@ Json match_json(const CasePlan& plan, const FragmentMatch& match, const Pose& fr
             {"penetration_mm", match.quality.penetration * 1e3},
             {"overlap_mm2", match.quality.overlap * 1e6},
             {"pose", pose_json<Json>(match.pose)},
-            {"moved", motion_json(from, match.pose, fragment)},
+            {"moved", motion_json<Json>(from, match.pose, fragment.bone.points)},
             {"paint", fragment.was_painted ? "file" : "proposed"}};
 }
 
 /// One line for people.
-void say(const CasePlan& plan, const FragmentMatch& match) {
+void say(const CasePlan& plan, const Found& found) {
+    const FragmentMatch& match = found.match;
     const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
     if (match.partner == Arrangement::none) fmt::print("{}: nothing near looks against it\n", name(match.moving));
     else
@@ -93,6 +105,16 @@ void say(const CasePlan& plan, const FragmentMatch& match) {
                    name(match.moving), name(match.partner), name_of(match.verdict), match.faces, match.quality.score,
                    match.margin, match.quality.overlap * 1e6, match.quality.rms * 1e3,
                    match.verdict == FitVerdict::fit ? "" : "; it stays where it was");
+    if (found.as_scanned) fmt::print("{}\n", as_scanned_note);
+}
+
+/// The other residual, when the plan has a healthy side: of the whole fragment from that, mm.
+Json target_json(const PlanState& state, const std::filesystem::path& folder, const CaseFragment& fragment,
+                 const Pose& from, const Pose& there) {
+    if (!state.mirror) return nullptr;
+    const RegistrationTarget target(laid_target(*state.mirror, folder));
+    return {{"median_before_mm", 1e3 * median_distance(fragment.bone.points, target, from)},
+            {"median_there_mm", 1e3 * median_distance(fragment.bone.points, target, there)}};
 }
 
 PlanStep step_of(const CasePlan& plan, const FragmentMatch& match, const char* by) {
@@ -108,7 +130,8 @@ int plan_snap(const PlanChoice& choice) {
     CasePlan& plan = open.plan;
     const int moving = find_fragment(plan, choice.names[0]);
     const int only = choice.names.size() > 1 ? find_fragment(plan, choice.names[1]) : Arrangement::none;
-    const Arrangement a = state_of(plan).arrangement;
+    const PlanState state = state_of(plan);
+    const Arrangement& a = state.arrangement;
     if (only != Arrangement::none && a.move_together(moving, only))
         throw Error(fmt::format("'{}' and '{}' move together", choice.names[0], choice.names[1]));
     if (!a.can_move(moving)) throw Error(fmt::format("'{}', or one grouped with it, is locked", choice.names[0]));
@@ -125,12 +148,22 @@ int plan_snap(const PlanChoice& choice) {
         do match = matcher.search(moving, poses, stands);
         while (matcher.left() > 0);
     }
-    if (match.verdict == FitVerdict::fit) do_step(plan, step_of(plan, match, "snap"), choice.plan);
-    if (choice.json)
-        fmt::print("{}\n",
-                   match_json(plan, match, a.pose(moving), matching.loaded[static_cast<std::size_t>(moving)]).dump(2));
-    else say(plan, match);
-    return match.verdict == FitVerdict::fit ? done : answer_is_no;
+    const Found found(match, matching, poses);
+    const bool fits = found.match.verdict == FitVerdict::fit;
+    if (fits) do_step(plan, step_of(plan, found.match, "snap"), choice.plan);
+    const CaseFragment& fragment = matching.loaded[static_cast<std::size_t>(moving)];
+    const Json target = target_json(state, choice.plan.parent_path(), fragment, a.pose(moving), found.match.pose);
+    if (choice.json) {
+        Json json = match_json(plan, found, a.pose(moving), fragment);
+        if (!target.is_null()) json["target"] = target;
+        fmt::print("{}\n", json.dump(2));
+    } else {
+        say(plan, found);
+        if (!target.is_null())
+            fmt::print("from the healthy side: median {:.2f} mm where it was, {:.2f} mm where its faces fit\n",
+                       target["median_before_mm"].get<double>(), target["median_there_mm"].get<double>());
+    }
+    return fits ? done : answer_is_no;
 }
 
 int plan_settle(const PlanChoice& choice) {
@@ -149,85 +182,15 @@ int plan_settle(const PlanChoice& choice) {
     for (int pass = 0; pass < choice.steps; ++pass)
         for (const int n : numbers) {
             const Arrangement a = state_of(plan).arrangement;
-            const FragmentMatch match = matching.matcher->near(n, poses_of(a), partners_of(a, n, Arrangement::none));
-            if (match.verdict == FitVerdict::fit) do_step(plan, step_of(plan, match, "settle"), choice.plan);
-            rows.push_back(match_json(plan, match, a.pose(n), matching.loaded[static_cast<std::size_t>(n)]));
-            if (!choice.json) say(plan, match);
+            const auto poses = poses_of(a);
+            const Found found(matching.matcher->near(n, poses, partners_of(a, n, Arrangement::none)), matching, poses);
+            if (found.match.verdict == FitVerdict::fit)
+                do_step(plan, step_of(plan, found.match, "settle"), choice.plan);
+            rows.push_back(match_json(plan, found, a.pose(n), matching.loaded[static_cast<std::size_t>(n)]));
+            if (!choice.json) say(plan, found);
         }
     if (choice.json) fmt::print("{}\n", rows.dump(2));
     return std::ranges::all_of(rows, [](const Json& row) { return row["placed"] == true; }) ? done : answer_is_no;
-}
-
-int plan_mirror(const PlanChoice& choice) {
-    OpenPlan open(choice.plan);
-    CasePlan& plan = open.plan;
-    const std::filesystem::path folder = choice.plan.parent_path();
-    std::vector<int> numbers;
-    for (const std::string& name : choice.names) numbers.push_back(find_fragment(plan, name));
-    const std::vector<SurfacePoint> healthy = points_of_file(choice.healthy);
-    const std::vector<CaseFragment> loaded = load_fragments(plan, folder);
-    const auto points = [&](int n) -> const std::vector<SurfacePoint>& {
-        return loaded[static_cast<std::size_t>(n)].bone.points;
-    };
-    const MirrorFit fit = fit_mirror(healthy, points(numbers[0]));
-    MirrorTarget target;
-    CasePlan named;
-    add_fragment(named, "healthy", choice.healthy, folder, Vec3(0.0));
-    target.file = named.fragments[0].file;
-    target.hash = named.fragments[0].hash;
-    target.plane_normal = fit.plane.normal;
-    target.plane_offset = fit.plane.offset;
-    const Pose stands = state_of(plan).arrangement.pose(numbers[0]);
-    target.pose = stands * fit.pose;
-    target.residual = fit.registration.median;
-    PlanStep step;
-    step.kind = StepKind::mirror;
-    step.by = "command";
-    step.mirror = target;
-    do_step(plan, std::move(step), choice.plan);
-    // The others against the mirrored side as it lies now.
-    std::vector<SurfacePoint> laid = mirrored(healthy, fit.plane);
-    for (SurfacePoint& p : laid) {
-        p.position = target.pose.apply(p.position);
-        p.normal = target.pose.rotate(p.normal);
-    }
-    const RegistrationTarget surface(laid);
-    Json others = Json::array();
-    for (std::size_t n = 1; n < numbers.size(); ++n) {
-        const int other = numbers[n];
-        const Pose from = state_of(plan).arrangement.pose(other);
-        RegistrationSettings settings;
-        settings.widest = 10e-3;
-        const Registration found = register_surface(points(other), surface, from, settings);
-        const Json motion = motion_json(from, found.pose, loaded[static_cast<std::size_t>(other)]);
-        others.push_back({{"fragment", choice.names[n]},
-                          {"away", motion},
-                          {"median_before_mm", found.before * 1e3},
-                          {"median_after_mm", found.median * 1e3},
-                          {"pose", pose_json<Json>(found.pose)}});
-        if (!choice.json)
-            fmt::print(
-                "{}: {:.2f} mm and {:.2f}° from where it lies best on the target; median {:.2f} mm, there "
-                "{:.2f} mm\n",
-                choice.names[n], motion["distance_mm"].get<double>(), motion["angle_deg"].get<double>(),
-                found.before * 1e3, found.median * 1e3);
-        if (choice.settle) do_step(plan, placing(plan, other, found.pose, "mirror"), choice.plan);
-    }
-    if (choice.json)
-        fmt::print(
-            "{}\n",
-            Json{{"on", choice.names[0]},
-                 {"residual_mm", fit.registration.median * 1e3},
-                 {"residual_p90_mm", fit.registration.p90 * 1e3},
-                 {"plane_normal", {fit.plane.normal.x, fit.plane.normal.y, fit.plane.normal.z}},
-                 {"plane_offset_mm", fit.plane.offset * 1e3},
-                 {"asymmetry", {{"angle_deg", fit.turn * 180.0 / std::numbers::pi}, {"distance_mm", fit.glide * 1e3}}},
-                 {"others", others}}
-                .dump(2));
-    else
-        fmt::print("mirrored side on {}: median {:.2f} mm, 90 % within {:.2f} mm\n", choice.names[0],
-                   fit.registration.median * 1e3, fit.registration.p90 * 1e3);
-    return done;
 }
 
 int plan_gap(const PlanChoice& choice) {

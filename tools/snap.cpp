@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // One fit of two fragments, with its verdict.
 #include "assets/file/whole_file.hpp"
+#include "assets/fracture/paint_file.hpp"
 #include "assets/fracture/propose_paint.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/planning/as_scanned.hpp"
 #include "dsp/snap/fit.hpp"
 #include "tools/fragment_file.hpp"
-#include "assets/fracture/paint_file.hpp"
+#include "tools/plan_case.hpp"
 #include "tools/snap_options.hpp"
 #include "tools/verbs.hpp"
 
@@ -78,29 +80,11 @@ Json painted_mm2(const std::vector<FitSurface>& faces) {
     return areas;
 }
 
-Pose start_of(const std::string& text) {
-    if (text.empty()) return {};
-    double v[7];
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf,%lf%c", v, v + 1, v + 2, v + 3, v + 4, v + 5, v + 6,
-                    &rest) != 7)
-        throw Error("--start takes X,Y,Z,QW,QX,QY,QZ: a place in mm and a unit quaternion");
-    const Pose pose{1e-3 * Vec3(v[0], v[1], v[2]), Quat(v[3], v[4], v[5], v[6])};
-    if (!is_valid(pose)) throw Error("--start needs finite numbers and a quaternion of unit length");
-    return {pose.position, glm::normalize(pose.orientation)};
-}
-
-/// As {position_mm, quaternion_wxyz}.
-nlohmann::ordered_json pose_json(const Pose& pose) {
-    const PoseNumbers numbers = numbers_of(pose);
-    return {{"position_mm", numbers.position_mm}, {"quaternion_wxyz", numbers.quaternion_wxyz}};
-}
-
 Json json_of(const Fit& fit) {
     Json free = Json::array();
     for (const FreeDirection& f : fit.free)
         free.push_back({{"type", f.is_turn ? "rotation" : "translation"}, {"axis", {f.axis.x, f.axis.y, f.axis.z}}});
-    return {{"pose", pose_json(fit.pose)},
+    return {{"pose", pose_json<Json>(fit.pose)},
             {"score", fit.quality.score},
             {"margin", fit.margin},
             {"overlap_mm2", fit.quality.overlap * 1e6},
@@ -115,7 +99,7 @@ Json json_of(const Fit& fit) {
 }  // namespace
 
 int snap_verb(const SnapChoice& choice) {
-    const Pose start = start_of(choice.start);
+    const Pose start = choice.start.empty() ? Pose{} : pose_of_text(choice.start, "--start");
     const Fragment moving = load_fragment(choice.moving, choice, "moving");
     const Fragment fixed = load_fragment(choice.fixed, choice, "fixed");
     const std::vector<FitSurface> moving_faces = faces_of(moving, choice.moving);
@@ -124,9 +108,14 @@ int snap_verb(const SnapChoice& choice) {
                          : choice.mode == "global" ? FitMode::global
                                                    : FitMode::extended;
     const auto begin = std::chrono::steady_clock::now();
-    const Fit fit = find_fit(moving_faces, fixed_faces, start, mode);
+    Fit fit = find_fit(moving_faces, fixed_faces, start, mode);
     const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
+    const bool as_scanned =
+        fit.verdict == FitVerdict::fit && is_as_scanned(moving.bone.points, fit.pose, make_voxmap(fixed.bone.distance));
+    if (as_scanned) fit.verdict = FitVerdict::ambiguous;
     Json json = json_of(fit);
+    json["moved"] = motion_json<Json>(start, fit.pose, moving.bone.points);
+    json["as_scanned"] = as_scanned;
     json["time_ms"] = time.count();
     json["iterations"] = fit.iterations;
     json["paint"] = {{"moving", moving.paint}, {"fixed", fixed.paint}};
@@ -143,6 +132,7 @@ int snap_verb(const SnapChoice& choice) {
         for (const FreeDirection& f : fit.free)
             fmt::print("free to {} {:.2f} {:.2f} {:.2f}\n", f.is_turn ? "turn about" : "slide along", f.axis.x,
                        f.axis.y, f.axis.z);
+        if (as_scanned) fmt::print("{}\n", as_scanned_note);
     }
     return fit.verdict == FitVerdict::fit ? done : answer_is_no;
 }

@@ -49,6 +49,14 @@ void add_snap_verbs(CLI::App& app, SnapChoices& choices) {
     surface_app->add_flag("--correct", surface.correct, "use its strokes on top of the proposal");
     surface_app->add_option("--facing", surface.facing,
                             "another fragment of the same scan: what faces it is proposed, however smooth");
+    CLI::Option* intact = surface_app->add_option("--intact", surface.intact,
+                                                  "the unbroken bone, wherever it lies: what lies inside of it is "
+                                                  "proposed; with --facing only what is near that");
+    surface_app->add_flag("--mirror", surface.mirror, "that is the other side of the body")->needs(intact);
+    surface_app
+        ->add_option("--main", surface.main,
+                     "the fragment of the same scan that the unbroken bone is laid on first (default: this one)")
+        ->needs(intact);
     surface_app->add_option("--reach", surface.reach, "how far that may be, mm")
         ->capture_default_str()
         ->check(CLI::Range(0.1, 100.0));
@@ -111,6 +119,9 @@ void add_snap_bench(CLI::App& bench, SnapBenchChoice& choice) {
                      "clean, chipped25, chipped30, spilled, both, fine or live (default: all of these); twelve, "
                      "twelve-kerf, twelve-missing: a jaw in twelve pieces, by the matcher")
         ->delimiter(',');
+    verb->add_option("--method", choice.methods, "extended, global, thesis, icp_point, icp_plane, gicp (default: all)")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"extended", "global", "thesis", "icp_point", "icp_plane", "gicp"}));
     verb->add_option("--bone", choice.bone, "what is broken (default: the bundled jaw)");
     verb->add_flag("--pushed", choice.pushed, "starts are moved apart until bone does not lie in bone");
     verb->add_flag("--json", choice.json, "as JSON");

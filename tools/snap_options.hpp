@@ -34,9 +34,9 @@ struct SnapChoice {
 };
 
 struct FractureSurfaceChoice {
-    std::filesystem::path bone, out, paint, facing;
+    std::filesystem::path bone, out, paint, facing, intact, main;
     double roughness = 0.06, least_area = 20.0, reach = 10.0;  ///< mean of 1 − cos between normals; mm²; mm
-    bool correct = false, keep = false, json = false;
+    bool mirror = false, correct = false, keep = false, json = false;
 };
 
 struct RegisterChoice {
@@ -48,7 +48,7 @@ struct RegisterChoice {
 struct SnapBenchChoice {
     std::uint64_t seed = 1001;
     int seeds = 8, trials = 1;
-    std::vector<std::string> cases;
+    std::vector<std::string> cases, methods;
     std::filesystem::path bone;
     bool pushed = false, json = false;
 };

@@ -45,6 +45,21 @@ std::size_t label_patches(std::span<SurfacePoint> points, const std::vector<std:
     return count;
 }
 
+PointTree tree_of(std::span<const SurfacePoint> other) {
+    if (other.empty()) throw Error("the other fragment has no surface");
+    std::vector<Vec3> places;
+    places.reserve(other.size());
+    for (const SurfacePoint& p : other) places.push_back(p.position);
+    return PointTree(places);
+}
+
+/// m: points of one patch are no farther apart.
+double patch_gap(std::span<const SurfacePoint> points) {
+    double largest = 0.0;
+    for (const SurfacePoint& p : points) largest = std::max(largest, p.area);
+    return std::max(1.5e-3, 1.5 * std::sqrt(largest));
+}
+
 }  // namespace
 
 std::size_t propose_fracture(std::span<SurfacePoint> points, const ProposalOptions& options) {
@@ -67,23 +82,55 @@ std::size_t propose_fracture(std::span<SurfacePoint> points, const ProposalOptio
 
 std::size_t propose_facing(std::span<SurfacePoint> points, std::span<const SurfacePoint> other,
                            const FacingOptions& options) {
-    if (other.empty()) throw Error("the other fragment has no surface");
     constexpr double looks_back = -0.5, ahead = 0.3, touching = 1e-3;
-    std::vector<Vec3> places;
-    places.reserve(other.size());
-    for (const SurfacePoint& p : other) places.push_back(p.position);
-    const PointTree tree(places);
+    const PointTree tree = tree_of(other);
     std::vector<std::uint8_t> faces(points.size(), 0);
-    double spacing = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SurfacePoint &p = points[i], &q = other[tree.nearest(points[i].position)];
         const Vec3 way = q.position - p.position;
         const double away = glm::length(way);
-        spacing = std::max(spacing, std::sqrt(p.area));
         faces[i] = away < options.reach && glm::dot(p.normal, q.normal) < looks_back &&
                    (away < touching || glm::dot(p.normal, way) > ahead * away);
     }
-    return label_patches(points, faces, std::max(1.5e-3, 1.5 * spacing), options.least_area);
+    return label_patches(points, faces, patch_gap(points), options.least_area);
+}
+
+std::size_t propose_inside(std::span<SurfacePoint> points, const RegistrationTarget& intact, const Pose& place,
+                           const IntactOptions& options) {
+    std::vector<std::uint8_t> inside(points.size(), 0), broken(points.size(), 0);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vec3 at = place.apply(points[i].position);
+        const std::size_t nearest = intact.nearest(at);
+        const Vec3 way = intact.position(nearest) - at, &out = intact.normal(nearest);
+        const double depth = glm::dot(way, out) > 0.0 ? glm::length(way) : 0.0;
+        const bool is_askew = glm::dot(place.rotate(points[i].normal), out) < options.looks_along;
+        inside[i] = depth > options.deep || (is_askew && depth > options.askew);
+    }
+    const Neighbours neighbours(points, options.smooth);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        double all = 0.0, those_inside = 0.0;
+        neighbours.around(i, [&](std::size_t j) {
+            if (!(glm::dot(points[i].normal, points[j].normal) > 0.0)) return;
+            all += points[j].area;
+            those_inside += inside[j] ? points[j].area : 0.0;
+        });
+        broken[i] = those_inside > 0.5 * all;
+    }
+    return label_patches(points, broken, patch_gap(points), options.least_area);
+}
+
+std::size_t keep_patches_near(std::span<SurfacePoint> points, std::span<const SurfacePoint> other, double reach) {
+    const PointTree tree = tree_of(other);
+    const auto is_near = [&](std::size_t i) {
+        return glm::length(other[tree.nearest(points[i].position)].position - points[i].position) < reach;
+    };
+    std::size_t count = 0;
+    for (const auto& patch : patches_of(points, patch_gap(points),
+                                        [&](std::size_t i) { return points[i].label == surface_label::fracture; }))
+        if (std::ranges::any_of(patch, is_near)) count += patch.size();
+        else
+            for (const std::size_t i : patch) points[i].label = surface_label::none;
+    return count;
 }
 
 }  // namespace tactus

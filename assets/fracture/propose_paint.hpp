@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
+#include "dsp/planning/registration.hpp"
 
 #include <cstddef>
 #include <span>
@@ -31,5 +32,24 @@ struct FacingOptions {
 /// Other labels are taken off. Returns how many points are labelled. Throws Error when `other` has no points.
 std::size_t propose_facing(std::span<SurfacePoint> points, std::span<const SurfacePoint> other,
                            const FacingOptions& options = {});
+
+struct IntactOptions {
+    double deep = 2e-3;  ///< m: what lies deeper in the unbroken bone is broken
+    double askew = 0.7e-3;  ///< m: and what lies deeper than this and does not look the way its surface does,
+    double looks_along = 0.3;  ///< by the cosine between their normals
+    double smooth = 3e-3;  ///< m: neighbours this far away vote on it
+    double least_area = 50e-6;  ///< m², smaller patches are left out
+};
+
+/// Labels the points that lie well within the unbroken bone: the healthy side mirrored, or an earlier scan, laid where
+/// the fragment belongs. `place` takes the points there. Finds broken bone however smooth it is and wherever it lies,
+/// and what differs between the sides of a body as well. Other labels are taken off. Returns how many points are
+/// labelled.
+std::size_t propose_inside(std::span<SurfacePoint> points, const RegistrationTarget& intact, const Pose& place,
+                           const IntactOptions& options = {});
+
+/// Takes the label off patches that nowhere come within `reach` (m) of the other fragment's points, as they lie in the
+/// scan. Returns how many points stay labelled. Throws Error when `other` has no points.
+std::size_t keep_patches_near(std::span<SurfacePoint> points, std::span<const SurfacePoint> other, double reach);
 
 }  // namespace tactus

@@ -29,11 +29,11 @@ Vec3 turned_around(const Mat3& q) {
 
 }  // namespace
 
-std::vector<SurfacePoint> mirrored(std::span<const SurfacePoint> points, const MirrorPlane& plane) {
+std::vector<SurfacePoint> mirrored(std::span<const SurfacePoint> points, const MirrorPlane& plane, const Pose& pose) {
     std::vector<SurfacePoint> out(points.begin(), points.end());
     for (SurfacePoint& p : out) {
-        p.position = plane.reflect(p.position);
-        p.normal = plane.reflect_direction(p.normal);
+        p.position = pose.apply(plane.reflect(p.position));
+        p.normal = pose.rotate(plane.reflect_direction(p.normal));
     }
     return out;
 }

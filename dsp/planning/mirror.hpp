@@ -18,8 +18,9 @@ struct MirrorPlane {
     Vec3 reflect_direction(const Vec3& d) const { return d - 2.0 * glm::dot(normal, d) * normal; }
 };
 
-/// The points on the other side of the mirror, normals outwards.
-std::vector<SurfacePoint> mirrored(std::span<const SurfacePoint> points, const MirrorPlane& plane);
+/// The points on the other side of the mirror, normals outwards, then moved by `pose`.
+std::vector<SurfacePoint> mirrored(std::span<const SurfacePoint> points, const MirrorPlane& plane,
+                                   const Pose& pose = {});
 
 struct MirrorFit {
     MirrorPlane plane;  ///< of the body, in the frame of both

@@ -57,17 +57,19 @@ std::vector<SurfacePoint> thinned(std::span<const SurfacePoint> points, std::siz
     return some;
 }
 
+/// Of all points from the surface, ascending.
+std::vector<double> distances(std::span<const SurfacePoint> moving, const RegistrationTarget& fixed, const Pose& pose) {
+    std::vector<double> all;
+    for (const SurfacePoint& p : moving) all.push_back(fixed.distance(pose.apply(p.position)));
+    std::ranges::sort(all);
+    return all;
+}
+
 void judge(Registration& result, std::span<const SurfacePoint> moving, const RegistrationTarget& fixed,
            const Pose& start, double scale) {
-    const auto median_at = [&](const Pose& pose, std::vector<double>& all) {
-        all.clear();
-        for (const SurfacePoint& p : moving) all.push_back(fixed.distance(pose.apply(p.position)));
-        std::ranges::sort(all);
-        return all[all.size() / 2];
-    };
-    std::vector<double> all;
-    result.before = median_at(start, all);
-    result.median = median_at(result.pose, all);
+    const std::vector<double> all = distances(moving, fixed, result.pose);
+    result.before = median_distance(moving, fixed, start);
+    result.median = all[all.size() / 2];
     result.p90 = all[all.size() * 9 / 10];
     const auto near = std::ranges::lower_bound(all, 2.0 * scale) - all.begin();
     result.covered = static_cast<double>(near) / static_cast<double>(all.size());
@@ -151,6 +153,12 @@ double RegistrationTarget::distance(const Vec3& place) const noexcept {
     const Vec3 apart = place - positions_[n];
     const double plane = std::abs(glm::dot(apart, normals_[n])), point = glm::length(apart);
     return point < 3e-3 ? plane : point;
+}
+
+double median_distance(std::span<const SurfacePoint> moving, const RegistrationTarget& fixed, const Pose& pose) {
+    if (moving.empty()) throw Error("there is no surface to measure");
+    const std::vector<double> all = distances(moving, fixed, pose);
+    return all[all.size() / 2];
 }
 
 Registration register_surface(std::span<const SurfacePoint> moving, const RegistrationTarget& fixed, const Pose& start,

@@ -42,6 +42,9 @@ private:
     PointTree tree_;
 };
 
+/// m, median distance of the points at `pose` from the fixed surface. Throws Error without points.
+double median_distance(std::span<const SurfacePoint> moving, const RegistrationTarget& fixed, const Pose& pose);
+
 /// Robust point-to-plane registration with a scale that narrows, from `start`. A point counts only where its normal is
 /// within 60 degrees of the one it is laid on. Throws Error without points. Deterministic.
 Registration register_surface(std::span<const SurfacePoint> moving, const RegistrationTarget& fixed, const Pose& start,

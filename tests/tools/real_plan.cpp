@@ -8,6 +8,8 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <string>
+#include <utility>
 
 using nlohmann::json;
 using tactus::test::Folder;
@@ -49,6 +51,55 @@ TEST_CASE("a broken hip is reduced against its mirrored other side as far as a r
     CHECK(away["away"]["angle_deg"].get<double>() == Approx(9.3).margin(4.0));
     CHECK(away["median_after_mm"].get<double>() < 1.5);
     CHECK(away["median_before_mm"].get<double>() > away["median_after_mm"].get<double>());
+}
+
+TEST_CASE(
+    "a broken hip's own faces repeat the border that its labels share, and the plan says so with both residuals") {
+    const auto healthy = shared() / "hip003_intact_side_ct.nrrd";
+    if (!has(healthy)) return;
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    for (const auto& [mesh, bone] : {std::pair{"hip003_frag1.stl", "main.vdb"}, {"hip003_frag2.stl", "part.vdb"}})
+        REQUIRE(folder
+                    .tactus("import " + (shared() / mesh).string() + " -o " + file(bone) +
+                            " --spacing 0.6 --pointshell 0.7")
+                    .code == 0);
+    const std::string intact = " --intact " + healthy.string() + " --mirror";
+    const Outcome main = folder.tactus("fracture-surface " + file("main.vdb") + " -o " + file("m.vdb") + intact +
+                                       " --facing " + file("part.vdb") + " --json"),
+                  part = folder.tactus("fracture-surface " + file("part.vdb") + " -o " + file("p.vdb") + intact +
+                                       " --main " + file("main.vdb") + " --json");
+    INFO(main.out << main.err << part.out << part.err);
+    REQUIRE(main.code == 0);
+    REQUIRE(part.code == 0);
+    // Its larger break, at the root of the upper branch of the pubis.
+    const json& face = json::parse(part.out)["faces"][0];
+    CHECK(face["area_mm2"].get<double>() > 250.0);
+    CHECK(face["middle_mm"][0].get<double>() == Approx(55.0).margin(8.0));
+    CHECK(face["middle_mm"][2].get<double>() == Approx(-370.0).margin(8.0));
+    const std::string plan = file("hip.plan.json");
+    REQUIRE(folder.tactus("plan new " + plan + " main=" + file("m.vdb") + " part=" + file("p.vdb")).code == 0);
+    const Outcome mirror = folder.tactus("plan mirror " + plan + " " + healthy.string() + " main part --settle --json");
+    INFO(mirror.out << mirror.err);
+    REQUIRE(mirror.code == 0);
+    const json away = json::parse(mirror.out)["others"][0];
+    CHECK(away["away"]["distance_mm"].get<double>() == Approx(8.5).margin(3.0));
+    CHECK(away["away"]["angle_deg"].get<double>() == Approx(9.3).margin(4.0));
+    // The scan has it on the main part; where the healthy side wants it, crushed bone would lie in bone.
+    CHECK(away["faces"]["before"]["contact_mm2"].get<double>() > 400.0);
+    CHECK(away["faces"]["before"]["overlap_mm3"].get<double>() < 200.0);
+    CHECK(away["faces"]["after"]["overlap_mm3"].get<double>() > 400.0);
+    const Outcome own = folder.tactus("plan snap " + plan + " part main --json");
+    INFO(own.out << own.err);
+    CHECK(own.code == 1);
+    const json found = json::parse(own.out);
+    CHECK(found["verdict"] == "ambiguous");
+    CHECK(found["as_scanned"] == true);
+    CHECK(found["placed"] == false);
+    CHECK(found["rms_mm"].get<double>() < 0.2);
+    CHECK(found["moved"]["distance_mm"].get<double>() == Approx(8.5).margin(3.0));
+    CHECK(found["target"]["median_before_mm"].get<double>() < 1.0);
+    CHECK(found["target"]["median_there_mm"].get<double>() > 2.0);
 }
 
 TEST_CASE("the shifted part of a pelvis is found and laid on its reference by itself") {

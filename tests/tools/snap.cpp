@@ -66,6 +66,64 @@ TEST_CASE("a bone that fracture broke is put together by snap, and a stranger's 
     CHECK(json::parse(stranger.out)["verdict"] != "fit");
 }
 
+TEST_CASE("halves that touch in one scan are not called a fit where the scan has them") {
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    save_bone(bar(), file("bar.vdb"));
+    REQUIRE(folder.tactus("fracture " + file("bar.vdb") + " -o " + file("a") + " --seed 4 --spread 0 --turn 0").code ==
+            0);
+    const std::string halves = file("a/fragment_02.vdb") + " " + file("a/fragment_01.vdb");
+    const Outcome alone = folder.tactus("snap " + halves + " --json --start 2,1,0,1,0,0,0");
+    INFO(alone.out << alone.err);
+    CHECK(alone.code == 1);
+    const json fit = json::parse(alone.out);
+    CHECK(fit["verdict"] == "ambiguous");
+    CHECK(fit["as_scanned"] == true);
+    CHECK(fit["moved"]["distance_mm"].get<double>() == Approx(std::sqrt(5.0)).margin(0.1));
+    CHECK(folder.tactus("snap " + halves).out.find("touch like that in the scan already") != std::string::npos);
+    const std::string plan = file("case.plan.json");
+    REQUIRE(
+        folder.tactus("plan new " + plan + " " + file("a/fragment_01.vdb") + " " + file("a/fragment_02.vdb")).code ==
+        0);
+    const Outcome planned = folder.tactus("plan snap " + plan + " fragment_02 --json");
+    INFO(planned.out << planned.err);
+    CHECK(planned.code == 1);
+    CHECK(json::parse(planned.out)["as_scanned"] == true);
+    CHECK(json::parse(planned.out)["placed"] == false);
+}
+
+TEST_CASE("the break is proposed by the unbroken bone, laid on the piece by itself or on the main fragment") {
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    save_bone(bar(), file("bar.vdb"));
+    REQUIRE(folder.tactus("fracture " + file("bar.vdb") + " -o " + file("a") + " --seed 4 --spread 4 --turn 5").code ==
+            0);
+    const auto area = [](const json& found) {
+        double sum = 0.0;
+        for (const json& face : found["faces"]) sum += face["area_mm2"].get<double>();
+        return sum;
+    };
+    const Outcome filed =
+        folder.tactus("fracture-surface " + file("a/fragment_02.vdb") + " -o " + file("f.json") + " --keep --json");
+    REQUIRE(filed.code == 0);
+    const double wanted = area(json::parse(filed.out));
+    const Outcome done =
+        folder.tactus("fracture-surface " + file("a/fragment_02.vdb") + " -o " + file("p.vdb") + " --intact " +
+                      file("bar.vdb") + " --main " + file("a/fragment_01.vdb") + " --json");
+    INFO(done.out << done.err);
+    REQUIRE(done.code == 0);
+    const json found = json::parse(done.out);
+    CHECK(area(found) == Approx(wanted).epsilon(0.25));
+    CHECK(found["intact"]["on_main"]["median_mm"].get<double>() < 0.3);
+    CHECK(found["intact"]["on_bone"]["median_mm"].get<double>() < 0.3);
+    const Outcome far =
+        folder.tactus("fracture-surface " + file("a/fragment_01.vdb") + " -o " + file("q.vdb") + " --intact " +
+                      file("bar.vdb") + " --facing " + file("a/fragment_02.vdb") + " --json");
+    INFO(far.out << far.err);
+    CHECK(far.code == 0);
+    CHECK(folder.tactus("fracture-surface " + file("bar.vdb") + " -o " + file("n.json") + " --mirror").code == 2);
+}
+
 TEST_CASE("snap and fracture refuse what they cannot use with one clear line") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };

@@ -128,3 +128,40 @@ TEST_CASE("assets: paint covers the break and nothing else; a proposal finds mos
     CHECK(both > 0.7 * painted);
     CHECK(both > 0.6 * proposed);
 }
+
+TEST_CASE("assets: what lies inside of the unbroken bone is the break, however smooth and wherever the piece lies") {
+    const Grid whole = bar();
+    const std::vector<SurfacePoint> unbroken = sample_surface(whole, {.spacing = 0.5 * mm});
+    const RegistrationTarget intact(unbroken);
+    const Voxmap map = make_voxmap(whole);
+    const std::vector<Grid> parts = break_bone(whole, {.seed = 3, .roughness = 0.1 * mm});
+    const Pose placement{Vec3(30.0, -12.0, 7.0) * mm, rotation_by(Vec3(0.4, -0.2, 0.6))};
+    const Grid scan = scan_solid(parts[0], placement, {.voxel = Vec3(0.8 * mm)});
+    std::vector<SurfacePoint> points = sample_surface(scan, {.spacing = 0.6 * mm});
+    paint_fracture(points, map, placement.inverse());
+    std::vector<SurfacePoint> guess = points;
+    CHECK(propose_inside(guess, intact, placement.inverse()) > 200);
+    double painted = 0.0, both = 0.0, proposed = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const bool truly = points[i].label == surface_label::fracture, guessed = guess[i].label != surface_label::none;
+        painted += truly ? points[i].area : 0.0;
+        proposed += guessed ? points[i].area : 0.0;
+        both += truly && guessed ? points[i].area : 0.0;
+    }
+    // All but the rim, which lies as near to the surface of the bone as it was.
+    CHECK(both > 0.55 * painted);
+    CHECK(both > 0.95 * proposed);
+    SECTION("patches far from the other fragment are left out") {
+        const std::size_t labelled = propose_inside(guess, intact, placement.inverse());
+        std::vector<SurfacePoint> other = guess;
+        CHECK(keep_patches_near(guess, other, 1.0 * mm) == labelled);
+        for (SurfacePoint& p : other) p.position += Vec3(0.2, 0.0, 0.0);
+        CHECK(keep_patches_near(guess, other, 10.0 * mm) == 0);
+        CHECK(std::ranges::none_of(guess, [](const SurfacePoint& p) { return p.label != surface_label::none; }));
+        CHECK_THROWS_AS(keep_patches_near(guess, {}, 1.0), Error);
+    }
+    SECTION("the unbroken bone itself has nothing inside of it") {
+        std::vector<SurfacePoint> all = unbroken;
+        CHECK(propose_inside(all, intact, {}) == 0);
+    }
+}
