@@ -73,7 +73,7 @@ TEST_CASE(
     REQUIRE(main.code == 0);
     REQUIRE(part.code == 0);
     // Its larger break, at the root of the upper branch of the pubis.
-    const json& face = json::parse(part.out)["faces"][0];
+    const json painted = json::parse(part.out), face = painted["faces"][0];
     CHECK(face["area_mm2"].get<double>() > 250.0);
     CHECK(face["middle_mm"][0].get<double>() == Approx(55.0).margin(8.0));
     CHECK(face["middle_mm"][2].get<double>() == Approx(-370.0).margin(8.0));
