@@ -50,6 +50,8 @@ private:
         double wheel = 0.0;
     };
 
+    /// "ctrl+z", "enter", "delete", "space" or a letter. Throws Error.
+    static Keys key_named(const std::string& name);
     /// False: not done yet, asks again after the next picture.
     bool perform(const Line& line, Desk& desk, Window& window);
     bool edit(const Line& line, Desk& desk);

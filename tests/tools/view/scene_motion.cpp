@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/scene_motion.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace tactus;
+using namespace tactus::view;
+using Next = SceneMotion::Next;
+
+TEST_CASE("what moves is drawn coarsely, what stands still once more with all of it, and then no more") {
+    SceneMotion motion;
+    CHECK(motion.next(1, true, false, 0.0) == Next::coarse);
+    CHECK(motion.next(2, true, false, 0.1) == Next::coarse);
+    CHECK(motion.next(2, true, false, 0.2) == Next::nothing);
+    CHECK(motion.next(2, true, true, 5.0) == Next::nothing);  // somebody is about to move it
+    CHECK(motion.next(2, true, false, 5.0) == Next::fine);
+    CHECK(motion.next(2, true, false, 6.0) == Next::nothing);
+    CHECK(motion.next(3, true, false, 6.1) == Next::coarse);
+    motion.forget();
+    CHECK(motion.next(3, true, false, 6.2) == Next::coarse);
+}
+
+TEST_CASE("where all is drawn at once anyway, what stands still is drawn once") {
+    SceneMotion motion;
+    CHECK(motion.next(1, false, false, 0.0) == Next::fine);
+    CHECK(motion.next(1, false, false, 9.0) == Next::nothing);
+}
+
+TEST_CASE("a scene looks otherwise when anything in it moves, changes, is cut, or is seen from elsewhere") {
+    Picture picture;
+    picture.meshes.resize(2);
+    std::vector<DrawnView> views(1);
+    const std::uint64_t before = looks_of(picture, 1, views);
+    CHECK(looks_of(picture, 1, views) == before);
+    CHECK(looks_of(picture, 2, views) != before);
+    Picture moved = picture;
+    moved.meshes[1].pose.position.z += 1e-9;
+    CHECK(looks_of(moved, 1, views) != before);
+    moved = picture;
+    moved.clip = Plane{};
+    CHECK(looks_of(moved, 1, views) != before);
+    moved = picture;
+    moved.points.resize(1);
+    CHECK(looks_of(moved, 1, views) != before);
+    views[0].projection.to_eye[3].x = 0.1;
+    CHECK(looks_of(picture, 1, views) != before);
+}
