@@ -195,6 +195,7 @@ Json whole_case_row(const Bone& bone, const WholeCase& kind, const SnapBenchChoi
             {"worst_mm", r.worst_error() * 1e3},
             {"worst_deg", r.worst_angle()},
             {"fitted", r.fitted},
+            {"islands", r.islands},
             {"without_neighbours", r.alone},
             {"kerf_mm", kind.kerf * 1e3},
             {"median_gap_mm", median(r.gap) * 1e3}};
@@ -203,11 +204,11 @@ Json whole_case_row(const Bone& bone, const WholeCase& kind, const SnapBenchChoi
 void print_whole_case(const Json& row) {
     fmt::print(
         "{}: {} of {} pieces fit, {:.1f} % within 0.3 mm and 0.5°; error {:.3f} mm and {:.2f}° (median), {:.3f} mm and "
-        "{:.2f}° (worst); gap left {:.3f} mm; {} without neighbours; {:.0f} ms for a look\n",
+        "{:.2f}° (worst); gap left {:.3f} mm; {} parts cut off, {} without neighbours; {:.0f} ms for a look\n",
         row["case"].get<std::string>(), row["fitted"].get<int>(), row["trials"].get<int>(),
         100.0 * row["success"].get<double>(), row["median_tre_mm"].get<double>(), row["median_deg"].get<double>(),
         row["worst_mm"].get<double>(), row["worst_deg"].get<double>(), row["median_gap_mm"].get<double>(),
-        row["without_neighbours"].get<int>(), row["median_ms"].get<double>());
+        row["islands"].get<int>(), row["without_neighbours"].get<int>(), row["median_ms"].get<double>());
 }
 
 /// The whole cases that are asked for by name.

@@ -23,10 +23,21 @@ void put_together_once(const BrokenMandible& broken, WholeCaseResult& result) {
     for (const Bone& bone : broken.fragments) surfaces.push_back({bone.points, &bone.distance});
     FragmentMatcher matcher(surfaces);
     std::vector<Pose> poses = broken.beside;
-    poses[0] = broken.truth[0];
     std::vector<char> stands(poses.size(), 0);
     std::vector<FragmentMatch> last(poses.size());
-    stands[0] = 1;
+    const auto stand = [&](std::size_t n) {
+        poses[n] = broken.truth[n];
+        stands[n] = 1;
+    };
+    stand(0);
+    // What lost pieces cut off has no place of its own: its first piece is put where it belongs.
+    std::vector<std::size_t> order = broken.order;
+    for (const auto& island : broken.islands) {
+        stand(island.front());
+        order.insert(order.end(), island.begin() + 1, island.end());
+        result.alone += island.size() == 1;
+        result.islands += island.size() > 1;
+    }
     const auto look = [&](std::size_t n) {
         const std::int64_t begin = thread_ns();
         last[n] = matcher.near(static_cast<int>(n), poses, stands);
@@ -35,13 +46,13 @@ void put_together_once(const BrokenMandible& broken, WholeCaseResult& result) {
         poses[n] = last[n].pose;
         stands[n] = 1;
     };
-    for (const std::size_t n : broken.order) {
+    for (const std::size_t n : order) {
         look(n);
         if (stands[n]) look(n);
     }
     for (int pass = 0; pass < 2; ++pass)
-        for (const std::size_t n : broken.order) look(n);
-    for (const std::size_t n : broken.order) {
+        for (const std::size_t n : order) look(n);
+    for (const std::size_t n : order) {
         Vec3 middle(0.0);
         const auto& points = broken.fragments[n].points;
         for (const SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
@@ -55,7 +66,6 @@ void put_together_once(const BrokenMandible& broken, WholeCaseResult& result) {
         result.fitted += fits;
         result.within += fits && error < most_error && angle < most_angle;
     }
-    result.alone += static_cast<int>(broken.fragments.size() - 1 - broken.order.size());
 }
 
 double greatest(const std::vector<double>& all) { return all.empty() ? 0.0 : *std::ranges::max_element(all); }

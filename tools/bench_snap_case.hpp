@@ -26,6 +26,7 @@ struct WholeCaseResult {
     std::vector<double> gap;  ///< m, mean signed distance of what lies on each other: what of a kerf stays open
     int fitted = 0;  ///< pieces with the verdict `fit`
     int within = 0;  ///< of these, within 0.3 mm and 0.5 degrees
+    int islands = 0;  ///< parts that lost pieces cut off: each on its first piece, which is given its place
     int alone = 0;  ///< pieces that touch no other, for their neighbours are missing
 
     double worst_error() const;

@@ -50,12 +50,11 @@ struct FacePoint {
     std::size_t face;
 };
 
-/// Pieces so that each, when its turn comes, has as large a face as possible against one of those before it.
-std::vector<std::size_t> order_of(const BrokenMandible& broken, const BrokenMandibleOptions& options) {
-    const std::size_t count = broken.fragments.size();
-    std::vector<std::vector<FacePoint>> paint(count);
+/// The painted points of each piece where it belongs. Faces are numbered through.
+std::vector<std::vector<FacePoint>> paint_of(const BrokenMandible& broken) {
+    std::vector<std::vector<FacePoint>> paint(broken.fragments.size());
     std::size_t faces = 0;
-    for (std::size_t n = 0; n < count; ++n)
+    for (std::size_t n = 0; n < paint.size(); ++n)
         for (const auto& face : split_faces(broken.fragments[n].points)) {
             for (const std::size_t i : face) {
                 const SurfacePoint& p = broken.fragments[n].points[i];
@@ -63,39 +62,57 @@ std::vector<std::size_t> order_of(const BrokenMandible& broken, const BrokenMand
             }
             ++faces;
         }
-    std::vector<FacePoint> standing = paint[0];
+    return paint;
+}
+
+/// How much of a piece's largest fitting face lies on what stands, in points; 0 when none touches it. A face that is
+/// covered as a whole shows its place better than a larger one that is not.
+double worth_of(const std::vector<FacePoint>& piece, const std::vector<FacePoint>& standing, const PointTree& tree,
+                double kerf) {
+    struct Covered {
+        std::size_t near = 0, touching = 0;
+    };
+    constexpr std::size_t least_touching = 40;  // what the matcher takes for a face
+    std::map<std::pair<std::size_t, std::size_t>, Covered> covered;
+    for (const FacePoint& p : piece) {
+        const FacePoint& other = standing[tree.nearest(p.position)];
+        const double apart = glm::length(p.position - other.position) - kerf;
+        if (!(apart < 0.7e-3 && glm::dot(p.normal, other.normal) < -0.6)) continue;
+        Covered& pair = covered[{p.face, other.face}];
+        ++pair.near;
+        pair.touching += apart < 0.4e-3;
+    }
+    double most = 0.0;
+    for (const auto& [pair, points] : covered) {
+        if (points.touching < least_touching) continue;
+        const auto whole = static_cast<double>(std::ranges::count(piece, pair.first, &FacePoint::face));
+        most = std::max(most, static_cast<double>(points.near * points.near) / whole);
+    }
+    return most;
+}
+
+/// Pieces so that each, when its turn comes, has as large a face as possible against `first` or one of those before it;
+/// none that touches none of them. They are done then.
+std::vector<std::size_t> order_from(std::size_t first, const std::vector<std::vector<FacePoint>>& paint, double kerf,
+                                    std::vector<char>& done) {
+    std::vector<FacePoint> standing = paint[first];
     std::vector<std::size_t> order;
-    std::vector<char> done(count, 0);
-    done[0] = 1;
-    while (order.size() + 1 < count) {
+    done[first] = 1;
+    for (;;) {
         std::vector<Vec3> places;
         for (const FacePoint& p : standing) places.push_back(p.position);
         const PointTree tree(places);
-        std::size_t best = 0;
+        std::size_t best = first;
         double most = 0.0;
-        for (std::size_t n = 1; n < count; ++n) {
+        for (std::size_t n = 0; n < paint.size() && !standing.empty(); ++n) {
             if (done[n]) continue;
-            std::map<std::pair<std::size_t, std::size_t>, std::size_t> covered;
-            for (const FacePoint& p : paint[n]) {
-                const FacePoint& other = standing[tree.nearest(p.position)];
-                if (glm::length(p.position - other.position) < 0.7e-3 + options.kerf &&
-                    glm::dot(p.normal, other.normal) < -0.6)
-                    ++covered[{p.face, other.face}];
-            }
-            // A face that is covered as a whole shows its place better than a larger one that is not.
-            for (const auto& [pair, points] : covered) {
-                const auto whole = static_cast<double>(std::ranges::count(paint[n], pair.first, &FacePoint::face));
-                const double worth = static_cast<double>(points * points) / whole;
-                if (best == 0 || worth > most) best = n, most = worth;
-            }
+            if (const double worth = worth_of(paint[n], standing, tree, kerf); worth > most) best = n, most = worth;
         }
-        if (best == 0 && options.missing > 0) break;
-        if (best == 0) throw Error("a piece of the bundled mandible touches none of the others");
+        if (best == first) return order;
         done[best] = 1;
         order.push_back(best);
         standing.insert(standing.end(), paint[best].begin(), paint[best].end());
     }
-    return order;
 }
 
 /// From which side a piece comes to its place with the most room to those that stand, of the sides before the bone.
@@ -234,7 +251,15 @@ BrokenMandible break_mandible(const Bone& bone, const BrokenMandibleOptions& opt
             about(place, options.error * direction(random, 0), options.error_turn * direction(random, 3)) *
             broken.truth[n]);
     }
-    broken.order = order_of(broken, options);
+    const auto paint = paint_of(broken);
+    std::vector<char> done(paint.size(), 0);
+    broken.order = order_from(0, paint, options.kerf, done);
+    for (std::size_t n = 0; n < done.size(); ++n) {
+        if (done[n]) continue;
+        if (options.missing == 0) throw Error("a piece of the bundled mandible touches none of the others");
+        broken.islands.push_back({n});
+        for (const std::size_t other : order_from(n, paint, options.kerf, done)) broken.islands.back().push_back(other);
+    }
     broken.script = script_of(broken, options, broken.seconds);
     return broken;
 }

@@ -25,7 +25,10 @@ struct BrokenMandibleOptions {
 struct BrokenMandible {
     std::vector<Bone> fragments;  ///< as scanned; painted where they broke; the first is in its place
     std::vector<Pose> truth;      ///< of each: p_bone = R p_fragment + t
-    std::vector<std::size_t> order;  ///< in which they are put together; what touches none of the others is not in it
+    std::vector<std::size_t> order;  ///< in which those are put together that hang together with the first
+    /// What lost pieces cut off from the first: of each part the piece that its others are brought to, and these in
+    /// their order. A part of one touches none.
+    std::vector<std::vector<std::size_t>> islands;
     std::vector<Pose> beside;  ///< of each: where the hand stops beside its place
     std::string script;  ///< of the hand, for the driver 'scripted'
     double seconds = 0.0;  ///< that the hand needs

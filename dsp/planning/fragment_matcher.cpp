@@ -87,8 +87,10 @@ private:
 
 FragmentMatcher::FragmentMatcher(std::span<const FragmentSurface> fragments, const MatcherSettings& wanted)
     : settings(wanted) {
+    const double polish = settings.fit.polish;
     for (const FragmentSurface& fragment : fragments)
         if (fragment.distance) widen_for(settings.fit, fragment.distance->spacing);
+    settings.fit.polish = std::max(polish, 0.5 * settings.fit.polish);
     for (std::size_t n = 0; n < fragments.size(); ++n)
         for (const auto& face : split_faces(fragments[n].points)) {
             if (face.size() < 40) continue;

@@ -154,5 +154,5 @@ TEST_CASE("dsp: coarse scans widen the matcher's scales as they widen a fit's") 
     const FitSettings alone = settings_for(left().surface(), coarse.surface());
     CHECK(matcher.settings.fit.finest == Approx(alone.finest));
     CHECK(matcher.settings.fit.sigma == Approx(alone.sigma));
-    CHECK(matcher.settings.fit.polish == Approx(alone.polish));
+    CHECK(matcher.settings.fit.polish == Approx(0.5 * alone.polish));
 }

@@ -163,6 +163,17 @@ TEST_CASE("dsp: chips, spilled and missing paint, lost bone and uneven voxels le
     }
 }
 
+TEST_CASE("dsp: an outer contour with a step of its own does not pull the break out of its place") {
+    // The left half's lower side is 0.6 to 1.8 mm thicker than the right one's.
+    for (const double bend : {1.1, 1.3}) {
+        const Half a = bar_half(-1.0, rough_relief(3), {.bend = bend}), b = bar_half(1.0, rough_relief(3));
+        const Fit fit = find_fit(a.surface(), b.surface(), beside(4 * mm, 10 * degree, 7), FitMode::extended);
+        CAPTURE(bend, error_of(a, fit.pose) / mm, fit.quality.outline / mm);
+        CHECK(error_of(a, fit.pose) < 0.15 * mm);
+        CHECK(fit.verdict == FitVerdict::fit);
+    }
+}
+
 TEST_CASE("dsp: bone lost along the break is closed, not called a failure") {
     for (const double gap : {0.2 * mm, 0.5 * mm, 1.0 * mm}) {
         const Half a = bar_half(-1.0, rough_relief(3), {.gap = gap}), b = bar_half(1.0, rough_relief(3), {.gap = gap});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What must not throw a planning session off: bone that is carved while a fragment snaps to it, and plates so thin that a
-// field hardly knows their inside.
+// What must not throw a planning session off: bone that is carved while a fragment snaps to it, plates so thin that a
+// field hardly knows their inside, and a fragment that is taken where it lies deep in another.
 #include "assets/library/fragments.hpp"
 #include "dsp/contact/pointshell.hpp"
 #include "dsp/contact/shape.hpp"
@@ -126,4 +126,36 @@ TEST_CASE("a target behind a thin plate pulls nothing through it, neither does a
     CHECK(node.finite());
     for (const Pose& pose : node.values<Pose>("pose")) REQUIRE(pose.position.z > 5.5 * mm - 0.2 * mm);
     CHECK(node.last<Pose>("pose").position.z == Approx(10.0 * mm).margin(0.05 * mm));
+}
+
+TEST_CASE("a fragment that is taken deep inside of another and led comes out without harm, and to its place") {
+    const std::vector<Bone> bones = make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
+    const Pointshell shells[] = {make_pointshell(bones[0].points), make_pointshell(bones[1].points)};
+    const Voxmap maps[] = {make_voxmap(bones[0].distance), make_voxmap(bones[1].distance)};
+    Scene scene;
+    scene.count = 2;
+    for (std::size_t n = 0; n < 2; ++n) scene.objects[n] = {{&shells[n], &maps[n], nullptr, {}, 1, n + 1}, {}};
+    scene.version = 1;
+    scene.content_hash = hash_of(scene);
+    const Pose grip{Vec3(-20.0 * mm, 0.0, 0.0), {1.0, 0.0, 0.0, 0.0}};
+    for (const double depth : {3.0 * mm, 5.0 * mm}) {
+        CAPTURE(depth);
+        NodeHarness node("quasi_static_coupling", servo);
+        node.set("held", "1");
+        for (const char* open : {"holding", "strength", "has_target", "target_of"}) node.disconnect(open);
+        node.feed("scene", scene).feed("grip", grip);
+        node.feed<Pose>("device", Pose{Vec3(-depth, 0.5 * mm, 0.0), {1.0, 0.0, 0.0, 0.0}} * grip.inverse());
+        node.feed<Pose>("target", Pose{});
+        node.feed<bool>("guided", true);
+        node.feed<bool>("settle", [](std::int64_t k) { return k >= 600; });
+        node.prepare();
+        node.run(1200);
+        CHECK(node.finite());
+        const auto felt = node.values<Wrench>("wrench");
+        double most = 0.0;
+        for (const Wrench& w : felt) most = std::max(most, glm::length(w.force));
+        CHECK(most < 10.01);
+        CHECK(largest_step(felt, 1) < 0.3);
+        CHECK(glm::length(node.last<Pose>("pose").position) < 0.3 * mm);
+    }
 }
