@@ -40,8 +40,10 @@ std::string patch(const std::string& fault, int at, const std::string& stall = "
                         {"max_torque", "0.3 N m"},
                         {"slew", "1 N/ms"},
                         {"torque_slew", "0.05 N m/ms"}}},
+                      {"near", "chaos", "1 kHz", {}},
                       {"other", "chaos", "200 Hz", {}}},
-                     {"hand.pose -> plant.pose", "plant.wrench -> out.wrench"},
+                     {"hand.pose -> plant.pose", "plant.wrench -> out.wrench", "near.out -> other.in as linear",
+                      "other.out -> near.in"},
                      "[devices.faulty]\ndriver = \"faulty\"\n" + more}
         .toml();
 }
