@@ -1,28 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/planning/as_scanned.hpp"
 
-#include "dsp/planning/gap.hpp"
-
 #include <glm/geometric.hpp>
 
 #include <cmath>
 
 namespace tactus {
 
-bool is_as_scanned(std::span<const SurfacePoint> points, const Pose& place, const Voxmap& other,
-                   const AsScannedSettings& settings) {
-    const GapSettings gap{.near = 2.0 * settings.moved, .contact = settings.touching};
-    const SurfaceGap scanned = gap_between(points, {}, other, {}, gap);
-    if (scanned.contact_area < settings.least_area) return false;
-    if (scanned.contact_area < settings.share * gap_between(points, place, other, {}, gap).contact_area) return false;
-    double area = 0.0, ways = 0.0;
-    for (std::size_t n = 0; n < points.size(); ++n) {
-        if (!(scanned.distance[n] < settings.touching)) continue;
-        const Vec3 way = place.apply(points[n].position) - points[n].position;
-        area += points[n].area;
-        ways += points[n].area * glm::dot(way, way);
+namespace {
+
+/// Whether a point lies on the other's surface and looks against it, as gap_between has it.
+bool touches(const SurfacePoint& point, const Pose& place, const Voxmap& other,
+             const AsScannedSettings& settings) noexcept {
+    const Sample here = other.sample(place.apply(point.position));
+    return here.inside && here.value < settings.touching && here.value > -2.0 * settings.moved &&
+           glm::dot(place.rotate(point.normal), here.gradient) < -0.3;
+}
+
+}  // namespace
+
+bool is_as_scanned(std::span<const SurfacePoint> points, const Pose& place, const Voxmap& other, const Pose& scanned,
+                   const AsScannedSettings& settings) noexcept {
+    double area = 0.0, ways = 0.0, area_there = 0.0;
+    for (const SurfacePoint& p : points) {
+        if (touches(p, place, other, settings)) area_there += p.area;
+        if (!touches(p, scanned, other, settings)) continue;
+        const Vec3 way = place.apply(p.position) - scanned.apply(p.position);
+        area += p.area;
+        ways += p.area * glm::dot(way, way);
     }
-    return std::sqrt(ways / area) < settings.moved;
+    return area >= settings.least_area && area >= settings.share * area_there &&
+           std::sqrt(ways / area) < settings.moved;
 }
 
 }  // namespace tactus

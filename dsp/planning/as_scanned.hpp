@@ -18,9 +18,10 @@ struct AsScannedSettings {
 };
 
 /// Whether two fragments of one scan already touch, as their files have them, where a fit puts them. `points` of the one,
-/// with areas; `place` takes them into the frame of the other, whose distances are `other`. Fragments of files that have
-/// nothing to do with each other do not touch there but by chance.
+/// with areas; `place` takes them into the frame of the other, whose distances are `other`, and `scanned` takes them to
+/// where the scan has them there. Fragments of files that have nothing to do with each other do not touch there but by
+/// chance. Takes no memory: two samples per point.
 bool is_as_scanned(std::span<const SurfacePoint> points, const Pose& place, const Voxmap& other,
-                   const AsScannedSettings& settings = {});
+                   const Pose& scanned = {}, const AsScannedSettings& settings = {}) noexcept;
 
 }  // namespace tactus

@@ -2,6 +2,7 @@
 #include "dsp/planning/fragment_matcher.hpp"
 
 #include "dsp/coupling/scene.hpp"
+#include "dsp/planning/as_scanned.hpp"
 #include "graph/assets.hpp"
 #include "graph/node.hpp"
 
@@ -16,7 +17,9 @@ namespace tactus::nodes {
 struct FragmentMatcher {
     static constexpr auto about =
         "Finds, in the background, where the fragment in the hand fits those that stand: from where it is held, on all "
-        "faces together; and, when nothing near fits, by trying every face on every other in turn.";
+        "faces together; and, when nothing near fits, by trying every face on every other in turn. What only fits as "
+        "the "
+        "scan has it already is no fit.";
 
     In<tactus::Scene> scene{"case_scene.scene, of the same plan"};
     In<double> held{"place of the fragment in the hand, -1 without one"};
@@ -25,7 +28,7 @@ struct FragmentMatcher {
     Out<bool> fits{"the target is a fit"};
     Out<double> fragment{"place of the fragment that the target is of, -1 without one"};
     Out<double> partner{"place of the fragment that it fits best, -1 without one"};
-    Out<double> verdict{"0 fit, 1 sliding, 2 ambiguous, 3 no match, 4 blocked"};
+    Out<double> verdict{"0 fit, 1 sliding, 2 ambiguous (or as scanned), 3 no match, 4 blocked"};
     Out<double> score{"of the faces that fit best, 0 to 1"};
     Out<double> margin{"to the second best pose, as share of the best score"};
     Out<double> rms{"of the distances of what lies on each other", "m"};
@@ -86,10 +89,10 @@ private:
         const std::span<const Pose> poses(poses_.data(), count);
         const std::span<const char> stands(stands_.data(), count);
         matcher_->settings.fit.least_score = least_score;
-        FragmentMatch match = matcher_->near(place, poses, stands);
+        FragmentMatch match = judged(matcher_->near(place, poses, stands));
         if (match.verdict != FitVerdict::fit && reach.index == 1) {
             if (was_ != place) matcher_->begin_search();
-            const FragmentMatch& found = matcher_->search(place, poses, stands);
+            const FragmentMatch found = judged(matcher_->search(place, poses, stands));
             if (found.verdict == FitVerdict::fit) match = found;
         }
         was_ = place;
@@ -108,6 +111,17 @@ private:
         penetration = match.quality.penetration;
         overlap = match.quality.overlap;
         faces = match.faces;
+    }
+
+    /// A border between two labels of a scan fits itself wherever the fragments lie.
+    FragmentMatch judged(FragmentMatch match) const noexcept {
+        if (match.verdict != FitVerdict::fit) return match;
+        const auto moving = static_cast<std::size_t>(match.moving), other = static_cast<std::size_t>(match.partner);
+        const Body& body = scene->objects[other].body;
+        const Pose into = body.home.inverse();
+        if (is_as_scanned(plan->bones[moving].points, into * poses_[other].inverse() * match.pose, *body.map, into))
+            match.verdict = FitVerdict::ambiguous;
+        return match;
     }
 
     void nothing() noexcept {

@@ -272,16 +272,32 @@ TEST_CASE("a row of a run that is no step of its plan is refused, and the steps 
     CHECK(plan.steps[4].before == 3);
 }
 
-TEST_CASE("the matcher finds where a fragment fits from beside it, and says that a copy of its partner does not") {
+/// The same fracture, its right half scanned `far` from its place.
+std::shared_ptr<const CaseBones> scanned(const Vec3& far) {
+    auto c = std::make_shared<CaseBones>(*broken());
+    c->bones[1].distance.origin += far;
+    c->bones[1].density.origin += far;
+    for (SurfacePoint& p : c->bones[1].points) p.position += far;
+    return c;
+}
+
+Scene scene_of(const std::shared_ptr<const CaseBones>& plan) {
     NodeHarness scene("case_scene", servo);
-    scene.asset("plan", broken());
+    scene.asset("plan", plan);
     scene.disconnect_optional();
     scene.prepare();
     scene.run(1);
-    Scene now = scene.last<Scene>("scene");
-    now.objects[1].pose = beside * now.objects[1].body.home;
+    return scene.last<Scene>("scene");
+}
+
+TEST_CASE("the matcher finds where a fragment fits from beside it, and says that a copy of its partner does not") {
+    const Vec3 far = Vec3(6.0, 2.0, -3.0) * mm;
+    const auto displaced = scanned(far);
+    Scene now = scene_of(displaced);
+    const Pose there{-far, {1.0, 0.0, 0.0, 0.0}};
+    now.objects[1].pose = beside * there * now.objects[1].body.home;
     NodeHarness matcher("fragment_matcher", {.period = flicks_per_second / 4});
-    matcher.asset("plan", broken());
+    matcher.asset("plan", displaced);
     matcher.feed("scene", now);
     matcher.feed<double>("held", 1.0);
     matcher.feed<bool>("engaged", true);
@@ -293,11 +309,11 @@ TEST_CASE("the matcher finds where a fragment fits from beside it, and says that
     CHECK(matcher.last<double>("overlap") > 200e-6);
     CHECK(std::abs(matcher.last<double>("gap")) < 0.05 * mm);
     CHECK(matcher.last<double>("penetration") < 0.1 * mm);
-    CHECK(off(matcher.last<Pose>("target") * now.objects[1].body.home.inverse()) < 0.3 * mm);
+    CHECK(off(matcher.last<Pose>("target") * now.objects[1].body.home.inverse() * there.inverse()) < 0.3 * mm);
     // Its own partner's copy in the hand: the same face does not fit itself.
     now.objects[2].pose = beside * now.objects[2].body.home;
     NodeHarness wrong("fragment_matcher", {.period = flicks_per_second / 4});
-    wrong.asset("plan", broken());
+    wrong.asset("plan", displaced);
     wrong.feed("scene", now);
     wrong.feed<double>("held", 2.0);
     wrong.disconnect("engaged");
@@ -305,6 +321,26 @@ TEST_CASE("the matcher finds where a fragment fits from beside it, and says that
     wrong.run(2);
     CHECK_FALSE(wrong.last<bool>("fits"));
     CHECK(off(wrong.last<Pose>("target"), now.objects[2].pose) == 0.0);
+}
+
+TEST_CASE(
+    "the matcher does not lead to a fit that only repeats the scan, wherever both were brought, near or anywhere") {
+    for (const char* reach : {"near", "anywhere"}) {
+        CAPTURE(reach);
+        Scene now = scene_of(broken());
+        const Pose brought{Vec3(20.0, -30.0, 10.0) * mm, rotation_by({0.4, 0.2, -0.3})};
+        now.objects[0].pose = brought * now.objects[0].body.home;
+        now.objects[1].pose = brought * beside * now.objects[1].body.home;
+        NodeHarness node("fragment_matcher", {.period = flicks_per_second / 4});
+        node.asset("plan", broken()).set("reach", reach);
+        node.feed("scene", now).feed<double>("held", 1.0).feed<bool>("engaged", true);
+        node.prepare();
+        node.run(4);
+        CHECK(node.last<double>("score") > 0.5);
+        CHECK(node.last<double>("verdict") == 2.0);
+        CHECK_FALSE(node.last<bool>("fits"));
+        CHECK(off(node.last<Pose>("target"), now.objects[1].pose) == 0.0);
+    }
 }
 
 TEST_CASE("a brush paints what it meets, erases it again, and nothing else") {
