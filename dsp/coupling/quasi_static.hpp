@@ -54,6 +54,7 @@ struct QuasiStaticState {
     int iterations = 0;  ///< steps taken
     int evaluations = 0;  ///< of the contact
     bool balanced = false;
+    bool is_slowed = false;  ///< `slip` ended the tick before it was balanced: the rest of the way is the next ticks'
     bool hand_is_valid = true;  ///< false: its pose was no pose and the last good one holds
 };
 
@@ -92,6 +93,7 @@ public:
                 break;
             ++state_.iterations;
         }
+        state_.is_slowed = !state_.balanced && !(left_ > least_way);
         state_.residual = residual(now);
         state_.energy = now.energy;
         state_.contact = now.contact;

@@ -24,16 +24,20 @@ struct LeadParameters {
 
 class Lead {
 public:
+    /// The hand takes a body: it has all of the springs, and nothing pulls yet.
     void take() noexcept { *this = {}; }
 
-    /// `leads`: there is a pull that is wanted; `settles`: and no springs are; `balanced`: by the last tick the body
-    /// stood where its forces balance; `elapsed` s.
-    void update(const LeadParameters& parameters, const Pose& hand, bool leads, bool settles, bool balanced,
+    /// `leads`: there is a pull that is wanted; `gives_way`: the hand wants the springs gone, which they are while
+    /// something leads; `balanced`: by the last tick the body stood where its forces balance; `elapsed` s. What was
+    /// pulled away stays with the hand until `gives_way` ends, whatever the pull does meanwhile.
+    void update(const LeadParameters& parameters, const Pose& hand, bool leads, bool gives_way, bool balanced,
                 double elapsed) noexcept {
         if (is_valid(hand)) hand_ = hand.position;
+        const bool settles = leads && gives_way;
+        if (!gives_way || held_ == 1.0) settles_ = false;
         if (settles && !settles_) settled_at_ = hand_;
-        settles_ = settles;
-        pulled_away_ = settles && (pulled_away_ || glm::length(hand_ - settled_at_) > parameters.loose);
+        settles_ = settles_ || settles;
+        pulled_away_ = gives_way && (pulled_away_ || (settles && glm::length(hand_ - settled_at_) > parameters.loose));
         const double change = elapsed / parameters.fade;
         share_ = std::clamp(share_ + (leads && !pulled_away_ ? change : -change), 0.0, 1.0);
         held_ = std::clamp(held_ + (settles && !pulled_away_ ? -change : change), 0.0, 1.0);
@@ -51,7 +55,8 @@ public:
 
 private:
     double share_ = 0.0, held_ = 1.0, slip_ = std::numeric_limits<double>::infinity();
-    bool settles_ = false, pulled_away_ = false, is_slow_ = false;
+    bool settles_ = false;  // since the springs were whole: a pull that fails for a moment does not begin anew
+    bool pulled_away_ = false, is_slow_ = false;
     Vec3 hand_{0.0}, settled_at_{0.0};
 };
 

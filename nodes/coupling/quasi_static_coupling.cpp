@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 
 namespace tactus::nodes {
@@ -72,12 +73,12 @@ struct QuasiStaticCoupling {
         };
         report.set("coupling", "residual_p99_N", residuals_.quantile(0.99));
         report.set("coupling", "residual_max_N", residuals_.greatest());
-        report.set("coupling", "balanced", share(balanced_, residuals_.total()));
+        report.set("coupling", "balanced", share(balanced_, ticks_));
         report.set("coupling", "penetration_max_mm", deepest_ * 1e3);
-        report.set("coupling", "iterations_mean", share(iterations_, residuals_.total()));
-        report.set("coupling", "evaluations_mean", share(evaluations_, residuals_.total()));
+        report.set("coupling", "iterations_mean", share(iterations_, ticks_));
+        report.set("coupling", "evaluations_mean", share(evaluations_, ticks_));
         report.set("coupling", "points_in_contact_max", most_points_);
-        report.set("coupling", "in_contact", share(touching_, residuals_.total()));
+        report.set("coupling", "in_contact", share(touching_, ticks_));
         report.set("coupling", "over_budget_ticks", reduced_);
     }
 
@@ -92,7 +93,7 @@ private:
         const bool is_its = !target_of.connected || target_of.get() == static_cast<double>(hold_.place);
         const bool wanted = hold_.holds && guided.connected && guided.get() && is_its &&
                             (!has_target.connected || has_target.get()) && target.connected && is_valid(target.get());
-        lead_.update(led, device, wanted, wanted && settle.connected && settle.get(), solver_.state().balanced,
+        lead_.update(led, device, wanted, hold_.holds && settle.connected && settle.get(), solver_.state().balanced,
                      elapsed);
         g.share = lead_.share();
         if (wanted) g.target = Pose{target->position, glm::normalize(target->orientation)} * in_hand.inverse();
@@ -107,7 +108,8 @@ private:
         residual = now.residual;
         in_contact = now.contact.in_contact > 0;
         last_ = now.wrench;
-        residuals_.add(now.residual);
+        ++ticks_;
+        if (!now.is_slowed) residuals_.add(now.residual);
         deepest_ = std::max(deepest_, now.contact.penetration);
         most_points_ = std::max(most_points_, static_cast<double>(now.contact.in_contact));
         balanced_ += now.balanced ? 1.0 : 0.0;
@@ -132,7 +134,8 @@ private:
     tactus::QuasiStaticCoupling solver_;
     Hold hold_;
     Wrench last_;
-    SizeCounts residuals_;
+    SizeCounts residuals_;  // of ticks that were not slowed
+    std::uint64_t ticks_ = 0;
     double deepest_ = 0.0, balanced_ = 0.0, iterations_ = 0.0, evaluations_ = 0.0, touching_ = 0.0, most_points_ = 0.0,
            reduced_ = 0.0;
 };

@@ -28,7 +28,7 @@ struct SnapToFit {
     In<bool> holding{optional, "false: the body stays where it was let go; unconnected: held all the time"};
     In<double> strength{optional, "share of the force that is felt, 0 to 1; unconnected: all of it"};
     In<bool> engaged{optional, "the pull is wanted; unconnected: all the time"};
-    In<bool> settle{optional, "the springs give way, so that the fit is not biased by the hand"};
+    In<bool> settle{optional, "the springs give way to the pull, so that the fit is not biased by the hand"};
     Out<Wrench> wrench{"on the hand, about its origin", "N, N m"};
     Out<Pose> pose{"of the held body: the proxy", "m"};
     Out<double> place{"of the held body in the scene, -1 when there is none"};
@@ -63,8 +63,8 @@ struct SnapToFit {
         const Pose in_hand = grip.connected && is_valid(grip.get()) ? grip.get() : Pose{};
         contact.set(*contact_, scene, hold_.place, in_hand);
         if (hold_.taken) take();
-        lead_.update(led, device, hold_.holds && (!engaged.connected || engaged.get()),
-                     settle.connected && settle.get(), solver_.state().balanced, tick.elapsed_seconds());
+        lead_.update(led, device, has_pull() && (!engaged.connected || engaged.get()),
+                     hold_.holds && settle.connected && settle.get(), solver_.state().balanced, tick.elapsed_seconds());
         solver.set(solver_.settings, *contact_, lead_.springs());
         solver_.settings.slip = lead_.slip();
         if (hold_.holds) solve(in_hand, tick.elapsed_seconds());
@@ -107,13 +107,18 @@ private:
         law.strength = mode.index == 0 ? force / (0.65 * scale_) : force.value;
     }
 
+    bool has_pull() const noexcept {
+        const auto other = static_cast<std::size_t>(target);
+        return hold_.holds && energy_ && other < scene->count && other != static_cast<std::size_t>(hold_.place) &&
+               is_valid(scene->objects[other].pose);
+    }
+
     void solve(const Pose& in_hand, double elapsed) noexcept {
         const auto other = static_cast<std::size_t>(target);
-        const bool has_pull = energy_ && other < scene->count && other != static_cast<std::size_t>(hold_.place) &&
-                              is_valid(scene->objects[other].pose);
-        if (!has_pull) fit_->forget();
+        const bool pulls = has_pull();
+        if (!pulls) fit_->forget();
         Pose moving_file, fixed_file;
-        if (has_pull) {
+        if (pulls) {
             set_law();
             const auto file_of = [](const SceneObject& o) { return o.body.home.inverse(); };
             moving_file = in_hand * file_of(scene->objects[static_cast<std::size_t>(hold_.place)]);
@@ -130,10 +135,10 @@ private:
         residual = now.residual;
         in_contact = now.contact.in_contact > 0;
         last_ = now.wrench;
-        residuals_.add(now.residual);
+        if (!now.is_slowed) residuals_.add(now.residual);
         deepest_ = std::max(deepest_, now.contact.penetration);
         most_pull_ = std::max(most_pull_, drawing);
-        if (has_pull && ticks_++ % score_every == 0) {
+        if (pulls && ticks_++ % score_every == 0) {
             energy_->law.stride = std::max<std::size_t>(1, moving_paint_->position.size() / 300);
             score_ = energy_
                          ->quality(between_centres(*moving_paint_, *fixed_paint_,

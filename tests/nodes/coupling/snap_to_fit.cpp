@@ -115,3 +115,22 @@ TEST_CASE("the hand can always pull a fragment out of its fit") {
     CHECK(glm::length(felt.back().force) < 0.05);
     CHECK(session.node.last<Pose>("pose").position.x == Approx(20.0 * mm).margin(0.1 * mm));
 }
+
+TEST_CASE("a fragment that nothing draws stays in the hand, settle or not") {
+    for (const bool has_target : {true, false}) {
+        CAPTURE(has_target);
+        NodeHarness node("snap_to_fit", servo);
+        node.asset("moving", fracture().right).asset("fixed", fracture().left);
+        node.set("held", "1").set("target", has_target ? "0" : "1");
+        node.feed("scene", fracture().scene).feed("grip", grip);
+        node.feed<Pose>("device", [](std::int64_t k) {
+            const double away = (20.0 + 0.02 * static_cast<double>(k)) * mm;
+            return Pose{Vec3(away, 0.0, 0.0), {1.0, 0.0, 0.0, 0.0}} * grip.inverse();
+        });
+        node.feed<bool>("engaged", !has_target).feed<bool>("settle", true);
+        node.disconnect("holding").disconnect("strength");
+        node.prepare();
+        node.run(300);
+        CHECK(node.last<Pose>("pose").position.x == Approx(25.98 * mm).margin(0.01 * mm));
+    }
+}

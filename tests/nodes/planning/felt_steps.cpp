@@ -91,6 +91,7 @@ struct Felt {
 /// Ticks of a run: led from the first on, settling between two others, let go at the last.
 struct Times {
     std::int64_t led = 700, settles = 1800, back = 2200, unled = 2700, let_go = 3000, end = 3100;
+    std::int64_t lost = 1'000'000;  ///< there is no target for this tick
 };
 
 /// `kind`: of the node. The hand pulls along x from tick `pull` on, at 100 mm/s.
@@ -99,7 +100,7 @@ Felt felt_by(const char* kind, const Broken& broken, const Times& at, std::int64
     const bool by_target = std::string_view(kind) == "quasi_static_coupling";
     node.set("held", "1");
     if (by_target) {
-        node.disconnect("has_target").disconnect("target_of");
+        node.feed<bool>("has_target", [at](std::int64_t k) { return k != at.lost; }).feed<double>("target_of", 1.0);
         // For a while the target is another one, as a matcher may change its mind.
         node.feed<Pose>("target", [](std::int64_t k) {
             return k >= 1250 && k < 1500 ? Pose{Vec3(0.0, 3.0, 1.0) * mm, rotation_by({0.08, 0.0, 0.0})} : Pose{};
@@ -161,4 +162,23 @@ TEST_CASE("a fragment that is led or settles comes along within 50 ms of being p
             CHECK(glm::length(felt.pose[gone + 50].position - felt.pose[gone].position) > 0.8 * mm);
             CHECK(felt.pose.back().position.x > 80.0 * mm);
         }
+}
+
+TEST_CASE(
+    "a fragment that was pulled away stays in the hand when the target fails for a tick while settle is pressed") {
+    const Broken broken(1);
+    Times at;
+    at.unled = at.back = at.let_go = 4000;
+    at.end = 3400;
+    const std::int64_t pull = 1900;
+    for (const std::int64_t lost : {pull + 50, pull + 200, pull + 600}) {
+        CAPTURE(lost);
+        at.lost = lost;
+        const Felt felt = felt_by("quasi_static_coupling", broken, at, pull);
+        CHECK(felt.step(static_cast<std::size_t>(at.led)) < 0.3);
+        // 80 mm behind the hand it would be drawn back; it has its springs and follows within them.
+        CHECK(felt.pose.back().position.x > 80.0 * mm);
+        for (std::size_t k = static_cast<std::size_t>(pull) + 300; k + 1 < felt.pose.size(); ++k)
+            REQUIRE(felt.pose[k + 1].position.x > felt.pose[k].position.x);
+    }
 }
