@@ -42,7 +42,7 @@ Json propose_by_intact(std::vector<SurfacePoint>& points, const FractureSurfaceC
         json["on_bone"] = residual_json(own);
     }
     IntactOptions options;
-    options.least_area = std::max(options.least_area, choice.least_area * 1e-6);
+    if (choice.least_area) options.least_area = *choice.least_area * 1e-6;
     propose_inside(points, target, place, options);
     return json;
 }
@@ -55,11 +55,16 @@ Json propose(std::vector<SurfacePoint>& points, const FractureSurfaceChoice& cho
         return json;
     }
     if (!choice.facing.empty()) {
-        propose_facing(points, points_of_fragment(choice.facing),
-                       {.reach = choice.reach * 1e-3, .least_area = choice.least_area * 1e-6});
+        FacingOptions options;
+        options.reach = choice.reach * 1e-3;
+        if (choice.least_area) options.least_area = *choice.least_area * 1e-6;
+        propose_facing(points, points_of_fragment(choice.facing), options);
         return nullptr;
     }
-    propose_fracture(points, {.roughness = choice.roughness, .least_area = choice.least_area * 1e-6});
+    ProposalOptions options;
+    options.roughness = choice.roughness;
+    if (choice.least_area) options.least_area = *choice.least_area * 1e-6;
+    propose_fracture(points, options);
     return nullptr;
 }
 
@@ -73,6 +78,11 @@ int fracture_surface_verb(const FractureSurfaceChoice& choice) {
     if (bone.points.empty()) bone.points = sample_surface(bone.distance, {});
     const bool has_paint =
         std::ranges::any_of(bone.points, [](const SurfacePoint& p) { return p.label == surface_label::fracture; });
+    if (choice.keep && has_paint && !(choice.facing.empty() && choice.intact.empty()))
+        throw Error(
+            fmt::format("{}: has paint already, which --keep starts from, so --facing and --intact would change "
+                        "nothing; leave --keep out to propose anew",
+                        choice.bone.string()));
     Json intact;
     if (!choice.keep || !has_paint) intact = propose(bone.points, choice);
     if (!choice.paint.empty()) paint_from_file(bone.points, choice.paint, choice.correct);

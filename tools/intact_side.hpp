@@ -16,7 +16,8 @@ struct IntactSide {
     Registration registration;  ///< of that fragment's points to it
 };
 
-/// The healthy side of a plan as it lies in the frame of the case; `folder` is the plan's. Throws Error.
+/// The healthy side of a plan as it lies in the frame of the case; `folder` is the plan's. Throws Error. Whether
+/// the file is the one that the plan was made with is for check_files to say.
 std::vector<SurfacePoint> laid_target(const MirrorTarget& target, const std::filesystem::path& folder);
 
 /// From a bone file, a CT or a mesh, laid on `main`, from anywhere. Throws Error for a file that has no surface.

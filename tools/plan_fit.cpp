@@ -150,9 +150,10 @@ int plan_snap(const PlanChoice& choice) {
     }
     const Found found(match, matching, poses);
     const bool fits = found.match.verdict == FitVerdict::fit;
-    if (fits) do_step(plan, step_of(plan, found.match, "snap"), choice.plan);
     const CaseFragment& fragment = matching.loaded[static_cast<std::size_t>(moving)];
+    // What may fail comes before the plan is changed.
     const Json target = target_json(state, choice.plan.parent_path(), fragment, a.pose(moving), found.match.pose);
+    if (fits) do_step(plan, step_of(plan, found.match, "snap"), choice.plan);
     if (choice.json) {
         Json json = match_json(plan, found, a.pose(moving), fragment);
         if (!target.is_null()) json["target"] = target;

@@ -60,13 +60,15 @@ void add_snap_verbs(CLI::App& app, SnapChoices& choices) {
     surface_app->add_option("--reach", surface.reach, "how far that may be, mm")
         ->capture_default_str()
         ->check(CLI::Range(0.1, 100.0));
-    surface_app->add_flag("--keep", surface.keep, "start from the paint that the bone file has");
+    surface_app->add_flag("--keep", surface.keep,
+                          "start from the paint that the bone file has; without any, from the proposal");
     surface_app
         ->add_option("--roughness", surface.roughness, "from which on a place is broken: mean of 1 - cos of normals")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 1.0));
-    surface_app->add_option("--least-area", surface.least_area, "smaller patches are left out, mm²")
-        ->capture_default_str()
+    surface_app
+        ->add_option("--least-area", surface.least_area,
+                     "smaller patches are left out, mm² (default: 20, with --intact 50)")
         ->check(CLI::Range(0.0, 1e5));
     surface_app->add_flag("--json", surface.json, "as JSON");
 

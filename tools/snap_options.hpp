@@ -35,7 +35,8 @@ struct SnapChoice {
 
 struct FractureSurfaceChoice {
     std::filesystem::path bone, out, paint, facing, intact, main;
-    double roughness = 0.06, least_area = 20.0, reach = 10.0;  ///< mean of 1 − cos between normals; mm²; mm
+    double roughness = 0.06, reach = 10.0;  ///< mean of 1 − cos between normals; mm
+    std::optional<double> least_area;  ///< mm²; each proposal has its own otherwise
     bool mirror = false, correct = false, keep = false, json = false;
 };
 

@@ -116,11 +116,25 @@ TEST_CASE("the break is proposed by the unbroken bone, laid on the piece by itse
     CHECK(area(found) == Approx(wanted).epsilon(0.25));
     CHECK(found["intact"]["on_main"]["median_mm"].get<double>() < 0.3);
     CHECK(found["intact"]["on_bone"]["median_mm"].get<double>() < 0.3);
+    const Outcome tiny =
+        folder.tactus("fracture-surface " + file("a/fragment_02.vdb") + " -o " + file("p.vdb") + " --intact " +
+                      file("bar.vdb") + " --main " + file("a/fragment_01.vdb") + " --least-area 0 --json");
+    REQUIRE(tiny.code == 0);
+    CHECK(area(json::parse(tiny.out)) >= area(found));
+    const Outcome none =
+        folder.tactus("fracture-surface " + file("a/fragment_02.vdb") + " -o " + file("p.vdb") + " --intact " +
+                      file("bar.vdb") + " --main " + file("a/fragment_01.vdb") + " --least-area 5000 --json");
+    CHECK(none.code == 1);
     const Outcome far =
         folder.tactus("fracture-surface " + file("a/fragment_01.vdb") + " -o " + file("q.vdb") + " --intact " +
                       file("bar.vdb") + " --facing " + file("a/fragment_02.vdb") + " --json");
     INFO(far.out << far.err);
-    CHECK(far.code == 0);
+    REQUIRE(far.code == 0);
+    CHECK(area(json::parse(far.out)) == Approx(wanted).epsilon(0.25));
+    const Outcome kept = folder.tactus("fracture-surface " + file("a/fragment_01.vdb") + " -o " + file("q.vdb") +
+                                       " --keep --facing " + file("a/fragment_02.vdb"));
+    CHECK(kept.code == 2);
+    CHECK(kept.err.find("--keep") != std::string::npos);
     CHECK(folder.tactus("fracture-surface " + file("bar.vdb") + " -o " + file("n.json") + " --mirror").code == 2);
 }
 
