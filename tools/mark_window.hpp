@@ -9,7 +9,8 @@
 
 namespace tactus {
 
-/// A cross at the mark of a screen on black, into what is bound; for other touches nothing but black. Needs a current context.
+/// A cross at the mark of a screen on black, into what is bound; for other touches nothing but black. Needs a current
+/// context.
 void draw_mark(const RigTouch& touch, int width, int height);
 
 class MarkWindow {

@@ -9,8 +9,9 @@ namespace tactus {
 
 namespace {
 
-// Of a voxel: single precision moves a vertex off the face between two parts by less.
-constexpr double on_face = 2e-4;
+// Of a voxel: a vertex this near the face between two parts lies on it. Far from the origin single precision moves it off
+// by more, up to half of this share of its coordinate.
+constexpr double on_face = 2e-4, precision = 0x1p-23;
 // The vertex nearest to here stays. Not the very middle, from which the vertices of an even surface are equally far: which
 // of them stays must not depend on their order, which is another one in each part.
 constexpr std::array middle{0.47, 0.52, 0.44};
@@ -63,15 +64,15 @@ void CoarseSurface::merge(const SurfacePatch& fine, const SurfaceGrid& grid, int
     // Cells are counted from far below, so that cutting off the decimals rounds down everywhere.
     constexpr std::int64_t lowest = 1 << 19;
     const std::int64_t cells_per_part = grid.part / factor;
-    const double near = on_face / factor,
-                 part_per_cell = cells_per_part > 0 ? 1.0 / static_cast<double>(cells_per_part) : 0.0;
+    const double part_per_cell = cells_per_part > 0 ? 1.0 / static_cast<double>(cells_per_part) : 0.0;
     for (std::size_t v = 0; v < fine.vertices.size(); ++v) {
         std::uint64_t key = 0;
         double distance = 0.0;
         for (int axis = 0; axis < 3; ++axis) {
             const auto i = static_cast<std::size_t>(axis);
-            const double at = static_cast<double>(lowest) +
-                              (static_cast<double>(fine.vertices[v].position[i]) - grid.origin[axis]) * per_cell[axis];
+            const double along = static_cast<double>(fine.vertices[v].position[i]);
+            const double at = static_cast<double>(lowest) + (along - grid.origin[axis]) * per_cell[axis];
+            const double near = std::max(on_face / factor, precision * std::abs(along) * per_cell[axis]);
             const std::int64_t face = cells_per_part * static_cast<std::int64_t>(at * part_per_cell + 0.5);
             const bool is_on_face = grid.part > 0 && std::abs(at - static_cast<double>(face)) < near;
             const std::int64_t cell = is_on_face ? face : static_cast<std::int64_t>(at);

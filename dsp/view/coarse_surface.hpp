@@ -26,8 +26,8 @@ public:
     using Levels = std::array<SurfacePatch, factors.size()>;
 
     /// What each level leaves of `fine`; valid until the next call. Every vertex stays within its cell and within a quarter
-    /// of a cell's side of the surface, and what stays is a vertex of `fine`. A body closed by several parts is closed again: vertices on a face between two parts stay there,
-    /// and both parts choose the same ones.
+    /// of a cell's side of the surface, and what stays is a vertex of `fine`. A body closed by several parts is closed
+    /// again: vertices on a face between two parts stay there, and both parts choose the same ones.
     const Levels& make(const SurfacePatch& fine, const SurfaceGrid& grid);
 
 private:

@@ -109,7 +109,10 @@ TEST_CASE("a picture of what moves has far fewer triangles, its outline off by o
             const std::size_t all = scene.drawn();
             const Image coarse = scene.draw(grain_of_motion);
             INFO(view_names[static_cast<std::size_t>(from)] << " at " << zoom);
-            CHECK(scene.drawn() < (zoom < 0.9 ? all / 5 : all + 1));
+            // From above the shaft's end is near enough for all of them.
+            if (zoom < 0.9) CHECK(scene.drawn() < all / 5);
+            else if (from == NamedView::top) CHECK(scene.drawn() == all);
+            else CHECK(scene.drawn() < all / (zoom < 1.1 ? 5 : 2));
             int bone = 0, off = 0;
             for (int y = 0; y < height; ++y)
                 for (int x = 0; x < width; ++x) {

@@ -18,30 +18,35 @@ namespace {
 
 using Corner = std::array<float, 3>;
 
-/// A ball with bumps, and a plate of one voxel beside it: 50 × 45 × 51 samples, which bricks do not divide.
-Grid body() {
-    Grid grid{{50, 45, 51}, Vec3(-0.012, -0.011, -0.0125), Vec3(0.0005), {}};
+/// A ball with bumps, and a plate of one voxel beside it: 50 × 45 × 51 samples, which bricks do not divide. Of voxels of
+/// 0.5 mm, or of others in the same shape.
+Grid body(double voxel, const Vec3& centre) {
+    const double scale = voxel / 0.0005;
+    Grid grid{{50, 45, 51}, centre + scale * Vec3(-0.012, -0.011, -0.0125), Vec3(voxel), {}};
     for (int k = 0; k < grid.size[2]; ++k)
         for (int j = 0; j < grid.size[1]; ++j)
             for (int i = 0; i < grid.size[0]; ++i) {
-                const Vec3 at = grid.position(i, j, k);
+                const Vec3 at = (grid.position(i, j, k) - centre) / scale;
                 const double ball = glm::length(at) - 0.008 - 0.0003 * std::sin(3000.0 * at.x + 2000.0 * at.y);
                 const double plate = std::max(std::abs(at.x - 0.0101) - 0.00025, glm::length(at) - 0.0105);
-                grid.values.push_back(static_cast<float>(std::min(ball, plate)));
+                grid.values.push_back(static_cast<float>(scale * std::min(ball, plate)));
             }
     return grid;
 }
 
 struct Bricks {
-    Grid distance = body();
+    double voxel = 0.0005;
+    Vec3 centre{0.0};
+    Grid distance = body(voxel, centre);
     BoneEditor editor{
         distance,
         Grid{distance.size, distance.origin, distance.spacing, std::vector<float>(distance.values.size(), 1800.0f)},
-        {.band = 0.002}};
+        {.band = 4.0 * voxel}};
     SurfaceGrid grid{editor.layout().origin, editor.layout().spacing, brick_cells};
     std::vector<SurfacePatch> fine;
 
-    Bricks() : fine(static_cast<std::size_t>(editor.layout().brick_count())) {
+    explicit Bricks(double voxel_ = 0.0005, const Vec3& centre_ = Vec3(0.0))
+        : voxel(voxel_), centre(centre_), fine(static_cast<std::size_t>(editor.layout().brick_count())) {
         BrickSurface mesher;
         for (std::uint32_t b = 0; b < fine.size(); ++b) mesher.make(editor.current(), b, fine[b]);
     }
@@ -83,6 +88,19 @@ TEST_CASE("dsp: a coarse surface has far fewer triangles, level by level, and no
         CHECK(count(parts) > 0);
         CHECK(open_edges(parts).empty());
         before = count(parts);
+    }
+}
+
+TEST_CASE("dsp: far from the origin, where single precision moves vertices off the faces, parts still close") {
+    const Bricks bricks(2e-4, Vec3(-1.5, 1.2, -1.5));
+    REQUIRE(open_edges(bricks.fine).empty());
+    CoarseSurface coarse;
+    for (std::size_t level = 0; level < CoarseSurface::factors.size(); ++level) {
+        INFO("cells of " << CoarseSurface::factors[level]);
+        std::vector<SurfacePatch> parts;
+        for (const SurfacePatch& patch : bricks.fine) parts.push_back(coarse.make(patch, bricks.grid)[level]);
+        CHECK(open_edges(parts).empty());
+        CHECK(count(parts) < count(bricks.fine));
     }
 }
 
