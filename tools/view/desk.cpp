@@ -179,7 +179,8 @@ void Desk::draw() {
     splitter("between left and right", true, height, left_, width);
     ImGui::BeginChild("right", vec({0.0, height}));
     // Without anything in space the node has its place.
-    if (!scene_.is_empty()) draw_scene(height);
+    if (scene_.is_empty()) scene_.rest();
+    else draw_scene(height);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, vec({8.0 * fonts_.scale, 6.0 * fonts_.scale}));
     ImGui::BeginChild("node", ImVec2(0, 0), false, ImGuiWindowFlags_AlwaysUseWindowPadding);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({8.0 * fonts_.scale, 5.0 * fonts_.scale}));

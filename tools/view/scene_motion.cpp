@@ -11,10 +11,24 @@ namespace {
 
 void add(Hash& hash, const Vec3& v) { hash.add_bytes(glm::value_ptr(v), sizeof v); }
 void add(Hash& hash, const Mat4& m) { hash.add_bytes(glm::value_ptr(m), sizeof m); }
+void add(Hash& hash, const Legend& legend) {
+    hash.add_text(legend.title);
+    for (const auto& [title, low_text, high_text, low, high] : legend.scales) {
+        for (const std::string& text : {title, low_text, high_text}) hash.add_text(text);
+        add(hash, low);
+        add(hash, high);
+    }
+    for (const Legend::Entry& entry : legend.entries) {
+        hash.add_text(entry.text);
+        add(hash, entry.colour);
+    }
+    for (const std::string& warning : legend.warnings) hash.add_text(warning);
+}
 
 }  // namespace
 
-std::uint64_t looks_of(const Picture& picture, std::uint64_t mesh_changes, std::span<const DrawnView> views) {
+std::uint64_t looks_of(const Picture& picture, std::uint64_t mesh_changes, std::span<const DrawnView> views,
+                       const Legend& legend) {
     Hash hash;
     hash.add_word(mesh_changes);
     for (const DrawnMesh& drawn : picture.meshes) {
@@ -35,6 +49,7 @@ std::uint64_t looks_of(const Picture& picture, std::uint64_t mesh_changes, std::
              {view.x, view.y, view.width, view.height, static_cast<int>(view.channel), static_cast<int>(view.turned)})
             hash.add_word(static_cast<std::uint64_t>(n));
     }
+    add(hash, legend);
     return hash.value();
 }
 

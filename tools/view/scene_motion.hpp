@@ -2,6 +2,7 @@
 // Whether the scene needs another picture: a coarse one while something moves, a fine one when all stands still.
 #pragma once
 
+#include "devices/display/legend.hpp"
 #include "devices/display/scene_renderer.hpp"
 
 #include <cstdint>
@@ -10,8 +11,9 @@
 namespace tactus::view {
 
 /// The same number for what looks the same: every mesh where it stands, seen from the same place. `mesh_changes`: of the
-/// pool that the meshes are in.
-std::uint64_t looks_of(const Picture& picture, std::uint64_t mesh_changes, std::span<const DrawnView> views);
+/// pool that the meshes are in. `legend`: drawn into the picture.
+std::uint64_t looks_of(const Picture& picture, std::uint64_t mesh_changes, std::span<const DrawnView> views,
+                       const Legend& legend);
 
 class SceneMotion {
 public:

@@ -158,14 +158,16 @@ void ScenePanel::render(int width, int height) {
     }
     const auto views = screens_.aim(sight_, camera, picture.bounds);
     const bool has_coarse = renderer_->is_software() && model_->triangles() > many_triangles;
-    const auto next =
-        motion_.next(looks_of(picture, renderer_->meshes().changes(), views), has_coarse, ImGui::IsItemActive(), now);
+    // In the panel it lies on top of the picture, in windows of their own it is a part of it.
+    const Legend drawn_legend = screens_.are_open() ? legend() : Legend{};
+    const auto next = motion_.next(looks_of(picture, renderer_->meshes().changes(), views, drawn_legend), has_coarse,
+                                   ImGui::IsItemActive(), now);
     if (next == SceneMotion::Next::nothing) return screens_.show();
     picture.grain = next == SceneMotion::Next::coarse ? grain_of_motion : 0.0;
     // One fine picture of what stands still does not make those of what moves rarer.
     was_drawn_ = next == SceneMotion::Next::coarse || !has_coarse;
     screens_.samples = renderer_->is_software() && model_->triangles() > very_many_triangles ? 1 : 4;
-    screens_.draw(*renderer_, picture, sight_, model_->legend());
+    screens_.draw(*renderer_, picture, sight_, drawn_legend);
     screens_.show();
 }
 
@@ -184,6 +186,18 @@ bool ScenePanel::is_empty() {
         judged_version_ = bench_.plan_version();
     }
     return is_empty_;
+}
+
+void ScenePanel::rest() {
+    if (!observer_) return;
+    if (screens_.are_open()) windows_ = Windows::all;
+    screens_.close();
+    for (const std::string& port : watched_) observer_->watch(port, Watch::nothing, this);
+    watched_.clear();
+    model_.reset();
+    observer_.reset();
+    motion_.forget();
+    plan_version_ = -1;
 }
 
 void ScenePanel::draw(const std::shared_ptr<Observer>& observer, const Fonts& fonts) {

@@ -25,6 +25,9 @@ public:
     /// `observer` may be null; another one is another run.
     void draw(const std::shared_ptr<Observer>& observer, const Fonts& fonts);
 
+    /// In place of `draw` while the patch is empty: windows close until something is there again, and the run is let go.
+    void rest();
+
     /// The patch has nothing in space: no bone, body, tool or pose.
     bool is_empty();
 
@@ -56,6 +59,7 @@ private:
     void render(int width, int height);
     void tend_screens();
     void watch_sight();
+    Legend legend() const;
     void measure(Point pixel);
     void draw_marks(const Painter& paint, Point corner, double pixel);
     void draw_legend(const Painter& paint, Point corner, int height, double scale);

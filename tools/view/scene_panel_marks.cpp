@@ -70,10 +70,15 @@ void ScenePanel::draw_marks(const Painter& paint, Point corner, double pixel) {
         }
 }
 
-void ScenePanel::draw_legend(const Painter& paint, Point corner, int height, double scale) {
+Legend ScenePanel::legend() const {
     Legend legend = model_->legend();
     legend.warnings.insert(legend.warnings.end(), sight_.warnings().begin(), sight_.warnings().end());
     if (!note_.empty()) legend.warnings.push_back(note_);
+    return legend;
+}
+
+void ScenePanel::draw_legend(const Painter& paint, Point corner, int height, double scale) {
+    const Legend legend = this->legend();
     if (legend.empty()) return;
     const double line = 15.0 * scale, size = 11.0 * scale;
     const std::size_t lines = legend.entries.size() + legend.scales.size() + legend.warnings.size();
