@@ -37,8 +37,9 @@ std::unique_ptr<HapticDevice> open(const std::string& driver, const std::vector<
 }
 
 /// The touches of a device, or those of a file.
-std::vector<RigTouch> touches_of(const CalibrateChoice& choice, const RigFitOptions& options) {
+std::vector<RigTouch> touches_of(const CalibrateChoice& choice, const RigFile& base, const RigFitOptions& options) {
     if (!choice.touches.empty()) return load_touches(choice.touches);
+    check_screens(choice, base);
     TouchLead lead(calibration_steps(choice), !choice.tracker.empty(),
                    [&](std::span<const RigTouch> done) { fit_rig(done, options); });
     TipReader tip(open(choice.device, choice.device_options), is_real_driver(choice.device),
@@ -72,7 +73,7 @@ std::vector<RigTouch> touches_of(const CalibrateChoice& choice, const RigFitOpti
 int calibrate_verb(const CalibrateChoice& choice) {
     const RigFile base = choice.base.empty() ? RigFile{} : load_rig_file(choice.base);
     const RigFitOptions options = fit_options(choice, base);
-    const std::vector<RigTouch> touches = touches_of(choice, options);
+    const std::vector<RigTouch> touches = touches_of(choice, base, options);
     // Touches are worth keeping also when nothing comes of them.
     if (!choice.keep.empty()) write_whole_file(choice.keep, touches_text(touches));
     const RigFit fit = fit_rig(touches, options);

@@ -12,6 +12,12 @@
 
 namespace tactus {
 
+namespace {
+
+constexpr auto no_screen = "no screen is touched, and none is known from a rig before: a rig needs one";
+
+}  // namespace
+
 std::vector<RigTouch> calibration_steps(const CalibrateChoice& choice) {
     std::vector<RigTouch> steps;
     using Of = RigTouch::Of;
@@ -31,9 +37,12 @@ std::vector<RigTouch> calibration_steps(const CalibrateChoice& choice) {
     for (const std::string& screen : choice.screens) marks(Of::screen, screen);
     for (const std::string& screen : choice.images) marks(Of::image, screen);
     if (steps.empty())
-        throw Error(
-            "there is nothing to touch: --screen NAME, --image NAME, --mirror, --places FILE or --tracker DRIVER");
+        throw Error("there is nothing to touch: a screen, the image of one, the mirror, known places or a tracker");
     return steps;
+}
+
+void check_screens(const CalibrateChoice& choice, const RigFile& base) {
+    if (choice.screens.empty() && choice.images.empty() && base.screens.empty()) throw Error(no_screen);
 }
 
 std::string prompt_of(const RigTouch& step) {
@@ -58,7 +67,7 @@ RigFitOptions fit_options(const CalibrateChoice& choice, const RigFile& base) {
     RigFitOptions options;
     options.is_affine = choice.affine;
     options.tolerance = parse_as(choice.tolerance, "mm");
-    if (!(options.tolerance > 0.0)) throw Error("--tolerance must be above 0 mm");
+    if (!(options.tolerance > 0.0)) throw Error("the tolerance must be above 0 mm");
     options.mirror = base.rig.mirror;
     options.device = base.rig.haptic_world;
     options.stretch = base.rig.haptic_stretch;
@@ -98,7 +107,7 @@ RigFile calibrated_rig(RigFile file, const RigFit& fit) {
         file.rig.screens.push_back(screen);
         file.screens.push_back({name, ScreenEyes::both, {}, {}, 0, {}});
     }
-    if (file.screens.empty()) throw Error("no screen was touched, and --base names none: a rig needs one");
+    if (file.screens.empty()) throw Error(no_screen);
     return file;
 }
 

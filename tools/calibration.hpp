@@ -17,6 +17,9 @@ namespace tactus {
 /// nothing.
 std::vector<RigTouch> calibration_steps(const CalibrateChoice& choice);
 
+/// Throws Error when no screen is to be touched and none is known: a rig needs one. Better said before the touches.
+void check_screens(const CalibrateChoice& choice, const RigFile& base);
+
 /// "touch screen 'left' at 10 % of its width from the left and 90 % of its height from below"
 std::string prompt_of(const RigTouch& step);
 
@@ -27,7 +30,7 @@ RigFitOptions fit_options(const CalibrateChoice& choice, const RigFile& base);
 struct TouchesOff {
     double rms = 0.0, worst = 0.0;
     std::size_t count = 0;
-    std::size_t worst_touch = 0;
+    std::size_t worst_touch = 0;  ///< index among all touches, from 0, of the one that is farthest off
 };
 TouchesOff touches_off(const RigFit& fit);
 

@@ -20,7 +20,7 @@ constexpr double plain_screen_height = 0.3;  // m, where no rig says more
 
 StereoMode parse_stereo(const std::string& text) {
     if (const auto mode = stereo_of_name(text)) return *mode;
-    throw Error(fmt::format("--stereo takes {}, not '{}'{}", fmt::join(stereo_names, ", "), text,
+    throw Error(fmt::format("stereo takes {}, not '{}'{}", fmt::join(stereo_names, ", "), text,
                             did_you_mean(text, std::vector<std::string>(stereo_names.begin(), stereo_names.end()))));
 }
 
@@ -30,7 +30,7 @@ Vec3 parse_offset(const std::string& text) {
     try {
         return parse_vector(text, "mm");
     } catch (const Error& error) {
-        throw Error(fmt::format("--offset takes none, study or \"0 mm, 0 mm, 0 mm\": {}", error.message()));
+        throw Error(fmt::format("an offset is none, study or \"0 mm, 0 mm, 0 mm\": {}", error.message()));
     }
 }
 

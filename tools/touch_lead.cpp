@@ -24,10 +24,7 @@ Vec3 mean_of(std::span<const Vec3> places) {
 }  // namespace
 
 Touched touch_of(std::span<const Vec3> tips, std::span<const Vec3> tracked) {
-    if (tips.size() < least_samples)
-        throw Error(
-            "the device gave no valid samples while it touched; is it plugged in, and does 'tactus devices' list it?");
-    Touched touched{mean_of(tips), mean_of(tracked), 0.0};
+    Touched touched{mean_of(tips), mean_of(tracked), 0.0, tips.size(), tracked.size()};
     for (const Vec3& tip : tips) touched.moved = std::max(touched.moved, glm::length(tip - touched.tip));
     return touched;
 }
@@ -43,17 +40,30 @@ bool TouchLead::is_part_done() const {
     return last.of != next.of || last.screen != next.screen;
 }
 
-std::string TouchLead::take(const Touched& touched) {
-    if (touched.moved > most_moved) {
-        const std::string moved = fmt::format(
+std::string TouchLead::fault_of(const Touched& touched) const {
+    if (touched.samples < least_samples)
+        return fmt::format(
+            "the device gave {} valid samples while it touched, and a touch takes {}; is it plugged in and sampled at "
+            "{:.0f} Hz or more? Press again",
+            touched.samples == 0 ? "no" : std::to_string(touched.samples), least_samples,
+            static_cast<double>(least_samples) / touch_lasts);
+    if (is_tracked(steps_[due_]) && touched.tracked_samples == 0)
+        return "the tracker did not see the marker while the tip touched; bring it into view and press again";
+    if (touched.moved > most_moved)
+        return fmt::format(
             "the tip moved by {:.1f} mm while it touched; hold it still for a fifth of a second and press again",
             touched.moved * 1e3);
-        if (++tries_[due_] >= most_tries) throw Error(moved);
-        return moved;
+    return {};
+}
+
+std::string TouchLead::take(const Touched& touched) {
+    if (const std::string fault = fault_of(touched); !fault.empty()) {
+        if (++tries_[due_] >= most_tries) throw Error(fault);
+        return fault;
     }
     RigTouch& step = steps_[due_];
     step.reading = touched.tip;
-    if (has_tracker_ && step.of == RigTouch::Of::workspace) step.place = touched.tracked;
+    if (is_tracked(step)) step.place = touched.tracked;
     if (due_ == reached_) ++reached_;
     due_ = reached_;
     if (!is_part_done()) return {};

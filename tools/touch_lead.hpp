@@ -15,15 +15,15 @@ namespace tactus {
 struct Touched {
     Vec3 tip{0.0}, tracked{0.0};  ///< means over the touch, m, each in its own frame
     double moved = 0.0;           ///< m, the farthest from the mean
+    std::size_t samples = 0, tracked_samples = 0;  ///< what the means are of
 };
 inline constexpr double touch_lasts = 0.2;  ///< s that a touch is read
 
-/// The touch that was read as those places of the tip, and of what tracks it (none: nothing does). Throws Error for fewer
-/// than ten, which are no touch.
+/// The touch that was read as those places of the tip, and of what tracks it.
 Touched touch_of(std::span<const Vec3> tips, std::span<const Vec3> tracked);
 
-/// Fills the readings of steps one by one. A touch that moved is asked for again, and so is one that `check`, called after
-/// the last of a part, throws as BadTouch.
+/// Fills the readings of steps one by one. A touch that moved is asked for again, one of fewer than ten samples, one whose
+/// place was not tracked where it has to be, and one that `check`, called after the last of a part, throws as BadTouch.
 class TouchLead {
 public:
     using Check = std::function<void(std::span<const RigTouch> done)>;
@@ -40,6 +40,10 @@ public:
     std::string take(const Touched& touched);
 
 private:
+    /// Its place comes from the tracker.
+    bool is_tracked(const RigTouch& step) const { return has_tracker_ && step.of == RigTouch::Of::workspace; }
+    /// What is wrong with a touch of the step that is due, whatever the others are; empty: nothing.
+    std::string fault_of(const Touched& touched) const;
     /// The touches so far complete a part: a device, the mirror, or one screen.
     bool is_part_done() const;
 

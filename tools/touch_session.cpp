@@ -31,7 +31,8 @@ DeviceSample TipReader::read() {
     if (!tracker_) return sample;
     const DeviceSample seen = tracker_->acquire(elapsed);
     tracker_->commit({});
-    if (seen.valid) tracked_ = seen.pose.position;
+    tracked_.reset();
+    if (seen.valid && is_valid(seen.pose)) tracked_ = seen.pose.position;
     return sample;
 }
 
@@ -53,7 +54,7 @@ Touched TipReader::touch(const std::function<bool()>& is_asked, const std::funct
         if (!sample.valid || !is_valid(sample.pose) || sample.counter == last_counter_) continue;
         last_counter_ = sample.counter;
         tips.push_back(sample.pose.apply(tip_));
-        tracked.push_back(tracked_);
+        if (tracked_) tracked.push_back(*tracked_);
     }
     return touch_of(tips, tracked);
 }

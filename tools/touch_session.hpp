@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace tactus {
@@ -29,7 +30,7 @@ private:
     std::unique_ptr<HapticDevice> device_, tracker_;
     bool is_real_;
     Vec3 tip_;
-    Vec3 tracked_{0.0};
+    std::optional<Vec3> tracked_;  // of the last read
     bool was_pressed_ = true;  // a button that is held from the beginning says nothing
     bool has_begun_ = false;
     std::int64_t last_counter_ = -1;

@@ -65,7 +65,7 @@ TouchedPart fitted(const std::string& what, const Numbers& touches, std::span<co
                                    what, *blamed + 1, all[*blamed].name(), apart * 1e3, best * 1e3));
     throw Error(
         fmt::format("{}: {}, and no single one is to blame; touch them all again with the tip held still, or "
-                    "allow more than {:.1f} mm (--tolerance)",
+                    "with a tolerance above {:.1f} mm",
                     what, refusal, tolerance * 1e3));
 }
 

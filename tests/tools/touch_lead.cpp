@@ -17,7 +17,7 @@ std::vector<RigTouch> steps() {
     return all;
 }
 
-Touched at(double x) { return {Vec3(x, 0.0, 0.0), Vec3(0.0), 0.0}; }
+Touched at(double x) { return {Vec3(x, 0.0, 0.0), Vec3(0.0), 0.0, 200, 0}; }
 
 }  // namespace
 
@@ -41,7 +41,7 @@ TEST_CASE("a touch that moved, or that the others contradict, is asked for again
             if (done[i].reading.x < 0.0) throw BadTouch(i, "that one is off");
     };
     TouchLead lead(steps(), false, check);
-    CHECK(lead.take({Vec3(0.0), Vec3(0.0), 2e-3}).find("2.0 mm") != std::string::npos);
+    CHECK(lead.take({Vec3(0.0), Vec3(0.0), 2e-3, 200, 0}).find("2.0 mm") != std::string::npos);
     CHECK(lead.due() == 0);
     for (const double x : {0.1, -0.1, 0.3}) lead.take(at(x));
     CHECK(lead.due() == 1);
@@ -60,12 +60,29 @@ TEST_CASE("a touch that moved, or that the others contradict, is asked for again
     SECTION("wrong again, it ends") { CHECK_THROWS_AS(lead.take(at(-0.1)), BadTouch); }
 }
 
-TEST_CASE("a touch is the mean of where the tip was, and few samples are none") {
+TEST_CASE("a touch is the mean of where the tip was; few samples are asked for again, and a third time end it") {
     std::vector<Vec3> tips(20, Vec3(1e-3, 0.0, 0.0));
     tips[7].y = 20e-3;
     const Touched touched = touch_of(tips, {});
     CHECK(touched.tip.y == Approx(1e-3));
     CHECK(touched.moved == Approx(19e-3));
     tips.resize(5);
-    CHECK_THROWS_WITH(touch_of(tips, {}), Catch::Contains("no valid samples"));
+    TouchLead lead(steps(), false, [](std::span<const RigTouch>) {});
+    CHECK(lead.take(touch_of(tips, {})).find("5 valid samples") != std::string::npos);
+    CHECK(lead.take(touch_of({}, {})).find("no valid samples") != std::string::npos);
+    CHECK(lead.due() == 0);
+    CHECK_THROWS_WITH(lead.take(touch_of({}, {})), Catch::Contains("no valid samples"));
+}
+
+TEST_CASE("where the tracker says the place, a touch that it did not see is asked for again") {
+    std::vector<RigTouch> all = steps();
+    all[0].of = RigTouch::Of::workspace;
+    TouchLead lead(all, true, [](std::span<const RigTouch>) {});
+    const std::vector<Vec3> tips(20, Vec3(1e-3, 0.0, 0.0)), tracked(3, Vec3(0.0, 0.2, 0.0));
+    CHECK(lead.take(touch_of(tips, {})).find("tracker") != std::string::npos);
+    CHECK(lead.due() == 0);
+    CHECK(lead.take(touch_of(tips, tracked)).empty());
+    CHECK(lead.steps()[0].place.y == Approx(0.2));
+    // Nothing else needs it.
+    CHECK(lead.take(touch_of(tips, {})).empty());
 }

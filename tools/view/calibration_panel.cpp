@@ -8,6 +8,8 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <filesystem>
+
 namespace tactus::view {
 
 namespace {
@@ -47,7 +49,8 @@ void CalibrationPanel::draw(const Feed* feed) {
         if (lead_) {
             if (feed) lead_on(*feed);
             else words(tone::warm, "The run is over; run it again to go on.");
-        } else if (feed) choose(*feed);
+        } else if (is_unwritten_) write_elsewhere();
+        else if (feed) choose(*feed);
         else words(tone::dim, "Run a patch with a device in it: its tip touches screens, mirror and known places.");
         if (!problem_.empty()) words(tone::bad, problem_);
         if (fit_) show_fit();
@@ -102,13 +105,20 @@ void CalibrationPanel::choose(const Feed& feed) {
                                             : fmt::format("monitor {}", marks_on_);
     ImGui::SetNextItemWidth(17.0f * ImGui::GetFontSize());
     ImGui::SliderInt("marks are on", &marks_on_, -1, 4, on.c_str());
-    field("file", "rig.toml", file_);
+    choose_file();
     if (scene_.rig()) words(tone::dim, "What is not touched stays as in the rig that is used now.");
     const bool has_steps =
         !places_.empty() || !source_.tracker.empty() || choice_.mirror || !screen_.empty() || !image_.empty();
     ImGui::BeginDisabled(!has_steps || source_.pose.empty() || file_.empty());
     if (button("begin")) begin();
     ImGui::EndDisabled();
+}
+
+void CalibrationPanel::choose_file() {
+    field("file", "rig.toml", file_);
+    std::error_code unknown;
+    if (!file_.empty() && std::filesystem::exists(file_, unknown))
+        words(tone::warm, fmt::format("{} is there already: it will be replaced.", file_));
 }
 
 void CalibrationPanel::begin() {
@@ -123,6 +133,7 @@ void CalibrationPanel::begin() {
         if (!screen_.empty()) choice_.screens.push_back(screen_);
         if (!image_.empty()) choice_.images.push_back(image_);
         base_ = scene_.rig().value_or(RigFile{});
+        check_screens(choice_, base_);
         options_ = fit_options(choice_, base_);
         TouchSource source = source_;
         source.tip = parse_vector(choice_.tip, "mm");
@@ -177,11 +188,38 @@ void CalibrationPanel::finish() {
     watch_.reset();
     marks_.reset();
     fit_ = fit_rig(touches, options_);
-    write_calibrated(file_, calibrated_rig(base_, *fit_), *fit_);
-    scene_.use_rig(file_);
+    write();
+}
+
+void CalibrationPanel::write() {
+    problem_.clear();
+    is_unwritten_ = true;
+    try {
+        write_calibrated(file_, calibrated_rig(base_, *fit_), *fit_);
+        scene_.use_rig(file_);
+    } catch (const Error& error) {
+        problem_ = error.what();
+        return;
+    }
+    is_unwritten_ = false;
     const TouchesOff off = touches_off(*fit_);
     bench_.tell(fmt::format("{} is written and used: {} touches, {:.2f} mm rms, {:.2f} mm worst", file_, off.count,
                             off.rms * 1e3, off.worst * 1e3));
+}
+
+/// The touches are worth more than the name of a file.
+void CalibrationPanel::write_elsewhere() {
+    words(tone::text, "All is touched, but the rig is not written yet: choose another file.");
+    choose_file();
+    ImGui::BeginDisabled(file_.empty());
+    if (button("write")) write();
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    if (button("discard")) {
+        is_unwritten_ = false;
+        problem_.clear();
+        fit_.reset();
+    }
 }
 
 void CalibrationPanel::show_mark() {

@@ -34,6 +34,9 @@ private:
     void begin();
     void lead_on(const Feed& feed);
     void finish();
+    void write();
+    void write_elsewhere();
+    void choose_file();
     void show_fit() const;
     void show_mark();
 
@@ -48,6 +51,7 @@ private:
     std::optional<TouchLead> lead_;
     std::optional<TouchWatch> watch_;
     std::optional<RigFit> fit_;  ///< of the parts so far
+    bool is_unwritten_ = false;  ///< all is touched, and the file could not be written
     std::unique_ptr<MarkScreen> marks_;
     std::string said_, problem_;  ///< of the last touch; why it ended
 };

@@ -4,6 +4,7 @@
 #include "graph/value.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace tactus::view {
 
@@ -22,6 +23,8 @@ std::vector<Pose> poses_within(const Trace& trace, double begin, double end) {
         if (const Pose pose = pose_at(trace, row); is_valid(pose)) poses.push_back(pose);
     return poses;
 }
+
+double newest_of(const Trace* trace) { return trace && !trace->times.empty() ? trace->times.back() : -1.0; }
 
 }  // namespace
 
@@ -45,12 +48,16 @@ std::set<std::string> TouchWatch::traced() const {
     return ports;
 }
 
+const Trace* TouchWatch::button_of(const Feed& feed) const {
+    return source_.button.empty() ? nullptr : feed.trace(source_.button);
+}
+
 void TouchWatch::look_for_press(const Feed& feed, const Trace& poses) {
     if (std::exchange(is_asked_, false)) {
         began_ = poses.times.back();
         return;
     }
-    const Trace* const button = source_.button.empty() ? nullptr : feed.trace(source_.button);
+    const Trace* const button = button_of(feed);
     if (!button || button->times.empty()) return;
     const auto first = std::ranges::upper_bound(button->times, seen_) - button->times.begin();
     for (auto row = static_cast<std::size_t>(first); row < button->times.size() && !began_; ++row) {
@@ -63,13 +70,16 @@ void TouchWatch::look_for_press(const Feed& feed, const Trace& poses) {
 
 std::optional<Touched> TouchWatch::next(const Feed& feed) {
     const Trace* const poses = feed.trace(source_.pose);
+    // What was traced before it was begun, for a scope perhaps, holds no touches.
+    if (!std::exchange(has_looked_, true)) seen_ = free_from_ = std::max(newest_of(poses), newest_of(button_of(feed)));
     if (!poses || poses->times.empty()) return std::nullopt;
     // A run that began anew counts from zero.
-    if (poses->times.back() < seen_) {
+    if (poses->times.back() < newest_) {
         seen_ = free_from_ = -1.0;
         was_pressed_ = true;
         began_.reset();
     }
+    newest_ = poses->times.back();
     if (!began_) look_for_press(feed, *poses);
     if (!began_ || poses->times.back() < *began_ + touch_lasts) return std::nullopt;
     const double begin = *began_, end = begin + touch_lasts;

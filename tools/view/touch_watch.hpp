@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 
 namespace tactus::view {
 
@@ -32,16 +33,18 @@ public:
     void ask() { is_asked_ = true; }
     bool is_reading() const { return began_.has_value(); }
     /// The next touch that was read as a whole, none: not yet. Presses are found in the traces, so that none is missed
-    /// however rarely the window looks. Throws Error for one without valid samples.
+    /// however rarely the window looks; those before the first call are none.
     std::optional<Touched> next(const Feed& feed);
 
 private:
+    const Trace* button_of(const Feed& feed) const;
     void look_for_press(const Feed& feed, const Trace& poses);
 
     TouchSource source_;
-    bool is_asked_ = false;
+    bool is_asked_ = false, has_looked_ = false;
     bool was_pressed_ = true;  // a button that is held from the beginning says nothing
     double seen_ = -1.0, free_from_ = -1.0;  // s: up to where the button was looked at, and from where it may begin one
+    double newest_ = -1.0;  // s: of the poses
     std::optional<double> began_;
 };
 

@@ -55,6 +55,15 @@ Picture read_picture(const std::filesystem::path& png) {
     return picture;
 }
 
+int beside_screen(const std::filesystem::path& png) {
+    const Picture picture = read_picture(png);
+    int count = 0;
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = picture.width * 2 / 3; x < picture.width; ++x)
+            count += picture.at(x, y, 0) == 0x0b && picture.at(x, y, 1) == 0x0e && picture.at(x, y, 2) == 0x13;
+    return count;
+}
+
 void check_picture(const std::filesystem::path& png, int width, int height) {
     INFO(png.string());
     const Picture seen = read_picture(png);

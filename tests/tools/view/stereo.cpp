@@ -116,6 +116,39 @@ TEST_CASE("the command line opens the windows of a rig, and a driver without two
     CHECK(on(display, folder, run + "--rig far.toml").code == 0);
 }
 
+TEST_CASE("an edit that leaves nothing in space closes the scene, and one that undoes it shows it again") {
+    NEEDS_DISPLAY(display)
+    const Folder folder;
+    folder.write("patch.toml", std::string(look_around) + "[nodes.tone]\ntype = \"sine\"\nrate = \"48 kHz\"\n");
+    folder.write("rig.toml", rig);
+    folder.write("script", R"(until 0.1
+rig rig.toml
+screens on
+frames 4
+screenshot before.png
+remove ball
+remove head
+remove hand
+frames 4
+screenshot empty.png
+undo
+undo
+undo
+frames 6
+screenshot again.png
+stop
+until over
+close
+)");
+    const Outcome done =
+        on(display, folder, "run patch.toml --view --view-script script --audio file --out out --json");
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    CHECK(beside_screen(folder.path / "before.png") > 1000);
+    CHECK(beside_screen(folder.path / "empty.png") == 0);
+    CHECK(beside_screen(folder.path / "again.png") > 1000);
+}
+
 TEST_CASE("a window that draws a rig changes no bit of what a patch computes") {
     NEEDS_DISPLAY(display)
     const Folder folder;

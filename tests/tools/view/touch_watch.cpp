@@ -29,6 +29,8 @@ public:
         row = 0;
     }
 
+    bool has_pose = true;  ///< it is traced
+
     std::vector<Port> ports() const override {
         return {{"other.pose", &value::pose, 60.0},
                 {"hand.pose", &value::pose, 1000.0},
@@ -38,6 +40,7 @@ public:
     void follow(const std::set<std::string>&, const std::set<std::string>&) override {}
     Latest latest(const std::string&) const override { return {}; }
     const Trace* trace(const std::string& port) const override {
+        if (port == "hand.pose" && !has_pose) return nullptr;
         const auto known = traces_.find(port);
         return known == traces_.end() ? nullptr : &known->second;
     }
@@ -85,6 +88,35 @@ TEST_CASE("no press is missed however rarely the window looks, and none is taken
     feed.begin_anew();
     feed.run_to(0.8);
     CHECK(watch.next(feed));
+}
+
+TEST_CASE("what a trace holds from before is no touch, whichever of pose and button a scope has traced") {
+    HandFeed feed;
+    feed.run_to(2.3);
+    feed.has_pose = GENERATE(true, false);
+    TouchWatch watch(touch_sources(feed)[0]);
+    CHECK_FALSE(watch.next(feed));
+    CHECK_FALSE(watch.is_reading());
+    feed.has_pose = true;
+    feed.run_to(2.8);
+    const auto touched = watch.next(feed);
+    REQUIRE(touched);
+    CHECK(touched->tip.x == Approx(2.0));
+    CHECK_FALSE(watch.next(feed));
+}
+
+TEST_CASE("a run that begins anew is followed without a button as well, and drops the touch that was begun") {
+    HandFeed feed;
+    feed.run_to(3.0);
+    TouchWatch watch({"hand.pose", "", "", Vec3(0.0)});
+    CHECK_FALSE(watch.next(feed));
+    watch.ask();
+    CHECK_FALSE(watch.next(feed));
+    CHECK(watch.is_reading());
+    feed.begin_anew();
+    feed.run_to(0.1);
+    CHECK_FALSE(watch.next(feed));
+    CHECK_FALSE(watch.is_reading());
 }
 
 TEST_CASE("a press in the window is a touch without a button") {
