@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include <optional>
+#include <utility>
 
 namespace tactus {
 
@@ -39,8 +40,9 @@ std::unique_ptr<HapticDevice> open(const std::string& driver, const std::vector<
 /// The touches of a device, or those of a file.
 std::vector<RigTouch> touches_of(const CalibrateChoice& choice, const RigFile& base, const RigFitOptions& options) {
     if (!choice.touches.empty()) return load_touches(choice.touches);
+    std::vector<RigTouch> steps = calibration_steps(choice);
     check_screens(choice, base);
-    TouchLead lead(calibration_steps(choice), !choice.tracker.empty(),
+    TouchLead lead(std::move(steps), !choice.tracker.empty(),
                    [&](std::span<const RigTouch> done) { fit_rig(done, options); });
     TipReader tip(open(choice.device, choice.device_options), is_real_driver(choice.device),
                   parse_vector(choice.tip, "mm"),
