@@ -82,23 +82,36 @@ void FitEnergy::rebind(const FitSurface& moving, const FitSurface& fixed) noexce
         side.field = s == 0 ? fixed_ : moving_;
         side.weight.assign(side.points->position.size(), 0.0);
         side.seen.assign(side.points->position.size(), {});
+        side.seen_stride = 0;
     }
     links_.resize(moving.outline.size());
     link_count_ = 0;
     depths_.resize(moving.position.size() + fixed.position.size() + moving.outline.size() + fixed.outline.size());
 }
 
+void FitEnergy::read(Side& side, const Pose& into) const noexcept {
+    if (side.seen_stride == law.stride && side.seen_at.position == into.position &&
+        side.seen_at.orientation == into.orientation)
+        return;
+    const Mat3 turn = glm::mat3_cast(into.orientation);
+    const std::vector<Vec3>& points = side.points->position;
+    for (std::size_t i = 0; i < points.size(); i += law.stride)
+        side.seen[i] = side.field->field.sample(into.position + turn * points[i]);
+    side.seen_at = into;
+    side.seen_stride = law.stride;
+}
+
 void FitEnergy::look(Side& side, const Pose& into) noexcept {
+    read(side, into);
     const Mat3 turn = glm::mat3_cast(into.orientation);
     const FitSurface &points = *side.points, &field = *side.field;
     for (std::size_t i = 0; i < points.position.size(); i += law.stride) {
         side.weight[i] = 0.0;
-        const Vec3 at = into.position + turn * points.position[i];
-        const Sample here = side.seen[i] = field.field.sample(at);
+        const Sample& here = side.seen[i];
         if (!here.inside) continue;
         const double against = -glm::dot(turn * points.normal[i], here.gradient);
         if (!(against > 0.0)) continue;
-        if (law.gated && !field.is_painted_near(at)) continue;
+        if (law.gated && !field.is_painted_near(into.position + turn * points.position[i])) continue;
         side.weight[i] = points.share[i] * static_cast<double>(law.stride) *
                          (law.power == 1.0 ? against : std::pow(against, law.power));
     }
@@ -133,17 +146,15 @@ void FitEnergy::look(const Pose& pose) noexcept {
     link(pose);
 }
 
-void FitEnergy::add(ContactSum& sum, const Side& side, const Pose& pose, const Pose& into, double sign,
-                    Reading reading) noexcept {
+void FitEnergy::add(ContactSum& sum, Side& side, const Pose& pose, const Pose& into, double sign) const noexcept {
+    read(side, into);
     const Mat3 turn = glm::mat3_cast(into.orientation);
     const FitSurface& points = *side.points;
-    const Voxmap& field = side.field->field;
     const bool is_moving = sign > 0.0;
     for (std::size_t i = 0; i < points.position.size(); i += law.stride) {
         const double weight = side.weight[i];
         if (!(weight > 0.0) && !(law.contact > 0.0)) continue;
-        const Sample here =
-            reading == Reading::seen ? side.seen[i] : field.sample(into.position + turn * points.position[i]);
+        const Sample& here = side.seen[i];
         if (!here.inside) continue;
         Pull pull = law.kernel == FitKernel::robust ? robust(law, here.value) : steady(law, here.value);
         pull = {weight * pull.energy, weight * pull.force, weight * pull.stiffness};
@@ -180,8 +191,8 @@ void FitEnergy::add_outline(ContactSum& sum, const Pose& pose) const noexcept {
 
 ContactSum FitEnergy::operator()(const Pose& pose, ContactParts) noexcept {
     ContactSum sum;
-    add(sum, sides_[0], pose, pose, 1.0, Reading::fresh);
-    if (law.two_sided) add(sum, sides_[1], pose, pose.inverse(), -1.0, Reading::fresh);
+    add(sum, sides_[0], pose, pose, 1.0);
+    if (law.two_sided) add(sum, sides_[1], pose, pose.inverse(), -1.0);
     add_outline(sum, pose);
     mirror(sum.stiffness);
     return sum;
@@ -192,11 +203,11 @@ ContactSum FitEnergy::look_at_half(FitHalf half, const Pose& pose) noexcept {
     if (half == FitHalf::moving_points) {
         look(sides_[0], pose);
         link(pose);
-        add(sum, sides_[0], pose, pose, 1.0, Reading::seen);
+        add(sum, sides_[0], pose, pose, 1.0);
         add_outline(sum, pose);
     } else if (law.two_sided) {
         look(sides_[1], pose.inverse());
-        add(sum, sides_[1], pose, pose.inverse(), -1.0, Reading::seen);
+        add(sum, sides_[1], pose, pose.inverse(), -1.0);
     }
     mirror(sum.stiffness);
     return sum;

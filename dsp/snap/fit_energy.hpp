@@ -72,7 +72,7 @@ public:
     void look(const Pose& pose) noexcept;
     /// Energy, gradient and stiffness about the origin of the moving frame: what a coupling takes for a contact.
     ContactSum operator()(const Pose& pose, ContactParts parts) noexcept;
-    /// The same for one half alone, looking anew on the way and reading each field once.
+    /// The same for one half alone, looking anew on the way.
     ContactSum look_at_half(FitHalf half, const Pose& pose) noexcept;
     double clearance(const Pose&) const noexcept { return 0.0; }
 
@@ -83,18 +83,20 @@ private:
     struct Side {
         const FitSurface *points = nullptr, *field = nullptr;
         std::vector<double> weight;
-        std::vector<Sample> seen;  ///< of the field, at the pose last looked at
+        std::vector<Sample> seen;  ///< of the field, at `seen_at`, for one point in `seen_stride`; 0: for none
+        Pose seen_at;
+        std::size_t seen_stride = 0;
     };
-    enum class Reading { fresh, seen };
     struct Link {
         Vec3 from{0.0}, to{0.0}, along{0.0};  ///< moving frame, fixed frame, fixed frame
         double weight = 0.0;
     };
 
+    /// Reads the field at all points, unless they were read at this very pose last: most poses are asked about twice.
+    void read(Side& side, const Pose& into) const noexcept;
     void look(Side& side, const Pose& into) noexcept;
     void link(const Pose& pose) noexcept;
-    void add(ContactSum& sum, const Side& side, const Pose& pose, const Pose& into, double sign,
-             Reading reading) noexcept;
+    void add(ContactSum& sum, Side& side, const Pose& pose, const Pose& into, double sign) const noexcept;
     void add_outline(ContactSum& sum, const Pose& pose) const noexcept;
 
     const FitSurface *moving_ = nullptr, *fixed_ = nullptr;
