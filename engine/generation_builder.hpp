@@ -51,6 +51,7 @@ private:
     bool is_same_wire(const LinkWire& old, const LinkWire& wire) const;
     /// The link of the generation before between the same groups with the same latency.
     Link* predecessor(const Link& link) const;
+    int ring_frames(const GroupRuntime& group);
     void finish_links();
 
     // generation_programs.cpp

@@ -163,6 +163,12 @@ Link* GenerationBuilder::predecessor(const Link& link) const {
     return nullptr;
 }
 
+/// Activations per call that a ring is made for: a repetition in smaller blocks must keep what the live run kept.
+int GenerationBuilder::ring_frames(const GroupRuntime& group) {
+    if (!group.plan->has_audio) return group.max_frames;
+    return std::max(group.max_frames, static_cast<int>(plan().patch.quantum / group.plan->period));
+}
+
 void GenerationBuilder::finish_links() {
     for (auto& link : made_->links) {
         Link* old = predecessor(*link);
@@ -185,7 +191,8 @@ void GenerationBuilder::finish_links() {
         new_links_.push_back(link.get());
         link->id = workshop_.next_link++;
         link->continued = same > 0 ? old : nullptr;
-        link->prepare(link_slack, link->producer->max_frames, link->consumer->max_frames, before_ ? Link::unknown : 0);
+        link->prepare(link_slack, ring_frames(*link->producer), ring_frames(*link->consumer),
+                      before_ ? Link::unknown : 0);
         for (LinkWire& wire : link->wires) {
             wire.source = live(wire.source);
             wire.target = live(wire.target);

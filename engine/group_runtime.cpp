@@ -57,12 +57,14 @@ bool GroupRuntime::ready() const noexcept {
         wanted = std::min(wanted, producer.end.load(std::memory_order_relaxed) - 1);
         if (wanted >= 0 && producer.done() <= wanted) return false;
     }
-    const int frames = cut(max_frames);
-    for (const Link* link : program_->outputs)
-        if (!replayed_at(TimingKind::dropped, static_cast<std::uint32_t>(link->id), next_) &&
-            !link->has_room(next_, frames))
-            return false;
-    return true;
+    return has_room(1);
+}
+
+bool GroupRuntime::has_room(int frames) const noexcept {
+    return std::ranges::all_of(program_->outputs, [&](const Link* link) {
+        return link->has_room(next_, frames) ||
+               replayed_at(TimingKind::dropped, static_cast<std::uint32_t>(link->id), next_);
+    });
 }
 
 void GroupRuntime::note(TimingKind kind, int source, std::int64_t count, std::int64_t value,
@@ -137,7 +139,9 @@ void GroupRuntime::publish(int frames, Pace pace) noexcept {
 }
 
 int GroupRuntime::call(int frames, Pace pace) noexcept {
-    const int n = cut(plan->has_audio ? frames : 1);
+    int n = cut(plan->has_audio ? frames : 1);
+    // Who asked for room for more than one could wait for ever, for a reader that waits for the first of them.
+    while (pace == Pace::offline && n > 1 && !has_room(n)) n /= 2;
     now = next_ * plan->period;
     acquire();
     {

@@ -74,7 +74,7 @@ public:
     /// Applies the parameters and takes over the program that are due at the next activation. True when it took one
     /// over: then other groups may have become ready. Wait-free.
     bool take_changes(Pace pace) noexcept;
-    /// Offline: every value that the next call reads is there and its slots are free.
+    /// Offline: every value that the next call reads is there, and slots for one activation are free.
     bool ready() const noexcept;
     /// Runs one call and returns how many activations it covered. At most `frames` of them.
     int call(int frames, Pace pace) noexcept;
@@ -92,6 +92,7 @@ public:
 
 private:
     int cut(int frames) const noexcept;
+    bool has_room(int frames) const noexcept;
     const TimingRecord* replayed_at(TimingKind kind, std::uint32_t source, std::int64_t tick) const noexcept;
     void apply_parameters() noexcept;
     void hold_off() noexcept;

@@ -25,8 +25,9 @@ void Link::prepare(Flicks slack, int producer_frames, int consumer_frames, std::
         wire.previous = wire.current;
         if (wire.mode == WireMode::linear) wire.glide.resize(size * static_cast<std::size_t>(consumer_frames));
         if (wire.mode == WireMode::batch) {
-            wire.batch.resize(depth * size);
-            wire.batch_times.resize(depth);
+            held_.resize(depth + (continued ? continued->stamp_.size() : 0));
+            wire.batch.resize(held_.size() * size);
+            wire.batch_times.resize(held_.size());
         }
         if (wire.param) wire.param->drive(*reinterpret_cast<const double*>(wire.current.data()));
         if (wire.target) wire.point(*wire.target, producer_period);
@@ -115,23 +116,44 @@ std::int64_t Link::newest_available(std::int64_t want, std::int64_t done) const 
     return std::max(used_, newest_held(std::min(want, done - 1)));
 }
 
-void Link::gather_batch(LinkWire& wire, std::int64_t index) noexcept {
+void Link::list_held(std::int64_t newest) noexcept {
+    held_count_ = 0;
+    const auto add = [this](std::int64_t index) { held_[held_count_++] = index; };
+    if (newest - used_ <= depth_) {
+        for (std::int64_t index = used_ + 1; index <= newest; ++index)
+            if (holds(index)) add(index);
+        return;
+    }
+    // After a standstill of either side the values that were kept may lie anywhere.
+    const std::int64_t first = first_.load(std::memory_order_acquire);
+    const auto add_all = [&](const Link& link, std::int64_t from, std::int64_t to) {
+        for (const auto& slot : link.stamp_)
+            if (const std::int64_t index = slot.load(std::memory_order_relaxed); index >= from && index <= to)
+                add(index);
+    };
+    add_all(*this, std::max(used_ + 1, first), newest);
+    if (continues_) add_all(*continued, used_ + 1, std::min(newest, first - 1));
+    std::sort(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(held_count_));
+}
+
+void Link::gather_batch(LinkWire& wire) noexcept {
     int count = 0;
-    for (std::int64_t k = std::max(used_ + 1, index - depth_ + 1); k <= index; ++k) {
-        if (!holds(k)) continue;
-        if (k < first_.load(std::memory_order_acquire) && !wire.before) continue;
-        std::memcpy(wire.batch.data() + static_cast<std::size_t>(count) * wire.type->size, value(wire, k),
+    for (std::size_t n = 0; n < held_count_; ++n) {
+        const std::int64_t index = held_[n];
+        if (index < first_.load(std::memory_order_acquire) && !wire.before) continue;
+        std::memcpy(wire.batch.data() + static_cast<std::size_t>(count) * wire.type->size, value(wire, index),
                     wire.type->size);
-        wire.batch_times[static_cast<std::size_t>(count++)] = k * producer_period;
+        wire.batch_times[static_cast<std::size_t>(count++)] = index * producer_period;
     }
     wire.target->count = count;
 }
 
 void Link::read(std::int64_t index) noexcept {
     fresh_ = true;
+    if (!held_.empty()) list_held(index);
     for (LinkWire& wire : wires) {
         if (wire.mode == WireMode::batch) {
-            gather_batch(wire, index);
+            gather_batch(wire);
             continue;
         }
         if (index == used_) continue;

@@ -118,11 +118,15 @@ private:
     }
     const std::byte* value(const LinkWire& wire, std::int64_t index) const noexcept;
     void hold_from(std::int64_t index) noexcept;
-    void gather_batch(LinkWire& wire, std::int64_t index) noexcept;
+    /// Lists what lies between the used index and `newest`, in order.
+    void list_held(std::int64_t newest) noexcept;
+    void gather_batch(LinkWire& wire) noexcept;
 
     std::int64_t depth_ = 0;
     /// Index whose values are in each slot, −1: none. What the reader may read is published by the writer's progress.
     std::vector<std::atomic<std::int64_t>> stamp_;
+    std::vector<std::int64_t> held_;  ///< consumer's list of indices; empty when no wire is a batch
+    std::size_t held_count_ = 0;
     std::int64_t used_ = -1;
     bool fresh_ = false;  ///< `read` was called since the last `deliver`
     bool continues_ = false;  ///< consumer's: values before `first_` are read from `continued`

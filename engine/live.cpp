@@ -68,7 +68,9 @@ struct Engine::LiveRun {
 
 void Engine::live_worker(GroupRuntime& group) {
     flush_denormals_to_zero();
+    // Whoever sets the clock may have been interrupted by this very thread.
     TrimmedClock line;
+    while (!live_->clock.try_get(line)) sleep_until(steady_ns() + poll_start_ns);
     const auto release_ns = [&](std::int64_t tick) {
         line = live_->clock.get(line);
         return line.when(tick * group.plan->period);

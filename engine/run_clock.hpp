@@ -24,11 +24,19 @@ public:
     }
 
     /// Any thread. A reader that is unlucky takes the line it read last: between two lines lie microseconds. Wait-free.
-    TrimmedClock get(const TrimmedClock& last) const noexcept {
+    TrimmedClock get(TrimmedClock last) const noexcept {
+        try_get(last);
+        return last;
+    }
+
+    /// Any thread. False, and `line` as it was, while no whole line is there: none yet, or one is being set. Wait-free.
+    bool try_get(TrimmedClock& line) const noexcept {
         const std::uint64_t version = version_.load(std::memory_order_acquire);
         const TrimmedClock now{logical_.load(std::memory_order_acquire), steady_ns_.load(std::memory_order_acquire),
                                slope_.load(std::memory_order_acquire)};
-        return version % 2 == 0 && version_.load(std::memory_order_relaxed) == version ? now : last;
+        if (version == 0 || version % 2 == 1 || version_.load(std::memory_order_relaxed) != version) return false;
+        line = now;
+        return true;
     }
 
 private:

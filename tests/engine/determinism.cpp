@@ -109,6 +109,43 @@ TEST_CASE("an overloaded live run skips, drops and holds, and its log still give
     std::filesystem::remove(log);
 }
 
+TEST_CASE(
+    "a live run in which groups stand still for longer than rings hold is repeated, whatever blocks and threads") {
+    std::string patch = four_rates();
+    const auto stand_still = [&patch](const std::string& name, const std::string& rate, int at) {
+        patch += "[nodes." + name + "]\ntype = \"planted\"\nrate = \"" + rate +
+                 "\"\nfault = \"stall\"\nstall = \"250 ms\"\nat = " + std::to_string(at) + "\n";
+        patch.insert(patch.find("\n]\n"), "\n  \"b.pose -> " + name + ".pose\",");
+    };
+    stand_still("quick", "1 kHz", 150);
+    stand_still("loudly", "48 kHz", 30'000);
+    stand_still("slowly", "60 Hz", 60);
+    const auto log = scratch("standstill.log");
+    EngineOptions options;
+    options.seconds = 1.6;
+    options.live = true;
+    Engine live(compile_text(patch), options);
+    live.run_live({.dilate = 1.0, .log = log, .stop = nullptr, .watch = {}});
+    std::int64_t skipped = 0;
+    for (const auto& group : live.groups()) skipped += group->telemetry.skipped;
+    CHECK(skipped > 100);
+    const TimingLog recorded = TimingLog::load(log);
+    for (const int threads : {1, 3})
+        for (const bool random : {false, true})
+            for (const int block : {0, 1, 480}) {
+                INFO(threads << " threads, blocks of " << block << (random ? " at random" : ""));
+                EngineOptions again;
+                again.seconds = options.seconds;
+                again.replay = &recorded;
+                again.block = block;
+                again.random_blocks = random;
+                Engine replay(compile_text(patch), again);
+                replay.render(threads);
+                CHECK(replay.port_hashes() == live.port_hashes());
+            }
+    std::filesystem::remove(log);
+}
+
 TEST_CASE("a damaged or foreign log is refused") {
     const auto log = scratch("damaged.log");
     EngineOptions options;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <vector>
 
 using namespace tactus;
 
@@ -19,7 +20,7 @@ constexpr Flicks ms = flicks_per_second / 1000;
 /// A writer and a reader of 1 kHz; the value at activation k is k.
 class Pair {
 public:
-    Pair() {
+    explicit Pair(WireMode mode = WireMode::hold) {
         output_.type = &value_type<double>();
         output_.data = reinterpret_cast<std::byte*>(&written_);
         link_.producer_period = link_.consumer_period = ms;
@@ -27,7 +28,8 @@ public:
         LinkWire& wire = link_.wires.emplace_back();
         wire.type = output_.type;
         wire.source = &output_;
-        wire.target = &input_;
+        wire.mode = mode;
+        wire.target = mode == WireMode::batch ? static_cast<Input*>(&batch_) : &input_;
         link_.prepare(64 * ms, 1, 1);
     }
 
@@ -45,7 +47,14 @@ public:
         const std::int64_t want = link_.wanted(tick);
         link_.read(want > link_.used() ? link_.newest_available(want, done_) : link_.used());
         link_.deliver(tick, 1);
-        return input_.get();
+        return input_.data ? input_.get() : 0.0;
+    }
+
+    /// The same for a batch: all values that it brought.
+    std::vector<double> read_batch(std::int64_t tick) {
+        read(tick);
+        const auto values = batch_.values();
+        return {values.begin(), values.end()};
     }
 
     const Link& link() const { return link_; }
@@ -54,6 +63,7 @@ private:
     Link link_;
     Output output_;
     In<double> input_;
+    Batch<double> batch_;
     double written_ = 0.0;
     std::int64_t done_ = 0;
 };
@@ -124,5 +134,26 @@ TEST_CASE("whoever stands still and for how long, both are soon together again, 
             INFO("seed " << seed << ", round " << round);
             REQUIRE(last == static_cast<double>(tick - 2));
         }
+    }
+}
+
+TEST_CASE("a batch after a standstill holds all that was kept, in order") {
+    for (const int kept : {1, 30, 60}) {
+        INFO(kept << " kept before the writer stood still");
+        Pair pair(WireMode::batch);
+        std::int64_t tick = 0;
+        for (; tick < 20; ++tick) {
+            pair.write(tick);
+            pair.read(tick);
+        }
+        for (const std::int64_t from = tick; tick < from + kept; ++tick) CHECK(pair.write(tick));
+        tick += 15 * pair.link().depth();  // the slot behind what was kept: another may still be taken
+        CHECK(pair.write(tick++));
+        const std::vector<double> got = pair.read_batch(tick);
+        std::vector<double> wanted;
+        for (int n = 0; n <= kept; ++n) wanted.push_back(19.0 + n);
+        wanted.back() = static_cast<double>(tick - 1);
+        wanted.insert(wanted.end() - 1, 19.0 + kept);
+        CHECK(got == wanted);
     }
 }

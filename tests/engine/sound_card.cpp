@@ -108,6 +108,9 @@ TEST_CASE("a card that never asked is lost as well") {
 TEST_CASE("readers of the run's clock see whole lines only") {
     RunClock clock;
     std::atomic<bool> end{false};
+    TrimmedClock none{7, 8, 9.0};
+    CHECK_FALSE(clock.try_get(none));
+    CHECK(none.logical == 7);
     clock.set({0, 0, 1.0});
     std::thread trimmer([&] {
         for (std::int64_t i = 1; i <= 200'000; ++i) clock.set({i, 3 * i, 1.0 + static_cast<double>(i)});
@@ -118,6 +121,10 @@ TEST_CASE("readers of the run's clock see whole lines only") {
     while (!end) {
         line = clock.get(line);
         torn += line.steady_ns != 3 * line.logical || line.slope != 1.0 + static_cast<double>(line.logical);
+        // Who has read nothing yet is told so.
+        TrimmedClock first{-1, -3, 0.0};
+        const bool read = clock.try_get(first);
+        torn += (first.logical >= 0) != read || first.steady_ns != 3 * first.logical;
     }
     trimmer.join();
     CHECK(torn == 0);
