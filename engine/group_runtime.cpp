@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace tactus {
 
@@ -48,6 +49,7 @@ int GroupRuntime::cut(int frames) const noexcept {
 }
 
 bool GroupRuntime::ready() const noexcept {
+    if (begun_ > 0) return has_room(begun_);
     for (std::size_t i = 0; i < program_->inputs.size(); ++i) {
         const Link& link = *program_->inputs[i];
         std::int64_t wanted = link.wanted(next_);
@@ -57,7 +59,8 @@ bool GroupRuntime::ready() const noexcept {
         wanted = std::min(wanted, producer.end.load(std::memory_order_relaxed) - 1);
         if (wanted >= 0 && producer.done() <= wanted) return false;
     }
-    return has_room(1);
+    // Live, room is asked for when a call ends, and what others read meanwhile has made some.
+    return replayed || has_room(1);
 }
 
 bool GroupRuntime::has_room(int frames) const noexcept {
@@ -139,22 +142,33 @@ void GroupRuntime::publish(int frames, Pace pace) noexcept {
 }
 
 int GroupRuntime::call(int frames, Pace pace) noexcept {
+    begin_call(frames, pace);
+    return finish_call(pace);
+}
+
+void GroupRuntime::begin_call(int frames, Pace pace) noexcept {
     int n = cut(plan->has_audio ? frames : 1);
     // Who asked for room for more than one could wait for ever, for a reader that waits for the first of them.
     while (pace == Pace::offline && n > 1 && !has_room(n)) n /= 2;
+    begun_ = n;
     now = next_ * plan->period;
     acquire();
+    RealtimeScope scope;
+    read_links(n, pace);
+    for (SnapshotOutput* output : program_->snapshots) {
+        output->oldest_readable = std::numeric_limits<std::int64_t>::max();
+        for (const Link* link : program_->outputs)
+            output->oldest_readable = std::min(output->oldest_readable, link->oldest_version(output));
+    }
+    for (const auto& delay : program_->delays) delay->recall(next_, n);
+    run_steps(n);
+    for (const auto& delay : program_->delays) delay->remember(next_, n);
+}
+
+int GroupRuntime::finish_call(Pace pace) noexcept {
+    const int n = std::exchange(begun_, 0);
     {
         RealtimeScope scope;
-        read_links(n, pace);
-        for (SnapshotOutput* output : program_->snapshots) {
-            output->oldest_readable = std::numeric_limits<std::int64_t>::max();
-            for (const Link* link : program_->outputs)
-                output->oldest_readable = std::min(output->oldest_readable, link->oldest_version(output));
-        }
-        for (const auto& delay : program_->delays) delay->recall(next_, n);
-        run_steps(n);
-        for (const auto& delay : program_->delays) delay->remember(next_, n);
         publish(n, pace);
     }
     for (DeviceSlot* slot : program_->driven) {

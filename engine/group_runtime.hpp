@@ -74,10 +74,15 @@ public:
     /// Applies the parameters and takes over the program that are due at the next activation. True when it took one
     /// over: then other groups may have become ready. Wait-free.
     bool take_changes(Pace pace) noexcept;
-    /// Offline: every value that the next call reads is there, and slots for one activation are free.
+    /// Offline: every value that the next call reads is there, and slots for one activation are free. Of a call that has
+    /// begun: slots for what it gives.
     bool ready() const noexcept;
     /// Runs one call and returns how many activations it covered. At most `frames` of them.
     int call(int frames, Pace pace) noexcept;
+    /// The same in two steps, for a repetition: a call that has begun ends when there is room for what it gives.
+    void begin_call(int frames, Pace pace) noexcept;
+    int finish_call(Pace pace) noexcept;
+    bool has_begun() const noexcept { return begun_ > 0; }
     /// Live: the next activation waits, because the run pauses.
     bool pauses() const noexcept { return pause && pause->stops(next_ * plan->period); }
     /// While it pauses, now and then: tells the watchdog that the devices are not forsaken. May call the system, in drivers.
@@ -124,6 +129,7 @@ private:
     std::size_t taken_ = 0;  ///< of `scheduled`
     std::int64_t next_ = 0, last_ = -1, ran_ = 0;
     int closely_ = 0;  ///< calls still to be timed
+    int begun_ = 0;  ///< activations of the call that has begun and not ended
     std::uint64_t calls_ = 0;
     mutable std::size_t cursor_ = 0;  ///< replayed records before this one are past
     std::atomic<std::int64_t> generation_{-1};

@@ -22,10 +22,10 @@ void Engine::offline_worker(const std::vector<GroupRuntime*>& mine, std::uint64_
         GroupRuntime* earliest = nullptr;
         bool all_finished = true;
         for (GroupRuntime* group : mine) {
-            while (!group->finished() && group->replay_skip()) {
+            while (!group->has_begun() && !group->finished() && group->replay_skip()) {
             }
             if (group->finished()) continue;
-            if (group->take_changes(Pace::offline)) {
+            if (!group->has_begun() && group->take_changes(Pace::offline)) {
                 // Room in channels of the plan before may have become free.
                 generation_.fetch_add(1, std::memory_order_release);
                 generation_.notify_all();
@@ -43,7 +43,8 @@ void Engine::offline_worker(const std::vector<GroupRuntime*>& mine, std::uint64_
         if (options_.random_blocks)
             frames = 1 + static_cast<int>(random.bits(draws++) % static_cast<std::uint64_t>(frames));
         const auto before = std::chrono::steady_clock::now();
-        earliest->call(frames, Pace::offline);
+        if (!earliest->has_begun()) earliest->begin_call(frames, Pace::offline);
+        if (earliest->ready()) earliest->finish_call(Pace::offline);
         earliest->telemetry.execution.add((std::chrono::steady_clock::now() - before).count());
         generation_.fetch_add(1, std::memory_order_release);
         generation_.notify_all();
