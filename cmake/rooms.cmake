@@ -2,8 +2,11 @@
 # Flags that every target shares, and tactus_room(): one static library per room.
 add_library(tactus_flags INTERFACE)
 target_compile_options(tactus_flags INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Werror
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
   -ffp-contract=off -fno-omit-frame-pointer)
+if(TACTUS_WERROR)
+  target_compile_options(tactus_flags INTERFACE -Werror)
+endif()
 if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
   # Boost 1.74's MPL, reached through OpenVDB, casts out-of-range constants to an enum.
   target_compile_options(tactus_flags INTERFACE -Wno-enum-constexpr-conversion

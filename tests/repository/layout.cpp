@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the tree promises: rooms include only to the left, files carry their licence, nodes are in the catalogue.
+#include "tests/support/places.hpp"
+
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -17,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path root = TACTUS_SOURCE_DIR;
+const fs::path root = tactus::test::source_folder();
 constexpr std::array<std::string_view, 7> rooms{"dsp", "assets", "graph", "devices", "nodes", "engine", "tools"};
 
 std::string read(const fs::path& file) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The verbs that analyse records, as scripts call them.
+#include "tests/support/places.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <fmt/format.h>
@@ -40,7 +41,7 @@ struct Folder : tactus::test::Folder {
   /// The command, run in the folder.
     Outcome tactus(const std::string& arguments) const {
         const std::string command =
-            fmt::format("cd {} && {} {} >stdout 2>stderr", path.string(), TACTUS_COMMAND, arguments);
+            fmt::format("cd {} && {} {} >stdout 2>stderr", path.string(), tactus::test::command(), arguments);
         const int status = std::system(command.c_str());
         return {{WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(path / "stdout"), slurp(path / "stderr")}};
     }

@@ -2,6 +2,7 @@
 // A live run in a process of its own, that a test may end as it likes.
 #pragma once
 
+#include "tests/support/places.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <chrono>
@@ -17,7 +18,7 @@ public:
     Run(const Folder& folder, const std::string& arguments) {
         process_ = ::fork();
         if (process_ != 0) return;
-        const std::string command = "exec " + std::string(TACTUS_COMMAND) + " run " + arguments + " >" +
+        const std::string command = "exec " + tactus::test::command() + " run " + arguments + " >" +
                                     (folder.path / "run.out").string() + " 2>" + (folder.path / "run.err").string();
         ::setenv("XDG_RUNTIME_DIR", folder.path.c_str(), 1);
         ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);

@@ -2,6 +2,7 @@
 // Bones through the command: what is in a file, label maps in, meshes and volumes out.
 #include "assets/bone/bone.hpp"
 #include "assets/volume/write_volume.hpp"
+#include "tests/support/places.hpp"
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
@@ -41,7 +42,7 @@ struct Folder {
     };
     Outcome tactus(const std::string& arguments) const {
         const std::string command =
-            std::string(TACTUS_COMMAND) + " " + arguments + " >" + *this / "stdout" + " 2>" + *this / "stderr";
+            tactus::test::command() + " " + arguments + " >" + *this / "stdout" + " 2>" + *this / "stderr";
         const int status = std::system(command.c_str());
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(*this / "stdout"), slurp(*this / "stderr")};
     }

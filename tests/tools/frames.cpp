@@ -5,6 +5,7 @@
 #include "devices/display/gl_context.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/view/camera.hpp"
+#include "tests/support/places.hpp"
 
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
@@ -64,7 +65,7 @@ struct Pixels {
     }
 };
 
-const fs::path golden = fs::path(TACTUS_SOURCE_DIR) / "tests/tools/frames";
+const fs::path golden = tactus::test::source_folder() / "tests/tools/frames";
 
 }  // namespace
 

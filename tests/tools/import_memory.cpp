@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much memory the import of a large CT takes, as the system counts it.
+#include "tests/support/places.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <sys/resource.h>
@@ -47,7 +48,7 @@ double peak_of_import(const fs::path& ct, const fs::path& out) {
     if (child == 0) {
         ::freopen("/dev/null", "w", stdout);
         ::freopen("/dev/null", "w", stderr);
-        ::execl(TACTUS_COMMAND, TACTUS_COMMAND, "import", ct.c_str(), "--component", "all", "-o", out.c_str(), nullptr);
+        ::execl(tactus::test::command().c_str(), "tactus", "import", ct.c_str(), "--component", "all", "-o", out.c_str(), nullptr);
         ::_exit(127);
     }
     int status = 0;

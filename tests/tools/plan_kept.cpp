@@ -2,6 +2,7 @@
 // Nothing of a plan is lost: not by a run that is killed, not by two programs at once, not by a disk that is full.
 #include "assets/plan/plan_file.hpp"
 #include "assets/plan/plan_lock.hpp"
+#include "tests/support/places.hpp"
 #include "tests/tools/background_run.hpp"
 
 #include <catch2/catch.hpp>
@@ -105,7 +106,7 @@ TEST_CASE("programs that change a plan at the same time do it one after the othe
     const Bare bare;
     std::string script;
     for (int n = 0; n < 6; ++n)
-        script += std::string(TACTUS_COMMAND) + " plan move " + bare.plan + " a --pose " + std::to_string(n) +
+        script += tactus::test::command() + " plan move " + bare.plan + " a --pose " + std::to_string(n) +
                   ",0,0,1,0,0,0 &\n";
     shell(bare.folder, script + "wait\n");
     const CasePlan plan = load_case_plan(bare.plan);
@@ -126,7 +127,7 @@ TEST_CASE("on a full disk a step is refused in one line and the plan stays as it
     const Bare bare;
     REQUIRE(bare.run("move", "a --pose 1,2,3,1,0,0,0").code == 0);
     const std::string before = slurp(bare.plan);
-    const std::string verb = std::string(TACTUS_COMMAND) + " plan move " + bare.plan + " a --pose 4,5,6,1,0,0,0\n";
+    const std::string verb = tactus::test::command() + " plan move " + bare.plan + " a --pose 4,5,6,1,0,0,0\n";
     const Outcome refused = shell(bare.folder, "trap '' XFSZ\nulimit -f 1\n" + verb);
     CHECK(refused.code == 2);
     CHECK_THAT(refused.err, Catch::Contains("case.plan.json: cannot be written"));
@@ -137,7 +138,7 @@ TEST_CASE("on a full disk a step is refused in one line and the plan stays as it
 
 TEST_CASE("in a folder that cannot be written to, a step is refused in one line and reading goes on") {
     const Bare bare;
-    const std::string before = slurp(bare.plan), tactus = TACTUS_COMMAND;
+    const std::string before = slurp(bare.plan), tactus = tactus::test::command();
     std::string as_nobody;
     if (::geteuid() == 0) as_nobody = "setpriv --reuid 65534 --clear-groups ";
     else fs::permissions(bare.folder.path, fs::perms::owner_read | fs::perms::owner_exec);

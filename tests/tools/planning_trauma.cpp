@@ -3,6 +3,7 @@
 // place.
 #include "dsp/core/types.hpp"
 #include "dsp/operator/hand.hpp"
+#include "tests/support/places.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <catch2/catch.hpp>
@@ -29,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path case_folder() { return fs::path(TACTUS_COMMAND).parent_path() / "library/cases/mandible-twelve"; }
+fs::path case_folder() { return tactus::test::library_folder() / "cases/mandible-twelve"; }
 
 /// Where a fragment belongs, p_bone = R p_fragment + t, and the middle of its surface in its file.
 struct Belongs {

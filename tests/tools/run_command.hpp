@@ -2,6 +2,8 @@
 // The command as scripts call it, in a folder of its own.
 #pragma once
 
+#include "tests/support/places.hpp"
+
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -40,7 +42,7 @@ public:
         return path / name;
     }
     Outcome tactus(const std::string& arguments) const {
-        const std::string command = std::string(TACTUS_COMMAND) + " " + arguments + " >" + (path / "stdout").string() +
+        const std::string command = tactus::test::command() + " " + arguments + " >" + (path / "stdout").string() +
                                     " 2>" + (path / "stderr").string();
         const int status = std::system(command.c_str());
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(path / "stdout"), slurp(path / "stderr")};

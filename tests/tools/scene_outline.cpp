@@ -2,6 +2,7 @@
 #include "tools/scene_outline.hpp"
 
 #include "nodes/catalogue.hpp"
+#include "tests/support/places.hpp"
 #include "tools/load_plan.hpp"
 
 #include <catch2/catch.hpp>
@@ -16,7 +17,7 @@ namespace {
 SceneOutline outline_in_library(const std::string& patch) {
     Problems problems;
     PatchChoice choice;
-    choice.patch = std::string(TACTUS_SOURCE_DIR) + "/assets/library/patches/" + patch + ".toml";
+    choice.patch = tactus::test::source_folder().string() + "/assets/library/patches/" + patch + ".toml";
     const auto plan = read_plan(choice, problems);
     REQUIRE(plan);
     return outline_of(*plan);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measuring through a sound card: a JACK server without hardware, its output connected to its input.
+#include "tests/support/places.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <catch2/catch.hpp>
@@ -36,7 +37,7 @@ kill $server; wait $server
 rm -f /dev/shm/jack_sem.*_"$JACK_DEFAULT_SERVER"_*
 exit $code
 )");
-    const int status = std::system(("sh " + base + "/card.sh " + base + " " + TACTUS_COMMAND).c_str());
+    const int status = std::system(("sh " + base + "/card.sh " + base + " " + tactus::test::command()).c_str());
     if (WEXITSTATUS(status) == 77) {
         WARN("skipped: the JACK server does not start here");
         return;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // validate, and compare and exposure over folders, as scripts call them.
+#include "tests/support/places.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <sndfile.h>
@@ -50,7 +51,7 @@ std::size_t lines_of(const std::string& text) {
 }
 
 std::string bundled_set() {
-    return (fs::path(TACTUS_COMMAND).parent_path() / "library/saw/reciprocating.toml").string();
+    return (tactus::test::library_folder() / "saw/reciprocating.toml").string();
 }
 
 /// What full scale of the bundled recordings is worth.
@@ -62,7 +63,7 @@ std::string scale() {
 
 /// Two of the bundled recordings.
 std::string few(const Folder& folder) {
-    const std::string saws = (fs::path(TACTUS_COMMAND).parent_path() / "library/saw/").string();
+    const std::string saws = (tactus::test::library_folder() / "saw/").string();
     return folder
         .write("few.toml",
                "synthesised = true\nfull_scale = \"" + scale() + "\"\n[[recording]]\nfile = \"" + saws +

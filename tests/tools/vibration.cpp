@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // measure, equalise and compare as scripts call them: the loop from a sweep to a vibration that is the saw's.
+#include "tests/support/places.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <sndfile.h>
@@ -311,7 +312,7 @@ TEST_CASE("compare needs no more memory for a longer recording") {
         const pid_t child = fork();
         if (child == 0) {
             if (std::freopen("/dev/null", "w", stdout) == nullptr) _exit(9);
-            execl(TACTUS_COMMAND, "tactus", "compare", file.c_str(), file.c_str(), nullptr);
+            execl(tactus::test::command().c_str(), "tactus", "compare", file.c_str(), file.c_str(), nullptr);
             _exit(9);
         }
         int status = 0;

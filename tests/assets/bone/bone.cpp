@@ -5,6 +5,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
+#include "tests/support/places.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -162,7 +163,7 @@ TEST_CASE("bones that cannot be told apart, and files without bones, are refused
 
 TEST_CASE("a file of the first format, one bone without colour, is still read") {
     // Made by the first release's `tactus import` of a CT of 6 x 4 x 5 voxels.
-    const Bone bone = load_bone(std::filesystem::path(TACTUS_SOURCE_DIR) / "tests/assets/bone/data/format1.vdb");
+    const Bone bone = load_bone(tactus::test::source_folder() / "tests/assets/bone/data/format1.vdb");
     CHECK(bone.name == "small");
     CHECK(bone.provenance.at("source") == "small.nrrd");
     CHECK(bone.distance.size == std::array<int, 3>{14, 12, 13});

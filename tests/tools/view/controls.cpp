@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The window by its own controls: buttons, sliders and wires under the mouse, and keys.
+#include "tests/support/places.hpp"
 #include "tests/tools/patches.hpp"
 #include "tests/tools/view/on_display.hpp"
 
@@ -89,11 +90,11 @@ TEST_CASE(
     NEEDS_DISPLAY(display)
     const Folder folder;
     std::set<std::string> names;
-    for (const auto& entry : fs::directory_iterator(fs::path(TACTUS_COMMAND).parent_path() / "library/patches"))
+    for (const auto& entry : fs::directory_iterator(tactus::test::library_folder() / "patches"))
         if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
     REQUIRE(names.size() >= 9);
     // Copies beside the library's: assets are named from where the patch is.
-    const fs::path library = fs::path(TACTUS_COMMAND).parent_path() / "library";
+    const fs::path library = tactus::test::library_folder();
     fs::create_directories(folder.path / "library/patches");
     for (const auto& entry : fs::directory_iterator(library)) {
         if (entry.path().filename() == "patches") continue;

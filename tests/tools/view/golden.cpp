@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the window looks like, beside pictures that somebody looked at. A picture that is meant to change is made anew: the
 // failing test keeps it in the folder of temporary files.
+#include "tests/support/places.hpp"
 #include "tests/tools/view/on_display.hpp"
 
 #include <algorithm>
@@ -36,7 +37,7 @@ double difference(const Picture& a, const Picture& b) {
 
 /// Beside the picture in this folder; one that is missing, or that looks otherwise, is left for a person to look at.
 void check_golden(const fs::path& made, const std::string& name) {
-    const fs::path golden = fs::path(TACTUS_SOURCE_DIR) / "tests/tools/view/golden" / (name + ".png");
+    const fs::path golden = tactus::test::source_folder() / "tests/tools/view/golden" / (name + ".png");
     const Picture seen = read_picture(made), known = read_picture(golden);
     INFO(made.string() << " beside " << golden.string());
     REQUIRE(seen.width == known.width);

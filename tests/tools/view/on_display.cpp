@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tests/support/places.hpp"
 #include "tests/tools/view/on_display.hpp"
 
 #define STB_IMAGE_IMPLEMENTATION
@@ -17,7 +18,7 @@ namespace tactus::test {
 
 Outcome on(const Display& display, const Folder& folder, const std::string& arguments, int most_s) {
     const std::string command = fmt::format("cd {} && {} timeout {} {} {} >stdout 2>stderr", folder.path.string(),
-                                            display.environment(), most_s, TACTUS_COMMAND, arguments);
+                                            display.environment(), most_s, tactus::test::command(), arguments);
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(folder.path / "stdout"), slurp(folder.path / "stderr")};
 }

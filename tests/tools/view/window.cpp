@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The window as people use it, on a display without a screen: a script does what hands would.
 #include "assets/file/whole_file.hpp"
+#include "tests/support/places.hpp"
 #include "tests/tools/patches.hpp"
 #include "tests/tools/view/on_display.hpp"
 
@@ -83,7 +84,7 @@ TEST_CASE("a run with a window on it is recorded, replays to the bit, and its ta
     check_picture(folder.path / "late.png", 1600, 1000);
     CHECK(slurp(folder.path / "late.png") != slurp(folder.path / "early.png"));
     CHECK(slurp(folder.path / "take/patch-0.toml") ==
-          tactus::read_whole_file(fs::path(TACTUS_COMMAND).parent_path() / "library/patches/touch-sphere.toml"));
+          tactus::read_whole_file(tactus::test::library_folder() / "patches/touch-sphere.toml"));
 }
 
 TEST_CASE("a window changes no bit of what a patch computes") {
@@ -102,7 +103,7 @@ TEST_CASE("every patch of the library opens in the window") {
     const Folder folder;
     std::string script;
     std::set<std::string> names;
-    for (const auto& entry : fs::directory_iterator(fs::path(TACTUS_COMMAND).parent_path() / "library/patches"))
+    for (const auto& entry : fs::directory_iterator(tactus::test::library_folder() / "patches"))
         if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
     REQUIRE(names.size() >= 9);
     for (const std::string& name : names) script += fmt::format("open {0}\nframes 3\nscreenshot {0}.png\n", name);
@@ -139,7 +140,7 @@ TEST_CASE("without a display, or without OpenGL, the command says so once and en
     }
     NEEDS_DISPLAY(display)
     const std::string refused = "MESA_GL_VERSION_OVERRIDE=2.1 ";
-    const std::string command = display.environment() + refused + std::string(TACTUS_COMMAND) + " run " + patch +
+    const std::string command = display.environment() + refused + tactus::test::command() + " run " + patch +
                                 " --view --out " + (folder.path / "out").string() + " 2>" +
                                 (folder.path / "err").string();
     CHECK(WEXITSTATUS(std::system(command.c_str())) == 2);

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// The only file whose compile command names folders of this machine, so that a compiler cache serves any checkout.
+#include "tests/support/places.hpp"
+
+namespace tactus::test {
+
+std::filesystem::path source_folder() { return TACTUS_SOURCE_DIR; }
+
+std::string command() { return TACTUS_COMMAND; }
+
+std::filesystem::path library_folder() { return std::filesystem::path(command()).parent_path() / "library"; }
+
+}  // namespace tactus::test

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the source tree and the built command are.
+#pragma once
+#include <filesystem>
+#include <string>
+
+namespace tactus::test {
+
+/// Root of the source tree; absolute.
+std::filesystem::path source_folder();
+
+/// The built `tactus`; absolute.
+std::string command();
+
+/// The bundled library beside it; absolute.
+std::filesystem::path library_folder();
+
+}  // namespace tactus::test
