@@ -2,7 +2,7 @@
 // How often snap-to-fit finds the place of a fragment, beside ICP in its usual forms, on the same simulated fractures.
 #include "assets/library/mandible.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/operator/hand.hpp"
+#include "dsp/core/rotation.hpp"
 #include "dsp/snap/fit.hpp"
 #include "engine/clock.hpp"
 #include "tools/bench_snap_case.hpp"

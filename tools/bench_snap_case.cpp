@@ -2,7 +2,7 @@
 #include "tools/bench_snap_case.hpp"
 
 #include "assets/library/broken_mandible.hpp"
-#include "dsp/operator/hand.hpp"
+#include "dsp/core/rotation.hpp"
 #include "dsp/planning/fragment_matcher.hpp"
 #include "engine/clock.hpp"
 

@@ -2,8 +2,8 @@
 #include "tools/bench_snap_live.hpp"
 
 #include "assets/library/fragments.hpp"
+#include "dsp/core/rotation.hpp"
 #include "dsp/coupling/quasi_static.hpp"
-#include "dsp/operator/hand.hpp"
 #include "dsp/snap/fit.hpp"
 #include "dsp/snap/held_fit.hpp"
 #include "engine/clock.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/bench_snap_peers.hpp"
 
+#include "dsp/core/rotation.hpp"
 #include "dsp/coupling/symmetric6.hpp"
-#include "dsp/operator/hand.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>

@@ -7,7 +7,7 @@
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
-#include "dsp/operator/hand.hpp"
+#include "dsp/core/rotation.hpp"
 #include "tools/fragment_file.hpp"
 #include "tools/load_plan.hpp"
 #include "tools/snap_options.hpp"

@@ -5,7 +5,7 @@
 #include "assets/mesh/write_mesh.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/operator/hand.hpp"
+#include "dsp/core/rotation.hpp"
 #include "tools/fragment_file.hpp"
 #include "tools/workers.hpp"
 

@@ -7,8 +7,8 @@
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
+#include "dsp/core/rotation.hpp"
 #include "dsp/distance/point_tree.hpp"
-#include "dsp/operator/hand.hpp"
 #include "dsp/planning/faces.hpp"
 
 #include <fmt/format.h>

@@ -2,8 +2,8 @@
 // The two springs between a hand and the proxy of what it holds, one for the place and one for the turn.
 #pragma once
 
+#include "dsp/core/rotation.hpp"
 #include "dsp/core/types.hpp"
-#include "dsp/operator/hand.hpp"
 
 #include <glm/geometric.hpp>
 

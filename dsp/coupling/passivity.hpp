@@ -2,8 +2,8 @@
 // Does a scene give the hand more energy than it took, and a damper that takes it back.
 #pragma once
 
+#include "dsp/core/rotation.hpp"
 #include "dsp/core/types.hpp"
-#include "dsp/operator/hand.hpp"
 
 #include <glm/geometric.hpp>
 

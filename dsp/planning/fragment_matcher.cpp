@@ -2,7 +2,7 @@
 #include "dsp/planning/fragment_matcher.hpp"
 
 #include "dsp/core/error.hpp"
-#include "dsp/operator/hand.hpp"
+#include "dsp/core/rotation.hpp"
 #include "dsp/planning/faces.hpp"
 #include "dsp/snap/carried.hpp"
 #include "dsp/snap/fit_steps.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/planning/mirror.hpp"
 
-#include "dsp/operator/hand.hpp"
+#include "dsp/core/rotation.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>

@@ -2,8 +2,8 @@
 #include "dsp/planning/point_registration.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/rotation.hpp"
 #include "dsp/coupling/symmetric6.hpp"
-#include "dsp/operator/hand.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>

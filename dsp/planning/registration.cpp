@@ -2,8 +2,8 @@
 #include "dsp/planning/registration.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/core/rotation.hpp"
 #include "dsp/coupling/symmetric6.hpp"
-#include "dsp/operator/hand.hpp"
 #include "dsp/planning/main_axes.hpp"
 #include "dsp/snap/neighbours.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/snap/held_fit.hpp"
 
-#include "dsp/operator/hand.hpp"
+#include "dsp/core/rotation.hpp"
 #include "dsp/snap/carried.hpp"
 #include "dsp/snap/fit.hpp"
 

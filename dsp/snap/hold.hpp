@@ -7,13 +7,6 @@
 
 namespace tactus {
 
-/// Eigenvalues of a symmetric matrix, ascending, and its eigenvectors as rows, by Jacobi's rotations.
-struct Eigen6 {
-    Vector6 value{};
-    std::array<Vector6, 6> vector{};
-};
-Eigen6 eigen_of(Matrix6 m) noexcept;
-
 /// Fills `hold` and `free` of a fit. A turn counts as the way of a point `radius` from its axis (m), so that turns and
 /// translations compare; the stiffness is divided by the weight that takes part, which leaves the mean square slope.
 void find_free(Fit& fit, const Matrix6& stiffness, double radius, double least_hold);

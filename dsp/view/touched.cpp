@@ -2,7 +2,7 @@
 #include "dsp/view/touched.hpp"
 
 #include "dsp/core/error.hpp"
-#include "dsp/snap/hold.hpp"
+#include "dsp/geometry/symmetric_eigen.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -29,18 +29,16 @@ struct Spread {
     Spread(const Points& points, const Of& of) {
         for (const auto& point : points) mean += of(point);
         mean /= static_cast<double>(points.size());
-        Matrix6 m{};
+        std::array<double, 9> m{};
         for (const auto& point : points) {
             const Vec3 d = of(point) - mean;
             for (int i = 0; i < 3; ++i)
-                for (int j = 0; j < 3; ++j) m[static_cast<std::size_t>(6 * i + j)] += d[i] * d[j];
+                for (int j = 0; j < 3; ++j) m[static_cast<std::size_t>(3 * i + j)] += d[i] * d[j];
         }
-        // The other three axes are kept out of the way.
-        for (std::size_t i = 3; i < 6; ++i) m[7 * i] = -1.0;
-        const Eigen6 eigen = eigen_of(m);
+        const SymmetricEigen<3> eigen = symmetric_eigen<3>(m);
         for (std::size_t n = 0; n < 3; ++n) {
-            const Vector6& v = eigen.vector[5 - n];
-            along[n] = std::sqrt(std::max(eigen.value[5 - n], 0.0) / static_cast<double>(points.size()));
+            const auto& v = eigen.vector[2 - n];
+            along[n] = std::sqrt(std::max(eigen.value[2 - n], 0.0) / static_cast<double>(points.size()));
             axis[n] = Vec3(v[0], v[1], v[2]);
         }
     }
@@ -99,20 +97,15 @@ RigidFit fit_rigid(std::span<const TouchPair> touches) {
     Mat3 s(0.0);  // s[column][row]: sum of from[column] · to[row]
     for (const TouchPair& touch : touches) s += glm::outerProduct(touch.to - b.mean, touch.from - a.mean);
     const auto c = [&s](int x, int y) { return s[x][y]; };
-    Matrix6 n{};
+    std::array<double, 16> n{};
     const double symmetric[4][4] = {
         {c(0, 0) + c(1, 1) + c(2, 2), c(1, 2) - c(2, 1), c(2, 0) - c(0, 2), c(0, 1) - c(1, 0)},
         {c(1, 2) - c(2, 1), c(0, 0) - c(1, 1) - c(2, 2), c(0, 1) + c(1, 0), c(2, 0) + c(0, 2)},
         {c(2, 0) - c(0, 2), c(0, 1) + c(1, 0), c(1, 1) - c(0, 0) - c(2, 2), c(1, 2) + c(2, 1)},
         {c(0, 1) - c(1, 0), c(2, 0) + c(0, 2), c(1, 2) + c(2, 1), c(2, 2) - c(0, 0) - c(1, 1)}};
-    double size = 0.0;
     for (std::size_t i = 0; i < 4; ++i)
-        for (std::size_t j = 0; j < 4; ++j) {
-            n[6 * i + j] = symmetric[i][j];
-            size += std::abs(symmetric[i][j]);
-        }
-    for (std::size_t i = 4; i < 6; ++i) n[7 * i] = -2.0 * size;
-    const Vector6 best = eigen_of(n).vector[5];
+        for (std::size_t j = 0; j < 4; ++j) n[4 * i + j] = symmetric[i][j];
+    const auto best = symmetric_eigen<4>(n).vector[3];
     RigidFit fit;
     fit.pose.orientation = glm::normalize(Quat(best[0], best[1], best[2], best[3]));
     fit.pose.position = b.mean - fit.pose.rotate(a.mean);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/operator/hand.hpp"
+#include "dsp/core/rotation.hpp"
 #include "graph/node.hpp"
 
 namespace tactus::nodes {

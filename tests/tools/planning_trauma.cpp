@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scripted case: a mandible in twelve pieces is put together by a hand that stops 5 mm and 10 degrees beside each
 // place.
+#include "dsp/core/rotation.hpp"
 #include "dsp/core/types.hpp"
-#include "dsp/operator/hand.hpp"
 #include "tests/support/places.hpp"
 #include "tests/tools/run_command.hpp"
 

@@ -5,7 +5,7 @@
 #include "assets/fracture/propose_paint.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/operator/hand.hpp"
+#include "dsp/core/rotation.hpp"
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>

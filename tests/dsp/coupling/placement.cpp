@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/coupling/placement.hpp"
 
-#include "dsp/operator/hand.hpp"
+#include "dsp/core/rotation.hpp"
 
 #include <catch2/catch.hpp>
 

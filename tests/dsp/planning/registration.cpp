@@ -3,7 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
-#include "dsp/operator/hand.hpp"
+#include "dsp/core/rotation.hpp"
 #include "dsp/planning/gap.hpp"
 #include "dsp/planning/main_axes.hpp"
 #include "dsp/planning/mirror.hpp"

@@ -4,7 +4,7 @@
 
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/random.hpp"
-#include "dsp/operator/hand.hpp"
+#include "dsp/core/rotation.hpp"
 #include "dsp/snap/fit.hpp"
 
 #include <glm/geometric.hpp>

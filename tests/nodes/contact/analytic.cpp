@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/operator/hand.hpp"
+#include "dsp/core/rotation.hpp"
 #include "tests/support/node_harness.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/contact/shape.hpp"
+#include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "dsp/coupling/triangle_tree.hpp"
-#include "dsp/operator/hand.hpp"
 #include "tests/support/node_harness.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/bone.hpp"
 #include "assets/library/mandible.hpp"
-#include "dsp/operator/hand.hpp"
+#include "dsp/core/rotation.hpp"
 #include "tests/support/node_harness.hpp"
 
 #include <catch2/catch.hpp>

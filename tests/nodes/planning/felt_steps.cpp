@@ -4,8 +4,8 @@
 #include "assets/library/fragments.hpp"
 #include "dsp/contact/pointshell.hpp"
 #include "dsp/core/random.hpp"
+#include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
-#include "dsp/operator/hand.hpp"
 #include "tests/support/node_harness.hpp"
 
 #include <catch2/catch.hpp>

@@ -2,8 +2,8 @@
 // The nodes of a planning session: scene of a case, matcher, brush, and the coupling that is led.
 #include "assets/library/fragments.hpp"
 #include "assets/plan/step_row.hpp"
+#include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
-#include "dsp/operator/hand.hpp"
 #include "graph/assets.hpp"
 #include "tests/support/node_harness.hpp"
 
