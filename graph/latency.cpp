@@ -41,11 +41,12 @@ Ages ages_from(const Plan& plan, int source) {
 
 std::vector<PathLatency> path_latencies(const Plan& plan) {
     const auto is_sink = [](const PlanNode& n) {
-        return n.type->name == "device_output" || n.type->name == "audio_output" || n.type->name == "record";
+        return n.type->role == NodeRole::hand_sink || n.type->role == NodeRole::sound_sink ||
+               n.type->role == NodeRole::file_sink;
     };
     std::vector<PathLatency> paths;
     for (std::size_t source = 0; source < plan.nodes.size(); ++source) {
-        if (plan.nodes[source].type->name != "device_input") continue;
+        if (plan.nodes[source].type->role != NodeRole::hand_source) continue;
         const Ages ages = ages_from(plan, static_cast<int>(source));
         for (std::size_t sink = 0; sink < plan.nodes.size(); ++sink) {
             if (ages.age[sink] == unreached || !is_sink(plan.nodes[sink])) continue;

@@ -22,7 +22,8 @@
 //     };
 //
 // Optional members: `void prepare(const Setup&)` may allocate and throw Error, and sets the initial value of each
-// output; `void report(Report&) const` speaks after the run.
+// output; `void report(Report&) const` speaks after the run; `static constexpr NodeRole role` says what the type does
+// at the border of a patch.
 #pragma once
 
 #include "graph/node_memory.hpp"
@@ -31,6 +32,7 @@
 #include "graph/setup.hpp"
 
 #include <concepts>
+#include <cstdint>
 #include <memory>
 #include <new>
 #include <string>
@@ -74,10 +76,21 @@ public:
     }
 };
 
+/// What a node type does at the border of a patch. Analyses of a plan look for a role, never for a type's name.
+enum class NodeRole : std::uint8_t {
+    inner,
+    hand_source,  ///< gives the pose of a hand; has a text parameter `device`
+    hand_sink,    ///< sends a force to a hand; has a text parameter `device`
+    placement,    ///< places a device in the scene; its parameter `scale` says how many metres one metre becomes
+    sound_sink,
+    file_sink
+};
+
 /// One row of the catalogue.
 struct NodeType {
     std::string name;  ///< "blade_contact"
     std::string_view about;
+    NodeRole role = NodeRole::inner;
     void* (*create)() = nullptr;
     void (*destroy)(void*) = nullptr;
     void (*visit)(void*, MemberVisitor&) = nullptr;
@@ -90,12 +103,19 @@ struct NodeType {
 std::string type_name_of(std::string_view struct_name);
 
 template <class T>
+constexpr NodeRole role_of() {
+    if constexpr (requires { T::role; }) return T::role;
+    else return NodeRole::inner;
+}
+
+template <class T>
 NodeType make_node_type(std::string_view struct_name, void (*visit)(void*, MemberVisitor&)) {
     static_assert(noexcept(std::declval<T&>().process(std::declval<const Tick&>())), "process must be noexcept");
     static_assert(alignof(T) <= node_offset, "a node is aligned to 16 bytes");
     return {
         .name = type_name_of(struct_name),
         .about = T::about,
+        .role = role_of<T>(),
         .create = []() -> void* {
             void* const memory = take_node_memory(sizeof(T));
             try {

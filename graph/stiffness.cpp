@@ -39,7 +39,7 @@ double scale_of(const Plan& plan, const Ages& from_source, std::size_t node) {
     double scale = 1.0;
     for (int at = static_cast<int>(node); at >= 0; at = from_source.before[static_cast<std::size_t>(at)]) {
         const PlanNode& passed = plan.nodes[static_cast<std::size_t>(at)];
-        if (passed.type->name == "workspace") scale *= passed.params.at("scale")->value;
+        if (passed.type->role == NodeRole::placement) scale *= passed.params.at("scale")->value;
     }
     return scale;
 }
@@ -58,9 +58,9 @@ std::vector<ForceLoop> force_loops(const Plan& plan, const std::function<double(
 
     std::vector<ForceLoop> loops;
     for (std::size_t source = 0; source < plan.nodes.size(); ++source) {
-        if (plan.nodes[source].type->name != "device_input") continue;
+        if (plan.nodes[source].type->role != NodeRole::hand_source) continue;
         for (std::size_t sink = 0; sink < plan.nodes.size(); ++sink) {
-            if (plan.nodes[sink].type->name != "device_output" || from(source).age[sink] == unreached) continue;
+            if (plan.nodes[sink].type->role != NodeRole::hand_sink || from(source).age[sink] == unreached) continue;
             const double period = seconds(plan.groups[static_cast<std::size_t>(plan.nodes[sink].group)].period);
             const double b = damping(setting_of(plan, sink, "device"));
             const auto loop_of = [&](Flicks latency, std::optional<DeclaredStiffness> declared) {

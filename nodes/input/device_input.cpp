@@ -6,6 +6,7 @@ namespace tactus::nodes {
 struct DeviceInput {
     static constexpr auto about =
         "Where the hand is: pose, velocity and buttons of a haptic device, in the frame of the device.";
+    static constexpr NodeRole role = NodeRole::hand_source;
 
     Out<Pose> pose{"handle in the device frame; keeps the last good one while samples are invalid", "m"};
     Out<Twist> twist{"velocity of the handle, zero while samples are invalid", "m/s, rad/s"};

@@ -15,6 +15,7 @@ struct DeviceOutput {
     static constexpr auto about =
         "Force on the hand: checked, limited, ramped in, and faded to zero on any fault. The device's own limits hold "
         "too.";
+    static constexpr NodeRole role = NodeRole::hand_sink;
 
     In<Wrench> wrench{"on the hand about the handle, device frame", "N, N m"};
     Out<Wrench> applied{"what the device is given", "N, N m"};

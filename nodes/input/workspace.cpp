@@ -17,6 +17,7 @@ struct Workspace {
         "through "
         "the scene and the tool stays in place; with 'turn' held the scene turns and shifts with the hand. Forces go "
         "back through device_wrench.";
+    static constexpr NodeRole role = NodeRole::placement;
 
     In<Pose> device{"handle in the device frame", "m"};
     In<bool> clutch{optional, "held: the tool stays while the hand goes where it has room"};

@@ -9,6 +9,7 @@ namespace tactus::nodes {
 
 struct AudioOutput {
     static constexpr auto about = "Sound for a listener or an actuator: the sound card, or a file when there is none.";
+    static constexpr NodeRole role = NodeRole::sound_sink;
 
     In<Signal> signal{"what is heard"};
     Param full_scale{"1", "1e-6", "1e6", "value of the signal (SI) that drives the card fully; more is cut"};

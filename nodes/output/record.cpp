@@ -5,6 +5,7 @@ namespace tactus::nodes {
 
 struct Record {
     static constexpr auto about = "Writes every value of a wire to a file: a signal as sound, all else as a table.";
+    static constexpr NodeRole role = NodeRole::file_sink;
 
     AnyIn in{"what is recorded"};
     Text file{"", "name within the folder of the run; empty: the node's name with .wav or .csv"};
