@@ -34,7 +34,8 @@ std::vector<Line> commands_of(const MarkdownBlock& block) {
         const bool goes_on = text.ends_with('\\');
         if (goes_on) text.pop_back();
         if (continues) lines.back().text += text;
-        else if (text.find_first_not_of(" \t") != std::string::npos && text.front() != '#') lines.push_back({text, number});
+        else if (text.find_first_not_of(" \t") != std::string::npos && text.front() != '#')
+            lines.push_back({text, number});
         continues = goes_on;
     }
     return lines;

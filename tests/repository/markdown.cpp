@@ -76,7 +76,8 @@ std::vector<std::string> anchors_of(const fs::path& page) {
         std::string anchor;
         for (const char c : line.substr(std::min(line.size(), line.find_first_not_of("# ")))) {
             const auto byte = static_cast<unsigned char>(c);
-            if (std::isalnum(byte) || c == '-' || c == '_' || byte >= 0x80) anchor += static_cast<char>(std::tolower(byte));
+            if (std::isalnum(byte) || c == '-' || c == '_' || byte >= 0x80)
+                anchor += static_cast<char>(std::tolower(byte));
             else if (c == ' ') anchor += '-';
         }
         anchors.push_back(anchor);
