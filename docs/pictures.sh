@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Makes the pictures of scenes, and of the window, in this folder with the command as it was built:
+# Makes the pictures of scenes and of the window in docs/pictures/ with the built command:
 # docs/pictures.sh [COMMAND [PICTURE ...]]
 set -euo pipefail
 docs=$(dirname "$(readlink -f "$0")")
+pictures=$docs/pictures
 tactus=${1:-$docs/../build/release/tactus}
 shift $(($# > 0 ? 1 : 0))
 [ -x "$tactus" ] || { echo "docs/pictures.sh: no command $tactus; build it first: ./dev build" >&2; exit 2; }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
-# picture NAME PATCH OPTIONS ...: the last of its frames becomes NAME.png.
+# picture NAME PATCH OPTIONS ...: renders the patch; its last frame becomes NAME.png.
 wanted=("$@")
 picture() {
     local name=$1 patch=$2
@@ -18,13 +19,13 @@ picture() {
     [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" $name "* ]] || return 0
     "$tactus" render "$patch" --out "$folder/$name" "$@" >/dev/null
     local frames=("$folder/$name"/frame_*.png)
-    mv "${frames[-1]}" "$docs/$name.png"
+    mv "${frames[-1]}" "$pictures/$name.png"
     echo "$name.png"
 }
 
 if [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" saw-training "* ]]; then
     "$tactus" render saw-training --seconds 4 --out "$folder/bone" >/dev/null
-    mv "$folder/bone/bone.png" "$docs/saw-training.png"
+    mv "$folder/bone/bone.png" "$pictures/saw-training.png"
     echo saw-training.png
 fi
 picture scene-saw-training saw-training --seconds 3.4 --frames 1
@@ -36,17 +37,17 @@ picture scene-pop-through pop-through --seconds 2 --frames 1 --view-from front
 picture scene-gripper gripper-on-arm --seconds 4 --frames 1
 picture scene-stereo fragments --seconds 2.2 --frames 1 --stereo side-by-side --size 1280x500
 
-# Rigs of screens: both eyes of the one in the mirror, and the outer directions of the other.
+# Rigs: both eyes of the screen above the mirror, and the outer directions of the multi-view screen.
 picture rig-mirror look-around --seconds 6 --frames 1 --rig mirror --head head.pose --stereo side-by-side --size 1280x500
 if [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" rig-directions "* ]]; then
     "$tactus" render look-around --seconds 6 --frames 1 --rig directions --size 480x360 --out "$folder/directions" >/dev/null
     for n in 1 4; do
-        mv "$folder/directions/frame_0001_direction-$n.png" "$docs/rig-direction-$n.png"
+        mv "$folder/directions/frame_0001_direction-$n.png" "$pictures/rig-direction-$n.png"
         echo "rig-direction-$n.png"
     done
 fi
 
-# The window needs a display; where there is none, one without a screen does.
+# The window needs a display; without one, Xvfb provides it.
 if [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" window "* ]]; then
     command=$(readlink -f "$tactus")
     if [ -z "${DISPLAY:-}" ]; then
@@ -59,6 +60,6 @@ if [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" window "* ]]; then
     fi
     (cd "$folder" && "$command" run saw-training --view --view-script "$docs/window.script" --audio file --out run \
         --reference "$(dirname "$command")/library/saw/cutting_190_7N.flac" >/dev/null)
-    mv "$folder/window.png" "$docs/window.png"
+    mv "$folder/window.png" "$pictures/window.png"
     echo window.png
 fi

@@ -17,7 +17,8 @@ void add_compare(CLI::App& app, CompareChoice& choice) {
     verb->add_option("output", choice.output,
                      "sound file or CSV log of what came out, or a folder: files are paired by name")
         ->required();
-    verb->add_option("--thresholds", choice.thresholds, "TOML file of what must be reached; without: see README");
+    verb->add_option("--thresholds", choice.thresholds,
+                     "TOML file of what must be reached; keys and defaults: docs/reference/tables.md");
     verb->add_option("--plot", choice.plot, "a figure, .svg or .png; of folders a folder, of SVG");
     verb->add_option("--report", choice.report, "figure, tables and how they were computed in one HTML file");
     verb->add_option("--table", choice.table, "a row per pair, CSV");
