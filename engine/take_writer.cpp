@@ -32,12 +32,14 @@ public:
         : folder_(std::move(folder)), info_(std::move(info)), type_(type), opened_(std::move(opened)) {}
 
     void take(std::int64_t first, const std::byte* values, std::size_t count) override {
-        if (!writer_) {
+        const bool is_first = !writer_;
+        if (is_first) {
             info_.start = first;
             writer_ = std::make_unique<TakeStreamWriter>(folder_ / info_.file, info_, type_);
-            opened_(info_);
         }
         writer_->write(first, values, count);
+        // A file that found no room for anything is not told of.
+        if (is_first) opened_(info_);
         const auto now = std::chrono::steady_clock::now();
         if (now - updated_ < flush_every) return;
         updated_ = now;

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <utility>
 
@@ -54,9 +55,10 @@ OutputFolder::OutputFolder(const OutputChoice& choice) {
     // "out/" names the folder "out".
     const fs::path base = choice.folder.has_filename() ? choice.folder : choice.folder.parent_path();
     std::string why = take(base, choice.overwrite);
+    const fs::path stem = base == "." || base.filename() == ".." ? base / "run" : base;
     constexpr int most = 100'000;
     for (int n = 2; !why.empty() && choice.is_numbered && n < most; ++n)
-        why = take(fmt::format("{}-{}", base.string(), n), choice.overwrite);
+        why = take(fmt::format("{}-{}", stem.string(), n), choice.overwrite);
     if (!why.empty()) throw Error(why);
     if (choice.is_linked) link_to(path_, base.string() + "-latest");
 }
@@ -121,8 +123,9 @@ void OutputFolder::write_summary(std::string_view text) {
         written += static_cast<std::size_t>(count);
     }
     if (::ftruncate(summary_, static_cast<off_t>(text.size())) != 0) fail(errno);
-    if (std::rename(part_.c_str(), summary.c_str()) != 0) fail(errno);
+    // From here on the part is whole and stays.
     if (::close(std::exchange(summary_, -1)) != 0 && errno != EINTR) fail(errno);
+    if (std::rename(part_.c_str(), summary.c_str()) != 0) fail(errno);
 }
 
 }  // namespace tactus

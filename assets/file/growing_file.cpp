@@ -16,7 +16,7 @@ namespace tactus {
 
 namespace {
 
-constexpr std::size_t most_waiting = 1 << 14;  // bytes
+constexpr std::size_t most_waiting = 1 << 12;  // bytes
 
 }  // namespace
 

@@ -140,15 +140,16 @@ TEST_CASE("a take that finds no room repeats the run as far as it goes") {
     if (is_sanitized()) return;
     const Folder folder;
     folder.write("p.toml", recording_patch);
-    for (const std::string what : {"timing.log", "events.jsonl", "streams/", "take/", "result.json"}) {
+    // The beginning of the log is written before the run.
+    for (const auto& [what, from] :
+         {std::pair{"timing.log", "3"}, std::pair{"events.jsonl", "2"}, std::pair{"streams/", "2"},
+          std::pair{"streams/", "60"}, std::pair{"take/", "12"}, std::pair{"result.json", "1"}}) {
         fs::remove_all(folder.path / "take");
         fs::remove_all(folder.path / "out");
-        const std::string from = what == "result.json" || what == "timing.log" ? "1" : what == "take/" ? "12" : "2";
-        // The log's beginning is written before the run.
-        const Outcome full = on_failing_disk(
-            folder, "FAILING_DISK_FROM=" + (what == "timing.log" ? "3" : from) + " FAILING_DISK_PATH=" + what,
-            "run p.toml --audio none --no-edits --seconds 2 --out out --record take");
-        INFO(what << "\n" << full.out << full.err);
+        const Outcome full =
+            on_failing_disk(folder, std::string("FAILING_DISK_FROM=") + from + " FAILING_DISK_PATH=" + what,
+                            "run p.toml --audio none --no-edits --seconds 2 --out out --record take");
+        INFO(what << " from " << from << "\n" << full.out << full.err);
         CHECK(full.code == 3);
         CHECK(full.err.find("take/") != std::string::npos);
         CHECK(whole_rows(folder.path / "out/table.csv") > 1900);
