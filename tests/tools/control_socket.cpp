@@ -67,6 +67,11 @@ TEST_CASE("a folder that is a link is left alone: nothing behind it is removed, 
     fs::create_directory_symlink(documents, runtime.sockets);
     CHECK_THROWS_WITH(ControlSocket(), Catch::Contains("it is a link"));
     CHECK_THROWS_WITH(ask_run(0, "set a.b=1"), Catch::Contains("it is a link"));
+    // As a program that knows nothing of this folder meets it.
+    const std::string file = runtime.folder.write("p.toml", patch).string();
+    CHECK(runtime.folder
+              .tactus("run " + file + " --audio none --seconds 0.1 --out " + (runtime.folder.path / "out").string())
+              .code == 0);
     CHECK(slurp(documents / "thesis.tex") == "text");
     CHECK(fs::exists(documents / "1.socket"));
     CHECK(fs::exists(documents / "letters"));
