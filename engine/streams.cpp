@@ -79,7 +79,9 @@ public:
             full = std::current_exception();
         }
         std::error_code failure;
-        std::filesystem::rename(part_, path_, failure);
+        const bool is_empty = full && std::filesystem::file_size(part_, failure) == 0;
+        if (is_empty) std::filesystem::remove(part_, failure);
+        else std::filesystem::rename(part_, path_, failure);
         if (full) std::rethrow_exception(full);
         if (failure)
             throw Error(

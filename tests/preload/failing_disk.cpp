@@ -91,8 +91,13 @@ bool fails(const char* call, std::string_view path) {
     return true;
 }
 
-/// How many bytes a write may still take; −1: it fails.
-ssize_t room(int handle, std::size_t size) {
+/// How many bytes a write at `offset` may still take; −1: it fails. A disk that is full still takes what is written over.
+ssize_t room(int handle, std::size_t size, off64_t offset) {
+    const int full = error_number();
+    struct stat64 status{};
+    if ((full == ENOSPC || full == EDQUOT) && offset >= 0 && ::fstat64(handle, &status) == 0 &&
+        S_ISREG(status.st_mode) && offset + static_cast<off64_t>(size) <= status.st_size)
+        return static_cast<ssize_t>(size);
     const int before = errno;
     const Verdict verdict = judge("write", path_of(handle));
     errno = before;
@@ -166,14 +171,14 @@ int open_file(const char* name, int folder, const char* path, int flags, mode_t 
 extern "C" {
 
 ssize_t write(int handle, const void* bytes, std::size_t size) {
-    const ssize_t some = room(handle, size);
+    const ssize_t some = room(handle, size, ::lseek64(handle, 0, SEEK_CUR));
     return some < 0
                ? -1
                : next<ssize_t(int, const void*, std::size_t)>("write")(handle, bytes, static_cast<std::size_t>(some));
 }
 
 ssize_t pwrite64(int handle, const void* bytes, std::size_t size, off64_t offset) {
-    const ssize_t some = room(handle, size);
+    const ssize_t some = room(handle, size, offset);
     return some < 0 ? -1
                     : next<ssize_t(int, const void*, std::size_t, off64_t)>("pwrite64")(
                           handle, bytes, static_cast<std::size_t>(some), offset);
@@ -186,7 +191,7 @@ ssize_t pwrite(int handle, const void* bytes, std::size_t size, off_t offset) {
 ssize_t writev(int handle, const iovec* parts, int count) {
     std::size_t size = 0;
     for (int n = 0; n < count; ++n) size += parts[n].iov_len;
-    const ssize_t some = room(handle, size);
+    const ssize_t some = room(handle, size, ::lseek64(handle, 0, SEEK_CUR));
     if (some < 0) return -1;
     if (static_cast<std::size_t>(some) == size)
         return next<ssize_t(int, const iovec*, int)>("writev")(handle, parts, count);

@@ -104,7 +104,7 @@ TEST_CASE("a recording cannot have the name of a file that the run itself writes
         INFO(name << "\n" << refused.err);
         CHECK(refused.code == 2);
         // The node's table in the patch.
-        CHECK_THAT(refused.err, Contains("p.toml:16:1: '" + std::string(name) + "' is the name of a file"));
+        CHECK_THAT(refused.err, Contains("p.toml:16:8: '" + std::string(name) + "' is the name of a file"));
         CHECK((!fs::exists(folder.path / "out") || fs::is_empty(folder.path / "out")));
     }
     const std::string file = folder.write("p.toml", recording_patch).string(), out = (folder.path / "out").string();
