@@ -79,7 +79,7 @@ public:
             full = std::current_exception();
         }
         std::error_code failure;
-        const bool is_empty = full && std::filesystem::file_size(part_, failure) == 0;
+        const bool is_empty = std::filesystem::file_size(part_, failure) == 0;  // not even the names of the columns
         if (is_empty) std::filesystem::remove(part_, failure);
         else std::filesystem::rename(part_, path_, failure);
         if (full) std::rethrow_exception(full);
