@@ -239,39 +239,83 @@ void Engine::drain_log() {
         progress.push_back({group->index, done, done * group->plan->period});
     }
     TimingRecord record;
+    for (const auto& ring : log_rings_)
+        while (ring->pop(record)) {
+            if (log_) write_log(record);
+            if (options_.take) options_.take->record(record);
+        }
+    if (options_.take) options_.take->checkpoint(progress);
+    // Nobody has asked for it yet.
+    if (options_.take && !was_recorded_ && options_.take->is_lost()) give_up_journal(options_.take->loss());
+}
+
+void Engine::write_log(const TimingRecord& record) {
     try {
-        for (const auto& ring : log_rings_)
-            while (ring->pop(record)) {
-                if (log_) log_->write(record);
-                if (options_.take) options_.take->record(record);
-            }
-        if (options_.take) options_.take->checkpoint(progress);
+        log_->write(record);
     } catch (const Error& error) {
-        // Nobody has asked for it yet: the run goes on without.
-        if (was_recorded_ || log_ || !options_.take) throw;
-        give_up_journal(error.what());
+        log_loss_ = error.message();
+        complete_log();
     }
 }
 
-void Engine::finish() {
+/// A log that had no room ends with what it has, under its own name.
+void Engine::complete_log() {
+    try {
+        log_->finish();
+    } catch (const Error& error) {
+        if (log_loss_.empty()) log_loss_ = error.message();
+    }
+    log_.reset();
+}
+
+void Engine::note_loss(const std::string& loss) {
+    if (loss.empty() || std::ranges::find(losses_, loss) != losses_.end()) return;
+    losses_.push_back(loss);
+    outside_.notices.push_back(fmt::format("not written to its end: {}", loss));
+}
+
+void Engine::note_losses() {
+    for (const auto& stream : outside_.streams) note_loss(stream->loss());
+    // Whoever builds a plan adds to the list of all taps.
+    for (Stream* tap : open_taps_) note_loss(tap->loss());
+    for (const Tap& tap : ending_taps_)
+        if (tap.stream) note_loss(tap.stream->loss());
+    if (options_.take && was_recorded_) note_loss(options_.take->loss());
+    const std::lock_guard lock(log_lock_);
+    note_loss(log_loss_);
+}
+
+void Engine::complete() {
     for (const auto& stream : outside_.streams) stream->finish();
     for (Stream* tap : open_taps_) tap->finish();
     for (const auto& card : outside_.cards) card->close();
-    if (!options_.take) return;
-    options_.take->finish(port_hashes());
     for (auto& [name, tap] : taps_) ending_taps_.push_back(std::move(tap));
-    for (const Tap& tap : ending_taps_)
-        if (tap.stream && tap.stream->dropped() > 0)
-            throw Error(fmt::format("the take is not whole: {} values of {} were lost because the disk was too slow",
-                                    tap.stream->dropped(), tap.stream->format().file));
+    taps_.clear();
+    if (options_.take) {
+        options_.take->finish(port_hashes());
+        for (const Tap& tap : ending_taps_)
+            if (tap.stream && tap.stream->dropped() > 0)
+                note_loss(fmt::format("the take is not whole: {} values of {} were lost because the disk was too slow",
+                                      tap.stream->dropped(), tap.stream->format().file));
+    }
+    note_losses();
+}
+
+void Engine::finish() {
+    complete();
+    if (!losses_.empty()) throw Error(losses_.front());
+}
+
+void Engine::stop() {
+    stop_ = true;
+    generation_.fetch_add(1);
+    generation_.notify_all();
 }
 
 void Engine::fail(std::exception_ptr error) {
     const std::lock_guard lock(failure_lock_);
     if (!failure_) failure_ = std::move(error);
-    stop_ = true;
-    generation_.fetch_add(1);
-    generation_.notify_all();
+    stop();
 }
 
 }  // namespace tactus

@@ -77,7 +77,8 @@ public:
     /// Runs to the end on `threads` threads; `progress` is told the fraction done; what it throws ends the
     /// run. Throws Error.
     void render(int threads, const std::function<void(double)>& progress = {});
-    /// Runs in real time, one thread per group. Throws Error. Engines run once.
+    /// Runs in real time, one thread per group. An output that the disk has no room for ends, the run goes on. Throws
+    /// Error. Engines run once.
     void run_live(const LiveOptions& options);
 
     /// While a live run goes on, from `watch`: `make` compiles a plan on another thread, which then takes over.
@@ -94,7 +95,7 @@ public:
     /// take holds every value, or no more. What timing decided it holds from the beginning, so it repeats the run up to
     /// there. No tick is disturbed. Throws Error when the take was given up.
     void record(bool wanted);
-    bool is_recording() const { return options_.take && wants_record_; }
+    bool is_recording() const { return options_.take && wants_record_ && !options_.take->is_lost(); }
     /// Some values are in the take.
     bool was_recorded() const { return was_recorded_; }
     enum class Pausing : std::uint8_t { runs, fades, stands };
@@ -102,8 +103,15 @@ public:
     /// No edit is on its way.
     bool is_settled() const { return !waiting_ && !building_.valid() && !before_; }
 
-    /// Completes recordings. Throws Error.
+    /// During a render, any thread: it ends soon, as if it had been asked for no more.
+    void stop();
+
+    /// Completes recordings; what could not be written to its end is among the `losses`.
+    void complete();
+    /// The same; throws Error when there are losses.
     void finish();
+    /// What the disk had no room for, and why; among the notices, too. Control thread.
+    const std::vector<std::string>& losses() const { return losses_; }
 
     /// What the nodes report. After the run.
     Report report() const;
@@ -138,6 +146,10 @@ private:
     std::int64_t tick_at(double time, Flicks period) const;
     static void gather_hashes(const Generation& old, const Generation* next, PortHashes& parts);
     void drain_streams();
+    void write_log(const TimingRecord& record);
+    void complete_log();
+    void note_losses();
+    void note_loss(const std::string& loss);
     void tend_cards();
     void drain_log();
     void complete_render();
@@ -183,6 +195,8 @@ private:
     std::vector<std::unique_ptr<Ring<TimingRecord>>> log_rings_;
     std::unique_ptr<TimingLogWriter> log_;
     std::mutex log_lock_;
+    std::string log_loss_;  // under it
+    std::vector<std::string> losses_;
     PauseWindow pause_;
     bool wants_pause_ = false;
     LiveRun* live_ = nullptr;

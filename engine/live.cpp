@@ -213,6 +213,7 @@ void Engine::run_live(const LiveOptions& options) {
         try {
             drain_log();
             drain_streams();
+            note_losses();
             for (const auto& stream : outside_.streams)
                 if (std::string news = stream->news(); !news.empty()) outside_.notices.push_back(std::move(news));
             tend_pause();
@@ -246,9 +247,14 @@ void Engine::run_live(const LiveOptions& options) {
     if (run.refused)
         outside_.notices.push_back(
             "real-time priority was refused: expect late ticks (run as root or raise RLIMIT_RTPRIO)");
-    for (const auto& group : groups_)
-        if (group->log_overflow) throw Error("the timing log could not keep up; the run cannot be repeated");
-    if (log_) log_->finish();
+    if (std::ranges::any_of(groups_, [](const auto& group) { return group->log_overflow.load(); })) {
+        constexpr const char* why = "the timing log could not keep up; the run cannot be repeated";
+        log_.reset();
+        if (options_.take) options_.take->lose(why);
+        if (options.log || was_recorded_) note_loss(why);
+    }
+    if (log_) complete_log();
+    note_losses();
 }
 
 }  // namespace tactus

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 namespace tactus {
 
@@ -31,6 +33,16 @@ public:
 private:
     RecordedDevice recorded_;
 };
+
+/// Files that the run or its take writes by itself: a recording of that name would be written over, or write over them.
+bool is_of_run(const std::string& file) {
+    constexpr std::array<std::string_view, 5> names{"summary.json", "take.json", "events.jsonl", "timing.log",
+                                                    "result.json"};
+    constexpr std::array<std::string_view, 3> endings{".vdb", ".png", ".part"};
+    return std::ranges::find(names, file) != names.end() || file == "streams" || file.starts_with("journal-") ||
+           (file.starts_with("patch-") && file.ends_with(".toml")) ||
+           std::ranges::any_of(endings, [&file](std::string_view ending) { return file.ends_with(ending); });
+}
 
 bool same_settings(const std::vector<OptionText>& a, const std::vector<OptionText>& b) {
     return std::ranges::equal(
@@ -143,6 +155,11 @@ Stream* EngineOutside::find_stream(const std::string& file) const {
 RecordStream& EngineOutside::record(const StreamFormat& wanted, const SourceLocation& where) {
     if (wanted.file.empty() || wanted.file.find('/') != std::string::npos || wanted.file.starts_with('.'))
         throw Error(where, fmt::format("'{}' is not a file name; recordings go to the folder of the run", wanted.file));
+    if (folder_ && is_of_run(wanted.file))
+        throw Error(where,
+                    fmt::format("'{}' is the name of a file that the run itself may write; record to another one, "
+                                "as 'force.csv'",
+                                wanted.file));
     for (const auto& stream : opened_.streams)
         if (stream->format().file == wanted.file)
             throw Error(where, fmt::format("two recordings would be written to '{}'", wanted.file));

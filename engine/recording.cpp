@@ -19,6 +19,7 @@ constexpr Flicks record_lead = flicks_per_second / 50;
 
 void Engine::record(bool wanted) {
     if (!options_.take) throw Error("this run keeps no journal, so it cannot be recorded from here; begin it anew");
+    if (wanted && options_.take->is_lost()) throw Error(options_.take->loss());
     wants_record_ = wanted;
 }
 

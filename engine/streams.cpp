@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/streams.hpp"
 
+#include "assets/file/growing_file.hpp"
 #include "assets/sound/sound.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
+#include <exception>
+#include <utility>
 
 namespace tactus {
 
@@ -43,52 +44,57 @@ public:
     CsvEnd(std::filesystem::path path, const StreamFormat& format)
         : path_(std::move(path)),
           part_(path_.string() + ".part"),
-          file_(std::fopen(part_.c_str(), "w")),
+          file_(std::make_unique<GrowingFile>(part_, path_)),
           type_(*format.type),
           period_(format.period) {
-        if (!file_) fail();
         std::string header = "t_s";
         for (const std::string_view column : type_.columns)
             header += fmt::format(",{}{}{}", column, format.unit.empty() ? "" : "_", format.unit);
-        put(header + "\n");
+        file_->append(header + "\n");
+        row_.resize(type_.columns.size());
     }
     ~CsvEnd() override {
         if (!file_) return;
-        std::fclose(file_);
+        file_.reset();
         std::error_code ignored;
         std::filesystem::remove(part_, ignored);
     }
     void take(std::int64_t first, const std::byte* values, std::size_t count) override {
-        std::string lines;
-        std::vector<double> row(type_.columns.size());
         for (std::size_t i = 0; i < count; ++i) {
-            type_.to_columns(values + i * type_.size, row.data());
-            fmt::format_to(std::back_inserter(lines), "{:.6f}",
+            type_.to_columns(values + i * type_.size, row_.data());
+            line_.clear();
+            fmt::format_to(std::back_inserter(line_), "{:.6f}",
                            seconds((first + static_cast<std::int64_t>(i)) * period_));
-            for (const double number : row) fmt::format_to(std::back_inserter(lines), ",{}", number);
-            lines += '\n';
+            for (const double number : row_) fmt::format_to(std::back_inserter(line_), ",{}", number);
+            line_ += '\n';
+            file_->append(line_);
         }
-        put(lines);
     }
     void finish() override {
-        const bool written = std::fclose(file_) == 0;
-        file_ = nullptr;
-        if (!written) fail();
-        std::filesystem::rename(part_, path_);
+        const std::unique_ptr<GrowingFile> file = std::move(file_);
+        std::exception_ptr full;
+        try {
+            file->close();
+        } catch (const Error&) {
+            full = std::current_exception();
+        }
+        std::error_code failure;
+        const bool is_empty = std::filesystem::file_size(part_, failure) == 0;  // not even the names of the columns
+        if (is_empty) std::filesystem::remove(part_, failure);
+        else std::filesystem::rename(part_, path_, failure);
+        if (full) std::rethrow_exception(full);
+        if (failure)
+            throw Error(
+                fmt::format("{}: cannot be renamed to {}: {}", part_.string(), path_.string(), failure.message()));
     }
 
 private:
-    void put(const std::string& text) {
-        if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail();
-    }
-    [[noreturn]] void fail() const {
-        throw Error(fmt::format("{}: cannot write: {}", path_.string(), std::strerror(errno)));
-    }
-
     std::filesystem::path path_, part_;
-    std::FILE* file_;
+    std::unique_ptr<GrowingFile> file_;
     const ValueType& type_;
     Flicks period_;
+    std::vector<double> row_;
+    std::string line_;
 };
 
 }  // namespace
@@ -135,15 +141,41 @@ void Stream::drain() {
     // A piece is pushed whole, so once its head is there the rest is too.
     while (ring_->pop(reinterpret_cast<std::byte*>(&piece), sizeof piece) == sizeof piece) {
         ring_->pop(drained_.data(), piece.count * format_.type->size);
-        end_->take(piece.first, drained_.data(), piece.count);
+        if (!loss_.empty()) continue;
+        try {
+            end_->take(piece.first, drained_.data(), piece.count);
+        } catch (const Error& error) {
+            lose(error);
+        }
     }
+}
+
+/// Keeps what there is; the run goes on without this stream.
+void Stream::lose(const Error& error) {
+    loss_ = error.message();
+    try {
+        end_->finish();
+    } catch (const Error& another) {
+        if (another.message() != loss_) loss_ += fmt::format("; {}", another.message());
+    }
+}
+
+std::string Stream::loss() {
+    const std::lock_guard lock(draining_);
+    return loss_;
 }
 
 void Stream::finish() {
     drain();
     const std::lock_guard lock(draining_);
     if (!end_) return;
-    end_->finish();
+    if (loss_.empty()) {
+        try {
+            end_->finish();
+        } catch (const Error& error) {
+            loss_ = error.message();
+        }
+    }
     end_.reset();
     ring_.reset();
     packed_ = std::vector<std::byte>();

@@ -2,6 +2,7 @@
 // Streams that leave a run: values go through a ring to a file or a sound card, drained outside of the ticks.
 #pragma once
 
+#include "dsp/core/error.hpp"
 #include "dsp/core/ring.hpp"
 #include "graph/setup.hpp"
 #include "graph/value.hpp"
@@ -22,9 +23,10 @@ namespace tactus {
 class StreamEnd {
 public:
     virtual ~StreamEnd() = default;
-    /// Values of activations first, first + 1, …; activations that never ran are missing. Throws Error.
+    /// Values of activations first, first + 1, …; activations that never ran are missing. Throws Error when they cannot be
+    /// kept; then only `finish` is called.
     virtual void take(std::int64_t first, const std::byte* values, std::size_t count) = 0;
-    /// Completes the file; throws Error.
+    /// Completes the file, as far as it goes when `take` had failed; throws Error.
     virtual void finish() = 0;
     /// What the user should know, once; mostly nothing.
     virtual std::string news() { return {}; }
@@ -46,13 +48,16 @@ public:
     std::int64_t until() const noexcept { return until_.load(std::memory_order_relaxed); }
     bool write(std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept override;
 
-    /// Moves what has gathered to its end. Any thread outside of a tick. Throws Error.
+    /// Moves what has gathered to its end. Any thread outside of a tick. An end that fails is completed as far as it goes
+    /// and gets nothing more.
     void drain();
     /// True when less than half of the ring is left.
     bool wants_drain() const noexcept { return ring_ && ring_->size() * 2 > ring_->capacity(); }
     /// Completes the file and gives back all memory. Nobody writes any more; again: nothing.
     void finish();
     bool is_finished() const { return !end_; }
+    /// Why the rest of this stream is not kept; empty: it is.
+    std::string loss();
     std::string news() const { return end_ ? end_->news() : std::string(); }
 
     const StreamFormat& format() const { return format_; }
@@ -65,11 +70,14 @@ private:
         std::uint64_t count;
     };
 
+    void lose(const Error& error);
+
     StreamFormat format_;
     std::unique_ptr<StreamEnd> end_;
     std::unique_ptr<Ring<std::byte>> ring_;
     std::vector<std::byte> packed_, drained_;  // of the writer, of the drainer
     std::mutex draining_;
+    std::string loss_;  // under it
     std::int64_t from_ = 0;
     std::atomic<std::int64_t> until_{std::numeric_limits<std::int64_t>::max()};
     std::atomic<std::uint64_t> dropped_{0};

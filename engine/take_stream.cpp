@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/take_stream.hpp"
 
+#include "assets/sound/open_sound.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
-#include <sndfile.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,11 +13,6 @@
 namespace tactus {
 
 namespace {
-
-struct Closer {
-    void operator()(SNDFILE* file) const { sf_close(file); }
-};
-using Handle = std::unique_ptr<SNDFILE, Closer>;
 
 constexpr std::size_t frames_at_once = 1024;
 
@@ -63,19 +58,25 @@ void to_frame(const ValueType& type, const void* value, double* frame) {
 struct TakeStreamWriter::File {
     std::filesystem::path path;
     const ValueType& type;
-    Handle handle;
+    SoundHandle handle;
     std::size_t channels = 0;
     std::int64_t next = 0;
     std::vector<double> frames, last;
+    sf_count_t written = 0;  // frames
 
     void put(const double* from, std::size_t count) {
-        if (sf_writef_double(handle.get(), from, static_cast<sf_count_t>(count)) != static_cast<sf_count_t>(count))
-            throw Error(fmt::format("{}: cannot write: {}", path.string(), sf_strerror(handle.get())));
+        const auto wanted = static_cast<sf_count_t>(count);
+        const sf_count_t some = sf_writef_double(handle.get(), from, wanted);
+        written += std::max<sf_count_t>(some, 0);
+        if (some == wanted) return;
+        const std::string why = sf_strerror(handle.get());
+        keep_whole_frames(handle.get(), written);
+        throw Error(fmt::format("{}: cannot write: {}", path.string(), why));
     }
 };
 
 TakeStreamWriter::TakeStreamWriter(const std::filesystem::path& path, const TakeStreamInfo& info, const ValueType& type)
-    : file_(std::make_unique<File>(File{path, type, {}, 0, info.start, {}, {}})) {
+    : file_(std::make_unique<File>(File{path, type, {}, 0, info.start, {}, {}, 0})) {
     const auto names = channels_of(type);
     file_->channels = names.size();
     file_->frames.resize(frames_at_once * names.size());
@@ -123,7 +124,7 @@ void TakeStreamWriter::finish() {
 
 struct TakeStreamReader::File {
     std::int64_t start = 0;
-    Handle handle;
+    SoundHandle handle;
     std::size_t channels = 0;
     std::int64_t length = 0;            // of the file
     std::int64_t first = 0, count = 0;  // activations in `frames`

@@ -12,8 +12,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <functional>
 
@@ -34,12 +32,14 @@ public:
         : folder_(std::move(folder)), info_(std::move(info)), type_(type), opened_(std::move(opened)) {}
 
     void take(std::int64_t first, const std::byte* values, std::size_t count) override {
-        if (!writer_) {
+        const bool is_first = !writer_;
+        if (is_first) {
             info_.start = first;
             writer_ = std::make_unique<TakeStreamWriter>(folder_ / info_.file, info_, type_);
-            opened_(info_);
         }
         writer_->write(first, values, count);
+        // A file that found no room for anything is not told of.
+        if (is_first) opened_(info_);
         const auto now = std::chrono::steady_clock::now();
         if (now - updated_ < flush_every) return;
         updated_ = now;
@@ -130,12 +130,20 @@ TakeWriter::TakeWriter(fs::path folder, TakeAbout about) : folder_(std::move(fol
     if (failure) throw Error(fmt::format("{}: cannot make the folder: {}", folder_.string(), failure.message()));
     if (fs::exists(folder_ / "take.json"))
         throw Error(fmt::format("{}: there is a take already; choose another name", folder_.string()));
-    events_ = std::fopen((folder_ / "events.jsonl").c_str(), "wb");
-    if (!events_) throw Error(fmt::format("{}: cannot write: {}", folder_.string(), std::strerror(errno)));
+    events_ = std::make_unique<GrowingFile>(folder_ / "events.jsonl");
 }
 
-TakeWriter::~TakeWriter() {
-    if (events_) std::fclose(events_);
+TakeWriter::~TakeWriter() = default;
+
+std::string TakeWriter::loss() const {
+    const std::lock_guard lock(writing_);
+    return loss_;
+}
+
+void TakeWriter::lose(const std::string& why) {
+    const std::lock_guard lock(writing_);
+    if (is_lost_.exchange(true)) return;
+    loss_ = fmt::format("{}; the take repeats the run up to there", why);
 }
 
 void TakeWriter::begin(const Patch& patch, std::uint64_t plan_hash) {
@@ -158,9 +166,24 @@ void TakeWriter::begin(const Patch& patch, std::uint64_t plan_hash) {
 }
 
 void TakeWriter::line(const std::string& json) {
-    const std::lock_guard lock(writing_);
-    if (std::fputs((json + "\n").c_str(), events_) < 0 || std::fflush(events_) != 0)
-        throw Error(fmt::format("{}: cannot write events.jsonl: {}", folder_.string(), std::strerror(errno)));
+    if (is_lost_) return;
+    try {
+        const std::lock_guard lock(writing_);
+        events_->append(json + "\n");
+        events_->flush();
+    } catch (const Error& error) {
+        // What the log says from here on would be of things that are told nowhere.
+        lose(error.message());
+    }
+}
+
+void TakeWriter::record(const TimingRecord& record) {
+    if (is_lost_) return;
+    try {
+        log_->write(record);
+    } catch (const Error& error) {
+        lose(error.message());
+    }
 }
 
 void TakeWriter::device(const DeviceSlot& slot) {
@@ -198,6 +221,7 @@ std::unique_ptr<Stream> TakeWriter::stream(const std::string& port, const ValueT
     format.type = &type;
     format.period = info.period;
     const auto opened = [this, &type](const TakeStreamInfo& now) {
+        if (is_lost_) throw Error(loss());
         line(Json{{"stream", now.file},
                   {"port", now.port},
                   {"group", now.group},
@@ -214,7 +238,12 @@ std::unique_ptr<Stream> TakeWriter::stream(const std::string& port, const ValueT
 
 void TakeWriter::edit(std::int64_t number, Flicks when, const Patch& patch) {
     const std::string file = fmt::format("patch-{}.toml", number);
-    write_whole_file(folder_ / file, bundle_text(patch));
+    if (is_lost_) return;
+    try {
+        write_whole_file(folder_ / file, bundle_text(patch));
+    } catch (const Error& error) {
+        return lose(error.message());
+    }
     line(Json{{"plan", number}, {"file", file}, {"when_flicks", when}, {"assets", assets_json(patch)}}.dump());
 }
 
@@ -231,7 +260,7 @@ void TakeWriter::change(std::int64_t id, std::int64_t plan, const std::string& n
 
 void TakeWriter::checkpoint(const std::vector<Progress>& progress) {
     const auto now = std::chrono::steady_clock::now();
-    if (now - flushed_ < flush_every) return;
+    if (is_lost_ || now - flushed_ < flush_every) return;
     flushed_ = now;
     for (const Progress& group : progress) {
         TimingRecord record;
@@ -239,9 +268,13 @@ void TakeWriter::checkpoint(const std::vector<Progress>& progress) {
         record.group = static_cast<std::uint16_t>(group.group);
         record.tick = group.done;
         record.value = group.time;
-        log_->write(record);
+        this->record(record);
     }
-    log_->flush();
+    try {
+        log_->flush();
+    } catch (const Error& error) {
+        lose(error.message());
+    }
 }
 
 void TakeWriter::move_to(const fs::path& folder) {
@@ -254,10 +287,16 @@ void TakeWriter::move_to(const fs::path& folder) {
 }
 
 void TakeWriter::finish(const std::vector<std::pair<std::string, std::uint64_t>>& port_hashes) {
-    log_->finish();
-    Json json{{"ports", Json::object()}};
-    for (const auto& [name, hash] : port_hashes) json["ports"][name] = fmt::format("{:016x}", hash);
-    write_whole_file(folder_ / "result.json", json.dump(2) + "\n");
+    // A log without its last record says itself that it was cut off.
+    if (is_lost_) return log_.reset();
+    try {
+        log_->finish();
+        Json json{{"ports", Json::object()}};
+        for (const auto& [name, hash] : port_hashes) json["ports"][name] = fmt::format("{:016x}", hash);
+        write_whole_file(folder_ / "result.json", json.dump(2) + "\n");
+    } catch (const Error& error) {
+        lose(error.message());
+    }
 }
 
 }  // namespace tactus

@@ -10,14 +10,15 @@
 //   result.json     hash of every output, when the run came to its end
 #pragma once
 
+#include "assets/file/growing_file.hpp"
 #include "engine/outside.hpp"
 #include "engine/streams.hpp"
 #include "engine/take_stream.hpp"
 #include "engine/timing_log.hpp"
 #include "graph/patch.hpp"
 
+#include <atomic>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -39,6 +40,7 @@ struct TakeAbout {
     bool live = false;
 };
 
+/// When the disk is full during the run, what is in the take stays and repeats the run up to there; nothing more comes.
 class TakeWriter {
 public:
     /// Makes the folder; one that holds something else is refused. Throws Error.
@@ -53,7 +55,7 @@ public:
     std::unique_ptr<Stream> stream(const std::string& port, const ValueType& type, const GroupRuntime& group);
     void edit(std::int64_t number, Flicks when, const Patch& patch);
     void change(std::int64_t id, std::int64_t plan, const std::string& node, const std::string& param, double value);
-    void record(const TimingRecord& record) { log_->write(record); }
+    void record(const TimingRecord& record);
     /// What each group had reached (index in the log, activation, logical time) before the last records were written.
     struct Progress {
         int group;
@@ -62,6 +64,11 @@ public:
     };
     void checkpoint(const std::vector<Progress>& progress);
     void finish(const std::vector<std::pair<std::string, std::uint64_t>>& port_hashes);
+    /// Why it repeats only a part of the run; empty: it does not. Any thread.
+    std::string loss() const;
+    bool is_lost() const { return is_lost_; }
+    /// It repeats the run only up to here.
+    void lose(const std::string& why);
 
     const std::filesystem::path& folder() const { return folder_; }
     /// Gives the folder another name, on the same disk, while it grows. Throws Error.
@@ -75,8 +82,10 @@ private:
     std::filesystem::path folder_;
     TakeAbout about_;
     std::unique_ptr<TimingLogWriter> log_;
-    std::FILE* events_ = nullptr;
-    std::mutex writing_;  // lines come from whoever drains a stream
+    std::unique_ptr<GrowingFile> events_;
+    mutable std::mutex writing_;  // lines come from whoever drains a stream
+    std::atomic<bool> is_lost_{false};
+    std::string loss_;
     std::vector<std::string> files_;
     std::chrono::steady_clock::time_point flushed_;
 };

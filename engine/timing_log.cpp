@@ -44,22 +44,17 @@ bool has_flags(const DeviceSample& sample) {
 TimingLogWriter::TimingLogWriter(const std::filesystem::path& path, std::uint64_t plan_hash, double seconds, Name name)
     : path_(path),
       part_(name == Name::when_whole ? path.string() + ".part" : path.string()),
-      file_(std::fopen(part_.c_str(), "wb")) {
-    if (!file_) fail();
+      file_(std::make_unique<GrowingFile>(part_, path_)) {
     Header header{{}, plan_hash, seconds};
     std::memcpy(header.magic, magic, sizeof magic);
-    std::fwrite(&header, sizeof header, 1, file_);
+    file_->append({reinterpret_cast<const char*>(&header), sizeof header});
 }
 
 TimingLogWriter::~TimingLogWriter() {
     if (!file_) return;
-    std::fclose(file_);
+    file_.reset();
     std::error_code ignored;
     if (part_ != path_) std::filesystem::remove(part_, ignored);
-}
-
-void TimingLogWriter::fail() const {
-    throw Error(fmt::format("{}: cannot write the timing log: {}", path_.string(), std::strerror(errno)));
 }
 
 void TimingLogWriter::write(const TimingRecord& record) {
@@ -67,22 +62,30 @@ void TimingLogWriter::write(const TimingRecord& record) {
     alignas(TimingRecord) unsigned char bytes[sizeof(TimingRecord)] = {};
     TimingRecord* clean = new (bytes) TimingRecord;
     *clean = record;
-    if (std::fwrite(bytes, sizeof bytes, 1, file_) != 1) fail();
+    file_->append({reinterpret_cast<const char*>(bytes), sizeof bytes});
     bytes_ += sizeof bytes;
 }
 
-void TimingLogWriter::flush() {
-    if (std::fflush(file_) != 0) fail();
-}
+void TimingLogWriter::flush() { file_->flush(); }
 
 void TimingLogWriter::finish() {
+    const auto end = [this] {
+        file_.reset();
+        std::error_code failure;
+        if (part_ != path_) std::filesystem::rename(part_, path_, failure);
+        return failure;
+    };
     TimingRecord last;
     last.kind = TimingKind::whole;
-    write(last);
-    const bool written = std::fclose(file_) == 0;
-    file_ = nullptr;
-    if (!written) fail();
-    if (part_ != path_) std::filesystem::rename(part_, path_);
+    try {
+        write(last);
+        file_->close();
+    } catch (const Error&) {
+        end();
+        throw;
+    }
+    if (const std::error_code failure = end())
+        throw Error(fmt::format("{}: cannot be renamed to {}: {}", part_.string(), path_.string(), failure.message()));
 }
 
 TimingLog TimingLog::load(const std::filesystem::path& path, bool may_be_cut) {

@@ -3,6 +3,7 @@
 // bits of the live run, however bad it was.
 #pragma once
 
+#include "assets/file/growing_file.hpp"
 #include "dsp/core/ring.hpp"
 #include "dsp/core/time.hpp"
 #include "graph/device.hpp"
@@ -70,17 +71,17 @@ public:
     TimingLogWriter(const TimingLogWriter&) = delete;
     TimingLogWriter& operator=(const TimingLogWriter&) = delete;
 
+    /// Throws Error when there is no room, once; the log ends with the last whole record then.
     void write(const TimingRecord& record);
     /// Hands what was written to the system: a crash of the program loses nothing of it.
     void flush();
+    /// The last record. When that finds no room the log keeps its name and says that it was cut off. Throws Error.
     void finish();
     std::uint64_t size() const { return bytes_; }
 
 private:
-    [[noreturn]] void fail() const;
-
     std::filesystem::path path_, part_;
-    std::FILE* file_ = nullptr;
+    std::unique_ptr<GrowingFile> file_;
     std::uint64_t bytes_ = 0;
 };
 

@@ -7,6 +7,7 @@
 #include "tools/plan_options.hpp"
 #include "tools/snap_options.hpp"
 #include "tools/sound_options.hpp"
+#include "tools/terminal.hpp"
 #include "tools/verbs.hpp"
 
 #include <fmt/format.h>
@@ -105,6 +106,7 @@ int command_line(int argc, char** argv) {
         ->capture_default_str()
         ->check(CLI::Range(1e-3, 1e6));
     render_app->add_option("--out", render.out, "folder for what comes out")->required();
+    render_app->add_flag("--overwrite", render.overwrite, "write over results that the folder holds");
     render_app->add_option("--threads", render.threads, "threads, 0: one per core")->check(CLI::Range(0, 64));
     render_app->add_option("--block", render.block, "most samples per call, or 'random'; the output is the same");
     render_app->add_option("--log", render.log, "repeat the timing decisions of a live run");
@@ -135,7 +137,8 @@ int command_line(int argc, char** argv) {
     run_app->add_option("--audio-margin", run.audio_margin, "sound that waits for the card when a thread is late, ms")
         ->capture_default_str()
         ->check(CLI::Range(1.0, 2000.0));
-    run_app->add_option("--out", run.out, "folder for what comes out (default: PATCH-run)");
+    run_app->add_option("--out", run.out, "folder for what comes out (default: PATCH-run, or PATCH-run-2 and so on)");
+    run_app->add_flag("--overwrite", run.overwrite, "write over results that the folder holds");
     run_app->add_option("--log", run.log, "write what timing decided, for 'render --log'");
     run_app->add_option("--record", run.record, "keep the run as a take, a folder that 'replay' repeats");
     run_app->add_flag("--json", run.json, "print the summary as JSON and nothing else");
@@ -265,9 +268,9 @@ int command_line(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? done : bad_input;
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "tactus: not enough memory\n");
+        say(stderr, "tactus: not enough memory\n");
     } catch (const std::exception& error) {
-        fmt::print(stderr, "tactus: {}\n", error.what());
+        say(stderr, fmt::format("tactus: {}\n", error.what()));
     }
     return bad_input;
 }

@@ -7,49 +7,20 @@
 #include <fmt/ranges.h>
 
 #include <poll.h>
-#include <signal.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
+#include <utility>
 
 namespace tactus {
-
-namespace fs = std::filesystem;
 
 namespace {
 
 constexpr std::size_t longest_line = 4096;
 constexpr std::size_t most_callers = 16;
-
-sockaddr_un address_of(const fs::path& path) {
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    if (path.string().size() >= sizeof address.sun_path)
-        throw Error(fmt::format("{}: too long a path for a socket; set XDG_RUNTIME_DIR", path.string()));
-    std::strcpy(address.sun_path, path.c_str());
-    return address;
-}
-
-/// Process of "123.socket", 0: none or gone.
-int process_of(const fs::path& socket) {
-    const int process = std::atoi(socket.stem().c_str());
-    return socket.extension() == ".socket" && process > 0 && ::kill(process, 0) == 0 ? process : 0;
-}
-
-std::vector<int> running() {
-    std::vector<int> processes;
-    std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(control_folder(), ignored))
-        if (const int process = process_of(entry.path())) processes.push_back(process);
-    std::ranges::sort(processes);
-    return processes;
-}
 
 struct Descriptor {
     int number;
@@ -60,36 +31,28 @@ struct Descriptor {
 
 }  // namespace
 
-fs::path control_folder() {
-    if (const char* given = std::getenv("XDG_RUNTIME_DIR"); given && *given) return fs::path(given) / "tactus";
-    return fmt::format("/tmp/tactus-{}", ::getuid());
-}
-
-ControlSocket::ControlSocket() {
-    const fs::path folder = control_folder();
-    std::error_code failure;
-    fs::create_directories(folder, failure);
-    struct stat status{};
-    if (failure || ::stat(folder.c_str(), &status) != 0 || status.st_uid != ::getuid())
-        throw Error(fmt::format("{}: cannot be used for the control socket", folder.string()));
-    fs::permissions(folder, fs::perms::owner_all);
-    // What crashed runs left behind.
-    for (const auto& entry : fs::directory_iterator(folder, failure))
-        if (process_of(entry.path()) == 0) fs::remove(entry.path(), failure);
-    path_ = folder / fmt::format("{}.socket", ::getpid());
-    fs::remove(path_, failure);
-    descriptor_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    const sockaddr_un address = address_of(path_);
-    if (descriptor_ < 0 || ::bind(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
-        ::listen(descriptor_, 8) != 0)
-        throw Error(fmt::format("{}: cannot listen: {}", path_.string(), std::strerror(errno)));
+ControlSocket::ControlSocket()
+    : folder_(ControlFolder::Missing::make), name_(ControlFolder::name_of(static_cast<int>(::getpid()))) {
+    // A socket refuses connections as well between its binding and its listening: only one run is there at a time.
+    const bool is_locked = folder_.lock();
+    if (is_locked) folder_.remove_refusing();
+    Descriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+    const sockaddr_un address = folder_.address(name_);
+    const bool is_bound =
+        socket.number >= 0 && ::bind(socket.number, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    const bool listens = is_bound && ::listen(socket.number, 8) == 0;
+    const int code = errno;
+    if (is_bound && !listens) folder_.remove(name_);
+    if (is_locked) folder_.unlock();
+    if (!listens)
+        throw Error(fmt::format("{}: cannot listen: {}", (control_folder() / name_).string(), std::strerror(code)));
+    descriptor_ = std::exchange(socket.number, -1);
 }
 
 ControlSocket::~ControlSocket() {
     for (const Caller& caller : callers_) ::close(caller.descriptor);
-    if (descriptor_ >= 0) ::close(descriptor_);
-    std::error_code ignored;
-    fs::remove(path_, ignored);
+    ::close(descriptor_);
+    folder_.remove(name_);
 }
 
 bool ControlSocket::listen_to(Caller& caller, const std::function<std::string(const std::string&)>& answer) {
@@ -119,18 +82,26 @@ void ControlSocket::serve(const std::function<std::string(const std::string&)>& 
 }
 
 std::string ask_run(int process, const std::string& line) {
-    const std::vector<int> processes = running();
+    const ControlFolder folder(ControlFolder::Missing::leave);
     if (process == 0) {
+        const std::vector<int> processes = folder.listening();
         if (processes.empty()) throw Error("no patch runs; start one with 'tactus run PATCH'");
         if (processes.size() > 1)
             throw Error(fmt::format("several patches run; say which with --process: {}", fmt::join(processes, ", ")));
         process = processes.front();
     }
-    const fs::path path = control_folder() / fmt::format("{}.socket", process);
     const Descriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)};
-    const sockaddr_un address = address_of(path);
+    const auto refuse = [process](const char* why) {
+        throw Error(fmt::format("process {} does not run a patch of yours: {}", process, why));
+    };
+    if (!folder.is_there()) refuse(std::strerror(ENOENT));
+    const sockaddr_un address = folder.address(ControlFolder::name_of(process));
     if (socket.number < 0 || ::connect(socket.number, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-        throw Error(fmt::format("process {} does not run a patch of yours: {}", process, std::strerror(errno)));
+        refuse(std::strerror(errno));
+    ucred other{};
+    socklen_t size_of_other = sizeof other;
+    if (::getsockopt(socket.number, SOL_SOCKET, SO_PEERCRED, &other, &size_of_other) != 0 || other.uid != ::getuid())
+        refuse("another user listens there");
     const std::string sent = line + "\n";
     if (::send(socket.number, sent.data(), sent.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(sent.size()))
         throw Error(fmt::format("process {}: {}", process, std::strerror(errno)));

@@ -2,15 +2,13 @@
 // How another program talks to a patch that runs: lines of text over a local socket that only its user can reach.
 #pragma once
 
-#include <filesystem>
+#include "tools/control_folder.hpp"
+
 #include <functional>
 #include <string>
 #include <vector>
 
 namespace tactus {
-
-/// Folder of the sockets of this user's runs: $XDG_RUNTIME_DIR/tactus, or one in /tmp.
-std::filesystem::path control_folder();
 
 /// The run's side.
 class ControlSocket {
@@ -24,8 +22,6 @@ public:
     /// Answers every whole line that has come with what `answer` makes of it. Never waits.
     void serve(const std::function<std::string(const std::string& line)>& answer);
 
-    const std::filesystem::path& path() const { return path_; }
-
 private:
     struct Caller {
         int descriptor;
@@ -33,13 +29,14 @@ private:
     };
     bool listen_to(Caller& caller, const std::function<std::string(const std::string&)>& answer);
 
-    std::filesystem::path path_;
+    ControlFolder folder_;
+    std::string name_;
     int descriptor_ = -1;
     std::vector<Caller> callers_;
 };
 
 /// The other side: sends one line to a run and returns its answer. `process` 0: the only one that runs. Throws Error
-/// when there is none, several, or it does not answer within 5 s.
+/// when there is none, several, it is not this user's, or it does not answer within 5 s.
 std::string ask_run(int process, const std::string& line);
 
 }  // namespace tactus

@@ -80,7 +80,7 @@ struct FrameWriter::State {
     OrbitCamera camera;
     bool is_aimed = false;
     int next = 1;
-    std::vector<std::string> files;
+    std::vector<std::string> files, losses;
 
     State(const FrameChoice& wanted, SceneOutline outline, double length, std::filesystem::path where)
         : choice(wanted),
@@ -139,8 +139,12 @@ struct FrameWriter::State {
             std::string name = fmt::format("frame_{:04}", frame);
             if (sight.screens() > 1) name += "_" + file_part(sight.rig()->screens[screen].name);
             name += ".png";
-            write_png(image, (folder / name).string());
-            files.push_back(name);
+            try {
+                write_png(image, (folder / name).string());
+                files.push_back(name);
+            } catch (const Error& error) {
+                losses.emplace_back(error.what());
+            }
         }
     }
 };
@@ -162,5 +166,7 @@ void FrameWriter::advance(double seconds) {
 }
 
 const std::vector<std::string>& FrameWriter::files() const { return state_->files; }
+
+const std::vector<std::string>& FrameWriter::losses() const { return state_->losses; }
 
 }  // namespace tactus

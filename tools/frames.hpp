@@ -28,6 +28,8 @@ public:
     void advance(double seconds);
     /// Names of what was written.
     const std::vector<std::string>& files() const;
+    /// Why a picture could not be written, which it names.
+    const std::vector<std::string>& losses() const;
 
 private:
     struct State;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "assets/file/whole_file.hpp"
 #include "tools/frames.hpp"
 #include "tools/load_plan.hpp"
+#include "tools/output_folder.hpp"
 #include "tools/results.hpp"
+#include "tools/stop_signals.hpp"
 #include "tools/summary.hpp"
 #include "tools/terminal.hpp"
 
@@ -29,7 +30,6 @@ int parse_block(const std::string& text) {
 int render_verb(const RenderChoice& choice) {
     EngineOptions options;
     options.seconds = choice.seconds;
-    options.folder = choice.out;
     options.random_blocks = choice.block == "random";
     if (options.random_blocks) options.block = 480;
     else if (!choice.block.empty()) options.block = parse_block(choice.block);
@@ -41,7 +41,9 @@ int render_verb(const RenderChoice& choice) {
     }
     AssetCache assets;
     Plan plan = load_plan(choice, assets);
-    make_output_folder(choice.out);
+    OutputFolder folder({choice.out, choice.overwrite});
+    options.folder = folder.path();
+    const std::atomic<bool>& interrupted = stop_on_signals();
     std::unique_ptr<TakeWriter> take;
     if (!choice.record.empty()) {
         take = make_take(choice, choice.record, options.seconds, false);
@@ -49,7 +51,7 @@ int render_verb(const RenderChoice& choice) {
     }
     std::unique_ptr<FrameWriter> frames;
     if (choice.frames.frames > 0) {
-        frames = std::make_unique<FrameWriter>(choice.frames, outline_of(plan), options.seconds, choice.out);
+        frames = std::make_unique<FrameWriter>(choice.frames, outline_of(plan), options.seconds, folder.path());
         options.observer = &frames->observer();
     }
     Engine engine(std::move(plan), options);
@@ -59,23 +61,39 @@ int render_verb(const RenderChoice& choice) {
     LiveLine line;
     const auto begin = std::chrono::steady_clock::now();
     engine.render(threads, [&](double done) {
+        if (interrupted) engine.stop();
         if (frames) frames->advance(engine.progress_seconds() - 1e-6);
         line.show(
             fmt::format("{:3.0f} %  {:.1f} s of {:.1f} s", 100.0 * done, done * options.seconds, options.seconds));
     });
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    if (frames) frames->advance(options.seconds);
+    const double ran = engine.progress_seconds();
+    const bool is_whole = !interrupted || ran >= options.seconds;
+    if (frames) frames->advance(is_whole ? options.seconds : ran - 1e-6);
     line.clear();
-    engine.finish();
+    engine.complete();
     const Report report = engine.report();
-    std::vector<std::string> files = write_pictures(report, choice.out);
-    for (std::string& file : write_bones(report, choice.out)) files.push_back(std::move(file));
-    if (frames) files.insert(files.end(), frames->files().begin(), frames->files().end());
-    files.push_back("summary.json");
-    const std::string summary = summary_json(engine, report, options.seconds, false, files);
-    write_whole_file(choice.out / "summary.json", summary);
-    fmt::print("{}", choice.json ? summary : summary_text(engine, report, options.seconds, wall));
-    return done;
+    WrittenFiles written = write_results(report, folder.path());
+    std::vector<std::string> losses = engine.losses();
+    if (frames) {
+        written.names.insert(written.names.end(), frames->files().begin(), frames->files().end());
+        losses.insert(losses.end(), frames->losses().begin(), frames->losses().end());
+    }
+    losses.insert(losses.end(), written.losses.begin(), written.losses.end());
+    written.names.emplace_back("summary.json");
+    const double seconds = is_whole ? options.seconds : ran;
+    const std::string summary = summary_json(engine, report, seconds, false, written.names, losses);
+    try {
+        folder.write_summary(summary);
+    } catch (const Error& error) {
+        losses.emplace_back(error.what());
+    }
+    for (const std::string& loss : losses) say(stderr, fmt::format("tactus: {}\n", loss));
+    say(stdout, choice.json ? summary : summary_text(engine, report, seconds, wall));
+    if (!losses.empty()) return output_lost;
+    if (is_whole) return done;
+    say(stderr, fmt::format("tactus: ended at {:.3f} s of {:.3f} s\n", ran, options.seconds));
+    return answer_is_no;
 }
 
 }  // namespace tactus

@@ -6,6 +6,7 @@
 #include "devices/display/picture_maker.hpp"
 #include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/terminal.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -60,30 +61,35 @@ Image picture_of(const Bone& bone, const std::string& name, const Vec3& towards)
 
 }  // namespace
 
-std::vector<std::string> write_pictures(const Report& report, const std::filesystem::path& folder) {
-    std::vector<std::string> files;
-    for (const auto& [name, result] : report.results) {
-        const auto* bone = std::any_cast<std::shared_ptr<const Bone>>(&result);
-        if (!bone) continue;
+WrittenFiles write_results(const Report& report, const std::filesystem::path& folder) {
+    WrittenFiles written;
+    std::vector<std::string> bones;
+    const auto write = [&written](std::vector<std::string>& names, const std::string& name, const auto& how) {
         try {
-            write_png(picture_of(**bone, name, towards_site(report)), (folder / (name + ".png")).string());
-            files.push_back(name + ".png");
+            how();
+            names.push_back(name);
         } catch (const Error& error) {
-            fmt::print(stderr, "tactus: no picture of the {}: {}\n", name, error.what());
+            written.losses.emplace_back(error.what());
         }
-    }
-    return files;
-}
-
-std::vector<std::string> write_bones(const Report& report, const std::filesystem::path& folder) {
-    std::vector<std::string> files;
+    };
+    // A bone before its picture: it can be drawn again.
+    for (const auto& [name, result] : report.results)
+        if (const auto* bone = std::any_cast<std::shared_ptr<const Bone>>(&result))
+            write(bones, name + ".vdb", [&, file = folder / (name + ".vdb")] { save_bone(**bone, file); });
     for (const auto& [name, result] : report.results) {
         const auto* bone = std::any_cast<std::shared_ptr<const Bone>>(&result);
         if (!bone) continue;
-        save_bone(**bone, folder / (name + ".vdb"));
-        files.push_back(name + ".vdb");
+        Image picture;
+        try {
+            picture = picture_of(**bone, name, towards_site(report));
+        } catch (const Error& error) {
+            say(stderr, fmt::format("tactus: no picture of the {}: {}\n", name, error.what()));
+            continue;
+        }
+        write(written.names, name + ".png", [&] { write_png(picture, (folder / (name + ".png")).string()); });
     }
-    return files;
+    written.names.insert(written.names.end(), bones.begin(), bones.end());
+    return written;
 }
 
 }  // namespace tactus

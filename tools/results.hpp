@@ -10,11 +10,13 @@
 
 namespace tactus {
 
-/// Pictures of the bones in the report, seen from where they were cut. Returns the names of the files written; a
-/// machine that cannot draw is told on standard error.
-std::vector<std::string> write_pictures(const Report& report, const std::filesystem::path& folder);
+struct WrittenFiles {
+    std::vector<std::string> names;
+    std::vector<std::string> losses;  ///< why a file could not be written, which it names
+};
 
-/// The bones of the report as they were cut, one bone file each. Returns the names of the files written.
-std::vector<std::string> write_bones(const Report& report, const std::filesystem::path& folder);
+/// The bones of the report as they were cut, one bone file each, and pictures of them, seen from where they were cut.
+/// A machine that cannot draw is told on standard error.
+WrittenFiles write_results(const Report& report, const std::filesystem::path& folder);
 
 }  // namespace tactus

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/run_session.hpp"
 
-#include "assets/file/whole_file.hpp"
 #include "tools/load_plan.hpp"
 #include "tools/results.hpp"
 #include "tools/summary.hpp"
@@ -24,10 +23,19 @@ namespace {
 // Without --seconds the run lasts until Ctrl-C; a day is as good as for ever and keeps every index small.
 constexpr double for_ever = 86400.0;
 
+/// The log may be anywhere, but not where a recording is.
+void check_log(const Engine& engine, const fs::path& log, const fs::path& folder) {
+    std::error_code ignored;
+    const fs::path file = fs::weakly_canonical(log, ignored);
+    for (const auto& stream : engine.outside().streams)
+        if (!log.empty() && file == fs::weakly_canonical(folder / stream->format().file, ignored))
+            throw Error(fmt::format("--log {}: a recording of the patch goes to this file", log.string()));
+}
+
 }  // namespace
 
 RunSession::RunSession(const RunChoice& choice, AssetCache& assets, Observer* observer)
-    : choice_(choice), assets_(assets), folder_(choice.out) {
+    : choice_(choice), assets_(assets) {
     EngineOptions options;
     options.seconds = choice.seconds.value_or(for_ever);
     options.live = true;
@@ -38,15 +46,18 @@ RunSession::RunSession(const RunChoice& choice, AssetCache& assets, Observer* ob
             throw Error("a card plays at its own pace: --dilate needs --audio file or none");
         if (choice.audio.empty()) options.audio.device = "file";
     }
-    if (folder_.empty()) folder_ = std::filesystem::path(choice.patch).stem().string() + "-run";
-    options.folder = folder_;
     Plan plan = load_plan(choice, assets);
-    make_output_folder(folder_);
+    const bool is_default = choice.out.empty();
+    folder_ = std::make_unique<OutputFolder>(
+        OutputChoice{is_default ? fs::path(fs::path(choice.patch).stem().string() + "-run") : choice.out,
+                     choice.overwrite, is_default || choice.is_further, is_default});
+    options.folder = folder();
     if (!choice.record.empty()) {
         take_ = make_take(choice, choice.record, options.seconds, true);
         options.take = take_.get();
     } else if (choice.keeps_journal) begin_journal(options);
     engine_ = std::make_unique<Engine>(std::move(plan), options);
+    check_log(*engine_, choice.log, folder());
 }
 
 RunSession::~RunSession() { drop_journal(); }
@@ -56,13 +67,13 @@ void RunSession::begin_journal(EngineOptions& options) {
     constexpr std::string_view name = "journal-";
     std::error_code ignored;
     // What runs that were killed have left.
-    for (const auto& entry : fs::directory_iterator(folder_, ignored)) {
+    for (const auto& entry : fs::directory_iterator(folder(), ignored)) {
         const std::string file = entry.path().filename().string();
-        if (!file.starts_with(name)) continue;
+        if (!file.starts_with(name) || file.find_first_not_of("0123456789", name.size()) != file.npos) continue;
         const int owner = std::atoi(file.c_str() + name.size());
         if (owner > 0 && (owner == ::getpid() || ::kill(owner, 0) != 0)) fs::remove_all(entry.path(), ignored);
     }
-    take_ = make_take(choice_, folder_ / fmt::format("{}{}", name, ::getpid()), options.seconds, true);
+    take_ = make_take(choice_, folder() / fmt::format("{}{}", name, ::getpid()), options.seconds, true);
     options.take = take_.get();
     options.record_values = false;
     is_journal_ = true;
@@ -103,16 +114,26 @@ void RunSession::run(const Hooks& hooks, const std::atomic<bool>& stop) {
 }
 
 void RunSession::finish() {
-    engine_->finish();
+    engine_->complete();
     drop_journal();
     const Report report = engine_->report();
-    std::vector<std::string> files = write_pictures(report, folder_);
-    for (std::string& file : write_bones(report, folder_)) files.push_back(std::move(file));
-    files.push_back("summary.json");
+    WrittenFiles written = write_results(report, folder());
+    late_losses_ = std::move(written.losses);
+    written.names.emplace_back("summary.json");
     const double ran = engine_->progress_seconds();
-    json_ = tactus::summary_json(*engine_, report, ran, true, files);
+    json_ = tactus::summary_json(*engine_, report, ran, true, written.names, losses());
     text_ = tactus::summary_text(*engine_, report, ran, wall_s_);
-    write_whole_file(folder_ / "summary.json", json_);
+    try {
+        folder_->write_summary(json_);
+    } catch (const Error& error) {
+        late_losses_.emplace_back(error.what());
+    }
+}
+
+std::vector<std::string> RunSession::losses() const {
+    std::vector<std::string> all = engine_->losses();
+    all.insert(all.end(), late_losses_.begin(), late_losses_.end());
+    return all;
 }
 
 }  // namespace tactus

@@ -4,6 +4,7 @@
 
 #include "engine/engine.hpp"
 #include "tools/live_control.hpp"
+#include "tools/output_folder.hpp"
 #include "tools/verbs.hpp"
 
 #include <atomic>
@@ -11,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tactus {
 
@@ -30,13 +32,15 @@ public:
     /// Error.
     void record(const std::filesystem::path& folder);
     void stop_recording() { engine_->record(false); }
-    /// Completes recordings and writes pictures, bones and the summary. Throws Error.
+    /// Completes recordings and writes pictures, bones and the summary. What finds no room is among the losses.
     void finish();
+    /// What could not be written to its end, and why; grows while it runs.
+    std::vector<std::string> losses() const;
 
     Engine& engine() { return *engine_; }
     /// Null unless it runs and may be edited.
     LiveControl* control() { return control_.get(); }
-    const std::filesystem::path& folder() const { return folder_; }
+    const std::filesystem::path& folder() const { return folder_->path(); }
     /// After `finish`.
     const std::string& summary_json() const { return json_; }
     const std::string& summary_text() const { return text_; }
@@ -47,7 +51,8 @@ private:
 
     RunChoice choice_;
     AssetCache& assets_;
-    std::filesystem::path folder_;
+    std::unique_ptr<OutputFolder> folder_;
+    std::vector<std::string> late_losses_;  // of what is written after the run
     bool is_journal_ = false;  // the take is not asked for yet
     std::unique_ptr<TakeWriter> take_;
     std::unique_ptr<Engine> engine_;

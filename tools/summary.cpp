@@ -74,7 +74,7 @@ double number(const Report& report, const char* section, const char* key, double
 }  // namespace
 
 std::string summary_json(const Engine& engine, const Report& report, double seconds, bool live,
-                         const std::vector<std::string>& files) {
+                         const std::vector<std::string>& files, const std::vector<std::string>& losses) {
     Json json{{"patch", engine.plan().patch.title},
               {"seconds", seconds},
               {"live", live},
@@ -111,6 +111,7 @@ std::string summary_json(const Engine& engine, const Report& report, double seco
     }
     for (const std::string& file : files) all.push_back(file);
     json["files"] = all;
+    json["lost"] = losses;
     json["notices"] = engine.outside().notices;
     return json.dump(2) + "\n";
 }

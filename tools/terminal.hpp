@@ -12,6 +12,12 @@
 
 namespace tactus {
 
+/// Says it, or not: a terminal or pipe that is closed ends nothing.
+inline void say(std::FILE* to, const std::string& text) {
+    std::fputs(text.c_str(), to);
+    std::fflush(to);
+}
+
 /// The first `columns` characters of a UTF-8 line: one that wraps could not be written over.
 inline std::string_view clipped(std::string_view line, std::size_t columns) {
     std::size_t seen = 0;

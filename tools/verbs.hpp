@@ -16,7 +16,7 @@
 
 namespace tactus {
 
-enum ExitCode : int { done = 0, answer_is_no = 1, bad_input = 2 };
+enum ExitCode : int { done = 0, answer_is_no = 1, bad_input = 2, output_lost = 3 };
 
 /// What every verb that takes a patch knows about it.
 struct PatchChoice {
@@ -32,6 +32,7 @@ struct RenderChoice : PatchChoice {
     int threads = 0;      ///< 0: one per core
     std::string block;    ///< "", a number, or "random"
     std::filesystem::path log, record;
+    bool overwrite = false;  ///< results that the folder holds
     FrameChoice frames;
 };
 
@@ -51,6 +52,8 @@ struct RunChoice : PatchChoice {
     std::string audio;         ///< "", "file", "none", "default" or part of a card's name
     double audio_margin = 10;  ///< ms
     std::filesystem::path out, log, record;
+    bool overwrite = false;  ///< results that the folder holds
+    bool is_further = false;  ///< a run before it in the same window has that folder
     bool keeps_journal = false;  ///< so that recording can begin within the run
     bool edits = true;  ///< take over the patch file when it is saved, and listen to 'set'
     ViewChoice view;

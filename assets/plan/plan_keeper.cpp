@@ -80,7 +80,11 @@ void PlanKeeper::finish() {
         save();
     } catch (const Error& error) {
         const fs::path spare = fs::temp_directory_path() / fmt::format("{}.{}", ::getpid(), file_.filename().string());
-        save_case_plan(steps_.plan(), spare);
+        try {
+            save_case_plan(steps_.plan(), spare);
+        } catch (const Error& another) {
+            throw Error(fmt::format("{}; {}", error.message(), another.message()));
+        }
         throw Error(fmt::format("{}; the plan with all of its steps is in {}", error.message(), spare.string()));
     }
 }

@@ -49,6 +49,8 @@ std::vector<float> mix_to_mono(const Sound& sound) {
 struct SoundWriter::File {
     std::filesystem::path path, part;
     SoundHandle handle;
+    sf_count_t frames = 0;  // written
+    bool has_failed = false;
 
     ~File() {
         if (!handle) return;
@@ -78,20 +80,31 @@ SoundWriter::SoundWriter(SoundWriter&&) noexcept = default;
 SoundWriter& SoundWriter::operator=(SoundWriter&&) noexcept = default;
 
 void SoundWriter::write(const float* samples, std::size_t frames) {
-    if (sf_writef_float(file_->handle.get(), samples, static_cast<sf_count_t>(frames)) !=
-        static_cast<sf_count_t>(frames))
-        throw Error(fmt::format("{}: cannot write: {}", file_->path.string(), sf_strerror(file_->handle.get())));
+    const auto wanted = static_cast<sf_count_t>(frames);
+    const sf_count_t written = sf_writef_float(file_->handle.get(), samples, wanted);
+    file_->frames += std::max<sf_count_t>(written, 0);
+    if (written == wanted) return;
+    file_->has_failed = true;
+    const std::string why = sf_strerror(file_->handle.get());
+    keep_whole_frames(file_->handle.get(), file_->frames);
+    throw Error(fmt::format("{}: cannot write: {}", file_->path.string(), why));
 }
 
 void SoundWriter::finish() {
+    if (file_->has_failed && file_->frames == 0) {
+        file_.reset();
+        return;
+    }
     sf_write_sync(file_->handle.get());
     const bool failed = sf_error(file_->handle.get()) != SF_ERR_NO_ERROR || sf_close(file_->handle.release()) != 0;
-    if (failed) {
-        std::error_code ignored;
-        std::filesystem::remove(file_->part, ignored);
-        throw Error(fmt::format("{}: the sound could not be completed; is the disk full?", file_->path.string()));
-    }
-    std::filesystem::rename(file_->part, file_->path);
+    if (failed)
+        throw Error(fmt::format("{}: the sound could not be completed; is the disk full? What was written is in {}",
+                                file_->path.string(), file_->part.string()));
+    std::error_code failure;
+    std::filesystem::rename(file_->part, file_->path, failure);
+    if (failure)
+        throw Error(fmt::format("{}: cannot be renamed to {}: {}", file_->part.string(), file_->path.string(),
+                                failure.message()));
 }
 
 }  // namespace tactus

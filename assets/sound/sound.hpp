@@ -30,7 +30,8 @@ enum class SoundFormat {
     flac,       ///< 24 bit, cut at full scale
 };
 
-/// Writes beside the file (name + ".part") and renames when finished. An unfinished file is removed.
+/// Writes beside the file (name + ".part") and renames when finished. An unfinished file is removed. On a full disk the
+/// sound ends with the last frame that found room.
 /// For offline work and threads without a deadline.
 class SoundWriter {
 public:
@@ -40,9 +41,10 @@ public:
     SoundWriter(SoundWriter&&) noexcept;
     SoundWriter& operator=(SoundWriter&&) noexcept;
 
-    /// `samples`: interleaved, frames × channels. Throws Error when the disk is full.
+    /// `samples`: interleaved, frames × channels. Throws Error when the disk is full; nothing more may be written then.
     void write(const float* samples, std::size_t frames);
-    /// Completes the file under its own name. Throws Error. Nothing may be written afterwards.
+    /// Completes the file under its own name, after a failed `write` too: with what was written; without any sample there
+    /// is no file. Throws Error and leaves the part when that is not possible. Nothing may be written afterwards.
     void finish();
 
 private:

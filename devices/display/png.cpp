@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/display/png.hpp"
 
+#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
-
-#include <fmt/format.h>
-
-#include <filesystem>
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
@@ -16,17 +13,6 @@
 
 namespace tactus {
 
-void write_png(const Image& image, const std::string& path) {
-    const std::string part = path + ".part";
-    std::error_code failure;
-    if (stbi_write_png(part.c_str(), image.width, image.height, 3, image.rgb.data(), 3 * image.width) == 0) {
-        std::filesystem::remove(part, failure);
-        throw Error(fmt::format("cannot write picture '{}'; is the folder there and writable?", path));
-    }
-    std::filesystem::rename(part, path, failure);
-    if (failure) throw Error(fmt::format("cannot rename '{}' to '{}': {}", part, path, failure.message()));
-}
-
 std::string png_bytes(const Image& image) {
     std::string bytes;
     const auto append = [](void* to, void* data, int size) {
@@ -36,5 +22,7 @@ std::string png_bytes(const Image& image) {
         throw Error("a picture cannot be compressed");
     return bytes;
 }
+
+void write_png(const Image& image, const std::string& path) { write_whole_file(path, png_bytes(image)); }
 
 }  // namespace tactus

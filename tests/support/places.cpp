@@ -8,6 +8,8 @@ std::filesystem::path source_folder() { return TACTUS_SOURCE_DIR; }
 
 std::string command() { return TACTUS_COMMAND; }
 
+std::string failing_disk() { return TACTUS_FAILING_DISK; }
+
 std::filesystem::path library_folder() { return std::filesystem::path(command()).parent_path() / "library"; }
 
 }  // namespace tactus::test

@@ -12,6 +12,9 @@ std::filesystem::path source_folder();
 /// The built `tactus`; absolute.
 std::string command();
 
+/// Library for LD_PRELOAD that lets a disk fail, see tests/preload/failing_disk.cpp; absolute.
+std::string failing_disk();
+
 /// The bundled library beside it; absolute.
 std::filesystem::path library_folder();
 

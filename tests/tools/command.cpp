@@ -50,7 +50,7 @@ TEST_CASE("a render leaves recordings and a summary; the hash depends on neither
     const std::string patch = folder.write("good.toml", good).string(), out = (folder.path / "out").string();
     std::string hash;
     for (const char* how : {"--threads 1", "--threads 2 --block 1", "--threads 4 --block 480", "--block random"}) {
-        const Outcome done = folder.tactus("render " + patch + " --seconds 0.2 --out " + out + " " + how);
+        const Outcome done = folder.tactus("render " + patch + " --seconds 0.2 --overwrite --out " + out + " " + how);
         INFO(done.err);
         REQUIRE(done.code == 0);
         const json summary = json::parse(slurp(folder.path / "out/summary.json"));
@@ -186,7 +186,8 @@ TEST_CASE("saw-training saws: forces within limits, bone removed, the same bits 
     const fs::path out = folder.path / "saw";
     std::string hash;
     for (const char* how : {"--threads 1 --block random", "--threads 3"}) {
-        const Outcome done = folder.tactus("render saw-training --seconds 3 --out " + out.string() + " " + how);
+        const Outcome done =
+            folder.tactus("render saw-training --seconds 3 --overwrite --out " + out.string() + " " + how);
         INFO(done.err);
         REQUIRE(done.code == 0);
         const json summary = json::parse(slurp(out / "summary.json"));

@@ -16,8 +16,8 @@ using tactus::test::slurp;
 namespace {
 
 json rendered(const Folder& folder, const std::string& patch, double seconds, const std::string& settings = "") {
-    const Outcome o = folder.tactus("render " + patch + " --seconds " + std::to_string(seconds) + " --out " +
-                                    (folder.path / "out").string() + " " + settings);
+    const Outcome o = folder.tactus("render " + patch + " --seconds " + std::to_string(seconds) +
+                                    " --overwrite --out " + (folder.path / "out").string() + " " + settings);
     INFO(o.err);
     REQUIRE(o.code == 0);
     return json::parse(slurp(folder.path / "out/summary.json"));

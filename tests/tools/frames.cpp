@@ -243,10 +243,11 @@ stereo = "mono"
     for (const Vec3& head : {Vec3(-0.17, -0.45, 0.35), Vec3(0.03, -0.42, 0.45), Vec3(0.23, -0.48, 0.3)}) {
         const std::string at_head =
             fmt::format("\"head.position={} mm, {} mm, {} mm\"", head.x * 1e3, head.y * 1e3, head.z * 1e3);
-        const Outcome outcome = folder.tactus("render " + (folder.path / "still.toml").string() +
-                                              " --seconds 0.1 --frames 1 --stereo side-by-side --rig " +
-                                              (folder.path / "rig.toml").string() + " --head head.pose --set " +
-                                              at_head + " --size 1280x720 --out " + (folder.path / "out").string());
+        const Outcome outcome =
+            folder.tactus("render " + (folder.path / "still.toml").string() +
+                          " --seconds 0.1 --frames 1 --stereo side-by-side --rig " +
+                          (folder.path / "rig.toml").string() + " --head head.pose --set " + at_head +
+                          " --size 1280x720 --overwrite --out " + (folder.path / "out").string());
         INFO(outcome.err);
         REQUIRE(outcome.code == 0);
         OrbitCamera looking;
@@ -283,7 +284,7 @@ low_right = "260 mm, 0 mm, -150 mm"
 high_left = "-260 mm, 0 mm, 150 mm"
 )");
     const std::string render = "render " + (folder.path / "still.toml").string() + " --seconds 0.1 --frames 1 --rig " +
-                               (folder.path / "rig.toml").string() + " --size 800x300 --out " +
+                               (folder.path / "rig.toml").string() + " --size 800x300 --overwrite --out " +
                                (folder.path / "out").string();
     const auto picture = [&](const std::string& how) {
         REQUIRE(folder.tactus(render + " " + how).code == 0);

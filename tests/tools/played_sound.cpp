@@ -171,7 +171,8 @@ bool has_server() {
 }
 
 std::vector<float> rendered(const Folder& folder, const std::string& patch) {
-    const Outcome done = folder.tactus("render " + patch + " --seconds 1.5 --out " + (folder.path / "r").string());
+    const Outcome done =
+        folder.tactus("render " + patch + " --seconds 1.5 --overwrite --out " + (folder.path / "r").string());
     INFO(done.err);
     REQUIRE(done.code == 0);
     const tactus::Sound sound = tactus::load_sound(folder.path / "r/speaker.wav");
@@ -187,7 +188,7 @@ bool plays_the_same(const Folder& folder, int period, bool freewheel, const std:
     const std::string out = (folder.path / "live").string();
     auto playing = std::async(std::launch::async, [&] {
         return folder.tactus("run " + (folder.path / "tone.toml").string() +
-                             " --seconds 1.5 --audio default --audio-margin 500 --out " + out);
+                             " --seconds 1.5 --audio default --audio-margin 500 --overwrite --out " + out);
     });
     const bool listens = recorder.listen_to("PortAudio:out_0");
     if (listens && freewheel) {

@@ -33,7 +33,8 @@ const json& row_of(const json& answer, const std::string& motor, const std::stri
 }
 
 json rendered(const Folder& folder, const std::string& patch, const std::string& more) {
-    const Outcome o = folder.tactus("render " + patch + " --out " + (folder.path / "out").string() + " " + more);
+    const Outcome o =
+        folder.tactus("render " + patch + " --overwrite --out " + (folder.path / "out").string() + " " + more);
     INFO(o.err);
     REQUIRE(o.code == 0);
     return json::parse(slurp(folder.path / "out/summary.json"));
@@ -180,9 +181,10 @@ TEST_CASE("gripper patches: one hash on any threads and blocks, and live when no
     for (const char* patch : {"gripper-wqsm", "gripper-twum", "gripper-on-arm"}) {
         const json one = rendered(folder, patch, "--seconds 1 --threads 1");
         CHECK(rendered(folder, patch, "--seconds 1 --threads 3 --block random")["output_hash"] == one["output_hash"]);
-        const Outcome live = folder.tactus(
-            "run " + std::string(patch) + " --seconds 1 --dilate 4 --audio none --no-edits --json --record " +
-            (folder.path / patch).string() + " --out " + (folder.path / "live").string());
+        const Outcome live =
+            folder.tactus("run " + std::string(patch) +
+                          " --seconds 1 --dilate 4 --audio none --no-edits --json --overwrite --record " +
+                          (folder.path / patch).string() + " --out " + (folder.path / "live").string());
         INFO(live.err);
         REQUIRE(live.code == 0);
         const json summary = json::parse(live.out);

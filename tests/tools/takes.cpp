@@ -78,7 +78,7 @@ TEST_CASE("what cannot be replayed says so before it runs") {
     const std::string render = "render " + (folder.path / "touch.toml").string() + " --seconds 0.1 --out " +
                                (folder.path / "out").string() + " --record " + take;
     REQUIRE(folder.tactus(render).code == 0);
-    const Outcome again = folder.tactus(render);
+    const Outcome again = folder.tactus(render + " --overwrite");
     CHECK(again.code == 2);
     CHECK(again.err.find("there is a take already") != std::string::npos);
 

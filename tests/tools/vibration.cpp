@@ -98,7 +98,7 @@ TEST_CASE("measure finds the actuator's resonance in a patch; equalise makes a f
         CHECK(equaliser["delay_s"].get<double>() <= (std::string(kind) == "minimum" ? 0.002 : 0.0641));
         CHECK(equaliser["voltage_limit_v"] == 3.0);
         const Outcome used = folder.tactus("render saw-vibration --seconds 0.1 --asset equaliser=" + filter +
-                                           " --out " + (folder.path / "out").string());
+                                           " --overwrite --out " + (folder.path / "out").string());
         INFO(used.err);
         CHECK(used.code == 0);
     }

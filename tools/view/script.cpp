@@ -4,6 +4,7 @@
 #include "assets/file/whole_file.hpp"
 #include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/terminal.hpp"
 #include "tools/view/desk.hpp"
 #include "tools/view/spots.hpp"
 
@@ -176,8 +177,9 @@ bool Script::wait_for(const Line& line, Desk& desk, Window& window) {
     if (what == "cost") {
         if (pictures_ == 0) cost_began_ = window.drawn_s();
         if (pictures_ < static_cast<int>(number(line, 1))) return false;
-        fmt::print(stderr, "{} pictures, {:.2f} ms each, {} triangles beside the scene's\n", pictures_,
-                   1e3 * (window.drawn_s() - cost_began_) / pictures_, ImGui::GetIO().MetricsRenderIndices / 3);
+        say(stderr,
+            fmt::format("{} pictures, {:.2f} ms each, {} triangles beside the scene's\n", pictures_,
+                        1e3 * (window.drawn_s() - cost_began_) / pictures_, ImGui::GetIO().MetricsRenderIndices / 3));
         return true;
     }
     if (what == "wheel") {

@@ -2,6 +2,7 @@
 #include "tools/view/view.hpp"
 
 #include "dsp/core/error.hpp"
+#include "tools/terminal.hpp"
 #include "tools/view/desk.hpp"
 #include "tools/view/script.hpp"
 
@@ -11,6 +12,7 @@
 #include <chrono>
 #include <optional>
 #include <thread>
+#include <utility>
 
 namespace tactus::view {
 
@@ -36,7 +38,9 @@ public:
     void open_patch(const RunChoice& choice) {
         close();
         choice_ = choice;
-        bench_ = std::make_unique<Workbench>(choice);
+        // What was opened before may have left results in the folder.
+        choice_.is_further = std::exchange(has_opened_, true);
+        bench_ = std::make_unique<Workbench>(choice_);
         set_up();
     }
 
@@ -125,6 +129,7 @@ private:
     std::unique_ptr<Workbench> bench_;
     std::unique_ptr<Desk> desk_;
     std::string wanted_;
+    bool has_opened_ = false;
 
 public:
     /// Closes the window and leaves the bench with its run.
@@ -148,14 +153,15 @@ int view_run(const RunChoice& choice, const std::atomic<bool>& interrupted) {
     }
     ViewedRun* const run = bench->running();
     if (!run) return done;
-    if (goes_on && !choice.json) fmt::print(stderr, "the window is closed; the patch runs on, Ctrl-C ends it\n");
+    if (goes_on && !choice.json) say(stderr, "the window is closed; the patch runs on, Ctrl-C ends it\n");
     while (!run->is_over()) {
         if (!goes_on || interrupted) run->stop();
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     if (const std::string failure = bench->status()->failure; !failure.empty()) throw Error(failure);
-    fmt::print("{}", choice.json ? run->summary_json() : run->summary_text());
-    return done;
+    for (const std::string& loss : run->losses()) say(stderr, fmt::format("tactus: {}\n", loss));
+    say(stdout, choice.json ? run->summary_json() : run->summary_text());
+    return run->losses().empty() ? done : output_lost;
 }
 
 int view_take(const TakeViewChoice& choice, const std::atomic<bool>& interrupted) {

@@ -53,6 +53,7 @@ void ViewedRun::work() {
         session.finish();
         {
             const std::lock_guard lock(lock_);
+            losses_ = session.losses();
             json_ = session.summary_json();
             text_ = fmt::format("{}  results in {}/\n", session.summary_text(), session.folder().string());
         }
@@ -162,6 +163,11 @@ void ViewedRun::stop_recording() {
         session.stop_recording();
         say(fmt::format("recorded up to {:.2f} s", session.engine().progress_seconds()));
     });
+}
+
+std::vector<std::string> ViewedRun::losses() const {
+    const std::lock_guard lock(lock_);
+    return losses_;
 }
 
 std::string ViewedRun::summary_json() const {

@@ -69,6 +69,8 @@ public:
 
     /// After its end: what the command prints.
     std::string summary_json() const, summary_text() const;
+    /// What it could not write to its end, and why; after it is over.
+    std::vector<std::string> losses() const;
 
 private:
     void work();
@@ -88,6 +90,7 @@ private:
     int tends_ = 0;
     std::size_t told_notices_ = 0;
     std::string json_, text_;
+    std::vector<std::string> losses_;
     std::unique_ptr<RunSession> session_;  // also when it is over: what was seen last stays to be seen
     std::atomic<bool> stop_{false}, over_{false}, saved_{false};
     std::thread thread_;

@@ -257,6 +257,7 @@ void Workbench::run() {
     RunChoice choice = choice_;
     choice.patch = editor_->file().string();
     choice.keeps_journal = true;
+    choice.is_further = choice.is_further || runs_ > 1;
     has_take_ = !choice.record.empty();
     run_ = std::make_unique<ViewedRun>(choice, assets_, *observer_);
     // The next run is another take.

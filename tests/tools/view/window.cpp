@@ -93,7 +93,7 @@ TEST_CASE("a window changes no bit of what a patch computes") {
     folder.write("voice.toml", voice);
     const auto [seen, late] =
         hash_of(display, folder, "run voice.toml --view --seconds 1 --audio file --out out --json");
-    const auto plain = hash_of(display, folder, "render voice.toml --seconds 1 --out out --json").first;
+    const auto plain = hash_of(display, folder, "render voice.toml --seconds 1 --out plain --json").first;
     if (late > 0) WARN("the machine was too busy for the live run to keep its schedule");
     else CHECK(seen == plain);
 }

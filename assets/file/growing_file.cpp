@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/file/growing_file.hpp"
+
+#include "dsp/core/error.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace tactus {
+
+namespace {
+
+constexpr std::size_t most_waiting = 1 << 12;  // bytes
+
+}  // namespace
+
+GrowingFile::GrowingFile(const std::filesystem::path& path, std::filesystem::path shown)
+    : shown_(shown.empty() ? path : std::move(shown)),
+      handle_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+    if (handle_ < 0) fail(errno);
+}
+
+GrowingFile::~GrowingFile() {
+    try {
+        close();
+    } catch (const Error&) {
+        // Whoever wants to know closes it.
+    }
+}
+
+void GrowingFile::fail(int code) {
+    has_failed_ = true;
+    waiting_ = {};
+    ends_ = {};
+    throw Error(fmt::format("{}: cannot be written: {}", shown_.string(), std::strerror(code)));
+}
+
+void GrowingFile::append(std::string_view record) {
+    if (has_failed_) return;
+    waiting_ += record;
+    ends_.push_back(waiting_.size());
+    if (waiting_.size() >= most_waiting) flush();
+}
+
+void GrowingFile::flush() {
+    if (has_failed_) return;
+    std::size_t written = 0;
+    while (written < waiting_.size()) {
+        const ssize_t count = ::write(handle_, waiting_.data() + written, waiting_.size() - written);
+        if (count > 0) {
+            written += static_cast<std::size_t>(count);
+            continue;
+        }
+        if (count < 0 && errno == EINTR) continue;
+        const int code = count < 0 ? errno : EIO;
+        const auto cut = std::ranges::upper_bound(ends_, written);
+        if (cut != ends_.begin()) size_ += static_cast<std::int64_t>(*(cut - 1));
+        // Should that fail as well, a part of a record stands at the end; readers of what a crash left know that.
+        while (::ftruncate(handle_, size_) != 0 && errno == EINTR) {
+        }
+        fail(code);
+    }
+    size_ += static_cast<std::int64_t>(written);
+    waiting_.clear();
+    ends_.clear();
+}
+
+void GrowingFile::close() {
+    if (handle_ < 0) return;
+    const auto shut = [this] { return ::close(std::exchange(handle_, -1)) == 0 || errno == EINTR; };
+    try {
+        flush();
+    } catch (const Error&) {
+        shut();
+        throw;
+    }
+    // Network disks say only now that there was no room.
+    if (!shut() && !has_failed_) fail(errno);
+}
+
+}  // namespace tactus
