@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/file/room.hpp"
+#include "assets/file/whole_file.hpp"
+#include "assets/volume/nrrd_header.hpp"
 #include "assets/volume/readers.hpp"
 #include "assets/volume/sample_stream.hpp"
 #include "dsp/core/error.hpp"
@@ -210,8 +213,7 @@ class NrrdSlices final : public SliceReader {
 public:
     explicit NrrdSlices(const std::filesystem::path& path) {
         const std::string file = path.string();
-        std::error_code failure;
-        if (!std::filesystem::is_regular_file(path, failure)) throw Error(fmt::format("{}: no such file", file));
+        check_nrrd_header(path);
         const NrrdPointer header(nrrdNew(), nrrdNuke);
         const IoPointer io(nrrdIoStateNew(), nrrdIoStateNix);
         nrrdIoStateSet(io.get(), nrrdIoStateSkipData, 1);
@@ -286,6 +288,8 @@ private:
 
     // Text and bzip2: all at once.
     void read_by_teem(const std::string& file) {
+        // Its numbers as they are, and as float.
+        require_room(12.0 * double(about.count()) * double(layers_), file, "its samples");
         const NrrdPointer nrrd(nrrdNew(), nrrdNuke);
         if (nrrdLoad(nrrd.get(), file.c_str(), nullptr)) refuse(file);
         const auto lookup = nrrdFLookup[nrrd->type];
