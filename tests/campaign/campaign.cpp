@@ -6,14 +6,15 @@
 #include "tests/campaign/formats.hpp"
 #include "tests/campaign/limited_run.hpp"
 #include "tests/campaign/mutate.hpp"
-#include "tests/support/places.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <stdexcept>
 
 namespace fs = std::filesystem;
 using namespace tactus::campaign;
@@ -41,27 +42,49 @@ std::pair<fs::path, std::string> make_mutant(const Format& format, const fs::pat
     return {mutant, file.filename().string() + ": " + done};
 }
 
-/// The number of findings.
-int try_mutant(const Format& format, std::uint64_t number, const fs::path& scratch) {
-    int found = 0;
+std::vector<std::string> words_of(const std::vector<std::string>& verb, const fs::path& file) {
+    std::vector<std::string> words{tried_command()};
+    for (std::string word : verb) {
+        if (const std::size_t at = word.find("FILE"); at != std::string::npos) word.replace(at, 4, file.string());
+        words.push_back(std::move(word));
+    }
+    return words;
+}
+
+struct Tally {
+    int findings = 0, refused = 0;
+};
+
+/// Undamaged files must be read, or the damaged ones show nothing. Each verb has a seed that it takes.
+void try_seeds(const Format& format, const fs::path& scratch) {
+    for (const std::vector<std::string>& verb : format.verbs) {
+        bool is_taken = false;
+        for (const fs::path& seed : format.seeds)
+            is_taken = is_taken || (run_limited(words_of(verb, seed), scratch).code & ~1) == 0;
+        if (!is_taken)
+            throw std::runtime_error(fmt::format("no seed of {} is taken by '{}'", format.name, verb.front()));
+    }
+}
+
+Tally try_mutant(const Format& format, std::uint64_t number, const fs::path& scratch) {
+    Tally tally;
     const fs::path folder = scratch / "mutant";
     fs::create_directories(folder);
     const auto [mutant, done] = make_mutant(format, format.seeds[number % format.seeds.size()], number, folder);
     for (const std::vector<std::string>& verb : format.verbs) {
-        std::vector<std::string> words{tactus::test::command()};
-        for (const std::string& word : verb) words.push_back(word == "FILE" ? mutant.string() : word);
-        const std::string failure = run_limited(words, folder);
-        if (failure.empty()) continue;
-        ++found;
+        const RunEnd end = run_limited(words_of(verb, mutant), folder);
+        tally.refused += end.code >= 2;
+        if (end.fault.empty()) continue;
+        ++tally.findings;
         const fs::path kept =
             fs::path("campaign-findings") / fmt::format("{}-{}", format.name, number) / mutant.filename();
         fs::create_directories(kept.parent_path());
         fs::copy(mutant, kept, fs::copy_options::recursive | fs::copy_options::overwrite_existing);
-        fmt::print("{} {} '{}': {}\n  {}\n  kept as {}\n", format.name, number, verb.front(), failure, done,
+        fmt::print("{} {} '{}': {}\n  {}\n  kept as {}\n", format.name, number, verb.front(), end.fault, done,
                    kept.string());
     }
     fs::remove_all(folder);
-    return found;
+    return tally;
 }
 
 }  // namespace
@@ -78,11 +101,16 @@ int main(int count, char** words) {
         fs::create_directories(scratch);
         for (const Format& format : make_formats(scratch)) {
             if (!wanted.empty() && std::ranges::find(wanted, format.name) == wanted.end()) continue;
-            int of_format = 0;
-            for (int n = 0; n < std::atoi(words[1]); ++n)
-                of_format += try_mutant(format, static_cast<std::uint64_t>(n), scratch);
-            fmt::print("{}: {} damaged files, {} findings\n", format.name, words[1], of_format);
-            found += of_format;
+            try_seeds(format, scratch);
+            Tally all;
+            for (int n = 0; n < std::atoi(words[1]); ++n) {
+                const Tally one = try_mutant(format, static_cast<std::uint64_t>(n), scratch);
+                all.findings += one.findings, all.refused += one.refused;
+            }
+            fmt::print("{}: {} damaged files, {} verbs each, {} times refused, {} findings\n", format.name, words[1],
+                       format.verbs.size(), all.refused, all.findings);
+            std::fflush(stdout);
+            found += all.findings;
             ++tried;
         }
     } catch (const std::exception& error) {

@@ -2,7 +2,7 @@
 #include "tests/campaign/formats.hpp"
 
 #include "assets/file/whole_file.hpp"
-#include "assets/volume/packed_file.hpp"
+#include "assets/sound/sound.hpp"
 #include "tests/campaign/limited_run.hpp"
 #include "tests/fuzz/seeds.hpp"
 #include "tests/support/bone_files.hpp"
@@ -12,9 +12,10 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 namespace tactus::campaign {
 
@@ -105,14 +106,41 @@ std::vector<fs::path> with_ending(const fs::path& folder, const std::string& end
     return files;
 }
 
+/// The command, which must do what it is asked.
+void make_by_command(std::vector<std::string> words, const fs::path& folder) {
+    words.insert(words.begin(), tried_command());
+    const RunEnd end = run_limited(words, folder);
+    if (end.code != 0) throw std::runtime_error(fmt::format("'{}' made no seed: {}", words[1], end.fault));
+}
+
 fs::path small_take(const fs::path& folder) {
-    const fs::path take = folder / "take";
-    const std::string failure = run_limited({test::command(), "render", "saw-vibration", "--seconds", "0.02", "--out",
-                                             (folder / "out").string(), "--record", take.string()},
-                                            folder);
-    if (!failure.empty() || !fs::exists(take / "result.json"))
-        throw std::runtime_error("no take could be made of saw-vibration: " + failure);
-    return take;
+    make_by_command({"render", "saw-vibration", "--seconds", "0.02", "--out", "out", "--record", "take"}, folder);
+    return folder / "take";
+}
+
+/// A plan beside its fragments.
+fs::path small_case(const fs::path& folder) {
+    const fs::path made = folder / "case";
+    fs::create_directories(made);
+    for (const char* name : {"a.stl", "b.stl"}) fs::copy_file(folder / "assets_stl/closed.stl", made / name);
+    make_by_command({"plan", "new", "case.plan.json", "a.stl", "b.stl"}, made);
+    return made;
+}
+
+/// 0.7 s, as the shortest that is compared is half a second.
+std::vector<fs::path> small_sounds(const fs::path& folder) {
+    std::vector<float> samples(2 * 700);
+    for (std::size_t n = 0; n < samples.size(); ++n)
+        samples[n] = 0.5f * std::sin(0.01f * static_cast<float>(n * (n % 7)));
+    const fs::path made = folder / "sounds";
+    fs::create_directories(made);
+    for (const auto& [name, format] :
+         {std::pair{"two.wav", SoundFormat::float_wav}, std::pair{"two.flac", SoundFormat::flac}}) {
+        SoundWriter writer(made / name, 2, 1000, format);
+        writer.write(samples.data(), samples.size() / 2);
+        writer.finish();
+    }
+    return files_in(made);
 }
 
 }  // namespace
@@ -146,8 +174,8 @@ std::vector<Format> make_formats(const fs::path& folder) {
          .open = unpack,
          .close = pack_samples},
         {.name = "wav",
-         .seeds = {seed("assets/sound_reader.seeds/small.wav")},
-         .verbs = {{"spectrum", "FILE"}, {"exposure", "FILE"}, {"compare", "FILE", "FILE"}},
+         .seeds = small_sounds(folder),
+         .verbs = {{"spectrum", "FILE"}, {"exposure", "FILE", "--uncalibrated"}, {"compare", "FILE", "FILE"}},
          .close = mend_riff},
         {.name = "nifti",
          .seeds = files_in(folder / "assets_nifti"),
@@ -164,7 +192,10 @@ std::vector<Format> make_formats(const fs::path& folder) {
          .close = pack},
         {.name = "plan",
          .seeds = {seed("assets/plan.seeds/eventful.json")},
-         .verbs = {{"plan", "show", "FILE"}, {"plan", "report", "FILE", "-o", "out.html"}}},
+         .verbs = {{"plan", "show", "FILE"}, {"plan", "show", "FILE", "--json"}}},
+        {.name = "case",
+         .seeds = {small_case(folder)},
+         .verbs = {{"plan", "gap", "FILE/case.plan.json"}, {"plan", "export", "FILE/case.plan.json", "--out", "out"}}},
         {.name = "take", .seeds = {take}, .verbs = {{"replay", "FILE"}, {"replay", "FILE", "--anyway"}}},
         {.name = "log",
          .seeds = {seed("assets/sample_log.seeds/small.csv"), take / "timing.log"},
@@ -176,7 +207,9 @@ std::vector<Format> make_formats(const fs::path& folder) {
          .verbs = {{"check", "FILE"}, {"draw", "FILE"}}},
         {.name = "table",
          .seeds = {seed("assets/tables.seeds/response.csv"), seed("assets/tables.seeds/trajectory.csv")},
-         .verbs = {{"equalise", "FILE", "-o", "out.toml"}, {"check", "peg-in-hole", "--asset", "trajectory=FILE"}}}};
+         .verbs = {{"equalise", "FILE", "-o", "out.toml", "--from", "25", "--to", "80"},
+                   {"render", "peg-in-hole", "--seconds", "0.02", "--out", "out", "--asset", "trajectory=FILE", "--set",
+                    "hand.device=replay"}}}};
     for (const std::string kind : {"stl", "ply", "obj"})
         all.push_back({.name = kind,
                        .seeds = files_in(folder / ("assets_" + kind)),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/campaign/limited_run.hpp"
 
+#include "tests/support/places.hpp"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -8,6 +10,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
 
@@ -33,14 +36,19 @@ namespace {
 
 }  // namespace
 
-std::string run_limited(const std::vector<std::string>& words, const std::filesystem::path& folder,
-                        const RunLimits& limits) {
+std::string tried_command() {
+    const char* other = std::getenv("TACTUS");
+    return other ? other : test::command();
+}
+
+RunEnd run_limited(const std::vector<std::string>& words, const std::filesystem::path& folder,
+                   const RunLimits& limits) {
     std::vector<std::string> copy = words;
     std::vector<char*> pointers;
     for (std::string& word : copy) pointers.push_back(word.data());
     pointers.push_back(nullptr);
     const pid_t child = fork();
-    if (child < 0) return "no process could be made";
+    if (child < 0) return {"no process could be made", -1};
     if (child == 0) become(pointers, folder, limits);
     int status = 0;
     rusage used{};
@@ -55,13 +63,14 @@ std::string run_limited(const std::vector<std::string>& words, const std::filesy
     }
     const double resident_mb = static_cast<double>(used.ru_maxrss) / 1024.0;
     const long processor_s = used.ru_utime.tv_sec + used.ru_stime.tv_sec;
-    if (is_late) return fmt::format("hung for {} s", limits.wall_s);
-    if (processor_s >= limits.processor_s) return fmt::format("took more than {} s", limits.processor_s);
+    const auto fault = [](std::string text) { return RunEnd{std::move(text), -1}; };
+    if (is_late) return fault(fmt::format("hung for {} s", limits.wall_s));
+    if (processor_s >= limits.processor_s) return fault(fmt::format("took more than {} s", limits.processor_s));
     if (WIFSIGNALED(status))
-        return fmt::format("ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
-    if (WEXITSTATUS(status) > 3) return fmt::format("exit code {}", WEXITSTATUS(status));
-    if (resident_mb > limits.resident_mb) return fmt::format("took {:.0f} MB", resident_mb);
-    return {};
+        return fault(fmt::format("ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status))));
+    if (WEXITSTATUS(status) > 3) return fault(fmt::format("exit code {}", WEXITSTATUS(status)));
+    if (resident_mb > limits.resident_mb) return fault(fmt::format("took {:.0f} MB", resident_mb));
+    return {{}, WEXITSTATUS(status)};
 }
 
 }  // namespace tactus::campaign

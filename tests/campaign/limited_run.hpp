@@ -13,9 +13,16 @@ struct RunLimits {
     double resident_mb = 2000.0;
 };
 
-/// Runs `words` in `folder`. Returns what was wrong with its end: a signal, an exit code above 3, too much time or memory;
-/// "" when nothing was.
-std::string run_limited(const std::vector<std::string>& words, const std::filesystem::path& folder,
-                        const RunLimits& limits = {});
+struct RunEnd {
+    std::string fault;  ///< a signal, an exit code above 3, too much time or memory; "" when nothing was wrong
+    int code = -1;
+};
+
+/// The command that is tried: $TACTUS, or the one built beside this program.
+std::string tried_command();
+
+/// Runs `words` in `folder`.
+RunEnd run_limited(const std::vector<std::string>& words, const std::filesystem::path& folder,
+                   const RunLimits& limits = {});
 
 }  // namespace tactus::campaign
