@@ -25,7 +25,8 @@ static_assert(std::endian::native == std::endian::little, "OpenVDB writes number
 
 constexpr std::int64_t vdb_magic = 0x56444220;
 constexpr std::uint32_t vdb_format = 224;
-constexpr std::string_view float_tree = "Tree_float_5_4_3", loading_hints = "__delayedload", skipped = "__passed_over";
+constexpr std::string_view float_tree = "Tree_float_5_4_3", loading_hints = "__delayedload", skipped = "__passed_over",
+                           half_floats = "is_saved_as_half_float";
 static_assert(loading_hints.size() == skipped.size());
 
 enum Packing : std::uint32_t { zip = 1, active_only = 2, blosc = 4 };
@@ -111,7 +112,7 @@ private:
         };
         const std::uint32_t count = take_count(12, "entries of metadata");
         for (std::uint32_t n = 0; n < count; ++n) {
-            take_text();  // name
+            const bool is_half = take_text() == half_floats;
             const std::string_view type = take_text();
             const std::size_t type_at = at_ - type.size();
             const auto* known = std::ranges::find(fixed, type, &std::pair<std::string_view, std::uint32_t>::first);
@@ -120,6 +121,8 @@ private:
                 fail(fmt::format("has metadata that are no known type of {} bytes", size));
             if (type == "bool" && left() > 0 && static_cast<unsigned char>(bytes_[at_]) > 1)
                 fail("has a truth value other than 0 and 1");
+            // OpenVDB goes by this, whatever the grid's type says, and would find half as many bytes in each node.
+            if (is_half && (type != "bool" || left() == 0 || bytes_[at_] != 0)) fail("has numbers of 16 bits");
             if (type == loading_hints) bytes_.replace(type_at, skipped.size(), skipped);
             skip(size);
         }

@@ -118,7 +118,7 @@ TEST_CASE("counts of a bone file that are more than it can hold are refused befo
         CHECK_THAT(refusal(folder, with_number(bytes, tree + 8, 0xffffffffu)), Contains("tiles"));
         CHECK_THAT(refusal(folder, with_number(bytes, tree + 12, 0xffffffffu)), Contains("damaged"));
         CHECK_THAT(refusal(folder, with_number(bytes, tree + 16, 1)), Contains("place"));
-        CHECK_THAT(refusal(folder, bytes.substr(0, bytes.size() - 1)), Contains("too early"));
+        CHECK_THAT(refusal(folder, bytes.substr(0, bytes.size() - 1)), Contains("damaged"));
         CHECK_THAT(refusal(folder, bytes + "x"), Contains("after its last grid"));
     }
 }
@@ -135,6 +135,10 @@ TEST_CASE("bone files of another tree, format or compression are refused") {
     REQUIRE(number_at<std::uint32_t>(bytes, packing) == 6);
     for (const std::uint32_t unknown : {5u, 8u, 0x80000006u})
         CHECK_THAT(refusal(folder, with_number(bytes, packing, unknown)), Contains("compression"));
+    // One more entry of metadata, by which OpenVDB would read two bytes per value.
+    std::string half = with_number(bytes, packing + 4, number_at<std::uint32_t>(bytes, packing + 4) + 1);
+    half.insert(packing + 8, std::string("\x16\0\0\0is_saved_as_half_float\4\0\0\0bool\1\0\0\0\1", 39));
+    CHECK_THAT(refusal(folder, half), Contains("16 bits"));
 }
 
 TEST_CASE("a bone that needs more memory than one file may take is told apart from a damaged one") {
