@@ -13,6 +13,8 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -209,6 +211,23 @@ std::optional<SampleStream> stream_of(const Nrrd& header, const NrrdIoState& io,
     return SampleStream(std::move(pieces), *type, swapped, is_gzip);
 }
 
+// teem reads a number of text into a buffer of fixed size, however long it is.
+void check_text(const std::filesystem::path& path, std::uint64_t start) {
+    constexpr std::size_t longest = 500;
+    std::ifstream file(path, std::ios::binary);
+    file.seekg(static_cast<std::streamoff>(start));
+    std::array<char, 1 << 16> block;
+    std::size_t length = 0;
+    do {
+        file.read(block.data(), block.size());
+        for (const char c : std::span(block).first(static_cast<std::size_t>(file.gcount()))) {
+            length = std::isspace(static_cast<unsigned char>(c)) ? 0 : length + 1;
+            if (length > longest)
+                throw Error(fmt::format("{}: a number of more than {} letters in its text", path.string(), longest));
+        }
+    } while (file);
+}
+
 class NrrdSlices final : public SliceReader {
 public:
     explicit NrrdSlices(const std::filesystem::path& path) {
@@ -233,7 +252,13 @@ public:
         integers_ = nrrdTypeIsIntegral[header->type] != 0;
         flatten_segments();
         stream_ = stream_of(*header, *io, path, about.count() * layers_);
-        if (!stream_) read_by_teem(file);
+        if (stream_) return;
+        if (io->encoding == nrrdEncodingAscii) {
+            const unsigned files = io->dataFNArr ? io->dataFNArr->len : 0;
+            for (unsigned n = 0; n < files; ++n) check_text(path.parent_path() / io->dataFN[n], 0);
+            if (files == 0) check_text(path, end_of_header(path));
+        }
+        read_by_teem(file);
     }
 
     void read(int k, std::span<float> values) override {

@@ -85,3 +85,19 @@ TEST_CASE("an NRRD header of too many lines, or of another format, is refused") 
     write_whole_file(folder / "a.nrrd", "P5\n2 2\n255\nabcd");
     CHECK_THROWS_WITH(read_volume(folder / "a.nrrd"), Contains("does not begin with 'NRRD000'"));
 }
+
+TEST_CASE("samples as text are read; a number of thousands of letters among them is refused") {
+    const TemporaryFolder folder;
+    std::string text = nrrd_with("encoding: ascii");
+    text.resize(text.find("\n\n") + 2);
+    write_whole_file(folder / "a.nrrd", text + "1 2 3 4 5 6 7 8\n");
+    CHECK(read_volume(folder / "a.nrrd").values == std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8});
+    for (const char letter : {'(', '1', 'a'}) {
+        write_whole_file(folder / "a.nrrd", text + "1 2 3 " + std::string(100000, letter) + " 5 6 7 8\n");
+        CHECK_THROWS_WITH(read_volume(folder / "a.nrrd"), Contains("a number of more than 500 letters"));
+    }
+    text.insert(text.size() - 1, "data file: a.txt\n");
+    write_whole_file(folder / "a.nhdr", text);
+    write_whole_file(folder / "a.txt", "1 2 3 " + std::string(100000, '7') + " 5 6 7 8\n");
+    CHECK_THROWS_WITH(read_volume(folder / "a.nhdr"), Contains("a number of more than 500 letters"));
+}
