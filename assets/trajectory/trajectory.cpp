@@ -55,7 +55,7 @@ class Reader {
 public:
     Reader(const std::filesystem::path& path, const TrajectorySelection& selection)
         : file_(path.string()), selection_(selection) {
-        require_file(path);
+        if (std::filesystem::exists(path)) require_file(path);
         stream_.open(path);
         if (!stream_) throw Error(fmt::format("{}: cannot be read", file_));
         std::string line;
