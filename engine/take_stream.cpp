@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/take_stream.hpp"
 
+#include "assets/file/whole_file.hpp"
 #include "assets/sound/open_sound.hpp"
 #include "dsp/core/error.hpp"
 
@@ -134,6 +135,7 @@ struct TakeStreamReader::File {
 TakeStreamReader::TakeStreamReader(const std::filesystem::path& path, const TakeStreamInfo& info)
     : file_(std::make_unique<File>()) {
     SF_INFO format{};
+    if (std::filesystem::exists(path)) require_file(path);
     file_->handle.reset(sf_open(path.c_str(), SFM_READ, &format));
     if (!file_->handle) throw Error(fmt::format("{}: cannot read: {}", path.string(), sf_strerror(nullptr)));
     if (format.channels < 1 || format.channels > 64)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/timing_log.hpp"
 
+#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -89,6 +90,7 @@ void TimingLogWriter::finish() {
 }
 
 TimingLog TimingLog::load(const std::filesystem::path& path, bool may_be_cut) {
+    if (std::filesystem::exists(path)) require_file(path);
     const std::unique_ptr<std::FILE, Closer> file(std::fopen(path.c_str(), "rb"));
     const auto fail = [&path](const std::string& what) { throw Error(fmt::format("{}: {}", path.string(), what)); };
     if (!file) fail(fmt::format("cannot read the timing log: {}", std::strerror(errno)));

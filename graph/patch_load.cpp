@@ -16,21 +16,20 @@ std::string patch_text(const std::filesystem::path& file) {
     const SourceLocation where{file.string(), 0, 0};
     std::error_code failure;
     if (std::filesystem::is_directory(file, failure)) throw Error(where, "is a folder, not a patch");
+    if (std::filesystem::exists(file, failure) && !std::filesystem::is_regular_file(file, failure))
+        throw Error(where, "is a pipe, a socket or a device; write the patch to a file first");
     std::ifstream stream(file, std::ios::binary);
     if (!stream)
         throw Error(where, std::filesystem::exists(file, failure) ? "the patch cannot be read; look at its permissions"
                                                                   : "there is no such patch");
-    // A pipe or a device has no size to ask for, so what is read is bounded instead.
-    constexpr std::size_t largest = 16u << 20;
-    std::string text(64u << 10, '\0');
-    std::size_t used = 0;
-    while (stream.read(text.data() + used, static_cast<std::streamsize>(text.size() - used)), stream.gcount() > 0) {
-        used += static_cast<std::size_t>(stream.gcount());
-        if (used > largest) throw Error(where, fmt::format("larger than {} MB; that is no patch", largest >> 20));
-        if (used == text.size()) text.resize(2 * used);
-    }
+    constexpr std::uintmax_t largest = 16u << 20;
+    const std::uintmax_t size = std::filesystem::file_size(file, failure);
+    if (failure || size > largest)
+        throw Error(where, fmt::format("larger than {} MB; that is no patch", largest >> 20));
+    std::string text(static_cast<std::size_t>(size), '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(size));
     if (stream.bad()) throw Error(where, "the patch cannot be read to its end");
-    text.resize(used);
+    text.resize(static_cast<std::size_t>(stream.gcount()));
     return text;
 }
 

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <exception>
 #include <mutex>
+#include <new>
 
 namespace tactus {
 
@@ -32,6 +33,10 @@ std::vector<std::string> run_batch(std::size_t count, int jobs, std::string_view
         const auto index = static_cast<std::size_t>(n);
         try {
             job(index, tell);
+        } catch (const std::bad_alloc& error) {
+            // Nothing is wrong with the file, which is another exit code; one of many keeps the others' answers.
+            if (count == 1) throw;
+            failures[index] = error.what();
         } catch (const std::exception& error) {
             failures[index] = error.what();
         }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/file/room.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
 #include "tools/analysis_options.hpp"
@@ -20,6 +21,9 @@
 namespace tactus {
 
 namespace {
+
+/// Disk, memory or a device fell short, as opposed to the exit codes of verbs.hpp.
+constexpr int machine_failed = 3;
 
 /// Of pictures and of the window; they need `what`.
 void add_sight_options(CLI::App& verb, SightChoice& choice, CLI::Option* what) {
@@ -98,6 +102,10 @@ void add_frame_options(CLI::App& app, FrameChoice& choice) {
 int command_line(int argc, char** argv) {
     CLI::App app{"Tactus: patches of nodes for haptics, from 60 Hz to audio rate", "tactus"};
     app.require_subcommand(1);
+    app.add_option_function<std::string>(
+           "--memory", [](const std::string& size) { set_memory_limit(parse_memory_size(size)); },
+           "most memory that one file may take, as in \"2 GB\" (default: half of the machine's)")
+        ->trigger_on_parse();
 
     RenderChoice render;
     CLI::App* render_app = app.add_subcommand("render", "run a patch on a virtual clock, as fast as it goes");
@@ -267,8 +275,12 @@ int command_line(int argc, char** argv) {
         return import_verb(bones.import);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? done : bad_input;
+    } catch (const NoRoom& error) {
+        say(stderr, fmt::format("tactus: {}\n", error.what()));
+        return machine_failed;
     } catch (const std::bad_alloc&) {
         say(stderr, "tactus: not enough memory\n");
+        return machine_failed;
     } catch (const std::exception& error) {
         say(stderr, fmt::format("tactus: {}\n", error.what()));
     }

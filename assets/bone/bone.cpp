@@ -4,6 +4,8 @@
 #include "assets/bone/point_bytes.hpp"
 #include "assets/bone/sealed_file.hpp"
 #include "assets/bone/sparse_bone.hpp"
+#include "assets/bone/vdb_check.hpp"
+#include "assets/file/room.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
 
@@ -111,6 +113,7 @@ Grid from_vdb(const openvdb::FloatGrid& vdb, bool is_sparse, const std::string& 
     if (!is_finite(grid.origin) || !is_finite(grid.spacing) ||
         !(std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}) > 0.0))
         throw Error(fmt::format("{}: grid '{}' has no usable origin and spacing", file, vdb.getName()));
+    require_room(claimed * sizeof(float), file, "the samples of one grid");
     grid.values.resize(grid.count());
     for_each_block(grid.size, [&](const openvdb::Coord& first, const openvdb::Coord& end) {
         const auto* leaf = vdb.tree().probeConstLeaf(first);
@@ -300,6 +303,7 @@ void save_bone(const Bone& bone, const std::filesystem::path& path) { save_bones
 std::vector<Bone> load_bones(const std::filesystem::path& path) {
     const std::string file = path.string();
     std::string bytes = read_sealed(path);
+    check_vdb(bytes, file);
     openvdb::initialize();
     try {
         std::vector<Bone> bones = deserialise(std::move(bytes), file);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/file/whole_file.hpp"
 
+#include "assets/file/room.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fcntl.h>
@@ -23,10 +24,7 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 // A file and its size in bytes.
 std::pair<File, std::uintmax_t> open_regular(const std::filesystem::path& path) {
-    std::error_code failure;
-    if (!std::filesystem::is_regular_file(path, failure)) throw Error(fmt::format("{}: no such file", path.string()));
-    const auto size = std::filesystem::file_size(path, failure);
-    if (failure) throw Error(fmt::format("{}: cannot be read: {}", path.string(), failure.message()));
+    const std::uintmax_t size = require_file(path);
     File file(std::fopen(path.c_str(), "rb"), std::fclose);
     if (!file) throw Error(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
     return {std::move(file), size};
@@ -34,8 +32,25 @@ std::pair<File, std::uintmax_t> open_regular(const std::filesystem::path& path) 
 
 }  // namespace
 
+std::uintmax_t require_file(const std::filesystem::path& path) {
+    std::error_code failure;
+    const auto refuse = [&path](const std::string& why) { throw Error(fmt::format("{}: {}", path.string(), why)); };
+    const std::filesystem::file_status status = std::filesystem::status(path, failure);
+    switch (status.type()) {
+        case std::filesystem::file_type::regular: break;
+        case std::filesystem::file_type::not_found: refuse("no such file"); break;
+        case std::filesystem::file_type::directory: refuse("no such file: it is a folder"); break;
+        case std::filesystem::file_type::none: refuse(fmt::format("cannot be read: {}", failure.message())); break;
+        default: refuse("is a pipe, a socket or a device; only files are read. Write it to a file first");
+    }
+    const std::uintmax_t size = std::filesystem::file_size(path, failure);
+    if (failure) refuse(fmt::format("cannot be read: {}", failure.message()));
+    return size;
+}
+
 std::string read_whole_file(const std::filesystem::path& path) {
     const auto [file, size] = open_regular(path);
+    require_room(static_cast<double>(size), path, "its bytes");
     std::string bytes(size, '\0');
     if (std::fread(bytes.data(), 1, size, file.get()) != size)
         throw Error(fmt::format("{}: cannot be read to its end", path.string()));

@@ -4,11 +4,16 @@
 
 #include "dsp/core/hash.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 namespace tactus {
+
+/// Every reader asks this before it opens a file: a pipe or a device would make it wait, or never end. Throws Error
+/// unless `path` is a regular file; gives its size in bytes.
+std::uintmax_t require_file(const std::filesystem::path& path);
 
 /// All bytes of a regular file. Throws Error.
 std::string read_whole_file(const std::filesystem::path& path);

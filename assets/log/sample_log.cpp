@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/log/sample_log.hpp"
 
+#include "assets/file/room.hpp"
+#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -234,11 +236,10 @@ SampleLog read_sample_log(std::string_view text, const std::string& file, const 
 }
 
 SampleLog load_sample_log(const std::filesystem::path& path, const LogSelection& selection) {
-    std::error_code failure;
-    if (!std::filesystem::is_regular_file(path, failure)) throw Error(fmt::format("{}: no such file", path.string()));
-    const std::uintmax_t size = std::filesystem::file_size(path, failure);
-    if (failure || size > std::uintmax_t{1} << 32)
+    const std::uintmax_t size = require_file(path);
+    if (size > std::uintmax_t{1} << 32)
         throw Error(fmt::format("{}: a log of more than 4 GiB; cut it first", path.string()));
+    require_room(static_cast<double>(size), path, "its rows");
     std::ifstream file(path, std::ios::binary);
     std::string text(static_cast<std::size_t>(size), '\0');
     if (!file.read(text.data(), static_cast<std::streamsize>(size)))

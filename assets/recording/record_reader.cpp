@@ -54,6 +54,7 @@ struct RecordReader::Source {
     std::vector<std::string> names;
     Calibration calibration;
     std::optional<LogFacts> log;
+    std::size_t block = 0;  // frames of a sound that are read at once
     std::vector<double> interleaved;
 };
 
@@ -66,7 +67,8 @@ RecordReader::RecordReader(const std::filesystem::path& path, const LogSelection
         source_->rate = source_->sound->rate();
         source_->frames = source_->sound->frames();
         for (std::size_t i = 1; i <= source_->sound->channels(); ++i) source_->names.push_back(std::to_string(i));
-        source_->interleaved.resize(block_frames * source_->names.size());
+        source_->block = std::min(block_frames, source_->frames);
+        source_->interleaved.resize(source_->block * source_->names.size());
     } else {
         const SampleLog log = load_sample_log(path, selection);
         try {
@@ -106,7 +108,7 @@ bool RecordReader::next(RecordBlock& block) {
     block.channels.resize(channels);
     block.after_gap = false;
     if (source.sound) {
-        const std::size_t count = source.sound->read(source.interleaved.data(), block_frames);
+        const std::size_t count = source.sound->read(source.interleaved.data(), source.block);
         for (std::size_t c = 0; c < channels; ++c) {
             block.channels[c].resize(count);
             for (std::size_t i = 0; i < count; ++i)

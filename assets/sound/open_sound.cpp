@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/sound/open_sound.hpp"
 
+#include "assets/file/room.hpp"
+#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +14,12 @@
 namespace tactus {
 
 namespace {
+
+constexpr int fastest_rate = 10'000'000;  // Hz; no sound card or data logger for vibration is faster
+/// Of silence: FLAC packs 65535 samples into some 13 bytes, Vorbis 4096 into two.
+constexpr double most_frames_per_byte = 8192.0;
+/// A length that libsndfile does not know is given as its largest number.
+constexpr sf_count_t unknown_length = sf_count_t{1} << 62;
 
 /// libsndfile plays a RIFF file that lost its tail as if it had been made that short.
 void check_riff_length(const std::filesystem::path& path) {
@@ -33,11 +41,17 @@ SoundHandle open_sound(const std::filesystem::path& path, SF_INFO& info) {
     const auto fail = [&path](const std::string& why) { throw Error(fmt::format("{}: {}", path.string(), why)); };
     if (!std::filesystem::exists(path)) fail("no such sound file");
     if (std::filesystem::is_directory(path)) fail("is a folder, not a sound file");
+    const auto size = static_cast<double>(require_file(path));
     SoundHandle file(sf_open(path.c_str(), SFM_READ, &info));
     if (!file) fail(fmt::format("cannot be read as sound: {}", sf_strerror(nullptr)));
     check_riff_length(path);
     if (info.frames <= 0) fail("the sound is empty");
     if (info.samplerate <= 0 || info.channels <= 0) fail("the sound's header is damaged");
+    if (info.samplerate > fastest_rate)
+        fail(
+            fmt::format("its header claims {} samples per second; at most {} are read", info.samplerate, fastest_rate));
+    if (info.frames < unknown_length)
+        require_possible(static_cast<double>(info.frames), most_frames_per_byte * size, path, "samples");
     return file;
 }
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/sound/sound.hpp"
 
+#include "assets/file/room.hpp"
 #include "assets/sound/open_sound.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace tactus {
@@ -23,10 +25,11 @@ Sound load_sound(const std::filesystem::path& path) {
     if (static_cast<std::size_t>(info.frames) > most_samples / static_cast<std::size_t>(info.channels))
         fail("the sound is longer than 2^28 samples; cut it first");
     Sound sound{info.samplerate, info.channels, static_cast<std::size_t>(info.frames), {}};
+    require_room(double(info.frames) * info.channels * sizeof(float), path, "its samples");
     // A header may claim anything: memory grows with what is really there.
-    constexpr std::size_t chunk_frames = 65536;
+    const std::size_t chunk_frames = std::min<std::size_t>(65536, sound.frames);
     std::vector<float> chunk(chunk_frames * static_cast<std::size_t>(info.channels));
-    for (sf_count_t got; (got = sf_readf_float(file.get(), chunk.data(), chunk_frames)) > 0;)
+    for (sf_count_t got; (got = sf_readf_float(file.get(), chunk.data(), static_cast<sf_count_t>(chunk_frames))) > 0;)
         sound.samples.insert(sound.samples.end(), chunk.begin(), chunk.begin() + got * info.channels);
     if (sf_error(file.get()) != SF_ERR_NO_ERROR) fail(fmt::format("the sound is damaged: {}", sf_strerror(file.get())));
     if (sound.samples.size() != sound.frames * static_cast<std::size_t>(sound.channels)) fail("the sound is cut short");

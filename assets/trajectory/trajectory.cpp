@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/trajectory/trajectory.hpp"
 
+#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -53,7 +54,9 @@ constexpr std::array<Unit, 1> bare{{{"", 1.0}}};
 class Reader {
 public:
     Reader(const std::filesystem::path& path, const TrajectorySelection& selection)
-        : file_(path.string()), selection_(selection), stream_(path) {
+        : file_(path.string()), selection_(selection) {
+        if (std::filesystem::exists(path)) require_file(path);
+        stream_.open(path);
         if (!stream_) throw Error(fmt::format("{}: cannot be read", file_));
         std::string line;
         if (!next(line)) fail(1, "the file is empty; a header line with column names is needed");

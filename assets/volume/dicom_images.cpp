@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/volume/dicom_images.hpp"
 
+#include "assets/file/room.hpp"
 #include "assets/volume/dicom_elements.hpp"
 #include "dsp/core/error.hpp"
 
@@ -222,6 +223,8 @@ std::vector<float> dicom_samples(const std::vector<DicomImage>& images) {
         if (bytes == 4 && first.syntax == big_endian) refuse("GDCM swaps its samples of 32 bits wrongly");
         const std::size_t each = static_cast<std::size_t>(first.rows) * static_cast<std::size_t>(first.columns);
         if (picture.GetBufferLength() != each * images.size() * bytes) refuse("not as many samples as its header says");
+        // Its bytes as GDCM keeps them, as they are handed out, and as float.
+        require_room(double(picture.GetBufferLength()) * (2.0 + sizeof(float) / double(bytes)), file, "its samples");
         std::vector<char> buffer(picture.GetBufferLength());
         if (!picture.GetBuffer(buffer.data())) refuse("damaged or cut short");
         std::vector<float> values(each * images.size());
@@ -234,6 +237,8 @@ std::vector<float> dicom_samples(const std::vector<DicomImage>& images) {
         }
         return values;
     } catch (const Error&) {
+        throw;
+    } catch (const NoRoom&) {
         throw;
     } catch (const std::exception& failure) {
         refuse(failure.what());

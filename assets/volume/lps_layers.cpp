@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/volume/lps_layers.hpp"
 
+#include "assets/file/room.hpp"
 #include "dsp/core/error.hpp"
 
 #include <glm/common.hpp>
@@ -244,6 +245,7 @@ Grid LpsLayers::layers(int first, int count, const Window& window) {
              layout_.position(i0, j0, first),
              layout_.spacing,
              {}};
+    require_room(double(out.count()) * sizeof(float), reader_.about.source, "some of its slices");
     out.values.resize(out.count());
     const bool labels = reader_.about.kind == VolumeKind::labels;
     run_(count, [&](int layer) {
@@ -270,6 +272,7 @@ Grid part_of(LpsLayers& layers, const std::array<int, 3>& low, const std::array<
     const Grid& all = layers.layout();
     Grid out{{}, all.position(low[0], low[1], low[2]), all.spacing, {}};
     for (std::size_t a = 0; a < 3; ++a) out.size[a] = high[a] - low[a] + 1;
+    require_room(double(out.count()) * sizeof(float), layers.source(), "its samples");
     out.values.resize(out.count());
     for (int k = 0; k < out.size[2]; k += at_once) {
         const Grid slab =

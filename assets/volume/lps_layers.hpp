@@ -29,6 +29,7 @@ public:
     /// Size, origin and spacing; no values.
     const Grid& layout() const { return layout_; }
     bool is_turned() const { return turned_; }
+    const std::string& source() const { return reader_.about.source; }
 
     /// Sets what the values mean (reader.about.kind, .hu): reads all slices that nobody asked for yet.
     void settle();

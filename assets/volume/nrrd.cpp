@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/file/room.hpp"
+#include "assets/file/whole_file.hpp"
+#include "assets/volume/nrrd_header.hpp"
 #include "assets/volume/readers.hpp"
 #include "assets/volume/sample_stream.hpp"
 #include "dsp/core/error.hpp"
@@ -10,6 +13,8 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -206,12 +211,28 @@ std::optional<SampleStream> stream_of(const Nrrd& header, const NrrdIoState& io,
     return SampleStream(std::move(pieces), *type, swapped, is_gzip);
 }
 
+// teem reads a number of text into a buffer of fixed size, however long it is.
+void check_text(const std::filesystem::path& path, std::uint64_t start) {
+    constexpr std::size_t longest = 500;
+    std::ifstream file(path, std::ios::binary);
+    file.seekg(static_cast<std::streamoff>(start));
+    std::array<char, 1 << 16> block;
+    std::size_t length = 0;
+    do {
+        file.read(block.data(), block.size());
+        for (const char c : std::span(block).first(static_cast<std::size_t>(file.gcount()))) {
+            length = std::isspace(static_cast<unsigned char>(c)) ? 0 : length + 1;
+            if (length > longest)
+                throw Error(fmt::format("{}: a number of more than {} letters in its text", path.string(), longest));
+        }
+    } while (file);
+}
+
 class NrrdSlices final : public SliceReader {
 public:
     explicit NrrdSlices(const std::filesystem::path& path) {
         const std::string file = path.string();
-        std::error_code failure;
-        if (!std::filesystem::is_regular_file(path, failure)) throw Error(fmt::format("{}: no such file", file));
+        check_nrrd_header(path);
         const NrrdPointer header(nrrdNew(), nrrdNuke);
         const IoPointer io(nrrdIoStateNew(), nrrdIoStateNix);
         nrrdIoStateSet(io.get(), nrrdIoStateSkipData, 1);
@@ -231,7 +252,13 @@ public:
         integers_ = nrrdTypeIsIntegral[header->type] != 0;
         flatten_segments();
         stream_ = stream_of(*header, *io, path, about.count() * layers_);
-        if (!stream_) read_by_teem(file);
+        if (stream_) return;
+        if (io->encoding == nrrdEncodingAscii) {
+            const unsigned files = io->dataFNArr ? io->dataFNArr->len : 0;
+            for (unsigned n = 0; n < files; ++n) check_text(path.parent_path() / io->dataFN[n], 0);
+            if (files == 0) check_text(path, end_of_header(path));
+        }
+        read_by_teem(file);
     }
 
     void read(int k, std::span<float> values) override {
@@ -286,6 +313,8 @@ private:
 
     // Text and bzip2: all at once.
     void read_by_teem(const std::string& file) {
+        // Its numbers as they are, and as float.
+        require_room(12.0 * double(about.count()) * double(layers_), file, "its samples");
         const NrrdPointer nrrd(nrrdNew(), nrrdNuke);
         if (nrrdLoad(nrrd.get(), file.c_str(), nullptr)) refuse(file);
         const auto lookup = nrrdFLookup[nrrd->type];

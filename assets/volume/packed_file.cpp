@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/volume/packed_file.hpp"
 
+#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fcntl.h>
@@ -51,21 +52,19 @@ void unpack(std::span<const char> bytes, SampleType type, bool swapped, std::spa
 
 PackedFile::PackedFile(const std::filesystem::path& path, std::uint64_t start, bool may_be_packed)
     : name_(path.string()) {
-    std::error_code failure;
-    if (!std::filesystem::is_regular_file(path, failure)) throw Error(fmt::format("{}: no such file", name_));
-    const std::uintmax_t size = std::filesystem::file_size(path, failure);
-    if (!failure && start > size) throw Error(fmt::format("{}: cut short; copy the file again", name_));
+    const std::uintmax_t size = require_file(path);
+    if (start > size) throw Error(fmt::format("{}: cut short; copy the file again", name_));
     size_ = static_cast<double>(size - start);
     if (!may_be_packed) {
         plain_.open(path, std::ios::binary);
         plain_.seekg(static_cast<std::streamoff>(start));
-        if (failure || !plain_) throw Error(fmt::format("{}: cannot be read", name_));
+        if (!plain_) throw Error(fmt::format("{}: cannot be read", name_));
         return;
     }
     const int descriptor = open(name_.c_str(), O_RDONLY | O_CLOEXEC);
     if (descriptor >= 0 && lseek(descriptor, static_cast<off_t>(start), SEEK_SET) >= 0)
         file_ = gzdopen(descriptor, "rb");
-    if (failure || !file_) {
+    if (!file_) {
         if (descriptor >= 0 && !file_) close(descriptor);
         throw Error(fmt::format("{}: cannot be read", name_));
     }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/file/whole_file.hpp"
 #include "assets/volume/readers.hpp"
 #include "dsp/core/error.hpp"
 
@@ -25,6 +26,7 @@ bool ends_with(const std::filesystem::path& path, std::string_view ending) {
 // The first bytes tell NRRD and DICOM; gzip'ed files and NIfTI go by their names.
 Format format_of(const std::filesystem::path& path) {
     if (std::filesystem::is_directory(path)) return Format::dicom;
+    require_file(path);
     if (ends_with(path, ".nrrd") || ends_with(path, ".nhdr")) return Format::nrrd;
     if (ends_with(path, ".nii") || ends_with(path, ".nii.gz")) return Format::nifti;
     if (ends_with(path, ".inv3")) return Format::inv3;
@@ -39,7 +41,6 @@ Format format_of(const std::filesystem::path& path) {
 bool is_volume_file(const std::filesystem::path& path) { return format_of(path) != Format::none; }
 
 std::unique_ptr<SliceReader> open_volume(const std::filesystem::path& path, const ReadOptions& options) {
-    if (!std::filesystem::exists(path)) throw Error(fmt::format("{}: no such file", path.string()));
     switch (format_of(path)) {
         case Format::nrrd: return open_nrrd(path);
         case Format::nifti: return open_nifti(path);

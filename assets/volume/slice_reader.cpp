@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/volume/slice_reader.hpp"
 
+#include "assets/file/room.hpp"
 #include "dsp/volume/value_range.hpp"
 
 #include <algorithm>
@@ -55,6 +56,7 @@ void Tally::add(const Tally& other) {
 }
 
 ScanVolume read_all(SliceReader& reader) {
+    require_room(double(reader.about.count()) * sizeof(float), reader.about.source, "its samples");
     std::vector<float> values(reader.about.count());
     Tally tally;
     const std::size_t each = reader.slice_size();

@@ -24,8 +24,10 @@ WelchSettings hann(double rate, std::size_t segment, std::size_t overlap) {
 }
 
 /// Half a second, in segments short enough that a wavering line stays one and long enough to part the lines of a saw.
-WelchSettings block_settings(double rate) {
-    const std::size_t segment = std::bit_floor(static_cast<std::size_t>(std::max(64.0, 0.25 * rate)));
+/// A record that is shorter fills none, and needs no room for one.
+WelchSettings block_settings(double rate, std::size_t frames) {
+    const double longest = std::min(0.25 * rate, static_cast<double>(frames));
+    const std::size_t segment = std::bit_floor(static_cast<std::size_t>(std::max(64.0, longest)));
     return hann(rate, segment, segment * 3 / 4);
 }
 
@@ -47,7 +49,7 @@ VibrationAnalysis::VibrationAnalysis(const AnalysisSettings& settings, std::size
     : settings_(settings),
       lines_(hann(settings.psd.rate, suggested_segment(settings.psd.rate, frames),
                   suggested_segment(settings.psd.rate, frames) / 2)),
-      block_(block_settings(settings.psd.rate)),
+      block_(block_settings(settings.psd.rate, frames)),
       fresh_block_(block_),
       block_length_(static_cast<std::size_t>(std::ceil(0.5 * settings.psd.rate))) {
     const std::size_t segment = suggested_segment(settings.psd.rate, frames);

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <limits>
 #include <string>
 
@@ -136,4 +137,27 @@ TEST_CASE("a full disk and a missing folder are errors, not lost sounds") {
 TEST_CASE("mono is the mean of the channels") {
     Sound sound{48000, 2, 2, {1.0f, 0.0f, -0.5f, 0.25f}};
     CHECK(mix_to_mono(sound) == std::vector<float>{0.5f, -0.125f});
+}
+
+TEST_CASE("a header with a rate, or a number of samples, that cannot be is refused") {
+    const TemporaryFolder folder;
+    write(folder / "a.wav", ramp_samples(12000), 1, SoundFormat::float_wav);
+    const auto with_rate = [&](std::uint32_t rate) {
+        std::fstream file(folder / "a.wav", std::ios::in | std::ios::out | std::ios::binary);
+        file.seekp(24);
+        file.write(reinterpret_cast<const char*>(&rate), sizeof rate);
+    };
+    with_rate(10'000'000);
+    CHECK(load_sound(folder / "a.wav").frames == 12000);
+    for (const std::uint32_t rate : {10'000'001u, 2'100'000'000u}) {
+        with_rate(rate);
+        CHECK_THROWS_WITH(load_sound(folder / "a.wav"), Catch::Contains("samples per second"));
+    }
+    // STREAMINFO of FLAC: 36 bits of samples, whose lowest 32 lie at byte 22.
+    write(folder / "a.flac", ramp_samples(12000), 1, SoundFormat::flac);
+    std::fstream file(folder / "a.flac", std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(22);
+    file.write("\x7f\xff\xff\xff", 4);
+    file.close();
+    CHECK_THROWS_WITH(load_sound(folder / "a.flac"), Catch::Contains("more than a file of its size can hold"));
 }

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/bone/vdb_check.hpp"
+
+#include "assets/bone/bone.hpp"
+#include "assets/bone/sealed_file.hpp"
+#include "assets/file/room.hpp"
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/random.hpp"
+#include "tests/assets/bone/temporary_folder.hpp"
+#include "tests/support/bone_files.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cstdint>
+#include <cstring>
+
+using namespace tactus;
+using Catch::Matchers::Contains;
+using test::repacked;
+using test::sealed;
+
+namespace {
+
+constexpr std::uint32_t packings[] = {0, 1, 2, 3, 4, 6};
+
+// Blocks that are full, cut, smooth (they pack well) and noisy (they do not).
+Bone small_bone() {
+    Bone bone;
+    bone.name = "block";
+    bone.distance.size = {17, 8, 8};
+    bone.distance.spacing = Vec3(1e-3);
+    bone.density = bone.distance;
+    const Random random{3};
+    for (std::size_t i = 0; i < bone.distance.count(); ++i) {
+        bone.distance.values.push_back(i % 17 < 8 ? 1e-3f : static_cast<float>(random.normal(i)));
+        bone.density.values.push_back(1000.0f);
+    }
+    return bone;
+}
+
+std::string bone_bytes(const TemporaryFolder& folder, std::uint32_t packing) {
+    save_bone(small_bone(), folder / "whole.vdb");
+    return repacked(read_sealed(folder / "whole.vdb"), packing);
+}
+
+std::string refusal(const TemporaryFolder& folder, const std::string& bytes) {
+    write_whole_file(folder / "mutant.vdb", sealed(bytes));
+    try {
+        load_bones(folder / "mutant.vdb");
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+template <typename T>
+T number_at(const std::string& bytes, std::size_t at) {
+    T number;
+    std::memcpy(&number, bytes.data() + at, sizeof number);
+    return number;
+}
+
+template <typename T>
+std::string with_number(std::string bytes, std::size_t at, T number) {
+    std::memcpy(bytes.data() + at, &number, sizeof number);
+    return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("a bone file with its seal computed anew loads back, whatever its compression") {
+    const TemporaryFolder folder;
+    for (const std::uint32_t packing : packings) {
+        CAPTURE(packing);
+        write_whole_file(folder / "a.vdb", sealed(bone_bytes(folder, packing)));
+        CHECK(load_bone(folder / "a.vdb").distance.values == small_bone().distance.values);
+    }
+}
+
+TEST_CASE("a chunk of a bone file that is not as long as its node is refused, packed or not, of either sign") {
+    const TemporaryFolder folder;
+    for (const std::uint32_t packing : {1u, 3u, 4u, 6u}) {
+        const std::string bytes = bone_bytes(folder, packing);
+        const std::size_t first_tree = bytes.find("Tree_float_5_4_3");
+        int sizes = 0;
+        // All places at which a number might be the size of a chunk.
+        for (std::size_t at = first_tree + 16; at + 8 <= bytes.size(); ++at) {
+            const auto old = number_at<std::int64_t>(bytes, at);
+            if (old == 0 || old > 150000 || old < -150000 || (old > 0 && old % 256 == 0)) continue;
+            for (const std::int64_t size :
+                 {std::int64_t{-1} << 20, std::int64_t{1} << 20, -old - 4, old + 4, INT64_MIN, INT64_MAX}) {
+                CAPTURE(packing, at, old, size);
+                // Other numbers than sizes may be anything; what counts is that OpenVDB is not reached with a wrong one.
+                const std::string said = refusal(folder, with_number(bytes, at, size));
+                sizes += said.find("chunk") != std::string::npos;
+            }
+        }
+        CAPTURE(packing);
+        CHECK(sizes >= 12);
+    }
+}
+
+TEST_CASE("counts of a bone file that are more than it can hold are refused before memory is taken") {
+    const TemporaryFolder folder;
+    for (const std::uint32_t packing : packings) {
+        const std::string bytes = bone_bytes(folder, packing);
+        CAPTURE(packing);
+        // Number of metadata behind the head, their first name's length, and of grids behind them.
+        CHECK_THAT(refusal(folder, with_number(bytes, 57, 0x7fffffffu)), Contains("metadata"));
+        CHECK_THAT(refusal(folder, with_number(bytes, 61, 0xffffffffu)), Contains("characters"));
+        const std::size_t grid = bytes.find("distance") - 4;
+        CHECK_THAT(refusal(folder, with_number(bytes, grid - 4, 0x7fffffffu)), Contains("grids"));
+        // Behind the transform: buffers, background, tiles, children.
+        const std::size_t tree = bytes.find("ScaleMap", grid) + 8 + 120;
+        REQUIRE(number_at<std::uint32_t>(bytes, tree) == 1);
+        CHECK_THAT(refusal(folder, with_number(bytes, tree, 2u)), Contains("several buffers"));
+        CHECK_THAT(refusal(folder, with_number(bytes, tree + 8, 0xffffffffu)), Contains("tiles"));
+        CHECK_THAT(refusal(folder, with_number(bytes, tree + 12, 0xffffffffu)), Contains("damaged"));
+        CHECK_THAT(refusal(folder, with_number(bytes, tree + 16, 1)), Contains("place"));
+        CHECK_THAT(refusal(folder, bytes.substr(0, bytes.size() - 1)), Contains("damaged"));
+        CHECK_THAT(refusal(folder, bytes + "x"), Contains("after its last grid"));
+    }
+}
+
+TEST_CASE("bone files of another tree, format or compression are refused") {
+    const TemporaryFolder folder;
+    const std::string bytes = bone_bytes(folder, 6);
+    CHECK_THAT(refusal(folder, with_number(bytes, 8, 220u)), Contains("format 220"));
+    CHECK_THAT(refusal(folder, with_number(bytes, 8, 225u)), Contains("format 225"));
+    std::string other = bytes;
+    CHECK_THAT(refusal(folder, other.replace(bytes.find("Tree_float"), 10, "Tree_int32")),
+               Contains("Tree_float_5_4_3"));
+    const std::size_t packing = bytes.find("Tree_float_5_4_3") + 16 + 4 + 24;
+    REQUIRE(number_at<std::uint32_t>(bytes, packing) == 6);
+    for (const std::uint32_t unknown : {5u, 8u, 0x80000006u})
+        CHECK_THAT(refusal(folder, with_number(bytes, packing, unknown)), Contains("compression"));
+    // One more entry of metadata, by which OpenVDB would read two bytes per value.
+    std::string half = with_number(bytes, packing + 4, number_at<std::uint32_t>(bytes, packing + 4) + 1);
+    half.insert(packing + 8, std::string("\x16\0\0\0is_saved_as_half_float\4\0\0\0bool\1\0\0\0\1", 39));
+    CHECK_THAT(refusal(folder, half), Contains("16 bits"));
+}
+
+TEST_CASE("a bone that needs more memory than one file may take is told apart from a damaged one") {
+    const TemporaryFolder folder;
+    save_bone(small_bone(), folder / "a.vdb");
+    const std::uint64_t before = memory_limit();
+    set_memory_limit(100'000);
+    CHECK_THROWS_AS(load_bone(folder / "a.vdb"), NoRoom);
+    set_memory_limit(before);
+    CHECK_NOTHROW(load_bone(folder / "a.vdb"));
+}

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/file/room.hpp"
+
+#include "assets/file/whole_file.hpp"
+#include "assets/log/sample_log.hpp"
+#include "assets/sound/sound.hpp"
+#include "assets/trajectory/trajectory.hpp"
+#include "assets/volume/scan_volume.hpp"
+#include "dsp/core/error.hpp"
+#include "tests/assets/bone/temporary_folder.hpp"
+
+#include <sys/stat.h>
+#include <catch2/catch.hpp>
+
+using namespace tactus;
+using Catch::Matchers::Contains;
+
+TEST_CASE("sizes of memory are read with their units; what is none is refused") {
+    CHECK(parse_memory_size("2 GB") == 2'000'000'000u);
+    CHECK(parse_memory_size("1.5GiB") == 1'610'612'736u);
+    CHECK(parse_memory_size("500 MB") == 500'000'000u);
+    CHECK(parse_memory_size("2000000") == 2'000'000u);
+    for (const char* text : {"", "GB", "-2 GB", "0", "2 XB", "1 kB", "nan GB", "1e300 GB", "2 GB or so"}) {
+        CAPTURE(text);
+        CHECK_THROWS_WITH(parse_memory_size(text), Contains("is no size of memory"));
+    }
+}
+
+TEST_CASE("what needs more than the limit is short memory; what a file cannot hold is a damaged file") {
+    const std::uint64_t before = memory_limit();
+    set_memory_limit(1'000'000);
+    CHECK_NOTHROW(require_room(1e6, "a.nii", "its samples"));
+    CHECK_THROWS_AS(require_room(1.1e6, "a.nii", "its samples"), NoRoom);
+    set_memory_limit(before);
+    CHECK_NOTHROW(require_possible(10.0, 10.0, "a.wav", "samples"));
+    CHECK_THROWS_AS(require_possible(11.0, 10.0, "a.wav", "samples"), Error);
+}
+
+TEST_CASE("pipes and devices are refused by every reader, without waiting for them") {
+    const TemporaryFolder folder;
+    const std::string refusal = "is a pipe, a socket or a device";
+    for (const char* ending : {"", ".nrrd", ".nii", ".inv3", ".dcm", ".wav", ".csv"}) {
+        const auto pipe = folder / ("pipe" + std::string(ending));
+        REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+        CAPTURE(ending);
+        Hash hash;
+        CHECK_THROWS_WITH(read_whole_file(pipe), Contains(refusal));
+        CHECK_THROWS_WITH(add_file(hash, pipe), Contains(refusal));
+        CHECK_THROWS_WITH(read_volume(pipe), Contains(refusal));
+        CHECK_THROWS_WITH(load_sound(pipe), Contains(refusal));
+        CHECK_THROWS_WITH(load_sample_log(pipe, {}), Contains(refusal));
+        CHECK_THROWS_WITH(read_trajectory(pipe, {}), Contains(refusal));
+    }
+    CHECK_THROWS_WITH(read_whole_file("/dev/zero"), Contains(refusal));
+}

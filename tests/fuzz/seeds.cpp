@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/fuzz/seeds.hpp"
+
+#include "assets/bone/bone.hpp"
+#include "assets/bone/sealed_file.hpp"
+#include "assets/file/whole_file.hpp"
+#include "assets/mesh/write_mesh.hpp"
+#include "assets/volume/write_volume.hpp"
+#include "tests/assets/volume/written_volume.hpp"
+#include "tests/support/bone_files.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace tactus {
+
+namespace {
+
+using Path = std::filesystem::path;
+
+// A ball of bone, small enough that a mutated file is tried thousands of times per second.
+WrittenVolume ball() {
+    WrittenVolume v;
+    v.size = {6, 5, 4};
+    v.step = Mat3(Vec3(0.5, 0.0, 0.0), Vec3(0.0, 0.6, 0.0), Vec3(0.0, 0.0, 1.5));
+    v.origin = {-1.5, -1.5, 10.0};
+    v.fill([](const Vec3& p) { return glm::length(p - Vec3(0.0, 0.0, 12.0)) < 1.2 ? 1000.0 : -1000.0; });
+    return v;
+}
+
+void write_nrrd(const Path& folder) {
+    const WrittenVolume v = ball();
+    std::string plain = nrrd_bytes(v);
+    write_whole_file(folder / "raw.nrrd", plain);
+    const std::size_t end = plain.find("\n\n");
+    write_whole_file(folder / "named.nrrd",
+                     std::string(plain).insert(end,
+                                               "\nSegment0_ID:=a\nSegment0_LabelValue:=1\nSegment0_Name:=jaw\n"
+                                               "Segment0_Color:=0.9 0.8 0.7\nSegment0_Layer:=0"));
+    std::string text = plain.substr(0, end + 2);
+    text.replace(text.find("encoding: raw"), 13, "encoding: ascii");
+    for (const std::int16_t value : v.hu) text += fmt::format("{} ", value);
+    write_whole_file(folder / "ascii.nrrd", text);
+    Grid grid{v.size, v.origin * 1e-3, Vec3(0.5e-3, 0.6e-3, 1.5e-3), {}};
+    grid.values.assign(v.hu.begin(), v.hu.end());
+    write_volume(grid, SampleType::int16, folder / "gzip.nrrd");
+    write_whole_file(folder / "layers.nrrd",
+                     "NRRD0005\ntype: uchar\ndimension: 4\nspace: right-anterior-superior\nsizes: 2 3 2 2\n"
+                     "space directions: none (1,0,0) (0,1,0) (0,0,1)\nkinds: list domain domain domain\n"
+                     "encoding: raw\nspace origin: (0,0,0)\nSegment0_ID:=a\nSegment0_LabelValue:=1\nSegment0_Layer:=0\n"
+                     "Segment1_ID:=b\nSegment1_LabelValue:=1\nSegment1_Layer:=1\n\n" +
+                         std::string("\0\1\1\0\0\0\1\1\0\0\0\1\0\1\1\0\0\0\1\1\0\0\0\1", 24));
+}
+
+void write_nifti(const Path& folder) {
+    const WrittenVolume v = ball();
+    write_whole_file(folder / "first.nii", nifti_bytes(v));
+    write_whole_file(folder / "second.nii", nifti_bytes(v, {.second = true}));
+    write_whole_file(folder / "quaternion.nii", nifti_bytes(v, {.swapped = true, .quaternion = true}));
+}
+
+void write_dicom(const Path& folder) {
+    const WrittenVolume v = ball();
+    write_whole_file(folder / "slice.dcm", dicom_bytes(v, 1));
+    write_whole_file(folder / "frames.dcm", enhanced_dicom_bytes(v));
+    // Implicit elements, as the oldest scanners wrote them: group, number, length.
+    std::string implicit = dicom_bytes(v, 0).substr(0, 132);
+    const auto put = [&implicit](const std::string& text) { implicit += text; };
+    put(
+        std::string("\2\0\x10\0UI\x12\0"
+                    "1.2.840.10008.1.2\0",
+                    26));
+    put(std::string("\x28\0\2\0\2\0\0\0\1\0\x28\0\x10\0\2\0\0\0\2\0\x28\0\x11\0\2\0\0\0\2\0", 30));
+    put(std::string("\x28\0\0\1\2\0\0\0\x10\0\xe0\x7f\x10\0\x8\0\0\0\0\0\1\0\2\0\3\0", 26));
+    write_whole_file(folder / "implicit.dcm", implicit);
+}
+
+TriangleSurface tetrahedron() {
+    return {{Vec3(0.0), Vec3(0.02, 0.0, 0.0), Vec3(0.0, 0.02, 0.0), Vec3(0.0, 0.0, 0.02)},
+            {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+}
+
+// Numbers of a surface as text, in mm: the closed one, and one with a hole, a triangle on two others' edge and a point twice.
+void write_texts(const Path& folder, const std::string& kind) {
+    const std::vector<Vec3> points{{0, 0, 0}, {20, 0, 0}, {0, 20, 0}, {0, 0, 20}, {10, 10, 10}, {0, 0, 0}};
+    const std::vector<std::array<int, 3>> closed{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}},
+        open{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {1, 2, 4}, {5, 4, 3}};
+    for (const auto* triangles : {&closed, &open}) {
+        std::string text;
+        if (kind == "obj") {
+            text = "# SPACE=RAS\n";
+            for (const Vec3& p : points) text += fmt::format("v {} {} {}\n", p.x, p.y, p.z);
+            for (const auto& t : *triangles) text += fmt::format("f {}//1 {}/2 -{}\n", t[0] + 1, t[1] + 1, 6 - t[2]);
+        } else if (kind == "ply") {
+            text = fmt::format(
+                "ply\nformat ascii 1.0\ncomment SPACE=RAS\nelement vertex {}\nproperty float x\nproperty float y\n"
+                "property double z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n",
+                points.size(), triangles->size());
+            for (const Vec3& p : points) text += fmt::format("{} {} {}\n", p.x, p.y, p.z);
+            for (const auto& t : *triangles) text += fmt::format("3 {} {} {}\n", t[0], t[1], t[2]);
+        } else {
+            text = "solid SPACE=RAS\n";
+            for (const auto& t : *triangles) {
+                text += "facet normal 0 0 0\nouter loop\n";
+                for (const int c : t) {
+                    const Vec3& p = points[static_cast<std::size_t>(c)];
+                    text += fmt::format("vertex {} {} {}\n", p.x, p.y, p.z);
+                }
+                text += "endloop\nendfacet\n";
+            }
+            text += "endsolid\n";
+        }
+        write_whole_file(folder / ((triangles == &closed ? "closed." : "open.") + kind), text);
+    }
+}
+
+void write_bones(const Path& folder) {
+    Bone bone;
+    bone.name = "ball";
+    bone.distance = Grid{{8, 8, 8}, Vec3(-3.5e-3), Vec3(1e-3), {}};
+    for (int k = 0; k < 8; ++k)
+        for (int j = 0; j < 8; ++j)
+            for (int i = 0; i < 8; ++i)
+                bone.distance.values.push_back(static_cast<float>(glm::length(bone.distance.position(i, j, k)) - 2e-3));
+    bone.density = bone.distance;
+    for (float& value : bone.density.values) value = value < 0.0f ? 1800.0f : 0.0f;
+    bone.provenance["frame"] = "LPS";
+    Bone other = bone;
+    other.name = "other";
+    other.points = {SurfacePoint{}};
+    save_bone(bone, folder / "one.vdb");
+    save_bones(std::vector{bone, other}, folder / "two.vdb");
+    for (const std::uint32_t packing : {0u, 1u, 2u, 3u, 4u, 6u})
+        write_whole_file(folder / fmt::format("packed{}.vdb", packing),
+                         test::sealed(test::repacked(read_sealed(folder / "one.vdb"), packing)));
+}
+
+}  // namespace
+
+void write_seeds(const std::filesystem::path& root) {
+    const auto folder = [&root](const std::string& target) {
+        std::filesystem::create_directories(root / target);
+        return root / target;
+    };
+    write_nrrd(folder("assets_nrrd"));
+    write_nifti(folder("assets_nifti"));
+    write_dicom(folder("assets_dicom"));
+    write_whole_file(folder("assets_inv3") / "project.tar", inv3_tar(ball()));
+    for (const std::string kind : {"stl", "ply", "obj"}) write_texts(folder("assets_" + kind), kind);
+    for (const std::string kind : {"stl", "ply"})
+        write_mesh(std::vector<ColouredSurface>{{tetrahedron()}}, folder("assets_" + kind) / ("binary." + kind));
+    write_bones(folder("assets_vdb"));
+}
+
+}  // namespace tactus
