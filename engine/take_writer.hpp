@@ -7,7 +7,7 @@
 //   events.jsonl    one line for each edit, each parameter set, each device opened, each stream
 //   timing.log      everything that timing decided, see engine/timing_log.hpp
 //   streams/        every published value of every output, see engine/take_stream.hpp
-//   result.json     hash of every output, when the run came to its end
+//   result.json     when the run came to its end: hash of every output, and how much each file of the take holds
 #pragma once
 
 #include "engine/outside.hpp"
@@ -19,6 +19,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -29,6 +30,9 @@
 namespace tactus {
 
 class GroupRuntime;
+
+/// Of take.json; takes of another one are refused.
+constexpr int take_format = 2;
 
 /// What a take says about the run it is of.
 struct TakeAbout {
@@ -77,6 +81,8 @@ private:
     std::unique_ptr<TimingLogWriter> log_;
     std::FILE* events_ = nullptr;
     std::mutex writing_;  // lines come from whoever drains a stream
+    std::int64_t lines_ = 0;  // of events.jsonl
+    std::map<std::string, std::int64_t> frames_;  // of each stream that is complete
     std::vector<std::string> files_;
     std::chrono::steady_clock::time_point flushed_;
 };

@@ -155,6 +155,8 @@ int command_line(int argc, char** argv) {
     ReplayChoice replay;
     CLI::App* replay_app = app.add_subcommand("replay", "repeat a take and compare every value, bit by bit");
     replay_app->add_option("take", replay.take, "folder that --record made")->required();
+    replay_app->add_option("--out", replay.out,
+                           "folder for the results of the run: sounds, traces, bones, summary.json");
     replay_app->add_flag("--anyway", replay.anyway, "although assets have changed since");
     replay_app->add_flag("--json", replay.json, "as JSON");
 

@@ -67,7 +67,7 @@ struct SetChoice {
 };
 
 struct ReplayChoice {
-    std::filesystem::path take;
+    std::filesystem::path take, out;  ///< out: where the results of the run go, empty: nowhere
     bool json = false;
     bool anyway = false;  ///< although assets have changed
 };
