@@ -127,6 +127,7 @@ private:
     void follow();
     void take_over_file();
     void drop_restored();
+    std::filesystem::path keep_text() const;
     bool has_same_parts();
 
     RunChoice choice_;

@@ -63,7 +63,10 @@ bool Workbench::save_as(const std::string& name) {
         wants_name = false;
         tell(fmt::format("saved {}", file.string()));
         drop_restored();
-        adopt_text();
+        // The same patch from another folder: the run has nothing to take over.
+        if (const auto problem = check(editor_->text())) tell(*problem, true);
+        adopt();
+        if (followed_ && plan_) followed_ = plan_;
         return true;
     } catch (const std::exception& error) {
         tell(error.what(), true);
@@ -83,12 +86,21 @@ void Workbench::drop_restored() {
     if (!restored_.empty()) fs::remove(std::exchange(restored_, {}), ignored);
 }
 
+fs::path Workbench::keep_text() const {
+    // What was restored is in the text, or was taken back in it.
+    if (!restored_.empty()) try {
+            write_durable_file(restored_, editor_->text());
+            return restored_;
+        } catch (const Error&) {
+            // Elsewhere, as if it had not been there.
+        }
+    return keep_unsaved(editor_->file(), editor_->text());
+}
+
 void Workbench::keep_edits() noexcept {
     if (!has_unsaved_edits()) return;
     try {
-        // What was restored is in the text, or was taken back in it.
-        if (!restored_.empty()) write_durable_file(restored_, editor_->text());
-        const fs::path kept = restored_.empty() ? keep_unsaved(editor_->file(), editor_->text()) : restored_;
+        const fs::path kept = keep_text();
         dropped_version_ = editor_->version();
         fmt::print(stderr, "tactus: edits of {} are not saved; they are kept in {}, and the next window offers them\n",
                    editor_->file().string(), kept.string());
