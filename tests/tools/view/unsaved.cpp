@@ -13,6 +13,7 @@
 
 using namespace tactus;
 using namespace tactus::view;
+namespace fs = std::filesystem;
 using tactus::test::Folder;
 using tactus::test::slurp;
 using tactus::test::voice;
