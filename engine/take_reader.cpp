@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
+#include <optional>
 #include <sstream>
 
 namespace tactus {
@@ -44,8 +45,7 @@ RecordedDevice read_device(const Json& json) {
     const Json& info = json.at("info");
     device.info = {info.at("name"),          info.at("max_force"),       info.at("max_torque"),      info.at("damping"),
                    info.at("max_stiffness"), info.at("actuates_torque"), info.at("senses_rotation"), info.at("fingers"),
-                   info.at("max_speed"),
-                   info.at("least_speed")};
+                   info.at("max_speed"),     info.at("least_speed")};
     const Json& first = json.at("first");
     device.first.buttons = first.at("buttons");
     device.first.counter = first.at("counter");
@@ -104,7 +104,11 @@ Take Take::load(const fs::path& folder) {
     int line_number = 0;
     try {
         const Json json = Json::parse(read_whole_file(reading));
-        if (json.at("format") != 1) throw Error("written by another version of tactus");
+        if (json.at("format") != take_format)
+            throw Error(
+                fmt::format("it has format {}, and this tactus reads format {}; replay it with the build that "
+                            "made it, or record it again",
+                            json.at("format").dump(), take_format));
         take.about.patch_file = json.at("patch").get<std::string>();
         take.about.overrides.settings = json.at("settings");
         take.about.overrides.assets = json.at("asset_overrides");
@@ -121,15 +125,18 @@ Take Take::load(const fs::path& folder) {
         std::istringstream events(read_whole_file(reading));
         for (std::string line; std::getline(events, line);) {
             ++line_number;
-            // The last line may have been cut off; it was never promised.
+            // The last line may have been cut off; what was promised is in result.json.
             if (events.eof() && !Json::accept(line)) break;
             read_event(Json::parse(line), take);
+            ++take.lines;
         }
         line_number = 0;
         reading = folder / "result.json";
         if (fs::exists(reading)) {
             const Json result = Json::parse(read_whole_file(reading));
             for (const auto& [port, hash] : result.at("ports").items()) take.result[port] = bits_of(hash);
+            for (const auto& [file, count] : result.at("holds").items()) take.written[file] = count.get<std::int64_t>();
+            take.is_complete = true;
         }
     } catch (const nlohmann::json::exception& error) {
         throw Error({reading.string(), line_number, 0}, fmt::format("the take is damaged: {}", error.what()));
@@ -161,6 +168,41 @@ std::vector<std::string> Take::changed_assets() const {
             found.push_back(fmt::format("asset '{}' has changed since: {}", asset.name, asset.path.string()));
     }
     return found;
+}
+
+namespace {
+
+/// Frames of a stream; nothing when it cannot be read.
+std::optional<std::int64_t> frames_in(const fs::path& folder, const TakeStreamInfo& stream) {
+    try {
+        return TakeStreamReader(folder / stream.file, stream).frames();
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+}
+
+}  // namespace
+
+std::vector<TakeDamage> Take::damages() const {
+    std::vector<TakeDamage> found;
+    const auto compare = [&](const std::string& file, std::int64_t holds, const char* unit) {
+        const auto known = written.find(file);
+        const std::int64_t count = known == written.end() ? 0 : known->second;
+        if (holds != count) found.push_back({file, holds, count, unit});
+    };
+    if (is_complete) {
+        compare("timing.log", log.records, "records");
+        compare("events.jsonl", lines, "lines");
+        for (const TakeStreamInfo& stream : streams)
+            compare(stream.file, frames_in(folder, stream).value_or(0), "values");
+    }
+    if (found.empty() && log.written && !log.is_whole)
+        found.push_back({"timing.log", log.records, *log.written, "records"});
+    return found;
+}
+
+void Take::drop_unreadable_streams() {
+    std::erase_if(streams, [this](const TakeStreamInfo& stream) { return !frames_in(folder, stream); });
 }
 
 }  // namespace tactus

@@ -34,6 +34,13 @@ struct TakenChange {
     double value = 0.0;
 };
 
+/// A file of a take that does not hold what the run wrote.
+struct TakeDamage {
+    std::string file;  ///< within the take
+    std::int64_t holds = 0, written = 0;
+    std::string unit;  ///< "values", "records", "lines"
+};
+
 struct Take {
     std::filesystem::path folder;
     TakeAbout about;
@@ -43,7 +50,10 @@ struct Take {
     std::vector<RecordedDevice> devices;
     std::vector<TakeStreamInfo> streams;
     TimingLog log;
+    std::int64_t lines = 0;  ///< of events.jsonl
+    bool is_complete = false;  ///< the run came to its end; false: it was cut off
     std::map<std::string, std::uint64_t> result;  ///< hash of every output, empty when the run was cut off
+    std::map<std::string, std::int64_t> written;  ///< frames, records or lines by file, empty when it was cut off
 
     /// Throws Error when the folder is no take or is damaged. One that was cut off is read as far as it goes.
     static Take load(const std::filesystem::path& folder);
@@ -52,6 +62,10 @@ struct Take {
     std::vector<std::string> differences() const;
     /// Assets that are gone or have changed since: a repetition must differ.
     std::vector<std::string> changed_assets() const;
+    /// Files that hold less, or more, than the run wrote. Of a run that was cut off, only its log can tell.
+    std::vector<TakeDamage> damages() const;
+    /// Forgets streams that cannot be read at all.
+    void drop_unreadable_streams();
 };
 
 }  // namespace tactus

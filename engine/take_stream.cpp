@@ -61,7 +61,7 @@ struct TakeStreamWriter::File {
     const ValueType& type;
     SoundHandle handle;
     std::size_t channels = 0;
-    std::int64_t next = 0;
+    std::int64_t start = 0, next = 0;
     std::vector<double> frames, last;
     sf_count_t written = 0;  // frames
 
@@ -77,7 +77,7 @@ struct TakeStreamWriter::File {
 };
 
 TakeStreamWriter::TakeStreamWriter(const std::filesystem::path& path, const TakeStreamInfo& info, const ValueType& type)
-    : file_(std::make_unique<File>(File{path, type, {}, 0, info.start, {}, {}, 0})) {
+    : file_(std::make_unique<File>(File{path, type, {}, 0, info.start, info.start, {}, {}, 0})) {
     const auto names = channels_of(type);
     file_->channels = names.size();
     file_->frames.resize(frames_at_once * names.size());
@@ -122,6 +122,8 @@ void TakeStreamWriter::finish() {
     if (sf_close(file_->handle.release()) != 0)
         throw Error(fmt::format("{}: could not be completed; is the disk full?", file_->path.string()));
 }
+
+std::int64_t TakeStreamWriter::frames() const { return file_->next - file_->start; }
 
 struct TakeStreamReader::File {
     std::int64_t start = 0;

@@ -41,6 +41,7 @@ public:
     /// Tells the file's header how long it is by now.
     void update();
     void finish();
+    std::int64_t frames() const;  ///< written so far
 
 private:
     struct File;

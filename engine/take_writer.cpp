@@ -28,8 +28,13 @@ constexpr auto flush_every = std::chrono::milliseconds(500);
 class TakeEnd : public StreamEnd {
 public:
     using Opened = std::function<void(const TakeStreamInfo&)>;
-    TakeEnd(fs::path folder, TakeStreamInfo info, const ValueType& type, Opened opened)
-        : folder_(std::move(folder)), info_(std::move(info)), type_(type), opened_(std::move(opened)) {}
+    using Finished = std::function<void(const std::string& file, std::int64_t frames)>;
+    TakeEnd(fs::path folder, TakeStreamInfo info, const ValueType& type, Opened opened, Finished finished)
+        : folder_(std::move(folder)),
+          info_(std::move(info)),
+          type_(type),
+          opened_(std::move(opened)),
+          finished_(std::move(finished)) {}
 
     void take(std::int64_t first, const std::byte* values, std::size_t count) override {
         const bool is_first = !writer_;
@@ -46,7 +51,9 @@ public:
         writer_->update();
     }
     void finish() override {
-        if (writer_) writer_->finish();
+        if (!writer_) return;
+        writer_->finish();
+        finished_(info_.file, writer_->frames());
     }
 
 private:
@@ -54,6 +61,7 @@ private:
     TakeStreamInfo info_;
     const ValueType& type_;
     Opened opened_;
+    Finished finished_;
     std::unique_ptr<TakeStreamWriter> writer_;
     std::chrono::steady_clock::time_point updated_ = std::chrono::steady_clock::now();
 };
@@ -148,7 +156,7 @@ void TakeWriter::lose(const std::string& why) {
 
 void TakeWriter::begin(const Patch& patch, std::uint64_t plan_hash) {
     write_whole_file(folder_ / "patch-0.toml", bundle_text(patch));
-    Json json{{"format", 1},
+    Json json{{"format", take_format},
               {"patch", fs::absolute(about_.patch_file).string()},
               {"title", patch.title},
               {"settings", about_.overrides.settings},
@@ -171,6 +179,7 @@ void TakeWriter::line(const std::string& json) {
         const std::lock_guard lock(writing_);
         events_->append(json + "\n");
         events_->flush();
+        ++lines_;
     } catch (const Error& error) {
         // What the log says from here on would be of things that are told nowhere.
         lose(error.message());
@@ -233,7 +242,11 @@ std::unique_ptr<Stream> TakeWriter::stream(const std::string& port, const ValueT
                   {"channels", channels_of(type)}}
                  .dump());
     };
-    return std::make_unique<Stream>(format, std::make_unique<TakeEnd>(folder_, info, type, opened));
+    const auto finished = [this](const std::string& file, std::int64_t frames) {
+        const std::lock_guard lock(writing_);
+        frames_[file] = frames;
+    };
+    return std::make_unique<Stream>(format, std::make_unique<TakeEnd>(folder_, info, type, opened, finished));
 }
 
 void TakeWriter::edit(std::int64_t number, Flicks when, const Patch& patch) {
@@ -291,8 +304,9 @@ void TakeWriter::finish(const std::vector<std::pair<std::string, std::uint64_t>>
     if (is_lost_) return log_.reset();
     try {
         log_->finish();
-        Json json{{"ports", Json::object()}};
+        Json json{{"ports", Json::object()}, {"holds", {{"timing.log", log_->records()}, {"events.jsonl", lines_}}}};
         for (const auto& [name, hash] : port_hashes) json["ports"][name] = fmt::format("{:016x}", hash);
+        for (const auto& [file, frames] : frames_) json["holds"][file] = frames;
         write_whole_file(folder_ / "result.json", json.dump(2) + "\n");
     } catch (const Error& error) {
         lose(error.message());

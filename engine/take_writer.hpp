@@ -7,7 +7,7 @@
 //   events.jsonl    one line for each edit, each parameter set, each device opened, each stream
 //   timing.log      everything that timing decided, see engine/timing_log.hpp
 //   streams/        every published value of every output, see engine/take_stream.hpp
-//   result.json     hash of every output, when the run came to its end
+//   result.json     when the run came to its end: hash of every output, and how much each file of the take holds
 #pragma once
 
 #include "assets/file/growing_file.hpp"
@@ -20,6 +20,7 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -30,6 +31,9 @@
 namespace tactus {
 
 class GroupRuntime;
+
+/// Of take.json; takes of another one are refused.
+constexpr int take_format = 2;
 
 /// What a take says about the run it is of.
 struct TakeAbout {
@@ -84,6 +88,8 @@ private:
     std::unique_ptr<TimingLogWriter> log_;
     std::unique_ptr<GrowingFile> events_;
     mutable std::mutex writing_;  // lines come from whoever drains a stream
+    std::int64_t lines_ = 0;  // of events.jsonl
+    std::map<std::string, std::int64_t> frames_;  // of each stream that is complete
     std::atomic<bool> is_lost_{false};
     std::string loss_;
     std::vector<std::string> files_;

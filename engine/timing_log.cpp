@@ -16,7 +16,7 @@ namespace tactus {
 
 namespace {
 
-constexpr char magic[8] = {'T', 'A', 'C', 'T', 'L', 'O', 'G', '4'};
+constexpr char magic[8] = {'T', 'A', 'C', 'T', 'L', 'O', 'G', '5'};
 
 struct Header {
     char magic[8];
@@ -78,6 +78,7 @@ void TimingLogWriter::finish() {
     };
     TimingRecord last;
     last.kind = TimingKind::whole;
+    last.value = records() + 1;
     try {
         write(last);
         file_->close();
@@ -105,12 +106,19 @@ TimingLog TimingLog::load(const std::filesystem::path& path, bool may_be_cut) {
     while (std::fread(&record, sizeof record, 1, file.get()) == 1) {
         if (record.kind > TimingKind::whole || record.tick < 0 || record.count < 0 || !has_flags(record.sample))
             fail("a record of the timing log is damaged");
-        log.is_whole = record.kind == TimingKind::whole;
-        if (log.is_whole) break;
+        ++log.records;
+        if (record.kind == TimingKind::whole) {
+            log.written = record.value;
+            log.is_whole = record.value == log.records;
+            break;
+        }
         if (log.groups.size() <= record.group) log.groups.resize(record.group + std::size_t{1});
         log.groups[record.group].push_back(record);
     }
     if (log.is_whole) return log;
+    if (!may_be_cut && log.written)
+        fail(fmt::format("the timing log holds {} records, but {} were written; it cannot be replayed to the bit",
+                         log.records, *log.written));
     if (!may_be_cut) fail("the timing log stops before the end of the run; it cannot be replayed to the bit");
     // Every round of progress names all groups; the last one that is complete says where they all were.
     log.cut = std::numeric_limits<Flicks>::max();

@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ enum class TimingKind : std::uint8_t {
     plan,  ///< from activation tick on, the plan numbered `value` runs
     progress,  ///< all before tick is in the log; where a log that was cut off can be trusted to
     end,  ///< the group ran up to tick − 1
-    whole,  ///< the last record of a log that was written to its end
+    whole,  ///< the last record of a log that was written to its end; `value` is the number of all records
 };
 
 /// Written by the group that decides, in its own order.
@@ -46,7 +47,10 @@ struct TimingRecord {
 struct TimingLog {
     std::uint64_t plan_hash = 0;
     double seconds = 0.0;  ///< as asked for
-    bool is_whole = true;  ///< false: the run was cut off, and the log ends where all groups were known to be
+    /// False: the run was cut off, or records are missing, and the log ends where all groups were known to be.
+    bool is_whole = true;
+    std::int64_t records = 0;  ///< in the file
+    std::optional<std::int64_t> written;  ///< how many its last record says there are
     std::vector<std::vector<TimingRecord>> groups;
     Flicks cut = 0;  ///< of a run that was cut off: logical time up to which it can be repeated
 
@@ -78,6 +82,7 @@ public:
     /// The last record. When that finds no room the log keeps its name and says that it was cut off. Throws Error.
     void finish();
     std::uint64_t size() const { return bytes_; }
+    std::int64_t records() const { return static_cast<std::int64_t>(bytes_ / sizeof(TimingRecord)); }
 
 private:
     std::filesystem::path path_, part_;

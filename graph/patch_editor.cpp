@@ -63,8 +63,25 @@ void PatchEditor::save() {
                                 file_.string()));
     std::error_code failure;
     const std::filesystem::path target = std::filesystem::canonical(file_, failure);
-    write_whole_file(failure ? file_ : target, text_);
+    write_durable_file(failure ? file_ : target, text_);
     saved_ = text_;
+}
+
+void PatchEditor::save_as(const std::filesystem::path& file, const Edit& moved) {
+    PatchEditor old = *this;
+    while (old.can_undo()) old.undo();
+    PatchEditor fresh(moved(old.text_), file, check_);
+    std::size_t here = 0;
+    while (old.can_redo()) {
+        old.redo();
+        fresh.keep(moved(old.text_));
+        if (old.done_ == done_) here = fresh.done_;
+    }
+    while (fresh.done_ > here) fresh.undo();
+    write_durable_file(file, fresh.text_);
+    fresh.saved_ = fresh.text_;
+    fresh.version_ = version_ + 1;
+    *this = std::move(fresh);
 }
 
 bool PatchEditor::reload() {

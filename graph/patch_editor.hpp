@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace tactus {
@@ -37,8 +38,14 @@ public:
     bool is_saved() const { return text_ == saved_; }
     /// Somebody else has changed the file since it was read or saved. Throws Error when it cannot be read.
     bool is_changed_elsewhere() const;
-    /// Writes beside the file and renames; a link stays one. Throws Error when somebody else changed the file since.
+    /// Writes beside the file and renames, durably; a link stays one. Throws Error when somebody else changed the file
+    /// since.
     void save();
+    /// Another file, which is written durably, is the patch's from now on. `moved` makes every text of the history, the
+    /// present one among them, one for that place. Throws Error; then all is as it was.
+    void save_as(const std::filesystem::path& file, const Edit& moved);
+    /// Another text, which may not compile, as an edit.
+    void replace(std::string text) { keep(std::move(text)); }
     /// Takes over a file that was saved elsewhere, as an edit. False: the file holds nothing new.
     bool reload();
 

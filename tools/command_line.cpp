@@ -23,7 +23,6 @@ namespace tactus {
 namespace {
 
 /// Disk, memory or a device fell short, as opposed to the exit codes of verbs.hpp.
-constexpr int machine_failed = 3;
 
 /// Of pictures and of the window; they need `what`.
 void add_sight_options(CLI::App& verb, SightChoice& choice, CLI::Option* what) {
@@ -166,6 +165,8 @@ int command_line(int argc, char** argv) {
     ReplayChoice replay;
     CLI::App* replay_app = app.add_subcommand("replay", "repeat a take and compare every value, bit by bit");
     replay_app->add_option("take", replay.take, "folder that --record made")->required();
+    replay_app->add_option("--out", replay.out,
+                           "folder for the results of the run: sounds, traces, bones, summary.json");
     replay_app->add_flag("--anyway", replay.anyway, "although assets have changed since");
     replay_app->add_flag("--json", replay.json, "as JSON");
 

@@ -16,11 +16,29 @@ namespace tactus {
 
 namespace fs = std::filesystem;
 
-fs::path library_folder() {
-    if (const char* given = std::getenv("TACTUS_LIBRARY"); given && *given) return given;
+namespace {
+
+fs::path library_beside_command() {
     std::error_code failure;
     const fs::path self = fs::read_symlink("/proc/self/exe", failure);
     return failure ? fs::path("library") : self.parent_path() / "library";
+}
+
+}  // namespace
+
+fs::path library_folder() {
+    if (const char* given = std::getenv("TACTUS_LIBRARY"); given && *given) return given;
+    return library_beside_command();
+}
+
+bool is_of_library(const fs::path& file) {
+    std::error_code failure;
+    const fs::path path = fs::weakly_canonical(fs::absolute(file), failure);
+    for (const fs::path& library : {library_folder(), library_beside_command()}) {
+        const fs::path folder = fs::weakly_canonical(fs::absolute(library), failure);
+        if (!folder.empty() && std::ranges::mismatch(folder, path).in1 == folder.end()) return true;
+    }
+    return false;
 }
 
 namespace {

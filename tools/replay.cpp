@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/engine.hpp"
 #include "engine/take_compare.hpp"
+#include "tools/load_plan.hpp"
 #include "tools/replayed_take.hpp"
+#include "tools/results.hpp"
+#include "tools/summary.hpp"
 #include "tools/terminal.hpp"
 #include "tools/verbs.hpp"
 
@@ -11,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <optional>
 #include <thread>
 
 namespace tactus {
@@ -35,10 +40,48 @@ Json difference_json(const TakeDifference& d) {
             {"channels", d.channels}, {"expected", d.expected}, {"got", d.got}};
 }
 
+struct Verdict {
+    std::vector<TakeDamage> damages;
+    std::vector<std::string> hashes;  ///< outputs whose hash differs
+    std::optional<TakeDifference> first;
+    std::uint64_t compared = 0;
+    bool is_complete = false;
+
+    bool differs() const { return first || !damages.empty() || !hashes.empty(); }
+    bool is_equal_so_far() const { return !differs() && compared > 0; }
+    bool is_identical() const { return is_equal_so_far() && is_complete; }
+};
+
+void print(const Verdict& verdict, std::size_t outputs, double seconds) {
+    for (const TakeDamage& d : verdict.damages)
+        fmt::print("differs: {} holds {} {}, the run wrote {}\n", d.file, d.holds, d.unit, d.written);
+    if (const auto& first = verdict.first)
+        fmt::print("differs: {} at tick {} ({:.6f} s): expected {}, got {}\n", first->port, first->tick, first->time,
+                   fmt::join(first->expected, " "), fmt::join(first->got, " "));
+    // Less of a run has other hashes.
+    else if (verdict.damages.empty() && !verdict.hashes.empty())
+        fmt::print("differs: the hashes of {}\n", fmt::join(verdict.hashes, ", "));
+    if (verdict.differs()) return;
+    if (verdict.compared == 0)
+        fmt::print("{}0 values compared: the take holds none\n", verdict.is_complete ? "" : "cut off; ");
+    else if (!verdict.is_complete)
+        fmt::print("cut off; {} values compared, equal so far; {:.3g} s can be repeated\n", verdict.compared, seconds);
+    else fmt::print("identical: {} values of {} outputs, {:.3g} s\n", verdict.compared, outputs, seconds);
+}
+
+/// What the run leaves in its folder besides the recordings.
+void write_results(const Engine& engine, const std::filesystem::path& folder) {
+    const Report report = engine.report();
+    std::vector<std::string> files = write_pictures(report, folder);
+    for (std::string& file : write_bones(report, folder)) files.push_back(std::move(file));
+    files.push_back("summary.json");
+    write_whole_file(folder / "summary.json", summary_json(engine, report, engine.progress_seconds(), false, files));
+}
+
 }  // namespace
 
 int replay_verb(const ReplayChoice& choice) {
-    const Take take = Take::load(choice.take);
+    Take take = Take::load(choice.take);
     const std::vector<std::string> differences = take.differences(), changed = take.changed_assets();
     for (const std::string& difference : differences)
         fmt::print(stderr, "tactus: {}; the bits may differ\n", difference);
@@ -46,10 +89,16 @@ int replay_verb(const ReplayChoice& choice) {
     if (!changed.empty() && !choice.anyway)
         throw Error("the take cannot be repeated with other assets; --anyway tries");
 
+    const std::vector<TakeDamage> damages = take.damages();
+    take.drop_unreadable_streams();
     AssetCache assets;
     TakeComparison comparison(take);
     EngineOptions options;
     options.seconds = take.about.seconds;
+    if (!choice.out.empty()) {
+        make_output_folder(choice.out);
+        options.folder = choice.out;
+    }
     options.tap = [&comparison](const std::string& port, const ValueType& type, const GroupRuntime& group) {
         return comparison.tap(port, type, group);
     };
@@ -61,31 +110,28 @@ int replay_verb(const ReplayChoice& choice) {
     line.clear();
     engine.finish();
 
-    const std::vector<std::string> hashes = differing_hashes(take, engine);
-    const auto& first = comparison.first_difference();
-    const bool identical = !first && hashes.empty();
+    if (!choice.out.empty()) write_results(engine, choice.out);
+
+    const Verdict verdict{damages, differing_hashes(take, engine), comparison.first_difference(),
+                          comparison.compared_values(), take.is_complete};
     const double covered = engine.progress_seconds();
     if (choice.json) {
-        Json json{{"identical", identical},
-                  {"compared_values", comparison.compared_values()},
-                  {"first_difference", first ? difference_json(*first) : Json()},
-                  {"differing_hashes", hashes},
+        Json json{{"identical", verdict.is_identical()},
+                  {"cut_off", !verdict.is_complete},
+                  {"compared_values", verdict.compared},
+                  {"first_difference", verdict.first ? difference_json(*verdict.first) : Json()},
+                  {"damaged_files", Json::array()},
+                  {"differing_hashes", verdict.hashes},
                   {"seconds", covered},
                   {"whole", take.log.is_whole},
                   {"edits", engine.edits()},
                   {"notices", differences}};
+        for (const TakeDamage& d : verdict.damages)
+            json["damaged_files"].push_back(
+                {{"file", d.file}, {"holds", d.holds}, {"written", d.written}, {"unit", d.unit}});
         fmt::print("{}\n", json.dump(2));
-    } else if (identical) {
-        fmt::print("identical: {} values of {} outputs, {:.3g} s{}\n", comparison.compared_values(),
-                   take.streams.size(), covered,
-                   take.log.is_whole ? "" : " (the run was cut off; so far it can be repeated)");
-    } else if (first) {
-        fmt::print("differs: {} at tick {} ({:.6f} s): expected {}, got {}\n", first->port, first->tick, first->time,
-                   fmt::join(first->expected, " "), fmt::join(first->got, " "));
-    } else {
-        fmt::print("differs: the hashes of {}\n", fmt::join(hashes, ", "));
-    }
-    return identical ? done : answer_is_no;
+    } else print(verdict, take.streams.size(), covered);
+    return verdict.is_equal_so_far() ? done : answer_is_no;
 }
 
 }  // namespace tactus

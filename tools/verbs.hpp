@@ -16,7 +16,7 @@
 
 namespace tactus {
 
-enum ExitCode : int { done = 0, answer_is_no = 1, bad_input = 2, output_lost = 3 };
+enum ExitCode : int { done = 0, answer_is_no = 1, bad_input = 2, output_lost = 3, machine_failed = 3 };
 
 /// What every verb that takes a patch knows about it.
 struct PatchChoice {
@@ -70,7 +70,7 @@ struct SetChoice {
 };
 
 struct ReplayChoice {
-    std::filesystem::path take;
+    std::filesystem::path take, out;  ///< out: where the results of the run go, empty: nowhere
     bool json = false;
     bool anyway = false;  ///< although assets have changed
 };

@@ -123,9 +123,16 @@ TEST_CASE("a run that is killed leaves a take that is repeated as far as it goes
     INFO(replay.err);
     REQUIRE(replay.code == 0);
     const json report = json::parse(replay.out);
-    CHECK(report["identical"] == true);
+    CHECK(report["identical"] == false);
+    CHECK(report["cut_off"] == true);
     CHECK(report["whole"] == false);
+    CHECK(report["compared_values"] > 1000);
     CHECK(report["seconds"] > 0.1);
+    const Outcome told = folder.tactus("replay " + take.string());
+    CHECK(told.code == 0);
+    CHECK(told.out.starts_with("cut off; "));
+    CHECK(told.out.find("values compared, equal so far") != std::string::npos);
+    CHECK(told.out.find("identical") == std::string::npos);
 }
 
 TEST_CASE("a patch is edited and its parameters are set while it runs; the take repeats it all") {

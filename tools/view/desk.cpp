@@ -13,7 +13,8 @@
 namespace tactus::view {
 
 Desk::Desk(Window& window, Workbench& bench, TakeBench* take)
-    : window_(window),
+    : questions(bench),
+      window_(window),
       bench_(bench),
       take_(take),
       fonts_{window.body, window.bold, window.large, window.scale()},
@@ -106,11 +107,6 @@ void Desk::ask_farewell() {
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
     if (!ImGui::BeginPopupModal("The patch still runs", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
     ImGui::Text("The window closes. What becomes of the run?");
-    if (!bench_.editor().is_saved()) {
-        ImGui::PushStyleColor(ImGuiCol_Text, tone::warm);
-        ImGui::Text("Edits of the patch are not saved.");
-        ImGui::PopStyleColor();
-    }
     const auto choose = [&](const char* label, Farewell what) {
         if (!ImGui::Button(label)) return;
         farewell = what;
@@ -121,6 +117,7 @@ void Desk::ask_farewell() {
     choose("Let it go on", Farewell::goes_on);
     ImGui::SameLine();
     choose("Keep the window", Farewell::none);
+    if (farewell == Farewell::none) bench_.want_edits();
     ImGui::EndPopup();
 }
 
@@ -210,6 +207,8 @@ void Desk::draw() {
     ImGui::Dummy(vec({1.0, gap}));
     show_messages(messages);
     ask_farewell();
+    // One question at a time.
+    if (farewell != Farewell::asks) questions.draw();
     ImGui::End();
     if (std::exchange(scene_.wants_calibration, false)) calibration_.is_open = true;
     calibration_.draw(live_.get());

@@ -5,6 +5,7 @@
 #include "tools/view/calibration_panel.hpp"
 #include "tools/view/node_panel.hpp"
 #include "tools/view/patch_panel.hpp"
+#include "tools/view/questions.hpp"
 #include "tools/view/scene_panel.hpp"
 #include "tools/view/scopes.hpp"
 #include "tools/view/take_bench.hpp"
@@ -35,6 +36,8 @@ public:
 
     /// Asked when the window is to be closed: end the run, or let it go on?
     enum class Farewell { none, asks, ends, goes_on } farewell = Farewell::none;
+    /// Before that, and when the window opens: what becomes of edits that are not saved?
+    Questions questions;
 
 private:
     void follow_run();

@@ -30,7 +30,7 @@ const std::vector<std::string> commands{
     "hover",     "click",      "drag",    "wheel",      "wait",   "until",  "frames",    "size",    "minimise",
     "restore",   "screenshot", "close",   "say",        "from",   "stereo", "clip",      "measure", "check",
     "scale",     "press",      "double",  "slide",      "pull",   "type",   "key",       "cost",    "head",
-    "rig",       "offset",     "screens"};
+    "rig",       "offset",     "screens", "shut"};
 
 std::vector<std::string> words_of(const std::string& line) {
     std::vector<std::string> words;
@@ -127,7 +127,7 @@ bool Script::edit(const Line& line, Desk& desk) {
     if (what == "rename") return bench.rename(word(line, 1), word(line, 2));
     if (what == "undo") return bench.undo();
     if (what == "redo") return bench.redo();
-    if (what == "save") return bench.save();
+    if (what == "save") return line.words.size() > 1 ? bench.save_as(line.words[1]) : bench.save();
     if (what == "wire") {
         if (!bench.draft()) throw Error("there is no node that waits for wires");
         bench.connect_draft(word(line, 1), word(line, 2));
@@ -248,6 +248,7 @@ bool Script::perform(const Line& line, Desk& desk, Window& window) {
     else if (is("measure")) desk.scene().is_measuring = true;
     else if (is("check")) bench.check_saved();
     else if (is("say")) bench.tell(word(line, 1));
+    else if (is("shut")) window.close();
     else if (is("open")) {
         if (open) open(word(line, 1));
     } else closes_ = true;

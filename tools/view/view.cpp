@@ -35,12 +35,17 @@ public:
         }
     }
 
+    ~Viewer() { keep_edits(); }
+    Viewer(const Viewer&) = delete;
+    Viewer& operator=(const Viewer&) = delete;
+
     void open_patch(const RunChoice& choice) {
         close();
         choice_ = choice;
         // What was opened before may have left results in the folder.
         choice_.is_further = std::exchange(has_opened_, true);
         bench_ = std::make_unique<Workbench>(choice_);
+        bench_->find_kept_edits();
         set_up();
     }
 
@@ -78,7 +83,13 @@ public:
     }
 
 private:
+    /// Whatever way the patch leaves the window. A take's is only looked at.
+    void keep_edits() noexcept {
+        if (bench_ && !take_) bench_->keep_edits();
+    }
+
     void close() {
+        keep_edits();
         desk_.reset();
         bench_.reset();
         take_.reset();
@@ -106,10 +117,18 @@ private:
     std::optional<bool> farewell() {
         using Farewell = Desk::Farewell;
         const bool runs = bench_->running() && !bench_->running()->is_over();
-        // A run of stated length takes its window along.
-        if (choice_.seconds && bench_->running() && !runs && !script_) return false;
+        // A run of stated length takes its window along; a script is played to its end.
+        if (choice_.seconds && bench_->running() && !runs && (!script_ || script_->is_done())) return false;
         if (script_ && script_->wants_to_close()) return view_.keep_running;
+        using Leaving = Questions::Leaving;
+        Questions& questions = desk_->questions;
+        if (questions.leaving == Leaving::leaves) window_.close();
+        else if (window_.wants_to_close() && !take_ && bench_->has_unsaved_edits()) {
+            window_.keep_open();
+            questions.leaving = Leaving::asks;
+        }
         if (window_.wants_to_close()) {
+            questions.leaving = Leaving::none;
             if (!runs) return false;
             if (view_.keep_running) return true;
             window_.keep_open();
@@ -134,6 +153,7 @@ private:
 public:
     /// Closes the window and leaves the bench with its run.
     std::unique_ptr<Workbench> let_go() {
+        keep_edits();
         desk_.reset();
         return std::move(bench_);
     }

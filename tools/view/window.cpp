@@ -145,6 +145,7 @@ void Window::end() {
 
 bool Window::wants_to_close() const { return glfwWindowShouldClose(window_) != 0; }
 void Window::keep_open() { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
+void Window::close() { glfwSetWindowShouldClose(window_, GLFW_TRUE); }
 void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 void Window::resize(int width, int height) { glfwSetWindowSize(window_, width, height); }
 void Window::minimise(bool wanted) {

@@ -27,6 +27,8 @@ public:
 
     bool wants_to_close() const;
     void keep_open();
+    /// As its frame's button does.
+    void close();
     void set_title(const std::string& title);
     void resize(int width, int height);
     void minimise(bool wanted);

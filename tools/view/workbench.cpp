@@ -164,22 +164,6 @@ bool Workbench::redo() {
     return true;
 }
 
-bool Workbench::save() {
-    try {
-        if (editor_->is_changed_elsewhere()) {
-            take_over_file();
-            tell("not saved: undo brings your own text back, and then it can be saved", true);
-            return false;
-        }
-        editor_->save();
-        tell(fmt::format("saved {}", editor_->file().string()));
-        return true;
-    } catch (const Error& error) {
-        tell(error.what(), true);
-        return false;
-    }
-}
-
 void Workbench::check_saved() {
     Problems problems;
     const std::optional<Plan> saved =

@@ -15,6 +15,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tactus::view {
 
@@ -57,7 +58,30 @@ public:
     bool disconnect(const std::string& to);
     bool undo();
     bool redo();
+    /// A patch of the library is not changed: then it is refused, and `wants_name` is set.
     bool save();
+    /// As another file, which must not be there yet; the patch is that one from then on. A relative name is in the
+    /// working folder.
+    bool save_as(const std::string& name);
+    /// What a copy could be called, in the working folder.
+    std::filesystem::path free_file() const;
+    bool wants_name = false;
+
+    // Edits that are not saved.
+    bool has_unsaved_edits() const;  ///< and were not dropped
+    /// They are not wanted: `keep_edits` leaves them.
+    void drop_edits();
+    /// They are wanted after all.
+    void want_edits() { dropped_version_ = -1; }
+    /// Before the bench goes: keeps them in a file, and says on standard error where.
+    void keep_edits() noexcept;
+    /// Finds what earlier windows on this patch have kept.
+    void find_kept_edits();
+    /// A file with edits of an earlier window that waits to be restored or discarded.
+    std::optional<std::filesystem::path> offer() const;
+    /// They are an edit of the text; their file goes when the patch is saved.
+    bool restore_edits();
+    void discard_offer();
     /// While a slider moves: the run follows, the text does not yet.
     void turn(const std::string& node, const std::string& param, const std::string& value);
 
@@ -102,6 +126,8 @@ private:
     void adopt_text();
     void follow();
     void take_over_file();
+    void drop_restored();
+    std::filesystem::path keep_text() const;
     bool has_same_parts();
 
     RunChoice choice_;
@@ -119,6 +145,9 @@ private:
     std::filesystem::path last_take_;
     int runs_ = 0;
     bool has_take_ = false;  // the run was recorded, at least in part
+    std::vector<std::filesystem::path> offers_;
+    std::filesystem::path restored_;  // where the edits that were restored are kept until the patch is saved
+    std::int64_t dropped_version_ = -1;
 };
 
 }  // namespace tactus::view

@@ -42,6 +42,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         for (const tactus::TakeStreamInfo& stream : take.streams)
             if (stream.period < 1 || stream.start < 0) std::abort();
         take.differences();
+        for (const tactus::TakeDamage& damage : take.damages())
+            if (damage.holds == damage.written) std::abort();
     } catch (const tactus::Error& error) {
         if (error.message().empty() || error.message().find('\n') != std::string::npos) std::abort();
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/support/places.hpp"
 #include "tests/tools/view/on_display.hpp"
+#include "tests/support/places.hpp"
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
@@ -17,8 +17,10 @@
 namespace tactus::test {
 
 Outcome on(const Display& display, const Folder& folder, const std::string& arguments, int most_s) {
-    const std::string command = fmt::format("cd {} && {} timeout {} {} {} >stdout 2>stderr", folder.path.string(),
-                                            display.environment(), most_s, tactus::test::command(), arguments);
+    // Edits that a script does not save are kept there, not with the user's.
+    const std::string command =
+        fmt::format("cd {0} && {1} XDG_STATE_HOME={0}/state timeout {2} {3} {4} >stdout 2>stderr", folder.path.string(),
+                    display.environment(), most_s, tactus::test::command(), arguments);
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(folder.path / "stdout"), slurp(folder.path / "stderr")};
 }

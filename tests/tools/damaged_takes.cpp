@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// Takes that lost something since they were made, and what a run that was killed can still give.
+#include "tests/tools/background_run.hpp"
+#include "tests/tools/patches.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+
+namespace fs = std::filesystem;
+using namespace tactus::test;
+using nlohmann::json;
+
+namespace {
+
+/// `touch` with files to write: a sound and a trace.
+const std::string heard = [] {
+    std::string patch = touch;
+    patch.replace(patch.find("wires = [\n"), 10,
+                  "wires = [\n  \"loud.out -> ear.signal\",\n  \"hand.pose -> trace.in\",\n");
+    return patch +
+           "[nodes.ear]\ntype = \"audio_output\"\nrate = \"48 kHz\"\n"
+           "[nodes.trace]\ntype = \"record\"\nrate = \"1 kHz\"\n";
+}();
+
+fs::path render(const Folder& folder, const std::string& options = {}) {
+    folder.write("touch.toml", heard);
+    const fs::path take = folder.path / "take";
+    const Outcome done = folder.tactus("render " + (folder.path / "touch.toml").string() + " --seconds 0.5 --out " +
+                                       (folder.path / "out").string() + " --record " + take.string() + " " + options);
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    return take;
+}
+
+void halve(const fs::path& file) { fs::resize_file(file, fs::file_size(file) / 2); }
+
+}  // namespace
+
+TEST_CASE("a take that lost a part of any file differs, and replay names the file") {
+    const Folder folder;
+    const fs::path whole = render(folder), take = folder.path / "damaged";
+    const auto check = [&](const std::string& file, const std::function<void(const fs::path&)>& damage) {
+        fs::remove_all(take);
+        fs::copy(whole, take, fs::copy_options::recursive);
+        damage(take / file);
+        const Outcome told = folder.tactus("replay " + take.string());
+        INFO(file << ": " << told.out << told.err);
+        CHECK(told.code == 1);
+        CHECK(told.out.find("identical") == std::string::npos);
+        CHECK(told.out.find("differs: " + file + " holds ") != std::string::npos);
+        const Outcome outcome = folder.tactus("replay " + take.string() + " --json");
+        CHECK(outcome.code == 1);
+        const json report = json::parse(outcome.out);
+        CHECK(report["identical"] == false);
+        CHECK(report["damaged_files"][0]["file"] == file);
+        CHECK(report["damaged_files"][0]["holds"] < report["damaged_files"][0]["written"]);
+    };
+    check("streams/hand.pose.wav", halve);
+    check("streams/tone.signal.wav", [](const fs::path& file) { fs::resize_file(file, fs::file_size(file) - 1); });
+    check("streams/loud.out.wav", [](const fs::path& file) { fs::remove(file); });
+    check("streams/loud.out.wav", [](const fs::path& file) { fs::resize_file(file, 0); });
+    check("timing.log", halve);
+    check("timing.log", [](const fs::path& file) { fs::resize_file(file, fs::file_size(file) - 1); });
+    check("events.jsonl", [](const fs::path& file) {
+        const std::string text = slurp(file);
+        std::ofstream(file) << text.substr(0, text.rfind('\n', text.size() - 2) + 1);
+    });
+    // A piece out of the middle: both ends are as they were.
+    check("timing.log", [&whole](const fs::path& file) {
+        constexpr std::size_t header = 24;
+        const std::string log = slurp(file);
+        std::size_t records = 0;
+        for (std::size_t size = 8; size < 4096 && records == 0; size += 8)
+            if (log.size() - header ==
+                size * static_cast<std::size_t>(json::parse(slurp(whole / "result.json"))["holds"]["timing.log"]))
+                records = size;
+        REQUIRE(records > 0);
+        std::ofstream(file, std::ios::binary)
+            << log.substr(0, header + 4 * records) << log.substr(header + 8 * records);
+    });
+    const Outcome same = folder.tactus("replay " + whole.string());
+    CHECK(same.code == 0);
+    CHECK(same.out.starts_with("identical: "));
+}
+
+TEST_CASE("a take without result.json is cut off, and one without values is never identical") {
+    const Folder folder;
+    const fs::path take = render(folder);
+    fs::remove(take / "result.json");
+    const Outcome cut = folder.tactus("replay " + take.string());
+    CHECK(cut.code == 0);
+    CHECK(cut.out.starts_with("cut off; "));
+    halve(take / "timing.log");
+    CHECK(folder.tactus("replay " + take.string()).out.starts_with("cut off; "));
+    fs::remove_all(take / "streams");
+    const Outcome empty = folder.tactus("replay " + take.string());
+    CHECK(empty.code == 1);
+    CHECK(empty.out.starts_with("cut off; 0 values compared"));
+    CHECK(empty.out.find("equal") == std::string::npos);
+}
+
+TEST_CASE("a take of the format before is refused with one message") {
+    const Folder folder;
+    const fs::path take = render(folder);
+    json about = json::parse(slurp(take / "take.json"));
+    about["format"] = 1;
+    std::ofstream(take / "take.json") << about.dump();
+    const Outcome refused = folder.tactus("replay " + take.string());
+    CHECK(refused.code == 2);
+    CHECK(refused.err.find("it has format 1, and this tactus reads format 2") != std::string::npos);
+    CHECK(std::count(refused.err.begin(), refused.err.end(), '\n') == 1);
+}
+
+TEST_CASE("a replayed take writes the files that its run wrote, to the byte") {
+    const Folder folder;
+    const fs::path take = render(folder), again = folder.path / "again";
+    const Outcome replay = folder.tactus("replay " + take.string() + " --out " + again.string());
+    INFO(replay.err);
+    REQUIRE(replay.code == 0);
+    for (const char* file : {"ear.wav", "trace.csv"}) {
+        INFO(file);
+        CHECK(slurp(again / file).size() > 1000);
+        CHECK(slurp(again / file) == slurp(folder.path / "out" / file));
+    }
+    CHECK(json::parse(slurp(again / "summary.json"))["output_hash"] ==
+          json::parse(slurp(folder.path / "out/summary.json"))["output_hash"]);
+}
+
+TEST_CASE("the take of a run that was killed writes the results that the run did not") {
+    const Folder folder;
+    folder.write("touch.toml", heard);
+    const fs::path take = folder.path / "take", out = folder.path / "out";
+    {
+        Run run(folder, (folder.path / "touch.toml").string() + " --audio file --record " + take.string() + " --out " +
+                            out.string());
+        REQUIRE(wait_for([&] {
+            std::error_code ignored;
+            const auto size = fs::file_size(take / "timing.log", ignored);
+            return !ignored && size > 150'000;
+        }));
+        run.stop(SIGKILL);
+    }
+    REQUIRE_FALSE(fs::exists(out / "summary.json"));
+    const Outcome replay = folder.tactus("replay " + take.string() + " --out " + out.string() + " --json");
+    INFO(replay.err);
+    REQUIRE(replay.code == 0);
+    const double covered = json::parse(replay.out)["seconds"];
+    CHECK(covered > 0.1);
+    // A float each, and a row each.
+    CHECK(static_cast<double>(fs::file_size(out / "ear.wav")) >= 4.0 * 48000.0 * covered);
+    const std::string trace = slurp(out / "trace.csv");
+    CHECK(static_cast<double>(std::count(trace.begin(), trace.end(), '\n')) >= 1000.0 * covered);
+    const json summary = json::parse(slurp(out / "summary.json"));
+    CHECK(summary["seconds"] == covered);
+    CHECK(std::ranges::count(summary["files"], "ear.wav") == 1);
+}

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// Saving at the bench, and what becomes of edits that are not saved.
+#include "tools/view/workbench.hpp"
+
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+#include "graph/patch_paths.hpp"
+#include "tools/load_plan.hpp"
+#include "tools/view/unsaved.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <utility>
+
+namespace tactus::view {
+
+namespace fs = std::filesystem;
+
+bool Workbench::save() {
+    try {
+        if (is_of_library(editor_->file())) {
+            wants_name = true;
+            tell(fmt::format("{} belongs to the library and is not changed; save it under another name",
+                             editor_->file().string()),
+                 true);
+            return false;
+        }
+        if (editor_->is_changed_elsewhere()) {
+            take_over_file();
+            tell("not saved: undo brings your own text back, and then it can be saved", true);
+            return false;
+        }
+        editor_->save();
+        tell(fmt::format("saved {}", editor_->file().string()));
+        drop_restored();
+        return true;
+    } catch (const Error& error) {
+        tell(error.what(), true);
+        return false;
+    }
+}
+
+fs::path Workbench::free_file() const {
+    const std::string stem = editor_->file().stem().string();
+    std::error_code ignored;
+    const fs::path folder = fs::current_path(ignored);
+    fs::path file = folder / (stem + ".toml");
+    for (int i = 2; fs::exists(file, ignored); ++i) file = folder / fmt::format("{}-{}.toml", stem, i);
+    return file;
+}
+
+bool Workbench::save_as(const std::string& name) {
+    try {
+        if (name.empty()) throw Error("a file needs a name");
+        fs::path file = fs::absolute(name);
+        if (file.extension() != ".toml") file += ".toml";
+        if (is_of_library(file)) throw Error(fmt::format("{}: belongs to the library; choose another", file.string()));
+        if (fs::exists(fs::symlink_status(file)))
+            throw Error(fmt::format("{}: is there already; choose another name", file.string()));
+        const fs::path folder = fs::absolute(editor_->file()).parent_path();
+        editor_->save_as(file, [&](std::string_view text) { return with_absolute_paths(text, folder); });
+        wants_name = false;
+        tell(fmt::format("saved {}", file.string()));
+        drop_restored();
+        // The same patch from another folder: the run has nothing to take over.
+        if (const auto problem = check(editor_->text())) tell(*problem, true);
+        adopt();
+        if (followed_ && plan_) followed_ = plan_;
+        return true;
+    } catch (const std::exception& error) {
+        tell(error.what(), true);
+        return false;
+    }
+}
+
+bool Workbench::has_unsaved_edits() const { return !editor_->is_saved() && editor_->version() != dropped_version_; }
+
+void Workbench::drop_edits() {
+    dropped_version_ = editor_->version();
+    drop_restored();
+}
+
+void Workbench::drop_restored() {
+    std::error_code ignored;
+    if (!restored_.empty()) fs::remove(std::exchange(restored_, {}), ignored);
+}
+
+fs::path Workbench::keep_text() const {
+    // What was restored is in the text, or was taken back in it.
+    if (!restored_.empty()) try {
+            write_durable_file(restored_, editor_->text());
+            return restored_;
+        } catch (const Error&) {
+            // Elsewhere, as if it had not been there.
+        }
+    return keep_unsaved(editor_->file(), editor_->text());
+}
+
+void Workbench::keep_edits() noexcept {
+    if (!has_unsaved_edits()) return;
+    try {
+        const fs::path kept = keep_text();
+        dropped_version_ = editor_->version();
+        fmt::print(stderr, "tactus: edits of {} are not saved; they are kept in {}, and the next window offers them\n",
+                   editor_->file().string(), kept.string());
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "tactus: edits that are not saved are lost: %s\n", error.what());
+    }
+}
+
+void Workbench::find_kept_edits() {
+    for (const fs::path& file : find_unsaved(editor_->file())) try {
+            // Saved since, by whatever program.
+            if (read_whole_file(file) == editor_->text()) fs::remove(file);
+            else offers_.push_back(file);
+        } catch (const std::exception& error) {
+            tell(error.what(), true);
+        }
+}
+
+std::optional<fs::path> Workbench::offer() const {
+    if (offers_.empty()) return std::nullopt;
+    return offers_.back();
+}
+
+bool Workbench::restore_edits() {
+    if (offers_.empty()) return false;
+    try {
+        const fs::path file = offers_.back();
+        std::string text = read_whole_file(file);
+        offers_.pop_back();
+        // One that was restored before stays where it is.
+        restored_ = file;
+        editor_->replace(std::move(text));
+        tell(fmt::format("the edits of {} are in the patch again; undo takes them back", file.string()));
+        adopt_text();
+        return true;
+    } catch (const Error& error) {
+        offers_.pop_back();
+        tell(error.what(), true);
+        return false;
+    }
+}
+
+void Workbench::discard_offer() {
+    if (offers_.empty()) return;
+    std::error_code failure;
+    fs::remove(offers_.back(), failure);
+    if (failure) tell(fmt::format("{}: cannot be removed: {}", offers_.back().string(), failure.message()), true);
+    offers_.pop_back();
+}
+
+}  // namespace tactus::view
