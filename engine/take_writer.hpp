@@ -23,6 +23,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -77,7 +78,7 @@ private:
     std::unique_ptr<TimingLogWriter> log_;
     std::FILE* events_ = nullptr;
     std::mutex writing_;  // lines come from whoever drains a stream
-    std::vector<std::string> files_;
+    std::unordered_set<std::string> files_;
     std::chrono::steady_clock::time_point flushed_;
 };
 
