@@ -41,5 +41,10 @@ find_path(STB_INCLUDE stb/stb_image_write.h REQUIRED)
 add_library(tactus_stb INTERFACE)
 target_include_directories(tactus_stb SYSTEM INTERFACE ${STB_INCLUDE})
 
+# Its header alone: the library that Debian builds is for float only.
+find_path(KISSFFT_INCLUDE kissfft/kissfft.hh REQUIRED)
+add_library(tactus_kissfft INTERFACE)
+target_include_directories(tactus_kissfft SYSTEM INTERFACE ${KISSFFT_INCLUDE})
+
 add_library(tactus_toml INTERFACE)
 target_link_libraries(tactus_toml INTERFACE tomlplusplus::tomlplusplus)

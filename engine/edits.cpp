@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <unordered_set>
 
 namespace tactus {
 
@@ -121,12 +122,10 @@ void Engine::close_ended() {
     for (const Tap& tap : ending_taps_)
         if (tap.stream && tap.group->is_over()) tap.stream->finish();
     list_open_taps();
-    for (const auto& stream : outside_.streams) {
-        const bool in_use = std::ranges::any_of(now_->nodes, [&](const auto& node) {
-            return std::ranges::find(node->uses.streams, stream.get()) != node->uses.streams.end();
-        });
-        if (!in_use) stream->finish();
-    }
+    std::unordered_set<const RecordStream*> in_use;
+    for (const auto& node : now_->nodes) in_use.insert(node->uses.streams.begin(), node->uses.streams.end());
+    for (const auto& stream : outside_.streams)
+        if (!in_use.contains(stream.get())) stream->finish();
 }
 
 Flicks Engine::set(const std::string& given_node, const std::string& given_param, const std::string& text) {

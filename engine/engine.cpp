@@ -167,13 +167,13 @@ void Engine::gather_hashes(const Generation& old, const Generation* next, PortHa
         const GroupProgram* successor = nullptr;
         for (std::size_t n = 0; next && next->number <= group.generation() && n < next->groups.size(); ++n)
             if (next->groups[n] == old.groups[g]) successor = next->programs[n].get();
+        std::vector<bool> goes_on(program.published.size());
+        if (successor)
+            for (const PublishedOutput& output : successor->published)
+                if (output.before >= 0) goes_on[static_cast<std::size_t>(output.before)] = true;
         for (std::size_t k = 0; k < program.published.size(); ++k) {
-            const bool goes_on =
-                successor && std::ranges::any_of(successor->published, [k](const PublishedOutput& output) {
-                    return output.before == static_cast<int>(k);
-                });
             const PublishedOutput& output = program.published[k];
-            if (!goes_on) parts.emplace_back(output.name, output.value(successor ? program.ran : group.ran()));
+            if (!goes_on[k]) parts.emplace_back(output.name, output.value(successor ? program.ran : group.ran()));
         }
     }
 }

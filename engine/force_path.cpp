@@ -17,13 +17,20 @@ std::vector<bool> force_path(const Generation& generation) {
     for (const auto& node : generation.nodes)
         on_path.push_back(
             std::ranges::any_of(node->uses.devices, [](const auto& use) { return use.second == DeviceUse::drive; }));
-    for (bool grows = true; grows;) {
-        grows = false;
-        for (const PlanWire& wire : generation.plan.wires) {
-            if (wire.from_node < 0 || !on_path[static_cast<std::size_t>(wire.to_node)]) continue;
-            auto from = on_path[static_cast<std::size_t>(wire.from_node)];
-            grows = grows || !from;
-            from = true;
+    std::vector<std::vector<int>> sources(on_path.size());
+    for (const PlanWire& wire : generation.plan.wires)
+        if (wire.from_node >= 0) sources[static_cast<std::size_t>(wire.to_node)].push_back(wire.from_node);
+    std::vector<std::size_t> to_visit;
+    for (std::size_t i = 0; i < on_path.size(); ++i)
+        if (on_path[i]) to_visit.push_back(i);
+    while (!to_visit.empty()) {
+        const std::size_t node = to_visit.back();
+        to_visit.pop_back();
+        for (const int source : sources[node]) {
+            const auto from = static_cast<std::size_t>(source);
+            if (on_path[from]) continue;
+            on_path[from] = true;
+            to_visit.push_back(from);
         }
     }
     return on_path;

@@ -18,7 +18,29 @@ GenerationBuilder::GenerationBuilder(Plan plan, const Generation* before, Worksh
     made_->number = before ? before->number + 1 : 0;
 }
 
+namespace {
+
+std::unordered_set<const Param*> driven_params(const Plan& plan) {
+    std::unordered_set<const Param*> driven;
+    for (const PlanWire& wire : plan.wires)
+        if (wire.to_input < 0 && wire.from_node >= 0) driven.insert(wire.param);
+    return driven;
+}
+
+}  // namespace
+
+void GenerationBuilder::index_before() {
+    driven_ = driven_params(plan());
+    for (const PatchAsset& asset : plan().patch.assets) assets_.emplace(asset.name, &asset);
+    if (!before_) return;
+    driven_before_ = driven_params(before_->plan);
+    for (std::size_t i = 0; i < before_->nodes.size(); ++i) nodes_before_.emplace(before_->nodes[i]->name, i);
+    for (std::size_t g = 0; g < before_->groups.size(); ++g) groups_before_.emplace(before_->groups[g].get(), g);
+    for (const auto& link : before_->links) links_before_.emplace(ends_of(*link), link);
+}
+
 std::unique_ptr<Generation> GenerationBuilder::build() {
+    index_before();
     note_patch_values();
     form_groups();
     find_survivors();
@@ -40,23 +62,28 @@ void GenerationBuilder::note_patch_values() {
 }
 
 void GenerationBuilder::form_groups() {
+    std::unordered_map<std::string_view, std::shared_ptr<GroupRuntime>> old_groups;
+    if (before_)
+        for (const auto& old : before_->groups) old_groups.emplace(old->plan->name, old);
     for (const PlanGroup& group : plan().groups) {
         int frames = 1;
         if (group.has_audio)
             frames = workshop_.block > 0 ? workshop_.block
                                          : static_cast<int>(std::max<Flicks>(1, plan().patch.quantum / group.period));
         std::shared_ptr<GroupRuntime> runtime;
-        if (before_)
-            for (const auto& old : before_->groups)
-                if (old->plan->name == group.name && old->plan->period == group.period &&
-                    old->plan->has_audio == group.has_audio && old->max_frames == frames)
-                    runtime = old;
+        if (const auto found = old_groups.find(group.name); found != old_groups.end()) {
+            const auto& old = found->second;
+            if (old->plan->period == group.period && old->plan->has_audio == group.has_audio &&
+                old->max_frames == frames)
+                runtime = old;
+        }
         made_->group_is_new.push_back(!runtime);
         if (!runtime) {
             if (workshop_.next_group > std::numeric_limits<std::uint16_t>::max())
                 throw Error("edits of this run have made more rate groups than its log can tell apart; start anew");
             runtime = std::make_shared<GroupRuntime>(group, workshop_.next_group++, frames);
         }
+        group_index_.emplace(runtime.get(), static_cast<int>(made_->groups.size()));
         made_->groups.push_back(std::move(runtime));
         auto& program = *made_->programs.emplace_back(std::make_unique<GroupProgram>());
         program.generation = made_->number;
@@ -65,22 +92,22 @@ void GenerationBuilder::form_groups() {
 }
 
 void GenerationBuilder::find_survivors() {
+    std::vector<std::string> structures = structures_of(plan());
     for (std::size_t i = 0; i < plan().nodes.size(); ++i) {
         PlanNode& node = plan().nodes[i];
-        const std::string structure = structure_of(plan(), static_cast<int>(i));
+        std::string& structure = structures[i];
         std::shared_ptr<LiveNode> live;
-        if (before_)
-            for (const auto& old : before_->nodes)
-                if (old->name == node.name && old->type == node.type && old->group == &group_of(node) &&
-                    old->structure == structure)
-                    live = old;
+        if (const auto found = nodes_before_.find(node.name); found != nodes_before_.end()) {
+            const auto& old = before_->nodes[found->second];
+            if (old->type == node.type && old->group == &group_of(node) && old->structure == structure) live = old;
+        }
         made_->survived.push_back(live != nullptr);
         if (!live) {
             live = std::make_shared<LiveNode>();
             live->name = node.name;
             live->type = node.type;
             live->group = &group_of(node);
-            live->structure = structure;
+            live->structure = std::move(structure);
             for (const PlanInput& input : node.inputs) live->inputs.push_back(input.port);
             for (const PlanOutput& output : node.outputs) live->outputs.push_back(output.port);
             live->params = node.params;

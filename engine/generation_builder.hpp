@@ -6,9 +6,13 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace tactus {
@@ -24,10 +28,7 @@ private:
     Plan& plan() { return made_->plan; }
     GroupRuntime& group_of(const PlanNode& node) { return *made_->groups[static_cast<std::size_t>(node.group)]; }
     GroupProgram& program_of(int group) { return *made_->programs[static_cast<std::size_t>(group)]; }
-    GroupProgram& program_of(const GroupRuntime* runtime) {
-        const auto at = std::ranges::find(made_->groups, runtime, &std::shared_ptr<GroupRuntime>::get);
-        return *made_->programs[static_cast<std::size_t>(at - made_->groups.begin())];
-    }
+    GroupProgram& program_of(const GroupRuntime* runtime) { return program_of(group_index_.at(runtime)); }
     template <class T>
     T* live(T* port) const {
         const auto found = moved_.find(port);
@@ -49,8 +50,8 @@ private:
     void connect_delay(const PlanWire& wire, const Output& source, Input* target, int group_index);
     Link& link_for(const PlanWire& wire);
     bool is_same_wire(const LinkWire& old, const LinkWire& wire) const;
-    /// The link of the generation before between the same groups with the same latency.
-    Link* predecessor(const Link& link) const;
+    /// Notes for each wire of `link` the same one of `old`; returns how many there are.
+    std::size_t match_wires(Link& link, Link* old) const;
     int ring_frames(const GroupRuntime& group);
     void finish_links();
 
@@ -62,17 +63,31 @@ private:
     ObservedPort& observed(LiveNode& node, std::size_t output, const std::string& name);
     void make_programs();
     void finish_program(std::size_t g);
+    void find_delays_before(GroupProgram& program, const GroupProgram& old) const;
+    void find_outputs_before(GroupProgram& program, const GroupProgram& old) const;
     void assign_devices(std::size_t index);
-    bool is_driven(const Generation& generation, int node, const Param* param) const;
     /// What has to be set on a node that goes on.
     void rewire(std::size_t index);
+
+    /// Groups that a link joins, and its latency.
+    using LinkEnds = std::tuple<const GroupRuntime*, const GroupRuntime*, Flicks>;
+    static LinkEnds ends_of(const Link& link) { return {link.producer, link.consumer, link.latency}; }
+    void index_before();
 
     const Generation* before_;
     Workshop& workshop_;
     std::unique_ptr<Generation> made_;
+    // What is looked up by node, wire or group, so that a plan of n nodes takes n steps.
+    std::unordered_map<std::string_view, std::size_t> nodes_before_;         // by name, in `before_`
+    std::unordered_map<const GroupRuntime*, std::size_t> groups_before_;     // in `before_`
+    std::unordered_set<const Param*> driven_before_, driven_;                // parameters at the end of a wire
+    std::unordered_map<const GroupRuntime*, int> group_index_;               // in `made_`
+    std::unordered_map<std::string_view, const PatchAsset*> assets_;
+    std::map<LinkEnds, std::shared_ptr<Link>> links_before_, links_made_;
+    std::unordered_set<const Link*> links_going_on_;                         // of `before_`
     std::unordered_map<const void*, void*> moved_;  // ports and parameters of compiled nodes to those that live
     std::vector<std::vector<Drive>> drives_;
-    std::vector<Link*> new_links_;
+    std::unordered_set<const Link*> new_links_;
 };
 
 }  // namespace tactus

@@ -9,13 +9,13 @@
 namespace tactus {
 
 void GenerationBuilder::make_steps() {
+    std::unordered_map<const Param*, std::size_t> owners;
+    for (std::size_t i = 0; i < plan().nodes.size(); ++i)
+        for (const auto& [name, param] : made_->nodes[i]->params) owners.emplace(param, i);
     for (const auto& link : made_->links)
-        for (const LinkWire& wire : link->wires) {
-            if (!wire.param || wire.mode != WireMode::linear) continue;
-            for (std::size_t i = 0; i < plan().nodes.size(); ++i)
-                for (const auto& [name, param] : made_->nodes[i]->params)
-                    if (param == wire.param) drives_[i].push_back({param, nullptr, &wire});
-        }
+        for (const LinkWire& wire : link->wires)
+            if (wire.param && wire.mode == WireMode::linear)
+                drives_[owners.at(wire.param)].push_back({wire.param, nullptr, &wire});
     const std::vector<bool> vary = vary_within_call();
     for (std::size_t g = 0; g < plan().groups.size(); ++g)
         for (const int index : plan().groups[g].order)
@@ -82,7 +82,11 @@ void GenerationBuilder::make_programs() {
         consumer.inputs.push_back(link.get());
         consumer.producers.push_back(link->producer);
         producer.outputs.push_back(link.get());
-        if (std::ranges::find(new_links_, link.get()) == new_links_.end()) continue;
+        if (link->continued) links_going_on_.insert(link->continued);
+        if (!new_links_.contains(link.get())) {
+            links_going_on_.insert(link.get());
+            continue;
+        }
         consumer.new_inputs.push_back(link.get());
         producer.new_outputs.push_back(link.get());
     }
@@ -118,32 +122,40 @@ void GenerationBuilder::finish_program(std::size_t g) {
         line->target = live(line->target);
         line->param = live(line->param);
     }
-    if (!before_) return;
-    for (std::size_t old = 0; old < before_->groups.size(); ++old) {
-        if (before_->groups[old] != made_->groups[g]) continue;
-        for (const auto& line : program.delays)
-            for (const auto& candidate : before_->programs[old]->delays)
-                if (candidate->source == line->source && candidate->target == line->target &&
-                    candidate->param == line->param && candidate->count == line->count)
-                    line->before = candidate.get();
-        for (PublishedOutput& output : program.published) {
-            const auto& past = before_->programs[old]->published;
-            const auto at = std::ranges::find(past, output.name, &PublishedOutput::name);
-            if (at != past.end() && at->port->type == output.port->type)
-                output.before = static_cast<int>(at - past.begin());
-        }
-        for (Link* link : before_->programs[old]->inputs) {
-            const bool goes_on = std::ranges::any_of(
-                made_->links, [link](const auto& now) { return now.get() == link || now->continued == link; });
-            if (!goes_on) program.ended.push_back(link);
-        }
+    const auto found = groups_before_.find(made_->groups[g].get());
+    if (found == groups_before_.end()) return;
+    const GroupProgram& old = *before_->programs[found->second];
+    find_delays_before(program, old);
+    find_outputs_before(program, old);
+    for (Link* link : old.inputs)
+        if (!links_going_on_.contains(link)) program.ended.push_back(link);
+}
+
+void GenerationBuilder::find_delays_before(GroupProgram& program, const GroupProgram& old) const {
+    // Nothing has two wires.
+    const auto end_of = [](const DelayLine& line) -> const void* {
+        return line.target ? static_cast<const void*>(line.target) : line.param;
+    };
+    std::unordered_map<const void*, DelayLine*> old_lines;
+    for (const auto& line : old.delays) old_lines.emplace(end_of(*line), line.get());
+    for (const auto& line : program.delays) {
+        const auto found = old_lines.find(end_of(*line));
+        if (found == old_lines.end()) continue;
+        DelayLine& candidate = *found->second;
+        if (candidate.source == line->source && candidate.target == line->target && candidate.param == line->param &&
+            candidate.count == line->count)
+            line->before = &candidate;
     }
 }
 
-bool GenerationBuilder::is_driven(const Generation& generation, int node, const Param* param) const {
-    return std::ranges::any_of(generation.plan.wires, [&](const PlanWire& wire) {
-        return wire.to_node == node && wire.to_input < 0 && wire.from_node >= 0 && wire.param == param;
-    });
+void GenerationBuilder::find_outputs_before(GroupProgram& program, const GroupProgram& old) const {
+    std::unordered_map<std::string_view, std::size_t> past;
+    for (std::size_t k = 0; k < old.published.size(); ++k) past.emplace(old.published[k].name, k);
+    for (PublishedOutput& output : program.published) {
+        const auto found = past.find(output.name);
+        if (found != past.end() && old.published[found->second].port->type == output.port->type)
+            output.before = static_cast<int>(found->second);
+    }
 }
 
 void GenerationBuilder::rewire(std::size_t index) {
@@ -152,14 +164,13 @@ void GenerationBuilder::rewire(std::size_t index) {
     GroupProgram& program = program_of(node.group);
     for (std::size_t k = 0; k < node.inputs.size(); ++k)
         program.wiring.emplace_back(running.inputs[k], node.inputs[k].port);
-    const int old = before_->find(node.name);
-    const PlanNode& old_node = before_->plan.nodes[static_cast<std::size_t>(old)];
+    const std::size_t old = nodes_before_.at(node.name);
+    const PlanNode& old_node = before_->plan.nodes[old];
     for (const auto& [name, param] : node.params) {
-        if (is_driven(*made_, static_cast<int>(index), param)) continue;
+        if (driven_.contains(param)) continue;
         const double now = made_->patch_values[index].at(name);
         // A value set from outside stays until the patch's text says another.
-        if (now != before_->patch_values[static_cast<std::size_t>(old)].at(name) ||
-            is_driven(*before_, old, old_node.params.at(name)))
+        if (now != before_->patch_values[old].at(name) || driven_before_.contains(old_node.params.at(name)))
             program.params.emplace_back(running.params.at(name), now);
     }
 }

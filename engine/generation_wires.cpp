@@ -67,10 +67,10 @@ Link& GenerationBuilder::link_for(const PlanWire& wire) {
                    &to = plan().nodes[static_cast<std::size_t>(wire.to_node)];
     const PlanGroup& producer = plan().groups[static_cast<std::size_t>(from.group)];
     const Flicks latency = wire_latency(producer, wire);
-    for (const auto& link : made_->links)
-        if (link->producer == &group_of(from) && link->consumer == &group_of(to) && link->latency == latency)
-            return *link;
-    auto& link = *made_->links.emplace_back(std::make_shared<Link>());
+    auto& known = links_made_[{&group_of(from), &group_of(to), latency}];
+    if (known) return *known;
+    known = made_->links.emplace_back(std::make_shared<Link>());
+    Link& link = *known;
     link.producer = &group_of(from);
     link.consumer = &group_of(to);
     link.producer_period = producer.period;
@@ -82,7 +82,7 @@ Link& GenerationBuilder::link_for(const PlanWire& wire) {
 void GenerationBuilder::connect_constant(const PlanWire& wire) {
     Input& input =
         *plan().nodes[static_cast<std::size_t>(wire.to_node)].inputs[static_cast<std::size_t>(wire.to_input)].port;
-    const auto asset = std::ranges::find(plan().patch.assets, wire.asset, &PatchAsset::name);
+    const PatchAsset* asset = assets_.at(wire.asset);
     auto& [owner, handle] = workshop_.constants[{input.type, asset->path.string()}];
     if (!owner) {
         handle.resize(input.type->size);
@@ -155,12 +155,21 @@ bool GenerationBuilder::is_same_wire(const LinkWire& old, const LinkWire& wire) 
            old.mode == wire.mode;
 }
 
-Link* GenerationBuilder::predecessor(const Link& link) const {
-    if (!before_) return nullptr;
-    for (const auto& old : before_->links)
-        if (old->producer == link.producer && old->consumer == link.consumer && old->latency == link.latency)
-            return old.get();
-    return nullptr;
+std::size_t GenerationBuilder::match_wires(Link& link, Link* old) const {
+    // Nothing has two wires.
+    const auto end_of = [](const auto* target, const auto* param) -> const void* {
+        return target ? static_cast<const void*>(target) : param;
+    };
+    std::unordered_map<const void*, LinkWire*> old_wires;
+    if (old)
+        for (LinkWire& wire : old->wires) old_wires.emplace(end_of(wire.target, wire.param), &wire);
+    std::size_t same = 0;
+    for (LinkWire& wire : link.wires) {
+        const auto found = old_wires.find(end_of(live(wire.target), live(wire.param)));
+        wire.before = found != old_wires.end() && is_same_wire(*found->second, wire) ? found->second : nullptr;
+        same += wire.before != nullptr;
+    }
+    return same;
 }
 
 /// Activations per call that a ring is made for: a repetition in smaller blocks must keep what the live run kept.
@@ -171,24 +180,18 @@ int GenerationBuilder::ring_frames(const GroupRuntime& group) {
 
 void GenerationBuilder::finish_links() {
     for (auto& link : made_->links) {
-        Link* old = predecessor(*link);
-        std::size_t same = 0;
-        for (LinkWire& wire : link->wires) {
-            wire.before = nullptr;
-            if (!old) continue;
-            for (LinkWire& candidate : old->wires)
-                if (is_same_wire(candidate, wire)) wire.before = &candidate;
-            same += wire.before != nullptr;
-        }
+        // The link of the generation before between the same groups with the same latency.
+        const auto found = links_before_.find(ends_of(*link));
+        Link* old = found == links_before_.end() ? nullptr : found->second.get();
+        const std::size_t same = match_wires(*link, old);
         if (old && same == link->wires.size() && same == old->wires.size()) {
             // Nothing changed: the channel itself goes on, and inputs stay pointed at it.
             for (LinkWire& wire : link->wires)
                 if (wire.target) wire.before->point(*wire.target, old->producer_period);
-            for (const auto& kept : before_->links)
-                if (kept.get() == old) link = kept;
+            link = found->second;
             continue;
         }
-        new_links_.push_back(link.get());
+        new_links_.insert(link.get());
         link->id = workshop_.next_link++;
         link->continued = same > 0 ? old : nullptr;
         link->prepare(link_slack, ring_frames(*link->producer), ring_frames(*link->consumer),

@@ -56,6 +56,9 @@ EngineOutside::EngineOutside(std::optional<std::filesystem::path> folder, bool l
 
 void EngineOutside::begin(const Patch& patch) {
     patch_ = patch;
+    files_opened_.clear();
+    files_before_.clear();
+    for (const auto& stream : streams) files_before_.insert(stream->format().file);
     for (const auto& [name, settings] : device_settings_)
         for (const PatchDevice& declared : patch.devices)
             if (declared.name == name && !same_settings(declared.settings, settings))
@@ -145,13 +148,6 @@ DevicePort& EngineOutside::device(const std::string& wanted, DeviceUse use, cons
     return use_device(*opened_.devices.back(), use, where);
 }
 
-Stream* EngineOutside::find_stream(const std::string& file) const {
-    for (const auto* list : {&streams, &opened_.streams})
-        for (const auto& stream : *list)
-            if (stream->format().file == file) return stream.get();
-    return nullptr;
-}
-
 RecordStream& EngineOutside::record(const StreamFormat& wanted, const SourceLocation& where) {
     if (wanted.file.empty() || wanted.file.find('/') != std::string::npos || wanted.file.starts_with('.'))
         throw Error(where, fmt::format("'{}' is not a file name; recordings go to the folder of the run", wanted.file));
@@ -160,13 +156,12 @@ RecordStream& EngineOutside::record(const StreamFormat& wanted, const SourceLoca
                     fmt::format("'{}' is the name of a file that the run itself may write; record to another one, "
                                 "as 'force.csv'",
                                 wanted.file));
-    for (const auto& stream : opened_.streams)
-        if (stream->format().file == wanted.file)
-            throw Error(where, fmt::format("two recordings would be written to '{}'", wanted.file));
+    if (files_opened_.contains(wanted.file))
+        throw Error(where, fmt::format("two recordings would be written to '{}'", wanted.file));
     StreamFormat format = wanted;
     // A recording that an edit begins anew leaves what was recorded before untouched.
     const std::filesystem::path name = wanted.file;
-    for (int again = 2; find_stream(format.file); ++again)
+    for (int again = 2; files_before_.contains(format.file) || files_opened_.contains(format.file); ++again)
         format.file = fmt::format("{}-{}{}", name.stem().string(), again, name.extension().string());
     const bool is_sound = format.type == &value::signal;
     if (!is_sound && format.type->columns.empty())
@@ -177,6 +172,7 @@ RecordStream& EngineOutside::record(const StreamFormat& wanted, const SourceLoca
         end = std::make_unique<KeptEnd>(format.keeper, format.type->size);
     } else if (folder_)
         end = is_sound ? make_sound_end(*folder_ / format.file, format) : make_csv_end(*folder_ / format.file, format);
+    files_opened_.insert(format.file);
     opened_.streams.push_back(std::make_unique<Stream>(format, std::move(end)));
     uses_->streams.push_back(opened_.streams.back().get());
     return *opened_.streams.back();

@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -77,7 +78,6 @@ private:
     DeviceSlot* find_device(const std::string& name) const;
     DevicePort& use_device(DeviceSlot& slot, DeviceUse use, const SourceLocation& where);
     SoundCard* spare_card(const StreamFormat& format) const;
-    Stream* find_stream(const std::string& file) const;
 
     struct Opened {
         std::vector<std::unique_ptr<DeviceSlot>> devices;
@@ -89,6 +89,7 @@ private:
     Patch patch_;
     std::optional<std::vector<RecordedDevice>> recorded_;
     Opened opened_;
+    std::unordered_set<std::string> files_opened_, files_before_;  ///< recordings since `begin`, and those of the run
     OutsideUses* uses_ = nullptr;
     std::vector<SoundCard*> cards_in_use_;
     std::vector<std::pair<std::string, std::vector<OptionText>>> device_settings_;

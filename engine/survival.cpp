@@ -29,28 +29,34 @@ private:
     std::string& description_;
 };
 
+/// What a wire into an input says of the node behind it.
+void describe_wire(const Plan& plan, const PlanWire& wire, std::string& text) {
+    const PlanInput& input =
+        plan.nodes[static_cast<std::size_t>(wire.to_node)].inputs[static_cast<std::size_t>(wire.to_input)];
+    // What comes in batches was prepared for at its rate.
+    if (input.port->kind == InputKind::batch) text += fmt::format("{} every {}\n", input.name, input.port->period);
+    if (input.port->kind != InputKind::any) return;
+    std::string source = wire.asset;
+    if (wire.from_node >= 0) {
+        const PlanNode& from = plan.nodes[static_cast<std::size_t>(wire.from_node)];
+        source = from.name + "." + from.outputs[static_cast<std::size_t>(wire.from_output)].name;
+    }
+    text += fmt::format("{} from {}\n", input.name, source);
+}
+
 }  // namespace
 
-std::string structure_of(const Plan& plan, int index) {
-    const PlanNode& node = plan.nodes[static_cast<std::size_t>(index)];
-    std::string text = fmt::format("{} seed {}\n", node.type->name, plan.patch.seed);
-    Describer describer(text);
-    node.type->visit(node.instance.get(), describer);
-    for (const PlanWire& wire : plan.wires) {
-        if (wire.to_node != index || wire.to_input < 0) continue;
-        const PlanInput& input = node.inputs[static_cast<std::size_t>(wire.to_input)];
-        // What comes in batches was prepared for at its rate.
-        if (input.port->kind == InputKind::batch) text += fmt::format("{} every {}\n", input.name, input.port->period);
-        if (input.port->kind != InputKind::any) continue;
-        const std::string source = wire.from_node < 0
-                                       ? wire.asset
-                                       : plan.nodes[static_cast<std::size_t>(wire.from_node)].name + "." +
-                                             plan.nodes[static_cast<std::size_t>(wire.from_node)]
-                                                 .outputs[static_cast<std::size_t>(wire.from_output)]
-                                                 .name;
-        text += fmt::format("{} from {}\n", input.name, source);
+std::vector<std::string> structures_of(const Plan& plan) {
+    std::vector<std::string> texts;
+    texts.reserve(plan.nodes.size());
+    for (const PlanNode& node : plan.nodes) {
+        std::string& text = texts.emplace_back(fmt::format("{} seed {}\n", node.type->name, plan.patch.seed));
+        Describer describer(text);
+        node.type->visit(node.instance.get(), describer);
     }
-    return text;
+    for (const PlanWire& wire : plan.wires)
+        if (wire.to_input >= 0) describe_wire(plan, wire, texts[static_cast<std::size_t>(wire.to_node)]);
+    return texts;
 }
 
 }  // namespace tactus

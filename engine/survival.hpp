@@ -5,11 +5,12 @@
 #include "graph/plan.hpp"
 
 #include <string>
+#include <vector>
 
 namespace tactus {
 
-/// All that a node's `prepare` may depend on, as text: type, structural parameters, choices, texts, flags, vectors,
-/// assets, where inputs of any type come from, seed. Equal text means that the node need not be prepared again.
-std::string structure_of(const Plan& plan, int node);
+/// Of each node all that its `prepare` may depend on, as text: type, structural parameters, choices, texts, flags,
+/// vectors, assets, where inputs of any type come from, seed. Equal text means that the node need not be prepared again.
+std::vector<std::string> structures_of(const Plan& plan);
 
 }  // namespace tactus

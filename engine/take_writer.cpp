@@ -221,9 +221,8 @@ std::unique_ptr<Stream> TakeWriter::stream(const std::string& port, const ValueT
     info.type = type.name;
     info.period = group.plan->period;
     std::string stem = "streams/" + port;
-    for (int again = 2; std::ranges::find(files_, stem) != files_.end(); ++again)
-        stem = fmt::format("streams/{}-{}", port, again);
-    files_.push_back(stem);
+    for (int again = 2; files_.contains(stem); ++again) stem = fmt::format("streams/{}-{}", port, again);
+    files_.insert(stem);
     info.file = stem + ".wav";
     StreamFormat format;
     format.file = info.file;

@@ -25,6 +25,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -92,7 +93,7 @@ private:
     std::map<std::string, std::int64_t> frames_;  // of each stream that is complete
     std::atomic<bool> is_lost_{false};
     std::string loss_;
-    std::vector<std::string> files_;
+    std::unordered_set<std::string> files_;
     std::chrono::steady_clock::time_point flushed_;
 };
 

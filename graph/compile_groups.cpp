@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string_view>
+#include <unordered_map>
 
 namespace tactus {
 
@@ -25,42 +27,62 @@ Flicks parse_latency(const PatchGroup& group) {
     return std::llround(flicks);
 }
 
-/// Index of the group that `node` belongs to, made on first use.
-int group_of(Plan& plan, const PatchNode& node) {
-    const auto by_name = [&plan](std::string_view name) {
-        return std::ranges::find(plan.groups, name, &PlanGroup::name) - plan.groups.begin();
-    };
-    PlanGroup group;
-    if (node.group.empty()) {
-        group.period = parse_rate(node.rate);
+/// Collects groups in the order in which nodes name them first.
+class GroupCollector {
+public:
+    GroupCollector(Plan& plan, const Problems& problems) : plan_(plan), problems_(problems) {
+        for (const PatchGroup& group : plan.patch.groups) declared_.emplace(group.name, &group);
+    }
+
+    /// Index of the group that `node` belongs to, made on first use.
+    int group_of(const PatchNode& node) {
+        PlanGroup group = node.group.empty() ? group_of_rate(node.rate) : named(node.group);
+        const auto [at, is_new] = made_.try_emplace(group.name, static_cast<int>(plan_.groups.size()));
+        if (is_new) plan_.groups.push_back(std::move(group));
+        return at->second;
+    }
+
+private:
+    static PlanGroup group_of_rate(const std::string& text) {
+        PlanGroup group;
+        group.period = parse_rate(text);
         const double rate = rate_of(group.period);
         group.name = format_quantity(rate, rate >= 1000.0 ? "kHz" : "Hz");
-    } else {
-        const auto& groups = plan.patch.groups;
-        const auto declared = std::ranges::find(groups, node.group, &PatchGroup::name);
-        if (declared == groups.end()) {
-            std::vector<std::string> names;
-            for (const PatchGroup& g : groups) names.push_back(g.name);
-            throw Error(fmt::format("no group '{}' in [groups]{}", node.group, did_you_mean(node.group, names)));
-        }
-        group.name = declared->name;
-        group.period = parse_rate(declared->rate);
-        if (!declared->latency.empty()) group.latency = parse_latency(*declared);
-        group.backlog = declared->backlog;
-        group.backlog_given = declared->backlog >= 0;
+        return group;
     }
-    const auto at = by_name(group.name);
-    if (at == std::ssize(plan.groups)) plan.groups.push_back(std::move(group));
-    return static_cast<int>(at);
-}
+
+    PlanGroup named(const std::string& name) const {
+        const auto found = declared_.find(name);
+        if (found == declared_.end()) {
+            std::vector<std::string> names;
+            if (problems_.wants_hint())
+                for (const PatchGroup& g : plan_.patch.groups) names.push_back(g.name);
+            throw Error(fmt::format("no group '{}' in [groups]{}", name, did_you_mean(name, names)));
+        }
+        const PatchGroup& declared = *found->second;
+        PlanGroup group;
+        group.name = declared.name;
+        group.period = parse_rate(declared.rate);
+        if (!declared.latency.empty()) group.latency = parse_latency(declared);
+        group.backlog = declared.backlog;
+        group.backlog_given = declared.backlog >= 0;
+        return group;
+    }
+
+    Plan& plan_;
+    const Problems& problems_;
+    std::unordered_map<std::string_view, const PatchGroup*> declared_;
+    std::unordered_map<std::string, int> made_;
+};
 
 }  // namespace
 
 void form_groups(Plan& plan, Problems& problems) {
+    GroupCollector collector(plan, problems);
     for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
         const PatchNode& patch_node = plan.patch.nodes[i];
         try {
-            plan.nodes[i].group = group_of(plan, patch_node);
+            plan.nodes[i].group = collector.group_of(patch_node);
         } catch (const Error& error) {
             problems.add(patch_node.rate_where, error.message());
         }
@@ -97,18 +119,22 @@ namespace {
 /// Follows unmet dependencies from a node that is on or behind a cycle until one repeats; returns the loop in the order
 /// values flow, its first node also at the end.
 std::vector<int> find_cycle(const std::vector<int>& left, const std::vector<std::vector<int>>& before) {
-    std::vector<int> path{left.front()};
-    for (;;) {
-        int next = -1;
-        for (const int candidate : before[static_cast<std::size_t>(path.back())])
-            if (std::ranges::find(left, candidate) != left.end() && (next < 0 || candidate < next)) next = candidate;
-        const auto seen = std::ranges::find(path, next);
-        if (seen != path.end()) {
-            path.erase(path.begin(), seen);
-            path.push_back(next);
+    constexpr int placed = -2, unseen = -1;
+    std::vector<int> position(before.size(), placed);  // on the path
+    for (const int node : left) position[static_cast<std::size_t>(node)] = unseen;
+    std::vector<int> path;
+    for (int next = left.front();;) {
+        int& at = position[static_cast<std::size_t>(next)];
+        path.push_back(next);
+        if (at != unseen) {
+            path.erase(path.begin(), path.begin() + at);
             break;
         }
-        path.push_back(next);
+        at = static_cast<int>(path.size()) - 1;
+        next = -1;
+        for (const int candidate : before[static_cast<std::size_t>(path.back())])
+            if (position[static_cast<std::size_t>(candidate)] != placed && (next < 0 || candidate < next))
+                next = candidate;
     }
     std::ranges::reverse(path);
     return path;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <string_view>
+#include <unordered_set>
 
 namespace tactus {
 
@@ -79,18 +81,16 @@ const NodeType* find_type(const PatchNode& node, Catalogue catalogue, Problems& 
     return nullptr;
 }
 
-void check_assets(const PlanNode& node, const Patch& patch, Problems& problems) {
-    if (node.assets.empty()) return;
-    std::vector<std::string> names;
-    for (const PatchAsset& asset : patch.assets) names.push_back(asset.name);
+void check_assets(const PlanNode& node, const std::vector<std::string>& names,
+                  const std::unordered_set<std::string_view>& known, Problems& problems) {
     for (const AssetParam* asset : node.assets) {
         if (asset->name.empty()) {
             if (!asset->is_optional)
                 problems.add(node.where, fmt::format("node '{}' needs {} from [assets] ({})", node.name,
                                                      asset->type_name, asset->about));
-        } else if (std::ranges::find(names, asset->name) == names.end()) {
-            problems.add(asset->where,
-                         fmt::format("no asset '{}' in [assets]{}", asset->name, did_you_mean(asset->name, names)));
+        } else if (!known.contains(asset->name)) {
+            problems.add(asset->where, fmt::format("no asset '{}' in [assets]{}", asset->name,
+                                                   problems.wants_hint() ? did_you_mean(asset->name, names) : ""));
         }
     }
 }
@@ -99,6 +99,9 @@ void check_assets(const PlanNode& node, const Patch& patch, Problems& problems) 
 
 void resolve_nodes(Plan& plan, Catalogue catalogue, Problems& problems) {
     plan.nodes.reserve(plan.patch.nodes.size());
+    std::vector<std::string> assets;
+    for (const PatchAsset& asset : plan.patch.assets) assets.push_back(asset.name);
+    const std::unordered_set<std::string_view> known(assets.begin(), assets.end());
     for (const PatchNode& patch_node : plan.patch.nodes) {
         PlanNode& node = plan.nodes.emplace_back();
         node.name = patch_node.name;
@@ -109,7 +112,7 @@ void resolve_nodes(Plan& plan, Catalogue catalogue, Problems& problems) {
         Collector collector(node);
         node.type->visit(node.instance.get(), collector);
         for (const OptionText& given : patch_node.settings) collector.apply(given, problems);
-        check_assets(node, plan.patch, problems);
+        check_assets(node, assets, known, problems);
     }
 }
 

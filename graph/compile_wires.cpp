@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <string_view>
+#include <unordered_set>
 
 namespace tactus {
 
@@ -28,14 +29,30 @@ std::string no_port(const PlanNode& node, const std::string& port, const std::ve
     return fmt::format("no port '{}' on node '{}'{}", port, node.name, did_you_mean(port, candidates));
 }
 
-/// Nodes by name.
-using NodeIndex = std::map<std::string_view, int>;
+/// What all wires are looked up in.
+struct WireContext {
+    explicit WireContext(const Plan& plan, const Problems& problems_) : problems(problems_) {
+        for (const PlanNode& node : plan.nodes) nodes.emplace(node.name, static_cast<int>(nodes.size()));
+        for (const PatchAsset& asset : plan.patch.assets) assets.insert(asset.name);
+    }
+
+    /// The name among those of `items` that was meant.
+    template <class Item>
+    std::string hint(const std::string& name, const std::vector<Item>& items) const {
+        return problems.wants_hint() ? did_you_mean(name, names_of(items)) : "";
+    }
+
+    const Problems& problems;
+    std::map<std::string_view, int> nodes;
+    std::unordered_set<std::string_view> assets;
+    std::unordered_set<const Param*> driven;  ///< parameters that wires drive so far
+};
 
 /// Both ends of one wire found, or what is wrong with it.
 class WireResolver {
 public:
-    WireResolver(Plan& plan, const NodeIndex& nodes, const PatchWire& source)
-        : plan_(plan), nodes_(nodes), source_(source) {}
+    WireResolver(Plan& plan, WireContext& context, const PatchWire& source)
+        : plan_(plan), context_(context), source_(source) {}
 
     PlanWire resolve() {
         wire_.mode = source_.mode;
@@ -50,8 +67,8 @@ public:
 
     /// The input that the wire means, or null: a wire with a fault feeds it all the same, and one slip is said once.
     Input* meant_input() {
-        const auto found = nodes_.find(source_.to_node);
-        if (found == nodes_.end()) return nullptr;
+        const auto found = context_.nodes.find(source_.to_node);
+        if (found == context_.nodes.end()) return nullptr;
         auto& inputs = node(found->second).inputs;
         const int input = index_of(inputs, source_.to_port);
         return input < 0 ? nullptr : inputs[static_cast<std::size_t>(input)].port;
@@ -61,18 +78,17 @@ private:
     PlanNode& node(int index) { return plan_.nodes[static_cast<std::size_t>(index)]; }
 
     int find_node(const std::string& name) {
-        const auto found = nodes_.find(name);
-        if (found == nodes_.end())
-            throw Error(fmt::format("no node '{}'{}", name, did_you_mean(name, names_of(plan_.nodes))));
+        const auto found = context_.nodes.find(name);
+        if (found == context_.nodes.end())
+            throw Error(fmt::format("no node '{}'{}", name, context_.hint(name, plan_.nodes)));
         return found->second;
     }
 
     void find_source() {
         if (source_.from_port.empty()) {
-            const auto& assets = plan_.patch.assets;
-            if (std::ranges::find(assets, source_.from_node, &PatchAsset::name) == assets.end())
+            if (!context_.assets.contains(source_.from_node))
                 throw Error(fmt::format("no asset '{}' in [assets]{}; a node needs a port, as in '{}.port'",
-                                        source_.from_node, did_you_mean(source_.from_node, names_of(assets)),
+                                        source_.from_node, context_.hint(source_.from_node, plan_.patch.assets),
                                         source_.from_node));
             wire_.asset = source_.from_node;
             return;
@@ -158,14 +174,13 @@ private:
             throw Error(fmt::format("parameter '{}' of node '{}' is structural and cannot change while the patch runs",
                                     source_.to_port, source_.to_node));
         if (wire_.mode == WireMode::batch) throw Error("a parameter takes one value; 'as batch' is not for it");
-        for (const PlanWire& other : plan_.wires)
-            if (other.param == wire_.param)
-                throw Error(fmt::format("parameter '{}' of node '{}' is already driven by another wire",
-                                        source_.to_port, source_.to_node));
+        if (!context_.driven.insert(wire_.param).second)
+            throw Error(fmt::format("parameter '{}' of node '{}' is already driven by another wire", source_.to_port,
+                                    source_.to_node));
     }
 
     Plan& plan_;
-    const NodeIndex& nodes_;
+    WireContext& context_;
     const PatchWire& source_;
     PlanWire wire_;
 };
@@ -191,12 +206,11 @@ void resolve_wires(Plan& plan, Problems& problems) {
     // Without every node there is nothing sound to say about the wires between them.
     for (const PlanNode& node : plan.nodes)
         if (!node.type || node.group < 0) return;
-    NodeIndex nodes;
-    for (const PlanNode& node : plan.nodes) nodes.emplace(node.name, static_cast<int>(nodes.size()));
+    WireContext context(plan, problems);
     plan.wires.reserve(plan.patch.wires.size());
     const std::size_t known = problems.list.size();
     for (const PatchWire& source : plan.patch.wires) {
-        WireResolver resolver(plan, nodes, source);
+        WireResolver resolver(plan, context, source);
         try {
             plan.wires.push_back(resolver.resolve());
         } catch (const Error& error) {

@@ -80,22 +80,18 @@ private:
     const PlanNode& node(int index) const { return plan_.nodes[static_cast<std::size_t>(index)]; }
     Place& place_of(int index) { return places_[static_cast<std::size_t>(index)]; }
 
-    /// Longest way from a source, over all wires that go forward.
+    /// Longest way from a source, over all wires that go forward. Nodes stand in that order in their groups.
     void find_columns() {
-        for (std::size_t round = 0; round < plan_.nodes.size(); ++round) {
-            bool changed = false;
-            for (const PlanWire& wire : plan_.wires) {
-                if (wire.from_node < 0 || wire.mode == WireMode::delay) continue;
-                if (node(wire.from_node).group != node(wire.to_node).group) continue;
-                int& to = place_of(wire.to_node).column;
-                const int wanted = place_of(wire.from_node).column + 1;
-                if (to < wanted) {
-                    to = wanted;
-                    changed = true;
-                }
-            }
-            if (!changed) break;
+        std::vector<std::vector<int>> after(plan_.nodes.size());
+        for (const PlanWire& wire : plan_.wires) {
+            if (wire.from_node < 0 || wire.mode == WireMode::delay) continue;
+            if (node(wire.from_node).group != node(wire.to_node).group) continue;
+            after[static_cast<std::size_t>(wire.from_node)].push_back(wire.to_node);
         }
+        for (const PlanGroup& group : plan_.groups)
+            for (const int from : group.order)
+                for (const int to : after[static_cast<std::size_t>(from)])
+                    place_of(to).column = std::max(place_of(to).column, place_of(from).column + 1);
     }
 
     void place() {

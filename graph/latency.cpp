@@ -2,8 +2,11 @@
 #include "graph/latency.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
+#include <queue>
 #include <tuple>
+#include <utility>
 
 namespace tactus {
 
@@ -16,24 +19,73 @@ Flicks worst_age(const PlanGroup& producer, const PlanGroup& consumer, const Pla
     return latency + producer.period - step + offset;
 }
 
+namespace {
+
+/// What a wire adds to the age of a value.
+Flicks added_age(const Plan& plan, const PlanWire& wire) {
+    const PlanGroup& producer =
+        plan.groups[static_cast<std::size_t>(plan.nodes[static_cast<std::size_t>(wire.from_node)].group)];
+    const PlanGroup& consumer =
+        plan.groups[static_cast<std::size_t>(plan.nodes[static_cast<std::size_t>(wire.to_node)].group)];
+    return &producer != &consumer ? worst_age(producer, consumer, wire) : wire.delay * producer.period;
+}
+
+}  // namespace
+
 Ages ages_from(const Plan& plan, int source) {
     Ages ages{std::vector<Flicks>(plan.nodes.size(), unreached), std::vector<int>(plan.nodes.size(), -1)};
+    std::vector<std::vector<std::size_t>> leaving(plan.nodes.size());
+    for (std::size_t w = 0; w < plan.wires.size(); ++w)
+        if (plan.wires[w].from_node >= 0) leaving[static_cast<std::size_t>(plan.wires[w].from_node)].push_back(w);
+    // Ages only fall, by Bellman and Ford. A round goes over all wires in their order, which decides between ways of
+    // one age; only those are visited behind which an age fell.
+    using Visit = std::pair<std::size_t, std::size_t>;  // round, wire
+    std::priority_queue<Visit, std::vector<Visit>, std::greater<>> due;
+    std::vector<bool> is_due(plan.wires.size());
+    const auto fell = [&](std::size_t node, std::size_t round, std::size_t by) {
+        for (const std::size_t w : leaving[node]) {
+            if (is_due[w]) continue;
+            is_due[w] = true;
+            due.emplace(w > by ? round : round + 1, w);
+        }
+    };
     ages.age[static_cast<std::size_t>(source)] = 0;
-    // Ages only fall, by Bellman and Ford: a round per node at most.
-    for (bool changed = true; changed;) {
-        changed = false;
-        for (const PlanWire& wire : plan.wires) {
-            if (wire.from_node < 0) continue;
-            const auto from = static_cast<std::size_t>(wire.from_node), to = static_cast<std::size_t>(wire.to_node);
-            if (ages.age[from] == unreached) continue;
-            const PlanGroup& producer = plan.groups[static_cast<std::size_t>(plan.nodes[from].group)];
-            const PlanGroup& consumer = plan.groups[static_cast<std::size_t>(plan.nodes[to].group)];
-            const Flicks more =
-                &producer != &consumer ? worst_age(producer, consumer, wire) : wire.delay * producer.period;
-            if (ages.age[from] + more >= ages.age[to]) continue;
-            ages.age[to] = ages.age[from] + more;
-            ages.before[to] = wire.from_node;
-            changed = true;
+    fell(static_cast<std::size_t>(source), 0, plan.wires.size());
+    while (!due.empty()) {
+        const auto [round, w] = due.top();
+        due.pop();
+        is_due[w] = false;
+        const PlanWire& wire = plan.wires[w];
+        const auto from = static_cast<std::size_t>(wire.from_node), to = static_cast<std::size_t>(wire.to_node);
+        const Flicks age = ages.age[from] + added_age(plan, wire);
+        if (age >= ages.age[to]) continue;
+        ages.age[to] = age;
+        ages.before[to] = wire.from_node;
+        fell(to, round, w);
+    }
+    return ages;
+}
+
+std::vector<Flicks> ages_to(const Plan& plan, int sink) {
+    std::vector<std::vector<const PlanWire*>> entering(plan.nodes.size());
+    for (const PlanWire& wire : plan.wires)
+        if (wire.from_node >= 0) entering[static_cast<std::size_t>(wire.to_node)].push_back(&wire);
+    std::vector<Flicks> ages(plan.nodes.size(), unreached);
+    ages[static_cast<std::size_t>(sink)] = 0;
+    // Dijkstra: no wire makes a value younger.
+    using Reached = std::pair<Flicks, int>;
+    std::priority_queue<Reached, std::vector<Reached>, std::greater<>> next;
+    next.emplace(0, sink);
+    while (!next.empty()) {
+        const auto [age, node] = next.top();
+        next.pop();
+        if (age > ages[static_cast<std::size_t>(node)]) continue;
+        for (const PlanWire* wire : entering[static_cast<std::size_t>(node)]) {
+            const Flicks longer = age + added_age(plan, *wire);
+            Flicks& known = ages[static_cast<std::size_t>(wire->from_node)];
+            if (longer >= known) continue;
+            known = longer;
+            next.emplace(longer, wire->from_node);
         }
     }
     return ages;

@@ -29,6 +29,9 @@ struct Ages {
 };
 Ages ages_from(const Plan& plan, int source);
 
+/// By the quickest way from each node to `sink`: how much older a value becomes, or `unreached`.
+std::vector<Flicks> ages_to(const Plan& plan, int sink);
+
 /// The quickest path from every device input to every output of the patch (device_output, audio_output, record), in
 /// order of names. Inside a group values are passed on in the same tick and do not age.
 std::vector<PathLatency> path_latencies(const Plan& plan);

@@ -3,23 +3,27 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace tactus {
 
 void AssetCache::load(Plan& plan, Problems& problems) {
-    std::vector<std::string> failed;
+    std::unordered_map<std::string_view, const PatchAsset*> sources;
+    for (const PatchAsset& asset : plan.patch.assets) sources.emplace(asset.name, &asset);
+    std::unordered_set<std::string> failed;
     for (PlanNode& node : plan.nodes) {
         for (AssetParam* asset : node.assets) {
             if (asset->name.empty()) continue;
-            const auto source = std::ranges::find(plan.patch.assets, asset->name, &PatchAsset::name);
+            const PatchAsset* source = sources.at(asset->name);
             const std::string path = source->path.string();
             auto& entry = loaded_[{asset->load, path}];
-            if (!entry && std::ranges::find(failed, path) == failed.end()) {
+            if (!entry && !failed.contains(path)) {
                 try {
                     entry = asset->load(path);
                 } catch (const Error& error) {
-                    failed.push_back(path);
+                    failed.insert(path);
                     problems.add(source->where, fmt::format("asset '{}': {}", asset->name, error.what()));
                 }
             }

@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <unordered_set>
 
 namespace tactus {
 
@@ -172,13 +173,14 @@ private:
     void parts(const toml::node& value) {
         const toml::array* list = value.as_array();
         if (!list) return problems_.add(at(value), "'parts' are tables: [[parts]] with 'path' and 'text'");
+        std::unordered_set<std::string> known;
         for (const toml::node& item : *list) {
             const toml::table* part = item.as_table();
             const toml::value<std::string>* path = part ? part->get_as<std::string>("path") : nullptr;
             const toml::value<std::string>* text = part ? part->get_as<std::string>("text") : nullptr;
             if (!path || !text || part->size() != 2 || path->get().empty()) {
                 problems_.add(at(item), "a part has a 'path' and a 'text', and nothing else");
-            } else if (std::ranges::find(patch_.parts, path->get(), &PatchPart::path) != patch_.parts.end()) {
+            } else if (!known.insert(path->get()).second) {
                 problems_.add(at(item), fmt::format("the part '{}' is there already", path->get()));
             } else {
                 patch_.parts.push_back({path->get(), text->get()});

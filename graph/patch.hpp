@@ -94,6 +94,8 @@ struct Problems {
 
     void add(const SourceLocation& where, const std::string& message) { list.emplace_back(where, message); }
     bool empty() const { return list.empty(); }
+    /// The next problem is still worth comparing with all names there are: nobody reads the hints of hundreds.
+    bool wants_hint() const { return list.size() < 100; }
 };
 
 /// Reads patch text. `file` names it in messages and anchors relative paths. Problems found are added; what could be

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <fstream>
+#include <unordered_set>
 
 namespace tactus {
 
@@ -42,13 +42,16 @@ Patch load_patch(const std::filesystem::path& file, Problems& problems) {
 }
 
 void read_parts(Patch& patch) {
-    const auto read_named = [&patch](const std::vector<PatchNode>& nodes, const std::string& from) {
+    std::unordered_set<std::string> known;
+    for (const PatchPart& part : patch.parts) known.insert(part.path);
+    const auto read_named = [&patch, &known](const std::vector<PatchNode>& nodes, const std::string& from) {
         for (const PatchNode& node : nodes) {
             if (!is_sub_patch(node)) continue;
             const std::string path = part_path(from, node.type);
-            if (std::ranges::find(patch.parts, path, &PatchPart::path) != patch.parts.end()) continue;
+            if (known.contains(path)) continue;
             try {
                 patch.parts.push_back({path, patch_text(file_of_part(patch, path))});
+                known.insert(path);
             } catch (const Error&) {
                 // What names it is told when the patch is flattened.
             }

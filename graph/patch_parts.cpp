@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
 
 namespace tactus {
 
@@ -67,11 +70,16 @@ SignalEnd find_signal(const Patch& patch, const std::string& text, std::string_v
 }
 
 void keep_what_leads_to(std::vector<std::string> kept, Patch& patch) {
-    for (std::size_t i = 0; i < kept.size(); ++i)
-        for (const PatchWire& wire : patch.wires)
-            if (wire.to_node == kept[i] && std::ranges::find(kept, wire.from_node) == kept.end())
-                kept.push_back(wire.from_node);
-    const auto is_dropped = [&](const std::string& name) { return std::ranges::find(kept, name) == kept.end(); };
+    std::unordered_map<std::string, std::vector<std::string>> sources;  // of each node
+    for (const PatchWire& wire : patch.wires) sources[wire.to_node].push_back(wire.from_node);
+    std::unordered_set<std::string> known(kept.begin(), kept.end());
+    while (!kept.empty()) {
+        const std::string node = std::move(kept.back());
+        kept.pop_back();
+        for (const std::string& source : sources[node])
+            if (known.insert(source).second) kept.push_back(source);
+    }
+    const auto is_dropped = [&](const std::string& name) { return !known.contains(name); };
     std::erase_if(patch.nodes, [&](const PatchNode& node) { return is_dropped(node.name); });
     std::erase_if(patch.wires, [&](const PatchWire& wire) { return is_dropped(wire.to_node); });
 }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a node costs: a chain of gains in this engine, and the same chain in Pure Data and scsynth, in one run.
 #include "engine/engine.hpp"
+#include "graph/latency.hpp"
+#include "graph/stiffness.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/bench_peers.hpp"
+#include "tools/summary.hpp"
 #include "tools/terminal.hpp"
 #include "tools/verbs.hpp"
 
@@ -139,6 +142,40 @@ void bench_compile(int rounds, Json& rows) {
     rows.push_back(row("prepare", nodes, 0, prepared * 1e9 / nodes, nullptr));
 }
 
+/// What a node of a large patch costs beside one of a small patch: 1 when all steps take time in proportion.
+void bench_scaling(int rounds, Json& rows) {
+    constexpr std::array<int, 2> sizes{10'000, 100'000};
+    constexpr double brief = 0.002;  // s of sound: what is measured is the way there
+    std::array<double, 2> checked{1e9, 1e9}, rendered{1e9, 1e9};
+    for (int i = 0; i < rounds; ++i)
+        for (std::size_t k = 0; k < sizes.size(); ++k) {
+            const std::string text = patch_of(sizes[k]);
+            checked[k] = std::min(checked[k], seconds_of([&] {
+                                      const Engine engine(compile_chain(read_chain(text)), EngineOptions{});
+                                      path_latencies(engine.plan());
+                                      force_loops(engine.plan(), [](const std::string&) { return 0.0; });
+                                  }));
+            rendered[k] = std::min(rendered[k], seconds_of([&] {
+                                       EngineOptions options;
+                                       options.seconds = brief;
+                                       Engine engine(compile_chain(read_chain(text)), options);
+                                       engine.render(1);
+                                       engine.finish();
+                                       summary_json(engine, engine.report(), brief, false, {});
+                                   }));
+        }
+    const auto add = [&](const char* name, const std::array<double, 2>& seconds) {
+        const double few = seconds[0] * 1e9 / sizes[0], many = seconds[1] * 1e9 / sizes[1];
+        Json json = row(name, sizes[1], 0, many, nullptr);
+        json["peer"] = fmt::format("{} nodes", sizes[0]);
+        json["peer_ns_per_node"] = few;
+        json["ratio"] = many / few;
+        rows.push_back(std::move(json));
+    };
+    add("check", checked);
+    add("render 2 ms", rendered);
+}
+
 /// What timing every node in one call of 64 adds to a tick of 1 ms.
 void bench_telemetry(int rounds, Json& rows) {
     constexpr int nodes = 1000, block = 48;
@@ -188,6 +225,8 @@ int bench_engine_verb(const BenchChoice& choice) {
         }
     line.show("compiling");
     bench_compile(choice.rounds, rows);
+    line.show("large patches");
+    bench_scaling(choice.rounds, rows);
     bench_telemetry(choice.rounds, rows);
     line.clear();
     std::error_code ignored;

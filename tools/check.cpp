@@ -12,6 +12,9 @@
 #include <nlohmann/json.hpp>
 
 #include <functional>
+#include <map>
+#include <string_view>
+#include <utility>
 
 namespace tactus {
 
@@ -21,11 +24,14 @@ namespace {
 
 /// One row per path; a loop through a hand has its stiffness too.
 Json paths_json(const Plan& plan, const std::vector<ForceLoop>& loops) {
+    std::map<std::pair<std::string_view, std::string_view>, const ForceLoop*> by_ends;
+    for (const ForceLoop& loop : loops)
+        by_ends.emplace(std::pair<std::string_view, std::string_view>(loop.from, loop.to), &loop);
     Json paths = Json::array();
     for (const PathLatency& path : path_latencies(plan)) {
         Json row{{"from", path.from}, {"to", path.to}, {"latency_ms", path.latency_ms}, {"via", path.via}};
-        for (const ForceLoop& loop : loops) {
-            if (loop.from != path.from || loop.to != path.to) continue;
+        if (const auto found = by_ends.find({path.from, path.to}); found != by_ends.end()) {
+            const ForceLoop& loop = *found->second;
             row["latency_ms"] = loop.latency_s * 1e3;
             row["damping_N_s_per_m"] = loop.damping;
             row["stiffness_limit_N_per_mm"] = loop.limit * 1e-3;
@@ -140,7 +146,7 @@ int check_verb(const PatchChoice& choice) {
     }
     if (choice.json) fmt::print("{}\n", json.dump(2));
     else {
-        for (const Error& error : problems.list) fmt::print(stderr, "{}\n", error.what());
+        for (const std::string& line : problem_lines(problems)) fmt::print(stderr, "{}\n", line);
         print_check(json);
         if (json.contains("admittance_loops") && !json["admittance_loops"].empty())
             print_loops(json["admittance_loops"]);
@@ -154,11 +160,7 @@ int check_verb(const PatchChoice& choice) {
 int draw_verb(const PatchChoice& choice, const std::filesystem::path& out) {
     Problems problems;
     const std::optional<Plan> plan = read_plan(choice, problems);
-    if (!plan) {
-        for (std::size_t i = 0; i + 1 < problems.list.size(); ++i)
-            fmt::print(stderr, "tactus: {}\n", problems.list[i].what());
-        throw problems.list.back();
-    }
+    throw_problems(problems);
     const std::string svg = draw_svg(*plan);
     if (out.empty()) fmt::print("{}", svg);
     else write_whole_file(out, svg);

@@ -167,6 +167,7 @@ int command_line(int argc, char** argv) {
     replay_app->add_option("take", replay.take, "folder that --record made")->required();
     replay_app->add_option("--out", replay.out,
                            "folder for the results of the run: sounds, traces, bones, summary.json");
+    replay_app->add_flag("--overwrite", replay.overwrite, "write over results that the folder holds");
     replay_app->add_flag("--anyway", replay.anyway, "although assets have changed since");
     replay_app->add_flag("--json", replay.json, "as JSON");
 

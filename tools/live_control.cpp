@@ -55,7 +55,7 @@ void LiveControl::edit(std::string text) {
             plan_of(read_patch(text, file_, problems), choice_.overrides, choice_.seed, &assets_, problems);
         if (problems.empty()) return std::move(*plan);
         std::string all;
-        for (const Error& problem : problems.list) all += fmt::format("{}{}", all.empty() ? "" : "\n", problem.what());
+        for (const std::string& line : problem_lines(problems)) all += (all.empty() ? "" : "\n") + line;
         throw Error(all);
     };
     engine_.edit(make, [this](const EditOutcome& outcome) {

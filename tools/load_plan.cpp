@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <ranges>
 
 namespace tactus {
 
@@ -64,6 +65,17 @@ fs::path find_bundled(const std::string& name, const char* what, const char* whe
 
 }  // namespace
 
+namespace {
+
+/// 299980 → "299,980".
+std::string with_commas(std::size_t number) {
+    std::string text = std::to_string(number);
+    for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, 1, ',');
+    return text;
+}
+
+}  // namespace
+
 fs::path find_patch(const std::string& name) { return find_bundled(name, "patch", "patches"); }
 
 fs::path find_rig(const std::string& name) { return find_bundled(name, "rig", "rigs"); }
@@ -92,11 +104,22 @@ Plan load_plan(const PatchChoice& choice, AssetCache& assets) {
     return std::move(*plan);
 }
 
+std::vector<std::string> problem_lines(const Problems& problems) {
+    constexpr std::size_t most_shown = 20;
+    std::vector<std::string> lines;
+    for (const Error& error : problems.list | std::views::take(most_shown)) lines.emplace_back(error.what());
+    if (const std::size_t all = problems.list.size(); all > most_shown)
+        lines.push_back(
+            fmt::format("… and {} more error{}", with_commas(all - most_shown), all - most_shown == 1 ? "" : "s"));
+    return lines;
+}
+
 void throw_problems(const Problems& problems) {
     if (problems.empty()) return;
-    for (std::size_t i = 0; i + 1 < problems.list.size(); ++i)
-        fmt::print(stderr, "tactus: {}\n", problems.list[i].what());
-    throw problems.list.back();
+    const std::vector<std::string> lines = problem_lines(problems);
+    for (std::size_t i = 0; i + 1 < lines.size(); ++i) fmt::print(stderr, "tactus: {}\n", lines[i]);
+    if (lines.size() == problems.list.size()) throw problems.list.back();
+    throw Error(lines.back());
 }
 
 std::unique_ptr<TakeWriter> make_take(const PatchChoice& choice, const fs::path& folder, double seconds, bool live) {

@@ -32,10 +32,13 @@ std::optional<Plan> plan_of(Patch patch, const PatchOverrides& overrides, std::o
 /// Reads and compiles, without assets. Problems are collected.
 std::optional<Plan> read_plan(const PatchChoice& choice, Problems& problems);
 
-/// Reads, compiles and loads assets. Prints every problem on standard error and throws the last when there are any.
+/// Reads, compiles and loads assets. Throws when there are problems, as throw_problems() does.
 Plan load_plan(const PatchChoice& choice, AssetCache& assets);
 
-/// Prints every problem but the last on standard error and throws the last; nothing when there are none.
+/// The text of each problem, of the first twenty when there are more, and then how many are left out.
+std::vector<std::string> problem_lines(const Problems& problems);
+
+/// Prints these lines but the last on standard error and throws the last; nothing when there are none.
 void throw_problems(const Problems& problems);
 
 /// A take of a run of that patch. Throws Error when the folder cannot be made or holds a take already.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/engine.hpp"
 #include "engine/take_compare.hpp"
 #include "tools/load_plan.hpp"
+#include "tools/output_folder.hpp"
 #include "tools/replayed_take.hpp"
 #include "tools/results.hpp"
 #include "tools/summary.hpp"
@@ -69,15 +69,6 @@ void print(const Verdict& verdict, std::size_t outputs, double seconds) {
     else fmt::print("identical: {} values of {} outputs, {:.3g} s\n", verdict.compared, outputs, seconds);
 }
 
-/// What the run leaves in its folder besides the recordings.
-void write_results(const Engine& engine, const std::filesystem::path& folder) {
-    const Report report = engine.report();
-    std::vector<std::string> files = write_pictures(report, folder);
-    for (std::string& file : write_bones(report, folder)) files.push_back(std::move(file));
-    files.push_back("summary.json");
-    write_whole_file(folder / "summary.json", summary_json(engine, report, engine.progress_seconds(), false, files));
-}
-
 }  // namespace
 
 int replay_verb(const ReplayChoice& choice) {
@@ -95,8 +86,9 @@ int replay_verb(const ReplayChoice& choice) {
     TakeComparison comparison(take);
     EngineOptions options;
     options.seconds = take.about.seconds;
+    std::optional<OutputFolder> folder;
     if (!choice.out.empty()) {
-        make_output_folder(choice.out);
+        folder.emplace(OutputChoice{choice.out, choice.overwrite});
         options.folder = choice.out;
     }
     options.tap = [&comparison](const std::string& port, const ValueType& type, const GroupRuntime& group) {
@@ -108,9 +100,21 @@ int replay_verb(const ReplayChoice& choice) {
     const int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     engine.render(threads, [&](double done) { line.show(fmt::format("{:3.0f} %", 100.0 * done)); });
     line.clear();
-    engine.finish();
-
-    if (!choice.out.empty()) write_results(engine, choice.out);
+    engine.complete();
+    std::vector<std::string> losses = engine.losses();
+    if (folder) {
+        const Report report = engine.report();
+        WrittenFiles written = write_results(report, folder->path());
+        losses.insert(losses.end(), written.losses.begin(), written.losses.end());
+        written.names.emplace_back("summary.json");
+        try {
+            folder->write_summary(
+                summary_json(engine, report, engine.progress_seconds(), false, written.names, losses));
+        } catch (const Error& error) {
+            losses.emplace_back(error.what());
+        }
+    }
+    for (const std::string& loss : losses) fmt::print(stderr, "tactus: {}\n", loss);
 
     const Verdict verdict{damages, differing_hashes(take, engine), comparison.first_difference(),
                           comparison.compared_values(), take.is_complete};
@@ -131,6 +135,7 @@ int replay_verb(const ReplayChoice& choice) {
                 {{"file", d.file}, {"holds", d.holds}, {"written", d.written}, {"unit", d.unit}});
         fmt::print("{}\n", json.dump(2));
     } else print(verdict, take.streams.size(), covered);
+    if (!losses.empty()) return output_lost;
     return verdict.is_equal_so_far() ? done : answer_is_no;
 }
 

@@ -73,6 +73,7 @@ struct ReplayChoice {
     std::filesystem::path take, out;  ///< out: where the results of the run go, empty: nowhere
     bool json = false;
     bool anyway = false;  ///< although assets have changed
+    bool overwrite = false;
 };
 
 struct ImportChoice : ImportOptions {

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/spectrum/fft.hpp"
 
+#include "dsp/spectrum/lane_scalar.hpp"
+
+#include <kissfft/kissfft.hh>
+
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <numbers>
 
 namespace tactus {
@@ -17,6 +22,7 @@ std::complex<T> root_of_unity(std::size_t k, std::size_t n) {
     return {static_cast<T>(std::cos(angle)), static_cast<T>(-std::sin(angle))};
 }
 
+// Beyond it KissFFT's general radix, p² products for p values, costs more than the chirp.
 constexpr std::size_t largest_radix = 31;
 
 bool is_smooth(std::size_t n) {
@@ -29,171 +35,115 @@ bool is_smooth(std::size_t n) {
 
 namespace detail {
 
-/// exp(−πik²/n), and the transform of its conjugate on the inner plan's length.
+/// What KissFFT computes with. Interleaved parts are std::complex of it.
+template <class V>
+struct KissNumber {
+    using type = V;
+};
+template <>
+struct KissNumber<Lanes<double>> {
+    using type = LaneScalar<double>;
+};
+template <>
+struct KissNumber<Lanes<float>> {
+    using type = LaneScalar<float>;
+};
+
+template <class T, class V>
+struct FftPlan<T, V>::Kiss {
+    using Complex = std::complex<typename KissNumber<V>::type>;
+    static_assert(sizeof(Complex) == 2 * sizeof(V));
+
+    explicit Kiss(std::size_t n) : fft(n, false) {
+        // Its general radix enlarges a buffer when first used: do that here.
+        const std::vector<Complex> silence(n);
+        std::vector<Complex> out(n);
+        fft.transform(silence.data(), out.data());
+    }
+
+    void operator()(const V* in, V* out) const noexcept {
+        fft.transform(reinterpret_cast<const Complex*>(in), reinterpret_cast<Complex*>(out));
+    }
+
+    kissfft<typename KissNumber<V>::type> fft;
+};
+
+/// exp(−πik²/n), the transform of its conjugate, and two rooms for what is convolved with it.
 template <class T, class V>
 struct FftPlan<T, V>::Chirp {
     std::size_t length;
     std::vector<T> turn, kernel;
+    std::vector<V> work;
 };
 
 template <class T, class V>
 FftPlan<T, V>::FftPlan(std::size_t n) : n_(n) {
     if (is_smooth(n)) {
-        std::size_t rest = n;
-        for (; rest % 4 == 0; rest /= 4) add_stage(4, rest / 4);
-        if (rest % 2 == 0) add_stage(2, rest / 2), rest /= 2;
-        for (std::size_t p = 3; rest > 1; p += 2)
-            for (; rest % p == 0; rest /= p) add_stage(p, rest / p);
+        kiss_ = std::make_unique<Kiss>(n);
         return;
     }
     const std::size_t length = std::bit_ceil(2 * n - 1);
-    auto chirp = std::make_shared<Chirp>();
-    chirp->length = length;
+    kiss_ = std::make_unique<Kiss>(length);
+    chirp_ = std::make_unique<Chirp>();
+    chirp_->length = length;
+    chirp_->work.resize(4 * length);
     FftPlan<T, T> plan(length);
     std::vector<T> a(2 * length), b(2 * length);
     for (std::size_t k = 0; k < n; ++k) {
         const std::complex<T> turn = root_of_unity<T>(k * k % (2 * n), 2 * n);
-        chirp->turn.push_back(turn.real());
-        chirp->turn.push_back(turn.imag());
+        chirp_->turn.push_back(turn.real());
+        chirp_->turn.push_back(turn.imag());
         for (const std::size_t at : {k, (length - k) % length}) a[2 * at] = turn.real(), a[2 * at + 1] = -turn.imag();
     }
     const T* spectrum = plan(a.data(), b.data());
     // The inner transform back is scaled here.
-    for (std::size_t i = 0; i < 2 * length; ++i) chirp->kernel.push_back(spectrum[i] / static_cast<T>(length));
-    chirp_ = std::move(chirp);
-    inner_ = std::make_shared<FftPlan>(length);
-    work_.resize(4 * length);
+    for (std::size_t i = 0; i < 2 * length; ++i) chirp_->kernel.push_back(spectrum[i] / static_cast<T>(length));
 }
 
 template <class T, class V>
-void FftPlan<T, V>::add_stage(std::size_t radix, std::size_t rest) {
-    stages_.push_back({radix, rest, twiddles_.size(), roots_.size()});
-    for (std::size_t k = 0; k < rest; ++k)
-        for (std::size_t j = 1; j < radix; ++j) {
-            const std::complex<T> w = root_of_unity<T>(j * k, radix * rest);
-            twiddles_.push_back(w.real());
-            twiddles_.push_back(w.imag());
-        }
-    if (radix % 2 == 0) return;
-    for (std::size_t j = 0; j < radix; ++j) {
-        const std::complex<T> w = root_of_unity<T>(j, radix);
-        roots_.push_back(w.real());
-        roots_.push_back(w.imag());
-    }
+FftPlan<T, V>::~FftPlan() = default;
+template <class T, class V>
+FftPlan<T, V>::FftPlan(const FftPlan& other)
+    : n_(other.n_),
+      kiss_(std::make_unique<Kiss>(*other.kiss_)),
+      chirp_(other.chirp_ ? std::make_unique<Chirp>(*other.chirp_) : nullptr) {}
+template <class T, class V>
+FftPlan<T, V>::FftPlan(FftPlan&&) noexcept = default;
+template <class T, class V>
+FftPlan<T, V>& FftPlan<T, V>::operator=(const FftPlan& other) {
+    return *this = FftPlan(other);
 }
+template <class T, class V>
+FftPlan<T, V>& FftPlan<T, V>::operator=(FftPlan&&) noexcept = default;
 
 template <class T, class V>
 V* FftPlan<T, V>::operator()(V* a, V* b) noexcept {
     if (chirp_) return through_chirp(a);
-    std::size_t stride = 1;
-    for (const Stage& stage : stages_) {
-        if (stage.radix == 4) radix4(a, b, stage, stride);
-        else if (stage.radix == 2) radix2(a, b, stage, stride);
-        else radix_odd(a, b, stage, stride);
-        stride *= stage.radix;
-        std::swap(a, b);
-    }
-    return a;
-}
-
-template <class T, class V>
-void FftPlan<T, V>::radix2(const V* x, V* y, const Stage& stage, std::size_t stride) const noexcept {
-    const T* w = twiddles_.data() + stage.first_factor;
-    const std::size_t apart = 2 * stride * stage.rest;
-    for (std::size_t k = 0; k < stage.rest; ++k, w += 2, y += 4 * stride)
-        for (std::size_t q = 0; q < 2 * stride; q += 2, x += 2) {
-            const V re = x[0] - x[apart], im = x[1] - x[apart + 1];
-            y[q] = x[0] + x[apart];
-            y[q + 1] = x[1] + x[apart + 1];
-            y[q + 2 * stride] = re * w[0] - im * w[1];
-            y[q + 2 * stride + 1] = re * w[1] + im * w[0];
-        }
-}
-
-template <class T, class V>
-void FftPlan<T, V>::radix4(const V* x, V* y, const Stage& stage, std::size_t stride) const noexcept {
-    const T* w = twiddles_.data() + stage.first_factor;
-    const std::size_t m = 2 * stride * stage.rest, s = 2 * stride;
-    for (std::size_t k = 0; k < stage.rest; ++k, w += 6, y += 4 * s)
-        for (std::size_t q = 0; q < s; q += 2, x += 2) {
-            const V sum_re = x[0] + x[2 * m], sum_im = x[1] + x[2 * m + 1];
-            const V diff_re = x[0] - x[2 * m], diff_im = x[1] - x[2 * m + 1];
-            const V odd_re = x[m] + x[3 * m], odd_im = x[m + 1] + x[3 * m + 1];
-            const V turn_re = x[m + 1] - x[3 * m + 1], turn_im = x[3 * m] - x[m];  // −i (x1 − x3)
-            const V a_re = diff_re + turn_re, a_im = diff_im + turn_im;
-            const V b_re = sum_re - odd_re, b_im = sum_im - odd_im;
-            const V c_re = diff_re - turn_re, c_im = diff_im - turn_im;
-            y[q] = sum_re + odd_re;
-            y[q + 1] = sum_im + odd_im;
-            y[q + s] = a_re * w[0] - a_im * w[1];
-            y[q + s + 1] = a_re * w[1] + a_im * w[0];
-            y[q + 2 * s] = b_re * w[2] - b_im * w[3];
-            y[q + 2 * s + 1] = b_re * w[3] + b_im * w[2];
-            y[q + 3 * s] = c_re * w[4] - c_im * w[5];
-            y[q + 3 * s + 1] = c_re * w[5] + c_im * w[4];
-        }
-}
-
-template <class T, class V>
-void FftPlan<T, V>::radix_odd(const V* x, V* y, const Stage& stage, std::size_t stride) const noexcept {
-    const std::size_t p = stage.radix, m = 2 * stride * stage.rest, s = 2 * stride;
-    const T* w = twiddles_.data() + stage.first_factor;
-    const T* root = roots_.data() + stage.first_root;
-    V plus[largest_radix + 1], minus[largest_radix + 1];  // x_j ± x_{p−j}, both parts
-    for (std::size_t k = 0; k < stage.rest; ++k, w += 2 * (p - 1), y += p * s)
-        for (std::size_t q = 0; q < s; q += 2, x += 2) {
-            V total_re = x[0], total_im = x[1];
-            for (std::size_t j = 1; j <= p / 2; ++j) {
-                const V *a = x + j * m, *b = x + (p - j) * m;
-                total_re += plus[2 * j] = a[0] + b[0];
-                total_im += plus[2 * j + 1] = a[1] + b[1];
-                minus[2 * j] = a[0] - b[0];
-                minus[2 * j + 1] = a[1] - b[1];
-            }
-            y[q] = total_re;
-            y[q + 1] = total_im;
-            for (std::size_t r = 1; r <= p / 2; ++r) {
-                V even_re = x[0], even_im = x[1], odd_re = x[0] - x[0], odd_im = odd_re;
-                for (std::size_t j = 1; j <= p / 2; ++j) {
-                    const T* turn = root + 2 * (r * j % p);
-                    even_re += plus[2 * j] * turn[0];
-                    even_im += plus[2 * j + 1] * turn[0];
-                    odd_re += minus[2 * j + 1] * turn[1];
-                    odd_im += minus[2 * j] * turn[1];
-                }
-                const V first_re = even_re - odd_re, first_im = even_im + odd_im;
-                const V last_re = even_re + odd_re, last_im = even_im - odd_im;
-                const T *u = w + 2 * (r - 1), *v = w + 2 * (p - r - 1);
-                y[q + r * s] = first_re * u[0] - first_im * u[1];
-                y[q + r * s + 1] = first_re * u[1] + first_im * u[0];
-                y[q + (p - r) * s] = last_re * v[0] - last_im * v[1];
-                y[q + (p - r) * s + 1] = last_re * v[1] + last_im * v[0];
-            }
-        }
+    (*kiss_)(a, b);
+    return b;
 }
 
 template <class T, class V>
 V* FftPlan<T, V>::through_chirp(V* a) noexcept {
     const std::size_t length = chirp_->length;
     const T *turn = chirp_->turn.data(), *kernel = chirp_->kernel.data();
-    V *u = work_.data(), *v = u + 2 * length;
+    V *u = chirp_->work.data(), *v = u + 2 * length;
     for (std::size_t i = 0; i < 2 * n_; i += 2) {
         u[i] = a[i] * turn[i] - a[i + 1] * turn[i + 1];
         u[i + 1] = a[i] * turn[i + 1] + a[i + 1] * turn[i];
     }
     std::fill(u + 2 * n_, u + 2 * length, V{});
-    V* spectrum = (*inner_)(u, v);
-    V* other = spectrum == u ? v : u;
+    (*kiss_)(u, v);
     // Real and imaginary part change places: the transform that follows is then the inverse, in the same places.
     for (std::size_t i = 0; i < 2 * length; i += 2) {
-        const V re = spectrum[i] * kernel[i] - spectrum[i + 1] * kernel[i + 1];
-        const V im = spectrum[i] * kernel[i + 1] + spectrum[i + 1] * kernel[i];
-        spectrum[i] = im;
-        spectrum[i + 1] = re;
+        const V re = v[i] * kernel[i] - v[i + 1] * kernel[i + 1];
+        const V im = v[i] * kernel[i + 1] + v[i + 1] * kernel[i];
+        v[i] = im;
+        v[i + 1] = re;
     }
-    const V* back = (*inner_)(spectrum, other);
+    (*kiss_)(v, u);
     for (std::size_t i = 0; i < 2 * n_; i += 2) {
-        const V re = back[i + 1], im = back[i];
+        const V re = u[i + 1], im = u[i];
         a[i] = re * turn[i] - im * turn[i + 1];
         a[i + 1] = re * turn[i + 1] + im * turn[i];
     }

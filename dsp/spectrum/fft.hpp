@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Discrete Fourier transforms of any length, in float or double. Lengths whose prime factors are at most 31 take the
-// self-sorting mixed-radix way (Stockham), others the chirp way (Bluestein 1970), so none is slow.
+// Discrete Fourier transforms of any length, in float or double, by KissFFT. It is given lengths whose prime factors are
+// at most 31; others take the chirp way (Bluestein 1970) through a power of two, so none is slow.
 #pragma once
 
 #include "dsp/spectrum/lanes.hpp"
@@ -15,35 +15,30 @@ namespace tactus {
 
 namespace detail {
 
-/// The complex transform on interleaved parts (re, im, re, im, …). `V` is T, or Lanes<T> for several at once.
+/// The complex transform on interleaved parts (re, im, re, im, …). `V` is T, or Lanes<T> for several at once. Allocates
+/// when made or copied, not when used; not for two threads at once, as KissFFT keeps a scratch buffer.
 template <class T, class V>
 class FftPlan {
 public:
     explicit FftPlan(std::size_t n);
+    ~FftPlan();
+    FftPlan(const FftPlan& other);
+    FftPlan(FftPlan&&) noexcept;
+    FftPlan& operator=(const FftPlan& other);
+    FftPlan& operator=(FftPlan&&) noexcept;
 
-    /// Transforms `a`, using `b` (2n values each); the result stands in the one that is returned.
+    /// Transforms `a`, using `b` (2n values each, apart); the result stands in the one that is returned.
     V* operator()(V* a, V* b) noexcept;
 
 private:
-    struct Stage {
-        std::size_t radix, rest;   // this stage's factor; what is left to transform after it
-        std::size_t first_factor;  // its place in twiddles_
-        std::size_t first_root;    // the radix-th roots of unity, for odd radices
-    };
+    struct Kiss;
     struct Chirp;
 
-    void add_stage(std::size_t radix, std::size_t rest);
-    void radix2(const V* x, V* y, const Stage& stage, std::size_t stride) const noexcept;
-    void radix4(const V* x, V* y, const Stage& stage, std::size_t stride) const noexcept;
-    void radix_odd(const V* x, V* y, const Stage& stage, std::size_t stride) const noexcept;
     V* through_chirp(V* a) noexcept;
 
     std::size_t n_;
-    std::vector<Stage> stages_;
-    std::vector<T> twiddles_, roots_;
-    std::shared_ptr<const Chirp> chirp_;
-    std::shared_ptr<FftPlan> inner_;  // of the chirp's power of two
-    std::vector<V> work_;             // two rooms for it
+    std::unique_ptr<Kiss> kiss_;
+    std::unique_ptr<Chirp> chirp_;
 };
 
 /// The transform of real input; see RealFft.

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -219,4 +220,24 @@ TEST_CASE("a live run's log repeats it to the bit") {
     REQUIRE(again.code == 0);
     CHECK(json::parse(live.out)["live"] == true);
     CHECK(json::parse(again.out)["output_hash"] == json::parse(live.out)["output_hash"]);
+}
+
+TEST_CASE("of very many errors the first twenty are printed, and how many more there are") {
+    const Folder folder;
+    std::string wires;
+    for (int i = 0; i < 3020; ++i) wires += "\"nobody.out -> nothing.in\",\n";
+    folder.write("wrong.toml", "wires = [" + wires + "]\n[nodes.tone]\ntype = \"sine\"\nrate = \"48 kHz\"\n");
+    const std::string patch = (folder.path / "wrong.toml").string();
+    for (const std::string& verb :
+         {"check " + patch, "render " + patch + " --out " + folder.path.string(), "draw " + patch}) {
+        const Outcome outcome = folder.tactus(verb);
+        INFO(verb << "\n" << outcome.err);
+        CHECK(outcome.code == 2);
+        CHECK(std::ranges::count(outcome.err, '\n') == 21);
+        CHECK(outcome.err.ends_with("… and 3,000 more errors\n"));
+    }
+    // A program reads them all.
+    const Outcome all = folder.tactus("check --json " + patch);
+    CHECK(all.code == 2);
+    CHECK(json::parse(all.out)["errors"].size() == 3020);
 }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The other half of welch.py: reads doubles from a file, then computes their Welch spectrum each time a line with a
-// number of threads comes in; answers with seconds and the sum of the powers.
+// number of threads and the samples of a segment comes in; answers with seconds and the powers.
 #include "dsp/spectrum/welch.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <atomic>
 #include <chrono>
@@ -23,7 +24,8 @@ int main(int argc, char** argv) {
     for (double v; file.read(reinterpret_cast<char*>(&v), sizeof v);) x.push_back(v);
     const std::vector<float> narrow(x.begin(), x.end());
     tactus::WelchSettings settings;
-    for (int threads = 0; std::cin >> threads;) {
+    for (int threads = 0; std::cin >> threads >> settings.segment;) {
+        settings.overlap = settings.segment / 2;
         const tactus::ForEach spread = [&](std::size_t count, const std::function<void(std::size_t)>& run) {
             std::atomic<std::size_t> next{0};
             const auto work = [&] {
@@ -37,9 +39,7 @@ int main(int argc, char** argv) {
         const tactus::Spectrum spectrum =
             single ? tactus::welch<float>(narrow, settings, spread) : tactus::welch<double>(x, settings, spread);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-        double sum = 0.0;
-        for (const double power : spectrum.power) sum += power;
-        fmt::print("{} {}\n", seconds, sum);
+        fmt::print("{} {}\n", seconds, fmt::join(spectrum.power, " "));
         std::fflush(stdout);
     }
 }

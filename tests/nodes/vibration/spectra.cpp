@@ -37,6 +37,24 @@ TEST_CASE("the nodes that listen transform segments without allocating, locking 
     }
 }
 
+TEST_CASE("at 44.1 kHz the nodes that listen are real-time safe, whatever factors their segments have") {
+    // 20 values in a full batch; segments of 2205 and 4410 samples have the factor 7, 2249 and 22579 large primes.
+    const test::HarnessOptions of_44100{.period = flicks_per_second / 2205};
+    for (const char* segment : {"50 ms", "100 ms", "51 ms", "512 ms", ""}) {
+        const bool is_monitor = !*segment;
+        INFO(segment);
+        NodeHarness node(is_monitor ? "spectral_monitor" : "spectrum_analyser", of_44100);
+        if (!is_monitor) node.set("segment", segment);
+        node.prepare();
+        const RealtimeViolations seen = watch_scopes([&] { node.run(10000); });
+        INFO(seen.describe());
+        CHECK(seen.none());
+        CHECK(node.finite());
+        if (is_monitor) CHECK(number(node.report(), "node", "heard_s") > 1.0);
+        else CHECK(number(node.report(), "node", "segments") > 3.0);
+    }
+}
+
 TEST_CASE("a signal too slow to carry a vibration is refused by name") {
     NodeHarness node("spectral_monitor", {.period = flicks_per_second / 10});
     CHECK_THROWS_WITH(node.prepare(), Catch::Contains("223 Hz"));
