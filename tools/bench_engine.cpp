@@ -161,7 +161,7 @@ void bench_scaling(int rounds, Json& rows) {
                                        Engine engine(compile_chain(read_chain(text)), options);
                                        engine.render(1);
                                        engine.finish();
-                                       summary_json(engine, engine.report(), brief, false, {});
+                                       summary_json(engine, engine.report(), brief, false, {}, {});
                                    }));
         }
     const auto add = [&](const char* name, const std::array<double, 2>& seconds) {
