@@ -76,6 +76,7 @@ TACTUS_NODE(Truth, out, in)
 
 struct DeviceInput {
     static constexpr auto about = "Where a path begins.";
+    static constexpr NodeRole role = NodeRole::hand_source;
     Out<double> out{"value"};
     void process(const Tick&) noexcept {}
 };
@@ -83,6 +84,7 @@ TACTUS_NODE(DeviceInput, out)
 
 struct DeviceOutput {
     static constexpr auto about = "Where a path ends.";
+    static constexpr NodeRole role = NodeRole::hand_sink;
     In<double> in{"value"};
     void process(const Tick&) noexcept {}
 };

@@ -82,7 +82,7 @@ TEST_CASE("a folder that another run writes to is refused, even to be written ov
     const std::string file = folder.write("p.toml", recording_patch).string(), out = (folder.path / "out").string();
     Run run(folder, file + live + "--out " + out);
     REQUIRE(wait_for([&] { return fs::exists(out + "/table.csv.part"); }));
-    for (const std::string how : {"run" + live, std::string("render ")}) {
+    for (const std::string& how : {"run" + live, std::string("render ")}) {
         const Outcome second = folder.tactus(how + " " + file + " --seconds 0.1 --overwrite --out " + out);
         CHECK(second.code == 2);
         CHECK_THAT(second.err, Contains("another run writes to this folder"));
