@@ -147,7 +147,7 @@ TEST_CASE("the take of a run that was killed writes the results that the run did
         run.stop(SIGKILL);
     }
     REQUIRE_FALSE(fs::exists(out / "summary.json"));
-    const Outcome replay = folder.tactus("replay " + take.string() + " --out " + out.string() + " --json");
+    const Outcome replay = folder.tactus("replay " + take.string() + " --overwrite --out " + out.string() + " --json");
     INFO(replay.err);
     REQUIRE(replay.code == 0);
     const double covered = json::parse(replay.out)["seconds"];

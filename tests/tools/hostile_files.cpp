@@ -95,7 +95,7 @@ TEST_CASE("a pipe, a device or a folder where a file is expected is refused at o
     CHECK(folder.tactus("check " + folder.path.string()).code == 2);
 }
 
-TEST_CASE("--memory bounds what one file may take: exit code 3, and the file is not blamed") {
+TEST_CASE("the option --memory bounds what one file may take: exit code 3, and the file is not blamed") {
     const Folder folder;
     const auto sound = folder.write("a.csv", [] {
         std::string text = "timestamp_ms,accel_x\n";
