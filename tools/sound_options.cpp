@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/sound_options.hpp"
 
-#include "tools/patch_options.hpp"
+#include "tools/command/patch_options.hpp"
 
 #include <CLI/CLI.hpp>
 

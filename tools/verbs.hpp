@@ -5,9 +5,9 @@
 
 #include "assets/bone/import.hpp"
 #include "graph/patch.hpp"
-#include "tools/calibrate_choice.hpp"
-#include "tools/frame_choice.hpp"
-#include "tools/record_options.hpp"
+#include "tools/study/displays/calibration_settings.hpp"
+#include "tools/picture/scene/frame_choice.hpp"
+#include "tools/study/vibration/record.hpp"
 
 #include <filesystem>
 #include <optional>

@@ -4,7 +4,7 @@
 // against the exact distance within three voxels of the surface, in voxels.
 #include "dsp/distance/iso_distance.hpp"
 #include "dsp/distance/iso_surface.hpp"
-#include "tools/workers.hpp"
+#include "tools/study/workers.hpp"
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>

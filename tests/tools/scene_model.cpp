@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/scene_model.hpp"
+#include "tools/picture/scene/scene_model.hpp"
 
 #include "devices/display/picture_maker.hpp"
 #include "dsp/core/error.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/scene_outline.hpp"
+#include "tools/picture/scene/scene_outline.hpp"
 
 #include "nodes/catalogue.hpp"
 #include "tests/support/places.hpp"
-#include "tools/load_plan.hpp"
+#include "tools/session/load_plan.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/touch_lead.hpp"
+#include "tools/study/displays/touch_lead.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/verdict.hpp"
+#include "tools/study/vibration/verdict.hpp"
 
 #include <catch2/catch.hpp>
 

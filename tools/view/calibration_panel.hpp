@@ -3,8 +3,8 @@
 // is seen through.
 #pragma once
 
-#include "tools/calibration.hpp"
-#include "tools/touch_lead.hpp"
+#include "tools/study/displays/calibration.hpp"
+#include "tools/study/displays/touch_lead.hpp"
 #include "tools/view/mark_screen.hpp"
 #include "tools/view/scene_panel.hpp"
 #include "tools/view/touch_watch.hpp"

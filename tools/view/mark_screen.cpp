@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/mark_screen.hpp"
 
-#include "tools/mark_window.hpp"
+#include "tools/picture/scene/mark_window.hpp"
 
 #include <algorithm>
 

@@ -5,8 +5,8 @@
 
 #include "devices/display/scene_renderer.hpp"
 #include "engine/observer.hpp"
-#include "tools/scene_model.hpp"
-#include "tools/sight.hpp"
+#include "tools/picture/scene/scene_model.hpp"
+#include "tools/picture/scene/sight.hpp"
 #include "tools/view/painter.hpp"
 #include "tools/view/scene_motion.hpp"
 #include "tools/view/scene_screens.hpp"

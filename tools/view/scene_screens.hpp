@@ -4,7 +4,7 @@
 
 #include "devices/display/legend.hpp"
 #include "devices/display/scene_renderer.hpp"
-#include "tools/sight.hpp"
+#include "tools/picture/scene/sight.hpp"
 #include "tools/view/screen_window.hpp"
 #include "tools/view/texture_target.hpp"
 

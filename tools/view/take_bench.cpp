@@ -2,9 +2,9 @@
 #include "tools/view/take_bench.hpp"
 
 #include "engine/engine.hpp"
-#include "tools/load_plan.hpp"
-#include "tools/replayed_take.hpp"
-#include "tools/scene_outline.hpp"
+#include "tools/session/load_plan.hpp"
+#include "tools/session/replayed_take.hpp"
+#include "tools/picture/scene/scene_outline.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 // Finds the touches in what a run's device did: a press of its button, or of one in the window, and the poses after it.
 #pragma once
 
-#include "tools/touch_lead.hpp"
+#include "tools/study/displays/touch_lead.hpp"
 #include "tools/view/feed.hpp"
 
 #include <optional>

@@ -3,7 +3,7 @@
 
 #include "assets/file/whole_file.hpp"
 #include "nodes/catalogue.hpp"
-#include "tools/load_plan.hpp"
+#include "tools/session/load_plan.hpp"
 #include "tools/view/patch_change.hpp"
 
 #include <fmt/format.h>

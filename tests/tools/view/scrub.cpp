@@ -2,7 +2,7 @@
 // A take that is looked at, at any instant and in any order.
 #include "tests/tools/patches.hpp"
 #include "tests/tools/run_command.hpp"
-#include "tools/replayed_take.hpp"
+#include "tools/session/replayed_take.hpp"
 #include "tools/view/take_bench.hpp"
 
 #include <catch2/catch.hpp>

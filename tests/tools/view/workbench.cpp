@@ -3,7 +3,7 @@
 #include "engine/take_reader.hpp"
 #include "tests/tools/patches.hpp"
 #include "tests/tools/run_command.hpp"
-#include "tools/load_plan.hpp"
+#include "tools/session/load_plan.hpp"
 #include "tools/view/feed.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/file/whole_file.hpp"
+#include "tools/picture/scene/frames.hpp"
+#include "tools/session/load_plan.hpp"
+#include "tools/session/results.hpp"
+#include "tools/session/summary.hpp"
+#include "tools/command/terminal.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <chrono>
+#include <thread>
+
+namespace tactus {
+
+namespace {
+
+int parse_block(const std::string& text) {
+    int block = 0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), block);
+    if (failure != std::errc{} || end != text.data() + text.size() || block < 1 || block > 65536)
+        throw Error(fmt::format("--block takes a number from 1 to 65536 or 'random', not '{}'", text));
+    return block;
+}
+
+}  // namespace
+
+int render_verb(const RenderChoice& choice) {
+    EngineOptions options;
+    options.seconds = choice.seconds;
+    options.folder = choice.out;
+    options.random_blocks = choice.block == "random";
+    if (options.random_blocks) options.block = 480;
+    else if (!choice.block.empty()) options.block = parse_block(choice.block);
+    std::optional<TimingLog> log;
+    if (!choice.log.empty()) {
+        log = TimingLog::load(choice.log);
+        options.replay = &*log;
+        options.seconds = log->seconds;
+    }
+    AssetCache assets;
+    Plan plan = load_plan(choice, assets);
+    make_output_folder(choice.out);
+    std::unique_ptr<TakeWriter> take;
+    if (!choice.record.empty()) {
+        take = make_take(choice, choice.record, options.seconds, false);
+        options.take = take.get();
+    }
+    std::unique_ptr<FrameWriter> frames;
+    if (choice.frames.frames > 0) {
+        frames = std::make_unique<FrameWriter>(choice.frames, outline_of(plan), options.seconds, choice.out);
+        options.observer = &frames->observer();
+    }
+    Engine engine(std::move(plan), options);
+    const int threads =
+        choice.threads > 0 ? choice.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+
+    LiveLine line;
+    const auto begin = std::chrono::steady_clock::now();
+    engine.render(threads, [&](double done) {
+        if (frames) frames->advance(engine.progress_seconds() - 1e-6);
+        line.show(
+            fmt::format("{:3.0f} %  {:.1f} s of {:.1f} s", 100.0 * done, done * options.seconds, options.seconds));
+    });
+    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (frames) frames->advance(options.seconds);
+    line.clear();
+    engine.finish();
+    const Report report = engine.report();
+    std::vector<std::string> files = write_pictures(report, choice.out);
+    for (std::string& file : write_bones(report, choice.out)) files.push_back(std::move(file));
+    if (frames) files.insert(files.end(), frames->files().begin(), frames->files().end());
+    files.push_back("summary.json");
+    const std::string summary = summary_json(engine, report, options.seconds, false, files);
+    write_whole_file(choice.out / "summary.json", summary);
+    fmt::print("{}", choice.json ? summary : summary_text(engine, report, options.seconds, wall));
+    return done;
+}
+
+}  // namespace tactus
