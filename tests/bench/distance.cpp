@@ -16,6 +16,7 @@
 #include <vector>
 
 using namespace tactus;
+using namespace tactus::study;
 
 namespace {
 

@@ -16,6 +16,7 @@
 #include <cmath>
 
 using namespace tactus;
+using namespace tactus::picture;
 using namespace tactus::test;
 using nlohmann::json;
 

@@ -5,9 +5,9 @@
 #include "dsp/contact/shape.hpp"
 #include "dsp/coupling/held_contact.hpp"
 #include "dsp/coupling/quasi_static.hpp"
+#include "tools/bench/bench.hpp"
 #include "tools/bench/contact_cases.hpp"
 #include "tools/bench/contact_peer.hpp"
-#include "tools/verbs.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -21,11 +21,10 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::bench {
 
 namespace {
 
-using namespace contact_bench;
 using Json = nlohmann::ordered_json;
 
 constexpr int grid_size = 256;
@@ -211,7 +210,7 @@ void print_libraries(const Json& rows) {
 
 }  // namespace
 
-int bench_contact_verb(const BenchChoice& choice) {
+int bench_contact(const BenchChoice& choice) {
     Json rows = Json::array();
     if (!choice.json)
         fmt::print(
@@ -243,4 +242,14 @@ int bench_contact_verb(const BenchChoice& choice) {
     return done;
 }
 
-}  // namespace tactus
+Verb contact_verb() {
+    return {"contact", "time of a pointshell's point against a voxmap, beside OpenVDB",
+            [](VerbOptions& verb) -> Action {
+                const auto choice = std::make_shared<BenchChoice>();
+                verb.add("--rounds", choice->rounds, "more rounds, steadier figures").shows_default().range(1, 1000);
+                verb.flag("--json", choice->json, "as JSON");
+                return [choice] { return bench_contact(*choice); };
+            }};
+}
+
+}  // namespace tactus::bench

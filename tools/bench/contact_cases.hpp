@@ -16,7 +16,7 @@
 #include <limits>
 #include <vector>
 
-namespace tactus::contact_bench {
+namespace tactus::bench {
 
 inline constexpr double voxel = 0.35e-3;  // m
 inline constexpr double cover = 0.3e-3;  // m, from a shell within the ball to its surface
@@ -55,4 +55,4 @@ inline double percentile(std::vector<double> values, double share) {
     return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
 }
 
-}  // namespace tactus::contact_bench
+}  // namespace tactus::bench

@@ -7,7 +7,7 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Dense.h>
 
-namespace tactus {
+namespace tactus::bench {
 
 struct ContactGridPeer::Tree {
     openvdb::FloatGrid::Ptr grid;
@@ -42,4 +42,4 @@ double ContactGridPeer::read(std::span<const Vec3> points, const Pose& pose) con
     return sum;
 }
 
-}  // namespace tactus
+}  // namespace tactus::bench

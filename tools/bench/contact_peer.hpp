@@ -8,7 +8,7 @@
 #include <memory>
 #include <span>
 
-namespace tactus {
+namespace tactus::bench {
 
 /// A dense grid as an OpenVDB float grid with every sample active.
 class ContactGridPeer {
@@ -27,4 +27,4 @@ private:
     std::unique_ptr<Tree> tree_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::bench

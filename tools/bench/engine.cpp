@@ -2,9 +2,8 @@
 // What a node costs: a chain of gains in this engine, and the same chain in Pure Data and scsynth, in one run.
 #include "engine/engine.hpp"
 #include "nodes/catalogue.hpp"
+#include "tools/bench/bench.hpp"
 #include "tools/bench/engine_peers.hpp"
-#include "tools/command/terminal.hpp"
-#include "tools/verbs.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,7 +14,7 @@
 #include <array>
 #include <functional>
 
-namespace tactus {
+namespace tactus::bench {
 
 using Json = nlohmann::ordered_json;
 
@@ -175,7 +174,7 @@ void print_rows(const Json& rows) {
 
 }  // namespace
 
-int bench_engine_verb(const BenchChoice& choice) {
+int bench_engine(const BenchChoice& choice) {
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / fmt::format("tactus-bench-{}", ::getpid());
     std::filesystem::create_directories(folder);
@@ -197,4 +196,14 @@ int bench_engine_verb(const BenchChoice& choice) {
     return done;
 }
 
-}  // namespace tactus
+Verb engine_verb() {
+    return {"engine", "time of a node in a chain, beside Pure Data and scsynth; compile time",
+            [](VerbOptions& verb) -> Action {
+                const auto choice = std::make_shared<BenchChoice>();
+                verb.add("--rounds", choice->rounds, "the best of so many counts").shows_default().range(1, 1000);
+                verb.flag("--json", choice->json, "as JSON");
+                return [choice] { return bench_engine(*choice); };
+            }};
+}
+
+}  // namespace tactus::bench

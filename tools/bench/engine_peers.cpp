@@ -16,7 +16,7 @@
 
 extern char** environ;
 
-namespace tactus {
+namespace tactus::bench {
 
 namespace {
 
@@ -158,4 +158,4 @@ std::optional<double> run_in_scsynth(const Chain& chain, const std::filesystem::
                     "-z", std::to_string(chain.block), "-o", "1", "-m", "262144", "-D", "0"});
 }
 
-}  // namespace tactus
+}  // namespace tactus::bench

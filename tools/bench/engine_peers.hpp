@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace tactus {
+namespace tactus::bench {
 
 /// An oscillator and behind it `nodes` multiplications by 0.999, one after the other, at 48 kHz in blocks of `block`.
 struct Chain {
@@ -20,4 +20,4 @@ struct Chain {
 std::optional<double> run_in_pure_data(const Chain& chain, const std::filesystem::path& folder);
 std::optional<double> run_in_scsynth(const Chain& chain, const std::filesystem::path& folder);
 
-}  // namespace tactus
+}  // namespace tactus::bench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What it costs to look at any instant of a take: to repeat its run once, and then to jump.
-#include "tools/verbs.hpp"
+#include "tools/bench/bench.hpp"
 #include "tools/view/take_bench.hpp"
 
 #include <fmt/format.h>
@@ -11,9 +11,15 @@
 #include <random>
 #include <thread>
 
-namespace tactus {
+namespace tactus::bench {
 
-int bench_scrub_verb(const ScrubBenchChoice& choice) {
+struct ScrubBenchChoice {
+    std::filesystem::path take;
+    int jumps = 1000;
+    bool json = false;
+};
+
+int bench_scrub(const ScrubBenchChoice& choice) {
     using Clock = std::chrono::steady_clock;
     const auto ms_since = [](Clock::time_point begin) {
         return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
@@ -53,4 +59,15 @@ int bench_scrub_verb(const ScrubBenchChoice& choice) {
     return done;
 }
 
-}  // namespace tactus
+Verb scrub_verb() {
+    return {"scrub", "time to jump to any instant of a take, its bones and bodies included",
+            [](VerbOptions& verb) -> Action {
+                const auto choice = std::make_shared<ScrubBenchChoice>();
+                verb.add("take", choice->take, "folder that --record made").required();
+                verb.add("--jumps", choice->jumps, "how many").shows_default().range(1, 100'000);
+                verb.flag("--json", choice->json, "as JSON");
+                return [choice] { return bench_scrub(*choice); };
+            }};
+}
+
+}  // namespace tactus::bench

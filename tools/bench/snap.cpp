@@ -5,13 +5,12 @@
 #include "dsp/operator/hand.hpp"
 #include "dsp/snap/fit.hpp"
 #include "engine/clock.hpp"
-#include "tools/bench/snap_whole_case.hpp"
+#include "tools/bench/bench.hpp"
 #include "tools/bench/snap_cases.hpp"
 #include "tools/bench/snap_live.hpp"
 #include "tools/bench/snap_peers.hpp"
+#include "tools/bench/snap_whole_case.hpp"
 #include "tools/study/bones/fragment_file.hpp"
-#include "tools/snap_options.hpp"
-#include "tools/verbs.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -24,11 +23,19 @@
 #include <numbers>
 #include <optional>
 
-namespace tactus {
+namespace tactus::bench {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+struct SnapBenchChoice {
+    std::uint64_t seed = 1001;
+    int seeds = 8, trials = 1;
+    std::vector<std::string> cases, methods;
+    std::filesystem::path bone;
+    bool pushed = false, json = false;
+};
 
 constexpr const char* live_case = "live";
 constexpr double degree = std::numbers::pi / 180.0, success = 0.5e-3;
@@ -244,10 +251,10 @@ std::vector<FractureCase> chosen_cases(const std::vector<std::string>& names) {
 
 }  // namespace
 
-int bench_snap_verb(const SnapBenchChoice& choice) {
+int bench_snap(const SnapBenchChoice& choice) {
     const std::vector<FractureCase> cases = chosen_cases(choice.cases);
     const bool live = choice.cases.empty() || std::ranges::count(choice.cases, live_case) > 0;
-    const Bone bone = choice.bone.empty() ? make_mandible() : bone_of_file(choice.bone);
+    const Bone bone = choice.bone.empty() ? make_mandible() : study::bone_of_file(choice.bone);
     Json rows = whole_case_rows(choice, bone);
     if (!choice.json && !cases.empty())
         fmt::print(
@@ -285,4 +292,28 @@ int bench_snap_verb(const SnapBenchChoice& choice) {
     return done;
 }
 
-}  // namespace tactus
+Verb snap_verb() {
+    return {
+        "snap", "success of snap-to-fit on simulated fractures, beside ICP", [](VerbOptions& verb) -> Action {
+            const auto choice = std::make_shared<SnapBenchChoice>();
+            const std::vector<std::string> methods{"extended", "global", "thesis", "icp_point", "icp_plane", "gicp"};
+            verb.add("--seed", choice->seed, "of the first fracture").shows_default();
+            verb.add("--seeds", choice->seeds, "so many fractures of each kind").shows_default().range(1, 10'000);
+            verb.add("--trials", choice->trials, "starts for each fracture and distance")
+                .shows_default()
+                .range(1, 1000);
+            verb.add("--case", choice->cases,
+                     "clean, chipped25, chipped30, spilled, both, fine or live (default: all of these); twelve, "
+                     "twelve-kerf, twelve-missing: a jaw in twelve pieces, by the matcher")
+                .separated_by(',');
+            verb.add("--method", choice->methods, "extended, global, thesis, icp_point, icp_plane, gicp (default: all)")
+                .separated_by(',')
+                .one_of(methods);
+            verb.add("--bone", choice->bone, "what is broken (default: the bundled jaw)");
+            verb.flag("--pushed", choice->pushed, "starts are moved apart until bone does not lie in bone");
+            verb.flag("--json", choice->json, "as JSON");
+            return [choice] { return bench_snap(*choice); };
+        }};
+}
+
+}  // namespace tactus::bench

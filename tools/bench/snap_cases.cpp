@@ -12,7 +12,7 @@
 
 #include <cmath>
 
-namespace tactus {
+namespace tactus::bench {
 
 namespace {
 
@@ -90,4 +90,4 @@ Pose start_beside(const FracturePair& pair, double offset, double angle, bool pu
     return between_bodies(pair.moving, pair.fixed, centres);
 }
 
-}  // namespace tactus
+}  // namespace tactus::bench

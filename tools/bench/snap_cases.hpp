@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace tactus {
+namespace tactus::bench {
 
 /// What is done to a fracture before the pieces are to be put together.
 struct FractureKind {
@@ -48,4 +48,4 @@ FracturePair make_fracture_pair(const Grid& bone, const FractureKind& kind, std:
 /// directions; if `pushed`, then moved out along the fracture's normal until the paints do not cut into each other.
 Pose start_beside(const FracturePair& pair, double offset, double angle, bool pushed, std::uint64_t seed);
 
-}  // namespace tactus
+}  // namespace tactus::bench

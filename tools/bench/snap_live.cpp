@@ -14,7 +14,7 @@
 #include <numbers>
 #include <string>
 
-namespace tactus {
+namespace tactus::bench {
 
 namespace {
 
@@ -90,4 +90,4 @@ std::vector<LiveTicks> bench_snap_live() {
     return rows;
 }
 
-}  // namespace tactus
+}  // namespace tactus::bench

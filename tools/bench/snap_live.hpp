@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::bench {
 
 /// One mode: pull, contact and coupling together, processor time of one thread.
 struct LiveTicks {
@@ -20,4 +20,4 @@ struct LiveTicks {
 
 std::vector<LiveTicks> bench_snap_live();
 
-}  // namespace tactus
+}  // namespace tactus::bench

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tactus {
+namespace tactus::bench {
 
 namespace {
 
@@ -100,4 +100,4 @@ Pose run_icp(const FitSurface& moving, const IcpTarget& target, const Pose& star
     return pose;
 }
 
-}  // namespace tactus
+}  // namespace tactus::bench

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tactus {
+namespace tactus::bench {
 
 /// Point to point (Besl and McKay 1992), point to plane (Chen and Medioni 1992), plane to plane (GICP, Segal 2009).
 enum class IcpKind { point, plane, generalised };
@@ -34,4 +34,4 @@ private:
 /// From `start` (between the middles of the paints) to where it settles, at most 100 iterations.
 Pose run_icp(const FitSurface& moving, const IcpTarget& fixed, const Pose& start, IcpKind kind, IcpSchedule schedule);
 
-}  // namespace tactus
+}  // namespace tactus::bench

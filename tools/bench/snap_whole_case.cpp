@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <numbers>
 
-namespace tactus {
+namespace tactus::bench {
 
 namespace {
 
@@ -91,4 +91,4 @@ WholeCaseResult put_together(const Bone& bone, const WholeCase& kind, std::uint6
     return result;
 }
 
-}  // namespace tactus
+}  // namespace tactus::bench

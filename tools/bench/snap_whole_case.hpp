@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tactus {
+namespace tactus::bench {
 
 struct WholeCase {
     std::string_view name;
@@ -36,4 +36,4 @@ struct WholeCaseResult {
 /// Each piece starts 5 mm and 10 degrees beside its place, is fitted, and settled twice more when all are there.
 WholeCaseResult put_together(const Bone& bone, const WholeCase& kind, std::uint64_t seed, int seeds);
 
-}  // namespace tactus
+}  // namespace tactus::bench

@@ -2,11 +2,12 @@
 // What it costs to keep the surface of a bone up to date while it is sawn: the bricks that a cut changed, beside OpenVDB's
 // volumeToMesh of the whole, in processor time; and what a picture of a large bone costs.
 #include "dsp/carve/carver.hpp"
+#include "dsp/core/error.hpp"
 #include "dsp/view/brick_surface.hpp"
 #include "dsp/view/coarse_surface.hpp"
+#include "tools/bench/bench.hpp"
 #include "tools/bench/view_peer.hpp"
 #include "tools/bench/view_pictures.hpp"
-#include "tools/verbs.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -17,7 +18,7 @@
 #include <cmath>
 #include <optional>
 
-namespace tactus {
+namespace tactus::bench {
 
 namespace {
 
@@ -55,7 +56,7 @@ double quantile(std::vector<double> values, double q) {
 
 }  // namespace
 
-int bench_view_verb(const BenchChoice& choice) {
+int bench_view(const BenchChoice& choice) {
     Grid distance, density;
     make_shaft(distance, density, 1.0);
     std::vector<double> cuts_ms, bricks, peer_ms, whole_ms;
@@ -145,4 +146,14 @@ int bench_view_verb(const BenchChoice& choice) {
     return done;
 }
 
-}  // namespace tactus
+Verb view_verb() {
+    return {"view", "time to remesh what a cut changed of a bone, beside OpenVDB's volumeToMesh",
+            [](VerbOptions& verb) -> Action {
+                const auto choice = std::make_shared<BenchChoice>();
+                verb.add("--rounds", choice->rounds, "more rounds, steadier figures").shows_default().range(1, 100);
+                verb.flag("--json", choice->json, "as JSON");
+                return [choice] { return bench_view(*choice); };
+            }};
+}
+
+}  // namespace tactus::bench

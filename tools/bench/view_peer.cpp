@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace tactus {
+namespace tactus::bench {
 
 struct ViewGridPeer::Tree {
     openvdb::FloatGrid::Ptr grid;
@@ -40,4 +40,4 @@ std::size_t ViewGridPeer::triangles() const {
     return triangles.size() + 2 * quads.size();
 }
 
-}  // namespace tactus
+}  // namespace tactus::bench

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <memory>
 
-namespace tactus {
+namespace tactus::bench {
 
 class ViewGridPeer {
 public:
@@ -24,4 +24,4 @@ private:
     std::unique_ptr<Tree> tree_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::bench

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <chrono>
 
-namespace tactus {
+namespace tactus::bench {
 
 PictureCosts picture_costs(const Grid& distance, const Grid& density, int rounds) {
     using Clock = std::chrono::steady_clock;
@@ -53,4 +53,4 @@ PictureCosts picture_costs(const Grid& distance, const Grid& density, int rounds
     return costs;
 }
 
-}  // namespace tactus
+}  // namespace tactus::bench

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::bench {
 
 struct PictureCost {
     std::string what;  ///< "all of it, moving"
@@ -25,4 +25,4 @@ struct PictureCosts {
 /// Four samples per pixel. Throws Error when no OpenGL context can be had.
 PictureCosts picture_costs(const Grid& distance, const Grid& density, int rounds);
 
-}  // namespace tactus
+}  // namespace tactus::bench

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/batch.hpp"
 
-#include "tools/command/terminal.hpp"
 #include "tools/study/workers.hpp"
+#include "tools/terminal.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <exception>
 #include <mutex>
 
-namespace tactus {
+namespace tactus::command {
 
 std::string progress_bar(std::size_t finished, std::size_t count, std::string_view what) {
     constexpr std::size_t width = 30;
@@ -28,7 +28,7 @@ std::vector<std::string> run_batch(std::size_t count, int jobs, std::string_view
         const std::lock_guard lock(telling);
         line.show(count == 1 ? fmt::format("{:3.0f} %", 100.0 * share) : progress_bar(finished, count, what));
     };
-    on_threads(jobs)(static_cast<int>(count), [&](int n) {
+    study::on_threads(jobs)(static_cast<int>(count), [&](int n) {
         const auto index = static_cast<std::size_t>(n);
         try {
             job(index, tell);
@@ -59,4 +59,4 @@ std::string csv_field(const std::string& text) {
     return out + "\"";
 }
 
-}  // namespace tactus
+}  // namespace tactus::command

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tactus {
+namespace tactus::command {
 
 /// Does one of them; may call `progress` with the share of it that is done.
 using BatchJob = std::function<void(std::size_t index, const std::function<void(double share)>& progress)>;
@@ -25,4 +25,4 @@ std::string progress_bar(std::size_t finished, std::size_t count, std::string_vi
 /// A field of a CSV file, in quotes where it needs them.
 std::string csv_field(const std::string& text);
 
-}  // namespace tactus
+}  // namespace tactus::command

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/verbs.hpp"
+#include "tools/command/catalogue.hpp"
 
-int main(int argc, char** argv) { return tactus::command_line(argc, argv); }
+int main(int argc, char** argv) {
+    return tactus::command::command_line(
+        {"tactus", "Tactus: patches of nodes for haptics, from 60 Hz to audio rate", tactus::command::all_verbs()},
+        argc, argv);
+}

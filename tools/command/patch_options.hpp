@@ -2,15 +2,14 @@
 // What every verb that compiles a patch is given.
 #pragma once
 
-#include "tools/verbs.hpp"
+#include "tools/command/options.hpp"
+#include "tools/session/patch_choice.hpp"
 
-namespace CLI {
-class App;
-}
-
-namespace tactus {
+namespace tactus::command {
 
 /// The patch, its changed parameters and assets, and the seed.
-void add_patch_options(CLI::App& verb, PatchChoice& choice);
+void add_patch_options(VerbOptions& verb, session::PatchChoice& choice);
+/// The same without the patch.
+void add_override_options(VerbOptions& verb, session::PatchChoice& choice);
 
-}  // namespace tactus
+}  // namespace tactus::command

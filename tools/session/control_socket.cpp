@@ -18,7 +18,7 @@
 #include <cstdlib>
 #include <cstring>
 
-namespace tactus {
+namespace tactus::session {
 
 namespace fs = std::filesystem;
 
@@ -146,4 +146,4 @@ std::string ask_run(int process, const std::string& line) {
     return said.substr(0, said.find('\n'));
 }
 
-}  // namespace tactus
+}  // namespace tactus::session

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::session {
 
 /// Folder of the sockets of this user's runs: $XDG_RUNTIME_DIR/tactus, or one in /tmp.
 std::filesystem::path control_folder();
@@ -42,4 +42,4 @@ private:
 /// when there is none, several, or it does not answer within 5 s.
 std::string ask_run(int process, const std::string& line);
 
-}  // namespace tactus
+}  // namespace tactus::session

@@ -8,7 +8,7 @@
 
 #include <utility>
 
-namespace tactus {
+namespace tactus::session {
 
 LiveControl::LiveControl(Engine& engine, PatchChoice choice, AssetCache& assets,
                          std::function<void(const std::string&)> say)
@@ -81,4 +81,4 @@ std::string LiveControl::answer(const std::string& line) {
     }
 }
 
-}  // namespace tactus
+}  // namespace tactus::session

@@ -12,7 +12,7 @@
 #include <memory>
 #include <string>
 
-namespace tactus {
+namespace tactus::session {
 
 class LiveControl {
 public:
@@ -40,4 +40,4 @@ private:
     std::unique_ptr<ControlSocket> socket_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::session

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace tactus {
+namespace tactus::session {
 
 namespace {
 
@@ -86,4 +86,4 @@ std::string live_table(const Engine& engine) {
     return text;
 }
 
-}  // namespace tactus
+}  // namespace tactus::session

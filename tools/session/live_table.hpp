@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::session {
 
 /// Time of a node in one call of its group.
 struct NodeTime {
@@ -28,4 +28,4 @@ std::string describe_sound(const SoundCard& card);
 /// Several lines without a line end behind the last: time, force, faults, a row per group and the slowest nodes.
 std::string live_table(const Engine& engine);
 
-}  // namespace tactus
+}  // namespace tactus::session

@@ -12,7 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-namespace tactus {
+namespace tactus::session {
 
 namespace fs = std::filesystem;
 
@@ -101,4 +101,4 @@ void make_output_folder(const fs::path& folder) {
     fs::remove(probe, failure);
 }
 
-}  // namespace tactus
+}  // namespace tactus::session

@@ -5,12 +5,12 @@
 #include "engine/take_writer.hpp"
 #include "graph/load_assets.hpp"
 #include "graph/plan.hpp"
-#include "tools/verbs.hpp"
+#include "tools/session/patch_choice.hpp"
 
 #include <filesystem>
 #include <memory>
 
-namespace tactus {
+namespace tactus::session {
 
 /// Folder of the bundled library: $TACTUS_LIBRARY, or "library" beside the command.
 std::filesystem::path library_folder();
@@ -42,4 +42,4 @@ std::unique_ptr<TakeWriter> make_take(const PatchChoice& choice, const std::file
 /// Makes `folder` and checks that files can be written to it. Throws Error.
 void make_output_folder(const std::filesystem::path& folder);
 
-}  // namespace tactus
+}  // namespace tactus::session

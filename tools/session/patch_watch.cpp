@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace tactus {
+namespace tactus::session {
 
 constexpr auto settling = std::chrono::milliseconds(100);
 
@@ -50,4 +50,4 @@ bool PatchWatch::was_saved() {
     return true;
 }
 
-}  // namespace tactus
+}  // namespace tactus::session

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::session {
 
 /// Watches the folder, not the file: editors write beside and rename.
 class PatchWatch {
@@ -37,4 +37,4 @@ private:
     std::optional<std::chrono::steady_clock::time_point> touched_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::session

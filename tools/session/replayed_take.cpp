@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-namespace tactus {
+namespace tactus::session {
 
 namespace {
 
@@ -34,4 +34,4 @@ ReplayedTake::ReplayedTake(const Take& take, EngineOptions options, AssetCache& 
     }
 }
 
-}  // namespace tactus
+}  // namespace tactus::session

@@ -8,7 +8,7 @@
 
 #include <memory>
 
-namespace tactus {
+namespace tactus::session {
 
 class ReplayedTake {
 public:
@@ -22,4 +22,4 @@ private:
     std::unique_ptr<Engine> engine_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::session

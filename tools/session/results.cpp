@@ -14,7 +14,7 @@
 #include <cstdio>
 #include <memory>
 
-namespace tactus {
+namespace tactus::session {
 
 namespace {
 
@@ -86,4 +86,4 @@ std::vector<std::string> write_bones(const Report& report, const std::filesystem
     return files;
 }
 
-}  // namespace tactus
+}  // namespace tactus::session

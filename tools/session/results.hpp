@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::session {
 
 /// Pictures of the bones in the report, seen from where they were cut. Returns the names of the files written; a
 /// machine that cannot draw is told on standard error.
@@ -17,4 +17,4 @@ std::vector<std::string> write_pictures(const Report& report, const std::filesys
 /// The bones of the report as they were cut, one bone file each. Returns the names of the files written.
 std::vector<std::string> write_bones(const Report& report, const std::filesystem::path& folder);
 
-}  // namespace tactus
+}  // namespace tactus::session

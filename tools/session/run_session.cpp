@@ -15,7 +15,7 @@
 #include <cstdlib>
 #include <utility>
 
-namespace tactus {
+namespace tactus::session {
 
 namespace fs = std::filesystem;
 
@@ -110,9 +110,9 @@ void RunSession::finish() {
     for (std::string& file : write_bones(report, folder_)) files.push_back(std::move(file));
     files.push_back("summary.json");
     const double ran = engine_->progress_seconds();
-    json_ = tactus::summary_json(*engine_, report, ran, true, files);
-    text_ = tactus::summary_text(*engine_, report, ran, wall_s_);
+    json_ = session::summary_json(*engine_, report, ran, true, files);
+    text_ = session::summary_text(*engine_, report, ran, wall_s_);
     write_whole_file(folder_ / "summary.json", json_);
 }
 
-}  // namespace tactus
+}  // namespace tactus::session

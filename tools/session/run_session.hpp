@@ -4,7 +4,7 @@
 
 #include "engine/engine.hpp"
 #include "tools/session/live_control.hpp"
-#include "tools/verbs.hpp"
+#include "tools/session/run_choice.hpp"
 
 #include <atomic>
 #include <functional>
@@ -12,7 +12,7 @@
 #include <optional>
 #include <string>
 
-namespace tactus {
+namespace tactus::session {
 
 class RunSession {
 public:
@@ -56,4 +56,4 @@ private:
     std::string json_, text_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::session

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-namespace tactus {
+namespace tactus::session {
 
 class ScratchFolder {
 public:
@@ -31,4 +31,4 @@ private:
     std::filesystem::path path_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::session

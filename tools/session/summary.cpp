@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace tactus {
+namespace tactus::session {
 
 using Json = nlohmann::ordered_json;
 
@@ -147,4 +147,4 @@ std::string summary_text(const Engine& engine, const Report& report, double seco
     return text;
 }
 
-}  // namespace tactus
+}  // namespace tactus::session

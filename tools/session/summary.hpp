@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::session {
 
 /// The summary as JSON text. `files` are those written besides the recordings.
 std::string summary_json(const Engine& engine, const Report& report, double seconds, bool live,
@@ -16,4 +16,4 @@ std::string summary_json(const Engine& engine, const Report& report, double seco
 /// The same in a few lines.
 std::string summary_text(const Engine& engine, const Report& report, double seconds, double wall_seconds);
 
-}  // namespace tactus
+}  // namespace tactus::session

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace tactus {
+namespace tactus::session {
 
 namespace {
 
@@ -86,4 +86,4 @@ Take TakeFile::take() const {
     });
 }
 
-}  // namespace tactus
+}  // namespace tactus::session

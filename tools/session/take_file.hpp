@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::session {
 
 struct TakeChoice {
     std::filesystem::path file;
@@ -41,4 +41,4 @@ private:
     std::vector<std::string> notes_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::session

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace tactus {
+namespace tactus::study {
 
 RunJobs on_threads(int threads) {
     if (threads < 1) threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -34,4 +34,4 @@ RunJobs on_threads(int threads) {
     };
 }
 
-}  // namespace tactus
+}  // namespace tactus::study

@@ -23,7 +23,7 @@ namespace tactus {
 
 namespace {
 
-using namespace contact_bench;
+using namespace tactus::bench;
 
 struct Mesh {
     std::vector<Vec3> corners;

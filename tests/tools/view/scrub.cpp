@@ -13,6 +13,7 @@
 #include <thread>
 
 using namespace tactus;
+using namespace tactus::session;
 using namespace tactus::view;
 using tactus::test::Folder;
 using tactus::test::Outcome;

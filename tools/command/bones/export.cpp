@@ -4,14 +4,24 @@
 #include "assets/mesh/write_mesh.hpp"
 #include "assets/volume/write_volume.hpp"
 #include "dsp/core/error.hpp"
-#include "tools/verbs.hpp"
+#include "tools/command/options.hpp"
+#include "tools/exit_code.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace tactus {
+#include <memory>
+
+namespace tactus::command {
 
 namespace {
+
+struct ExportChoice {
+    std::filesystem::path input, out;
+    std::string bone;             // empty: all of the file
+    std::string quantity = "hu";  // of a volume: "hu", "density" or "distance"
+    bool json = false;
+};
 
 std::vector<Bone> chosen_bones(const ExportChoice& choice) {
     if (choice.bone.empty() && file_of_bone(choice.input) == choice.input) return load_bones(choice.input);
@@ -46,9 +56,7 @@ nlohmann::ordered_json export_volume(const std::vector<Bone>& bones, const Expor
     return {{"quantity", choice.quantity}, {"size", volume.size}, {"spacing_mm", {h.x, h.y, h.z}}};
 }
 
-}  // namespace
-
-int export_verb(const ExportChoice& choice) {
+int export_bone(const ExportChoice& choice) {
     const std::string kind = choice.out.extension().string();
     const bool is_mesh = kind == ".stl" || kind == ".ply";
     if (!is_mesh && kind != ".nrrd" && kind != ".nii" && !choice.out.string().ends_with(".nii.gz"))
@@ -70,4 +78,20 @@ int export_verb(const ExportChoice& choice) {
     return done;
 }
 
-}  // namespace tactus
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<ExportChoice>();
+    verb.add("bone", choice->input, "bone file; FILE.vdb#NAME for one of several").required();
+    verb.add("-o,--out", choice->out, ".stl or .ply: the surface; .nrrd, .nii or .nii.gz: a volume").required();
+    verb.add("--bone", choice->bone, "one of several bones (default: all)");
+    verb.add("--quantity", choice->quantity, "what a volume holds")
+        .one_of({"hu", "density", "distance"})
+        .shows_default();
+    verb.flag("--json", choice->json, "print a summary as JSON");
+    return [choice] { return export_bone(*choice); };
+}
+
+}  // namespace
+
+Verb export_verb() { return {"export", "write a bone, cut or not, as a mesh or a volume", add}; }
+
+}  // namespace tactus::command

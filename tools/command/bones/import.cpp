@@ -2,16 +2,26 @@
 #include "assets/bone/bone.hpp"
 #include "assets/bone/import_steps.hpp"
 #include "dsp/core/error.hpp"
-#include "tools/command/terminal.hpp"
-#include "tools/verbs.hpp"
+#include "tools/command/options.hpp"
+#include "tools/exit_code.hpp"
 #include "tools/study/workers.hpp"
+#include "tools/terminal.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace tactus {
+#include <cstdio>
+#include <memory>
+#include <utility>
+
+namespace tactus::command {
 
 namespace {
+
+struct ImportChoice : ImportOptions {
+    std::filesystem::path out;
+    bool json = false;
+};
 
 nlohmann::ordered_json json_of(const ImportSummary& s) {
     return {{"frame", s.frame},
@@ -60,15 +70,13 @@ int import_label_map(const ImportChoice& choice, const ImportOptions& options, c
     return done;
 }
 
-}  // namespace
-
-int import_verb(const ImportChoice& choice) {
+int import_bone(const ImportChoice& choice) {
     LiveLine line;
     const ImportProgress progress = [&line](double part, std::string_view doing) {
         line.show(fmt::format("{:3.0f} %  {}", 100.0 * part, doing));
     };
     ImportOptions options = choice;
-    options.run = on_threads();
+    options.run = study::on_threads();
     if (!choice.label.empty()) return import_label_map(choice, options, progress, line);
     if (!choice.ct.empty()) throw Error("--ct goes with a label map: say which label with --label N or --label all");
     const ImportSummary summary = import_bone_file(options, choice.out, progress);
@@ -80,4 +88,61 @@ int import_verb(const ImportChoice& choice) {
     return done;
 }
 
-}  // namespace tactus
+std::pair<double, double> rescale_by_points(const std::string& text) {
+    double a = 0.0, b = 0.0, c = 0.0, d = 0.0;
+    if (std::sscanf(text.c_str(), "%lf:%lf,%lf:%lf", &a, &b, &c, &d) != 4 || a == c || b == d)
+        throw Error("--hu-calibration takes two points VALUE:HU, as in --hu-calibration 60:-1000,1084:0");
+    const double slope = (d - b) / (c - a);
+    return {slope, b - slope * a};
+}
+
+std::pair<double, double> rescale_of(const std::string& text) {
+    double slope = 0.0, intercept = 0.0;
+    if (std::sscanf(text.c_str(), "%lf,%lf", &slope, &intercept) != 2)
+        throw Error("--rescale takes SLOPE,INTERCEPT, as in --rescale 1,-1024");
+    return {slope, intercept};
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<ImportChoice>();
+    verb.add("input", choice->input, "the file").required();
+    verb.add("-o,--out", choice->out, "the bone, an OpenVDB file").required();
+    verb.add("--threshold", choice->threshold, "CT number from which on there is bone, HU").shows_default();
+    verb.add("--crop", choice->crop, "x0:x1,y0:y1,z0:z1 in mm, LPS");
+    verb.add("--component", choice->component, "largest, all, or how many of the largest").shows_default();
+    verb.add("--unit", choice->unit, "unit of a mesh: mm, cm or m").one_of({"mm", "cm", "m"});
+    verb.call<double>(
+        "--spacing,--isotropic", [choice](const double& mm) { choice->spacing = mm * 1e-3; },
+        "resample to this grid spacing, mm");
+    verb.add("--series", choice->series, "DICOM: the series to take, by its UID or the end of it");
+    verb.call<std::string>(
+        "--hu-calibration",
+        [choice](const std::string& text) {
+            const auto [slope, intercept] = rescale_by_points(text);
+            choice->rescale = {slope, intercept};
+        },
+        "scanner numbers to HU by two points: VALUE:HU,VALUE:HU");
+    verb.call<std::string>(
+        "--rescale",
+        [choice](const std::string& text) {
+            const auto [slope, intercept] = rescale_of(text);
+            choice->rescale = {slope, intercept};
+        },
+        "scanner numbers to HU: SLOPE,INTERCEPT");
+    verb.call<double>(
+        "--pointshell", [choice](const double& mm) { choice->pointshell = mm * 1e-3; },
+        "also spread points over the surface for contact, this far apart, mm");
+    verb.flag("--by-curvature", choice->pointshell_by_curvature, "points closer together where the surface turns");
+    verb.add("--label", choice->label, "the file is a label map: a label's number or name, or all; a bone each");
+    verb.add("--ct", choice->ct, "the CT a label map was drawn on: grey values for surface and density");
+    verb.flag("--json", choice->json, "print a summary as JSON");
+    return [choice] { return import_bone(*choice); };
+}
+
+}  // namespace
+
+Verb import_verb() {
+    return {"import", "make a bone from a CT (DICOM, NRRD, NIfTI, InVesalius) or a closed mesh (STL, PLY, OBJ)", add};
+}
+
+}  // namespace tactus::command

@@ -1,17 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/core/error.hpp"
+#include "tools/command/options.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/picture/report/inspection_picture.hpp"
 #include "tools/study/bones/inspection.hpp"
-#include "tools/verbs.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <memory>
 
-namespace tactus {
+namespace tactus::command {
 
 namespace {
+
+using study::InspectedPart;
+using study::Inspection;
+
+struct InfoChoice {
+    std::filesystem::path input;
+    std::filesystem::path out;  // of the picture: a file, or a folder for INPUT.png; empty: none
+    std::string series;         // of a DICOM folder
+    bool json = false;
+};
 
 nlohmann::ordered_json json_of(const Inspection& found) {
     nlohmann::ordered_json parts = nlohmann::ordered_json::array();
@@ -71,15 +84,13 @@ std::string text_of(const Inspection& found) {
     return text;
 }
 
-}  // namespace
-
-int info_verb(const InfoChoice& choice) {
-    const Inspection found = inspect(choice.input, choice.series);
+int info(const InfoChoice& choice) {
+    const Inspection found = study::inspect(choice.input, choice.series);
     std::filesystem::path picture = choice.out;
     if (!picture.empty()) {
         if (std::filesystem::is_directory(picture))
             picture /= choice.input.lexically_normal().filename().string() + ".png";
-        write_picture(found, picture);
+        picture::write_picture(found, picture);
     }
     if (choice.json) {
         fmt::print("{}\n", json_of(found).dump(2));
@@ -91,4 +102,17 @@ int info_verb(const InfoChoice& choice) {
     return done;
 }
 
-}  // namespace tactus
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<InfoChoice>();
+    verb.add("file", choice->input, "the file").required();
+    verb.add("--series", choice->series, "DICOM: the series to look at, by its UID or the end of it");
+    verb.add("-o,--out", choice->out, "a PNG of three slices and the surface: a file, or a folder to put it in");
+    verb.flag("--json", choice->json, "as JSON");
+    return [choice] { return info(*choice); };
+}
+
+}  // namespace
+
+Verb info_verb() { return {"info", "what is in a CT, label map, mesh or bone file", add}; }
+
+}  // namespace tactus::command

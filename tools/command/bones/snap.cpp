@@ -1,82 +1,64 @@
 // SPDX-License-Identifier: Apache-2.0
 // One fit of two fragments, with its verdict.
 #include "assets/file/whole_file.hpp"
-#include "assets/fracture/paint_file.hpp"
-#include "assets/fracture/propose_paint.hpp"
-#include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/planning/as_scanned.hpp"
-#include "dsp/snap/fit.hpp"
-#include "tools/study/bones/fragment_file.hpp"
-#include "tools/study/planning/plan_case.hpp"
-#include "tools/snap_options.hpp"
-#include "tools/verbs.hpp"
+#include "tools/command/options.hpp"
+#include "tools/command/pose_text.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/study/bones/snapping.hpp"
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
+#include <memory>
 
-namespace tactus {
+namespace tactus::command {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Fragment {
-    Bone bone;
-    std::string paint;  ///< where it comes from
+struct SnapChoice {
+    study::SnapSettings settings;
+    std::string paint = "auto", start, mode = "extended";
+    bool json = false;
 };
 
-/// Paints what lies within the strokes' radius: {"moving": [[x, y, z], ...], "fixed": [...], "radius_mm": r}, in mm.
-void brush(std::vector<SurfacePoint>& points, const Json& strokes, const char* side, const std::string& file) {
+/// Of one side: {"moving": [[x, y, z], ...], "fixed": [...], "radius_mm": r}, in mm.
+study::FragmentPaint strokes_of(const Json& strokes, const char* side, const std::string& file) {
     if (!strokes.is_object() || !strokes.contains(side) || !strokes[side].is_array())
         throw Error(
             fmt::format("{}: expected {{\"moving\": [[x, y, z], ...], \"fixed\": [...], \"radius_mm\": r}}", file));
-    const double radius = 1e-3 * strokes.value("radius_mm", 1.0);
-    for (SurfacePoint& p : points) p.label = surface_label::none;
+    study::FragmentPaint paint{{}, {}, 1e-3 * strokes.value("radius_mm", 1.0), file};
     for (const Json& at : strokes[side]) {
         if (!at.is_array() || at.size() != 3 || !std::ranges::all_of(at, [](const Json& x) { return x.is_number(); }))
             throw Error(fmt::format("{}: a stroke of '{}' is no list of three numbers", file, side));
-        const Vec3 centre(1e-3 * at[0].get<double>(), 1e-3 * at[1].get<double>(), 1e-3 * at[2].get<double>());
-        for (SurfacePoint& p : points)
-            if (glm::length(p.position - centre) <= radius) p.label = surface_label::fracture;
+        paint.strokes.emplace_back(1e-3 * at[0].get<double>(), 1e-3 * at[1].get<double>(), 1e-3 * at[2].get<double>());
     }
+    return paint;
 }
 
-Fragment load_fragment(const std::filesystem::path& path, const SnapChoice& choice, const char* side) {
-    Fragment fragment{bone_of_file(path), "file"};
-    if (fragment.bone.points.empty()) fragment.bone.points = sample_surface(fragment.bone.distance, {});
-    const auto is_painted = [](const SurfacePoint& p) { return p.label == surface_label::fracture; };
+study::SnapSettings settings_of(const SnapChoice& choice) {
+    study::SnapSettings settings = choice.settings;
+    if (!choice.start.empty()) settings.start = pose_of_text(choice.start, "--start");
+    settings.mode = choice.mode == "thesis"   ? FitMode::thesis
+                    : choice.mode == "global" ? FitMode::global
+                                              : FitMode::extended;
     if (const auto comma = choice.paint.find(','); comma != std::string::npos) {
-        fragment.paint =
-            std::string_view(side) == "moving" ? choice.paint.substr(0, comma) : choice.paint.substr(comma + 1);
-        paint_from_file(fragment.bone.points, fragment.paint);
+        settings.moving_paint.file = choice.paint.substr(0, comma);
+        settings.fixed_paint.file = choice.paint.substr(comma + 1);
     } else if (choice.paint != "auto") {
         const Json strokes = Json::parse(read_whole_file(choice.paint), nullptr, false);
-        brush(fragment.bone.points, strokes, side, choice.paint);
-        fragment.paint = choice.paint;
-    } else if (std::ranges::none_of(fragment.bone.points, is_painted)) {
-        propose_fracture(fragment.bone.points);
-        fragment.paint = "proposed";
+        settings.moving_paint = strokes_of(strokes, "moving", choice.paint);
+        settings.fixed_paint = strokes_of(strokes, "fixed", choice.paint);
     }
-    return fragment;
+    return settings;
 }
 
-std::vector<FitSurface> faces_of(const Fragment& fragment, const std::filesystem::path& path) {
-    try {
-        return make_fit_faces(fragment.bone.points, fragment.bone.distance);
-    } catch (const Error& error) {
-        throw Error(fmt::format("{}: {}", path.string(), error.message()));
-    }
-}
-
-Json painted_mm2(const std::vector<FitSurface>& faces) {
+Json painted_mm2(const study::SnappedSide& side) {
     Json areas = Json::array();
-    for (const FitSurface& face : faces) areas.push_back(face.area * 1e6);
+    for (const double area : side.areas) areas.push_back(area * 1e6);
     return areas;
 }
 
@@ -96,45 +78,57 @@ Json json_of(const Fit& fit) {
             {"verdict", name_of(fit.verdict)}};
 }
 
-}  // namespace
-
-int snap_verb(const SnapChoice& choice) {
-    const Pose start = choice.start.empty() ? Pose{} : pose_of_text(choice.start, "--start");
-    const Fragment moving = load_fragment(choice.moving, choice, "moving");
-    const Fragment fixed = load_fragment(choice.fixed, choice, "fixed");
-    const std::vector<FitSurface> moving_faces = faces_of(moving, choice.moving);
-    const std::vector<FitSurface> fixed_faces = faces_of(fixed, choice.fixed);
-    const FitMode mode = choice.mode == "thesis"   ? FitMode::thesis
-                         : choice.mode == "global" ? FitMode::global
-                                                   : FitMode::extended;
-    const auto begin = std::chrono::steady_clock::now();
-    Fit fit = find_fit(moving_faces, fixed_faces, start, mode);
-    const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
-    const bool as_scanned =
-        fit.verdict == FitVerdict::fit && is_as_scanned(moving.bone.points, fit.pose, make_voxmap(fixed.bone.distance));
-    if (as_scanned) fit.verdict = FitVerdict::ambiguous;
-    Json json = json_of(fit);
-    json["moved"] = motion_json<Json>(start, fit.pose, moving.bone.points);
-    json["as_scanned"] = as_scanned;
-    json["time_ms"] = time.count();
-    json["iterations"] = fit.iterations;
-    json["paint"] = {{"moving", moving.paint}, {"fixed", fixed.paint}};
-    json["painted_mm2"] = {{"moving", painted_mm2(moving_faces)}, {"fixed", painted_mm2(fixed_faces)}};
-    if (choice.json) fmt::print("{}\n", json.dump(2));
-    else {
-        const Vec3 p = fit.pose.position * 1e3;
-        const Quat q = fit.pose.orientation;
-        fmt::print("{}: score {:.2f}, margin {:.2f}, {:.0f} mm² on each other, {:.3f} mm rms, {:.0f} ms\n",
-                   name_of(fit.verdict), fit.quality.score, fit.margin, fit.quality.overlap * 1e6,
-                   fit.quality.rms * 1e3, time.count());
-        fmt::print("p_fixed = R p_moving + t: t = {:.3f} {:.3f} {:.3f} mm, q = {:.5f} {:.5f} {:.5f} {:.5f}\n", p.x, p.y,
-                   p.z, q.w, q.x, q.y, q.z);
-        for (const FreeDirection& f : fit.free)
-            fmt::print("free to {} {:.2f} {:.2f} {:.2f}\n", f.is_turn ? "turn about" : "slide along", f.axis.x,
-                       f.axis.y, f.axis.z);
-        if (as_scanned) fmt::print("{}\n", as_scanned_note);
-    }
-    return fit.verdict == FitVerdict::fit ? done : answer_is_no;
+Json json_of(const study::Snapped& found) {
+    Json json = json_of(found.fit);
+    json["moved"] = motion_json<Json>(found.moved);
+    json["as_scanned"] = found.as_scanned;
+    json["time_ms"] = 1e3 * found.seconds;
+    json["iterations"] = found.fit.iterations;
+    json["paint"] = {{"moving", found.moving.paint}, {"fixed", found.fixed.paint}};
+    json["painted_mm2"] = {{"moving", painted_mm2(found.moving)}, {"fixed", painted_mm2(found.fixed)}};
+    return json;
 }
 
-}  // namespace tactus
+void print(const study::Snapped& found) {
+    const Fit& fit = found.fit;
+    const Vec3 p = fit.pose.position * 1e3;
+    const Quat q = fit.pose.orientation;
+    fmt::print("{}: score {:.2f}, margin {:.2f}, {:.0f} mm² on each other, {:.3f} mm rms, {:.0f} ms\n",
+               name_of(fit.verdict), fit.quality.score, fit.margin, fit.quality.overlap * 1e6, fit.quality.rms * 1e3,
+               1e3 * found.seconds);
+    fmt::print("p_fixed = R p_moving + t: t = {:.3f} {:.3f} {:.3f} mm, q = {:.5f} {:.5f} {:.5f} {:.5f}\n", p.x, p.y,
+               p.z, q.w, q.x, q.y, q.z);
+    for (const FreeDirection& f : fit.free)
+        fmt::print("free to {} {:.2f} {:.2f} {:.2f}\n", f.is_turn ? "turn about" : "slide along", f.axis.x, f.axis.y,
+                   f.axis.z);
+    if (found.as_scanned) fmt::print("{}\n", as_scanned_note);
+}
+
+int snap(const SnapChoice& choice) {
+    const study::Snapped found = study::snap_files(settings_of(choice));
+    if (choice.json) fmt::print("{}\n", json_of(found).dump(2));
+    else print(found);
+    return found.fit.verdict == FitVerdict::fit ? done : answer_is_no;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<SnapChoice>();
+    verb.add("moving", choice->settings.moving, "the fragment that is to move: bone file or closed mesh").required();
+    verb.add("fixed", choice->settings.fixed, "the one that stands").required();
+    verb.add("--paint", choice->paint,
+             "auto: what the bone files have painted, or else a proposal; or a JSON file of brush strokes, or two of "
+             "'fracture-surface': MOVING.json,FIXED.json")
+        .shows_default();
+    verb.add("--start", choice->start, "X,Y,Z,QW,QX,QY,QZ in mm: where the moving one is (default: as filed)");
+    verb.add("--mode", choice->mode, "thesis and extended start from there, global from anywhere")
+        .one_of({"thesis", "extended", "global"})
+        .shows_default();
+    verb.flag("--json", choice->json, "as JSON");
+    return [choice] { return snap(*choice); };
+}
+
+}  // namespace
+
+Verb snap_verb() { return {"snap", "where a fragment fits another, and how sure that is", add}; }
+
+}  // namespace tactus::command

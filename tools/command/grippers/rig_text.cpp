@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/study/grippers/rig_report.hpp"
+#include "tools/command/grippers/rig_text.hpp"
 
 #include "tools/command/batch.hpp"
 
@@ -8,7 +8,14 @@
 
 #include <cmath>
 
-namespace tactus {
+namespace tactus::command {
+
+using study::RigCell;
+using study::RigCrossover;
+using study::RigFinding;
+using study::RigLead;
+using study::RigReport;
+using study::RigRow;
 
 namespace {
 
@@ -159,4 +166,4 @@ std::string rig_text(const RigReport& report) {
     return out;
 }
 
-}  // namespace tactus
+}  // namespace tactus::command

@@ -2,14 +2,19 @@
 #include "devices/audio/portaudio.hpp"
 #include "devices/haptic/catalogue.hpp"
 #include "dsp/core/error.hpp"
-#include "tools/verbs.hpp"
+#include "tools/command/options.hpp"
+#include "tools/exit_code.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace tactus {
+#include <memory>
 
-int devices_verb(bool json) {
+namespace tactus::command {
+
+namespace {
+
+int devices(bool json) {
     nlohmann::ordered_json list{{"haptic", nlohmann::ordered_json::array()},
                                 {"audio", nlohmann::ordered_json::array()}};
     for (const HapticDriver& driver : haptic_drivers())
@@ -40,4 +45,14 @@ int devices_verb(bool json) {
     return done;
 }
 
-}  // namespace tactus
+Action add(VerbOptions& verb) {
+    const auto json = std::make_shared<bool>(false);
+    verb.flag("--json", *json, "as JSON");
+    return [json] { return devices(*json); };
+}
+
+}  // namespace
+
+Verb devices_verb() { return {"devices", "haptic drivers and sound outputs of this machine", add}; }
+
+}  // namespace tactus::command

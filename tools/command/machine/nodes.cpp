@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/core/units.hpp"
 #include "nodes/catalogue.hpp"
-#include "tools/verbs.hpp"
+#include "tools/command/options.hpp"
+#include "tools/exit_code.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <memory>
 
-namespace tactus {
+namespace tactus::command {
 
 using Json = nlohmann::ordered_json;
 
@@ -96,9 +98,7 @@ void print_whole(const Json& node) {
     }
 }
 
-}  // namespace
-
-int nodes_verb(const std::string& wanted, bool json) {
+int nodes(const std::string& wanted, bool json) {
     Json list = Json::array();
     std::vector<std::string> names;
     for (const NodeType* type : catalogue()) {
@@ -113,4 +113,19 @@ int nodes_verb(const std::string& wanted, bool json) {
     return done;
 }
 
-}  // namespace tactus
+Action add(VerbOptions& verb) {
+    struct Choice {
+        std::string type;
+        bool json = false;
+    };
+    const auto choice = std::make_shared<Choice>();
+    verb.add("type", choice->type, "only this type");
+    verb.flag("--json", choice->json, "as JSON");
+    return [choice] { return nodes(choice->type, choice->json); };
+}
+
+}  // namespace
+
+Verb nodes_verb() { return {"nodes", "the node types: ports, parameters, units, ranges", add}; }
+
+}  // namespace tactus::command

@@ -3,10 +3,10 @@
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/command/planning/plan_options.hpp"
+#include "tools/command/pose_text.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/study/planning/plan_case.hpp"
-#include "tools/plan_options.hpp"
-#include "tools/verbs.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -15,11 +15,16 @@
 
 #include <algorithm>
 
-namespace tactus {
+namespace tactus::command {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+struct ExportChoice : PlanChoice {
+    std::string format = "stl";
+    std::filesystem::path out;
+};
 
 /// ITK keeps transforms from the parent, which is the inverse of what was moved; LPS, mm. Rows of the matrix, then the
 /// translation.
@@ -95,12 +100,10 @@ std::string file_name_of(const std::string& fragment) {
     return name;
 }
 
-}  // namespace
-
-int plan_export(const PlanChoice& choice) {
+int export_plan(const ExportChoice& choice) {
     const CasePlan plan = load_case_plan(choice.plan);
     const std::filesystem::path folder = choice.plan.parent_path();
-    const std::vector<CaseFragment> loaded = load_fragments(plan, folder);
+    const std::vector<study::CaseFragment> loaded = study::load_fragments(plan, folder);
     const PlanState state = state_of(plan);
     std::vector<std::string> names;
     for (const PlanFragment& fragment : plan.fragments) {
@@ -109,12 +112,13 @@ int plan_export(const PlanChoice& choice) {
             throw Error(
                 fmt::format("fragments '{}' and another would both be written to '{}'", fragment.name, names.back()));
     }
-    make_output_folder(choice.out);
+    session::make_output_folder(choice.out);
     Json written = Json::array();
     for (std::size_t n = 0; n < loaded.size(); ++n) {
         const PlanFragment& fragment = plan.fragments[n];
         const Pose& pose = state.arrangement.pose(static_cast<int>(n));
-        ColouredSurface surface{surface_of_file(file_of(fragment.file, folder), loaded[n].bone), fragment.colour};
+        ColouredSurface surface{study::surface_of_file(file_of(fragment.file, folder), loaded[n].bone),
+                                fragment.colour};
         for (Vec3& v : surface.surface.vertices) v = pose.apply(v);
         const std::string mesh = names[n] + "." + choice.format;
         write_mesh({&surface, 1}, choice.out / mesh);
@@ -133,4 +137,16 @@ int plan_export(const PlanChoice& choice) {
     return done;
 }
 
-}  // namespace tactus
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<ExportChoice>();
+    add_plan_options(verb, *choice);
+    verb.add("--out", choice->out, "folder").required();
+    verb.add("--format", choice->format, "of the meshes").one_of({"stl", "ply"}).shows_default();
+    return [choice] { return export_plan(*choice); };
+}
+
+}  // namespace
+
+Verb plan_export_verb() { return {"export", "placed fragments, transforms and landmarks for other programs", add}; }
+
+}  // namespace tactus::command

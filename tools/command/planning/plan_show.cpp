@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a plan holds, for people and programs.
-#include "dsp/core/error.hpp"
+#include "assets/plan/plan_file.hpp"
+#include "tools/command/planning/plan_options.hpp"
+#include "tools/command/pose_text.hpp"
 #include "tools/study/planning/plan_case.hpp"
-#include "tools/plan_options.hpp"
-#include "tools/verbs.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
-namespace tactus {
+namespace tactus::command {
 
 namespace {
 
@@ -80,7 +80,7 @@ Json json_of(const CasePlan& plan, const std::vector<std::string>& problems) {
 
 }  // namespace
 
-int plan_show(const PlanChoice& choice) {
+int show_plan(const PlanChoice& choice) {
     const CasePlan plan = load_case_plan(choice.plan);
     const auto problems = changed_files(plan, choice.plan.parent_path());
     if (choice.json) {
@@ -102,10 +102,19 @@ int plan_show(const PlanChoice& choice) {
         if (const auto& fit = state.fits[static_cast<std::size_t>(n)])
             marks += fmt::format(", {} to {} ({:.2f} mm rms)", fit->verdict, fit->partner, fit->rms * 1e3);
         fmt::print("  {}: at {:.2f} {:.2f} {:.2f} mm, turned {:.2f}°{}\n", f.name, pose.position.x * 1e3,
-                   pose.position.y * 1e3, pose.position.z * 1e3, angle_deg(pose), marks);
+                   pose.position.y * 1e3, pose.position.z * 1e3, study::angle_deg(pose), marks);
     }
     for (const std::string& problem : problems) fmt::print("! {}\n", problem);
     return done;
 }
 
-}  // namespace tactus
+Verb plan_show_verb() {
+    return {"show", "fragments, groups, alternatives, and what is wrong with the files",
+            [](VerbOptions& verb) -> Action {
+                const auto choice = std::make_shared<PlanChoice>();
+                add_plan_options(verb, *choice);
+                return [choice] { return show_plan(*choice); };
+            }};
+}
+
+}  // namespace tactus::command

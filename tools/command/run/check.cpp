@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "assets/file/whole_file.hpp"
-#include "graph/draw.hpp"
 #include "graph/latency.hpp"
 #include "graph/stiffness.hpp"
+#include "tools/command/patch_options.hpp"
+#include "tools/exit_code.hpp"
 #include "tools/session/load_plan.hpp"
-#include "tools/session/summary.hpp"
 
 #include "engine/engine.hpp"
 
@@ -12,12 +11,18 @@
 #include <nlohmann/json.hpp>
 
 #include <functional>
+#include <memory>
 
-namespace tactus {
+namespace tactus::command {
 
 using Json = nlohmann::ordered_json;
 
 namespace {
+
+struct CheckChoice {
+    session::PatchChoice patch;
+    bool json = false;
+};
 
 /// One row per path; a loop through a hand has its stiffness too.
 Json paths_json(const Plan& plan, const std::vector<ForceLoop>& loops) {
@@ -114,15 +119,13 @@ void print_check(const Json& json) {
     fmt::print("What a hand may feel before it hums: damping of the device / (period / 2 + latency).\n");
 }
 
-}  // namespace
-
-int check_verb(const PatchChoice& choice) {
+int check(const CheckChoice& choice) {
     Problems problems;
     AssetCache assets;
     std::optional<Plan> plan;
     Json json;
     try {
-        plan = read_plan(choice, problems);
+        plan = session::read_plan(choice.patch, problems);
         if (plan) assets.load(*plan, problems);
         json = check_json(plan, problems);
         // What only `prepare` can find: devices, file names, sizes.
@@ -151,18 +154,15 @@ int check_verb(const PatchChoice& choice) {
     return problems.empty() ? done : bad_input;
 }
 
-int draw_verb(const PatchChoice& choice, const std::filesystem::path& out) {
-    Problems problems;
-    const std::optional<Plan> plan = read_plan(choice, problems);
-    if (!plan) {
-        for (std::size_t i = 0; i + 1 < problems.list.size(); ++i)
-            fmt::print(stderr, "tactus: {}\n", problems.list[i].what());
-        throw problems.list.back();
-    }
-    const std::string svg = draw_svg(*plan);
-    if (out.empty()) fmt::print("{}", svg);
-    else write_whole_file(out, svg);
-    return done;
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<CheckChoice>();
+    add_patch_options(verb, choice->patch);
+    verb.flag("--json", choice->json, "as JSON");
+    return [choice] { return check(*choice); };
 }
 
-}  // namespace tactus
+}  // namespace
+
+Verb check_verb() { return {"check", "find errors; list groups and latencies", add}; }
+
+}  // namespace tactus::command

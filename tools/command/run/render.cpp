@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/file/whole_file.hpp"
+#include "tools/command/patch_options.hpp"
+#include "tools/command/run/sight_options.hpp"
+#include "tools/exit_code.hpp"
 #include "tools/picture/scene/frames.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/session/results.hpp"
 #include "tools/session/summary.hpp"
-#include "tools/command/terminal.hpp"
+#include "tools/terminal.hpp"
 
 #include <fmt/format.h>
 
@@ -12,9 +15,22 @@
 #include <chrono>
 #include <thread>
 
-namespace tactus {
+namespace tactus::command {
+
+using namespace session;
+using namespace picture;
 
 namespace {
+
+struct RenderChoice : PatchChoice {
+    double seconds = 10.0;
+    std::filesystem::path out;
+    int threads = 0;      // 0: one per core
+    std::string block;    // "", a number, or "random"
+    std::filesystem::path log, record;
+    FrameChoice frames;
+    bool json = false;
+};
 
 int parse_block(const std::string& text) {
     int block = 0;
@@ -24,9 +40,7 @@ int parse_block(const std::string& text) {
     return block;
 }
 
-}  // namespace
-
-int render_verb(const RenderChoice& choice) {
+int render(const RenderChoice& choice) {
     EngineOptions options;
     options.seconds = choice.seconds;
     options.folder = choice.out;
@@ -78,4 +92,39 @@ int render_verb(const RenderChoice& choice) {
     return done;
 }
 
-}  // namespace tactus
+}  // namespace
+
+namespace {
+
+void add_frame_options(VerbOptions& verb, FrameChoice& choice) {
+    const Option frames =
+        verb.add("--frames", choice.frames, "pictures of the scene, evenly over the time: frame_0001.png, ...")
+            .range(1, 100000);
+    const auto add = [&](const char* name, std::string& value, const char* about) {
+        verb.add(name, value, about).shows_default().needs(frames);
+    };
+    add("--view-from", choice.view_from, "front, back, left, right, top, bottom or iso");
+    add("--size", choice.size, "of the pictures, WIDTHxHEIGHT");
+    add("--clip", choice.clip, "take away what is above along an axis: x, -y, \"z=12 mm\"");
+    add_sight_options(verb, choice.sight, &frames);
+}
+
+Action add_render(VerbOptions& verb) {
+    const auto choice = std::make_shared<RenderChoice>();
+    add_patch_options(verb, *choice);
+    verb.add("--seconds", choice->seconds, "logical time to render, s").shows_default().range(1e-3, 1e6);
+    verb.add("--out", choice->out, "folder for what comes out").required();
+    verb.add("--threads", choice->threads, "threads, 0: one per core").range(0, 64);
+    verb.add("--block", choice->block, "most samples per call, or 'random'; the output is the same");
+    verb.add("--log", choice->log, "repeat the timing decisions of a live run");
+    verb.add("--record", choice->record, "keep the run as a take, a folder that 'replay' repeats");
+    add_frame_options(verb, choice->frames);
+    verb.flag("--json", choice->json, "print the summary");
+    return [choice] { return render(*choice); };
+}
+
+}  // namespace
+
+Verb render_verb() { return {"render", "run a patch on a virtual clock, as fast as it goes", add_render}; }
+
+}  // namespace tactus::command

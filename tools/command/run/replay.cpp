@@ -2,22 +2,32 @@
 #include "dsp/core/error.hpp"
 #include "engine/engine.hpp"
 #include "engine/take_compare.hpp"
+#include "tools/command/options.hpp"
+#include "tools/exit_code.hpp"
 #include "tools/session/replayed_take.hpp"
-#include "tools/command/terminal.hpp"
-#include "tools/verbs.hpp"
+#include "tools/terminal.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <memory>
 #include <thread>
 
-namespace tactus {
+namespace tactus::command {
+
+using namespace session;
 
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+struct ReplayChoice {
+    std::filesystem::path take;
+    bool json = false;
+    bool anyway = false;  // although assets have changed
+};
 
 /// Outputs whose hashes differ although no value did: values that the streams do not hold.
 std::vector<std::string> differing_hashes(const Take& take, const Engine& engine) {
@@ -35,9 +45,7 @@ Json difference_json(const TakeDifference& d) {
             {"channels", d.channels}, {"expected", d.expected}, {"got", d.got}};
 }
 
-}  // namespace
-
-int replay_verb(const ReplayChoice& choice) {
+int replay(const ReplayChoice& choice) {
     const Take take = Take::load(choice.take);
     const std::vector<std::string> differences = take.differences(), changed = take.changed_assets();
     for (const std::string& difference : differences)
@@ -88,4 +96,20 @@ int replay_verb(const ReplayChoice& choice) {
     return identical ? done : answer_is_no;
 }
 
-}  // namespace tactus
+}  // namespace
+
+namespace {
+
+Action add_replay(VerbOptions& verb) {
+    const auto choice = std::make_shared<ReplayChoice>();
+    verb.add("take", choice->take, "folder that --record made").required();
+    verb.flag("--anyway", choice->anyway, "although assets have changed since");
+    verb.flag("--json", choice->json, "as JSON");
+    return [choice] { return replay(*choice); };
+}
+
+}  // namespace
+
+Verb replay_verb() { return {"replay", "repeat a take and compare every value, bit by bit", add_replay}; }
+
+}  // namespace tactus::command

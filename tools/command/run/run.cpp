@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/command/patch_options.hpp"
+#include "tools/command/run/sight_options.hpp"
+#include "tools/exit_code.hpp"
 #include "tools/session/live_table.hpp"
 #include "tools/session/run_session.hpp"
-#include "tools/command/terminal.hpp"
+#include "tools/terminal.hpp"
 #include "tools/view/view.hpp"
 
 #include <fmt/format.h>
@@ -10,16 +13,16 @@
 #include <chrono>
 #include <csignal>
 
-namespace tactus {
+namespace tactus::command {
+
+using namespace session;
 
 namespace {
 
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-}  // namespace
-
-int run_verb(const RunChoice& choice) {
+int run(const view::ViewedRunChoice& choice) {
     std::signal(SIGINT, [](int) { interrupted = true; });
     std::signal(SIGTERM, [](int) { interrupted = true; });
     if (choice.view.wanted) return view::view_run(choice, interrupted);
@@ -48,4 +51,34 @@ int run_verb(const RunChoice& choice) {
     return done;
 }
 
-}  // namespace tactus
+}  // namespace
+
+namespace {
+
+Action add_run(VerbOptions& verb) {
+    const auto choice = std::make_shared<view::ViewedRunChoice>();
+    add_patch_options(verb, *choice);
+    verb.add("--seconds", choice->seconds, "stop after so much logical time, s").range(1e-3, 1e6);
+    verb.add("--dilate", choice->dilate, "real seconds per logical second").range(0.01, 1000.0);
+    verb.add("--audio", choice->audio,
+             "where sound goes: part of a card's name, default, file or none (else: a card if there is one)");
+    verb.add("--audio-margin", choice->audio_margin, "sound that waits for the card when a thread is late, ms")
+        .shows_default()
+        .range(1.0, 2000.0);
+    verb.add("--out", choice->out, "folder for what comes out (default: PATCH-run)");
+    verb.add("--log", choice->log, "write what timing decided, for 'render --log'");
+    verb.add("--record", choice->record, "keep the run as a take, a folder that 'replay' repeats");
+    verb.flag("--json", choice->json, "print the summary as JSON and nothing else");
+    const Option window =
+        verb.flag("--view", choice->view.wanted, "open a window: the patch, its values, the scene; edits run at once");
+    verb.flag("--keep-running", choice->view.keep_running, "closing the window leaves the run alive").needs(window);
+    add_view_options(verb, choice->view);
+    verb.flag("!--no-edits", choice->edits, "neither watch the patch file nor listen to 'set'");
+    return [choice] { return run(*choice); };
+}
+
+}  // namespace
+
+Verb run_verb() { return {"run", "run a patch in real time, until Ctrl-C or --seconds", add_run}; }
+
+}  // namespace tactus::command

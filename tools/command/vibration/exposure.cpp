@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vibration exposure of the hand.
+#include "tools/study/vibration/exposure.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
-#include "dsp/exposure/hand_arm.hpp"
-#include "dsp/spectrum/level.hpp"
-#include "dsp/spectrum/vibration_analysis.hpp"
 #include "tools/command/batch.hpp"
-#include "tools/verbs.hpp"
+#include "tools/command/vibration/record_options.hpp"
+#include "tools/exit_code.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -17,24 +16,21 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <optional>
 
-namespace tactus {
-
-using Json = nlohmann::ordered_json;
+namespace tactus::command {
 
 namespace {
 
-struct Operation {
-    std::string file;
-    std::vector<std::string> axes;
-    std::vector<double> weighted, filtered;  // m/s², from the spectrum and from the filter
-    double rate = 0.0, duration = 0.0;       // Hz; s per day
-    bool calibrated = false, three_axes = false;
-    double band_high = hand_arm_highest;
-    std::vector<std::string> notes;
+using Json = nlohmann::ordered_json;
+using Operation = study::ExposureOperation;
 
-    double total() const { return vibration_total(weighted); }
+struct ExposureChoice : RecordChoice {
+    std::vector<std::string> durations;  // quantities of time; a bare number is hours
+    bool uncalibrated = false;           // take values of a record without calibration as m/s²
+    int jobs = 0;                        // files at a time, 0: one per core
+    std::filesystem::path table;
 };
 
 double parse_duration(const std::string& text) {
@@ -45,80 +41,6 @@ double parse_duration(const std::string& text) {
     if (!(seconds > 0.0) || !(seconds <= 24.0 * 3600.0))
         throw Error(fmt::format("--duration takes a time up to 24 h, such as \"90 min\", not '{}'", text));
     return seconds;
-}
-
-Operation analyse(const std::filesystem::path& file, const ExposureChoice& choice, double duration,
-                  const std::function<void(double)>& progress) {
-    RecordReader reader = open_record(file, choice);
-    const Calibration& calibration = reader.calibration();
-    if (!calibration.known && !choice.uncalibrated)
-        throw Error(fmt::format(
-            "{}: the record is not calibrated; say what full scale is worth with --full-scale \"49 m/s^2\", "
-            "or take its values as m/s^2 with --uncalibrated",
-            file.string()));
-    if (calibration.known && !calibration.is_acceleration)
-        throw Error(fmt::format("{}: exposure needs an acceleration, not {}", file.string(), calibration.unit));
-    const std::vector<std::size_t> chosen = chosen_channels(reader, file, choice);
-    if (chosen.size() > 3)
-        throw Error(fmt::format("{}: {} channels; choose the axes with --channel", file.string(), chosen.size()));
-    Operation out;
-    out.file = file.string();
-    out.rate = reader.rate();
-    out.duration = duration;
-    out.calibrated = calibration.known;
-    out.three_axes = chosen.size() == 3;
-    const double nyquist = reader.log() ? std::min(0.5 * out.rate, reader.log()->usable) : 0.5 * out.rate;
-    out.band_high = std::min(hand_arm_highest, nyquist);
-
-    WelchSettings settings;
-    settings.rate = out.rate;
-    settings.segment = suggested_segment(out.rate, reader.frames());
-    settings.overlap = settings.segment / 2;
-    std::vector<WelchStream<double>> spectra(chosen.size(), WelchStream<double>(settings));
-    std::vector<HandArmFilter> filters(chosen.size(), HandArmFilter(out.rate));
-    std::vector<double> squares(chosen.size()), offsets(chosen.size()), scaled;
-    std::vector<Level> levels(chosen.size());
-    std::size_t count = 0;
-    RecordBlock block;
-    while (reader.next(block)) {
-        for (std::size_t i = 0; i < chosen.size(); ++i) {
-            scaled = block.channels[chosen[i]];
-            for (double& x : scaled) x *= calibration.si;
-            levels[i].push(scaled);
-            if (block.after_gap) spectra[i].forget_waiting();
-            spectra[i].push(scaled);
-            // A constant is no vibration: the filter must not hear it begin.
-            if (count == 0) offsets[i] = scaled.front();
-            for (const double x : scaled) {
-                const double y = filters[i](x - offsets[i]);
-                squares[i] += y * y;
-            }
-        }
-        count += block.size();
-        progress(static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, reader.frames())));
-    }
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-        out.axes.push_back(reader.channels()[chosen[i]]);
-        out.weighted.push_back(weighted_acceleration(spectra[i].spectrum()));
-        out.filtered.push_back(std::sqrt(squares[i] / static_cast<double>(std::max<std::size_t>(1, count))));
-        if (levels[i].clipped() > 0)
-            out.notes.push_back(fmt::format("axis {} is clipped in {} samples: the value is too low", out.axes.back(),
-                                            levels[i].clipped()));
-    }
-    if (!out.calibrated) out.notes.push_back("uncalibrated: values in the file were taken as m/s^2");
-    if (out.band_high < 1250.0)
-        out.notes.push_back(
-            fmt::format("the record ends at {:.0f} Hz, below 1250 Hz: the values are lower bounds", out.band_high));
-    if (!out.three_axes)
-        out.notes.push_back(
-            fmt::format("{} of three axes: no total value a_hv; A(8) and minutes come from these axes alone "
-                        "and are bounds",
-                        out.axes.size()));
-    if (out.rate < 20000.0)
-        out.notes.push_back("below 20 kHz the filter strays from the norm; the spectrum's values count");
-    const double minutes = static_cast<double>(count) / out.rate / 60.0;
-    if (minutes < 1.0) out.notes.push_back("the norm asks for at least one minute of measurement in all");
-    return out;
 }
 
 Json minutes_json(double value, double acceleration) {
@@ -139,25 +61,12 @@ Json operation_json(const Operation& one) {
             {"minutes_to_limit", minutes_json(limit_value, one.total())},
             {"calibrated", one.calibrated},
             {"band_hz", {hand_arm_lowest, one.band_high}},
-            {"lower_bound", one.band_high < 1250.0 || !one.three_axes},
+            {"lower_bound", one.is_lower_bound()},
             {"a_hw_filter", one.filtered},
             {"axes", one.axes},
             {"file", one.file},
             {"duration_s", one.duration},
             {"notes", one.notes}};
-}
-
-/// Of the day, when its durations fit into one and no file is missing.
-std::optional<double> daily(const std::vector<Operation>& operations, const std::vector<std::string>& failures) {
-    std::vector<HandArmOperation> day;
-    double seconds = 0.0;
-    for (std::size_t i = 0; i < operations.size(); ++i) {
-        if (!failures[i].empty()) return std::nullopt;
-        day.push_back({operations[i].total(), operations[i].duration});
-        seconds += operations[i].duration;
-    }
-    if (seconds > 24.0 * 3600.0) return std::nullopt;
-    return daily_exposure(day);
 }
 
 std::string table_row(const Operation& one) {
@@ -212,37 +121,40 @@ void print_table(const std::vector<Operation>& operations) {
                        one.band_high < 1250.0 || !one.three_axes || !one.calibrated ? "  (see --table)" : "");
 }
 
-}  // namespace
-
-int exposure_verb(const ExposureChoice& choice) {
-    const std::vector<std::filesystem::path> files = expand_folders(choice.files);
+int exposure(const ExposureChoice& choice) {
+    const std::vector<std::filesystem::path> files = study::expand_folders(choice.files);
     if (choice.durations.size() > 1 && choice.durations.size() != files.size())
         throw Error(fmt::format("there are {} durations for {} files; give one, or one per file",
                                 choice.durations.size(), files.size()));
     std::vector<double> durations;
     for (const std::string& text : choice.durations) durations.push_back(parse_duration(text));
     if (durations.empty()) durations.push_back(reference_day);
+    const study::ExposureSettings settings{choice.record, choice.uncalibrated};
     std::vector<Operation> operations(files.size());
     const std::vector<std::string> failures =
         run_batch(files.size(), choice.jobs, "files", [&](std::size_t i, const std::function<void(double)>& progress) {
-            operations[i] = analyse(files[i], choice, durations[std::min(i, durations.size() - 1)], progress);
+            operations[i] =
+                study::analyse_exposure(files[i], settings, durations[std::min(i, durations.size() - 1)], progress);
         });
     const bool bad = tell_failures(failures) > 0;
     if (!choice.table.empty()) write_table(choice, operations, files, failures);
     if (bad && files.size() == 1) return bad_input;
-    const std::optional<double> a8 = daily(operations, failures);
+    // A day with a file missing has none.
+    std::optional<double> a8;
+    if (!bad) a8 = study::exposure_of_day(operations);
+    const double day = a8.value_or(0.0);
     if (choice.json) {
         Json json;
         if (files.size() == 1) {
             json = operation_json(operations.front());
         } else {
-            json = {{"a8", a8 ? Json(*a8) : Json()}, {"operations", Json::array()}};
+            json = {{"a8", a8 ? Json(day) : Json()}, {"operations", Json::array()}};
             for (std::size_t i = 0; i < files.size(); ++i)
                 json["operations"].push_back(failures[i].empty()
                                                  ? operation_json(operations[i])
                                                  : Json{{"file", files[i].string()}, {"error", failures[i]}});
         }
-        json["years_to_white_fingers"] = a8 && *a8 > 0.0 ? Json(years_to_white_fingers(*a8)) : Json(nullptr);
+        json["years_to_white_fingers"] = day > 0.0 ? Json(years_to_white_fingers(day)) : Json(nullptr);
         fmt::print("{}\n", json.dump(2));
         return bad ? bad_input : done;
     }
@@ -251,9 +163,9 @@ int exposure_verb(const ExposureChoice& choice) {
         for (const Operation& one : operations)
             if (!one.file.empty()) print_operation(one);
     if (a8)
-        fmt::print("A(8) {:.3g} m/s^2: {}\n", *a8,
-                   *a8 > limit_value    ? "above the limit value, 5"
-                   : *a8 > action_value ? "above the action value, 2.5"
+        fmt::print("A(8) {:.3g} m/s^2: {}\n", day,
+                   day > limit_value    ? "above the limit value, 5"
+                   : day > action_value ? "above the action value, 2.5"
                                         : "below the action value, 2.5");
     else
         fmt::print(
@@ -262,4 +174,22 @@ int exposure_verb(const ExposureChoice& choice) {
     return bad ? bad_input : done;
 }
 
-}  // namespace tactus
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<ExposureChoice>();
+    add_record_options(verb, *choice, "a record per tool, its channels the axes; or folders of them");
+    verb.add("--duration", choice->durations,
+             "of contact per day, such as \"90 min\" (default 8 h); one, or one per file")
+        .one_each();
+    verb.flag("--uncalibrated", choice->uncalibrated, "take an uncalibrated record's values as m/s^2");
+    verb.add("--table", choice->table, "a row per file, CSV");
+    verb.add("--jobs", choice->jobs, "files at a time, 0: one per core").range(0, 256);
+    return [choice] { return exposure(*choice); };
+}
+
+}  // namespace
+
+Verb exposure_verb() {
+    return {"exposure", "vibration exposure of the hand (ISO 5349-1): A(8), minutes to action and limit value", add};
+}
+
+}  // namespace tactus::command

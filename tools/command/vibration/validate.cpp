@@ -2,21 +2,34 @@
 // Whether a patch makes of recordings what they are: the handle's vibration beside each of them, in free air and cutting.
 #include "assets/file/whole_file.hpp"
 #include "tools/command/batch.hpp"
+#include "tools/command/patch_options.hpp"
+#include "tools/command/vibration/comparison_text.hpp"
+#include "tools/command/vibration/validation_text.hpp"
+#include "tools/exit_code.hpp"
 #include "tools/picture/report/comparison_figure.hpp"
-#include "tools/picture/report/comparison_page.hpp"
-#include "tools/picture/report/html_report.hpp"
-#include "tools/study/vibration/validation.hpp"
+#include "tools/picture/report/validation_page.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <memory>
 
-namespace tactus {
+namespace tactus::command {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
+using study::Validation;
+using study::ValidationRun;
+
+struct ValidateChoice {
+    study::ValidateSettings settings;
+    std::filesystem::path thresholds, report, plot, table;
+    std::string touch = "displacement";
+    int jobs = 0;  // runs at a time, 0: one per core
+    bool json = false;
+};
 
 struct Count {
     std::size_t passed = 0, failed = 0, bad = 0;
@@ -58,51 +71,18 @@ void print(const Validation& validation, const Count& count) {
                count.passed, validation.runs.size());
 }
 
-std::string page(const Validation& validation, const Count& count) {
-    const bool passed = count.failed + count.bad == 0;
-    std::string body = fmt::format(
-        "<p>Patch {}, vibration at {}; reference {}{}.</p>\n<p class=\"{}\"><b>{} of {} have the vibration of their "
-        "recording.</b></p>\n",
-        html::escaped(validation.patch), html::escaped(validation.path.out),
-        html::escaped(validation.set->title.empty() ? validation.set->path.string() : validation.set->title),
-        validation.set->synthesised ? ", which was computed and not recorded" : "", passed ? "pass" : "fail",
-        count.passed, validation.runs.size());
-    body += validation_table(validation);
-    const ComparedPair* last = nullptr;
-    for (std::size_t i = 0; i < validation.runs.size(); ++i) {
-        const ValidationRun& run = validation.runs[i];
-        if (!run.failure.empty()) continue;
-        last = &run.pair;
-        body += fmt::format("<h2>{}</h2>\n", html::escaped(run.name())) +
-                comparison_section(run.pair, fmt::format("v{}x", i));
-    }
-    body += "<h2>How it was made</h2><ul>";
-    body +=
-        "<li>Each run is one offline rendering of the patch in which the saw plays the set at the recording's rate "
-        "and load, without the hand, the bone and whatever else does not lead to the handle. The first second is "
-        "not compared.</li>";
-    body +=
-        "<li>The equaliser, if there is one, was made from sweeps. No recording was used to make it, and the drive "
-        "of each run is stated in the table, so that it can be held against the level of those sweeps.</li>";
-    body +=
-        "<li>\"Softer by\" is what the handle lacks in power from 40 to 1000 Hz. An equaliser restores shape, not "
-        "level.</li></ul>\n";
-    if (last) body += comparison_method(*last);
-    return html::page(passed ? "The handle vibrates as the saw did" : "The handle does not vibrate as the saw did",
-                      body);
-}
-
-}  // namespace
-
-int validate_verb(const ValidateChoice& choice) {
-    const Thresholds thresholds = choice.thresholds.empty() ? Thresholds{} : load_thresholds(choice.thresholds);
-    Validation validation = plan_validation(choice, thresholds);
+int validate(const ValidateChoice& choice) {
+    study::ValidateSettings settings = choice.settings;
+    if (!choice.thresholds.empty()) settings.thresholds = load_thresholds(choice.thresholds);
+    settings.touch = touch_of(choice.touch);
+    Validation validation = study::plan_validation(settings);
     const bool pictures = !choice.report.empty() || !choice.plot.empty();
     if (!choice.plot.empty()) std::filesystem::create_directories(choice.plot);
     const std::vector<std::string> failures = run_batch(
         validation.runs.size(), choice.jobs, "runs",
         [&](std::size_t i, const std::function<void(double)>&) {  // Spectrograms are large; one level shows them.
-            validate(validation, i, choice, pictures && validation.runs[i].level_db == choice.levels.front());
+            study::validate(validation, i, settings,
+                            pictures && validation.runs[i].level_db == settings.levels.front());
         });
     Count count;
     count.bad = tell_failures(failures);
@@ -112,13 +92,47 @@ int validate_verb(const ValidateChoice& choice) {
         if (!run.failure.empty()) continue;
         ++(run.pair.verdict.passed() ? count.passed : count.failed);
         if (!choice.plot.empty())
-            write_figure(draw_comparison(run.pair), (choice.plot / (run.file_name() + ".svg")).string());
+            picture::write_figure(picture::draw_comparison(run.pair),
+                                  (choice.plot / (run.file_name() + ".svg")).string());
     }
     if (!choice.table.empty()) write_whole_file(choice.table, validation_csv(validation));
-    if (!choice.report.empty()) write_whole_file(choice.report, page(validation, count));
+    if (!choice.report.empty()) write_whole_file(choice.report, picture::validation_page(validation));
     if (choice.json) fmt::print("{}", json_text(validation, count));
     else print(validation, count);
     return count.bad > 0 ? bad_input : count.failed > 0 ? answer_is_no : done;
 }
 
-}  // namespace tactus
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<ValidateChoice>();
+    study::ValidateSettings& settings = choice->settings;
+    add_patch_options(verb, settings.patch);
+    verb.add("--reference", settings.set, "recording set, TOML, or one sound; the patch's saw plays it").required();
+    verb.add("--level", settings.levels, "dB on top of the patch's, one or more")
+        .shows_default()
+        .separated_by(',')
+        .one_each()
+        .range(-80.0, 40.0);
+    verb.add("--saw", settings.saw, "the node that plays (default: the only one of type saw)");
+    verb.add("--out", settings.out_port,
+             "NODE.PORT, the handle's vibration (default: what is recorded as handle.wav, or the actuator's)");
+    verb.add("--seconds", settings.seconds, "that are compared of each run").shows_default().range(0.5, 600.0);
+    verb.add("--thresholds", choice->thresholds, "TOML file of what must be reached, as of compare");
+    verb.add("--touch", choice->touch, "what the threshold of touch is a threshold of")
+        .shows_default()
+        .one_of({"displacement", "acceleration", "none"});
+    verb.add("--report", choice->report, "figures, tables and how they were computed in one HTML file");
+    verb.add("--plot", choice->plot, "folder for a figure of each run, SVG");
+    verb.add("--table", choice->table, "a row per run, CSV");
+    verb.add("--jobs", choice->jobs, "runs at a time, 0: one per core").range(0, 256);
+    verb.flag("--json", choice->json, "as JSON");
+    return [choice] { return validate(*choice); };
+}
+
+}  // namespace
+
+Verb validate_verb() {
+    return {"validate",
+            "does the handle vibrate as the saw did, at every rate and load recorded? Exit code 0: yes, 1: no", add};
+}
+
+}  // namespace tactus::command

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/batch.hpp"
-#include "tools/picture/report/comparison_rows.hpp"
-#include "tools/study/vibration/validation.hpp"
+#include "tools/command/vibration/validation_text.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace tactus {
+namespace tactus::command {
+
+using study::Validation;
+using study::ValidationRun;
 
 namespace {
 
@@ -61,21 +63,4 @@ std::string validation_csv(const Validation& validation) {
     return out;
 }
 
-std::string validation_table(const Validation& validation) {
-    std::string out =
-        "<table><tr><th>saw</th><th class=\"n\">Hz</th><th class=\"n\">N</th><th class=\"n\">level, dB</th>"
-        "<th class=\"n\">drive, V rms</th><th class=\"n\">peak, V</th>" +
-        score_heading + "</tr>\n";
-    for (const ValidationRun& run : validation.runs) {
-        const Recording& r = *run.recording;
-        out += fmt::format(
-            "<tr><td>{}</td><td class=\"n\">{:.4g}</td><td class=\"n\">{}</td><td class=\"n\">{:+g}</td>"
-            "<td class=\"n\">{}</td><td class=\"n\">{}</td>",
-            r.cutting ? "cutting" : "free air", r.rate, r.cutting ? fmt::format("{:g}", r.load) : "", run.level_db,
-            shown(run.drive_rms, "{:.3f}"), shown(run.drive_peak, "{:.3f}"));
-        out += score_cells(run.pair, run.failure) + "</tr>\n";
-    }
-    return out + "</table>\n";
-}
-
-}  // namespace tactus
+}  // namespace tactus::command

@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::picture {
 
 namespace {
 
@@ -54,7 +54,7 @@ void mark(Figure& figure, double x, double y, Colour colour, bool upwards) {
 
 /// "×2" for the second order, "hum" for the mains.
 std::string short_name(double hz, double fundamental) {
-    const std::string name = name_of_line(hz, fundamental);
+    const std::string name = study::name_of_line(hz, fundamental);
     return name.starts_with("order ") ? "×" + name.substr(6) : name.empty() ? "" : "hum";
 }
 
@@ -136,7 +136,7 @@ std::string number(double value) {
     return fmt::format("{:.{}f}", value, std::abs(value) < 10.0 ? 3 : 1);
 }
 
-void draw_table(Figure& figure, const Comparison& c, const Verdict& verdict, double x, double y) {
+void draw_table(Figure& figure, const Comparison& c, const study::Verdict& verdict, double x, double y) {
     const auto row = [&](const std::string& name, const std::string& value, const std::string& limit, Colour colour) {
         figure.text({x, y}, name, 11.0, colour);
         figure.text({x + 190.0, y}, value, 11.0, colour, TextAnchor::end);
@@ -144,12 +144,12 @@ void draw_table(Figure& figure, const Comparison& c, const Verdict& verdict, dou
         y += 18.0;
     };
     row("score", "value", "threshold", soft);
-    for (const Judged& score : verdict.scores)
+    for (const study::Judged& score : verdict.scores)
         row(score.name, number(score.value), fmt::format("{} {:g}", score.at_least ? "≥" : "≤", score.limit),
             score.passed ? ink : added_colour);
     y += 6.0;
     const auto extra = [&](const char* name, const std::optional<double>& value, const char* unit) {
-        for (const Judged& score : verdict.scores)
+        for (const study::Judged& score : verdict.scores)
             if (score.name == name) return;
         row(name, value ? number(*value) + unit : "none", "", ink);
     };
@@ -164,7 +164,7 @@ void draw_table(Figure& figure, const Comparison& c, const Verdict& verdict, dou
 }
 
 /// Both takes over time, each from its own beginning and to 60 dB below its strongest.
-void draw_pictures(Figure& figure, const ComparedPair& pair, double y) {
+void draw_pictures(Figure& figure, const study::ComparedPair& pair, double y) {
     const std::string names[] = {pair.reference.filename().string(), pair.output.filename().string()};
     for (std::size_t i = 0; i < 2; ++i) {
         const double x = left + static_cast<double>(i) * (picture_width + 66.0);
@@ -181,9 +181,9 @@ void draw_pictures(Figure& figure, const ComparedPair& pair, double y) {
 
 }  // namespace
 
-Figure draw_comparison(const ComparedPair& pair) {
+Figure draw_comparison(const study::ComparedPair& pair) {
     const Comparison& c = pair.comparison;
-    const Verdict& verdict = pair.verdict;
+    const study::Verdict& verdict = pair.verdict;
     const std::string reference_name = pair.reference.filename().string(),
                       output_name = pair.output.filename().string();
     const bool coherent = !c.coherence.empty();
@@ -219,4 +219,4 @@ void write_figure(const Figure& figure, const std::string& path) {
     else throw Error(path + ": a figure is written as .svg or .png");
 }
 
-}  // namespace tactus
+}  // namespace tactus::picture

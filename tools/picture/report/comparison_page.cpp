@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace tactus {
+namespace tactus::picture {
 
 namespace {
 
@@ -18,18 +18,18 @@ std::string score_row(const std::string& name, const std::string& value, const s
                        limit, verdict, about);
 }
 
-std::string scores_table(const ComparedPair& pair) {
+std::string scores_table(const study::ComparedPair& pair) {
     const Comparison& c = pair.comparison;
     std::string out =
         "<table><tr><th>score</th><th class=\"n\">value</th><th class=\"n\">threshold</th><th>verdict</th><th>what it "
         "says</th></tr>\n";
-    for (const Judged& s : pair.verdict.scores)
+    for (const study::Judged& s : pair.verdict.scores)
         out += score_row(
             s.name, fmt::format("{:.4g}", s.value), fmt::format("{} {:g}", s.at_least ? "≥" : "≤", s.limit),
             s.passed ? "<td class=\"pass\">pass</td>" : "<td class=\"fail\">fail</td>", html::escaped(s.about));
     const auto unjudged = [&](const char* name, const std::optional<double>& value, const char* unit,
                               const char* about) {
-        for (const Judged& s : pair.verdict.scores)
+        for (const study::Judged& s : pair.verdict.scores)
             if (s.name == name) return;
         out += score_row(name, value ? fmt::format("{:.4g}{}", *value, unit) : "–", "", "<td>not judged</td>", about);
     };
@@ -53,7 +53,7 @@ std::string lines_table(const Comparison& c) {
         "<th>where</th></tr>\n";
     const auto rows = [&](const std::vector<SpectralLine>& lines, double fundamental, const char* where) {
         for (const SpectralLine& line : lines) {
-            const std::string name = name_of_line(line.frequency, fundamental);
+            const std::string name = study::name_of_line(line.frequency, fundamental);
             out += fmt::format(
                 "<tr><td>{}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.1f}</td><td class=\"n\">"
                 "{:.1f}</td><td>{}</td></tr>\n",
@@ -77,7 +77,7 @@ std::string bands_table(const Comparison& c) {
 
 }  // namespace
 
-std::string comparison_section(const ComparedPair& pair, const std::string& mark) {
+std::string comparison_section(const study::ComparedPair& pair, const std::string& mark) {
     const Comparison& c = pair.comparison;
     std::string out = html::drawing(draw_comparison(pair), mark);
     if (c.alignment.significant)
@@ -101,7 +101,7 @@ std::string comparison_section(const ComparedPair& pair, const std::string& mark
     return out;
 }
 
-std::string comparison_method(const ComparedPair& pair) {
+std::string comparison_method(const study::ComparedPair& pair) {
     const Comparison& c = pair.comparison;
     return fmt::format(
         "<h2>How it was computed</h2><ul>"
@@ -120,10 +120,10 @@ std::string comparison_method(const ComparedPair& pair) {
         "dB of the strongest. Levels are dB re 1 of the record's unit, amplitude.</li>"
         "<li>Spectrograms: Hann windows of 60 ms, each picture down to 60 dB below its own strongest point.</li>"
         "<li>Touch: threshold curve as one of {}. Above 500 Hz next to nothing is felt.</li></ul>\n",
-        c.lowest, c.highest, c.step, touch_unit(pair.touch));
+        c.lowest, c.highest, c.step, study::touch_unit(pair.touch));
 }
 
-std::string comparison_page(const ComparedPair& pair) {
+std::string comparison_page(const study::ComparedPair& pair) {
     const bool passed = pair.verdict.passed();
     std::string failed;
     for (const std::string& name : pair.verdict.failed()) failed += (failed.empty() ? "" : ", ") + name;
@@ -135,4 +135,4 @@ std::string comparison_page(const ComparedPair& pair) {
                       body + comparison_section(pair, "a") + comparison_method(pair));
 }
 
-}  // namespace tactus
+}  // namespace tactus::picture

@@ -6,13 +6,13 @@
 
 #include <string>
 
-namespace tactus {
+namespace tactus::picture {
 
 /// A complete page.
-std::string comparison_page(const ComparedPair& pair);
+std::string comparison_page(const study::ComparedPair& pair);
 
 /// Its parts, for pages of several comparisons: figure and tables; how every comparison is computed.
-std::string comparison_section(const ComparedPair& pair, const std::string& mark);
-std::string comparison_method(const ComparedPair& pair);
+std::string comparison_section(const study::ComparedPair& pair, const std::string& mark);
+std::string comparison_method(const study::ComparedPair& pair);
 
-}  // namespace tactus
+}  // namespace tactus::picture

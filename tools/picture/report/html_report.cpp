@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace tactus::html {
+namespace tactus::picture::html {
 
 namespace {
 
@@ -50,4 +50,4 @@ std::string page(std::string_view title, const std::string& body) {
         escaped(title), style, body);
 }
 
-}  // namespace tactus::html
+}  // namespace tactus::picture::html

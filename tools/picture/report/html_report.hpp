@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace tactus::html {
+namespace tactus::picture::html {
 
 /// Text as it may stand between tags and in attributes.
 std::string escaped(std::string_view text);
@@ -18,4 +18,4 @@ std::string drawing(const Figure& figure, std::string_view mark);
 /// A complete page with a heading. `title` is text, `body` is HTML.
 std::string page(std::string_view title, const std::string& body);
 
-}  // namespace tactus::html
+}  // namespace tactus::picture::html

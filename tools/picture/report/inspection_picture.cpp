@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/picture/report/inspection_picture.hpp"
+
 #include "assets/bone/labels.hpp"
 #include "devices/display/offscreen.hpp"
 #include "devices/display/png.hpp"
-#include "tools/study/bones/inspection.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -11,7 +12,7 @@
 #include <cmath>
 #include <string_view>
 
-namespace tactus {
+namespace tactus::picture {
 
 namespace {
 
@@ -65,7 +66,7 @@ struct Slice {
 };
 constexpr std::array<Slice, 3> slices{{{2, 0, 1, false, "RLAP"}, {1, 0, 2, true, "RLSI"}, {0, 1, 2, true, "APSI"}}};
 
-Vec3 colour_at(const Inspection& found, const std::array<double, 3>& u) {
+Vec3 colour_at(const study::Inspection& found, const std::array<double, 3>& u) {
     const Grid& grid = found.grey;
     std::array<int, 3> low{}, nearest{};
     Vec3 share;
@@ -94,7 +95,8 @@ Vec3 colour_at(const Inspection& found, const std::array<double, 3>& u) {
     return Vec3((sum - found.window[0]) / std::max(found.window[1] - found.window[0], 1e-9));
 }
 
-void draw_slice(Canvas& canvas, const Inspection& found, const Slice& slice, const Vec3& centre_mm, int left, int top) {
+void draw_slice(Canvas& canvas, const study::Inspection& found, const Slice& slice, const Vec3& centre_mm, int left,
+                int top) {
     const Grid& grid = found.grey;
     const auto extent = [&](int a) { return grid.size[static_cast<std::size_t>(a)] * grid.spacing[a]; };
     const double pixel = std::max(extent(slice.across), extent(slice.down)) / (panel - 2 * margin);  // m
@@ -139,7 +141,7 @@ PictureMesh picture_mesh(const ColouredSurface& from, const Vec3& origin) {
 
 }  // namespace
 
-void write_picture(const Inspection& found, const std::filesystem::path& path) {
+void write_picture(const study::Inspection& found, const std::filesystem::path& path) {
     Canvas canvas;
     canvas.image.width = canvas.image.height = 2 * panel + gap;
     canvas.image.rgb.assign(
@@ -180,4 +182,4 @@ void write_picture(const Inspection& found, const std::filesystem::path& path) {
     write_png(canvas.image, path.string());
 }
 
-}  // namespace tactus
+}  // namespace tactus::picture

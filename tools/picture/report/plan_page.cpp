@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plan as one page: pictures, gaps, fits, the order of steps.
-#include "assets/file/whole_file.hpp"
+#include "tools/picture/report/plan_page.hpp"
+
 #include "assets/mesh/mesh.hpp"
 #include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
@@ -8,21 +8,19 @@
 #include "dsp/planning/gap.hpp"
 #include "dsp/planning/registration.hpp"
 #include "tools/picture/report/html_report.hpp"
-#include "tools/study/planning/plan_case.hpp"
-#include "tools/plan_options.hpp"
-#include "tools/verbs.hpp"
+#include "tools/study/bones/fragment_file.hpp"
+#include "tools/study/bones/surface_file.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-namespace tactus {
+namespace tactus::picture {
 
 namespace {
 
@@ -91,7 +89,7 @@ Vec3 gap_colour(double distance) {
 struct Case {
     CasePlan plan;
     PlanState state{Arrangement(0), {}, {}, std::nullopt};
-    std::vector<CaseFragment> fragments;
+    std::vector<study::CaseFragment> fragments;
     std::vector<Mesh> meshes;
 
     const std::string& name(std::size_t n) const { return plan.fragments[n].name; }
@@ -137,7 +135,7 @@ std::string places(const Case& c) {
         "<h2>Places</h2>\n<p>p_plan = R p_scan + t, LPS, mm; R as a unit quaternion w x y z.</p>\n<table><tr><th>"
         "fragment</th><th>t, mm</th><th>R</th></tr>\n";
     for (std::size_t n = 0; n < c.fragments.size(); ++n) {
-        const auto [t, q] = numbers_of(c.pose(n));
+        const auto [t, q] = study::numbers_of(c.pose(n));
         out += fmt::format("<tr><td>{}</td><td>{:.3f} {:.3f} {:.3f}</td><td>{:.6f} {:.6f} {:.6f} {:.6f}</td></tr>\n",
                            html::escaped(c.name(n)), t[0], t[1], t[2], q[0], q[1], q[2], q[3]);
     }
@@ -158,7 +156,7 @@ std::string fragments_table(const Case& c) {
             "<tr><td><span style=\"background:rgb({:.0f},{:.0f},{:.0f})\">&emsp;</span> {}</td><td class=\"n\">{:.2f}"
             "</td><td class=\"n\">{:.2f}</td>",
             colour.x * 255, colour.y * 255, colour.z * 255, html::escaped(c.name(n)),
-            1e3 * glm::length(c.pose(n).apply(middle) - middle), angle_deg(c.pose(n)));
+            1e3 * glm::length(c.pose(n).apply(middle) - middle), study::angle_deg(c.pose(n)));
         if (const auto& fit = c.state.fits[n])
             out += fmt::format(
                 "<td>{}</td><td class=\"{}\">{}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td "
@@ -210,7 +208,7 @@ std::string gaps(const Case& c) {
                 "class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.1f}"
                 "</td></tr>\n",
                 html::escaped(c.name(i)), html::escaped(c.name(j)), gap.facing_area * 1e6, gap.contact_area * 1e6,
-                shown_mm(gap.median * 1e3), shown_mm(gap.p95 * 1e3), gap.deepest * 1e3,
+                study::shown_mm(gap.median * 1e3), study::shown_mm(gap.p95 * 1e3), gap.deepest * 1e3,
                 overlap_volume(c.fragments[i].bone.distance, c.pose(i), c.fragments[j].map, c.pose(j)) * 1e9);
             if (gap.facing_area > 20e-6) maps += gap_map(c, i, j, gap);
         }
@@ -233,7 +231,7 @@ std::string steps(const Case& c) {
         if (step.fit)
             what += fmt::format(", {} to {}, {:.0f} mm² on each other, {:.3f} mm rms, gap {:.2f} mm, {:.2f} mm deep",
                                 step.fit->verdict, step.fit->partner, step.fit->overlap * 1e6, step.fit->rms * 1e3,
-                                shown_mm(step.fit->gap * 1e3), step.fit->penetration * 1e3);
+                                study::shown_mm(step.fit->gap * 1e3), step.fit->penetration * 1e3);
         const std::string time = step.run_second ? fmt::format("{:.3f} s", *step.run_second) : step.time;
         out += fmt::format("<tr><td class=\"n\">{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", ++count,
                            html::escaped(time), html::escaped(step.by), html::escaped(what));
@@ -259,19 +257,12 @@ std::string mirror(const Case& c) {
 
 }  // namespace
 
-int plan_report(const PlanChoice& choice) {
+std::string plan_page(const CasePlan& plan, std::vector<study::CaseFragment> fragments) {
     Case c;
-    c.plan = load_case_plan(choice.plan);
+    c.plan = plan;
     c.state = state_of(c.plan);
-    c.fragments = load_fragments(c.plan, choice.plan.parent_path());
-    for (const CaseFragment& fragment : c.fragments) c.meshes.push_back(surface_of(fragment.bone.distance));
-    std::filesystem::path out = choice.out;
-    if (out.empty()) {
-        std::string stem = choice.plan.filename().string();
-        for (const char* ending : {".json", ".plan"})
-            if (stem.ends_with(ending)) stem.resize(stem.size() - std::string(ending).size());
-        out = choice.plan.parent_path() / (stem + ".html");
-    }
+    c.fragments = std::move(fragments);
+    for (const study::CaseFragment& fragment : c.fragments) c.meshes.push_back(surface_of(fragment.bone.distance));
     std::string pages;
     try {
         pages = pictures(c) + gaps(c);
@@ -283,10 +274,7 @@ int plan_report(const PlanChoice& choice) {
                     html::escaped(c.plan.alternatives[static_cast<std::size_t>(c.plan.current)].name),
                     c.fragments.size()) +
         fragments_table(c) + mirror(c) + pages + places(c) + steps(c) + alternatives(c.plan);
-    write_whole_file(out, html::page(c.plan.title, body));
-    if (choice.json) fmt::print("{}\n", nlohmann::ordered_json{{"report", out.string()}}.dump(2));
-    else fmt::print("{}\n", out.string());
-    return done;
+    return html::page(c.plan.title, body);
 }
 
-}  // namespace tactus
+}  // namespace tactus::picture

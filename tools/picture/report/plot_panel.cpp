@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::picture {
 
 namespace {
 
@@ -64,4 +64,4 @@ void PlotPanel::level(double value, Colour colour, double dash) const {
     figure_.line({{x_, y_of(value)}, {x_ + width_, y_of(value)}}, colour, 1.2, dash);
 }
 
-}  // namespace tactus
+}  // namespace tactus::picture

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::picture {
 
 /// Frequency from left to right, logarithmic; a linear quantity upwards.
 class PlotPanel {
@@ -35,4 +35,4 @@ private:
     Range hz_, value_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::picture

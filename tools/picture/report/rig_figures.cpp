@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-namespace tactus {
+namespace tactus::picture {
 
 namespace {
 
@@ -76,31 +76,31 @@ struct Axes {
     }
 };
 
-std::vector<std::string> motors_of(const RigReport& report) {
+std::vector<std::string> motors_of(const study::RigReport& report) {
     std::vector<std::string> all;
-    for (const RigRow& row : report.rows)
+    for (const study::RigRow& row : report.rows)
         if (std::ranges::find(all, row.cell.motor) == all.end()) all.push_back(row.cell.motor);
     return all;
 }
 
-std::vector<std::string> objects_of(const RigReport& report, bool springs_only) {
+std::vector<std::string> objects_of(const study::RigReport& report, bool springs_only) {
     std::vector<std::string> all;
-    for (const RigRow& row : report.rows)
+    for (const study::RigRow& row : report.rows)
         if (std::ranges::find(all, row.cell.object.name) == all.end() &&
             (springs_only ? row.fidelity.gain_error_db.has_value() : true))
             all.push_back(row.cell.object.name);
     return all;
 }
 
-std::set<double> amplitudes_of(const RigReport& report) {
+std::set<double> amplitudes_of(const study::RigReport& report) {
     std::set<double> all;
-    for (const RigRow& row : report.rows) all.insert(row.cell.amplitude);
+    for (const study::RigRow& row : report.rows) all.insert(row.cell.amplitude);
     return all;
 }
 
-Scale rates_of(const RigReport& report) {
+Scale rates_of(const study::RigReport& report) {
     Scale scale{1e9, 0.0, true};
-    for (const RigRow& row : report.rows) {
+    for (const study::RigRow& row : report.rows) {
         scale.low = std::min(scale.low, row.cell.rate);
         scale.high = std::max(scale.high, row.cell.rate);
     }
@@ -115,7 +115,7 @@ Colour colour_of(const std::vector<std::string>& motors, const std::string& moto
 }
 
 /// Motors by colour and amplitudes by dash, along the top.
-void legend(Figure& figure, const RigReport& report, bool with_amplitudes) {
+void legend(Figure& figure, const study::RigReport& report, bool with_amplitudes) {
     const std::vector<std::string> motors = motors_of(report);
     double x = 60.0;
     for (const std::string& motor : motors) {
@@ -152,13 +152,13 @@ Axes panel(Figure& figure, std::size_t column, std::size_t row, Scale across, Sc
 }
 
 template <class Value>
-void curves(const Axes& axes, const RigReport& report, const std::string& object, Value&& value) {
+void curves(const Axes& axes, const study::RigReport& report, const std::string& object, Value&& value) {
     const std::vector<std::string> motors = motors_of(report);
     for (const std::string& motor : motors) {
         double dash = 0.0;
         for (const double amplitude : amplitudes_of(report)) {
             std::vector<FigurePoint> points;
-            for (const RigRow& row : report.rows)
+            for (const study::RigRow& row : report.rows)
                 if (row.cell.motor == motor && row.cell.object.name == object && row.cell.amplitude == amplitude)
                     if (const std::optional<double> v = value(row)) points.push_back({row.cell.rate, *v});
             axes.curve(points, colour_of(motors, motor), dash, true);
@@ -169,19 +169,19 @@ void curves(const Axes& axes, const RigReport& report, const std::string& object
 
 }  // namespace
 
-Figure draw_rig_errors(const RigReport& report) {
+Figure draw_rig_errors(const study::RigReport& report) {
     const std::vector<std::string> objects = objects_of(report, false);
     Figure figure = sheet(objects.size(), 3);
     legend(figure, report, true);
     const Scale rates = rates_of(report);
     for (std::size_t i = 0; i < objects.size(); ++i) {
-        const bool is_wall = std::ranges::none_of(report.rows, [&](const RigRow& row) {
+        const bool is_wall = std::ranges::none_of(report.rows, [&](const study::RigRow& row) {
             return row.cell.object.name == objects[i] && row.fidelity.nrmse.has_value();
         });
         const Axes axes =
             panel(figure, i % 3, i / 3, rates, is_wall ? Scale{0.01, 50.0, true} : Scale{0.3, 300.0, true});
         axes.draw(objects[i], "rate of the rig, Hz", is_wall ? "penetration, mm" : "NRMSE, %");
-        curves(axes, report, objects[i], [&](const RigRow& row) -> std::optional<double> {
+        curves(axes, report, objects[i], [&](const study::RigRow& row) -> std::optional<double> {
             if (is_wall) return std::max(row.fidelity.penetration * 1e3, 0.01);
             return row.fidelity.nrmse ? std::optional(*row.fidelity.nrmse * 100.0) : std::nullopt;
         });
@@ -189,7 +189,7 @@ Figure draw_rig_errors(const RigReport& report) {
     return figure;
 }
 
-Figure draw_rig_response(const RigReport& report) {
+Figure draw_rig_response(const study::RigReport& report) {
     std::vector<std::string> objects = objects_of(report, true);
     objects.resize(std::min<std::size_t>(objects.size(), 3));
     Figure figure = sheet(objects.size(), 3, 2);
@@ -200,17 +200,17 @@ Figure draw_rig_response(const RigReport& report) {
                    phase = panel(figure, i, 1, rates, {-120.0, 30.0, false});
         gain.draw(objects[i], "", "gain error, dB");
         phase.draw("", "rate of the rig, Hz", "phase error, °");
-        curves(gain, report, objects[i], [](const RigRow& row) { return row.fidelity.gain_error_db; });
-        curves(phase, report, objects[i], [](const RigRow& row) { return row.fidelity.phase_error_deg; });
+        curves(gain, report, objects[i], [](const study::RigRow& row) { return row.fidelity.gain_error_db; });
+        curves(phase, report, objects[i], [](const study::RigRow& row) { return row.fidelity.phase_error_deg; });
     }
     return figure;
 }
 
-Figure draw_rig_crossover(const RigReport& report) {
+Figure draw_rig_crossover(const study::RigReport& report) {
     Figure figure = sheet(report.crossover.size(), 3);
     legend(figure, report, false);
     for (std::size_t i = 0; i < report.crossover.size(); ++i) {
-        const RigCrossover& c = report.crossover[i];
+        const study::RigCrossover& c = report.crossover[i];
         const Axes axes =
             panel(figure, i % 3, i / 3, {c.rates.front() * 0.9, c.rates.back() * 1.1, true}, {0.3, 300.0, true});
         axes.draw(fmt::format("{:g} N/mm, cord ±{:.3g} mm", c.stiffness * 1e-3, c.amplitude * 1e3),
@@ -242,9 +242,9 @@ Figure draw_rig_crossover(const RigReport& report) {
     return figure;
 }
 
-Figure draw_rig_leads(const RigReport& report) {
+Figure draw_rig_leads(const study::RigReport& report) {
     std::vector<std::string> objects;
-    for (const RigLead& lead : report.leads)
+    for (const study::RigLead& lead : report.leads)
         if (std::ranges::find(objects, lead.cell.object.name) == objects.end())
             objects.push_back(lead.cell.object.name);
     objects.resize(std::min<std::size_t>(objects.size(), 6));
@@ -257,7 +257,7 @@ Figure draw_rig_leads(const RigReport& report) {
         axes.curve({{axes.across.low, 1.0}, {axes.across.high, 1.0}}, soft, 4.0, false);
         for (const std::string& motor : motors) {
             std::vector<FigurePoint> points;
-            for (const RigLead& lead : report.leads)
+            for (const study::RigLead& lead : report.leads)
                 if (lead.cell.motor == motor && lead.cell.object.name == objects[i])
                     points.push_back({lead.cell.rate, lead.ratio()});
             axes.curve(points, colour_of(motors, motor), 0.0, true);
@@ -266,12 +266,12 @@ Figure draw_rig_leads(const RigReport& report) {
     return figure;
 }
 
-Figure draw_rig_examples(const RigReport& report) {
+Figure draw_rig_examples(const study::RigReport& report) {
     Figure figure = sheet(report.examples.size(), 3);
     legend(figure, report, false);
     const std::vector<std::string> motors = motors_of(report);
     for (std::size_t i = 0; i < report.examples.size(); ++i) {
-        const RigExample& e = report.examples[i];
+        const study::RigExample& e = report.examples[i];
         const auto count = static_cast<std::size_t>(std::lround(1.0 / (e.cell.rate * e.series.period)));
         const std::size_t from = e.series.force.size() - std::min(count, e.series.force.size());
         double force = 0.1, position = 1e-4;
@@ -281,7 +281,7 @@ Figure draw_rig_examples(const RigReport& report) {
             position = std::max(position, std::abs(e.series.position[n]));
             loop.push_back({e.series.force[n], e.series.position[n] * 1e3});
         }
-        const std::vector<double> object = ideal_response(e.series, object_of(e.cell.object));
+        const std::vector<double> object = ideal_response(e.series, study::object_of(e.cell.object));
         for (std::size_t n = from; n < e.series.force.size(); ++n) {
             position = std::max(position, std::abs(object[n]));
             ideal.push_back({e.series.force[n], object[n] * 1e3});
@@ -295,4 +295,4 @@ Figure draw_rig_examples(const RigReport& report) {
     return figure;
 }
 
-}  // namespace tactus
+}  // namespace tactus::picture

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of a rig's report: everything in one file, to be read without a net.
+#include "tools/picture/report/rig_page.hpp"
+
 #include "tools/picture/report/html_report.hpp"
 #include "tools/picture/report/rig_figures.hpp"
-#include "tools/study/grippers/rig_report.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-namespace tactus {
+namespace tactus::picture {
 
 namespace {
 
@@ -52,7 +53,7 @@ std::string table(std::span<const Fact> rows) {
     return out + "</table>\n";
 }
 
-std::string rows_table(const RigReport& report) {
+std::string rows_table(const study::RigReport& report) {
     std::string out =
         "<table><tr><th>motor</th><th>object</th><th class=\"n\">Hz</th><th class=\"n\">mm</th><th class=\"n\">gain, "
         "dB</th><th "
@@ -60,7 +61,7 @@ std::string rows_table(const RigReport& report) {
         "s/mm</th><th "
         "class=\"n\">slips, "
         "%</th><th class=\"n\">saturated, %</th><th class=\"n\">hunting, µm</th></tr>\n";
-    for (const RigRow& row : report.rows) {
+    for (const study::RigRow& row : report.rows) {
         const Fidelity& f = row.fidelity;
         out += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"n\">{:g}</td><td class=\"n\">{:g}</td>",
                            html::escaped(row.cell.motor), html::escaped(row.cell.object.name), row.cell.rate,
@@ -82,7 +83,7 @@ std::string rows_table(const RigReport& report) {
 
 }  // namespace
 
-std::string rig_html(const RigReport& report) {
+std::string rig_html(const study::RigReport& report) {
     std::string out = fmt::format("<p>{}</p>\n", html::escaped(report.source));
     out += "<h2>In short</h2><ul>";
     out += fmt::format("<li>The cord runs at up to {:.2f} mm/s at 1 Hz.</li>", report.peak_cord_speed * 1e3);
@@ -90,10 +91,10 @@ std::string rig_html(const RigReport& report) {
         out += fmt::format(
             "<li>In free motion the slower motor saturates from {:.3f} Hz on; {:.3f} Hz in closed form.</li>",
             *report.saturation_rate, report.saturation_closed_form.value_or(NAN));
-    for (const RigFinding& f : report.findings)
+    for (const study::RigFinding& f : report.findings)
         out += fmt::format("<li>{}: in {} of {} combinations of what is assumed.</li>", html::escaped(f.claim), f.holds,
                            f.of);
-    for (const RigCrossover& c : report.crossover)
+    for (const study::RigCrossover& c : report.crossover)
         out +=
             c.low ? fmt::format(
                         "<li>With {:g} N/mm and ±{:.3g} mm the second motor becomes the better one between {:.2f} and "
@@ -145,4 +146,4 @@ std::string rig_html(const RigReport& report) {
     return html::page(report.title, out);
 }
 
-}  // namespace tactus
+}  // namespace tactus::picture

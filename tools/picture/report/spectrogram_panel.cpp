@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace tactus {
+namespace tactus::picture {
 
 namespace {
 
@@ -101,4 +101,4 @@ void draw_spectrogram(Figure& figure, const Spectrogram& s, const SpectrogramPla
                     fmt::format("{:.0f} dB", (style.relative ? 0.0 : top) - span + 20.0 * i), 10.0, ink);
 }
 
-}  // namespace tactus
+}  // namespace tactus::picture

@@ -5,7 +5,7 @@
 #include "devices/display/figure.hpp"
 #include "dsp/spectrum/spectrogram.hpp"
 
-namespace tactus {
+namespace tactus::picture {
 
 /// The inner rectangle, in units of the figure; axes and legend lie outside of it.
 struct SpectrogramPlace {
@@ -23,4 +23,4 @@ struct SpectrogramStyle {
 void draw_spectrogram(Figure& figure, const Spectrogram& spectrogram, const SpectrogramPlace& place,
                       const SpectrogramStyle& style);
 
-}  // namespace tactus
+}  // namespace tactus::picture

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::picture {
 
 namespace {
 
@@ -18,14 +18,14 @@ constexpr Colour curve_colour{0x1F, 0x4E, 0x9E}, order_colour{0xB8, 0x1D, 0x24},
 constexpr double left = 70.0, width = 640.0, spectrum_height = 240.0, picture_height = 170.0, gap = 44.0, right = 86.0;
 constexpr double decades_down = 80.0;  // dB shown below the strongest
 
-void draw_curve(Figure& figure, const AnalysedChannel& channel, const AnalysedFile& file, double y, double lowest,
-                double highest) {
+void draw_curve(Figure& figure, const study::AnalysedChannel& channel, const study::AnalysedFile& file, double y,
+                double lowest, double highest) {
     const VibrationReport& r = channel.report;
     const Spectrum& psd = r.psd;
     std::vector<double> levels;
     double top = -300.0;
     for (std::size_t k = 0; k < psd.power.size(); ++k) {
-        levels.push_back(decibels(psd.power[k]));
+        levels.push_back(study::decibels(psd.power[k]));
         if (psd.frequency(k) >= lowest && psd.frequency(k) <= highest) top = std::max(top, levels.back());
     }
     top = 10.0 * std::ceil(top / 10.0) + 10.0;
@@ -69,7 +69,7 @@ void draw_curve(Figure& figure, const AnalysedChannel& channel, const AnalysedFi
 
 }  // namespace
 
-Figure draw_spectrum(const AnalysedFile& file) {
+Figure draw_spectrum(const study::AnalysedFile& file) {
     const std::size_t shown = std::min<std::size_t>(file.channels.size(), 4);
     const double each = spectrum_height + gap + picture_height + gap + 14.0;
     Figure figure(left + width + right, 60.0 + each * static_cast<double>(shown));
@@ -95,4 +95,4 @@ Figure draw_spectrum(const AnalysedFile& file) {
     return figure;
 }
 
-}  // namespace tactus
+}  // namespace tactus::picture

@@ -5,10 +5,10 @@
 #include "devices/display/figure.hpp"
 #include "tools/study/vibration/spectrum_analysis.hpp"
 
-namespace tactus {
+namespace tactus::picture {
 
 /// Per channel (at most four): the spectrum with its lines named and the limit of touch, and the spectrogram below it
 /// when it was made.
-Figure draw_spectrum(const AnalysedFile& file);
+Figure draw_spectrum(const study::AnalysedFile& file);
 
-}  // namespace tactus
+}  // namespace tactus::picture

@@ -9,14 +9,14 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::picture {
 
 namespace {
 
 std::string row(const std::string& name, const SpectralLine& line) {
     return fmt::format(
         "<tr><td>{}</td><td class=\"n\">{:.3f}</td><td class=\"n\">{:.1f}</td><td class=\"n\">{:.1f}</td></tr>\n", name,
-        line.frequency, decibels(line.power), line.snr_db);
+        line.frequency, study::decibels(line.power), line.snr_db);
 }
 
 std::string lines_table(const VibrationReport& r) {
@@ -47,11 +47,11 @@ std::string bands_table(const VibrationReport& r) {
     for (const Band& band : r.bands)
         out +=
             fmt::format("<tr><td class=\"n\">{:.4g}</td><td class=\"n\">{:.1f}</td><td class=\"n\">{:.2f}</td></tr>\n",
-                        band.centre, decibels(band.power), band_deviation(band, r.lines));
+                        band.centre, study::decibels(band.power), study::band_deviation(band, r.lines));
     return out + "</table>\n";
 }
 
-std::string channel_section(const AnalysedChannel& channel, const AnalysedFile& file) {
+std::string channel_section(const study::AnalysedChannel& channel, const study::AnalysedFile& file) {
     const VibrationReport& r = channel.report;
     const std::string unit = html::escaped(file.calibration.unit);
     std::string out = fmt::format("<h3>Channel {}</h3>\n<p>Root mean square {:.4g} {}{}, crest factor {:.3g}. ",
@@ -76,7 +76,7 @@ std::string channel_section(const AnalysedChannel& channel, const AnalysedFile& 
 
 }  // namespace
 
-std::string analysis_section(const AnalysedFile& file, const SpectrumChoice& choice) {
+std::string analysis_section(const study::AnalysedFile& file, const SpectrumMethod& method) {
     std::string out = fmt::format("<h2>{}</h2>\n", html::escaped(file.file.filename().string()));
     std::string mark = "s";
     // Letters, different for every file of a page.
@@ -94,12 +94,12 @@ std::string analysis_section(const AnalysedFile& file, const SpectrumChoice& cho
             "faithful to about {:.3g} Hz.</p>\n",
             file.log->rows, 1e3 * file.log->shortest_step, 1e3 * file.log->longest_step, 0.5 * file.rate,
             file.log->usable);
-    if (!choice.envelope.empty()) out += fmt::format("<p>Envelope of the band {} Hz.</p>\n", choice.envelope);
-    for (const AnalysedChannel& channel : file.channels) out += channel_section(channel, file);
+    if (!method.envelope.empty()) out += fmt::format("<p>Envelope of the band {} Hz.</p>\n", method.envelope);
+    for (const study::AnalysedChannel& channel : file.channels) out += channel_section(channel, file);
     return out;
 }
 
-std::string analysis_method(const SpectrumChoice& choice) {
+std::string analysis_method(const SpectrumMethod& method) {
     return fmt::format(
         "<h2>How it was computed</h2><ul>"
         "<li>Curves: Welch, window {}, overlap {:g} %, detrend {}, average {}, scaling {}.</li>"
@@ -110,8 +110,8 @@ std::string analysis_method(const SpectrumChoice& choice) {
         "<li>Fundamental from {} Hz: the comb that explains most of the lines' amplitude with fewest low teeth "
         "missing.</li>"
         "<li>Third octaves have centres 10^(n/10) Hz; ± is one standard deviation of noise in the band.</li></ul>\n",
-        choice.window, 100.0 * choice.overlap.value_or(0.5), choice.detrend, choice.average, choice.scaling,
-        html::escaped(choice.rate));
+        method.window, 100.0 * method.overlap, method.detrend, method.average, method.scaling,
+        html::escaped(method.fundamental));
 }
 
-}  // namespace tactus
+}  // namespace tactus::picture

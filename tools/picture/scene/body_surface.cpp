@@ -9,7 +9,7 @@
 #include <map>
 #include <vector>
 
-namespace tactus {
+namespace tactus::picture {
 
 namespace {
 
@@ -65,4 +65,4 @@ BodySurface make_body_surface(const SeenBody& body, const Voxmap& field, const V
     return surface;
 }
 
-}  // namespace tactus
+}  // namespace tactus::picture

@@ -7,7 +7,7 @@
 #include "dsp/view/camera.hpp"
 #include "engine/seen_values.hpp"
 
-namespace tactus {
+namespace tactus::picture {
 
 struct BodySurface {
     SurfacePatch patch;  ///< in the frame of the body, m
@@ -18,4 +18,4 @@ struct BodySurface {
 /// Two triangles for each crossing edge of the grid, its vertices drawn onto the surface. `field` is the body's own.
 BodySurface make_body_surface(const SeenBody& body, const Voxmap& field, const Vec3& colour, const Vec3& paint_colour);
 
-}  // namespace tactus
+}  // namespace tactus::picture

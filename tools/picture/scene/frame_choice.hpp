@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace tactus {
+namespace tactus::picture {
 
 /// As the command line gives it.
 struct FrameChoice {
@@ -17,4 +17,4 @@ struct FrameChoice {
     SightChoice sight;
 };
 
-}  // namespace tactus
+}  // namespace tactus::picture

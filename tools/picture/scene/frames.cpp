@@ -16,7 +16,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::picture {
 
 namespace {
 
@@ -163,4 +163,4 @@ void FrameWriter::advance(double seconds) {
 
 const std::vector<std::string>& FrameWriter::files() const { return state_->files; }
 
-}  // namespace tactus
+}  // namespace tactus::picture

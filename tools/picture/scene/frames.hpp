@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::picture {
 
 class FrameWriter {
 public:
@@ -34,4 +34,4 @@ private:
     std::unique_ptr<State> state_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::picture

@@ -12,7 +12,7 @@
 
 #include <cmath>
 
-namespace tactus {
+namespace tactus::picture {
 
 namespace {
 
@@ -86,4 +86,4 @@ bool MarkWindow::draw() {
     return true;
 }
 
-}  // namespace tactus
+}  // namespace tactus::picture

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-namespace tactus {
+namespace tactus::picture {
 
 /// A cross at the mark of a screen on black, into what is bound; for other touches nothing but black. Needs a current
 /// context.
@@ -31,4 +31,4 @@ private:
     std::unique_ptr<State> state_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::picture

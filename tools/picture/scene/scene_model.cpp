@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::picture {
 
 using namespace scene_colours;
 
@@ -293,4 +293,4 @@ void SceneModel::show_force(const std::string& port, const Vec3& at) {
     if (size > 0.02) add_arrow(notes_, at, at + force * (0.1 * reach), 0.014 * reach, force_colour);
 }
 
-}  // namespace tactus
+}  // namespace tactus::picture

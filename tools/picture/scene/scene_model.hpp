@@ -14,7 +14,7 @@
 #include <unordered_set>
 #include <vector>
 
-namespace tactus {
+namespace tactus::picture {
 
 /// Belongs to one renderer, whose context must be current in `update` and the destructor.
 class SceneModel {
@@ -99,4 +99,4 @@ private:
     bool is_fitting_ = true;
 };
 
-}  // namespace tactus
+}  // namespace tactus::picture

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace tactus {
+namespace tactus::picture {
 
 using namespace scene_colours;
 
@@ -82,4 +82,4 @@ void SceneModel::show_gripper() {
     }
 }
 
-}  // namespace tactus
+}  // namespace tactus::picture

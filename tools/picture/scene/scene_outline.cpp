@@ -9,7 +9,7 @@
 #include <map>
 #include <set>
 
-namespace tactus {
+namespace tactus::picture {
 
 namespace {
 
@@ -186,4 +186,4 @@ SceneOutline outline_of(const Plan& plan) {
     return outline;
 }
 
-}  // namespace tactus
+}  // namespace tactus::picture

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::picture {
 
 /// Names are those of outputs, "node.port"; empty: there is none.
 struct SceneOutline {
@@ -91,4 +91,4 @@ struct SceneOutline {
 /// Of a plan that was just compiled; it need not have its assets.
 SceneOutline outline_of(const Plan& plan);
 
-}  // namespace tactus
+}  // namespace tactus::picture

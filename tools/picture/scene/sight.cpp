@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-namespace tactus {
+namespace tactus::picture {
 
 namespace {
 
@@ -44,7 +44,7 @@ Sight::Sight(const SightChoice& choice) : stereo(parse_stereo(choice.stereo)), h
 
 void Sight::use_rig(const std::filesystem::path& path) {
     if (path.empty()) rig_.reset();
-    else rig_ = load_rig_file(find_rig(path.string()));
+    else rig_ = load_rig_file(session::find_rig(path.string()));
     last_.clear();
 }
 
@@ -169,4 +169,4 @@ void add_legend(Image& image, const Legend& legend, std::span<const DrawnView> v
     }
 }
 
-}  // namespace tactus
+}  // namespace tactus::picture

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::picture {
 
 /// Throws Error listing the names there are.
 StereoMode parse_stereo(const std::string& text);
@@ -78,4 +78,4 @@ private:
 /// The legend in every view of a picture, at one place for both eyes: on the screen itself.
 void add_legend(Image& image, const Legend& legend, std::span<const DrawnView> views, Turned turned);
 
-}  // namespace tactus
+}  // namespace tactus::picture

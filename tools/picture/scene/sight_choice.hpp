@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-namespace tactus {
+namespace tactus::picture {
 
 struct SightChoice {
     std::string stereo = "mono";  ///< or side-by-side, anaglyph, quad-buffer
@@ -15,4 +15,4 @@ struct SightChoice {
     std::string offset;
 };
 
-}  // namespace tactus
+}  // namespace tactus::picture

@@ -4,7 +4,7 @@
 #include "assets/plan/case_bones.hpp"
 #include "tools/study/workers.hpp"
 
-namespace tactus {
+namespace tactus::study {
 
 Bone bone_of_file(const std::filesystem::path& path) { return bone_from_file(path, on_threads()); }
 
@@ -14,4 +14,4 @@ PoseNumbers numbers_of(const Pose& pose) {
     return {{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}};
 }
 
-}  // namespace tactus
+}  // namespace tactus::study

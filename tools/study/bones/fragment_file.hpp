@@ -7,7 +7,7 @@
 #include <array>
 #include <filesystem>
 
-namespace tactus {
+namespace tactus::study {
 
 /// A bone file ("FILE.vdb#NAME" for one of several), or what import makes of a mesh or a CT.
 Bone bone_of_file(const std::filesystem::path& path);
@@ -19,4 +19,4 @@ struct PoseNumbers {
 };
 PoseNumbers numbers_of(const Pose& pose);
 
-}  // namespace tactus
+}  // namespace tactus::study

@@ -17,7 +17,7 @@
 #include <cmath>
 #include <map>
 
-namespace tactus {
+namespace tactus::study {
 
 namespace {
 
@@ -226,4 +226,4 @@ Inspection inspect(const std::filesystem::path& path, const std::string& series)
     return inspect_volume(path, series);
 }
 
-}  // namespace tactus
+}  // namespace tactus::study

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `tactus info` finds out about a file.
+// What is in a volume, mesh or bone file.
 #pragma once
 
 #include "assets/mesh/write_mesh.hpp"
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::study {
 
 /// One bone, label or connected part.
 struct InspectedPart {
@@ -44,7 +44,4 @@ struct Inspection {
 /// Reads a volume, mesh or bone file and measures it. Throws Error for what cannot be read.
 Inspection inspect(const std::filesystem::path& path, const std::string& series = "");
 
-/// Three slices through the largest part and a view of the surface; a mesh: three sides and a view.
-void write_picture(const Inspection& inspection, const std::filesystem::path& path);
-
-}  // namespace tactus
+}  // namespace tactus::study

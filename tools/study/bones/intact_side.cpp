@@ -4,10 +4,11 @@
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/distance/outer_shell.hpp"
 #include "dsp/planning/mirror.hpp"
-#include "tools/study/planning/plan_case.hpp"
+#include "tools/study/bones/fragment_file.hpp"
+#include "tools/study/bones/surface_file.hpp"
 #include "tools/study/workers.hpp"
 
-namespace tactus {
+namespace tactus::study {
 
 std::vector<SurfacePoint> laid_target(const MirrorTarget& target, const std::filesystem::path& folder) {
     return mirrored(points_of_file(file_of(target.file, folder)), {target.plane_normal, target.plane_offset},
@@ -30,4 +31,4 @@ IntactSide lay_intact_side(const std::filesystem::path& file, bool mirror, std::
     return {std::move(points), found};
 }
 
-}  // namespace tactus
+}  // namespace tactus::study

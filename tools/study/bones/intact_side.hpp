@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace tactus {
+namespace tactus::study {
 
 struct IntactSide {
     std::vector<SurfacePoint> points;  ///< in the frame of the fragment that it was laid on
@@ -23,4 +23,4 @@ std::vector<SurfacePoint> laid_target(const MirrorTarget& target, const std::fil
 /// From a bone file, a CT or a mesh, laid on `main`, from anywhere. Throws Error for a file that has no surface.
 IntactSide lay_intact_side(const std::filesystem::path& file, bool mirror, std::span<const SurfacePoint> main);
 
-}  // namespace tactus
+}  // namespace tactus::study

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::study {
 
 namespace {
 
@@ -18,31 +18,31 @@ constexpr auto no_screen = "no screen is touched, and none is known from a rig b
 
 }  // namespace
 
-std::vector<RigTouch> calibration_steps(const CalibrateChoice& choice) {
+std::vector<RigTouch> calibration_steps(const CalibrationSettings& settings) {
     std::vector<RigTouch> steps;
     using Of = RigTouch::Of;
-    if (!choice.places.empty())
-        for (const Vec3& place : load_places(choice.places)) steps.push_back({Of::workspace, {}, {}, {}, place});
-    else if (!choice.tracker.empty())
-        for (int n = 0; n < choice.points; ++n) steps.push_back({Of::workspace, {}, {}, {}, {}});
-    if (choice.mirror)
-        for (int n = 0; n < choice.points; ++n) steps.push_back({Of::mirror, {}, {}, {}, {}});
+    if (!settings.places.empty())
+        for (const Vec3& place : load_places(settings.places)) steps.push_back({Of::workspace, {}, {}, {}, place});
+    else if (!settings.tracker.empty())
+        for (int n = 0; n < settings.points; ++n) steps.push_back({Of::workspace, {}, {}, {}, {}});
+    if (settings.mirror)
+        for (int n = 0; n < settings.points; ++n) steps.push_back({Of::mirror, {}, {}, {}, {}});
     const auto marks = [&](Of of, const std::string& screen) {
-        for (int row = 0; row < choice.grid; ++row)
-            for (int column = 0; column < choice.grid; ++column) {
-                const auto at = [&](int n) { return 0.1 + 0.8 * n / (choice.grid - 1.0); };
+        for (int row = 0; row < settings.grid; ++row)
+            for (int column = 0; column < settings.grid; ++column) {
+                const auto at = [&](int n) { return 0.1 + 0.8 * n / (settings.grid - 1.0); };
                 steps.push_back({of, screen, {at(column), at(row)}, {}, {}});
             }
     };
-    for (const std::string& screen : choice.screens) marks(Of::screen, screen);
-    for (const std::string& screen : choice.images) marks(Of::image, screen);
+    for (const std::string& screen : settings.screens) marks(Of::screen, screen);
+    for (const std::string& screen : settings.images) marks(Of::image, screen);
     if (steps.empty())
         throw Error("there is nothing to touch: a screen, the image of one, the mirror, known places or a tracker");
     return steps;
 }
 
-void check_screens(const CalibrateChoice& choice, const RigFile& base) {
-    if (choice.screens.empty() && choice.images.empty() && base.screens.empty()) throw Error(no_screen);
+void check_screens(const CalibrationSettings& settings, const RigFile& base) {
+    if (settings.screens.empty() && settings.images.empty() && base.screens.empty()) throw Error(no_screen);
 }
 
 std::string prompt_of(const RigTouch& step) {
@@ -63,10 +63,10 @@ std::string prompt_of(const RigTouch& step) {
                        step.screen, u, v);
 }
 
-RigFitOptions fit_options(const CalibrateChoice& choice, const RigFile& base) {
+RigFitOptions fit_options(const CalibrationSettings& settings, const RigFile& base) {
     RigFitOptions options;
-    options.is_affine = choice.affine;
-    options.tolerance = parse_as(choice.tolerance, "mm");
+    options.is_affine = settings.affine;
+    options.tolerance = parse_as(settings.tolerance, "mm");
     if (!(options.tolerance > 0.0)) throw Error("the tolerance must be above 0 mm");
     options.mirror = base.rig.mirror;
     options.device = base.rig.haptic_world;
@@ -121,4 +121,4 @@ void write_calibrated(const std::filesystem::path& file, const RigFile& rig, con
     load_rig_file(file);
 }
 
-}  // namespace tactus
+}  // namespace tactus::study

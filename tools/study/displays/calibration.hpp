@@ -11,20 +11,20 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::study {
 
 /// What is to be touched, in order: the device's place first, since the rest counts from it. Throws Error when that is
 /// nothing.
-std::vector<RigTouch> calibration_steps(const CalibrateChoice& choice);
+std::vector<RigTouch> calibration_steps(const CalibrationSettings& settings);
 
 /// Throws Error when no screen is to be touched and none is known: a rig needs one. Better said before the touches.
-void check_screens(const CalibrateChoice& choice, const RigFile& base);
+void check_screens(const CalibrationSettings& settings, const RigFile& base);
 
 /// "touch screen 'left' at 10 % of its width from the left and 90 % of its height from below"
 std::string prompt_of(const RigTouch& step);
 
 /// How touches are fitted, with what is known of the rig before. Throws Error.
-RigFitOptions fit_options(const CalibrateChoice& choice, const RigFile& base);
+RigFitOptions fit_options(const CalibrationSettings& settings, const RigFile& base);
 
 /// How far touches are off what was fitted, m.
 struct TouchesOff {
@@ -43,4 +43,4 @@ RigFile calibrated_rig(RigFile base, const RigFit& fit);
 /// Writes the rig with the residuals of its fit as a comment, and reads it again. Throws Error.
 void write_calibrated(const std::filesystem::path& file, const RigFile& rig, const RigFit& fit);
 
-}  // namespace tactus
+}  // namespace tactus::study

@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `tactus calibrate` is asked for.
+// What is calibrated of a display rig.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::study {
 
-struct CalibrateChoice {
-    std::filesystem::path out, touches, keep, base, places;
-    std::string device, tracker;
-    std::vector<std::string> device_options, tracker_options;  ///< NAME=VALUE, of their drivers
-    std::string tip = "0 mm, 0 mm, 0 mm";                      ///< in the frame of the handle
+struct CalibrationSettings {
+    std::filesystem::path places;              ///< CSV of places known in the viewer's world; empty: none
+    std::string tracker;                       ///< driver that tells where the tip is there; empty: none
     std::vector<std::string> screens, images;  ///< whose marks are touched, themselves or in the mirror
-    int grid = 3;  ///< marks per side of a screen
-    int points = 8;  ///< of workspace and mirror
-    bool mirror = false, affine = false, json = false;
-    int show = 0;  ///< monitor, from 1, that shows the marks
-    std::string tolerance = "3 mm";
+    std::string tip = "0 mm, 0 mm, 0 mm";      ///< of the device, in the frame of its handle
+    int grid = 3;                              ///< marks per side of a screen
+    int points = 8;                            ///< of workspace and mirror
+    bool mirror = false;                       ///< it is touched as well
+    bool affine = false;                       ///< scales and skews of the device are taken up
+    std::string tolerance = "3 mm";            ///< a touch farther off what the others say is refused
 };
 
-}  // namespace tactus
+}  // namespace tactus::study

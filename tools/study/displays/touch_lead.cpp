@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace tactus {
+namespace tactus::study {
 
 namespace {
 
@@ -77,4 +77,4 @@ std::string TouchLead::take(const Touched& touched) {
     return {};
 }
 
-}  // namespace tactus
+}  // namespace tactus::study

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::study {
 
 /// One touch as it was read.
 struct Touched {
@@ -54,4 +54,4 @@ private:
     Check check_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::study

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace tactus {
+namespace tactus::study {
 
 namespace {
 
@@ -67,4 +67,4 @@ void TouchSession::run(TipReader& tip, TouchLead& lead) const {
     }
 }
 
-}  // namespace tactus
+}  // namespace tactus::study

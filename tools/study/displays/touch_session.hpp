@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-namespace tactus {
+namespace tactus::study {
 
 /// Reads one device by its tip.
 class TipReader {
@@ -46,4 +46,4 @@ struct TouchSession {
     void run(TipReader& tip, TouchLead& lead) const;
 };
 
-}  // namespace tactus
+}  // namespace tactus::study

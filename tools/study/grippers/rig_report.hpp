@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a rig found: for programs, for tables, and as one page for people.
+// What a rig found.
 #pragma once
 
 #include "tools/study/grippers/rig_run.hpp"
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace tactus {
+namespace tactus::study {
 
 /// From which rate on the second motor renders better, over all that is assumed of both.
 struct RigCrossover {
@@ -53,10 +53,4 @@ struct RigReport {
     std::vector<std::string> notes;
 };
 
-std::string rig_json(const RigReport& report);
-std::string rig_csv(const RigReport& report);
-/// HTML with its pictures inside.
-std::string rig_html(const RigReport& report);
-std::string rig_text(const RigReport& report);
-
-}  // namespace tactus
+}  // namespace tactus::study

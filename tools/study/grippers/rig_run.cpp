@@ -11,7 +11,7 @@
 #include <map>
 #include <memory>
 
-namespace tactus {
+namespace tactus::study {
 
 namespace {
 
@@ -66,11 +66,11 @@ std::string only_node(const Patch& patch, const std::string& type) {
 
 }  // namespace
 
-RigNodes find_rig_nodes(const PatchChoice& choice) {
+RigNodes find_rig_nodes(const session::PatchChoice& choice) {
     Problems problems;
-    Patch patch = load_patch(find_patch(choice.patch), problems);
+    Patch patch = load_patch(session::find_patch(choice.patch), problems);
     flatten(patch, problems);
-    throw_problems(problems);
+    session::throw_problems(problems);
     return {only_node(patch, "gripper_input"), only_node(patch, "admittance_controller"),
             only_node(patch, "gripper_output"), only_node(patch, "test_rig")};
 }
@@ -83,9 +83,9 @@ ObjectSettings object_of(const RigObject& object) {
     return settings;
 }
 
-RigRun run_rig_cell(const PatchChoice& given, const RigNodes& nodes, const RigCell& cell, int cycles,
+RigRun run_rig_cell(const session::PatchChoice& given, const RigNodes& nodes, const RigCell& cell, int cycles,
                     AssetCache& assets) {
-    PatchChoice choice = given;
+    session::PatchChoice choice = given;
     auto& set = choice.overrides.settings;
     const auto put = [&set](const std::string& node, const char* param, const std::string& value) {
         set.push_back(fmt::format("{}.{}={}", node, param, value));
@@ -124,7 +124,7 @@ RigRun run_rig_cell(const PatchChoice& given, const RigNodes& nodes, const RigCe
         format.period = group.plan->period;
         return std::make_unique<Stream>(format, std::make_unique<KeptValues>(type, wanted->second));
     };
-    Engine engine(load_plan(choice, assets), options);
+    Engine engine(session::load_plan(choice, assets), options);
     engine.render(1);
     engine.finish();
     for (const std::string& port : {nodes.output + ".holds", nodes.controller + ".holds"})
@@ -148,4 +148,4 @@ RigRow judge_rig_cell(const RigCell& cell, const RigSeries& series) {
     return row;
 }
 
-}  // namespace tactus
+}  // namespace tactus::study

@@ -5,13 +5,13 @@
 #include "assets/rig/rig_matrix.hpp"
 #include "dsp/admittance/fidelity.hpp"
 #include "graph/load_assets.hpp"
-#include "tools/verbs.hpp"
+#include "tools/session/patch_choice.hpp"
 
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::study {
 
 struct RigCell {
     std::string motor;
@@ -34,7 +34,7 @@ struct RigNodes {
 };
 
 /// Throws Error unless the patch has exactly one node of each type.
-RigNodes find_rig_nodes(const PatchChoice& choice);
+RigNodes find_rig_nodes(const session::PatchChoice& choice);
 
 /// Seconds before the cycles that count.
 inline constexpr double rig_settle_s = 2.0;
@@ -45,11 +45,11 @@ struct RigRun {
 };
 
 /// Throws Error.
-RigRun run_rig_cell(const PatchChoice& choice, const RigNodes& nodes, const RigCell& cell, int cycles,
+RigRun run_rig_cell(const session::PatchChoice& choice, const RigNodes& nodes, const RigCell& cell, int cycles,
                     AssetCache& assets);
 
 RigRow judge_rig_cell(const RigCell& cell, const RigSeries& series);
 
 ObjectSettings object_of(const RigObject& object);
 
-}  // namespace tactus
+}  // namespace tactus::study

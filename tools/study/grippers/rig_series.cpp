@@ -10,7 +10,7 @@
 #include <cmath>
 #include <iterator>
 
-namespace tactus {
+namespace tactus::study {
 
 namespace {
 
@@ -114,4 +114,4 @@ std::string rig_series_csv(const RigCell& cell, const RigSeries& series, bool fi
     return out;
 }
 
-}  // namespace tactus
+}  // namespace tactus::study

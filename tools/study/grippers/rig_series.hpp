@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace tactus {
+namespace tactus::study {
 
 /// Columns: motor, object, stiffness_N_per_mm, damping_Ns_per_mm, rate_hz, amplitude_mm, time_s, force_N, position_mm and,
 /// if known, slip and saturated (0 or 1). Neighbouring lines with equal first six columns are one record. An object
@@ -21,4 +21,4 @@ std::vector<std::pair<RigCell, RigSeries>> load_rig_series(const std::filesystem
 /// One record of such a file, with the line of names when it is the first.
 std::string rig_series_csv(const RigCell& cell, const RigSeries& series, bool first);
 
-}  // namespace tactus
+}  // namespace tactus::study

@@ -13,7 +13,7 @@
 #include <mutex>
 #include <tuple>
 
-namespace tactus {
+namespace tactus::study {
 
 namespace {
 
@@ -160,7 +160,7 @@ double largest_amplitude(const std::vector<RigRow>& rows) {
 
 }  // namespace
 
-RigReport study_rig(const PatchChoice& choice, const RigMatrix& matrix, const RunJobs& run,
+RigReport study_rig(const session::PatchChoice& choice, const RigMatrix& matrix, const RunJobs& run,
                     const std::function<void(int, int)>& progress,
                     const std::function<void(const RigCell&, const RigSeries&)>& keep) {
     const RigNodes nodes = find_rig_nodes(choice);
@@ -320,4 +320,4 @@ RigReport study_rig_series(const std::vector<std::pair<RigCell, RigSeries>>& rec
     return report;
 }
 
-}  // namespace tactus
+}  // namespace tactus::study

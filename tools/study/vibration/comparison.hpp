@@ -1,16 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two files compared, judged, and told as text and JSON.
+// Two files compared and judged.
 #pragma once
 
+#include "assets/recording/record_reader.hpp"
 #include "dsp/spectrum/spectrogram.hpp"
-#include "tools/verbs.hpp"
 #include "tools/study/vibration/verdict.hpp"
 
+#include <array>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::study {
+
+struct CompareSettings {
+    std::filesystem::path reference, output;
+    Thresholds thresholds;
+    ThresholdUnit touch = ThresholdUnit::displacement;
+    std::string actuator;                              ///< whose limits decide the level gap; empty: none
+    double mass = 0.3;                                 ///< that it shakes, kg
+    double reference_scale = 1.0, output_scale = 1.0;  ///< units per full scale
+    double longest_delay = 2.0;                        ///< s
+    int channel = 0;                                   ///< 0: the mean of all
+    std::array<LogSelection, 2> logs;                  ///< how the reference and the output are read if they are CSV
+    bool pictures = false;                             ///< spectrograms are wanted
+};
 
 struct ComparedPair {
     std::filesystem::path reference, output;
@@ -28,15 +43,22 @@ struct ComparedPair {
 void compare_takes(ComparedPair& pair, const Take& reference, const Take& output, const ComparisonOptions& options,
                    bool pictures);
 
-/// Compares `choice.reference` with `choice.output`. Throws Error.
-ComparedPair compare_files(const CompareChoice& choice, const Thresholds& thresholds, bool pictures);
+/// Compares `settings.reference` with `settings.output`. Throws Error.
+ComparedPair compare_files(const CompareSettings& settings);
 
-std::string comparison_json(const ComparedPair& pair);
-/// On standard output.
-void print(const ComparedPair& pair);
-
-/// "displacement", "acceleration" or "none", and back.
+/// "displacement", "acceleration" or "none".
 const char* touch_unit(ThresholdUnit unit);
-ThresholdUnit touch_of(const std::string& name);
 
-}  // namespace tactus
+/// Two files to be compared; one is empty when a folder has no partner for the other.
+struct PairedFiles {
+    std::filesystem::path reference, output;
+};
+
+/// Of two folders, or of a file and a folder: every output with the reference of its name, or with the only one; and the
+/// other way round. Throws Error for a folder without records.
+std::vector<PairedFiles> paired_files(const std::filesystem::path& reference, const std::filesystem::path& output);
+
+/// What tells the pairs apart: the output, or the reference when all share one output.
+std::string pair_name(const ComparedPair& pair, std::span<const ComparedPair> all);
+
+}  // namespace tactus::study

@@ -7,21 +7,20 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <numeric>
 
-namespace tactus {
+namespace tactus::study {
 
-RecordReader open_record(const std::filesystem::path& file, const RecordOptions& options) {
+RecordReader open_record(const std::filesystem::path& file, const RecordSettings& settings) {
     std::optional<Calibration> calibration;
-    if (!options.calibration.empty()) calibration = parse_calibration(options.calibration);
-    return {file, options.log, calibration};
+    if (!settings.calibration.empty()) calibration = parse_calibration(settings.calibration);
+    return {file, settings.log, calibration};
 }
 
 std::vector<std::size_t> chosen_channels(const RecordReader& reader, const std::filesystem::path& file,
-                                         const RecordOptions& options) {
+                                         const RecordSettings& settings) {
     std::vector<std::size_t> chosen;
-    for (const int channel : options.channels) {
+    for (const int channel : settings.channels) {
         if (channel < 1 || static_cast<std::size_t>(channel) > reader.channels().size())
             throw Error(fmt::format("{}: there is no channel {}; there are {}", file.string(), channel,
                                     reader.channels().size()));
@@ -32,14 +31,6 @@ std::vector<std::size_t> chosen_channels(const RecordReader& reader, const std::
         std::iota(chosen.begin(), chosen.end(), std::size_t{0});
     }
     return chosen;
-}
-
-std::pair<double, double> parse_band(const std::string& text, const char* option) {
-    double low = 0.0, high = 0.0;
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%lf:%lf%c", &low, &high, &rest) != 2 || !(low > 0.0) || !(high > low))
-        throw Error(fmt::format("{} takes LOW:HIGH in Hz, as in {} 200:600, not '{}'", option, option, text));
-    return {low, high};
 }
 
 std::vector<std::filesystem::path> expand_folders(const std::vector<std::filesystem::path>& files) {
@@ -62,9 +53,9 @@ std::vector<std::filesystem::path> expand_folders(const std::vector<std::filesys
     return out;
 }
 
-WholeRecord read_whole(const std::filesystem::path& file, const RecordOptions& options) {
-    RecordReader reader = open_record(file, options);
-    const std::vector<std::size_t> chosen = chosen_channels(reader, file, options);
+WholeRecord read_whole(const std::filesystem::path& file, const RecordSettings& settings) {
+    RecordReader reader = open_record(file, settings);
+    const std::vector<std::size_t> chosen = chosen_channels(reader, file, settings);
     if (reader.frames() > (std::size_t{1} << 28) / chosen.size())
         throw Error(fmt::format("{}: longer than 2^28 values; cut it first", file.string()));
     WholeRecord whole{reader.rate(), {}, std::vector<std::vector<double>>(chosen.size()), reader.calibration()};
@@ -82,4 +73,4 @@ WholeRecord read_whole(const std::filesystem::path& file, const RecordOptions& o
     return whole;
 }
 
-}  // namespace tactus
+}  // namespace tactus::study

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the verbs that analyse records have in common.
+// Records as they are analysed.
 #pragma once
 
 #include "assets/recording/record_reader.hpp"
@@ -9,26 +9,21 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::study {
 
-/// Which file, how to read it, what its values are worth.
-struct RecordOptions {
-    std::vector<std::filesystem::path> files;
+/// How a record is read, and what its values are worth.
+struct RecordSettings {
     LogSelection log;
-    std::string calibration;    ///< "9.81 m/s^2": worth of a value of 1, for sound of full scale
+    std::string calibration;  ///< "9.81 m/s^2": worth of a value of 1, for sound of full scale; empty: as the file says
     std::vector<int> channels;  ///< from 1; empty: all
-    bool json = false;
 };
 
 /// Opens a record. Throws Error.
-RecordReader open_record(const std::filesystem::path& file, const RecordOptions& options);
+RecordReader open_record(const std::filesystem::path& file, const RecordSettings& settings);
 
 /// Indices of the wanted channels. Throws Error naming the file when one is missing.
 std::vector<std::size_t> chosen_channels(const RecordReader& reader, const std::filesystem::path& file,
-                                         const RecordOptions& options);
-
-/// "200:600" → Hz. Throws Error that names the option.
-std::pair<double, double> parse_band(const std::string& text, const char* option);
+                                         const RecordSettings& settings);
 
 /// Folders give the records that lie in them, in order of name; files give themselves.
 std::vector<std::filesystem::path> expand_folders(const std::vector<std::filesystem::path>& files);
@@ -40,6 +35,6 @@ struct WholeRecord {
     std::vector<std::vector<double>> channels;
     Calibration calibration;
 };
-WholeRecord read_whole(const std::filesystem::path& file, const RecordOptions& options);
+WholeRecord read_whole(const std::filesystem::path& file, const RecordSettings& settings);
 
-}  // namespace tactus
+}  // namespace tactus::study

@@ -1,13 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// One file's analysis, as the verb `spectrum` reports it.
+// What vibrates in one record.
 #pragma once
 
 #include "dsp/spectrum/vibration_analysis.hpp"
-#include "tools/verbs.hpp"
+#include "tools/study/vibration/record.hpp"
 
+#include <filesystem>
 #include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
-namespace tactus {
+namespace tactus::study {
+
+struct SpectrumSettings {
+    RecordSettings record;
+    WindowKind window = WindowKind::hann;
+    Detrend detrend = Detrend::constant;
+    Averaging averaging = Averaging::mean;
+    bool is_density = true;                            ///< unit²/Hz; otherwise unit²
+    std::optional<std::size_t> segment;                ///< samples; none: about 0.75 s
+    double overlap = 0.5;                              ///< share of a segment
+    std::pair<double, double> fundamental{20.0, 500.0};  ///< Hz, where it may lie
+    std::optional<std::pair<double, double>> envelope;   ///< Hz, the band whose envelope is analysed
+    int orders = 10;
+    bool spectrogram = false;
+};
 
 struct AnalysedChannel {
     std::string name;
@@ -25,7 +44,7 @@ struct AnalysedFile {
 };
 
 /// Reads and analyses a file; `progress` is told the share that is done. Throws Error.
-AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumChoice& choice,
+AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSettings& settings,
                           const std::function<void(double)>& progress);
 
 /// 10 log10, not below −300 dB.
@@ -33,9 +52,4 @@ double decibels(double power);
 /// How far a band's level scatters, dB: its bins are averaged over too.
 double band_deviation(const Band& band, const Spectrum& spectrum);
 
-std::string analysis_json(const AnalysedFile& file, const SpectrumChoice& choice);
-std::string analysis_text(const AnalysedFile& file);
-/// Frequency and density per channel, CSV.
-std::string analysis_csv(const AnalysedFile& file);
-
-}  // namespace tactus
+}  // namespace tactus::study

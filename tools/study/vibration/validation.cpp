@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::study {
 
 namespace {
 
@@ -49,20 +49,21 @@ std::string ValidationRun::file_name() const {
                        recording->cutting ? fmt::format("_{:g}N", recording->load) : "", level_db);
 }
 
-Validation plan_validation(const ValidateChoice& choice, const Thresholds& thresholds) {
+Validation plan_validation(const ValidateSettings& settings) {
     Validation validation;
+    const session::PatchChoice& choice = settings.patch;
     validation.patch = choice.patch;
-    validation.thresholds = thresholds;
+    validation.thresholds = settings.thresholds;
     Problems problems;
-    validation.source = load_patch(find_patch(choice.patch), problems);
+    validation.source = load_patch(session::find_patch(choice.patch), problems);
     apply_overrides(validation.source, choice.overrides, problems);
     flatten(validation.source, problems);
-    throw_problems(problems);
+    session::throw_problems(problems);
     if (choice.seed) validation.source.seed = *choice.seed;
-    validation.path = find_saw_path(validation.source, choice.saw, choice.out_port, catalogue());
-    validation.set = std::make_shared<const RecordingSet>(load_recording_set(choice.set));
+    validation.path = find_saw_path(validation.source, settings.saw, settings.out_port, catalogue());
+    validation.set = std::make_shared<const RecordingSet>(load_recording_set(settings.set));
     for (const Recording& recording : validation.set->recordings)
-        for (const double level : choice.levels) {
+        for (const double level : settings.levels) {
             ValidationRun& run = validation.runs.emplace_back();
             run.recording = &recording;
             run.level_db = level;
@@ -70,7 +71,7 @@ Validation plan_validation(const ValidateChoice& choice, const Thresholds& thres
     return validation;
 }
 
-void validate(Validation& validation, std::size_t index, const ValidateChoice& choice, bool pictures) {
+void validate(Validation& validation, std::size_t index, const ValidateSettings& settings, bool pictures) {
     ValidationRun& run = validation.runs[index];
     const Recording& recording = *run.recording;
     const SteadyPatch steady = steady_patch(
@@ -78,11 +79,11 @@ void validate(Validation& validation, std::size_t index, const ValidateChoice& c
         {validation.set->path, recording.rate, recording.load, std::pow(10.0, run.level_db / 20.0)}, catalogue());
     Problems problems;
     AssetCache assets;
-    std::optional<Plan> plan = plan_of(steady.patch, {}, std::nullopt, &assets, problems);
+    std::optional<Plan> plan = session::plan_of(steady.patch, {}, std::nullopt, &assets, problems);
     if (!problems.empty()) throw problems.list.front();
-    const ScratchFolder folder;
+    const session::ScratchFolder folder;
     EngineOptions options;
-    options.seconds = settling + choice.seconds;
+    options.seconds = settling + settings.seconds;
     options.folder = folder.path();
     options.hash = false;
     options.time_nodes = false;
@@ -111,7 +112,7 @@ void validate(Validation& validation, std::size_t index, const ValidateChoice& c
     if (recording.rate_estimated) pair.notes.push_back("the rate of the saw was estimated from the recording");
     try {
         compare_takes(pair, Take(std::span<const float>(reference), recording.sample_rate),
-                      Take(std::span<const float>(output), rate), {.touch = touch_of(choice.touch)}, pictures);
+                      Take(std::span<const float>(output), rate), {.touch = settings.touch}, pictures);
     } catch (const Error& error) {
         throw Error(fmt::format("{}: {}", run.name(), error.message()));
     }
@@ -119,4 +120,4 @@ void validate(Validation& validation, std::size_t index, const ValidateChoice& c
     pair.verdict = judge(pair.comparison, pair.level_gap_db, validation.thresholds);
 }
 
-}  // namespace tactus
+}  // namespace tactus::study

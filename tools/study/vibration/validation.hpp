@@ -4,6 +4,7 @@
 
 #include "assets/recording/recording_set.hpp"
 #include "graph/patch_steady.hpp"
+#include "tools/session/patch_choice.hpp"
 #include "tools/study/vibration/comparison.hpp"
 
 #include <memory>
@@ -11,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::study {
 
 /// One recording at one level, and what the handle made of it.
 struct ValidationRun {
@@ -25,6 +26,16 @@ struct ValidationRun {
     std::string file_name() const;  ///< "cutting_233Hz_7N_-6dB"
 };
 
+struct ValidateSettings {
+    session::PatchChoice patch;            ///< beside the recordings that it plays
+    std::filesystem::path set;             ///< of recordings
+    std::string saw, out_port;             ///< node, NODE.PORT; empty: found in the patch
+    std::vector<double> levels{0.0, -6.0}; ///< dB on top of the patch's
+    double seconds = 4.0;                  ///< that are compared of each run
+    Thresholds thresholds;
+    ThresholdUnit touch = ThresholdUnit::displacement;
+};
+
 struct Validation {
     std::string patch;
     Patch source;
@@ -35,14 +46,10 @@ struct Validation {
 };
 
 /// Reads the patch and the set and lists the runs: every recording at every level. Throws Error.
-Validation plan_validation(const ValidateChoice& choice, const Thresholds& thresholds);
+Validation plan_validation(const ValidateSettings& settings);
 
-/// Renders and compares one of them. Different runs may go on at the same time. Throws Error.
-void validate(Validation& validation, std::size_t run, const ValidateChoice& choice, bool pictures);
+/// Renders and compares one of them; with spectrograms when pictures are wanted. Different runs may go on at the same
+/// time. Throws Error.
+void validate(Validation& validation, std::size_t run, const ValidateSettings& settings, bool pictures);
 
-/// A row per run: for people, CSV, HTML.
-std::string validation_rows(const Validation& validation);
-std::string validation_csv(const Validation& validation);
-std::string validation_table(const Validation& validation);
-
-}  // namespace tactus
+}  // namespace tactus::study

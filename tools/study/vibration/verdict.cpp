@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::study {
 
 namespace {
 
@@ -83,4 +83,4 @@ std::string name_of_line(double hz, double fundamental_hz) {
     return "";
 }
 
-}  // namespace tactus
+}  // namespace tactus::study

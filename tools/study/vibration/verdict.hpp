@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::study {
 
 struct Judged {
     std::string name;   ///< of the score, as in the JSON
@@ -31,4 +31,4 @@ Verdict judge(const Comparison& comparison, double level_gap_db, const Threshold
 /// "hum of the mains (50 Hz × 3)", "order 2" of that fundamental, or nothing.
 std::string name_of_line(double hz, double fundamental_hz);
 
-}  // namespace tactus
+}  // namespace tactus::study
