@@ -4,7 +4,7 @@
 // against the exact distance within three voxels of the surface, in voxels.
 #include "dsp/distance/iso_distance.hpp"
 #include "dsp/distance/iso_surface.hpp"
-#include "tools/workers.hpp"
+#include "tools/study/workers.hpp"
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
@@ -16,6 +16,7 @@
 #include <vector>
 
 using namespace tactus;
+using namespace tactus::study;
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include "assets/display/touch_file.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/coupling/placement.hpp"
-#include "tools/sight.hpp"
+#include "tools/picture/scene/sight.hpp"
 
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
@@ -16,6 +16,7 @@
 #include <cmath>
 
 using namespace tactus;
+using namespace tactus::picture;
 using namespace tactus::test;
 using nlohmann::json;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The control socket touches nothing but dead sockets, and takes no folder that others can reach.
-#include "tools/control_socket.hpp"
+#include "tools/session/control_socket.hpp"
 
 #include "dsp/core/error.hpp"
 #include "tests/tools/background_run.hpp"
@@ -65,8 +65,8 @@ TEST_CASE("a folder that is a link is left alone: nothing behind it is removed, 
     std::ofstream(documents / "1.socket") << "no socket";
     ::chmod(documents.c_str(), 0755);
     fs::create_directory_symlink(documents, runtime.sockets);
-    CHECK_THROWS_WITH(ControlSocket(), Catch::Contains("it is a link"));
-    CHECK_THROWS_WITH(ask_run(0, "set a.b=1"), Catch::Contains("it is a link"));
+    CHECK_THROWS_WITH(session::ControlSocket(), Catch::Contains("it is a link"));
+    CHECK_THROWS_WITH(session::ask_run(0, "set a.b=1"), Catch::Contains("it is a link"));
     // As a program that knows nothing of this folder meets it.
     const std::string file = runtime.folder.write("p.toml", patch).string();
     CHECK(runtime.folder
@@ -81,19 +81,19 @@ TEST_CASE("a folder that is a link is left alone: nothing behind it is removed, 
 TEST_CASE("a folder that others have access to is refused and keeps its rights") {
     const Runtime runtime;
     runtime.make(0755);
-    CHECK_THROWS_WITH(ControlSocket(), Catch::Contains("others have access"));
-    CHECK_THROWS_WITH(ask_run(0, "set a.b=1"), Catch::Contains("others have access"));
+    CHECK_THROWS_WITH(session::ControlSocket(), Catch::Contains("others have access"));
+    CHECK_THROWS_WITH(session::ask_run(0, "set a.b=1"), Catch::Contains("others have access"));
     CHECK(mode_of(runtime.sockets) == 0755);
     if (::getuid() != 0) return;
     ::chmod(runtime.sockets.c_str(), 0700);
     REQUIRE(::chown(runtime.sockets.c_str(), 65534, 65534) == 0);
-    CHECK_THROWS_WITH(ControlSocket(), Catch::Contains("another user"));
+    CHECK_THROWS_WITH(session::ControlSocket(), Catch::Contains("another user"));
 }
 
 TEST_CASE("only sockets of processes that are gone are removed") {
     const Runtime runtime;
     runtime.make();
-    const std::string own = ControlFolder::name_of(::getpid());
+    const std::string own = session::ControlFolder::name_of(::getpid());
     std::ofstream(runtime.sockets / "notes.txt") << "text";
     std::ofstream(runtime.sockets / "999999.socket") << "no socket";
     fs::create_directory(runtime.sockets / "999998.socket");
@@ -102,7 +102,7 @@ TEST_CASE("only sockets of processes that are gone are removed") {
     leave_socket(runtime.sockets / "x999995.socket");
     leave_socket(runtime.sockets / own);
     {
-        const ControlSocket socket;
+        const session::ControlSocket socket;
         CHECK(fs::is_socket(runtime.sockets / own));
         CHECK_FALSE(fs::exists(runtime.sockets / "999996.socket"));
         for (const char* kept : {"notes.txt", "999999.socket", "999998.socket", "999997.socket", "x999995.socket"}) {
@@ -110,7 +110,7 @@ TEST_CASE("only sockets of processes that are gone are removed") {
             CHECK(fs::exists(fs::symlink_status(runtime.sockets / kept)));
         }
         CHECK(slurp(runtime.sockets / "notes.txt") == "text");
-        CHECK(ControlFolder(ControlFolder::Missing::leave).listening() == std::vector<int>{::getpid()});
+        CHECK(session::ControlFolder(session::ControlFolder::Missing::leave).listening() == std::vector<int>{::getpid()});
     }
     CHECK_FALSE(fs::exists(runtime.sockets / own));
 }
@@ -120,9 +120,9 @@ TEST_CASE("a new folder is for its user only, whatever its path's length") {
     const fs::path deep = runtime.folder.path / std::string(120, 'd');
     fs::create_directory(deep);
     ::setenv("XDG_RUNTIME_DIR", deep.c_str(), 1);
-    const ControlSocket socket;
+    const session::ControlSocket socket;
     CHECK(mode_of(deep / "tactus") == 0700);
-    CHECK(fs::is_socket(deep / "tactus" / ControlFolder::name_of(::getpid())));
+    CHECK(fs::is_socket(deep / "tactus" / session::ControlFolder::name_of(::getpid())));
 }
 
 TEST_CASE("a run that is stopped keeps its socket while another begins and ends") {

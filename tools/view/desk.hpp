@@ -2,12 +2,12 @@
 // Everything in the window, side by side.
 #pragma once
 
-#include "tools/view/calibration_panel.hpp"
-#include "tools/view/node_panel.hpp"
-#include "tools/view/patch_panel.hpp"
+#include "tools/view/patch/node_panel.hpp"
+#include "tools/view/patch/patch_panel.hpp"
 #include "tools/view/questions.hpp"
-#include "tools/view/scene_panel.hpp"
-#include "tools/view/scopes.hpp"
+#include "tools/view/scene/calibration_panel.hpp"
+#include "tools/view/scene/scene_panel.hpp"
+#include "tools/view/signal/scopes.hpp"
 #include "tools/view/take_bench.hpp"
 #include "tools/view/window.hpp"
 #include "tools/view/workbench.hpp"

@@ -2,15 +2,19 @@
 #include "tools/view/take_bench.hpp"
 
 #include "engine/engine.hpp"
-#include "tools/load_plan.hpp"
-#include "tools/replayed_take.hpp"
-#include "tools/scene_outline.hpp"
+#include "tools/picture/scene/scene_outline.hpp"
+#include "tools/session/load_plan.hpp"
+#include "tools/session/replayed_take.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 namespace tactus::view {
+
+using picture::outline_of;
+using session::plan_of;
+using session::ReplayedTake;
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include "engine/observer.hpp"
 #include "engine/take_reader.hpp"
 #include "graph/load_assets.hpp"
-#include "tools/view/feed.hpp"
+#include "tools/view/signal/feed.hpp"
 
 #include <atomic>
 #include <filesystem>

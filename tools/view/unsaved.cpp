@@ -4,7 +4,7 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
-#include "tools/load_plan.hpp"
+#include "tools/session/load_plan.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -49,7 +49,7 @@ struct Stems {
 Stems stems_of(const fs::path& patch) {
     const fs::path path = true_path(patch);
     Stems stems;
-    if (!is_of_library(path)) stems.beside = path.parent_path() / (path.stem().string() + ".unsaved");
+    if (!session::is_of_library(path)) stems.beside = path.parent_path() / (path.stem().string() + ".unsaved");
     Hash hash;
     hash.add_text(path.string());
     if (const auto folder = state_folder())

@@ -2,6 +2,7 @@
 #include "tools/view/view.hpp"
 
 #include "dsp/core/error.hpp"
+#include "tools/exit_code.hpp"
 #include "tools/terminal.hpp"
 #include "tools/view/desk.hpp"
 #include "tools/view/script.hpp"
@@ -161,7 +162,7 @@ public:
 
 }  // namespace
 
-int view_run(const RunChoice& choice, const std::atomic<bool>& interrupted) {
+int view_run(const ViewedRunChoice& choice, const std::atomic<bool>& interrupted) {
     std::unique_ptr<Workbench> bench;
     bool goes_on = false;
     {

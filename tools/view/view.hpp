@@ -2,7 +2,7 @@
 // The window: on a run, or on a take.
 #pragma once
 
-#include "tools/verbs.hpp"
+#include "tools/view/view_choice.hpp"
 
 #include <atomic>
 
@@ -10,7 +10,7 @@ namespace tactus::view {
 
 /// Runs a patch with a window on it. Ends when the window is closed, or with the run when that is to go on.
 /// Throws Error when no window can be opened.
-int view_run(const RunChoice& choice, const std::atomic<bool>& interrupted);
+int view_run(const ViewedRunChoice& choice, const std::atomic<bool>& interrupted);
 
 /// Opens a window on a take. Throws Error.
 int view_take(const TakeViewChoice& choice, const std::atomic<bool>& interrupted);

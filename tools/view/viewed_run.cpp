@@ -2,8 +2,8 @@
 #include "tools/view/viewed_run.hpp"
 
 #include "dsp/safety/force_limiter.hpp"
-#include "tools/live_table.hpp"
-#include "tools/run_session.hpp"
+#include "tools/session/live_table.hpp"
+#include "tools/session/run_session.hpp"
 
 #include <fmt/format.h>
 

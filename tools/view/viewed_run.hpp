@@ -4,7 +4,7 @@
 
 #include "engine/observer.hpp"
 #include "graph/load_assets.hpp"
-#include "tools/verbs.hpp"
+#include "tools/session/run_choice.hpp"
 
 #include <atomic>
 #include <filesystem>
@@ -15,11 +15,14 @@
 #include <thread>
 #include <vector>
 
-namespace tactus {
+namespace tactus::session {
 class RunSession;
 }
 
 namespace tactus::view {
+
+using session::RunChoice;
+using session::RunSession;
 
 struct GroupStatus {
     std::string name;

@@ -3,14 +3,18 @@
 
 #include "assets/file/whole_file.hpp"
 #include "nodes/catalogue.hpp"
-#include "tools/load_plan.hpp"
-#include "tools/view/patch_change.hpp"
+#include "tools/session/load_plan.hpp"
+#include "tools/view/patch/patch_change.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 namespace tactus::view {
+
+using session::find_patch;
+using session::plan_of;
+using session::throw_problems;
 
 namespace fs = std::filesystem;
 

@@ -7,8 +7,8 @@
 #include "graph/patch_edit.hpp"
 #include "graph/patch_editor.hpp"
 #include "graph/plan.hpp"
-#include "tools/verbs.hpp"
-#include "tools/view/patch_picture.hpp"
+#include "tools/session/run_choice.hpp"
+#include "tools/view/patch/patch_picture.hpp"
 #include "tools/view/viewed_run.hpp"
 
 #include <deque>

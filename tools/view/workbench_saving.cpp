@@ -5,7 +5,7 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "graph/patch_paths.hpp"
-#include "tools/load_plan.hpp"
+#include "tools/session/load_plan.hpp"
 #include "tools/view/unsaved.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 bool Workbench::save() {
     try {
-        if (is_of_library(editor_->file())) {
+        if (session::is_of_library(editor_->file())) {
             wants_name = true;
             tell(fmt::format("{} belongs to the library and is not changed; save it under another name",
                              editor_->file().string()),
@@ -55,7 +55,7 @@ bool Workbench::save_as(const std::string& name) {
         if (name.empty()) throw Error("a file needs a name");
         fs::path file = fs::absolute(name);
         if (file.extension() != ".toml") file += ".toml";
-        if (is_of_library(file)) throw Error(fmt::format("{}: belongs to the library; choose another", file.string()));
+        if (session::is_of_library(file)) throw Error(fmt::format("{}: belongs to the library; choose another", file.string()));
         if (fs::exists(fs::symlink_status(file)))
             throw Error(fmt::format("{}: is there already; choose another name", file.string()));
         const fs::path folder = fs::absolute(editor_->file()).parent_path();

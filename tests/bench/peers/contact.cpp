@@ -4,7 +4,7 @@
 //
 // The nearest they have: the shell's points as corners of a closed triangle mesh, in a tree of boxes, against a solid
 // ball that is given by formula; every contact is wanted. Lengths in mm.
-#include "tools/bench_contact_cases.hpp"
+#include "tools/bench/contact_cases.hpp"
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/sphere.h>
@@ -23,7 +23,7 @@ namespace tactus {
 
 namespace {
 
-using namespace contact_bench;
+using namespace tactus::bench;
 
 struct Mesh {
     std::vector<Vec3> corners;

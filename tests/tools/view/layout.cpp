@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nodes/catalogue.hpp"
 #include "tests/tools/patches.hpp"
-#include "tools/view/axis.hpp"
 #include "tools/view/canvas.hpp"
-#include "tools/view/parameters.hpp"
-#include "tools/view/patch_change.hpp"
-#include "tools/view/patch_picture.hpp"
-#include "tools/view/plot.hpp"
+#include "tools/view/patch/parameters.hpp"
+#include "tools/view/patch/patch_change.hpp"
+#include "tools/view/patch/patch_picture.hpp"
+#include "tools/view/signal/axis.hpp"
+#include "tools/view/signal/plot.hpp"
 
 #include <fmt/format.h>
 #include <catch2/catch.hpp>

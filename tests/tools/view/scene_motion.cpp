@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/view/scene_motion.hpp"
+#include "tools/view/scene/scene_motion.hpp"
 
 #include <catch2/catch.hpp>
 

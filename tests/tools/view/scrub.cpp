@@ -2,7 +2,7 @@
 // A take that is looked at, at any instant and in any order.
 #include "tests/tools/patches.hpp"
 #include "tests/tools/run_command.hpp"
-#include "tools/replayed_take.hpp"
+#include "tools/session/replayed_take.hpp"
 #include "tools/view/take_bench.hpp"
 
 #include <catch2/catch.hpp>
@@ -13,6 +13,7 @@
 #include <thread>
 
 using namespace tactus;
+using namespace tactus::session;
 using namespace tactus::view;
 using tactus::test::Folder;
 using tactus::test::Outcome;

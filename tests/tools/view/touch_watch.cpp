@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/view/touch_watch.hpp"
+#include "tools/view/scene/touch_watch.hpp"
 
 #include "graph/value.hpp"
 
@@ -9,6 +9,7 @@
 #include <map>
 
 using namespace tactus;
+using namespace tactus::study;
 using namespace tactus::view;
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/view/wire_route.hpp"
+#include "tools/view/patch/wire_route.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -3,8 +3,8 @@
 #include "engine/take_reader.hpp"
 #include "tests/tools/patches.hpp"
 #include "tests/tools/run_command.hpp"
-#include "tools/load_plan.hpp"
-#include "tools/view/feed.hpp"
+#include "tools/session/load_plan.hpp"
+#include "tools/view/signal/feed.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -13,6 +13,7 @@
 #include <thread>
 
 using namespace tactus;
+using namespace tactus::session;
 using namespace tactus::view;
 using tactus::test::Folder;
 using tactus::test::slurp;

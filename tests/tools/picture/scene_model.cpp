@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/picture/scene/scene_model.hpp"
+
+#include "devices/display/picture_maker.hpp"
+#include "dsp/core/error.hpp"
+
+#include <catch2/catch.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <limits>
+
+using namespace tactus;
+using namespace tactus::picture;
+
+namespace {
+
+bool can_render() {
+    try {
+        const SurfacelessContext context;
+        return true;
+    } catch (const Error& error) {
+        WARN("skipped: " << error.what());
+        return false;
+    }
+}
+
+constexpr Flicks at_60_hz = flicks_per_second / 60;
+
+template <class T>
+const std::byte* bytes_of(const T& value) {
+    return reinterpret_cast<const std::byte*>(&value);
+}
+
+Grid ball(double radius) {
+    Grid grid{{49, 49, 49}, Vec3(-0.012), Vec3(0.0005), {}};
+    for (int k = 0; k < 49; ++k)
+        for (int j = 0; j < 49; ++j)
+            for (int i = 0; i < 49; ++i)
+                grid.values.push_back(static_cast<float>(glm::length(grid.position(i, j, k)) - radius));
+    return grid;
+}
+
+}  // namespace
+
+TEST_CASE("a cut is in the next picture, and only its bricks were meshed") {
+    if (!can_render()) return;
+    Grid density = ball(0.01);
+    std::ranges::fill(density.values, 1800.0f);
+    BoneEditor editor(ball(0.01), density, {.band = 0.002});
+    Observer observer;
+    const BoneSnapshot initial = editor.current();
+    const auto port = observer.open({"carve.bone", at_60_hz, 1}, value::snapshot<BoneSnapshot>, bytes_of(initial));
+    PictureMaker maker(64, 64);
+    SceneOutline outline;
+    outline.bones = {{"carve.bone"}};
+    SceneModel model(outline, observer, maker.renderer());
+    observer.advance();
+    model.update();
+    CHECK(model.remeshed_bricks() == static_cast<std::size_t>(editor.layout().brick_count()));
+    CHECK(model.triangles() > 5000);
+    CHECK(model.bounds().radius() == Approx(0.01 * std::sqrt(3.0)).epsilon(0.02));
+    CHECK(model.legend().scales.size() == 1);
+    observer.advance();
+    model.update();
+    CHECK(model.remeshed_bricks() == 0);
+
+    const std::size_t before = model.triangles();
+    for (int k = 44; k < 49; ++k)
+        for (int j = 20; j < 28; ++j)
+            for (int i = 20; i < 28; ++i) editor.set(i, j, k, 0.001f);
+    const BoneSnapshot cut = editor.publish();
+    port->see(1, bytes_of(cut), 1, 0);
+    observer.advance();
+    model.update();
+    CHECK(model.remeshed_bricks() == editor.changed_bricks().size());
+    CHECK(model.remeshed_bricks() < 30);
+    CHECK(model.triangles() != before);
+}
+
+TEST_CASE("a pose or a force that is not a number is told, and not drawn") {
+    if (!can_render()) return;
+    Observer observer;
+    const Pose good;
+    const Wrench none;
+    const auto pose = observer.open({"hand.pose", at_60_hz, 1}, value::pose, bytes_of(good));
+    const auto wrench = observer.open({"tip.wrench", at_60_hz, 1}, value::wrench, bytes_of(none));
+    PictureMaker maker(64, 64);
+    SceneOutline outline;
+    outline.balls = {{"hand.pose", "", "tip.wrench", 0.005}};
+    SceneModel model(outline, observer, maker.renderer());
+    model.update();
+    CHECK(model.legend().warnings.empty());
+    const std::size_t whole = model.triangles();
+    CHECK(whole > 100);
+
+    Wrench bad_force;
+    bad_force.force.x = std::numeric_limits<double>::infinity();
+    wrench->see(0, bytes_of(bad_force), 1, 0);
+    model.update();
+    REQUIRE(model.legend().warnings.size() == 1);
+    CHECK(model.legend().warnings[0].find("tip.wrench") != std::string::npos);
+    CHECK(model.triangles() == whole);
+
+    Pose bad;
+    bad.position.y = std::numeric_limits<double>::quiet_NaN();
+    pose->see(0, bytes_of(bad), 1, 0);
+    model.update();
+    REQUIRE(model.legend().warnings.size() == 1);
+    CHECK(model.legend().warnings[0].find("hand.pose") != std::string::npos);
+    CHECK(model.triangles() == 0);
+}
+
+TEST_CASE("what an edit took away leaves the picture, and what it brings comes in") {
+    if (!can_render()) return;
+    Observer observer;
+    const Pose here;
+    const auto a = observer.open({"a.pose", at_60_hz, 1}, value::pose, bytes_of(here));
+    const auto b = observer.open({"b.pose", at_60_hz, 1}, value::pose, bytes_of(here));
+    PictureMaker maker(64, 64);
+    SceneOutline first, second;
+    first.balls = {{"a.pose", "", "", 0.005}};
+    second.blades = {{"saw", "b.pose", "", {0.04, 0.01, 0.001}}};
+    SceneModel model(first, observer, maker.renderer());
+    CHECK(model.update().meshes.size() == 2);  // the ball, and the notes
+    const std::size_t ball_triangles = model.triangles();
+    model.follow(second);
+    model.update();
+    CHECK(model.triangles() != ball_triangles);
+    CHECK(a->watched() == Watch::nothing);
+    CHECK(b->watched() == Watch::latest);
+    model.follow(first);
+    model.update();
+    CHECK(model.triangles() == ball_triangles);
+}

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// The verbs of tactus-bench.
+#pragma once
+
+#include "tools/command/options.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/terminal.hpp"
+
+#include <memory>
+
+namespace tactus::bench {
+
+using command::Action;
+using command::Verb;
+using command::VerbOptions;
+
+/// What most of them take.
+struct BenchChoice {
+    int rounds = 3;  ///< the best of so many counts
+    bool json = false;
+};
+
+Verb engine_verb();
+Verb contact_verb();
+Verb view_verb();
+Verb scrub_verb();
+Verb snap_verb();
+
+}  // namespace tactus::bench

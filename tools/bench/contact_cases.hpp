@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `bench contact` measures: a ball of points against a ball of distances, posed anew each frame.
+#pragma once
+
+#include "dsp/contact/contact_law.hpp"
+#include "dsp/core/random.hpp"
+#include "dsp/core/types.hpp"
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include <time.h>
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace tactus::bench {
+
+inline constexpr double voxel = 0.35e-3;  // m
+inline constexpr double cover = 0.3e-3;  // m, from a shell within the ball to its surface
+
+struct Case {
+    const char* name;
+    int points;
+    double radius;  ///< of the shell, in voxels
+    double apart;   ///< of the centres, in radii: 0 for a shell within the ball, 2 for two balls that touch
+    Interpolation interpolation = Interpolation::trilinear;
+    std::size_t budget = std::numeric_limits<std::size_t>::max();
+
+    /// m, of the ball that the shell is held against.
+    double ball() const { return radius * voxel + (apart > 0.0 ? 0.0 : cover); }
+};
+
+/// Of the shell: any turn, pressed in by 0.1 to 0.2 mm, nothing like the frame before.
+inline Pose pose_of(const Case& c, std::uint64_t frame) {
+    const Random random{7};
+    const auto normal = [&](std::uint64_t n) { return random.normal(16 * frame + n); };
+    const Quat turn = glm::normalize(Quat(normal(0), normal(1), normal(2), normal(3)));
+    const Vec3 way = glm::normalize(Vec3(normal(4), normal(5), normal(6)));
+    const double press = 1e-4 * (1.0 + random.uniform(16 * frame + 7));
+    return {way * (c.apart > 0.0 ? c.apart * c.radius * voxel - press : 0.5 * press), turn};
+}
+
+/// Processor time of this thread, s: other work on the machine counts only by what it takes from the caches.
+inline double thread_seconds() {
+    timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+inline double percentile(std::vector<double> values, double share) {
+    std::ranges::sort(values);
+    return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+}
+
+}  // namespace tactus::bench

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a node costs: a chain of gains in this engine, and the same chain in Pure Data and scsynth, in one run.
+#include "engine/engine.hpp"
+#include "graph/latency.hpp"
+#include "graph/stiffness.hpp"
+#include "nodes/catalogue.hpp"
+#include "tools/bench/bench.hpp"
+#include "tools/bench/engine_peers.hpp"
+#include "tools/session/summary.hpp"
+#include "tools/terminal.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <time.h>
+#include <unistd.h>
+#include <algorithm>
+#include <array>
+#include <functional>
+
+namespace tactus::bench {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr double rate = 48000.0;
+
+double processor_seconds() {
+    timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Processor time of all threads: other work on the machine does not count.
+double seconds_of(const std::function<void()>& work) {
+    const double begin = processor_seconds();
+    work();
+    return processor_seconds() - begin;
+}
+
+std::string patch_of(int nodes) {
+    std::string wires, text;
+    for (int i = 0; i < nodes; ++i) {
+        wires += fmt::format("\"{}.{} -> g{}.in\",\n", i == 0 ? "tone" : fmt::format("g{}", i - 1),
+                             i == 0 ? "signal" : "out", i);
+        text += fmt::format("[nodes.g{}]\ntype = \"gain\"\nrate = \"48 kHz\"\nfactor = 0.999\n", i);
+    }
+    return "wires = [" + wires + "]\n[nodes.tone]\ntype = \"sine\"\nrate = \"48 kHz\"\nfrequency = \"440 Hz\"\n" + text;
+}
+
+Patch read_chain(const std::string& text) {
+    Problems problems;
+    Patch patch = read_patch(text, "chain.toml", problems);
+    if (!problems.empty()) throw problems.list.front();
+    return patch;
+}
+
+Plan compile_chain(const Patch& patch) {
+    Problems problems;
+    std::optional<Plan> plan = compile(patch, catalogue(), problems);
+    if (!problems.empty()) throw problems.list.front();
+    return std::move(*plan);
+}
+
+double run_here(const Chain& chain, bool hash, bool time_nodes) {
+    EngineOptions options;
+    options.seconds = chain.seconds;
+    options.block = chain.block;
+    options.hash = hash;
+    options.time_nodes = time_nodes;
+    Engine engine(compile_chain(read_chain(patch_of(chain.nodes))), options);
+    return seconds_of([&] { engine.render(1); });
+}
+
+/// One way to run a chain; the time of what does not grow with the sound is in `time` too.
+struct Runner {
+    std::string name;
+    std::function<std::optional<double>(const Chain&)> time;
+    bool works = true;
+    std::array<double, 4> best{1e9, 1e9, 1e9, 1e9};  ///< of all rounds, as `measure` takes them
+    std::optional<double> ns_per_node = std::nullopt;
+};
+
+/// Time of a longer and a shorter piece, with and without nodes: what is left is the nodes' own.
+void measure(Runner& runner, const Chain& chain) {
+    if (!runner.works) return;
+    const Chain brief{chain.nodes, chain.block, 0.01}, bare{0, chain.block, chain.seconds},
+        bare_brief{0, chain.block, 0.01};
+    std::size_t at = 0;
+    for (const Chain& one : {chain, brief, bare, bare_brief}) {
+        const std::optional<double> time = runner.time(one);
+        runner.works = time.has_value();
+        if (!runner.works) return;
+        runner.best[at] = std::min(runner.best[at], *time);
+        ++at;
+    }
+    const double own = (runner.best[0] - runner.best[1]) - (runner.best[2] - runner.best[3]);
+    runner.ns_per_node = own * 1e9 / ((chain.seconds - 0.01) * rate / chain.block * chain.nodes);
+}
+
+Json row(const std::string& name, int nodes, int block, double ns, const Runner* peer) {
+    Json json{{"name", name}, {"nodes", nodes}, {"block", block}, {"ns_per_node", ns}};
+    json["peer"] = peer ? Json(peer->name) : Json();
+    json["peer_ns_per_node"] = peer && peer->ns_per_node ? Json(*peer->ns_per_node) : Json();
+    json["ratio"] = peer && peer->ns_per_node ? Json(ns / *peer->ns_per_node) : Json();
+    return json;
+}
+
+void bench_chain(int nodes, int block, int rounds, const std::filesystem::path& folder, Json& rows) {
+    // About half a second of work at 5 ns per node; more for those that take long to load.
+    const double work = nodes < 10000 ? 0.5 : 2.0;
+    const Chain chain{nodes, block, std::max(0.1, work / (rate / block * nodes * 5e-9))};
+    Runner here[] = {{"gain", [](const Chain& c) { return std::optional(run_here(c, false, true)); }},
+                     {"gain, outputs hashed", [](const Chain& c) { return std::optional(run_here(c, true, true)); }}};
+    Runner peers[] = {{"pure data", [&](const Chain& c) { return run_in_pure_data(c, folder); }},
+                      {"scsynth", [&](const Chain& c) { return run_in_scsynth(c, folder); }}};
+    // In turn: what else the machine does meanwhile falls on all of them.
+    for (int i = 0; i < rounds; ++i) {
+        for (Runner& runner : here) measure(runner, chain);
+        for (Runner& runner : peers) measure(runner, chain);
+    }
+    for (const Runner& runner : here)
+        for (const Runner& peer : peers) rows.push_back(row(runner.name, nodes, block, *runner.ns_per_node, &peer));
+}
+
+/// From a text to a plan that runs, for 1000 nodes: the best of several, ns per node.
+void bench_compile(int rounds, Json& rows) {
+    constexpr int nodes = 1000;
+    const std::string text = patch_of(nodes);
+    const Patch patch = read_chain(text);
+    double read = 1.0, compiled = 1.0, prepared = 1.0;
+    for (int i = 0; i < 3 * rounds; ++i) {
+        read = std::min(read, seconds_of([&] { read_chain(text); }));
+        std::optional<Plan> plan;
+        compiled = std::min(compiled, seconds_of([&] { plan = compile_chain(patch); }));
+        std::optional<Engine> engine;
+        prepared = std::min(prepared, seconds_of([&] { engine.emplace(std::move(*plan), EngineOptions{}); }));
+    }
+    rows.push_back(row("read patch", nodes, 0, read * 1e9 / nodes, nullptr));
+    rows.push_back(row("compile", nodes, 0, compiled * 1e9 / nodes, nullptr));
+    rows.push_back(row("prepare", nodes, 0, prepared * 1e9 / nodes, nullptr));
+}
+
+/// What a node of a large patch costs beside one of a small patch: 1 when all steps take time in proportion.
+void bench_scaling(int rounds, Json& rows) {
+    constexpr std::array<int, 2> sizes{10'000, 100'000};
+    constexpr double brief = 0.002;  // s of sound: what is measured is the way there
+    std::array<double, 2> checked{1e9, 1e9}, rendered{1e9, 1e9};
+    for (int i = 0; i < rounds; ++i)
+        for (std::size_t k = 0; k < sizes.size(); ++k) {
+            const std::string text = patch_of(sizes[k]);
+            checked[k] = std::min(checked[k], seconds_of([&] {
+                                      const Engine engine(compile_chain(read_chain(text)), EngineOptions{});
+                                      path_latencies(engine.plan());
+                                      force_loops(engine.plan(), [](const std::string&) { return 0.0; });
+                                  }));
+            rendered[k] = std::min(rendered[k], seconds_of([&] {
+                                       EngineOptions options;
+                                       options.seconds = brief;
+                                       Engine engine(compile_chain(read_chain(text)), options);
+                                       engine.render(1);
+                                       engine.finish();
+                                       session::summary_json(engine, engine.report(), brief, false, {}, {});
+                                   }));
+        }
+    const auto add = [&](const char* name, const std::array<double, 2>& seconds) {
+        const double few = seconds[0] * 1e9 / sizes[0], many = seconds[1] * 1e9 / sizes[1];
+        Json json = row(name, sizes[1], 0, many, nullptr);
+        json["peer"] = fmt::format("{} nodes", sizes[0]);
+        json["peer_ns_per_node"] = few;
+        json["ratio"] = many / few;
+        rows.push_back(std::move(json));
+    };
+    add("check", checked);
+    add("render 2 ms", rendered);
+}
+
+/// What timing every node in one call of 64 adds to a tick of 1 ms.
+void bench_telemetry(int rounds, Json& rows) {
+    constexpr int nodes = 1000, block = 48;
+    const Chain chain{nodes, block, 2.0};
+    double with = 1e9, without = 1e9;
+    for (int i = 0; i < 3 * rounds; ++i) {
+        with = std::min(with, run_here(chain, false, true));
+        without = std::min(without, run_here(chain, false, false));
+    }
+    const double added = with - without;
+    Json json = row("telemetry", nodes, block, added * 1e9 / (chain.seconds * rate / block * nodes), nullptr);
+    json["percent_of_tick"] = 100.0 * added / chain.seconds;
+    rows.push_back(std::move(json));
+}
+
+void print_rows(const Json& rows) {
+    fmt::print("{:<22} {:>6} {:>6} {:>9} {:>11} {:>9} {:>6}\n", "", "nodes", "block", "ns/node", "peer", "ns/node",
+               "ratio");
+    for (const Json& r : rows) {
+        std::string line = fmt::format("{:<22} {:>6} {:>6} {:>9.2f}", r["name"].get<std::string>(),
+                                       r["nodes"].get<int>(), r["block"].get<int>(), r["ns_per_node"].get<double>());
+        if (!r["peer_ns_per_node"].is_null())
+            line += fmt::format(" {:>11} {:>9.2f} {:>6.2f}", r["peer"].get<std::string>(),
+                                r["peer_ns_per_node"].get<double>(), r["ratio"].get<double>());
+        else if (!r["peer"].is_null()) line += fmt::format(" {:>11} {:>9}", r["peer"].get<std::string>(), "missing");
+        if (r.contains("percent_of_tick"))
+            line += fmt::format("   {:.2f} % of a tick of 1 ms", r["percent_of_tick"].get<double>());
+        fmt::print("{}\n", line);
+    }
+    fmt::print(
+        "ns/node: processor time of one node in one call, the best of all rounds; start and end of the chain taken "
+        "off.\n");
+}
+
+}  // namespace
+
+int bench_engine(const BenchChoice& choice) {
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / fmt::format("tactus-bench-{}", ::getpid());
+    std::filesystem::create_directories(folder);
+    Json rows = Json::array();
+    LiveLine line;
+    for (const int nodes : {100, 1000, 10000})
+        for (const int block : {1, 64}) {
+            line.show(fmt::format("{} nodes, block {}", nodes, block));
+            bench_chain(nodes, block, choice.rounds, folder, rows);
+        }
+    line.show("compiling");
+    bench_compile(choice.rounds, rows);
+    line.show("large patches");
+    bench_scaling(choice.rounds, rows);
+    bench_telemetry(choice.rounds, rows);
+    line.clear();
+    std::error_code ignored;
+    std::filesystem::remove_all(folder, ignored);
+    if (choice.json) fmt::print("{}\n", Json{{"rows", rows}}.dump(2));
+    else print_rows(rows);
+    return done;
+}
+
+Verb engine_verb() {
+    return {"engine", "time of a node in a chain, beside Pure Data and scsynth; compile time",
+            [](VerbOptions& verb) -> Action {
+                const auto choice = std::make_shared<BenchChoice>();
+                verb.add("--rounds", choice->rounds, "the best of so many counts").shows_default().range(1, 1000);
+                verb.flag("--json", choice->json, "as JSON");
+                return [choice] { return bench_engine(*choice); };
+            }};
+}
+
+}  // namespace tactus::bench

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: Apache-2.0
+// How often snap-to-fit finds the place of a fragment, beside ICP in its usual forms, on the same simulated fractures.
+#include "assets/library/mandible.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/rotation.hpp"
+#include "dsp/snap/fit.hpp"
+#include "engine/clock.hpp"
+#include "tools/bench/bench.hpp"
+#include "tools/bench/snap_cases.hpp"
+#include "tools/bench/snap_live.hpp"
+#include "tools/bench/snap_peers.hpp"
+#include "tools/bench/snap_whole_case.hpp"
+#include "tools/study/bones/fragment_file.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numbers>
+#include <optional>
+
+namespace tactus::bench {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct SnapBenchChoice {
+    std::uint64_t seed = 1001;
+    int seeds = 8, trials = 1;
+    std::vector<std::string> cases, methods;
+    std::filesystem::path bone;
+    bool pushed = false, json = false;
+};
+
+constexpr const char* live_case = "live";
+constexpr double degree = std::numbers::pi / 180.0, success = 0.5e-3;
+
+double median(std::vector<double> values) {
+    if (values.empty()) return 0.0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// What a method did over all trials of a case and start.
+struct Tally {
+    std::vector<double> error, angle, time;
+    int failures_flagged = 0, failures = 0, alarms = 0, judged = 0;
+
+    void add(const FracturePair& pair, const Pose& pose, double seconds) {
+        error.push_back(pair.error(pose));
+        angle.push_back(glm::length(rotation_between(pair.truth.orientation, pose.orientation)) / degree);
+        time.push_back(seconds);
+    }
+    void judge(FitVerdict verdict) {
+        ++judged;
+        const bool failed = !(error.back() < success), flagged = verdict != FitVerdict::fit;
+        failures += failed;
+        failures_flagged += failed && flagged;
+        alarms += !failed && flagged;
+    }
+    double share() const {
+        const auto good = std::ranges::count_if(error, [](double e) { return e < success; });
+        return error.empty() ? 0.0 : static_cast<double>(good) / static_cast<double>(error.size());
+    }
+};
+
+using Tallies = std::map<std::string, Tally>;
+
+constexpr std::pair<const char*, FitMode> modes[] = {
+    {"extended", FitMode::extended}, {"global", FitMode::global}, {"thesis", FitMode::thesis}};
+constexpr IcpKind peers[] = {IcpKind::point, IcpKind::plane, IcpKind::generalised};
+constexpr IcpSchedule schedules[] = {IcpSchedule::unlimited, IcpSchedule::trimmed, IcpSchedule::annealed};
+
+bool is_chosen(const SnapBenchChoice& choice, std::string_view method) {
+    return choice.methods.empty() || std::ranges::count(choice.methods, method) > 0;
+}
+
+struct TimedFit {
+    Fit fit;
+    double seconds = 0.0;
+
+    TimedFit(const FracturePair& pair, const Pose& start, FitMode mode) {
+        const std::int64_t begin = thread_ns();
+        fit = find_fit(pair.moving, pair.fixed, start, mode);
+        seconds = 1e-9 * static_cast<double>(thread_ns() - begin);
+    }
+};
+
+/// `anywhere`: the global fit of the pair, which no start changes, once it is known.
+void try_all(const FracturePair& pair, const IcpTarget& target, const Pose& start, const SnapBenchChoice& choice,
+             std::optional<TimedFit>& anywhere, Tallies& tallies) {
+    for (const auto& [name, mode] : modes) {
+        if (!is_chosen(choice, name)) continue;
+        const bool is_known = mode == FitMode::global && anywhere;
+        const TimedFit found = is_known ? *anywhere : TimedFit(pair, start, mode);
+        if (mode == FitMode::global) anywhere = found;
+        tallies[name].add(pair, found.fit.pose, found.seconds);
+        tallies[name].judge(found.fit.verdict);
+    }
+    const Pose centres = between_centres(pair.moving, pair.fixed, start);
+    for (const IcpKind kind : peers)
+        for (const IcpSchedule schedule : schedules) {
+            if (!is_chosen(choice, name_of(kind))) continue;
+            const std::int64_t begin = thread_ns();
+            const Pose pose = run_icp(pair.moving, target, centres, kind, schedule);
+            tallies[fmt::format("{} {}", name_of(kind), name_of(schedule))].add(
+                pair, between_bodies(pair.moving, pair.fixed, pose), 1e-9 * static_cast<double>(thread_ns() - begin));
+        }
+}
+
+Json row_of(const FractureCase& c, const FractureStart& start, const std::string& method, const std::string& schedule,
+            const Tally& tally) {
+    Json row{{"case", c.kind.name},
+             {"method", method},
+             {"start_mm", start.offset_mm},
+             {"start_deg", start.angle_deg},
+             {"trials", tally.error.size()},
+             {"success", tally.share()},
+             {"median_tre_mm", median(tally.error) * 1e3},
+             {"median_deg", median(tally.angle)},
+             {"median_ms", median(tally.time) * 1e3}};
+    if (!schedule.empty()) row["schedule"] = schedule;
+    if (tally.judged > 0) {
+        row["failures"] = tally.failures;
+        row["failures_flagged"] = tally.failures_flagged;
+        row["false_alarms"] = tally.alarms;
+    }
+    return row;
+}
+
+/// Our modes as they are, each peer by the schedule that served it best.
+void add_rows(Json& rows, const FractureCase& c, const FractureStart& start, const SnapBenchChoice& choice,
+              const Tallies& tallies) {
+    for (const auto& [name, mode] : modes)
+        if (is_chosen(choice, name)) rows.push_back(row_of(c, start, name, "", tallies.at(name)));
+    for (const IcpKind kind : peers) {
+        if (!is_chosen(choice, name_of(kind))) continue;
+        const Tally* best = nullptr;
+        std::string_view best_schedule;
+        for (const IcpSchedule schedule : schedules) {
+            const Tally& tally = tallies.at(fmt::format("{} {}", name_of(kind), name_of(schedule)));
+            const bool better = !best || tally.share() > best->share() ||
+                                (tally.share() == best->share() && median(tally.error) < median(best->error));
+            if (better) best = &tally, best_schedule = name_of(schedule);
+        }
+        rows.push_back(row_of(c, start, std::string(name_of(kind)), std::string(best_schedule), *best));
+    }
+}
+
+void print_row(const Json& row) {
+    const std::string method =
+        row["method"].get<std::string>() + (row.contains("schedule") ? " " + row["schedule"].get<std::string>() : "");
+    fmt::print("{:10} {:>4.0f}/{:<4.0f} {:22} {:>6} {:>8.1f} {:>9.3f} {:>7.2f} {:>7.0f}",
+               row["case"].get<std::string>(), row["start_mm"].get<double>(), row["start_deg"].get<double>(), method,
+               row["trials"].get<int>(), 100.0 * row["success"].get<double>(), row["median_tre_mm"].get<double>(),
+               row["median_deg"].get<double>(), row["median_ms"].get<double>());
+    if (row.contains("failures"))
+        fmt::print(" {:>5}/{} {:>5}", row["failures_flagged"].get<int>(), row["failures"].get<int>(),
+                   row["false_alarms"].get<int>());
+    fmt::print("\n");
+}
+
+Json live_rows() {
+    Json rows = Json::array();
+    for (const LiveTicks& row : bench_snap_live())
+        rows.push_back({{"case", live_case},
+                        {"method", row.method},
+                        {"painted_points", row.painted_points},
+                        {"trials", row.ticks},
+                        {"success", row.in_time},
+                        {"median_ms", row.median_ms},
+                        {"p99_ms", row.p99_ms},
+                        {"evaluations_mean", row.evaluations}});
+    return rows;
+}
+
+void print_live(const Json& rows) {
+    for (const Json& row : rows)
+        fmt::print("live, {} painted points, {}: a tick takes {:.2f} ms, p99 {:.2f}; under 0.5 ms: {:.1f} %\n",
+                   row["painted_points"].get<int>(), row["method"].get<std::string>(), row["median_ms"].get<double>(),
+                   row["p99_ms"].get<double>(), 100.0 * row["success"].get<double>());
+}
+
+/// What an outlier of a chain of pieces is must be seen: the worst beside the median.
+Json whole_case_row(const Bone& bone, const WholeCase& kind, const SnapBenchChoice& choice) {
+    const WholeCaseResult r = put_together(bone, kind, choice.seed, choice.seeds);
+    return {{"case", kind.name},
+            {"method", "matcher"},
+            {"start_mm", 5.0},
+            {"start_deg", 10.0},
+            {"trials", r.error.size()},
+            {"success", static_cast<double>(r.within) / static_cast<double>(std::max<std::size_t>(r.error.size(), 1))},
+            {"median_tre_mm", median(r.error) * 1e3},
+            {"median_deg", median(r.angle)},
+            {"median_ms", median(r.seconds) * 1e3},
+            {"worst_mm", r.worst_error() * 1e3},
+            {"worst_deg", r.worst_angle()},
+            {"fitted", r.fitted},
+            {"islands", r.islands},
+            {"without_neighbours", r.alone},
+            {"kerf_mm", kind.kerf * 1e3},
+            {"median_gap_mm", median(r.gap) * 1e3}};
+}
+
+void print_whole_case(const Json& row) {
+    fmt::print(
+        "{}: {} of {} pieces fit, {:.1f} % within 0.3 mm and 0.5°; error {:.3f} mm and {:.2f}° (median), {:.3f} mm and "
+        "{:.2f}° (worst); gap left {:.3f} mm; {} parts cut off, {} without neighbours; {:.0f} ms for a look\n",
+        row["case"].get<std::string>(), row["fitted"].get<int>(), row["trials"].get<int>(),
+        100.0 * row["success"].get<double>(), row["median_tre_mm"].get<double>(), row["median_deg"].get<double>(),
+        row["worst_mm"].get<double>(), row["worst_deg"].get<double>(), row["median_gap_mm"].get<double>(),
+        row["islands"].get<int>(), row["without_neighbours"].get<int>(), row["median_ms"].get<double>());
+}
+
+/// The whole cases that are asked for by name.
+Json whole_case_rows(const SnapBenchChoice& choice, const Bone& bone) {
+    Json rows = Json::array();
+    for (const WholeCase& kind : whole_cases()) {
+        if (std::ranges::count(choice.cases, kind.name) == 0) continue;
+        rows.push_back(whole_case_row(bone, kind, choice));
+        if (choice.json) continue;
+        print_whole_case(rows.back());
+        std::fflush(stdout);
+    }
+    return rows;
+}
+
+std::vector<FractureCase> chosen_cases(const std::vector<std::string>& names) {
+    if (names.empty()) return fracture_cases();
+    std::vector<FractureCase> chosen;
+    std::vector<std::string> known;
+    for (const FractureCase& c : fracture_cases()) known.emplace_back(c.kind.name);
+    known.emplace_back(live_case);
+    for (const WholeCase& c : whole_cases()) known.emplace_back(c.name);
+    for (const std::string& name : names) {
+        if (name == live_case || std::ranges::count(whole_cases(), name, &WholeCase::name) > 0) continue;
+        const auto found =
+            std::ranges::find_if(fracture_cases(), [&](const FractureCase& c) { return c.kind.name == name; });
+        if (found == fracture_cases().end())
+            throw Error(fmt::format("there is no case '{}'{}", name, did_you_mean(name, known)));
+        chosen.push_back(*found);
+    }
+    return chosen;
+}
+
+}  // namespace
+
+int bench_snap(const SnapBenchChoice& choice) {
+    const std::vector<FractureCase> cases = chosen_cases(choice.cases);
+    const bool live = choice.cases.empty() || std::ranges::count(choice.cases, live_case) > 0;
+    const Bone bone = choice.bone.empty() ? make_mandible() : study::bone_of_file(choice.bone);
+    Json rows = whole_case_rows(choice, bone);
+    if (!choice.json && !cases.empty())
+        fmt::print(
+            "{} broken in two, scanned and painted; success: under 0.5 mm rms over the whole fragment; processor "
+            "time; seeds {} to {}\n{:10} {:>9} {:22} {:>6} {:>8} {:>9} {:>7} {:>7} {}\n",
+            bone.name, choice.seed, choice.seed + static_cast<std::uint64_t>(choice.seeds) - 1, "case", "mm/deg",
+            "method", "trials", "success%", "tre mm", "deg", "ms", "failures named, false alarms");
+    for (const FractureCase& c : cases) {
+        std::vector<Tallies> tallies(c.starts.size());
+        for (std::uint64_t n = 0; n < static_cast<std::uint64_t>(choice.seeds); ++n) {
+            const std::uint64_t seed = choice.seed + n;
+            const FracturePair pair = make_fracture_pair(bone.distance, c.kind, seed);
+            const IcpTarget target(pair.fixed);
+            std::optional<TimedFit> anywhere;
+            for (std::size_t s = 0; s < c.starts.size(); ++s)
+                for (std::uint64_t trial = 0; trial < static_cast<std::uint64_t>(choice.trials); ++trial) {
+                    const Pose start = start_beside(pair, c.starts[s].offset_mm * 1e-3, c.starts[s].angle_deg * degree,
+                                                    choice.pushed, seed * 1000 + trial);
+                    try_all(pair, target, start, choice, anywhere, tallies[s]);
+                }
+        }
+        for (std::size_t s = 0; s < c.starts.size(); ++s) {
+            const std::size_t first = rows.size();
+            add_rows(rows, c, c.starts[s], choice, tallies[s]);
+            for (std::size_t n = first; !choice.json && n < rows.size(); ++n) print_row(rows[n]);
+            std::fflush(stdout);
+        }
+    }
+    if (live) {
+        const Json more = live_rows();
+        if (!choice.json) print_live(more);
+        rows.insert(rows.end(), more.begin(), more.end());
+    }
+    if (choice.json) fmt::print("{}\n", rows.dump(2));
+    return done;
+}
+
+Verb snap_verb() {
+    return {
+        "snap", "success of snap-to-fit on simulated fractures, beside ICP", [](VerbOptions& verb) -> Action {
+            const auto choice = std::make_shared<SnapBenchChoice>();
+            const std::vector<std::string> methods{"extended", "global", "thesis", "icp_point", "icp_plane", "gicp"};
+            verb.add("--seed", choice->seed, "of the first fracture").shows_default();
+            verb.add("--seeds", choice->seeds, "so many fractures of each kind").shows_default().range(1, 10'000);
+            verb.add("--trials", choice->trials, "starts for each fracture and distance")
+                .shows_default()
+                .range(1, 1000);
+            verb.add("--case", choice->cases,
+                     "clean, chipped25, chipped30, spilled, both, fine or live (default: all of these); twelve, "
+                     "twelve-kerf, twelve-missing: a jaw in twelve pieces, by the matcher")
+                .separated_by(',');
+            verb.add("--method", choice->methods, "extended, global, thesis, icp_point, icp_plane, gicp (default: all)")
+                .separated_by(',')
+                .one_of(methods);
+            verb.add("--bone", choice->bone, "what is broken (default: the bundled jaw)");
+            verb.flag("--pushed", choice->pushed, "starts are moved apart until bone does not lie in bone");
+            verb.flag("--json", choice->json, "as JSON");
+            return [choice] { return bench_snap(*choice); };
+        }};
+}
+
+}  // namespace tactus::bench

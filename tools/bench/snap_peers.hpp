@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Iterative closest point in its usual forms, which snap-to-fit is measured against.
+#pragma once
+
+#include "dsp/distance/point_tree.hpp"
+#include "dsp/snap/fit_surface.hpp"
+
+#include <string_view>
+#include <vector>
+
+namespace tactus::bench {
+
+/// Point to point (Besl and McKay 1992), point to plane (Chen and Medioni 1992), plane to plane (GICP, Segal 2009).
+enum class IcpKind { point, plane, generalised };
+/// Which pairs count: all, the nearest 80 %, or those within a threshold that falls from 8 mm to 0.8 mm.
+enum class IcpSchedule { unlimited, trimmed, annealed };
+
+std::string_view name_of(IcpKind kind);
+std::string_view name_of(IcpSchedule schedule);
+
+/// Nearest points by a balanced tree over the painted points of the fixed side.
+class IcpTarget {
+public:
+    explicit IcpTarget(const FitSurface& fixed) : surface_(fixed), tree_(fixed.position) {}
+
+    const FitSurface& surface() const { return surface_; }
+    std::size_t nearest(const Vec3& position) const { return tree_.nearest(position); }
+
+private:
+    const FitSurface& surface_;
+    PointTree tree_;
+};
+
+/// From `start` (between the middles of the paints) to where it settles, at most 100 iterations.
+Pose run_icp(const FitSurface& moving, const IcpTarget& fixed, const Pose& start, IcpKind kind, IcpSchedule schedule);
+
+}  // namespace tactus::bench

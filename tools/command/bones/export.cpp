@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/bone/export.hpp"
+#include "assets/mesh/mesh.hpp"
+#include "assets/mesh/write_mesh.hpp"
+#include "assets/volume/write_volume.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/command/options.hpp"
+#include "tools/exit_code.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+
+namespace tactus::command {
+
+namespace {
+
+struct ExportChoice {
+    std::filesystem::path input, out;
+    std::string bone;             // empty: all of the file
+    std::string quantity = "hu";  // of a volume: "hu", "density" or "distance"
+    bool json = false;
+};
+
+std::vector<Bone> chosen_bones(const ExportChoice& choice) {
+    if (choice.bone.empty() && file_of_bone(choice.input) == choice.input) return load_bones(choice.input);
+    std::vector<Bone> one;
+    const std::string path = choice.input.string();
+    one.push_back(load_bone(choice.bone.empty() ? path : path + "#" + choice.bone));
+    return one;
+}
+
+BoneQuantity quantity_of(const std::string& text) {
+    return text == "density" ? BoneQuantity::density : text == "distance" ? BoneQuantity::distance : BoneQuantity::hu;
+}
+
+nlohmann::ordered_json export_mesh(const std::vector<Bone>& bones, const std::filesystem::path& out) {
+    std::vector<ColouredSurface> surfaces;
+    double volume = 0.0;
+    std::size_t triangles = 0;
+    for (const Bone& bone : bones) {
+        surfaces.push_back({export_surface(bone.distance), bone.colour});
+        volume += volume_of(surfaces.back().surface);
+        triangles += surfaces.back().surface.triangles.size();
+    }
+    write_mesh(surfaces, out);
+    return {{"triangles", triangles}, {"volume_mm3", volume * 1e9}};
+}
+
+nlohmann::ordered_json export_volume(const std::vector<Bone>& bones, const ExportChoice& choice) {
+    const BoneQuantity quantity = quantity_of(choice.quantity);
+    const Grid volume = volume_of_bones(bones, quantity);
+    write_volume(volume, quantity == BoneQuantity::hu ? SampleType::int16 : SampleType::float32, choice.out);
+    const Vec3 h = volume.spacing * 1e3;
+    return {{"quantity", choice.quantity}, {"size", volume.size}, {"spacing_mm", {h.x, h.y, h.z}}};
+}
+
+int export_bone(const ExportChoice& choice) {
+    const std::string kind = choice.out.extension().string();
+    const bool is_mesh = kind == ".stl" || kind == ".ply";
+    if (!is_mesh && kind != ".nrrd" && kind != ".nii" && !choice.out.string().ends_with(".nii.gz"))
+        throw Error(fmt::format("{}: export writes .stl and .ply (the surface), .nrrd, .nii and .nii.gz (a volume)",
+                                choice.out.string()));
+    const std::vector<Bone> bones = chosen_bones(choice);
+    nlohmann::ordered_json json = is_mesh ? export_mesh(bones, choice.out) : export_volume(bones, choice);
+    std::vector<std::string> names;
+    for (const Bone& bone : bones) names.push_back(bone.name);
+    json["bones"] = names;
+    json["file"] = choice.out.string();
+    if (choice.json) fmt::print("{}\n", json.dump(2));
+    else if (is_mesh)
+        fmt::print("{}: {} triangles around {:.0f} mm³, LPS, mm\n", choice.out.string(),
+                   json["triangles"].get<std::size_t>(), json["volume_mm3"].get<double>());
+    else
+        fmt::print("{}: {} on {} x {} x {} samples\n", choice.out.string(), choice.quantity, json["size"][0].get<int>(),
+                   json["size"][1].get<int>(), json["size"][2].get<int>());
+    return done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<ExportChoice>();
+    verb.add("bone", choice->input, "bone file; FILE.vdb#NAME for one of several").required();
+    verb.add("-o,--out", choice->out, ".stl or .ply: the surface; .nrrd, .nii or .nii.gz: a volume").required();
+    verb.add("--bone", choice->bone, "one of several bones (default: all)");
+    verb.add("--quantity", choice->quantity, "what a volume holds")
+        .one_of({"hu", "density", "distance"})
+        .shows_default();
+    verb.flag("--json", choice->json, "print a summary as JSON");
+    return [choice] { return export_bone(*choice); };
+}
+
+}  // namespace
+
+Verb export_verb() { return {"export", "write a bone, cut or not, as a mesh or a volume", add}; }
+
+}  // namespace tactus::command

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Proposes where a fragment is broken, and takes corrections by hand.
+#include "tools/study/bones/fracture_surface.hpp"
+#include "assets/fracture/paint_file.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/command/options.hpp"
+#include "tools/exit_code.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+
+namespace tactus::command {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct FractureSurfaceChoice {
+    study::FractureSurfaceSettings settings;
+    std::filesystem::path out;
+    double reach = 10.0;               // mm
+    std::optional<double> least_area;  // mm²
+    bool json = false;
+};
+
+Json residual_json(const Registration& r) { return {{"median_mm", r.median * 1e3}, {"p90_mm", r.p90 * 1e3}}; }
+
+Json json_of(const FractureSurfaceChoice& choice, const study::FractureSurface& found,
+             const std::vector<PaintedFace>& faces) {
+    Json json{{"file", choice.out.string()}, {"faces", Json::array()}};
+    if (found.intact) {
+        json["intact"] = {{"file", choice.settings.intact.string()}, {"on_main", residual_json(found.intact->on_main)}};
+        if (found.intact->on_bone) json["intact"]["on_bone"] = residual_json(*found.intact->on_bone);
+    }
+    for (const PaintedFace& f : faces) {
+        const Vec3 p = f.middle * 1e3;
+        json["faces"].push_back({{"area_mm2", f.area * 1e6},
+                                 {"points", f.points},
+                                 {"middle_mm", {p.x, p.y, p.z}},
+                                 {"normal", {f.normal.x, f.normal.y, f.normal.z}}});
+    }
+    return json;
+}
+
+void print_laid(const char* where, const Registration& r) {
+    fmt::print("the unbroken bone lies {}: median {:.2f} mm, 90 % within {:.2f} mm\n", where, r.median * 1e3,
+               r.p90 * 1e3);
+}
+
+void print(const study::FractureSurface& found, const std::vector<PaintedFace>& faces) {
+    if (found.intact) print_laid("on the main fragment", found.intact->on_main);
+    if (found.intact && found.intact->on_bone) print_laid("on this one, by itself", *found.intact->on_bone);
+    for (const PaintedFace& f : faces) {
+        const Vec3 p = f.middle * 1e3;
+        fmt::print("{:.0f} mm² about {:.1f} {:.1f} {:.1f} mm, looking along {:.2f} {:.2f} {:.2f}\n", f.area * 1e6, p.x,
+                   p.y, p.z, f.normal.x, f.normal.y, f.normal.z);
+    }
+    if (faces.empty()) fmt::print("nothing looks broken; paint it by hand, or lower --roughness\n");
+}
+
+int fracture_surface(const FractureSurfaceChoice& choice) {
+    const auto extension = choice.out.extension();
+    if (extension != ".json" && extension != ".vdb")
+        throw Error(fmt::format("{}: paint goes to a .json file of strokes or a .vdb bone file", choice.out.string()));
+    study::FractureSurfaceSettings settings = choice.settings;
+    settings.reach = choice.reach * 1e-3;
+    if (choice.least_area) settings.least_area = *choice.least_area * 1e-6;
+    const study::FractureSurface found = study::propose_fracture_surface(settings);
+    std::vector<PaintedFace> faces;
+    if (extension == ".json") faces = write_paint_file(found.bone.points, settings.bone.string(), choice.out);
+    else {
+        faces = painted_faces(found.bone.points);
+        save_bone(found.bone, choice.out);
+    }
+    if (choice.json) fmt::print("{}\n", json_of(choice, found, faces).dump(2));
+    else print(found, faces);
+    return faces.empty() ? answer_is_no : done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<FractureSurfaceChoice>();
+    study::FractureSurfaceSettings& settings = choice->settings;
+    verb.add("bone", settings.bone, "bone file or closed mesh").required();
+    verb.add("-o,--out", choice->out,
+             ".json: strokes of a brush, to be corrected by hand; .vdb: the bone with its paint")
+        .required();
+    verb.add("--paint", settings.paint, "use this file of strokes instead of the proposal");
+    verb.flag("--correct", settings.correct, "use its strokes on top of the proposal");
+    verb.add("--facing", settings.facing,
+             "another fragment of the same scan: what faces it is proposed, however smooth");
+    const Option intact = verb.add("--intact", settings.intact,
+                                   "the unbroken bone, wherever it lies: what lies inside of it is "
+                                   "proposed; with --facing only what is near that");
+    verb.flag("--mirror", settings.mirror, "that is the other side of the body").needs(intact);
+    verb.add("--main", settings.main,
+             "the fragment of the same scan that the unbroken bone is laid on first (default: this one)")
+        .needs(intact);
+    verb.add("--reach", choice->reach, "how far that may be, mm").shows_default().range(0.1, 100.0);
+    verb.flag("--keep", settings.keep, "start from the paint that the bone file has; without any, from the proposal");
+    verb.add("--roughness", settings.roughness, "from which on a place is broken: mean of 1 - cos of normals")
+        .shows_default()
+        .range(0.0, 1.0);
+    verb.add("--least-area", choice->least_area, "smaller patches are left out, mm² (default: 20, with --intact 50)")
+        .range(0.0, 1e5);
+    verb.flag("--json", choice->json, "as JSON");
+    return [choice] { return fracture_surface(*choice); };
+}
+
+}  // namespace
+
+Verb fracture_surface_verb() { return {"fracture-surface", "propose where a fragment is broken; 1: nowhere", add}; }
+
+}  // namespace tactus::command

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/core/error.hpp"
+#include "tools/command/options.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/picture/report/inspection_picture.hpp"
+#include "tools/study/bones/inspection.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <memory>
+
+namespace tactus::command {
+
+namespace {
+
+using study::InspectedPart;
+using study::Inspection;
+
+struct InfoChoice {
+    std::filesystem::path input;
+    std::filesystem::path out;  // of the picture: a file, or a folder for INPUT.png; empty: none
+    std::string series;         // of a DICOM folder
+    bool json = false;
+};
+
+nlohmann::ordered_json json_of(const Inspection& found) {
+    nlohmann::ordered_json parts = nlohmann::ordered_json::array();
+    for (const InspectedPart& part : found.parts)
+        parts.push_back({{"volume_mm3", part.volume_mm3}, {"bounds_mm", part.bounds_mm}});
+    nlohmann::ordered_json json{{"kind", found.kind},
+                                {"frame", found.frame},
+                                {"size", found.size},
+                                {"spacing_mm", found.spacing_mm},
+                                {"uniform", found.uniform},
+                                {"tilt_deg", found.tilt_deg},
+                                {"hu", found.hu},
+                                {"range", found.range},
+                                {"suggested_threshold", nullptr},
+                                {"components", parts}};
+    if (found.threshold) json["suggested_threshold"] = *found.threshold;
+    return json;
+}
+
+// Bars by the logarithm of the count: a CT is mostly air.
+std::string bars(const Histogram& histogram) {
+    std::uint64_t most = 1;
+    for (const std::uint64_t count : histogram.counts) most = std::max(most, count);
+    std::string text;
+    for (std::size_t n = 0; n < histogram.counts.size(); ++n) {
+        const double share = std::log1p(double(histogram.counts[n])) / std::log1p(double(most));
+        text += fmt::format("  {:>9.0f} {:<40} {}\n", histogram.middle(n),
+                            std::string(static_cast<std::size_t>(share * 40.0), '#'), histogram.counts[n]);
+    }
+    return text;
+}
+
+std::string text_of(const Inspection& found) {
+    const auto& [x, y, z] = found.spacing_mm;
+    std::string text = fmt::format("kind: {}, frame {}\n", found.kind, found.frame);
+    if (found.size[0] > 0)
+        text += fmt::format("{} x {} x {} voxels of {:.4g} x {:.4g} x {:.4g} mm{}{}\n", found.size[0], found.size[1],
+                            found.size[2], x, y, z, found.uniform ? "" : ", slices unevenly spaced",
+                            found.tilt_deg > 0.05 ? fmt::format(", tilted by {:.1f} degrees", found.tilt_deg) : "");
+    if (found.kind != "mesh") {
+        text += fmt::format("values {:g} to {:g}, hu: {}\n", found.range[0], found.range[1], found.hu);
+        text += bars(found.histogram);
+    }
+    if (found.threshold)
+        text += fmt::format("suggested threshold: {:.0f} ({})\n", *found.threshold,
+                            found.hu == "masked" ? "half the median of what is not masked"
+                                                 : "Otsu's method twice: air off, then bone from the rest");
+    text += fmt::format("{} component{}:\n", found.parts_in_all, found.parts_in_all == 1 ? "" : "s");
+    for (const InspectedPart& part : found.parts) {
+        const auto& b = part.bounds_mm;
+        text += fmt::format("  {}: {:.0f} mm³, x {:.1f}:{:.1f}, y {:.1f}:{:.1f}, z {:.1f}:{:.1f} mm\n", part.name,
+                            part.volume_mm3, b[0][0], b[0][1], b[1][0], b[1][1], b[2][0], b[2][1]);
+    }
+    if (found.parts_in_all > found.parts.size())
+        text += fmt::format("  and {} smaller\n", found.parts_in_all - found.parts.size());
+    for (const std::string& note : found.notes) text += "  " + note + "\n";
+    return text;
+}
+
+int info(const InfoChoice& choice) {
+    const Inspection found = study::inspect(choice.input, choice.series);
+    std::filesystem::path picture = choice.out;
+    if (!picture.empty()) {
+        if (std::filesystem::is_directory(picture))
+            picture /= choice.input.lexically_normal().filename().string() + ".png";
+        picture::write_picture(found, picture);
+    }
+    if (choice.json) {
+        fmt::print("{}\n", json_of(found).dump(2));
+        return done;
+    }
+    fmt::print("{}: {}", choice.input.string(), text_of(found));
+    if (picture.empty()) fmt::print("  a picture of it: -o PICTURE.png\n");
+    else fmt::print("  picture: {}\n", picture.string());
+    return done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<InfoChoice>();
+    verb.add("file", choice->input, "the file").required();
+    verb.add("--series", choice->series, "DICOM: the series to look at, by its UID or the end of it");
+    verb.add("-o,--out", choice->out, "a PNG of three slices and the surface: a file, or a folder to put it in");
+    verb.flag("--json", choice->json, "as JSON");
+    return [choice] { return info(*choice); };
+}
+
+}  // namespace
+
+Verb info_verb() { return {"info", "what is in a CT, label map, mesh or bone file", add}; }
+
+}  // namespace tactus::command

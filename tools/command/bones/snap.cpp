@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// One fit of two fragments, with its verdict.
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/command/options.hpp"
+#include "tools/command/pose_text.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/study/bones/snapping.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <memory>
+
+namespace tactus::command {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct SnapChoice {
+    study::SnapSettings settings;
+    std::string paint = "auto", start, mode = "extended";
+    bool json = false;
+};
+
+/// Of one side: {"moving": [[x, y, z], ...], "fixed": [...], "radius_mm": r}, in mm.
+study::FragmentPaint strokes_of(const Json& strokes, const char* side, const std::string& file) {
+    if (!strokes.is_object() || !strokes.contains(side) || !strokes[side].is_array())
+        throw Error(
+            fmt::format("{}: expected {{\"moving\": [[x, y, z], ...], \"fixed\": [...], \"radius_mm\": r}}", file));
+    study::FragmentPaint paint{{}, {}, 1e-3 * strokes.value("radius_mm", 1.0), file};
+    for (const Json& at : strokes[side]) {
+        if (!at.is_array() || at.size() != 3 || !std::ranges::all_of(at, [](const Json& x) { return x.is_number(); }))
+            throw Error(fmt::format("{}: a stroke of '{}' is no list of three numbers", file, side));
+        paint.strokes.emplace_back(1e-3 * at[0].get<double>(), 1e-3 * at[1].get<double>(), 1e-3 * at[2].get<double>());
+    }
+    return paint;
+}
+
+study::SnapSettings settings_of(const SnapChoice& choice) {
+    study::SnapSettings settings = choice.settings;
+    if (!choice.start.empty()) settings.start = pose_of_text(choice.start, "--start");
+    settings.mode = choice.mode == "thesis"   ? FitMode::thesis
+                    : choice.mode == "global" ? FitMode::global
+                                              : FitMode::extended;
+    if (const auto comma = choice.paint.find(','); comma != std::string::npos) {
+        settings.moving_paint.file = choice.paint.substr(0, comma);
+        settings.fixed_paint.file = choice.paint.substr(comma + 1);
+    } else if (choice.paint != "auto") {
+        const Json strokes = Json::parse(read_whole_file(choice.paint), nullptr, false);
+        settings.moving_paint = strokes_of(strokes, "moving", choice.paint);
+        settings.fixed_paint = strokes_of(strokes, "fixed", choice.paint);
+    }
+    return settings;
+}
+
+Json painted_mm2(const study::SnappedSide& side) {
+    Json areas = Json::array();
+    for (const double area : side.areas) areas.push_back(area * 1e6);
+    return areas;
+}
+
+Json json_of(const Fit& fit) {
+    Json free = Json::array();
+    for (const FreeDirection& f : fit.free)
+        free.push_back({{"type", f.is_turn ? "rotation" : "translation"}, {"axis", {f.axis.x, f.axis.y, f.axis.z}}});
+    return {{"pose", pose_json<Json>(fit.pose)},
+            {"score", fit.quality.score},
+            {"margin", fit.margin},
+            {"overlap_mm2", fit.quality.overlap * 1e6},
+            {"rms_mm", fit.quality.rms * 1e3},
+            {"gap_mm", fit.quality.gap * 1e3},
+            {"penetration_mm", fit.quality.penetration * 1e3},
+            {"outline_step_mm", fit.quality.outline * 1e3},
+            {"free_directions", free},
+            {"verdict", name_of(fit.verdict)}};
+}
+
+Json json_of(const study::Snapped& found) {
+    Json json = json_of(found.fit);
+    json["moved"] = motion_json<Json>(found.moved);
+    json["as_scanned"] = found.as_scanned;
+    json["time_ms"] = 1e3 * found.seconds;
+    json["iterations"] = found.fit.iterations;
+    json["paint"] = {{"moving", found.moving.paint}, {"fixed", found.fixed.paint}};
+    json["painted_mm2"] = {{"moving", painted_mm2(found.moving)}, {"fixed", painted_mm2(found.fixed)}};
+    return json;
+}
+
+void print(const study::Snapped& found) {
+    const Fit& fit = found.fit;
+    const Vec3 p = fit.pose.position * 1e3;
+    const Quat q = fit.pose.orientation;
+    fmt::print("{}: score {:.2f}, margin {:.2f}, {:.0f} mm² on each other, {:.3f} mm rms, {:.0f} ms\n",
+               name_of(fit.verdict), fit.quality.score, fit.margin, fit.quality.overlap * 1e6, fit.quality.rms * 1e3,
+               1e3 * found.seconds);
+    fmt::print("p_fixed = R p_moving + t: t = {:.3f} {:.3f} {:.3f} mm, q = {:.5f} {:.5f} {:.5f} {:.5f}\n", p.x, p.y,
+               p.z, q.w, q.x, q.y, q.z);
+    for (const FreeDirection& f : fit.free)
+        fmt::print("free to {} {:.2f} {:.2f} {:.2f}\n", f.is_turn ? "turn about" : "slide along", f.axis.x, f.axis.y,
+                   f.axis.z);
+    if (found.as_scanned) fmt::print("{}\n", as_scanned_note);
+}
+
+int snap(const SnapChoice& choice) {
+    const study::Snapped found = study::snap_files(settings_of(choice));
+    if (choice.json) fmt::print("{}\n", json_of(found).dump(2));
+    else print(found);
+    return found.fit.verdict == FitVerdict::fit ? done : answer_is_no;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<SnapChoice>();
+    verb.add("moving", choice->settings.moving, "the fragment that is to move: bone file or closed mesh").required();
+    verb.add("fixed", choice->settings.fixed, "the one that stands").required();
+    verb.add("--paint", choice->paint,
+             "auto: what the bone files have painted, or else a proposal; or a JSON file of brush strokes, or two of "
+             "'fracture-surface': MOVING.json,FIXED.json")
+        .shows_default();
+    verb.add("--start", choice->start, "X,Y,Z,QW,QX,QY,QZ in mm: where the moving one is (default: as filed)");
+    verb.add("--mode", choice->mode, "thesis and extended start from there, global from anywhere")
+        .one_of({"thesis", "extended", "global"})
+        .shows_default();
+    verb.flag("--json", choice->json, "as JSON");
+    return [choice] { return snap(*choice); };
+}
+
+}  // namespace
+
+Verb snap_verb() { return {"snap", "where a fragment fits another, and how sure that is", add}; }
+
+}  // namespace tactus::command

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// The verbs of the tactus command.
+#pragma once
+
+#include "tools/command/options.hpp"
+
+namespace tactus::command {
+
+/// In the order of the help text.
+const Verbs& all_verbs();
+/// Those of 'plan'.
+const Verbs& plan_verbs();
+
+}  // namespace tactus::command

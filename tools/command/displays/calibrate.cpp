@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// From touched places to the file of a display rig.
+#include "assets/display/touch_file.hpp"
+#include "assets/file/whole_file.hpp"
+#include "devices/haptic/catalogue.hpp"
+#include "dsp/core/units.hpp"
+#include "tools/command/options.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/picture/scene/mark_window.hpp"
+#include "tools/study/displays/calibration.hpp"
+#include "tools/study/displays/touch_session.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace tactus::command {
+
+namespace {
+
+struct CalibrateChoice {
+    study::CalibrationSettings settings;
+    std::filesystem::path out, touches, keep, base;
+    std::string device;
+    std::vector<std::string> device_options, tracker_options;  // NAME=VALUE, of their drivers
+    bool json = false;
+    int show = 0;  // monitor, from 1, that shows the marks
+};
+
+std::unique_ptr<HapticDevice> open(const std::string& driver, const std::vector<std::string>& given) {
+    std::vector<OptionText> options;
+    for (const std::string& one : given) {
+        const std::size_t equals = one.find('=');
+        if (equals == std::string::npos || equals == 0)
+            throw Error(fmt::format("an option of a device is NAME=VALUE, not '{}'", one));
+        options.push_back({one.substr(0, equals), one.substr(equals + 1), {}});
+    }
+    tactus::Options all(fmt::format("device '{}'", driver), std::move(options));
+    auto device =
+        open_haptic_device(driver, {}, all, [](const std::string& name) { return std::filesystem::path(name); });
+    all.finish();
+    return device;
+}
+
+/// The touches of a device, or those of a file.
+std::vector<RigTouch> touches_of(const CalibrateChoice& choice, const RigFile& base, const RigFitOptions& options) {
+    if (!choice.touches.empty()) return load_touches(choice.touches);
+    std::vector<RigTouch> steps = study::calibration_steps(choice.settings);
+    study::check_screens(choice.settings, base);
+    study::TouchLead lead(std::move(steps), !choice.settings.tracker.empty(),
+                          [&](std::span<const RigTouch> done) { fit_rig(done, options); });
+    study::TipReader tip(
+        open(choice.device, choice.device_options), is_real_driver(choice.device),
+        parse_vector(choice.settings.tip, "mm"),
+        choice.settings.tracker.empty() ? nullptr : open(choice.settings.tracker, choice.tracker_options));
+    std::optional<picture::MarkWindow> window;
+    if (choice.show > 0) window.emplace(choice.show);
+    const bool can_ask = ::isatty(STDIN_FILENO) != 0;
+    study::TouchSession session;
+    session.show = [&](const RigTouch& step, std::size_t number, std::size_t of) {
+        if (!choice.json)
+            fmt::print(stderr, "{:2} of {}: {}; press {}\n", number + 1, of, study::prompt_of(step),
+                       can_ask ? "the button, or Enter" : "the button");
+        if (window) window->show(step, fmt::format("{} of {}: {}", number + 1, of, study::prompt_of(step)));
+    };
+    session.say = [](const std::string& said) { fmt::print(stderr, "        {}\n", said); };
+    session.is_asked = [&] {
+        pollfd input{STDIN_FILENO, POLLIN, 0};
+        char line[256];
+        return can_ask && ::poll(&input, 1, 0) == 1 && ::read(STDIN_FILENO, line, sizeof line) > 0;
+    };
+    session.tend = [&] {
+        if (window && !window->draw()) throw Error("the window with the marks was closed; nothing is written");
+    };
+    session.run(tip, lead);
+    return lead.steps();
+}
+
+int calibrate(const CalibrateChoice& choice) {
+    const RigFile base = choice.base.empty() ? RigFile{} : load_rig_file(choice.base);
+    const RigFitOptions options = study::fit_options(choice.settings, base);
+    const std::vector<RigTouch> touches = touches_of(choice, base, options);
+    // Touches are worth keeping also when nothing comes of them.
+    if (!choice.keep.empty()) write_whole_file(choice.keep, touches_text(touches));
+    const RigFit fit = fit_rig(touches, options);
+    const study::TouchesOff all = study::touches_off(fit);
+    nlohmann::ordered_json parts = nlohmann::ordered_json::array();
+    std::string text;
+    for (const TouchedPart& part : fit.parts) {
+        nlohmann::ordered_json off = nlohmann::ordered_json::array();
+        text += study::part_text(part) + "\n";
+        for (std::size_t i = 0; i < part.touches.size(); ++i) {
+            const RigTouch& touch = touches[part.touches[i]];
+            text += fmt::format("  touch {:2}  {:6.2f} mm  {}\n", part.touches[i] + 1, part.off[i] * 1e3, touch.name());
+            off.push_back({{"touch", part.touches[i] + 1}, {"off_mm", part.off[i] * 1e3}, {"of", touch.name()}});
+        }
+        parts.push_back({{"part", part.what},
+                         {"rms_mm", part.residual.rms * 1e3},
+                         {"worst_mm", part.residual.worst * 1e3},
+                         {"touches", off}});
+    }
+    study::write_calibrated(choice.out, study::calibrated_rig(base, fit), fit);
+    if (choice.json)
+        fmt::print("{}\n", nlohmann::ordered_json{{"rig", choice.out.string()},
+                                                  {"rms_mm", all.rms * 1e3},
+                                                  {"worst_mm", all.worst * 1e3},
+                                                  {"parts", parts}}
+                               .dump(2));
+    else
+        fmt::print(
+            "{}all {} touches: {:.2f} mm rms, {:.2f} mm worst\n{} is written; use it with 'run --view --rig {}'\n",
+            text, all.count, all.rms * 1e3, all.worst * 1e3, choice.out.string(), choice.out.string());
+    return done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<CalibrateChoice>();
+    verb.add("-o,--out", choice->out, "the rig, TOML").required();
+    const Option device =
+        verb.add("--device", choice->device, "driver of the device that touches; 'devices' lists them");
+    verb.add("--touches", choice->touches, "a CSV of touches instead of a device").excludes(device);
+    verb.add("--option", choice->device_options, "of the device's driver: NAME=VALUE").one_each();
+    verb.add("--tip", choice->settings.tip, "what touches, in the frame of the handle").shows_default();
+    verb.add("--screen", choice->settings.screens, "a screen whose marks are touched; more than once: several")
+        .one_each();
+    verb.add("--image", choice->settings.images, "a screen whose marks are touched where the mirror shows them")
+        .one_each();
+    verb.flag("--mirror", choice->settings.mirror, "touch the mirror as well");
+    verb.add("--places", choice->settings.places,
+             "CSV (x_mm, y_mm, z_mm) of places that are known in the viewer's world");
+    verb.add("--tracker", choice->settings.tracker,
+             "driver that tells where the tip is in the viewer's world, instead");
+    verb.add("--tracker-option", choice->tracker_options, "of that driver: NAME=VALUE").one_each();
+    verb.add("--grid", choice->settings.grid, "marks along each side of a screen").shows_default().range(2, 9);
+    verb.add("--points", choice->settings.points, "touches of the mirror, and of the workspace with a tracker")
+        .shows_default()
+        .range(4, 100);
+    verb.add("--show", choice->show, "show the marks on this monitor, from 1").range(1, 64);
+    verb.flag("--affine", choice->settings.affine, "take up scales and skews of the device");
+    verb.add("--tolerance", choice->settings.tolerance, "a touch farther off what the others say is refused")
+        .shows_default();
+    verb.add("--base", choice->base, "a rig that stays as it is where nothing is touched");
+    verb.add("--keep", choice->keep, "write the touches as CSV, for --touches");
+    verb.flag("--json", choice->json, "as JSON");
+    verb.check([choice = choice.get()] {
+        if (choice->device.empty() == choice->touches.empty())
+            throw Error("say what touches: --device DRIVER, or --touches FILE");
+    });
+    return [choice] { return calibrate(*choice); };
+}
+
+}  // namespace
+
+Verb calibrate_verb() {
+    return {"calibrate",
+            "find where screens, mirror and device stand, by touching them with the device: a file for --rig", add};
+}
+
+}  // namespace tactus::command

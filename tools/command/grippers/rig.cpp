@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// How faithfully a gripper renders objects.
+#include "assets/file/whole_file.hpp"
+#include "devices/display/png.hpp"
+#include "tools/command/batch.hpp"
+#include "tools/command/grippers/rig_text.hpp"
+#include "tools/command/patch_options.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/picture/report/rig_figures.hpp"
+#include "tools/picture/report/rig_page.hpp"
+#include "tools/session/load_plan.hpp"
+#include "tools/study/grippers/rig_series.hpp"
+#include "tools/study/grippers/rig_study.hpp"
+#include "tools/study/workers.hpp"
+#include "tools/terminal.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace tactus::command {
+
+namespace {
+
+struct RigChoice {
+    session::PatchChoice patch;  // may be a CSV file of a rig's record instead
+    std::filesystem::path matrix, out;
+    int threads = 0;           // 0: one per core
+    bool keep_series = false;  // write what was measured as series.csv
+    bool json = false;
+};
+
+study::RigReport simulate(const RigChoice& choice, const RigMatrix& matrix) {
+    LiveLine line;
+    std::string series;
+    const auto keep = [&](const study::RigCell& cell, const RigSeries& measured) {
+        if (choice.keep_series) series += study::rig_series_csv(cell, measured, series.empty());
+    };
+    const auto progress = [&](int done_cells, int of) {
+        line.show(progress_bar(static_cast<std::size_t>(done_cells), static_cast<std::size_t>(of), "cells"));
+    };
+    study::RigReport report = study::study_rig(choice.patch, matrix, study::on_threads(choice.threads), progress, keep);
+    line.clear();
+    if (choice.keep_series) write_whole_file(choice.out / "series.csv", series);
+    report.title = "Test rig: " + choice.patch.patch;
+    report.source =
+        fmt::format("{} motors, {} objects, {} rates and {} amplitudes on simulated grippers.", matrix.motors.size(),
+                    matrix.objects.size(), matrix.rates.size(), matrix.amplitudes.size());
+    return report;
+}
+
+study::RigReport recorded(const RigChoice& choice) {
+    std::vector<std::string> notes;
+    study::RigReport report = study::study_rig_series(study::load_rig_series(choice.patch.patch, notes));
+    report.title = "Test rig: " + std::filesystem::path(choice.patch.patch).filename().string();
+    report.source = fmt::format("{} records as they were measured.", report.rows.size());
+    report.notes = std::move(notes);
+    return report;
+}
+
+int rig(const RigChoice& choice) {
+    const bool is_record = choice.patch.patch.ends_with(".csv");
+    if (is_record && !choice.matrix.empty()) throw Error("a record says itself what was tried; leave --matrix out");
+    RigMatrix matrix;
+    if (!choice.matrix.empty()) matrix = load_rig_matrix(choice.matrix);
+    session::make_output_folder(choice.out);
+    study::RigReport report;
+    if (is_record) report = recorded(choice);
+    else report = simulate(choice, matrix);
+    const std::string json = rig_json(report);
+    write_whole_file(choice.out / "rig.json", json);
+    write_whole_file(choice.out / "rig.csv", rig_csv(report));
+    write_whole_file(choice.out / "report.html", picture::rig_html(report));
+    write_png(picture::draw_rig_errors(report).image(), (choice.out / "errors.png").string());
+    if (!report.crossover.empty())
+        write_png(picture::draw_rig_crossover(report).image(), (choice.out / "crossover.png").string());
+    fmt::print("{}", choice.json ? json : rig_text(report));
+    return done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<RigChoice>();
+    add_patch_options(verb, choice->patch);
+    verb.find("patch").about("patch with a gripper on a rig, such as gripper-wqsm, or a CSV of a real one");
+    verb.add("--matrix", choice->matrix, "TOML: what is tried (default: the matrix of the thesis)");
+    verb.add("--out", choice->out, "folder for report.html, rig.json and rig.csv").required();
+    verb.add("--threads", choice->threads, "threads, 0: one per core").range(0, 64);
+    verb.flag("--series", choice->keep_series, "also write every sample, series.csv, which 'rig' reads as well");
+    verb.flag("--json", choice->json, "print the answer as JSON");
+    return [choice] { return rig(*choice); };
+}
+
+}  // namespace
+
+Verb rig_verb() {
+    return {"rig", "how faithfully a gripper renders objects: motors, objects, rates and amplitudes on a test rig",
+            add};
+}
+
+}  // namespace tactus::command

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a rig found, as JSON, CSV and text.
+#pragma once
+
+#include "tools/study/grippers/rig_report.hpp"
+
+#include <string>
+
+namespace tactus::command {
+
+std::string rig_json(const study::RigReport& report);
+std::string rig_csv(const study::RigReport& report);
+std::string rig_text(const study::RigReport& report);
+
+}  // namespace tactus::command

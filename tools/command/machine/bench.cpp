@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Hands the benchmarks on to the program that has them.
+#include "dsp/core/error.hpp"
+#include "tools/command/options.hpp"
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+namespace tactus::command {
+
+namespace {
+
+/// Only returns by throwing Error.
+int run_tactus_bench(const std::vector<std::string>& arguments) {
+    std::error_code failure;
+    const auto self = std::filesystem::read_symlink("/proc/self/exe", failure);
+    const std::filesystem::path program = self.parent_path() / "tactus-bench";
+    if (failure || !std::filesystem::exists(program))
+        throw Error(
+            fmt::format("the benchmarks are a program of their own, {}, which is not there; build it with "
+                        "'cmake --build BUILD_FOLDER --target tactus-bench', or install it beside tactus",
+                        program.string()));
+    std::string name = program.string();
+    std::vector<std::string> words = arguments;
+    std::vector<char*> argv{name.data()};
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    std::fflush(nullptr);
+    ::execv(name.c_str(), argv.data());
+    throw Error(fmt::format("{}: cannot be run: {}", name, std::strerror(errno)));
+}
+
+}  // namespace
+
+Verb bench_verb() {
+    return {"bench", "figures of this machine, beside other programs where they are installed", nullptr, nullptr,
+            run_tactus_bench};
+}
+
+}  // namespace tactus::command

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/command/patch_options.hpp"
+
+namespace tactus::command {
+
+void add_patch_options(VerbOptions& verb, session::PatchChoice& choice) {
+    verb.add("patch", choice.patch, "patch file, or a name in the library such as saw-training").required();
+    add_override_options(verb, choice);
+}
+
+void add_override_options(VerbOptions& verb, session::PatchChoice& choice) {
+    verb.add("--set", choice.overrides.settings, "change a parameter: NODE.PARAM=VALUE").one_each();
+    verb.add("--asset", choice.overrides.assets, "use another file: NAME=PATH").one_each();
+    verb.add("--seed", choice.seed, "seed of the random numbers");
+}
+
+}  // namespace tactus::command

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every verb that compiles a patch is given.
+#pragma once
+
+#include "tools/command/options.hpp"
+#include "tools/session/patch_choice.hpp"
+
+namespace tactus::command {
+
+/// The patch, its changed parameters and assets, and the seed.
+void add_patch_options(VerbOptions& verb, session::PatchChoice& choice);
+/// The same without the patch.
+void add_override_options(VerbOptions& verb, session::PatchChoice& choice);
+
+}  // namespace tactus::command

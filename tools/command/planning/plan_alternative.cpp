@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Alternatives of a plan: places in its history with a name.
+#include "dsp/core/error.hpp"
+#include "tools/command/planning/plan_options.hpp"
+#include "tools/study/planning/plan_case.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace tactus::command {
+
+namespace {
+
+struct AlternativeChoice : PlanChoice {
+    std::string alternative, from;
+    bool remove = false;
+};
+
+int list_alternatives(const PlanChoice& choice) {
+    if (choice.json) return show_plan(choice);
+    const CasePlan plan = load_case_plan(choice.plan);
+    for (const PlanAlternative& a : plan.alternatives)
+        fmt::print("{} {}: {} steps\n", &a == &plan.alternatives[static_cast<std::size_t>(plan.current)] ? '*' : ' ',
+                   a.name, steps_to(plan.before(), a.place.head).size());
+    return done;
+}
+
+int go_to_alternative(const AlternativeChoice& choice) {
+    if (choice.alternative.empty()) return list_alternatives(choice);
+    study::OpenPlan open(choice.plan);
+    CasePlan& plan = open.plan;
+    const auto find = [&plan](const std::string& name) {
+        return std::ranges::find(plan.alternatives, name, &PlanAlternative::name);
+    };
+    auto found = find(choice.alternative);
+    if (choice.remove) {
+        if (found == plan.alternatives.end() || found - plan.alternatives.begin() == plan.current)
+            throw Error(fmt::format("'{}' cannot be removed: it is {}", choice.alternative,
+                                    found == plan.alternatives.end() ? "not there" : "where the plan stands"));
+        if (found - plan.alternatives.begin() < plan.current) --plan.current;
+        plan.alternatives.erase(found);
+    } else if (found == plan.alternatives.end()) {
+        const auto from = choice.from.empty() ? plan.alternatives.begin() + plan.current : find(choice.from);
+        if (from == plan.alternatives.end())
+            throw Error(fmt::format("there is no alternative '{}' to begin from", choice.from));
+        plan.alternatives.push_back({choice.alternative, after_step(from->place.head)});
+        plan.current = static_cast<int>(plan.alternatives.size()) - 1;
+    } else if (!choice.from.empty()) {
+        throw Error(
+            fmt::format("there is an alternative '{}' already; leave --from out to go there", choice.alternative));
+    } else plan.current = static_cast<int>(found - plan.alternatives.begin());
+    save_case_plan(plan, choice.plan);
+    return show_change(choice);
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<AlternativeChoice>();
+    add_plan_options(verb, *choice);
+    verb.add("name", choice->alternative, "which (default: list them)");
+    verb.add("--from", choice->from, "begin it where this one stands");
+    verb.flag("--remove", choice->remove, "forget the name; its steps stay in the file");
+    return [choice] { return go_to_alternative(*choice); };
+}
+
+}  // namespace
+
+Verb plan_alternative_verb() { return {"alternative", "begin one where the plan stands, or go to another", add}; }
+
+}  // namespace tactus::command

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Groups, locks and hides fragments: one step of the plan each.
+#include "dsp/core/error.hpp"
+#include "tools/command/planning/plan_options.hpp"
+#include "tools/study/planning/plan_case.hpp"
+
+namespace tactus::command {
+
+namespace {
+
+struct ArrangeChoice : PlanChoice {
+    std::string kind;  // of the step, as the plan's file calls it; "unhide" is "show" there
+    std::string group;
+};
+
+std::vector<int> numbers_of_fragments(const CasePlan& plan, const std::vector<std::string>& names) {
+    std::vector<int> numbers;
+    for (const std::string& name : names) numbers.push_back(find_fragment(plan, name));
+    return numbers;
+}
+
+StepKind kind_of(const std::string& verb) {
+    for (int n = 0; n <= static_cast<int>(StepKind::mirror); ++n)
+        if (name_of(static_cast<StepKind>(n)) == verb) return static_cast<StepKind>(n);
+    return StepKind::show;  // "unhide"
+}
+
+int arrange(const ArrangeChoice& choice) {
+    study::OpenPlan open(choice.plan);
+    CasePlan& plan = open.plan;
+    PlanStep step;
+    step.kind = kind_of(choice.kind);
+    step.by = "command";
+    step.fragments = numbers_of_fragments(plan, choice.names);
+    step.group = step.kind == StepKind::group && choice.group.empty() ? free_group_name(state_of(plan)) : choice.group;
+    study::do_step(plan, std::move(step), choice.plan);
+    return show_change(choice);
+}
+
+std::shared_ptr<ArrangeChoice> choice_of(VerbOptions& verb, const char* kind) {
+    auto choice = std::make_shared<ArrangeChoice>();
+    choice->kind = kind;
+    add_plan_options(verb, *choice);
+    return choice;
+}
+
+/// A verb that takes fragments and nothing else.
+template <const char* kind>
+Action add_simple(VerbOptions& verb) {
+    const auto choice = choice_of(verb, kind);
+    add_fragments(verb, *choice, "which ones");
+    return [choice] { return arrange(*choice); };
+}
+
+constexpr char remove_kind[] = "remove", lock_kind[] = "lock", unlock_kind[] = "unlock", hide_kind[] = "hide",
+               unhide_kind[] = "unhide";
+
+}  // namespace
+
+Verb plan_group_verb() {
+    return {"group", "let fragments, and the groups they are in, move as one", [](VerbOptions& verb) -> Action {
+                const auto choice = choice_of(verb, "group");
+                add_fragments(verb, *choice, "which ones");
+                verb.add("--name", choice->group, "of the group (default: a number)");
+                return [choice] { return arrange(*choice); };
+            }};
+}
+
+Verb plan_add_verb() {
+    return {"add", "fragments, and the groups they are in, become part of a group", [](VerbOptions& verb) -> Action {
+                const auto choice = choice_of(verb, "add");
+                verb.add("group", choice->group, "which group").required();
+                add_fragments(verb, *choice, "which ones");
+                return [choice] { return arrange(*choice); };
+            }};
+}
+
+Verb plan_ungroup_verb() {
+    return {"ungroup", "the parts of a group stand on their own", [](VerbOptions& verb) -> Action {
+                const auto choice = choice_of(verb, "ungroup");
+                verb.add("group", choice->group, "which group").required();
+                return [choice] { return arrange(*choice); };
+            }};
+}
+
+Verb plan_remove_verb() { return {"remove", "fragments leave all groups", add_simple<remove_kind>}; }
+Verb plan_lock_verb() { return {"lock", "fragments, and what is grouped with them, stay", add_simple<lock_kind>}; }
+Verb plan_unlock_verb() { return {"unlock", "they may move again", add_simple<unlock_kind>}; }
+Verb plan_hide_verb() { return {"hide", "fragments are left out of pictures and fits", add_simple<hide_kind>}; }
+Verb plan_unhide_verb() { return {"unhide", "they are there again", add_simple<unhide_kind>}; }
+
+}  // namespace tactus::command

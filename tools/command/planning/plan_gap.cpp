@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Gap, contact and overlap of fragments as a plan places them.
+#include "dsp/core/error.hpp"
+#include "tools/command/planning/plan_options.hpp"
+#include "tools/study/planning/plan_matching.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace tactus::command {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const CasePlan& plan, const std::vector<study::PlanGap>& gaps) {
+    const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
+    Json pairs = Json::array();
+    for (const study::PlanGap& g : gaps)
+        pairs.push_back({{"fragments", {name(g.first), name(g.second)}},
+                         {"facing_mm2", g.gap.facing_area * 1e6},
+                         {"contact_mm2", g.gap.contact_area * 1e6},
+                         {"gap_median_mm", g.gap.median * 1e3},
+                         {"gap_p95_mm", g.gap.p95 * 1e3},
+                         {"deepest_mm", g.gap.deepest * 1e3},
+                         {"overlap_mm3", g.overlap * 1e9}});
+    return pairs;
+}
+
+void print(const CasePlan& plan, const std::vector<study::PlanGap>& gaps) {
+    const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
+    for (const study::PlanGap& g : gaps)
+        fmt::print(
+            "{} and {}: {:.0f} mm² face each other, {:.0f} mm² touch; gap {:.2f} mm (95 %: {:.2f} mm), "
+            "{:.1f} mm³ in each other, {:.2f} mm deep\n",
+            name(g.first), name(g.second), g.gap.facing_area * 1e6, g.gap.contact_area * 1e6,
+            study::shown_mm(g.gap.median * 1e3), g.gap.p95 * 1e3, g.overlap * 1e9, g.gap.deepest * 1e3);
+}
+
+int gap(const PlanChoice& choice) {
+    const CasePlan plan = load_case_plan(choice.plan);
+    if (!choice.names.empty() && choice.names.size() != 2) throw Error("'plan gap' takes two fragments, or none");
+    const std::filesystem::path folder = choice.plan.parent_path();
+    std::optional<std::pair<int, int>> pair;
+    if (!choice.names.empty()) pair = {find_fragment(plan, choice.names[0]), find_fragment(plan, choice.names[1])};
+    const std::vector<study::PlanGap> gaps = study::plan_gaps(plan, folder, pair);
+    if (choice.json) fmt::print("{}\n", json_of(plan, gaps).dump(2));
+    else print(plan, gaps);
+    return done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<PlanChoice>();
+    add_plan_options(verb, *choice);
+    verb.add("fragments", choice->names, "two of them (default: all pairs that face each other)");
+    return [choice] { return gap(*choice); };
+}
+
+}  // namespace
+
+Verb plan_gap_verb() { return {"gap", "gap, contact and overlap of fragments as they are placed", add}; }
+
+}  // namespace tactus::command

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Goes back and forth in the steps of a plan.
+#include "tools/command/planning/plan_options.hpp"
+#include "tools/study/planning/plan_case.hpp"
+
+#include <fmt/format.h>
+
+namespace tactus::command {
+
+namespace {
+
+struct HistoryChoice : PlanChoice {
+    int steps = 1;
+};
+
+int go(const HistoryChoice& choice, HistoryPlace (*way)(std::span<const int>, HistoryPlace), const char* end) {
+    study::OpenPlan open(choice.plan);
+    CasePlan& plan = open.plan;
+    const auto before = plan.before();
+    int moved = 0;
+    for (; moved < choice.steps; ++moved) {
+        const HistoryPlace next = way(before, plan.place());
+        if (next.head == plan.place().head) break;
+        plan.place() = next;
+    }
+    if (moved > 0) save_case_plan(plan, choice.plan);
+    if (!choice.json) {
+        if (moved == 0) fmt::print("{}\n", end);
+        else
+            fmt::print("{} steps; {} of {} are done\n", moved, steps_to(before, plan.place().head).size(),
+                       steps_to(before, plan.place().tip).size());
+    }
+    show_change(choice);
+    return moved > 0 ? done : answer_is_no;
+}
+
+std::shared_ptr<HistoryChoice> choice_of(VerbOptions& verb) {
+    auto choice = std::make_shared<HistoryChoice>();
+    add_plan_options(verb, *choice);
+    verb.add("--steps", choice->steps, "how many").positive();
+    return choice;
+}
+
+}  // namespace
+
+Verb plan_undo_verb() {
+    return {"undo", "steps back; none is lost", [](VerbOptions& verb) -> Action {
+                return [choice = choice_of(verb)] { return go(*choice, undone, "nothing is left to undo"); };
+            }};
+}
+
+Verb plan_redo_verb() {
+    return {"redo", "steps on again", [](VerbOptions& verb) -> Action {
+                return [choice = choice_of(verb)] { return go(*choice, redone, "nothing is left to redo"); };
+            }};
+}
+
+}  // namespace tactus::command

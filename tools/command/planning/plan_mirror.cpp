@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// The healthy side of a plan's case as a target.
+#include "tools/study/planning/plan_mirror.hpp"
+#include "tools/command/planning/plan_options.hpp"
+#include "tools/command/pose_text.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <numbers>
+
+namespace tactus::command {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct MirrorChoice : PlanChoice {
+    std::filesystem::path healthy;
+    bool settle = false;
+};
+
+Json faces_json(const study::FacesThere& faces) {
+    return {{"contact_mm2", faces.gap.contact_area * 1e6},
+            {"gap_median_mm", faces.gap.median * 1e3},
+            {"deepest_mm", faces.gap.deepest * 1e3},
+            {"overlap_mm3", faces.overlap * 1e9}};
+}
+
+Json comparison_json(const std::string& fragment, const study::MirrorComparison& c) {
+    return {{"fragment", fragment},
+            {"away", motion_json<Json>(c.away)},
+            {"median_before_mm", c.registration.before * 1e3},
+            {"median_after_mm", c.registration.median * 1e3},
+            {"faces", {{"before", faces_json(c.before)}, {"after", faces_json(c.after)}}},
+            {"pose", pose_json<Json>(c.registration.pose)}};
+}
+
+void print_faces(const std::string& fragment, const char* when, const std::string& main,
+                 const study::FacesThere& faces) {
+    fmt::print("  {} {}: {:.0f} mm² touch {}, {:.0f} mm³ in each other, {:.2f} mm deep\n", fragment, when,
+               faces.gap.contact_area * 1e6, main, faces.overlap * 1e9, faces.gap.deepest * 1e3);
+}
+
+void print_comparison(const std::string& fragment, const std::string& main, const study::MirrorComparison& c) {
+    fmt::print(
+        "{}: {:.2f} mm and {:.2f}° from where it lies best on the target; median {:.2f} mm, there "
+        "{:.2f} mm\n",
+        fragment, 1e3 * c.away.distance, c.away.angle_deg, c.registration.before * 1e3, c.registration.median * 1e3);
+    print_faces(fragment, "where it was", main, c.before);
+    print_faces(fragment, "there", main, c.after);
+}
+
+Json json_of(const std::string& main, const MirrorFit& fit, const Json& others) {
+    return {{"on", main},
+            {"residual_mm", fit.registration.median * 1e3},
+            {"residual_p90_mm", fit.registration.p90 * 1e3},
+            {"plane_normal", {fit.plane.normal.x, fit.plane.normal.y, fit.plane.normal.z}},
+            {"plane_offset_mm", fit.plane.offset * 1e3},
+            {"asymmetry", {{"angle_deg", fit.turn * 180.0 / std::numbers::pi}, {"distance_mm", fit.glide * 1e3}}},
+            {"others", others}};
+}
+
+int mirror(const MirrorChoice& choice) {
+    study::OpenPlan open(choice.plan);
+    CasePlan& plan = open.plan;
+    const std::filesystem::path folder = choice.plan.parent_path();
+    std::vector<int> numbers;
+    for (const std::string& name : choice.names) numbers.push_back(find_fragment(plan, name));
+    const std::vector<study::CaseFragment> loaded = study::load_fragments(plan, folder);
+    const study::LaidMirror laid = study::lay_mirror(plan, folder, loaded, numbers[0], choice.healthy);
+    PlanStep step;
+    step.kind = StepKind::mirror;
+    step.by = "command";
+    step.mirror = laid.target;
+    study::do_step(plan, std::move(step), choice.plan);
+    // The others against the mirrored side as it lies now.
+    const RegistrationTarget target(laid.surface);
+    Json others = Json::array();
+    for (std::size_t n = 1; n < numbers.size(); ++n) {
+        const int other = numbers[n];
+        const study::MirrorComparison found =
+            study::compare_with_mirror(target, loaded[static_cast<std::size_t>(numbers[0])], laid.stands,
+                                       loaded[static_cast<std::size_t>(other)], state_of(plan).arrangement.pose(other));
+        others.push_back(comparison_json(choice.names[n], found));
+        if (!choice.json) print_comparison(choice.names[n], choice.names[0], found);
+        if (choice.settle) study::do_step(plan, placing(plan, other, found.registration.pose, "mirror"), choice.plan);
+    }
+    if (choice.json) fmt::print("{}\n", json_of(choice.names[0], laid.fit, others).dump(2));
+    else
+        fmt::print("mirrored side on {}: median {:.2f} mm, 90 % within {:.2f} mm\n", choice.names[0],
+                   laid.fit.registration.median * 1e3, laid.fit.registration.p90 * 1e3);
+    return done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<MirrorChoice>();
+    add_plan_options(verb, *choice);
+    verb.add("healthy", choice->healthy, "bone file or mesh of the other side").required();
+    add_fragments(verb, *choice, "the one that stands; more of them are compared, or moved with --settle");
+    verb.flag("--settle", choice->settle, "move the others to where they lie best on the target");
+    return [choice] { return mirror(*choice); };
+}
+
+}  // namespace
+
+Verb plan_mirror_verb() { return {"mirror", "the healthy side, mirrored and laid on a fragment, as a target", add}; }
+
+}  // namespace tactus::command

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Makes a plan of files.
+#include "assets/bone/labels.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/command/planning/plan_options.hpp"
+#include "tools/study/planning/plan_case.hpp"
+
+#include <fmt/format.h>
+
+namespace tactus::command {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct NewChoice : PlanChoice {
+    std::string title;
+};
+
+/// "NAME=FILE" or "FILE", whose stem, or the bone's name in it, is the fragment's.
+void add_file_of(CasePlan& plan, const std::string& text, const fs::path& folder) {
+    const auto equals = text.find('=');
+    const bool is_named = equals != std::string::npos && !fs::exists(text);
+    const std::string name = is_named ? text.substr(0, equals) : "";
+    const fs::path file = is_named ? text.substr(equals + 1) : text;
+    std::vector<std::pair<std::string, fs::path>> found;
+    if (file_of_bone(file) == file && file.extension() == ".vdb") {
+        const auto bones = load_bones(file);
+        if (bones.size() > 1 && is_named)
+            throw Error(fmt::format("{}: holds {} bones; name one of them, as in {}={}#{}", file.string(), bones.size(),
+                                    name, file.string(), bones.front().name));
+        for (const Bone& bone : bones)
+            found.emplace_back(bones.size() > 1 ? bone.name : file.stem().string(),
+                               bones.size() > 1 ? fs::path(file.string() + "#" + bone.name) : file);
+    } else {
+        const std::string whole = file.string();
+        const auto mark = whole.rfind('#');
+        const bool is_one_of = file_of_bone(file) != file && mark != std::string::npos;
+        found.emplace_back(is_one_of ? whole.substr(mark + 1) : file.stem().string(), file);
+    }
+    for (auto& [own, path] : found) {
+        add_fragment(plan, is_named ? name : own, path, folder,
+                     label_colour(static_cast<int>(plan.fragments.size()) + 1));
+        // Metres, open surfaces and broken files come out now, not in the middle of a session.
+        study::load_fragment(plan.fragments.back(), folder);
+    }
+}
+
+int make_plan(const NewChoice& choice) {
+    if (fs::exists(choice.plan))
+        throw Error(fmt::format("{}: is there already; a plan is never written over", choice.plan.string()));
+    const PlanLock lock(choice.plan);
+    CasePlan plan;
+    plan.title = choice.title.empty() ? choice.plan.stem().stem().string() : choice.title;
+    for (const std::string& text : choice.names) add_file_of(plan, text, choice.plan.parent_path());
+    save_case_plan(plan, choice.plan);
+    if (!choice.json) fmt::print("{}: {} fragments\n", choice.plan.string(), plan.fragments.size());
+    return show_change(choice);
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<NewChoice>();
+    add_plan_options(verb, *choice);
+    verb.add("files", choice->names, "bone files or closed meshes, FILE or NAME=FILE").required();
+    verb.add("--title", choice->title, "what the case is called");
+    return [choice] { return make_plan(*choice); };
+}
+
+}  // namespace
+
+Verb plan_new_verb() { return {"new", "a plan of fragments as they were scanned", add}; }
+
+}  // namespace tactus::command

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/command/planning/plan_options.hpp"
+
+namespace tactus::command {
+
+void add_plan_options(VerbOptions& verb, PlanChoice& choice) {
+    verb.add("plan", choice.plan, "the plan, a JSON file").required();
+    verb.flag("--json", choice.json, "as JSON");
+}
+
+Option add_fragments(VerbOptions& verb, PlanChoice& choice, const char* about) {
+    return verb.add("fragments", choice.names, about).required();
+}
+
+int show_change(const PlanChoice& choice) {
+    if (choice.json) return show_plan(choice);
+    return done;
+}
+
+}  // namespace tactus::command

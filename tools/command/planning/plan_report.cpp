@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The plan as one page.
+#include "assets/file/whole_file.hpp"
+#include "tools/command/planning/plan_options.hpp"
+#include "tools/picture/report/plan_page.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace tactus::command {
+
+namespace {
+
+struct ReportChoice : PlanChoice {
+    std::filesystem::path out;
+};
+
+/// Beside the plan, without its endings.
+std::filesystem::path page_of(const std::filesystem::path& plan) {
+    std::string stem = plan.filename().string();
+    for (const char* ending : {".json", ".plan"})
+        if (stem.ends_with(ending)) stem.resize(stem.size() - std::string(ending).size());
+    return plan.parent_path() / (stem + ".html");
+}
+
+int report(const ReportChoice& choice) {
+    const CasePlan plan = load_case_plan(choice.plan);
+    const std::filesystem::path out = choice.out.empty() ? page_of(choice.plan) : choice.out;
+    write_whole_file(out, picture::plan_page(plan, study::load_fragments(plan, choice.plan.parent_path())));
+    if (choice.json) fmt::print("{}\n", nlohmann::ordered_json{{"report", out.string()}}.dump(2));
+    else fmt::print("{}\n", out.string());
+    return done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<ReportChoice>();
+    add_plan_options(verb, *choice);
+    verb.add("-o,--out", choice->out, "HTML file (default: beside the plan)");
+    return [choice] { return report(*choice); };
+}
+
+}  // namespace
+
+Verb plan_report_verb() { return {"report", "one page with pictures, gaps, fits and the order of steps", add}; }
+
+}  // namespace tactus::command

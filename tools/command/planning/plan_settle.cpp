@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Seats fitted fragments of a plan once more.
+#include "dsp/core/error.hpp"
+#include "tools/command/planning/match_text.hpp"
+#include "tools/command/planning/plan_options.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace tactus::command {
+
+namespace {
+
+struct SettleChoice : PlanChoice {
+    int passes = 1;
+};
+
+/// Those that are named, or all that were fitted and may move.
+std::vector<int> settled_fragments(const CasePlan& plan, const std::vector<std::string>& names) {
+    std::vector<int> numbers;
+    for (const std::string& name : names) numbers.push_back(find_fragment(plan, name));
+    if (numbers.empty()) {
+        const PlanState state = state_of(plan);
+        for (int n = 0; n < static_cast<int>(plan.fragments.size()); ++n)
+            if (state.fits[static_cast<std::size_t>(n)] && state.arrangement.can_move(n)) numbers.push_back(n);
+    }
+    if (numbers.empty()) throw Error("nothing was fitted yet; 'tactus plan snap' comes first");
+    return numbers;
+}
+
+int settle(const SettleChoice& choice) {
+    study::OpenPlan open(choice.plan);
+    CasePlan& plan = open.plan;
+    const std::vector<int> numbers = settled_fragments(plan, choice.names);
+    study::PlanMatching matching(plan, choice.plan.parent_path());
+    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    bool all_fit = true;
+    for (int pass = 0; pass < choice.passes; ++pass)
+        for (const int n : numbers) {
+            const study::PlanMatch found = matching.near(state_of(plan).arrangement, n);
+            const bool fits = found.match.verdict == FitVerdict::fit;
+            if (fits) study::do_step(plan, study::step_of(plan, found.match, "settle"), choice.plan);
+            all_fit = all_fit && fits;
+            rows.push_back(match_json<nlohmann::ordered_json>(plan, found));
+            if (!choice.json) print_match(plan, found);
+        }
+    if (choice.json) fmt::print("{}\n", rows.dump(2));
+    return all_fit ? done : answer_is_no;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<SettleChoice>();
+    add_plan_options(verb, *choice);
+    verb.add("fragments", choice->names, "which ones (default: all that were fitted)");
+    verb.add("--passes", choice->passes, "how often").range(1, 20);
+    return [choice] { return settle(*choice); };
+}
+
+}  // namespace
+
+Verb plan_settle_verb() {
+    return {"settle", "seat fitted fragments once more, each on all of its neighbours together; 1: one does not fit",
+            add};
+}
+
+}  // namespace tactus::command

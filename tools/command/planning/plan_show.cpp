@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a plan holds, for people and programs.
+#include "assets/plan/plan_file.hpp"
+#include "tools/command/planning/plan_options.hpp"
+#include "tools/command/pose_text.hpp"
+#include "tools/study/planning/plan_case.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+namespace tactus::command {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The groups that hold a fragment, innermost first.
+std::vector<std::string> groups_of(const PlanState& state, int fragment) {
+    std::vector<std::string> names;
+    for (int g = state.arrangement.group_of(fragment); g != Arrangement::none; g = state.arrangement.parent_of(g))
+        names.push_back(state.group_names[static_cast<std::size_t>(g)]);
+    return names;
+}
+
+Json fit_json(const PlanFit& fit) {
+    return {{"partner", fit.partner},
+            {"verdict", fit.verdict},
+            {"score", fit.score},
+            {"margin", fit.margin},
+            {"rms_mm", fit.rms * 1e3},
+            {"gap_mm", fit.gap * 1e3},
+            {"penetration_mm", fit.penetration * 1e3},
+            {"overlap_mm2", fit.overlap * 1e6}};
+}
+
+Json json_of(const CasePlan& plan, const std::vector<std::string>& problems) {
+    const PlanState state = state_of(plan);
+    const auto before = plan.before();
+    Json json{{"title", plan.title},
+              {"fragments", Json::array()},
+              {"groups", Json::array()},
+              {"alternatives", Json::array()},
+              {"current", plan.alternatives[static_cast<std::size_t>(plan.current)].name},
+              {"steps_done", steps_to(before, plan.place().head).size()},
+              {"steps_to_redo", steps_to(before, plan.place().tip).size() - steps_to(before, plan.place().head).size()},
+              {"steps_in_all", plan.steps.size()},
+              {"mirror", nullptr},
+              {"problems", problems}};
+    for (int n = 0; n < static_cast<int>(plan.fragments.size()); ++n) {
+        const PlanFragment& f = plan.fragments[static_cast<std::size_t>(n)];
+        Json fragment{{"name", f.name},
+                      {"file", f.file},
+                      {"pose", pose_json<Json>(state.arrangement.pose(n))},
+                      {"groups", groups_of(state, n)},
+                      {"locked", state.arrangement.is_locked(n)},
+                      {"hidden", state.arrangement.is_hidden(n)},
+                      {"fit", nullptr}};
+        if (const auto& fit = state.fits[static_cast<std::size_t>(n)]) fragment["fit"] = fit_json(*fit);
+        json["fragments"].push_back(fragment);
+    }
+    for (int g = 0; g < static_cast<int>(state.arrangement.most_groups()); ++g) {
+        if (!state.arrangement.exists(g)) continue;
+        const int parent = state.arrangement.parent_of(g);
+        json["groups"].push_back(
+            {{"name", state.group_names[static_cast<std::size_t>(g)]},
+             {"in", parent == Arrangement::none ? Json(nullptr)
+                                                : Json(state.group_names[static_cast<std::size_t>(parent)])}});
+    }
+    for (const PlanAlternative& a : plan.alternatives)
+        json["alternatives"].push_back({{"name", a.name}, {"steps", steps_to(before, a.place.head).size()}});
+    if (state.mirror)
+        json["mirror"] = {{"file", state.mirror->file},
+                          {"plane_normal",
+                           {state.mirror->plane_normal.x, state.mirror->plane_normal.y, state.mirror->plane_normal.z}},
+                          {"plane_offset_mm", state.mirror->plane_offset * 1e3},
+                          {"residual_mm", state.mirror->residual * 1e3}};
+    return json;
+}
+
+}  // namespace
+
+int show_plan(const PlanChoice& choice) {
+    const CasePlan plan = load_case_plan(choice.plan);
+    const auto problems = changed_files(plan, choice.plan.parent_path());
+    if (choice.json) {
+        fmt::print("{}\n", json_of(plan, problems).dump(2));
+        return done;
+    }
+    const PlanState state = state_of(plan);
+    const auto before = plan.before();
+    fmt::print("{}: alternative '{}' of {}, {} steps done, {} to redo\n", plan.title,
+               plan.alternatives[static_cast<std::size_t>(plan.current)].name, plan.alternatives.size(),
+               steps_to(before, plan.place().head).size(),
+               steps_to(before, plan.place().tip).size() - steps_to(before, plan.place().head).size());
+    for (int n = 0; n < static_cast<int>(plan.fragments.size()); ++n) {
+        const PlanFragment& f = plan.fragments[static_cast<std::size_t>(n)];
+        const Pose& pose = state.arrangement.pose(n);
+        std::string marks = state.arrangement.is_locked(n) ? ", locked" : "";
+        if (state.arrangement.is_hidden(n)) marks += ", hidden";
+        for (const std::string& group : groups_of(state, n)) marks += fmt::format(", in '{}'", group);
+        if (const auto& fit = state.fits[static_cast<std::size_t>(n)])
+            marks += fmt::format(", {} to {} ({:.2f} mm rms)", fit->verdict, fit->partner, fit->rms * 1e3);
+        fmt::print("  {}: at {:.2f} {:.2f} {:.2f} mm, turned {:.2f}°{}\n", f.name, pose.position.x * 1e3,
+                   pose.position.y * 1e3, pose.position.z * 1e3, study::angle_deg(pose), marks);
+    }
+    for (const std::string& problem : problems) fmt::print("! {}\n", problem);
+    return done;
+}
+
+Verb plan_show_verb() {
+    return {"show", "fragments, groups, alternatives, and what is wrong with the files",
+            [](VerbOptions& verb) -> Action {
+                const auto choice = std::make_shared<PlanChoice>();
+                add_plan_options(verb, *choice);
+                return [choice] { return show_plan(*choice); };
+            }};
+}
+
+}  // namespace tactus::command

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Brings a fragment of a plan to where its fracture fits.
+#include "dsp/core/error.hpp"
+#include "tools/command/planning/match_text.hpp"
+#include "tools/command/planning/plan_options.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace tactus::command {
+
+namespace {
+
+struct SnapChoice : PlanChoice {
+    std::string mode = "extended";
+};
+
+int snap_fragment(const SnapChoice& choice) {
+    study::OpenPlan open(choice.plan);
+    CasePlan& plan = open.plan;
+    const std::filesystem::path folder = choice.plan.parent_path();
+    const int moving = find_fragment(plan, choice.names[0]);
+    const int only = choice.names.size() > 1 ? find_fragment(plan, choice.names[1]) : Arrangement::none;
+    const PlanState state = state_of(plan);
+    const Arrangement& a = state.arrangement;
+    if (only != Arrangement::none && a.move_together(moving, only))
+        throw Error(fmt::format("'{}' and '{}' move together", choice.names[0], choice.names[1]));
+    if (!a.can_move(moving)) throw Error(fmt::format("'{}', or one grouped with it, is locked", choice.names[0]));
+    study::PlanMatching matching(plan, folder);
+    if (matching.faces_of(moving) == 0)
+        throw Error(
+            fmt::format("fragment '{}' has no painted fracture; see 'tactus fracture-surface'", choice.names[0]));
+    const study::PlanMatch found =
+        choice.mode == "global" ? matching.anywhere(a, moving, only) : matching.near(a, moving, only);
+    const bool fits = found.match.verdict == FitVerdict::fit;
+    // What may fail comes before the plan is changed.
+    const auto target = study::target_distances(state, folder, matching.fragment(moving), found.from, found.match.pose);
+    if (fits) study::do_step(plan, study::step_of(plan, found.match, "snap"), choice.plan);
+    if (choice.json) {
+        nlohmann::ordered_json json = match_json<nlohmann::ordered_json>(plan, found);
+        if (target)
+            json["target"] = {{"median_before_mm", 1e3 * target->before}, {"median_there_mm", 1e3 * target->there}};
+        fmt::print("{}\n", json.dump(2));
+    } else {
+        print_match(plan, found);
+        if (target)
+            fmt::print("from the healthy side: median {:.2f} mm where it was, {:.2f} mm where its faces fit\n",
+                       1e3 * target->before, 1e3 * target->there);
+    }
+    return fits ? done : answer_is_no;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<SnapChoice>();
+    add_plan_options(verb, *choice);
+    add_fragments(verb, *choice,
+                  "the one that moves, with its group, and the one that stands (default: the best of all)")
+        .count(1, 2);
+    verb.add("--mode", choice->mode, "extended starts from where it is, global from anywhere")
+        .one_of({"extended", "global"})
+        .shows_default();
+    return [choice] { return snap_fragment(*choice); };
+}
+
+}  // namespace
+
+Verb plan_snap_verb() { return {"snap", "bring a fragment to where its fracture fits another; 1: it does not", add}; }
+
+}  // namespace tactus::command

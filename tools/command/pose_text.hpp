@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Poses and motions as text and JSON.
+#pragma once
+
+#include "tools/study/bones/fragment_file.hpp"
+#include "tools/study/bones/surface_file.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace tactus::command {
+
+/// {position_mm, quaternion_wxyz}, in a JSON type.
+template <class Json>
+Json pose_json(const Pose& pose) {
+    const study::PoseNumbers numbers = study::numbers_of(pose);
+    return {{"position_mm", numbers.position_mm}, {"quaternion_wxyz", numbers.quaternion_wxyz}};
+}
+
+/// In a JSON type.
+template <class Json>
+Json motion_json(const study::Motion& motion) {
+    return {{"distance_mm", 1e3 * motion.distance}, {"angle_deg", motion.angle_deg}};
+}
+
+/// "X,Y,Z,QW,QX,QY,QZ" in mm. Throws Error naming the option.
+Pose pose_of_text(const std::string& text, std::string_view option);
+
+/// What people are told of a fit that repeats the scan (dsp/planning/as_scanned.hpp).
+inline constexpr std::string_view as_scanned_note =
+    "they touch like that in the scan already: a border between two labels fits itself wherever the fragments lie, and "
+    "says nothing of where they belong; compare with the healthy side ('tactus plan mirror')";
+
+}  // namespace tactus::command

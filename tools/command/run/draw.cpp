@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/draw.hpp"
+#include "assets/file/whole_file.hpp"
+#include "tools/command/patch_options.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/session/load_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+namespace tactus::command {
+
+namespace {
+
+struct DrawChoice {
+    session::PatchChoice patch;
+    std::filesystem::path out;
+};
+
+int draw(const session::PatchChoice& choice, const std::filesystem::path& out) {
+    Problems problems;
+    const std::optional<Plan> plan = session::read_plan(choice, problems);
+    session::throw_problems(problems);
+    const std::string svg = draw_svg(*plan);
+    if (out.empty()) fmt::print("{}", svg);
+    else write_whole_file(out, svg);
+    return done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<DrawChoice>();
+    add_patch_options(verb, choice->patch);
+    verb.add("-o,--out", choice->out, "file (default: standard output)");
+    return [choice] { return draw(choice->patch, choice->out); };
+}
+
+}  // namespace
+
+Verb draw_verb() { return {"draw", "draw the graph as SVG", add}; }
+
+}  // namespace tactus::command

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/command/patch_options.hpp"
+#include "tools/command/run/sight_options.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/picture/scene/frames.hpp"
+#include "tools/session/load_plan.hpp"
+#include "tools/session/output_folder.hpp"
+#include "tools/session/results.hpp"
+#include "tools/session/stop_signals.hpp"
+#include "tools/session/summary.hpp"
+#include "tools/terminal.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <chrono>
+#include <thread>
+
+namespace tactus::command {
+
+using namespace session;
+using namespace picture;
+
+namespace {
+
+struct RenderChoice : PatchChoice {
+    double seconds = 10.0;
+    std::filesystem::path out;
+    int threads = 0;      // 0: one per core
+    std::string block;    // "", a number, or "random"
+    std::filesystem::path log, record;
+    bool overwrite = false;  // results that the folder holds
+    FrameChoice frames;
+    bool json = false;
+};
+
+int parse_block(const std::string& text) {
+    int block = 0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), block);
+    if (failure != std::errc{} || end != text.data() + text.size() || block < 1 || block > 65536)
+        throw Error(fmt::format("--block takes a number from 1 to 65536 or 'random', not '{}'", text));
+    return block;
+}
+
+int render(const RenderChoice& choice) {
+    EngineOptions options;
+    options.seconds = choice.seconds;
+    options.random_blocks = choice.block == "random";
+    if (options.random_blocks) options.block = 480;
+    else if (!choice.block.empty()) options.block = parse_block(choice.block);
+    std::optional<TimingLog> log;
+    if (!choice.log.empty()) {
+        log = TimingLog::load(choice.log);
+        options.replay = &*log;
+        options.seconds = log->seconds;
+    }
+    AssetCache assets;
+    Plan plan = load_plan(choice, assets);
+    OutputFolder folder({choice.out, choice.overwrite});
+    options.folder = folder.path();
+    const std::atomic<bool>& interrupted = stop_on_signals();
+    std::unique_ptr<TakeWriter> take;
+    if (!choice.record.empty()) {
+        take = make_take(choice, choice.record, options.seconds, false);
+        options.take = take.get();
+    }
+    std::unique_ptr<FrameWriter> frames;
+    if (choice.frames.frames > 0) {
+        frames = std::make_unique<FrameWriter>(choice.frames, outline_of(plan), options.seconds, folder.path());
+        options.observer = &frames->observer();
+    }
+    Engine engine(std::move(plan), options);
+    const int threads =
+        choice.threads > 0 ? choice.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+
+    LiveLine line;
+    const auto begin = std::chrono::steady_clock::now();
+    engine.render(threads, [&](double done) {
+        if (interrupted) engine.stop();
+        if (frames) frames->advance(engine.progress_seconds() - 1e-6);
+        line.show(
+            fmt::format("{:3.0f} %  {:.1f} s of {:.1f} s", 100.0 * done, done * options.seconds, options.seconds));
+    });
+    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const double ran = engine.progress_seconds();
+    const bool is_whole = !interrupted || ran >= options.seconds;
+    if (frames) frames->advance(is_whole ? options.seconds : ran - 1e-6);
+    line.clear();
+    engine.complete();
+    const Report report = engine.report();
+    WrittenFiles written = write_results(report, folder.path());
+    std::vector<std::string> losses = engine.losses();
+    if (frames) {
+        written.names.insert(written.names.end(), frames->files().begin(), frames->files().end());
+        losses.insert(losses.end(), frames->losses().begin(), frames->losses().end());
+    }
+    losses.insert(losses.end(), written.losses.begin(), written.losses.end());
+    written.names.emplace_back("summary.json");
+    const double seconds = is_whole ? options.seconds : ran;
+    const std::string summary = summary_json(engine, report, seconds, false, written.names, losses);
+    try {
+        folder.write_summary(summary);
+    } catch (const Error& error) {
+        losses.emplace_back(error.what());
+    }
+    for (const std::string& loss : losses) say(stderr, fmt::format("tactus: {}\n", loss));
+    say(stdout, choice.json ? summary : summary_text(engine, report, seconds, wall));
+    if (!losses.empty()) return output_lost;
+    if (is_whole) return done;
+    say(stderr, fmt::format("tactus: ended at {:.3f} s of {:.3f} s\n", ran, options.seconds));
+    return answer_is_no;
+}
+
+}  // namespace
+
+namespace {
+
+void add_frame_options(VerbOptions& verb, FrameChoice& choice) {
+    const Option frames =
+        verb.add("--frames", choice.frames, "pictures of the scene, evenly over the time: frame_0001.png, ...")
+            .range(1, 100000);
+    const auto add = [&](const char* name, std::string& value, const char* about) {
+        verb.add(name, value, about).shows_default().needs(frames);
+    };
+    add("--view-from", choice.view_from, "front, back, left, right, top, bottom or iso");
+    add("--size", choice.size, "of the pictures, WIDTHxHEIGHT");
+    add("--clip", choice.clip, "take away what is above along an axis: x, -y, \"z=12 mm\"");
+    add_sight_options(verb, choice.sight, &frames);
+}
+
+Action add_render(VerbOptions& verb) {
+    const auto choice = std::make_shared<RenderChoice>();
+    add_patch_options(verb, *choice);
+    verb.add("--seconds", choice->seconds, "logical time to render, s").shows_default().range(1e-3, 1e6);
+    verb.add("--out", choice->out, "folder for what comes out").required();
+    verb.flag("--overwrite", choice->overwrite, "write over results that the folder holds");
+    verb.add("--threads", choice->threads, "threads, 0: one per core").range(0, 64);
+    verb.add("--block", choice->block, "most samples per call, or 'random'; the output is the same");
+    verb.add("--log", choice->log, "repeat the timing decisions of a live run");
+    verb.add("--record", choice->record, "keep the run as a take, a folder that 'replay' repeats");
+    add_frame_options(verb, choice->frames);
+    verb.flag("--json", choice->json, "print the summary");
+    return [choice] { return render(*choice); };
+}
+
+}  // namespace
+
+Verb render_verb() { return {"render", "run a patch on a virtual clock, as fast as it goes", add_render}; }
+
+}  // namespace tactus::command

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/core/error.hpp"
+#include "engine/engine.hpp"
+#include "engine/take_compare.hpp"
+#include "tools/command/options.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/session/load_plan.hpp"
+#include "tools/session/output_folder.hpp"
+#include "tools/session/replayed_take.hpp"
+#include "tools/session/results.hpp"
+#include "tools/session/summary.hpp"
+#include "tools/terminal.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <thread>
+
+namespace tactus::command {
+
+using namespace session;
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct ReplayChoice {
+    std::filesystem::path take, out;  // out: where the results of the run go; empty: nowhere
+    bool json = false;
+    bool overwrite = false;
+    bool anyway = false;  // although assets have changed
+};
+
+/// Outputs whose hashes differ although no value did: values that the streams do not hold.
+std::vector<std::string> differing_hashes(const Take& take, const Engine& engine) {
+    std::vector<std::string> ports;
+    if (take.result.empty()) return ports;
+    for (const auto& [port, hash] : engine.port_hashes()) {
+        const auto expected = take.result.find(port);
+        if (expected == take.result.end() || expected->second != hash) ports.push_back(port);
+    }
+    return ports;
+}
+
+Json difference_json(const TakeDifference& d) {
+    return {{"port", d.port},         {"tick", d.tick},         {"time_s", d.time},
+            {"channels", d.channels}, {"expected", d.expected}, {"got", d.got}};
+}
+
+struct Verdict {
+    std::vector<TakeDamage> damages;
+    std::vector<std::string> hashes;  ///< outputs whose hash differs
+    std::optional<TakeDifference> first;
+    std::uint64_t compared = 0;
+    bool is_complete = false;
+
+    bool differs() const { return first || !damages.empty() || !hashes.empty(); }
+    bool is_equal_so_far() const { return !differs() && compared > 0; }
+    bool is_identical() const { return is_equal_so_far() && is_complete; }
+};
+
+void print(const Verdict& verdict, std::size_t outputs, double seconds) {
+    for (const TakeDamage& d : verdict.damages)
+        fmt::print("differs: {} holds {} {}, the run wrote {}\n", d.file, d.holds, d.unit, d.written);
+    if (const auto& first = verdict.first)
+        fmt::print("differs: {} at tick {} ({:.6f} s): expected {}, got {}\n", first->port, first->tick, first->time,
+                   fmt::join(first->expected, " "), fmt::join(first->got, " "));
+    // Less of a run has other hashes.
+    else if (verdict.damages.empty() && !verdict.hashes.empty())
+        fmt::print("differs: the hashes of {}\n", fmt::join(verdict.hashes, ", "));
+    if (verdict.differs()) return;
+    if (verdict.compared == 0)
+        fmt::print("{}0 values compared: the take holds none\n", verdict.is_complete ? "" : "cut off; ");
+    else if (!verdict.is_complete)
+        fmt::print("cut off; {} values compared, equal so far; {:.3g} s can be repeated\n", verdict.compared, seconds);
+    else fmt::print("identical: {} values of {} outputs, {:.3g} s\n", verdict.compared, outputs, seconds);
+}
+
+int replay(const ReplayChoice& choice) {
+    Take take = Take::load(choice.take);
+    const std::vector<std::string> differences = take.differences(), changed = take.changed_assets();
+    for (const std::string& difference : differences)
+        fmt::print(stderr, "tactus: {}; the bits may differ\n", difference);
+    for (const std::string& difference : changed) fmt::print(stderr, "tactus: {}\n", difference);
+    if (!changed.empty() && !choice.anyway)
+        throw Error("the take cannot be repeated with other assets; --anyway tries");
+
+    const std::vector<TakeDamage> damages = take.damages();
+    take.drop_unreadable_streams();
+    AssetCache assets;
+    TakeComparison comparison(take);
+    EngineOptions options;
+    options.seconds = take.about.seconds;
+    std::optional<OutputFolder> folder;
+    if (!choice.out.empty()) {
+        folder.emplace(OutputChoice{choice.out, choice.overwrite});
+        options.folder = choice.out;
+    }
+    options.tap = [&comparison](const std::string& port, const ValueType& type, const GroupRuntime& group) {
+        return comparison.tap(port, type, group);
+    };
+    ReplayedTake repeated(take, options, assets);
+    Engine& engine = repeated.engine();
+    LiveLine line;
+    const int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    engine.render(threads, [&](double done) { line.show(fmt::format("{:3.0f} %", 100.0 * done)); });
+    line.clear();
+    engine.complete();
+    std::vector<std::string> losses = engine.losses();
+    if (folder) {
+        const Report report = engine.report();
+        WrittenFiles written = write_results(report, folder->path());
+        losses.insert(losses.end(), written.losses.begin(), written.losses.end());
+        written.names.emplace_back("summary.json");
+        try {
+            folder->write_summary(
+                summary_json(engine, report, engine.progress_seconds(), false, written.names, losses));
+        } catch (const Error& error) {
+            losses.emplace_back(error.what());
+        }
+    }
+    for (const std::string& loss : losses) fmt::print(stderr, "tactus: {}\n", loss);
+
+    const Verdict verdict{damages, differing_hashes(take, engine), comparison.first_difference(),
+                          comparison.compared_values(), take.is_complete};
+    const double covered = engine.progress_seconds();
+    if (choice.json) {
+        Json json{{"identical", verdict.is_identical()},
+                  {"cut_off", !verdict.is_complete},
+                  {"compared_values", verdict.compared},
+                  {"first_difference", verdict.first ? difference_json(*verdict.first) : Json()},
+                  {"damaged_files", Json::array()},
+                  {"differing_hashes", verdict.hashes},
+                  {"seconds", covered},
+                  {"whole", take.log.is_whole},
+                  {"edits", engine.edits()},
+                  {"notices", differences}};
+        for (const TakeDamage& d : verdict.damages)
+            json["damaged_files"].push_back(
+                {{"file", d.file}, {"holds", d.holds}, {"written", d.written}, {"unit", d.unit}});
+        fmt::print("{}\n", json.dump(2));
+    } else print(verdict, take.streams.size(), covered);
+    if (!losses.empty()) return output_lost;
+    return verdict.is_equal_so_far() ? done : answer_is_no;
+}
+
+}  // namespace
+
+namespace {
+
+Action add_replay(VerbOptions& verb) {
+    const auto choice = std::make_shared<ReplayChoice>();
+    verb.add("take", choice->take, "folder that --record made").required();
+    verb.add("--out", choice->out, "folder for the results of the run: sounds, traces, bones, summary.json");
+    verb.flag("--overwrite", choice->overwrite, "write over results that the folder holds");
+    verb.flag("--anyway", choice->anyway, "although assets have changed since");
+    verb.flag("--json", choice->json, "as JSON");
+    return [choice] { return replay(*choice); };
+}
+
+}  // namespace
+
+Verb replay_verb() { return {"replay", "repeat a take and compare every value, bit by bit", add_replay}; }
+
+}  // namespace tactus::command

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/command/patch_options.hpp"
+#include "tools/command/run/sight_options.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/session/live_table.hpp"
+#include "tools/session/run_session.hpp"
+#include "tools/session/stop_signals.hpp"
+#include "tools/terminal.hpp"
+#include "tools/view/view.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+
+namespace tactus::command {
+
+using namespace session;
+
+namespace {
+
+int run(const view::ViewedRunChoice& choice) {
+    const std::atomic<bool>& interrupted = stop_on_signals();
+    if (choice.view.wanted) return view::view_run(choice, interrupted);
+    AssetCache assets;
+    RunSession session(choice, assets);
+    LiveLine line;
+    auto next_table = std::chrono::steady_clock::now();
+    std::size_t told = 0;
+    const auto tell_losses = [&] {
+        for (const auto losses = session.losses(); told < losses.size(); ++told) {
+            line.clear();
+            say(stderr, fmt::format("tactus: {}\n", losses[told]));
+        }
+    };
+    const auto tend = [&] {
+        tell_losses();
+        const auto now = std::chrono::steady_clock::now();
+        if (choice.json || !line.is_terminal() || now < next_table) return;
+        next_table = now + std::chrono::milliseconds(200);
+        line.show(live_table(session.engine()));
+    };
+    const auto tell = [&line](const std::string& said) {
+        line.clear();
+        say(stderr, said + "\n");
+    };
+    if (!choice.json)
+        say(stderr, fmt::format("running {} for {}; Ctrl-C ends it\n", session.engine().plan().patch.title,
+                                choice.seconds ? fmt::format("{} s", *choice.seconds) : "as long as you like"));
+    session.run({tend, tell}, interrupted);
+    line.clear();
+    session.finish();
+    tell_losses();
+    if (choice.json) say(stdout, session.summary_json());
+    else say(stdout, fmt::format("{}  results in {}/\n", session.summary_text(), session.folder().string()));
+    return session.losses().empty() ? done : output_lost;
+}
+
+}  // namespace
+
+namespace {
+
+Action add_run(VerbOptions& verb) {
+    const auto choice = std::make_shared<view::ViewedRunChoice>();
+    add_patch_options(verb, *choice);
+    verb.add("--seconds", choice->seconds, "stop after so much logical time, s").range(1e-3, 1e6);
+    verb.add("--dilate", choice->dilate, "real seconds per logical second").range(0.01, 1000.0);
+    verb.add("--audio", choice->audio,
+             "where sound goes: part of a card's name, default, file or none (else: a card if there is one)");
+    verb.add("--audio-margin", choice->audio_margin, "sound that waits for the card when a thread is late, ms")
+        .shows_default()
+        .range(1.0, 2000.0);
+    verb.add("--out", choice->out, "folder for what comes out (default: PATCH-run, or PATCH-run-2 and so on)");
+    verb.flag("--overwrite", choice->overwrite, "write over results that the folder holds");
+    verb.add("--log", choice->log, "write what timing decided, for 'render --log'");
+    verb.add("--record", choice->record, "keep the run as a take, a folder that 'replay' repeats");
+    verb.flag("--json", choice->json, "print the summary as JSON and nothing else");
+    const Option window =
+        verb.flag("--view", choice->view.wanted, "open a window: the patch, its values, the scene; edits run at once");
+    verb.flag("--keep-running", choice->view.keep_running, "closing the window leaves the run alive").needs(window);
+    add_view_options(verb, choice->view);
+    verb.flag("!--no-edits", choice->edits, "neither watch the patch file nor listen to 'set'");
+    return [choice] { return run(*choice); };
+}
+
+}  // namespace
+
+Verb run_verb() { return {"run", "run a patch in real time, until Ctrl-C or --seconds", add_run}; }
+
+}  // namespace tactus::command

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether what the actuator plays is what the saw did: for two files, or for folders of them.
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/command/batch.hpp"
+#include "tools/command/options.hpp"
+#include "tools/command/vibration/comparison_text.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/picture/report/comparison_figure.hpp"
+#include "tools/picture/report/comparison_page.hpp"
+#include "tools/picture/report/comparison_table.hpp"
+#include "tools/picture/report/html_report.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <memory>
+
+namespace tactus::command {
+
+namespace {
+
+namespace fs = std::filesystem;
+namespace html = picture::html;
+using study::ComparedPair;
+
+struct CompareChoice {
+    study::CompareSettings settings;
+    fs::path thresholds;
+    std::string plot;                                // .svg or .png
+    fs::path report, table;                          // .html, .csv
+    std::string touch = "displacement";
+    std::vector<std::string> time_columns, columns;  // of CSV logs: of both files, or of each
+    std::string time_unit;
+    int jobs = 0;                                    // pairs at a time, 0: one per core
+    bool json = false;
+};
+
+/// Column names are for both files, or the first for the reference and the second for the output.
+LogSelection selection_for(const CompareChoice& choice, std::size_t file) {
+    const auto pick = [file](const std::vector<std::string>& names) {
+        return names.empty() ? std::string() : names[std::min(file, names.size() - 1)];
+    };
+    LogSelection selection;
+    selection.time_column = pick(choice.time_columns);
+    if (!choice.columns.empty()) selection.columns = {pick(choice.columns)};
+    selection.time_unit = choice.time_unit;
+    return selection;
+}
+
+int compare_one(const CompareChoice& choice, const study::CompareSettings& settings) {
+    if (!choice.plot.empty() && !choice.plot.ends_with(".svg") && !choice.plot.ends_with(".png"))
+        throw Error(choice.plot + ": a figure is written as .svg or .png");
+    const ComparedPair pair = study::compare_files(settings);
+    if (!choice.plot.empty()) picture::write_figure(picture::draw_comparison(pair), choice.plot);
+    if (!choice.report.empty()) write_whole_file(choice.report, picture::comparison_page(pair));
+    if (!choice.table.empty()) write_whole_file(choice.table, comparison_table(std::span(&pair, 1), {}));
+    if (choice.json) fmt::print("{}", comparison_json(pair));
+    else print(pair);
+    return pair.verdict.passed() ? done : answer_is_no;
+}
+
+struct Count {
+    std::size_t passed = 0, failed = 0, bad = 0;
+};
+
+std::string page_of(const std::vector<ComparedPair>& pairs, const std::vector<std::string>& failures,
+                    std::size_t passed) {
+    std::string body =
+        fmt::format("<p>{} of {} pass.</p>\n", passed, pairs.size()) + picture::comparison_summary(pairs, failures);
+    const ComparedPair* last = nullptr;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if (!failures[i].empty()) continue;
+        last = &pairs[i];
+        body += fmt::format("<h2 id=\"p{}\">{}</h2>\n", i, html::escaped(study::pair_name(pairs[i], pairs))) +
+                picture::comparison_section(pairs[i], fmt::format("p{}x", i));
+    }
+    if (last) body += picture::comparison_method(*last);
+    return html::page(fmt::format("{} pairs of vibrations", pairs.size()), body);
+}
+
+std::string json_of(const std::vector<ComparedPair>& pairs, const std::vector<std::string>& failures,
+                    const Count& count) {
+    nlohmann::ordered_json json{{"verdict", count.bad + count.failed == 0 ? "pass" : "fail"},
+                                {"passed", count.passed},
+                                {"failed", count.failed},
+                                {"bad", count.bad}};
+    json["pairs"] = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        nlohmann::ordered_json row{{"reference", pairs[i].reference.string()}, {"output", pairs[i].output.string()}};
+        if (failures[i].empty()) row.update(nlohmann::ordered_json::parse(comparison_json(pairs[i])));
+        else row["error"] = failures[i];
+        json["pairs"].push_back(std::move(row));
+    }
+    return json.dump(2);
+}
+
+int compare_many(const CompareChoice& choice, const study::CompareSettings& settings) {
+    const std::vector<study::PairedFiles> names = study::paired_files(settings.reference, settings.output);
+    if (!choice.plot.empty()) fs::create_directories(choice.plot);
+    std::vector<ComparedPair> pairs(names.size());
+    const std::vector<std::string> failures =
+        run_batch(names.size(), choice.jobs, "pairs", [&](std::size_t i, const std::function<void(double)>&) {
+            pairs[i].reference = names[i].reference;
+            pairs[i].output = names[i].output;
+            if (names[i].reference.empty())
+                throw Error(fmt::format("{}: there is no reference of that name in {}", names[i].output.string(),
+                                        settings.reference.string()));
+            if (names[i].output.empty())
+                throw Error(fmt::format("{}: there is no output of that name in {}", names[i].reference.string(),
+                                        settings.output.string()));
+            study::CompareSettings one = settings;
+            one.reference = names[i].reference;
+            one.output = names[i].output;
+            pairs[i] = study::compare_files(one);
+            if (choice.plot.empty()) return;
+            const fs::path varied = fs::is_directory(settings.output) ? one.output : one.reference;
+            picture::write_figure(picture::draw_comparison(pairs[i]),
+                                  fs::path(choice.plot) / (varied.filename().string() + ".svg"));
+        });
+    Count count;
+    count.bad = tell_failures(failures);
+    for (std::size_t i = 0; i < pairs.size(); ++i) count.passed += failures[i].empty() && pairs[i].verdict.passed();
+    count.failed = pairs.size() - count.passed - count.bad;
+    if (!choice.table.empty()) write_whole_file(choice.table, comparison_table(pairs, failures));
+    if (!choice.report.empty()) write_whole_file(choice.report, page_of(pairs, failures, count.passed));
+    if (choice.json) fmt::print("{}\n", json_of(pairs, failures, count));
+    else fmt::print("{}{} of {} pass\n", comparison_rows(pairs, failures), count.passed, pairs.size());
+    return count.bad > 0 ? bad_input : count.failed > 0 ? answer_is_no : done;
+}
+
+int compare(const CompareChoice& choice) {
+    study::CompareSettings settings = choice.settings;
+    if (!choice.thresholds.empty()) settings.thresholds = load_thresholds(choice.thresholds);
+    settings.touch = touch_of(choice.touch);
+    settings.logs = {selection_for(choice, 0), selection_for(choice, 1)};
+    settings.pictures = !choice.plot.empty() || !choice.report.empty();
+    if (fs::is_directory(settings.reference) || fs::is_directory(settings.output))
+        return compare_many(choice, settings);
+    return compare_one(choice, settings);
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<CompareChoice>();
+    study::CompareSettings& settings = choice->settings;
+    verb.add("reference", settings.reference, "sound file or CSV log of what was wanted, or a folder").required();
+    verb.add("output", settings.output, "sound file or CSV log of what came out, or a folder: files are paired by name")
+        .required();
+    verb.add("--thresholds", choice->thresholds, "TOML file of what must be reached; keys and defaults: docs/reference/tables.md");
+    verb.add("--plot", choice->plot, "a figure, .svg or .png; of folders a folder, of SVG");
+    verb.add("--report", choice->report, "figure, tables and how they were computed in one HTML file");
+    verb.add("--table", choice->table, "a row per pair, CSV");
+    verb.add("--jobs", choice->jobs, "pairs at a time, 0: one per core").range(0, 256);
+    verb.add("--reference-scale", settings.reference_scale, "units per full scale, such as m/s^2").shows_default();
+    verb.add("--output-scale", settings.output_scale, "of the output, in the same unit").shows_default();
+    verb.add("--channel", settings.channel, "of both files, from 1; 0: the mean of all").shows_default().range(0, 1024);
+    verb.add("--time-column", choice->time_columns, "of CSV logs: name or number, of both files or of each")
+        .separated_by(',')
+        .count(1, 2)
+        .one_each();
+    verb.add("--column", choice->columns, "of CSV logs: name or number of what is compared, of both or of each")
+        .separated_by(',')
+        .count(1, 2)
+        .one_each();
+    verb.add("--time-unit", choice->time_unit, "of CSV logs: s, ms, us or ns").one_of({"s", "ms", "us", "ns"});
+    verb.add("--actuator", settings.actuator, "state the level gap of this actuator at its limits, of m/s^2");
+    verb.add("--mass", settings.mass, "that the actuator shakes, kg").shows_default();
+    verb.add("--touch", choice->touch, "what the threshold of touch is a threshold of")
+        .shows_default()
+        .one_of({"displacement", "acceleration", "none"});
+    verb.add("--max-delay", settings.longest_delay, "greatest delay looked for, s").shows_default().range(0.001, 100.0);
+    verb.flag("--json", choice->json, "as JSON");
+    return [choice] { return compare(*choice); };
+}
+
+}  // namespace
+
+Verb compare_verb() { return {"compare", "is what the actuator plays what the saw did? Exit code 0: yes, 1: no", add}; }
+
+}  // namespace tactus::command

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a measured response to a filter that undoes it, and what the actuator's limits say to it.
+#include "dsp/core/error.hpp"
+#include "tools/command/options.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/study/vibration/equalisation.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace tactus::command {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct EqualiseChoice {
+    study::EqualiseSettings settings;
+    std::filesystem::path out;
+    std::string kind = "minimum";
+    double greatest_boost_db = 20.0;
+    bool json = false;
+};
+
+Json headroom_json(const Headroom& h) {
+    Json json{{"peak_v", h.peak}, {"headroom_db", h.headroom_db}, {"limited_fraction", h.limited_fraction}};
+    json["lost"] = Json::array();
+    for (const BandLoss& loss : h.losses) json["lost"].push_back({{"hz", loss.hz}, {"db", loss.lost_db}});
+    return json;
+}
+
+void print_headroom(const char* name, const Headroom& h, double limit) {
+    fmt::print("  {}  peak {:.3f} V, {}\n", name, h.peak,
+               h.headroom_db >= 0.0
+                   ? fmt::format("{:.1f} dB below the limit of {:g} V", h.headroom_db, limit)
+                   : fmt::format("{:.1f} dB above the limit of {:g} V: {:.2g} % of the samples are cut; play it "
+                                 "{:.1f} dB softer",
+                                 -h.headroom_db, limit, 100.0 * h.limited_fraction, -h.headroom_db));
+    for (const BandLoss& loss : h.losses)
+        fmt::print("                 the band at {:.0f} Hz loses {:.1f} dB\n", loss.hz, loss.lost_db);
+}
+
+int equalise(const EqualiseChoice& choice) {
+    study::EqualiseSettings settings = choice.settings;
+    settings.design.kind = choice.kind == "linear" ? EqualiserKind::linear_phase : EqualiserKind::minimum_phase;
+    settings.design.greatest_gain = std::pow(10.0, choice.greatest_boost_db / 20.0);
+    const study::Equalisation made = study::equalise(settings);
+    save_equaliser(made.equaliser, made.title.empty() ? settings.response.stem().string() : made.title, choice.out);
+    const Equaliser& equaliser = made.equaliser;
+    const study::Flatness& flat = made.flat;
+    const ActuatorModel& actuator = *made.actuator;
+    if (choice.json) {
+        Json json{{"equaliser", choice.out.string()},
+                  {"kind", choice.kind},
+                  {"rate_hz", equaliser.rate},
+                  {"delay_s", equaliser.delay},
+                  {"taps", equaliser.taps.size()},
+                  {"band_hz", {equaliser.lowest, equaliser.highest}},
+                  {"mean_gain", equaliser.mean_gain},
+                  {"unit", equaliser.unit},
+                  {"deviation_before_db", flat.before_db},
+                  {"deviation_after_db", flat.after_db},
+                  {"greatest_boost", {{"hz", flat.boost_hz}, {"db", flat.boost_db}}},
+                  {"actuator", std::string(actuator.name)},
+                  {"voltage_limit_v", actuator.voltage_limit},
+                  {"current_limit_a", actuator.current_limit},
+                  {"bands", Json::array()}};
+        for (const auto& band : made.flat.bands)
+            json["bands"].push_back({{"hz", band.hz}, {"filter_db", band.filter_db}, {"loudest_peak", band.loudest}});
+        if (made.programme)
+            json["headroom"] = {{"before", headroom_json(made.programme->plain)},
+                                {"after", headroom_json(made.programme->equalised)}};
+        fmt::print("{}\n", json.dump(2));
+        return done;
+    }
+    fmt::print("{}: {} phase, {} taps at {:g} Hz, adds {:.2f} ms\n", choice.out.string(), choice.kind,
+               equaliser.taps.size(), equaliser.rate, 1e3 * equaliser.delay);
+    fmt::print("  deviation    from {:g} to {:g} Hz: {:.1f} dB without it, {:.1f} dB with it\n", equaliser.lowest,
+               equaliser.highest, flat.before_db, flat.after_db);
+    fmt::print("  boost        {:.1f} dB at most, at {:.0f} Hz\n", flat.boost_db, flat.boost_hz);
+    const auto softest = std::ranges::min_element(made.flat.bands, {}, &study::Flatness::Band::loudest);
+    fmt::print(
+        "  limits       {}: {:g} V and {:g} A through {:g} ohm; the loudest sine is {:.3g}{}{} peak at {:.0f} Hz, "
+        "where it is weakest\n",
+        actuator.name, actuator.voltage_limit, actuator.current_limit, actuator.resistance, softest->loudest,
+        made.unit.empty() ? "" : " ", made.unit.substr(0, made.unit.find(" per ")), softest->hz);
+    if (made.programme) {
+        print_headroom("as recorded ", made.programme->plain, made.limit);
+        print_headroom("equalised   ", made.programme->equalised, made.limit);
+    } else {
+        fmt::print("  headroom     unknown: give --signal FILE, --scale and --volts for what will be played\n");
+    }
+    return done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<EqualiseChoice>();
+    study::EqualiseSettings& settings = choice->settings;
+    EqualiserDesign& design = settings.design;
+    verb.add("response", settings.response, "file of 'tactus measure', or a table of Hz, dB and degrees").required();
+    verb.add("-o,--out", choice->out, "the filter, TOML").required();
+    verb.add("--kind", choice->kind, "minimum: adds at most 2 ms; linear: undoes the phase, adds half its length")
+        .shows_default()
+        .one_of({"minimum", "linear"});
+    verb.add("--rate", design.rate, "of the node that will use it, Hz").shows_default();
+    verb.add("--from", design.lowest, "band to be made flat, Hz").shows_default();
+    verb.add("--to", design.highest, "and its upper end, Hz").shows_default();
+    verb.add("--length", design.length, "of the impulse response, s").shows_default();
+    verb.add("--max-boost", choice->greatest_boost_db, "greatest gain of the filter, dB")
+        .shows_default()
+        .range(0.0, 60.0);
+    verb.add("--regularisation", design.regularisation, "share of the mean power gain below which it lets go")
+        .shows_default()
+        .range(0.0, 1.0);
+    verb.add("--actuator", settings.actuator, "whose voltage and current limits count").shows_default();
+    verb.add("--volts", settings.volts, "drive voltage per unit of the response's input").shows_default();
+    verb.add("--signal", settings.signal, "a recording to be played: how much of it the limits would cut");
+    verb.add("--scale", settings.scale, "units of the response's input per full scale of the recording")
+        .shows_default();
+    verb.flag("--json", choice->json, "as JSON");
+    return [choice] { return equalise(*choice); };
+}
+
+}  // namespace
+
+Verb equalise_verb() { return {"equalise", "make a filter for the 'equaliser' node from a measured response", add}; }
+
+}  // namespace tactus::command

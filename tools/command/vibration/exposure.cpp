@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// Vibration exposure of the hand.
+#include "tools/study/vibration/exposure.hpp"
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/units.hpp"
+#include "tools/command/batch.hpp"
+#include "tools/command/vibration/record_options.hpp"
+#include "tools/exit_code.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
+
+namespace tactus::command {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Operation = study::ExposureOperation;
+
+struct ExposureChoice : RecordChoice {
+    std::vector<std::string> durations;  // quantities of time; a bare number is hours
+    bool uncalibrated = false;           // take values of a record without calibration as m/s²
+    int jobs = 0;                        // files at a time, 0: one per core
+    std::filesystem::path table;
+};
+
+double parse_duration(const std::string& text) {
+    double hours = 0.0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), hours);
+    const double seconds =
+        failure == std::errc{} && end == text.data() + text.size() ? 3600.0 * hours : parse_as(text, "s");
+    if (!(seconds > 0.0) || !(seconds <= 24.0 * 3600.0))
+        throw Error(fmt::format("--duration takes a time up to 24 h, such as \"90 min\", not '{}'", text));
+    return seconds;
+}
+
+Json minutes_json(double value, double acceleration) {
+    const double minutes = time_to_reach(value, acceleration) / 60.0;
+    return std::isfinite(minutes) ? Json(minutes) : Json(nullptr);
+}
+
+std::string reached(double value, double acceleration) {
+    const double minutes = time_to_reach(value, acceleration) / 60.0;
+    return minutes <= 1440.0 ? fmt::format("after {:.0f} min", minutes) : "not within a day";
+}
+
+Json operation_json(const Operation& one) {
+    return {{"a_hw", one.weighted},
+            {"a_hv", one.three_axes ? Json(one.total()) : Json(nullptr)},
+            {"a8", daily_exposure(std::array{HandArmOperation{one.total(), one.duration}})},
+            {"minutes_to_action", minutes_json(action_value, one.total())},
+            {"minutes_to_limit", minutes_json(limit_value, one.total())},
+            {"calibrated", one.calibrated},
+            {"band_hz", {hand_arm_lowest, one.band_high}},
+            {"lower_bound", one.is_lower_bound()},
+            {"a_hw_filter", one.filtered},
+            {"axes", one.axes},
+            {"file", one.file},
+            {"duration_s", one.duration},
+            {"notes", one.notes}};
+}
+
+std::string table_row(const Operation& one) {
+    std::string axes, notes;
+    for (std::size_t i = 0; i < 3; ++i)
+        axes += i < one.weighted.size() ? fmt::format("{},", one.weighted[i]) : std::string(",");
+    for (const std::string& note : one.notes) notes += (notes.empty() ? "" : "; ") + note;
+    const auto minutes = [&](double value) {
+        const double found = time_to_reach(value, one.total()) / 60.0;
+        return std::isfinite(found) ? fmt::format("{}", found) : std::string();
+    };
+    return fmt::format("{},{}{},{},{},{},{},{},{},{},{},\n", csv_field(one.file), axes,
+                       one.three_axes ? fmt::format("{}", one.total()) : std::string(),
+                       daily_exposure(std::array{HandArmOperation{one.total(), one.duration}}), one.duration,
+                       minutes(action_value), minutes(limit_value), one.calibrated, hand_arm_lowest, one.band_high,
+                       csv_field(notes));
+}
+
+void write_table(const ExposureChoice& choice, const std::vector<Operation>& operations,
+                 const std::vector<std::filesystem::path>& files, const std::vector<std::string>& failures) {
+    std::string table =
+        "file,a_hw_1,a_hw_2,a_hw_3,a_hv,a8,duration_s,minutes_to_action,minutes_to_limit,calibrated,band_low_hz,"
+        "band_high_hz,notes,error\n";
+    for (std::size_t i = 0; i < files.size(); ++i)
+        table += failures[i].empty()
+                     ? table_row(operations[i])
+                     : fmt::format("{},,,,,,,,,,,,,{}\n", csv_field(files[i].string()), csv_field(failures[i]));
+    write_whole_file(choice.table, table);
+}
+
+void print_operation(const Operation& one) {
+    fmt::print("{}: {:.0f} min a day\n", one.file, one.duration / 60.0);
+    for (std::size_t i = 0; i < one.axes.size(); ++i)
+        fmt::print("  axis {}: a_hw {:.3g} m/s^2 (by filter {:.3g})\n", one.axes[i], one.weighted[i], one.filtered[i]);
+    if (one.three_axes) fmt::print("  a_hv {:.3g} m/s^2\n", one.total());
+    fmt::print("  action value {}, limit value {}\n", reached(action_value, one.total()),
+               reached(limit_value, one.total()));
+    for (const std::string& note : one.notes) fmt::print("  {}\n", note);
+}
+
+/// A line per file, for more of them than one cares to read about one by one.
+void print_table(const std::vector<Operation>& operations) {
+    std::size_t width = 4;
+    for (const Operation& one : operations) width = std::max(width, one.file.size());
+    fmt::print("{:<{}}  {:>9}  {:>9}  {:>8}  {:>18}  {}\n", "file", width, "a, m/s^2", "A(8)", "min/day",
+               "action value", "limit value");
+    for (const Operation& one : operations)
+        if (!one.file.empty())
+            fmt::print("{:<{}}  {:>9.3g}  {:>9.3g}  {:>8.0f}  {:>18}  {}{}\n", one.file, width, one.total(),
+                       daily_exposure(std::array{HandArmOperation{one.total(), one.duration}}), one.duration / 60.0,
+                       reached(action_value, one.total()), reached(limit_value, one.total()),
+                       one.band_high < 1250.0 || !one.three_axes || !one.calibrated ? "  (see --table)" : "");
+}
+
+int exposure(const ExposureChoice& choice) {
+    const std::vector<std::filesystem::path> files = study::expand_folders(choice.files);
+    if (choice.durations.size() > 1 && choice.durations.size() != files.size())
+        throw Error(fmt::format("there are {} durations for {} files; give one, or one per file",
+                                choice.durations.size(), files.size()));
+    std::vector<double> durations;
+    for (const std::string& text : choice.durations) durations.push_back(parse_duration(text));
+    if (durations.empty()) durations.push_back(reference_day);
+    const study::ExposureSettings settings{choice.record, choice.uncalibrated};
+    std::vector<Operation> operations(files.size());
+    const std::vector<std::string> failures =
+        run_batch(files.size(), choice.jobs, "files", [&](std::size_t i, const std::function<void(double)>& progress) {
+            operations[i] =
+                study::analyse_exposure(files[i], settings, durations[std::min(i, durations.size() - 1)], progress);
+        });
+    const bool bad = tell_failures(failures) > 0;
+    if (!choice.table.empty()) write_table(choice, operations, files, failures);
+    if (bad && files.size() == 1) return bad_input;
+    // A day with a file missing has none.
+    std::optional<double> a8;
+    if (!bad) a8 = study::exposure_of_day(operations);
+    const double day = a8.value_or(0.0);
+    if (choice.json) {
+        Json json;
+        if (files.size() == 1) {
+            json = operation_json(operations.front());
+        } else {
+            json = {{"a8", a8 ? Json(day) : Json()}, {"operations", Json::array()}};
+            for (std::size_t i = 0; i < files.size(); ++i)
+                json["operations"].push_back(failures[i].empty()
+                                                 ? operation_json(operations[i])
+                                                 : Json{{"file", files[i].string()}, {"error", failures[i]}});
+        }
+        json["years_to_white_fingers"] = day > 0.0 ? Json(years_to_white_fingers(day)) : Json(nullptr);
+        fmt::print("{}\n", json.dump(2));
+        return bad ? bad_input : done;
+    }
+    if (files.size() > 3) print_table(operations);
+    else
+        for (const Operation& one : operations)
+            if (!one.file.empty()) print_operation(one);
+    if (a8)
+        fmt::print("A(8) {:.3g} m/s^2: {}\n", day,
+                   day > limit_value    ? "above the limit value, 5"
+                   : day > action_value ? "above the action value, 2.5"
+                                        : "below the action value, 2.5");
+    else
+        fmt::print(
+            "no A(8) of the day: {}\n",
+            bad ? "a file could not be used" : "the durations add up to more than 24 h; state them with --duration");
+    return bad ? bad_input : done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<ExposureChoice>();
+    add_record_options(verb, *choice, "a record per tool, its channels the axes; or folders of them");
+    verb.add("--duration", choice->durations,
+             "of contact per day, such as \"90 min\" (default 8 h); one, or one per file")
+        .one_each();
+    verb.flag("--uncalibrated", choice->uncalibrated, "take an uncalibrated record's values as m/s^2");
+    verb.add("--table", choice->table, "a row per file, CSV");
+    verb.add("--jobs", choice->jobs, "files at a time, 0: one per core").range(0, 256);
+    return [choice] { return exposure(*choice); };
+}
+
+}  // namespace
+
+Verb exposure_verb() {
+    return {"exposure", "vibration exposure of the hand (ISO 5349-1): A(8), minutes to action and limit value", add};
+}
+
+}  // namespace tactus::command

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// A sweep through a patch or a sound card, and what it tells of what it went through.
+#include "tools/command/patch_options.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/study/vibration/measurement.hpp"
+#include "tools/terminal.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+
+namespace tactus::command {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct MeasureChoice {
+    study::MeasureSettings settings;
+    std::filesystem::path csv = "response.csv";
+    bool json = false;
+};
+
+constexpr const char* kinds[] = {"displacement", "velocity", "acceleration"};
+
+std::string json_of(const study::Measurement& found, const MeasureChoice& choice) {
+    const auto known = [&](const auto& value) { return found.resonance.hz > 0.0 ? Json(value) : Json(); };
+    Json json{{"resonance_hz", known(found.resonance.hz)},
+              {"damping_ratio", known(found.resonance.damping)},
+              {"latency_s", found.response.identified.response.latency},
+              {"response_csv", choice.csv.string()},
+              {"thd", Json::array()},
+              {"fit", {{"kind", known(kinds[found.resonance.order])}, {"error_db", known(found.resonance.error_db)}}},
+              {"coherence_mean", found.coherence},
+              {"band_hz", {found.lowest, found.highest}},
+              {"unit", found.response.unit}};
+    for (const study::DistortionOrder& order : found.orders)
+        json["thd"].push_back({{"order", order.order},
+                               {"percent", 100.0 * order.rms},
+                               {"worst_percent", 100.0 * order.worst},
+                               {"worst_hz", order.worst_hz}});
+    if (found.card)
+        json["device"] = {{"name", found.card->device},
+                          {"output_latency_s", found.card->output_latency},
+                          {"input_latency_s", found.card->input_latency},
+                          {"underflows", found.card->underflows}};
+    return json.dump(2) + "\n";
+}
+
+void print(const study::Measurement& found, const MeasureChoice& choice) {
+    const study::MeasureSettings& settings = choice.settings;
+    fmt::print("{}\n", found.response.title);
+    if (!(found.resonance.hz > 0.0))
+        fmt::print("  resonance   none from {:.0f} to {:.0f} Hz\n", settings.fit_lowest, found.fit_highest);
+    else
+        fmt::print("  resonance   {:.1f} Hz, damping ratio {:.3f} ({} response, fit within {:.2f} dB)\n",
+                   found.resonance.hz, found.resonance.damping, kinds[found.resonance.order], found.resonance.error_db);
+    fmt::print("  latency     {:.3f} ms\n", 1e3 * found.response.identified.response.latency);
+    fmt::print("  coherence   {:.4f} on average from {:.0f} to {:.0f} Hz\n", found.coherence, found.lowest,
+               found.highest);
+    for (const study::DistortionOrder& order : found.orders)
+        fmt::print("  order {}     {:.3f} % (rms), worst {:.3f} % at {:.0f} Hz\n", order.order, 100.0 * order.rms,
+                   100.0 * order.worst, order.worst_hz);
+    if (found.card)
+        fmt::print("  sound card  reports {:.3f} ms out and {:.3f} ms in; lost sound {} times\n",
+                   1e3 * found.card->output_latency, 1e3 * found.card->input_latency, found.card->underflows);
+    fmt::print("  response    {}\n", choice.csv.string());
+}
+
+int measure(const MeasureChoice& choice) {
+    LiveLine line;
+    const study::Measurement found = study::measure(
+        choice.settings, [&](double share) { line.show(fmt::format("{:3.0f} % of the sweep", 100.0 * share)); });
+    line.clear();
+    save_response(found.response, choice.csv);
+    if (choice.json) fmt::print("{}", json_of(found, choice));
+    else print(found, choice);
+    return done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<MeasureChoice>();
+    study::MeasureSettings& settings = choice->settings;
+    verb.add("patch", settings.patch.patch, "patch file, or a name in the library");
+    verb.add("--in", settings.in, "NODE.PORT that the sweep feeds (an input) or replaces (an output)");
+    verb.add("--out", settings.out_port, "NODE.PORT, the output that is recorded");
+    verb.add("--device", settings.device, "a sound card instead: part of its name, or 'default'");
+    verb.add("--output-channel", settings.output_channel, "of the card, from 1").shows_default();
+    verb.add("--input-channel", settings.input_channel, "of the card, from 1").shows_default();
+    verb.add("--rate", settings.rate, "of the card, Hz").shows_default().range(1e3, 1e6);
+    verb.add("-o,--csv", choice->csv, "the response, CSV").shows_default();
+    verb.add("--first", settings.first, "first frequency, Hz").shows_default().range(0.1, 1e5);
+    verb.add("--last", settings.last, "last frequency, Hz").shows_default().range(0.1, 1e5);
+    verb.add("--duration", settings.duration, "of the sweep, s").shows_default().range(0.1, 1e3);
+    verb.add("--pause", settings.pause, "silence after it, s").shows_default().range(0.05, 1e2);
+    verb.add("--repeats", settings.repeats, "sweeps, averaged").shows_default().range(1, 1000);
+    verb.add("--amplitude", settings.amplitude, "of the sweep, in the unit of what it feeds; card: of full scale")
+        .shows_default();
+    verb.add("--fit-from", settings.fit_lowest, "where the resonance is looked for, Hz").shows_default();
+    verb.add("--fit-to", settings.fit_highest, "and up to where, Hz").shows_default();
+    add_override_options(verb, settings.patch);
+    verb.flag("--json", choice->json, "as JSON");
+    return [choice] { return measure(*choice); };
+}
+
+}  // namespace
+
+Verb measure_verb() {
+    return {"measure", "sweep through a patch or a sound card: response, resonance, distortion, latency", add};
+}
+
+}  // namespace tactus::command

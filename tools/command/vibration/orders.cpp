@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Levels of the orders of a machine whose rate changes.
+#include "tools/study/vibration/orders.hpp"
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/command/vibration/record_options.hpp"
+#include "tools/exit_code.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace tactus::command {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct OrdersChoice : RecordChoice {
+    study::OrdersSettings settings;
+    std::string range = "20:400";  // LOW:HIGH in Hz
+    std::filesystem::path csv;
+};
+
+std::string json_of(const std::string& file, const study::Orders& found) {
+    Json json{{"file", file},
+              {"sample_rate_hz", found.sample_rate},
+              {"duration_s", found.duration},
+              {"source", found.source},
+              {"rate_hz", {{"min", found.rate.low}, {"max", found.rate.high}, {"mean", found.rate.mean}}},
+              {"channels", Json::array()}};
+    if (found.source == "ridge") json["ridge_prominence_db"] = found.prominence_db;
+    for (const study::OrdersOfChannel& one : found.channels) {
+        Json channel{{"name", one.name},
+                     {"unit", found.calibration.unit},
+                     {"calibrated", found.calibration.known},
+                     {"turns", one.spectrum.turns},
+                     {"segments", one.spectrum.segments},
+                     {"orders", Json::array()}};
+        for (const OrderLevel& level : one.spectrum.orders)
+            channel["orders"].push_back({{"order", level.order},
+                                         {"amplitude", level.amplitude},
+                                         {"db", 20.0 * std::log10(std::max(level.amplitude / std::sqrt(2.0), 1e-15))},
+                                         {"snr_db", level.snr_db}});
+        json["channels"].push_back(channel);
+    }
+    return json.dump(2) + "\n";
+}
+
+std::string text_of(const std::string& file, const study::Orders& found) {
+    std::string text =
+        fmt::format("{}: {} from {:.2f} to {:.2f} Hz\n", file, found.source, found.rate.low, found.rate.high);
+    for (const study::OrdersOfChannel& one : found.channels) {
+        text += fmt::format("  channel {}, {:.0f} turns\n", one.name, one.spectrum.turns);
+        for (const OrderLevel& level : one.spectrum.orders)
+            text += fmt::format("    order {:3g}  {:.5g} {}  SNR {:.0f} dB\n", level.order, level.amplitude,
+                                found.calibration.unit, level.snr_db);
+    }
+    return text;
+}
+
+/// Amplitude over orders.
+std::string csv_of(const study::Orders& found) {
+    std::string csv = "order";
+    for (const study::OrdersOfChannel& one : found.channels) csv += "," + one.name;
+    csv += '\n';
+    const OrderSpectrum& first = found.channels.front().spectrum;
+    for (std::size_t k = 0; k < first.amplitude.size(); ++k) {
+        csv += fmt::format("{}", static_cast<double>(k) * first.step);
+        for (const study::OrdersOfChannel& one : found.channels) csv += fmt::format(",{}", one.spectrum.amplitude[k]);
+        csv += '\n';
+    }
+    return csv;
+}
+
+/// Names the record in what is wrong.
+template <class Function>
+void about_file(const std::filesystem::path& file, const Function& function) {
+    try {
+        function();
+    } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", file.string(), error.message()));
+    }
+}
+
+int orders(const OrdersChoice& choice) {
+    if (choice.files.size() != 1) throw Error("orders takes one file");
+    const std::filesystem::path& file = choice.files.front();
+    study::OrdersSettings settings = choice.settings;
+    settings.record = choice.record;
+    if (settings.tacho == 0 && !settings.fixed)
+        about_file(file, [&] { settings.range = parse_band(choice.range, "--range"); });
+    const study::Orders found = study::analyse_orders(file, settings);
+    if (!choice.csv.empty()) about_file(file, [&] { write_whole_file(choice.csv, csv_of(found)); });
+    fmt::print("{}", choice.json ? json_of(file.string(), found) : text_of(file.string(), found));
+    return done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<OrdersChoice>();
+    study::OrdersSettings& settings = choice->settings;
+    add_record_options(verb, *choice, "a sound file or CSV log");
+    const Option tacho = verb.add("--tacho", settings.tacho, "channel of the tachometer, from 1").range(1, 1024);
+    verb.add("--pulses", settings.pulses, "of the tachometer, per revolution").shows_default().range(0.01, 1e5);
+    verb.add("--rate", settings.fixed, "the rate, when it is known and constant, Hz").range(0.01, 1e6).excludes(tacho);
+    verb.add("--range", choice->range, "LOW:HIGH in Hz: where a rate to be tracked may lie").shows_default();
+    verb.add("--orders", settings.highest, "highest order").shows_default().range(1, 200);
+    verb.add("--csv", choice->csv, "amplitude over orders");
+    return [choice] { return orders(*choice); };
+}
+
+}  // namespace
+
+Verb orders_verb() { return {"orders", "levels of the orders of a machine whose rate changes", add}; }
+
+}  // namespace tactus::command

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the verbs that analyse records are given.
+#pragma once
+
+#include "tools/command/options.hpp"
+#include "tools/study/vibration/record.hpp"
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tactus::command {
+
+struct RecordChoice {
+    std::vector<std::filesystem::path> files;
+    study::RecordSettings record;
+    bool json = false;
+};
+
+/// `files`: what the help text says of them.
+void add_record_options(VerbOptions& verb, RecordChoice& choice, const char* files);
+
+/// "200:600" → Hz. Throws Error that names the option.
+std::pair<double, double> parse_band(const std::string& text, const char* option);
+
+}  // namespace tactus::command

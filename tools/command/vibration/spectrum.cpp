@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// What vibrates in a record, or in each of many.
+#include "assets/file/whole_file.hpp"
+#include "tools/command/batch.hpp"
+#include "tools/command/vibration/record_options.hpp"
+#include "tools/command/vibration/spectrum_text.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/picture/report/comparison_figure.hpp"
+#include "tools/picture/report/html_report.hpp"
+#include "tools/picture/report/spectrum_figure.hpp"
+#include "tools/picture/report/spectrum_page.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <functional>
+#include <memory>
+
+namespace tactus::command {
+
+namespace {
+
+namespace fs = std::filesystem;
+namespace html = picture::html;
+
+struct SpectrumChoice : RecordChoice {
+    SpectrumWords words;
+    std::string envelope;              // LOW:HIGH in Hz
+    std::string fundamental = "20:500";  // LOW:HIGH in Hz
+    std::optional<std::size_t> segment;
+    std::optional<double> overlap;
+    int orders = 10, jobs = 0;         // files at a time, 0: one per core
+    fs::path csv, plot, table, report;
+};
+
+struct Outcome {
+    std::string text, table;  // what is printed; rows
+    std::string section;      // of a page
+};
+
+study::SpectrumSettings settings_of(const SpectrumChoice& choice) {
+    constexpr std::pair<const char*, WindowKind> windows[] = {
+        {"hann", WindowKind::hann},         {"hamming", WindowKind::hamming},
+        {"blackman", WindowKind::blackman}, {"blackmanharris", WindowKind::blackman_harris},
+        {"flattop", WindowKind::flat_top},  {"boxcar", WindowKind::rectangular}};
+    const SpectrumWords& words = choice.words;
+    study::SpectrumSettings settings;
+    settings.record = choice.record;
+    for (const auto& [name, kind] : windows)
+        if (words.window == name) settings.window = kind;
+    settings.detrend = words.detrend == "none"     ? Detrend::none
+                       : words.detrend == "linear" ? Detrend::linear
+                                                   : Detrend::constant;
+    settings.averaging = words.average == "median" ? Averaging::median
+                         : words.average == "max"  ? Averaging::maximum
+                         : words.average == "min"  ? Averaging::minimum
+                                                   : Averaging::mean;
+    settings.is_density = words.scaling != "spectrum";
+    settings.segment = choice.segment;
+    settings.overlap = choice.overlap.value_or(0.5);
+    settings.fundamental = parse_band(choice.fundamental, "--fundamental");
+    if (!choice.envelope.empty()) settings.envelope = parse_band(choice.envelope, "--envelope");
+    settings.orders = choice.orders;
+    settings.spectrogram = !choice.plot.empty() || !choice.report.empty();
+    return settings;
+}
+
+picture::SpectrumMethod method_of(const SpectrumChoice& choice) {
+    return {choice.words.window, choice.words.detrend, choice.words.average,        choice.words.scaling,
+            choice.envelope,     choice.fundamental,   choice.overlap.value_or(0.5)};
+}
+
+Outcome analyse(const fs::path& path, const SpectrumChoice& choice, bool many,
+                const std::function<void(double)>& progress) {
+    const study::AnalysedFile file = study::analyse_file(path, settings_of(choice), progress);
+    const auto output = [&](const fs::path& wanted, const char* ending) {
+        return many ? wanted / (path.filename().string() + ending) : wanted;
+    };
+    if (!choice.csv.empty()) write_whole_file(output(choice.csv, ".csv"), analysis_csv(file));
+    if (!choice.plot.empty()) picture::write_figure(picture::draw_spectrum(file), output(choice.plot, ".svg"));
+    return {choice.json ? analysis_json(file, choice.words) : analysis_text(file), analysis_rows(file),
+            choice.report.empty() ? std::string() : picture::analysis_section(file, method_of(choice))};
+}
+
+void print_json(const std::vector<fs::path>& files, const std::vector<Outcome>& outcomes,
+                const std::vector<std::string>& failures) {
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        if (failures[i].empty()) all.push_back(nlohmann::ordered_json::parse(outcomes[i].text));
+        else all.push_back({{"file", files[i].string()}, {"error", failures[i]}});
+    }
+    fmt::print("{}\n", all.dump(2));
+}
+
+int spectrum(const SpectrumChoice& choice) {
+    const std::vector<fs::path> files = study::expand_folders(choice.files);
+    const bool many = files.size() > 1;
+    if (many)
+        for (const fs::path& folder : {choice.csv, choice.plot})
+            if (!folder.empty()) fs::create_directories(folder);
+    std::vector<Outcome> outcomes(files.size());
+    const std::vector<std::string> failures =
+        run_batch(files.size(), choice.jobs, "files", [&](std::size_t i, const std::function<void(double)>& progress) {
+            outcomes[i] = analyse(files[i], choice, many, progress);
+        });
+    const bool bad = tell_failures(failures) > 0;
+    if (many && choice.json) print_json(files, outcomes, failures);
+    else
+        for (const Outcome& outcome : outcomes) fmt::print("{}", outcome.text);
+    if (!choice.table.empty()) {
+        std::string table = analysis_heading;
+        for (std::size_t i = 0; i < files.size(); ++i)
+            table += failures[i].empty()
+                         ? outcomes[i].table
+                         : fmt::format("{},,,,,,,,,,,{}\n", csv_field(files[i].string()), csv_field(failures[i]));
+        write_whole_file(choice.table, table);
+    }
+    if (!choice.report.empty()) {
+        std::string body;
+        for (std::size_t i = 0; i < files.size(); ++i)
+            body += failures[i].empty() ? outcomes[i].section
+                                        : fmt::format("<p class=\"fail\">{}</p>\n", html::escaped(failures[i]));
+        write_whole_file(choice.report, html::page(many ? "Vibration of " + std::to_string(files.size()) + " records"
+                                                        : files.front().filename().string(),
+                                                   body + picture::analysis_method(method_of(choice))));
+    }
+    return bad ? bad_input : done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<SpectrumChoice>();
+    SpectrumWords& words = choice->words;
+    add_record_options(verb, *choice, "sound files, CSV logs, or folders of them");
+    verb.add("--window", words.window, "of the spectrum")
+        .shows_default()
+        .one_of({"hann", "hamming", "blackman", "blackmanharris", "flattop", "boxcar"});
+    verb.add("--segment", choice->segment, "samples (default: about 0.75 s)").range(2, 1 << 26);
+    verb.add("--overlap", choice->overlap, "share of a segment (default 0.5)").range(0.0, 0.99);
+    verb.add("--detrend", words.detrend, "what is taken out of each segment")
+        .shows_default()
+        .one_of({"none", "constant", "linear"});
+    verb.add("--average", words.average, "over segments").shows_default().one_of({"mean", "median", "max", "min"});
+    verb.add("--scaling", words.scaling, "density: unit^2/Hz, spectrum: unit^2")
+        .shows_default()
+        .one_of({"density", "spectrum"});
+    verb.add("--envelope", choice->envelope, "LOW:HIGH in Hz: spectrum of this band's envelope");
+    verb.add("--fundamental", choice->fundamental, "LOW:HIGH in Hz: where the fundamental may lie").shows_default();
+    verb.add("--orders", choice->orders, "rows of the harmonic table").shows_default().range(1, 200);
+    verb.add("--csv", choice->csv, "frequency and spectrum per channel; for several files a folder");
+    verb.add("--plot", choice->plot, "figure, .svg or .png; for several files a folder, of SVG");
+    verb.add("--table", choice->table, "a row per file and channel, CSV");
+    verb.add("--report", choice->report, "figures, tables and how they were computed in one HTML file");
+    verb.add("--jobs", choice->jobs, "files at a time, 0: one per core").range(0, 256);
+    return [choice] { return spectrum(*choice); };
+}
+
+}  // namespace
+
+Verb spectrum_verb() {
+    return {"spectrum", "what vibrates in a record: spectrum, fundamental, harmonics, hum, bands, envelope", add};
+}
+
+}  // namespace tactus::command

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// The analysis of a record as text, JSON and CSV.
+#pragma once
+
+#include "tools/study/vibration/spectrum_analysis.hpp"
+
+#include <string>
+
+namespace tactus::command {
+
+/// How the spectrum was asked for.
+struct SpectrumWords {
+    std::string window = "hann", detrend = "constant", average = "mean", scaling = "density";
+};
+
+std::string analysis_json(const study::AnalysedFile& file, const SpectrumWords& words);
+std::string analysis_text(const study::AnalysedFile& file);
+/// Frequency and density per channel.
+std::string analysis_csv(const study::AnalysedFile& file);
+/// A row per channel.
+std::string analysis_rows(const study::AnalysedFile& file);
+/// The names of the columns of these rows.
+inline constexpr const char* analysis_heading =
+    "file,channel,sample_rate_hz,duration_s,rms,unit,crest,fundamental_hz,confidence,hum_hz,warnings,error\n";
+
+}  // namespace tactus::command

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether a patch makes of recordings what they are: the handle's vibration beside each of them, in free air and cutting.
+#include "assets/file/whole_file.hpp"
+#include "tools/command/batch.hpp"
+#include "tools/command/patch_options.hpp"
+#include "tools/command/vibration/comparison_text.hpp"
+#include "tools/command/vibration/validation_text.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/picture/report/comparison_figure.hpp"
+#include "tools/picture/report/validation_page.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <memory>
+
+namespace tactus::command {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using study::Validation;
+using study::ValidationRun;
+
+struct ValidateChoice {
+    study::ValidateSettings settings;
+    std::filesystem::path thresholds, report, plot, table;
+    std::string touch = "displacement";
+    int jobs = 0;  // runs at a time, 0: one per core
+    bool json = false;
+};
+
+struct Count {
+    std::size_t passed = 0, failed = 0, bad = 0;
+};
+
+Json run_json(const ValidationRun& run) {
+    Json json{{"file", run.recording->file.string()},
+              {"state", run.recording->cutting ? "cutting" : "free_air"},
+              {"rate_hz", run.recording->rate},
+              {"load_N", run.recording->load},
+              {"level_db", run.level_db},
+              {"drive_rms_v", run.drive_rms ? Json(*run.drive_rms) : Json()},
+              {"drive_peak_v", run.drive_peak ? Json(*run.drive_peak) : Json()}};
+    if (!run.failure.empty()) json["error"] = run.failure;
+    else json.update(Json::parse(comparison_json(run.pair)));
+    return json;
+}
+
+std::string json_text(const Validation& validation, const Count& count) {
+    Json json{{"patch", validation.patch},
+              {"set", validation.set->path.string()},
+              {"synthesised", validation.set->synthesised},
+              {"calibrated", validation.set->calibrated()},
+              {"out", validation.path.out},
+              {"verdict", count.failed + count.bad == 0 ? "pass" : "fail"},
+              {"passed", count.passed},
+              {"failed", count.failed},
+              {"bad", count.bad},
+              {"runs", Json::array()}};
+    for (const ValidationRun& run : validation.runs) json["runs"].push_back(run_json(run));
+    return json.dump(2) + "\n";
+}
+
+void print(const Validation& validation, const Count& count) {
+    fmt::print("{} at {}, beside {}{}\n", validation.patch, validation.path.out, validation.set->path.string(),
+               validation.set->synthesised ? " (synthesised, no recordings)" : "");
+    fmt::print("{}", validation_rows(validation));
+    fmt::print("{}: {} of {} have the vibration of their recording\n", count.failed + count.bad == 0 ? "PASS" : "FAIL",
+               count.passed, validation.runs.size());
+}
+
+int validate(const ValidateChoice& choice) {
+    study::ValidateSettings settings = choice.settings;
+    if (!choice.thresholds.empty()) settings.thresholds = load_thresholds(choice.thresholds);
+    settings.touch = touch_of(choice.touch);
+    Validation validation = study::plan_validation(settings);
+    const bool pictures = !choice.report.empty() || !choice.plot.empty();
+    if (!choice.plot.empty()) std::filesystem::create_directories(choice.plot);
+    const std::vector<std::string> failures = run_batch(
+        validation.runs.size(), choice.jobs, "runs",
+        [&](std::size_t i, const std::function<void(double)>&) {  // Spectrograms are large; one level shows them.
+            study::validate(validation, i, settings,
+                            pictures && validation.runs[i].level_db == settings.levels.front());
+        });
+    Count count;
+    count.bad = tell_failures(failures);
+    for (std::size_t i = 0; i < failures.size(); ++i) {
+        ValidationRun& run = validation.runs[i];
+        run.failure = failures[i];
+        if (!run.failure.empty()) continue;
+        ++(run.pair.verdict.passed() ? count.passed : count.failed);
+        if (!choice.plot.empty())
+            picture::write_figure(picture::draw_comparison(run.pair),
+                                  (choice.plot / (run.file_name() + ".svg")).string());
+    }
+    if (!choice.table.empty()) write_whole_file(choice.table, validation_csv(validation));
+    if (!choice.report.empty()) write_whole_file(choice.report, picture::validation_page(validation));
+    if (choice.json) fmt::print("{}", json_text(validation, count));
+    else print(validation, count);
+    return count.bad > 0 ? bad_input : count.failed > 0 ? answer_is_no : done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<ValidateChoice>();
+    study::ValidateSettings& settings = choice->settings;
+    add_patch_options(verb, settings.patch);
+    verb.add("--reference", settings.set, "recording set, TOML, or one sound; the patch's saw plays it").required();
+    verb.add("--level", settings.levels, "dB on top of the patch's, one or more")
+        .shows_default()
+        .separated_by(',')
+        .one_each()
+        .range(-80.0, 40.0);
+    verb.add("--saw", settings.saw, "the node that plays (default: the only one of type saw)");
+    verb.add("--out", settings.out_port,
+             "NODE.PORT, the handle's vibration (default: what is recorded as handle.wav, or the actuator's)");
+    verb.add("--seconds", settings.seconds, "that are compared of each run").shows_default().range(0.5, 600.0);
+    verb.add("--thresholds", choice->thresholds, "TOML file of what must be reached, as of compare");
+    verb.add("--touch", choice->touch, "what the threshold of touch is a threshold of")
+        .shows_default()
+        .one_of({"displacement", "acceleration", "none"});
+    verb.add("--report", choice->report, "figures, tables and how they were computed in one HTML file");
+    verb.add("--plot", choice->plot, "folder for a figure of each run, SVG");
+    verb.add("--table", choice->table, "a row per run, CSV");
+    verb.add("--jobs", choice->jobs, "runs at a time, 0: one per core").range(0, 256);
+    verb.flag("--json", choice->json, "as JSON");
+    return [choice] { return validate(*choice); };
+}
+
+}  // namespace
+
+Verb validate_verb() {
+    return {"validate",
+            "does the handle vibrate as the saw did, at every rate and load recorded? Exit code 0: yes, 1: no", add};
+}
+
+}  // namespace tactus::command

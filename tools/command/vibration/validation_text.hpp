@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Validations as text and CSV, a row per run.
+#pragma once
+
+#include "tools/study/vibration/validation.hpp"
+
+#include <string>
+
+namespace tactus::command {
+
+/// For people.
+std::string validation_rows(const study::Validation& validation);
+std::string validation_csv(const study::Validation& validation);
+
+}  // namespace tactus::command

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// A comparison as a page: verdict, figure, tables, and how it was computed.
+#pragma once
+
+#include "tools/study/vibration/comparison.hpp"
+
+#include <string>
+
+namespace tactus::picture {
+
+/// A complete page.
+std::string comparison_page(const study::ComparedPair& pair);
+
+/// Its parts, for pages of several comparisons: figure and tables; how every comparison is computed.
+std::string comparison_section(const study::ComparedPair& pair, const std::string& mark);
+std::string comparison_method(const study::ComparedPair& pair);
+
+}  // namespace tactus::picture

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/picture/report/plan_page.hpp"
+
+#include "assets/mesh/mesh.hpp"
+#include "devices/display/png.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/distance/iso_surface.hpp"
+#include "dsp/planning/gap.hpp"
+#include "dsp/planning/registration.hpp"
+#include "tools/picture/report/html_report.hpp"
+#include "tools/study/bones/fragment_file.hpp"
+#include "tools/study/bones/surface_file.hpp"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace tactus::picture {
+
+namespace {
+
+constexpr int width = 720, height = 540;
+
+std::string base64(const std::string& bytes) {
+    static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t n = 0; n < bytes.size(); n += 3) {
+        std::uint32_t three = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            three = three << 8 | (n + k < bytes.size() ? static_cast<unsigned char>(bytes[n + k]) : 0u);
+        for (std::size_t k = 0; k < 4; ++k) text += n + k > bytes.size() ? '=' : digits[three >> (18 - 6 * k) & 63];
+    }
+    return text;
+}
+
+PictureMesh placed(const Mesh& mesh, const Pose& pose, const Vec3& colour) {
+    PictureMesh picture;
+    for (std::size_t n = 0; n < mesh.vertices.size(); ++n) {
+        const Vec3 v = pose.apply(mesh.vertices[n]), d = pose.rotate(mesh.normals[n]);
+        for (int axis = 0; axis < 3; ++axis) {
+            picture.positions.push_back(static_cast<float>(v[axis]));
+            picture.normals.push_back(static_cast<float>(d[axis]));
+            picture.colours.push_back(static_cast<float>(colour[axis]));
+        }
+    }
+    for (const auto& triangle : mesh.triangles)
+        for (const auto corner : triangle) picture.triangles.push_back(static_cast<std::uint32_t>(corner));
+    return picture;
+}
+
+struct Box {
+    Vec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+
+    void take(const PictureMesh& mesh) {
+        for (std::size_t n = 0; n + 2 < mesh.positions.size(); n += 3) {
+            const Vec3 p(mesh.positions[n], mesh.positions[n + 1], mesh.positions[n + 2]);
+            low = glm::min(low, p);
+            high = glm::max(high, p);
+        }
+    }
+};
+
+std::string picture_of(const std::vector<PictureMesh>& meshes, const Vec3& direction, const std::string& caption) {
+    Box box;
+    for (const PictureMesh& mesh : meshes) box.take(mesh);
+    if (!(box.low.x <= box.high.x)) return "<p>Nothing is shown.</p>\n";
+    View view = fit_view(box.low, box.high, direction, Vec3(0.0, 0.0, 1.0), static_cast<double>(width) / height);
+    view.eye = view.target + (view.eye - view.target) * 0.85;
+    return fmt::format(
+        "<figure><img alt=\"{0}\" width=\"{1}\" src=\"data:image/png;base64,{2}\"><figcaption "
+        "class=\"small\">{0}</figcaption></figure>\n",
+        html::escaped(caption), width, base64(png_bytes(render_picture(meshes, view, width, height))));
+}
+
+/// Blue where bones lie in each other, white where they touch, red where a millimetre gapes, grey where nothing is
+/// near.
+Vec3 gap_colour(double distance) {
+    if (!std::isfinite(distance)) return Vec3(0.62);
+    const double t = std::clamp(distance / 1e-3, -0.5, 1.0);
+    return t < 0.0 ? glm::mix(Vec3(0.97), Vec3(0.10, 0.30, 0.85), -2.0 * t)
+                   : glm::mix(Vec3(0.97), Vec3(0.80, 0.10, 0.10), t);
+}
+
+struct Case {
+    CasePlan plan;
+    PlanState state{Arrangement(0), {}, {}, std::nullopt};
+    std::vector<study::CaseFragment> fragments;
+    std::vector<Mesh> meshes;
+
+    const std::string& name(std::size_t n) const { return plan.fragments[n].name; }
+    Pose pose(std::size_t n) const { return state.arrangement.pose(static_cast<int>(n)); }
+    bool is_shown(std::size_t n) const { return !state.arrangement.is_hidden(static_cast<int>(n)); }
+};
+
+std::vector<PictureMesh> scene_of(const Case& c, const PlanState& state) {
+    std::vector<PictureMesh> meshes;
+    for (std::size_t n = 0; n < c.meshes.size(); ++n)
+        if (c.is_shown(n))
+            meshes.push_back(
+                placed(c.meshes[n], state.arrangement.pose(static_cast<int>(n)), c.plan.fragments[n].colour));
+    return meshes;
+}
+
+std::string pictures(const Case& c) {
+    const std::vector<PictureMesh> scanned = scene_of(c, state_of(c.plan, -1)), planned = scene_of(c, c.state);
+    return "<h2>Pictures</h2>\n<div class=\"two\">\n" +
+           picture_of(scanned, Vec3(0.25, 1.0, -0.35), "As scanned, from the front") +
+           picture_of(planned, Vec3(0.25, 1.0, -0.35), "As planned, from the front") +
+           picture_of(planned, Vec3(-0.35, -1.0, -0.3), "As planned, from behind") +
+           picture_of(planned, Vec3(0.1, 0.3, -1.0), "As planned, from above") + "</div>\n";
+}
+
+/// What the colours of the maps say.
+std::string gap_legend() {
+    std::string stops;
+    for (int n = -2; n <= 4; ++n) {
+        const Vec3 c = 255.0 * gap_colour(0.25e-3 * n);
+        stops += fmt::format(",rgb({:.0f},{:.0f},{:.0f})", c.x, c.y, c.z);
+    }
+    return fmt::format(
+        "<p class=\"small\">0.5 mm in each other or more <span style=\"display:inline-block;width:12rem;height:.8rem;"
+        "background:linear-gradient(90deg{})\"></span> 1 mm apart or more; white: they touch; grey: nothing faces it"
+        "</p>\n",
+        stops);
+}
+
+/// Where each fragment goes, as other programs are told it too.
+std::string places(const Case& c) {
+    std::string out =
+        "<h2>Places</h2>\n<p>p_plan = R p_scan + t, LPS, mm; R as a unit quaternion w x y z.</p>\n<table><tr><th>"
+        "fragment</th><th>t, mm</th><th>R</th></tr>\n";
+    for (std::size_t n = 0; n < c.fragments.size(); ++n) {
+        const auto [t, q] = study::numbers_of(c.pose(n));
+        out += fmt::format("<tr><td>{}</td><td>{:.3f} {:.3f} {:.3f}</td><td>{:.6f} {:.6f} {:.6f} {:.6f}</td></tr>\n",
+                           html::escaped(c.name(n)), t[0], t[1], t[2], q[0], q[1], q[2], q[3]);
+    }
+    return out + "</table>\n";
+}
+
+std::string fragments_table(const Case& c) {
+    std::string out =
+        "<h2>Fragments</h2>\n<table><tr><th>fragment</th><th class=\"n\">moved, mm</th><th class=\"n\">turned, °</th>"
+        "<th>fitted to</th><th>verdict</th><th class=\"n\">score</th><th class=\"n\">margin</th><th class=\"n\">rms, mm"
+        "</th><th class=\"n\">fitted area, mm²</th><th>marks</th></tr>\n";
+    for (std::size_t n = 0; n < c.fragments.size(); ++n) {
+        Vec3 middle(0.0);
+        const auto& points = c.fragments[n].bone.points;
+        for (const SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
+        const Vec3& colour = c.plan.fragments[n].colour;
+        out += fmt::format(
+            "<tr><td><span style=\"background:rgb({:.0f},{:.0f},{:.0f})\">&emsp;</span> {}</td><td class=\"n\">{:.2f}"
+            "</td><td class=\"n\">{:.2f}</td>",
+            colour.x * 255, colour.y * 255, colour.z * 255, html::escaped(c.name(n)),
+            1e3 * glm::length(c.pose(n).apply(middle) - middle), study::angle_deg(c.pose(n)));
+        if (const auto& fit = c.state.fits[n])
+            out += fmt::format(
+                "<td>{}</td><td class=\"{}\">{}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td "
+                "class=\"n\">{:.3f}</td><td class=\"n\">{}</td>",
+                html::escaped(fit->partner), fit->verdict == "fit" ? "pass" : "fail", html::escaped(fit->verdict),
+                fit->score, fit->margin, fit->rms * 1e3,
+                // Runs of earlier versions did not tell it.
+                fit->overlap > 0.0 ? fmt::format("{:.0f}", fit->overlap * 1e6) : "–");
+        else out += "<td>–</td><td>–</td><td></td><td></td><td></td><td></td>";
+        const int number = static_cast<int>(n);
+        std::string marks;
+        for (int g = c.state.arrangement.group_of(number); g != Arrangement::none; g = c.state.arrangement.parent_of(g))
+            marks += (marks.empty() ? "in " : ", in ") + c.state.group_names[static_cast<std::size_t>(g)];
+        if (c.state.arrangement.is_locked(number)) marks += " locked";
+        if (c.state.arrangement.is_hidden(number)) marks += " hidden";
+        out += "<td>" + html::escaped(marks) + "</td></tr>\n";
+    }
+    return out + "</table>\n";
+}
+
+/// A fragment that shows how far the other one is from every point of it, seen from the other.
+std::string gap_map(const Case& c, std::size_t i, std::size_t j, const SurfaceGap& gap) {
+    const auto& points = c.fragments[i].bone.points;
+    const RegistrationTarget nearest(points);
+    PictureMesh mesh = placed(c.meshes[i], c.pose(i), Vec3(0.0));
+    for (std::size_t v = 0; v < c.meshes[i].vertices.size(); ++v) {
+        const Vec3 colour = gap_colour(static_cast<double>(gap.distance[nearest.nearest(c.meshes[i].vertices[v])]));
+        for (int axis = 0; axis < 3; ++axis)
+            mesh.colours[3 * v + static_cast<std::size_t>(axis)] = static_cast<float>(colour[axis]);
+    }
+    Vec3 towards(0.0);
+    for (std::size_t n = 0; n < points.size(); ++n)
+        if (std::isfinite(gap.distance[n])) towards += points[n].area * c.pose(i).rotate(points[n].normal);
+    if (!(glm::length(towards) > 0.0)) return "";
+    const Vec3 direction = -glm::normalize(towards);
+    const Vec3 tilted = std::abs(direction.z) > 0.95 ? glm::normalize(direction + Vec3(0.3, 0.0, 0.0)) : direction;
+    return picture_of({mesh}, tilted, fmt::format("{} as {} faces it", c.name(i), c.name(j)));
+}
+
+std::string gaps(const Case& c) {
+    std::string rows, maps;
+    for (std::size_t i = 0; i < c.fragments.size(); ++i)
+        for (std::size_t j = i + 1; j < c.fragments.size(); ++j) {
+            if (!c.is_shown(i) || !c.is_shown(j)) continue;
+            const SurfaceGap gap = gap_between(c.fragments[i].bone.points, c.pose(i), c.fragments[j].map, c.pose(j));
+            if (!(gap.facing_area > 5e-6)) continue;
+            rows += fmt::format(
+                "<tr><td>{}</td><td>{}</td><td class=\"n\">{:.0f}</td><td class=\"n\">{:.0f}</td><td "
+                "class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.1f}"
+                "</td></tr>\n",
+                html::escaped(c.name(i)), html::escaped(c.name(j)), gap.facing_area * 1e6, gap.contact_area * 1e6,
+                study::shown_mm(gap.median * 1e3), study::shown_mm(gap.p95 * 1e3), gap.deepest * 1e3,
+                overlap_volume(c.fragments[i].bone.distance, c.pose(i), c.fragments[j].map, c.pose(j)) * 1e9);
+            if (gap.facing_area > 20e-6) maps += gap_map(c, i, j, gap);
+        }
+    if (rows.empty()) return "<h2>Gaps and overlaps</h2>\n<p>No two fragments face each other within 3 mm.</p>\n";
+    return "<h2>Gaps and overlaps</h2>\n<table><tr><th>fragment</th><th>and</th><th class=\"n\">facing, mm²</th><th "
+           "class=\"n\">touching, mm²</th><th class=\"n\">median gap, mm</th><th class=\"n\">95 %, mm</th><th "
+           "class=\"n\">deepest, mm</th><th class=\"n\">overlap, mm³</th></tr>\n" +
+           rows + "</table>\n" + gap_legend() + "<div class=\"two\">\n" + maps + "</div>\n";
+}
+
+std::string steps(const Case& c) {
+    std::string out =
+        "<h2>Order of steps</h2>\n<table><tr><th class=\"n\">step</th><th>time</th><th>by</th><th>what</th></tr>\n";
+    std::size_t count = 0;
+    for (const int n : steps_to(c.plan.before(), c.plan.place().head)) {
+        const PlanStep& step = c.plan.steps[static_cast<std::size_t>(n)];
+        std::string what(name_of(step.kind));
+        for (const int f : step.fragments) what += " " + c.name(static_cast<std::size_t>(f));
+        if (!step.group.empty()) what += fmt::format(" as '{}'", step.group);
+        if (step.fit)
+            what += fmt::format(", {} to {}, {:.0f} mm² on each other, {:.3f} mm rms, gap {:.2f} mm, {:.2f} mm deep",
+                                step.fit->verdict, step.fit->partner, step.fit->overlap * 1e6, step.fit->rms * 1e3,
+                                study::shown_mm(step.fit->gap * 1e3), step.fit->penetration * 1e3);
+        const std::string time = step.run_second ? fmt::format("{:.3f} s", *step.run_second) : step.time;
+        out += fmt::format("<tr><td class=\"n\">{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", ++count,
+                           html::escaped(time), html::escaped(step.by), html::escaped(what));
+    }
+    return count == 0 ? "<h2>Order of steps</h2>\n<p>Nothing was done yet.</p>\n" : out + "</table>\n";
+}
+
+std::string alternatives(const CasePlan& plan) {
+    std::string out = "<h2>Alternatives</h2>\n<ul>\n";
+    for (const PlanAlternative& a : plan.alternatives)
+        out +=
+            fmt::format("<li>{}: {} steps</li>\n", html::escaped(a.name), steps_to(plan.before(), a.place.head).size());
+    return out + "</ul>\n";
+}
+
+std::string mirror(const Case& c) {
+    if (!c.state.mirror) return "";
+    return fmt::format(
+        "<h2>Mirror of the healthy side</h2>\n<p>{}: median distance {:.2f} mm. What is not symmetric in the body is "
+        "part of it; no truth is claimed.</p>\n",
+        html::escaped(c.state.mirror->file), c.state.mirror->residual * 1e3);
+}
+
+}  // namespace
+
+std::string plan_page(const CasePlan& plan, std::vector<study::CaseFragment> fragments) {
+    Case c;
+    c.plan = plan;
+    c.state = state_of(c.plan);
+    c.fragments = std::move(fragments);
+    for (const study::CaseFragment& fragment : c.fragments) c.meshes.push_back(surface_of(fragment.bone.distance));
+    std::string pages;
+    try {
+        pages = pictures(c) + gaps(c);
+    } catch (const Error& error) {
+        throw Error(fmt::format("no pictures can be made: {}", error.what()));
+    }
+    const std::string body =
+        fmt::format("<p>Alternative '{}', {} fragments. Research use; not a medical device.</p>\n",
+                    html::escaped(c.plan.alternatives[static_cast<std::size_t>(c.plan.current)].name),
+                    c.fragments.size()) +
+        fragments_table(c) + mirror(c) + pages + places(c) + steps(c) + alternatives(c.plan);
+    return html::page(c.plan.title, body);
+}
+
+}  // namespace tactus::picture

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// One pair of axes in a figure.
+#pragma once
+
+#include "devices/display/figure.hpp"
+
+#include <string>
+#include <vector>
+
+namespace tactus::picture {
+
+/// Frequency from left to right, logarithmic; a linear quantity upwards.
+class PlotPanel {
+public:
+    struct Range {
+        double lowest, highest;
+    };
+
+    /// The inner rectangle, in units of the figure.
+    PlotPanel(Figure& figure, double x, double y, double width, double height, Range hz, Range value)
+        : figure_(figure), x_(x), y_(y), width_(width), height_(height), hz_(hz), value_(value) {}
+
+    double x_of(double hz) const;
+    double y_of(double value) const;  ///< clamped to a little outside of the panel
+
+    /// Grid, ticks and their numbers; `unit` beside the axis.
+    void axes(double value_step, const std::string& unit, bool name_frequencies) const;
+    void curve(const std::vector<double>& values, double step, Colour colour, double width) const;
+    void upright(double hz, Colour colour, double dash) const;
+    void level(double value, Colour colour, double dash) const;
+
+private:
+    Figure& figure_;
+    double x_, y_, width_, height_;
+    Range hz_, value_;
+};
+
+}  // namespace tactus::picture

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// A spectrogram in a figure.
+#pragma once
+
+#include "devices/display/figure.hpp"
+#include "dsp/spectrum/spectrogram.hpp"
+
+namespace tactus::picture {
+
+/// The inner rectangle, in units of the figure; axes and legend lie outside of it.
+struct SpectrogramPlace {
+    double x, y, width, height;
+};
+
+struct SpectrogramStyle {
+    double lowest, highest;        ///< Hz, logarithmic upwards
+    int rows = 110, columns = 320; ///< cells at most
+    bool legend = true;
+    bool relative = false;         ///< the legend tells dB re the strongest, not re 1 of the record's unit
+};
+
+/// From the strongest cell to 60 dB below it, time from left to right.
+void draw_spectrogram(Figure& figure, const Spectrogram& spectrogram, const SpectrogramPlace& place,
+                      const SpectrogramStyle& style);
+
+}  // namespace tactus::picture

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/picture/report/spectrum_page.hpp"
+
+#include "tools/picture/report/html_report.hpp"
+#include "tools/picture/report/spectrum_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::picture {
+
+namespace {
+
+std::string row(const std::string& name, const SpectralLine& line) {
+    return fmt::format(
+        "<tr><td>{}</td><td class=\"n\">{:.3f}</td><td class=\"n\">{:.1f}</td><td class=\"n\">{:.1f}</td></tr>\n", name,
+        line.frequency, study::decibels(line.power), line.snr_db);
+}
+
+std::string lines_table(const VibrationReport& r) {
+    std::string out =
+        "<table><tr><th>line</th><th class=\"n\">Hz</th><th class=\"n\">level, dB</th><th class=\"n\">SNR, dB</th>"
+        "</tr>\n";
+    for (const Harmonic& h : r.harmonics)
+        if (h.present) out += row(fmt::format("order {}", h.order), h);
+    for (const HumLine& h : r.hum) out += row(fmt::format("hum, {} × {} Hz", h.order, h.mains), h);
+    const auto is_named = [&](const SpectralLine& line) {
+        const auto near = [&](const SpectralLine& other) {
+            return std::abs(line.frequency - other.frequency) < r.lines.df;
+        };
+        for (const Harmonic& h : r.harmonics)
+            if (h.present && near(h)) return true;
+        return std::ranges::any_of(r.hum, near);
+    };
+    for (const SpectralLine& line : r.peaks)
+        if (!is_named(line)) out += row("–", line);
+    for (const SpectralLine& line : r.envelope) out += row("of the envelope", line);
+    return out + "</table>\n";
+}
+
+std::string bands_table(const VibrationReport& r) {
+    std::string out =
+        "<table><tr><th class=\"n\">third octave, Hz</th><th class=\"n\">level, dB</th><th class=\"n\">± "
+        "dB</th></tr>\n";
+    for (const Band& band : r.bands)
+        out +=
+            fmt::format("<tr><td class=\"n\">{:.4g}</td><td class=\"n\">{:.1f}</td><td class=\"n\">{:.2f}</td></tr>\n",
+                        band.centre, study::decibels(band.power), study::band_deviation(band, r.lines));
+    return out + "</table>\n";
+}
+
+std::string channel_section(const study::AnalysedChannel& channel, const study::AnalysedFile& file) {
+    const VibrationReport& r = channel.report;
+    const std::string unit = html::escaped(file.calibration.unit);
+    std::string out = fmt::format("<h3>Channel {}</h3>\n<p>Root mean square {:.4g} {}{}, crest factor {:.3g}. ",
+                                  html::escaped(channel.name), r.level.rms(), unit,
+                                  file.calibration.known ? "" : " (uncalibrated)", r.level.crest());
+    if (r.fundamental.frequency > 0.0) {
+        out +=
+            fmt::format("Fundamental {:.3f} Hz, confidence {:.2f}", r.fundamental.frequency, r.fundamental.confidence);
+        for (const CombFit& rival : r.fundamental.rivals)
+            out += fmt::format("{} {:.1f} Hz", &rival == r.fundamental.rivals.data() ? "; or" : ",", rival.frequency);
+        out += ".</p>\n";
+    } else {
+        out += "No fundamental.</p>\n";
+    }
+    if (!channel.warnings.empty()) {
+        out += "<ul>";
+        for (const std::string& warning : channel.warnings) out += "<li>" + html::escaped(warning) + "</li>";
+        out += "</ul>\n";
+    }
+    return out + lines_table(r) + bands_table(r);
+}
+
+}  // namespace
+
+std::string analysis_section(const study::AnalysedFile& file, const SpectrumMethod& method) {
+    std::string out = fmt::format("<h2>{}</h2>\n", html::escaped(file.file.filename().string()));
+    std::string mark = "s";
+    // Letters, different for every file of a page.
+    for (const char c : file.file.string()) {
+        mark += static_cast<char>('a' + static_cast<unsigned char>(c) / 16);
+        mark += static_cast<char>('a' + static_cast<unsigned char>(c) % 16);
+    }
+    out += html::drawing(draw_spectrum(file), mark);
+    out += fmt::format("<p>{:.4g} s at {:.6g} Hz, {} channel(s); {} segments of {} samples.</p>\n", file.duration,
+                       file.rate, file.channels.size(),
+                       file.channels.empty() ? 0 : file.channels.front().report.psd.segments, file.psd.segment);
+    if (file.log)
+        out += fmt::format(
+            "<p>An uneven log of {} rows, steps {:.3g} to {:.3g} ms, resampled: nothing above {:.4g} Hz is there, "
+            "faithful to about {:.3g} Hz.</p>\n",
+            file.log->rows, 1e3 * file.log->shortest_step, 1e3 * file.log->longest_step, 0.5 * file.rate,
+            file.log->usable);
+    if (!method.envelope.empty()) out += fmt::format("<p>Envelope of the band {} Hz.</p>\n", method.envelope);
+    for (const study::AnalysedChannel& channel : file.channels) out += channel_section(channel, file);
+    return out;
+}
+
+std::string analysis_method(const SpectrumMethod& method) {
+    return fmt::format(
+        "<h2>How it was computed</h2><ul>"
+        "<li>Curves: Welch, window {}, overlap {:g} %, detrend {}, average {}, scaling {}.</li>"
+        "<li>Lines and bands: Welch, Hann, half overlapping, mean of each segment removed. Between bins by the ratio "
+        "of "
+        "the two strongest (Hann); SNR over the median of the bins 4 to 16 away. Levels are dB re 1 of the unit, mean "
+        "square. A line passes at the SNR that a bin of noise reaches once in a million.</li>"
+        "<li>Fundamental from {} Hz: the comb that explains most of the lines' amplitude with fewest low teeth "
+        "missing.</li>"
+        "<li>Third octaves have centres 10^(n/10) Hz; ± is one standard deviation of noise in the band.</li></ul>\n",
+        method.window, 100.0 * method.overlap, method.detrend, method.average, method.scaling,
+        html::escaped(method.fundamental));
+}
+
+}  // namespace tactus::picture

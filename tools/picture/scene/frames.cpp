@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/picture/scene/frames.hpp"
+
+#include "devices/display/picture_maker.hpp"
+#include "devices/display/png.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/units.hpp"
+#include "tools/picture/scene/scene_model.hpp"
+#include "tools/picture/scene/sight.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace tactus::picture {
+
+namespace {
+
+std::pair<int, int> parse_size(const std::string& text) {
+    int width = 0, height = 0;
+    const char* const end = text.data() + text.size();
+    const auto [cross, bad] = std::from_chars(text.data(), end, width);
+    const bool has_cross = bad == std::errc{} && cross != end && *cross == 'x';
+    const auto [last, worse] = std::from_chars(has_cross ? cross + 1 : end, end, height);
+    if (!has_cross || worse != std::errc{} || last != end)
+        throw Error(fmt::format("--size takes WIDTHxHEIGHT in pixels, as 1280x800, not '{}'", text));
+    return {width, height};
+}
+
+NamedView parse_view(const std::string& text) {
+    if (const auto named = view_of_name(text)) return *named;
+    if (text.size() == 1 && text[0] >= '1' && text[0] <= '7') return *view_of_number(text[0] - '0');
+    const std::vector<std::string> names(view_names.begin(), view_names.end());
+    throw Error(fmt::format("--view-from takes front, back, left, right, top, bottom, iso or 1 to 7, not '{}'{}", text,
+                            did_you_mean(text, names)));
+}
+
+/// "x", "-y" or "z=12 mm": the axis, and where along it; nowhere: through the middle.
+struct Clip {
+    Vec3 normal{0.0};
+    std::optional<double> at;
+
+    explicit Clip(const std::string& text) {
+        const std::size_t equals = text.find('=');
+        const std::string axis = text.substr(0, equals);
+        const bool is_turned = axis.starts_with('-');
+        const std::string letter = axis.substr(is_turned ? 1 : 0);
+        if (letter != "x" && letter != "y" && letter != "z")
+            throw Error(
+                fmt::format("--clip takes an axis, as x or -z, and a place on it, as \"y=12 mm\", not '{}'", text));
+        normal[letter[0] - 'x'] = is_turned ? -1.0 : 1.0;
+        if (equals != std::string::npos) at = parse_as(text.substr(equals + 1), "m") * (is_turned ? -1.0 : 1.0);
+    }
+    Plane plane(const Bounds& bounds) const {
+        return {at ? *at * normal : bounds.empty() ? Vec3(0.0) : bounds.middle(), normal};
+    }
+};
+
+std::string file_part(std::string name) {
+    std::ranges::replace(name, ' ', '-');
+    return name;
+}
+
+}  // namespace
+
+struct FrameWriter::State {
+    FrameChoice choice;
+    double seconds;
+    std::filesystem::path folder;
+    NamedView view;
+    Sight sight;
+    std::optional<Clip> clip;
+    Observer observer{Observer::Pace::lossless};
+    PictureMaker maker;
+    SceneModel model;
+    OrbitCamera camera;
+    bool is_aimed = false;
+    int next = 1;
+    std::vector<std::string> files, losses;
+
+    State(const FrameChoice& wanted, SceneOutline outline, double length, std::filesystem::path where)
+        : choice(wanted),
+          seconds(length),
+          folder(std::move(where)),
+          view(parse_view(wanted.view_from)),
+          sight(wanted.sight),
+          maker(parse_size(wanted.size).first, parse_size(wanted.size).second),
+          model(std::move(outline), observer, maker.renderer()) {
+        if (!wanted.clip.empty()) clip.emplace(wanted.clip);
+        for (std::size_t i = 0; i < sight.screens(); ++i)
+            if (sight.mode_of(i) == StereoMode::quad_buffer)
+                throw Error("a picture file has no buffer for each eye: --stereo side-by-side or anaglyph");
+        sight.follow(model.outline());
+        for (const std::string& port : sight.ports()) observer.watch(port, Watch::latest);
+    }
+
+    double time_of(int frame) const { return seconds * frame / choice.frames; }
+
+    double aspect() const {
+        const int width = sight.mode_of(0) == StereoMode::side_by_side ? maker.width() / 2 : maker.width();
+        return static_cast<double>(width) / maker.height();
+    }
+
+    /// Where the head is must be seen from the first picture on.
+    void check_head() const {
+        if (sight.head.empty() || observer.latest<Pose>(sight.head)) return;
+        std::vector<std::string> poses;
+        for (const Observer::Port& port : observer.ports())
+            if (port.type == &value::pose) poses.push_back(port.name);
+        throw Error(fmt::format("--head: there is no pose output '{}'{}; there are {}", sight.head,
+                                did_you_mean(sight.head, poses), fmt::join(poses, ", ")));
+    }
+
+    void draw(int frame) {
+        observer.advance(static_cast<Flicks>(std::llround(time_of(frame) * static_cast<double>(flicks_per_second))));
+        Picture& picture = model.update();
+        if (!is_aimed) {
+            camera.look_from(view);
+            if (view == NamedView::iso && model.tool()) camera.look_from_side_of(*model.tool(), model.bounds());
+            camera.fit(model.bounds(), aspect(), 1.12);
+            is_aimed = !model.bounds().empty();
+        }
+        if (clip) picture.clip = clip->plane(model.bounds());
+        check_head();
+        sight.update(observer);
+        for (std::size_t screen = 0; screen < sight.screens(); ++screen) {
+            const auto views = sight.views(screen, camera, picture.bounds, maker.width(), maker.height());
+            Image image = maker.draw(picture, views);
+            Legend legend = model.legend();
+            legend.title = fmt::format("{}, {:.2f} s", legend.title, time_of(frame));
+            legend.warnings.insert(legend.warnings.end(), sight.warnings().begin(), sight.warnings().end());
+            add_legend(image, legend, views, sight.text_of(screen));
+            if (!sight.is_off_axis() && sight.mode_of(0) == StereoMode::mono)
+                add_scale_bar(image, camera.metres_per_pixel(image.height));
+            std::string name = fmt::format("frame_{:04}", frame);
+            if (sight.screens() > 1) name += "_" + file_part(sight.rig()->screens[screen].name);
+            name += ".png";
+            try {
+                write_png(image, (folder / name).string());
+                files.push_back(name);
+            } catch (const Error& error) {
+                losses.emplace_back(error.what());
+            }
+        }
+    }
+};
+
+FrameWriter::FrameWriter(const FrameChoice& choice, SceneOutline outline, double seconds,
+                         std::filesystem::path folder) {
+    if (outline.empty())
+        throw Error("there is nothing to see in this patch: no bone, scene, blade, proxy, gripper or pose");
+    state_ = std::make_unique<State>(choice, std::move(outline), seconds, std::move(folder));
+}
+
+FrameWriter::~FrameWriter() = default;
+
+Observer& FrameWriter::observer() { return state_->observer; }
+
+void FrameWriter::advance(double seconds) {
+    for (; state_->next <= state_->choice.frames && state_->time_of(state_->next) <= seconds + 1e-9; ++state_->next)
+        state_->draw(state_->next);
+}
+
+const std::vector<std::string>& FrameWriter::files() const { return state_->files; }
+
+const std::vector<std::string>& FrameWriter::losses() const { return state_->losses; }
+
+}  // namespace tactus::picture

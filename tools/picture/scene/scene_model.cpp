@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/picture/scene/scene_model.hpp"
+
+#include "assets/bone/bone.hpp"
+#include "devices/display/shapes.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/picture/scene/body_surface.hpp"
+#include "tools/picture/scene/scene_colours.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::picture {
+
+using namespace scene_colours;
+
+namespace {
+
+std::string node_of(const std::string& port) { return port.substr(0, port.find('.')); }
+
+SurfaceGrid grid_of(const BrickLayout& layout) { return {layout.origin, layout.spacing, brick_cells}; }
+
+}  // namespace
+
+SceneModel::SceneModel(SceneOutline outline, Observer& observer, SceneRenderer& renderer)
+    : observer_(observer), renderer_(renderer), notes_mesh_(renderer.meshes().make()) {
+    follow(std::move(outline));
+}
+
+SceneModel::~SceneModel() {
+    for (const auto& [name, bone] : bones_) renderer_.meshes().remove(bone.mesh);
+    for (const auto& [path, bone] : still_bones_)
+        if (bone.mesh >= 0) renderer_.meshes().remove(bone.mesh);
+    for (const auto& [hash, body] : bodies_) renderer_.meshes().remove(body.mesh);
+    for (const auto& [name, mesh] : shapes_) renderer_.meshes().remove(mesh);
+    renderer_.meshes().remove(notes_mesh_);
+}
+
+void SceneModel::follow(SceneOutline outline) {
+    const std::vector<std::string> before = outline_.ports(), now = outline.ports();
+    outline_ = std::move(outline);
+    // What goes on is watched all the time: a bone that was not would have to be sent as a whole.
+    for (const std::string& port : before)
+        if (!std::ranges::binary_search(now, port)) observer_.watch(port, Watch::nothing);
+    for (const std::string& port : now) observer_.watch(port, Watch::latest);
+    MeshPool& meshes = renderer_.meshes();
+    std::erase_if(bones_, [&](const auto& bone) {
+        const bool gone =
+            std::ranges::none_of(outline_.bones, [&](const auto& kept) { return kept.port == bone.first; });
+        if (gone) meshes.remove(bone.second.mesh);
+        return gone;
+    });
+    std::erase_if(still_bones_, [&](const auto& bone) {
+        const bool gone = std::ranges::find(outline_.still_bones, bone.first, &SceneOutline::StillBone::path) ==
+                          outline_.still_bones.end();
+        if (gone && bone.second.mesh >= 0) meshes.remove(bone.second.mesh);
+        return gone;
+    });
+    std::erase_if(bodies_, [&](const auto& body) {
+        const bool gone = !shown_.contains(body.first);
+        if (gone) meshes.remove(body.second.mesh);
+        return gone;
+    });
+    for (const auto& [name, mesh] : shapes_) meshes.remove(mesh);
+    shapes_.clear();  // a blade may have another length now
+    is_fitting_ = true;
+}
+
+std::size_t SceneModel::triangles() const {
+    std::size_t count = 0;
+    for (const DrawnMesh& drawn : picture_.meshes) count += renderer_.meshes().triangles(drawn.mesh);
+    return count;
+}
+
+/// A mesh that never changes, made when it is first asked for.
+MeshPool::Mesh SceneModel::shape_mesh(const std::string& name, const SurfacePatch& patch) {
+    const auto known = shapes_.find(name);
+    if (known != shapes_.end()) return known->second;
+    const MeshPool::Mesh mesh = renderer_.meshes().make();
+    renderer_.meshes().set_part(mesh, 0, patch);
+    return shapes_[name] = mesh;
+}
+
+std::optional<Pose> SceneModel::pose_of(const std::string& port) {
+    if (port.empty()) return std::nullopt;
+    const auto seen = observer_.latest<Pose>(port);
+    if (!seen) return std::nullopt;
+    if (is_valid(seen->value)) return seen->value;
+    legend_.warnings.push_back(fmt::format("{} is no valid pose: not drawn", port));
+    return std::nullopt;
+}
+
+double SceneModel::number_of(const std::string& port, double otherwise) const {
+    const auto seen = port.empty() ? std::nullopt : observer_.latest<double>(port);
+    return seen && std::isfinite(seen->value) ? seen->value : otherwise;
+}
+
+void SceneModel::show(MeshPool::Mesh mesh, const Pose& pose, const Bounds& local, double opacity, bool is_clipped,
+                      bool is_fitted) {
+    picture_.meshes.push_back({mesh, pose, opacity, is_clipped, is_clipped && opacity >= 1.0});
+    if (local.empty()) return;
+    for (const Vec3& corner : local.corners()) {
+        picture_.bounds.add(pose.apply(corner));
+        if (is_fitting_ && is_fitted) bounds_.add(pose.apply(corner));
+    }
+}
+
+Picture& SceneModel::update() {
+    picture_.meshes.clear();
+    picture_.points.clear();
+    picture_.bounds = {};
+    legend_ = {};
+    legend_.title = outline_.title;
+    notes_.vertices.clear();
+    notes_.triangles.clear();
+    remeshed_ = 0;
+    deepest_ = 0.0;
+    if (is_fitting_) bounds_ = {};
+    show_bones();
+    show_still_bones();
+    show_bodies();
+    show_blades();
+    show_balls();
+    show_gripper();
+    for (const auto& handle : outline_.handles)
+        if (const auto pose = pose_of(handle.pose)) add_axes(notes_, *pose, 0.02);
+    // Most of the time they are as they were.
+    if (notes_ != shown_notes_) renderer_.meshes().set_part(notes_mesh_, 0, shown_notes_ = notes_);
+    show(notes_mesh_, {}, bounds_of(notes_), 1.0, false, !outline_.handles.empty());
+    picture_.meshes.back().shines_through = true;
+    is_fitting_ = is_fitting_ && bounds_.empty();
+    if (deepest_ > 0.0)
+        legend_.entries.push_back({fmt::format("penetration, {:.2f} mm at most", deepest_ * 1e3), {0.85, 0.05, 0.05}});
+    return picture_;
+}
+
+void SceneModel::show_bones() {
+    for (const auto& [port] : outline_.bones) {
+        const auto seen = observer_.bone(port);
+        if (!seen) continue;
+        BoneMesh& bone = bones_[port];
+        const bool is_new = bone.of.lock() != seen;
+        if (is_new) {
+            if (bone.mesh >= 0) renderer_.meshes().remove(bone.mesh);
+            bone = {renderer_.meshes().make(grid_of(seen->layout)), seen, 0, {}};
+        }
+        for (const std::uint32_t brick : seen->changed_since(bone.update)) {
+            mesher_.make(seen->snapshot(), brick, patch_);
+            renderer_.meshes().set_part(bone.mesh, brick, patch_);
+            if (is_new) bone.bounds.add(bounds_of(patch_));
+            ++remeshed_;
+        }
+        bone.update = seen->update;
+        show(bone.mesh, {}, bone.bounds);
+        if (legend_.scales.empty()) legend_.scales.push_back(density_scale(mesher_.colours));
+    }
+}
+
+void SceneModel::show_still_bones() {
+    for (const auto& [name, path] : outline_.still_bones) {
+        auto known = still_bones_.find(path);
+        if (known == still_bones_.end()) {
+            StillMesh& bone = (known = still_bones_.emplace(path, StillMesh{}).first)->second;
+            try {
+                const Bone loaded = load_bone(path);
+                const BoneEditor editor(loaded.distance, loaded.density,
+                                        {.band = 0.003, .max_dirty = 1, .max_versions = 1});
+                bone.mesh = renderer_.meshes().make(grid_of(editor.layout()));
+                for (std::uint32_t brick = 0; brick < static_cast<std::uint32_t>(editor.layout().brick_count());
+                     ++brick) {
+                    mesher_.make(editor.current(), brick, patch_);
+                    renderer_.meshes().set_part(bone.mesh, brick, patch_);
+                    bone.bounds.add(bounds_of(patch_));
+                }
+            } catch (const Error& error) {
+                bone.problem = fmt::format("{} is not drawn: {}", name, error.message());
+            }
+        }
+        if (!known->second.problem.empty()) {
+            legend_.warnings.push_back(known->second.problem);
+            continue;
+        }
+        show(known->second.mesh, {}, known->second.bounds);
+        if (legend_.scales.empty()) legend_.scales.push_back(density_scale(mesher_.colours));
+    }
+}
+
+SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, std::size_t place) {
+    if (const auto known = bodies_.find(content); known != bodies_.end()) return &known->second;
+    for (const auto& body : observer_.bodies()) {
+        if (body->content_hash != content || body->distance.values.empty()) continue;
+        BodyMesh& mesh = bodies_[content];
+        mesh.body = body;
+        mesh.field = make_voxmap(body->distance);
+        BodySurface surface =
+            make_body_surface(*body, mesh.field, group_colours[place % group_colours.size()], paint_colour);
+        mesh.has_paint = surface.has_paint;
+        mesh.bounds = surface.bounds;
+        mesh.mesh = renderer_.meshes().make({body->distance.origin, body->distance.spacing, 0});
+        renderer_.meshes().set_part(mesh.mesh, 0, surface.patch);
+        return &mesh;
+    }
+    return nullptr;
+}
+
+void SceneModel::show_bodies() {
+    shown_.clear();
+    bool has_paint = false;
+    // The fullest scene first: others that hold the same bodies show them once more, elsewhere or not at all.
+    std::vector<const SceneOutline::Bodies*> scenes;
+    for (const auto& scene : outline_.scenes) scenes.push_back(&scene);
+    std::ranges::stable_sort(scenes, std::greater{}, [](const auto* scene) { return scene->bodies.size(); });
+    for (const SceneOutline::Bodies* scene : scenes) {
+        const auto seen = observer_.latest<SeenScene>(scene->port);
+        if (!seen) continue;
+        for (std::size_t i = 0; i < seen->value.count; ++i) {
+            const auto& object = seen->value.objects[i];
+            if (object.body == 0 || !shown_.insert(object.body).second) continue;
+            BodyMesh* mesh = mesh_of(object.body, i);
+            if (!mesh) continue;
+            Pose pose = object.pose;
+            const SceneOutline::Held* held = nullptr;
+            for (const auto& candidate : outline_.held)
+                if (candidate.scene == scene->port &&
+                    std::lround(number_of(candidate.place, candidate.held)) == static_cast<long>(i))
+                    held = &candidate;
+            // Whoever holds it knows best where it is.
+            const auto hand = held ? pose_of(held->hand) : std::nullopt;
+            if (held)
+                if (const auto now = pose_of(held->pose)) pose = *now;
+            const std::string name = i < scene->bodies.size() ? node_of(scene->bodies[i]) : fmt::format("body {}", i);
+            legend_.entries.push_back({name + (held ? ", held" : ""), group_colours[i % group_colours.size()]});
+            if (!is_valid(pose)) {
+                legend_.warnings.push_back(fmt::format("{} has no valid pose: not drawn", name));
+                continue;
+            }
+            show(mesh->mesh, pose, mesh->bounds);
+            has_paint = has_paint || mesh->has_paint;
+            if (!held) continue;
+            if (hand) {
+                // Where the hand would have it, as far as that is somewhere else.
+                const Pose grip = held->grip.empty() ? held->grip_at : pose_of(held->grip).value_or(held->grip_at);
+                const Pose wanted = *hand * grip;
+                const double apart = glm::length(wanted.position - pose.position) +
+                                     mesh->bounds.radius() *
+                                         glm::length(glm::axis(glm::conjugate(pose.orientation) * wanted.orientation)) *
+                                         std::abs(glm::angle(glm::conjugate(pose.orientation) * wanted.orientation));
+                if (apart > 0.2e-3) show(mesh->mesh, wanted, mesh->bounds, 0.22, false, false);
+                show_force(held->wrench, hand->position);
+            } else {
+                show_force(held->wrench, pose.position);
+            }
+            show_penetration(*mesh, pose, i, seen->value);
+        }
+    }
+    if (has_paint) legend_.entries.push_back({"painted fracture", paint_colour});
+}
+
+/// Points of the held body that lie within another.
+void SceneModel::show_penetration(const BodyMesh& held, const Pose& pose, std::size_t place, const SeenScene& scene) {
+    constexpr double worst = 0.5e-3;
+    for (std::size_t i = 0; i < scene.count; ++i) {
+        const auto other = bodies_.find(scene.objects[i].body);
+        if (i == place || other == bodies_.end() || !is_valid(scene.objects[i].pose)) continue;
+        const Pose into = scene.objects[i].pose.inverse() * pose;
+        for (const Vec3& point : held.body->points) {
+            const double depth = -other->second.field.sample(into.apply(point)).value;
+            if (!(depth > 2e-6)) continue;
+            deepest_ = std::max(deepest_, depth);
+            const Vec3 at = pose.apply(point);
+            const Vec3 colour = glm::mix(Vec3(1.0, 0.80, 0.10), Vec3(0.85, 0.05, 0.05), std::min(depth / worst, 1.0));
+            picture_.points.push_back({{static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)},
+                                       {},
+                                       packed_colour(colour)});
+        }
+    }
+}
+
+void SceneModel::show_force(const std::string& port, const Vec3& at) {
+    const auto seen = port.empty() ? std::nullopt : observer_.latest<Wrench>(port);
+    if (!seen) return;
+    const Vec3 force = seen->value.force;
+    if (!is_finite(seen->value)) {
+        legend_.warnings.push_back(fmt::format("{} is not a number: not drawn", port));
+        return;
+    }
+    const double size = glm::length(force), reach = std::max(bounds_.radius(), 5e-3);
+    legend_.entries.push_back({fmt::format("{}: {:.1f} N", port, size), force_colour});
+    // 10 N are half as long as the scene.
+    if (size > 0.02) add_arrow(notes_, at, at + force * (0.1 * reach), 0.014 * reach, force_colour);
+}
+
+}  // namespace tactus::picture

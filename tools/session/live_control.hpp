@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// What changes a patch while it runs: its file being saved, and lines on the control socket.
+#pragma once
+
+#include "engine/engine.hpp"
+#include "tools/session/control_socket.hpp"
+#include "tools/session/load_plan.hpp"
+#include "tools/session/patch_watch.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace tactus::session {
+
+class LiveControl {
+public:
+    /// `say` tells the user of edits and of why one was not made.
+    LiveControl(Engine& engine, PatchChoice choice, AssetCache& assets, std::function<void(const std::string&)> say);
+
+    /// From LiveOptions::watch.
+    void tend();
+
+    /// From there, too: this text takes over, as if it had been saved.
+    void edit(std::string text);
+    /// Who takes over what was saved, instead of this.
+    std::function<void()> saved;
+
+private:
+    void take_over_file();
+    std::string answer(const std::string& line);
+
+    Engine& engine_;
+    PatchChoice choice_;
+    AssetCache& assets_;
+    std::function<void(const std::string&)> say_;
+    std::filesystem::path file_;
+    PatchWatch watch_;
+    std::unique_ptr<ControlSocket> socket_;
+};
+
+}  // namespace tactus::session

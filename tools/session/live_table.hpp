@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a run goes, as a table for people: its groups, and the nodes that take longest.
+#pragma once
+
+#include "engine/engine.hpp"
+
+#include <string>
+#include <vector>
+
+namespace tactus::session {
+
+/// Time of a node in one call of its group.
+struct NodeTime {
+    std::string node, group;
+    double mean_us = 0.0, max_us = 0.0;
+    double share = 0.0;  ///< mean over the period of the group's calls
+};
+
+/// At most `count` nodes, the largest share first. Control thread, or after the run.
+std::vector<NodeTime> slowest_nodes(const Engine& engine, std::size_t count);
+
+/// "3 skipped (2 woken late, 1 preempted)", or "" when there is nothing.
+std::string describe_lateness(const GroupRuntime& group);
+
+/// "+12 ppm, 0 underflows (0 frames of silence), 0 frames dropped, 0 left out".
+std::string describe_sound(const SoundCard& card);
+
+/// Several lines without a line end behind the last: time, force, faults, a row per group and the slowest nodes.
+std::string live_table(const Engine& engine);
+
+}  // namespace tactus::session

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/session/load_plan.hpp"
+
+#include "graph/sub_patch.hpp"
+#include "nodes/catalogue.hpp"
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <ranges>
+
+namespace tactus::session {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path library_beside_command() {
+    std::error_code failure;
+    const fs::path self = fs::read_symlink("/proc/self/exe", failure);
+    return failure ? fs::path("library") : self.parent_path() / "library";
+}
+
+}  // namespace
+
+fs::path library_folder() {
+    if (const char* given = std::getenv("TACTUS_LIBRARY"); given && *given) return given;
+    return library_beside_command();
+}
+
+bool is_of_library(const fs::path& file) {
+    std::error_code failure;
+    const fs::path path = fs::weakly_canonical(fs::absolute(file), failure);
+    for (const fs::path& library : {library_folder(), library_beside_command()}) {
+        const fs::path folder = fs::weakly_canonical(fs::absolute(library), failure);
+        if (!folder.empty() && std::ranges::mismatch(folder, path).in1 == folder.end()) return true;
+    }
+    return false;
+}
+
+namespace {
+
+/// A file as it is, or one of a folder of the library.
+fs::path find_bundled(const std::string& name, const char* what, const char* where) {
+    // A folder may well have a patch's name: that of its results.
+    const bool is_folder = fs::is_directory(name);
+    if (fs::exists(name) && !is_folder) return name;
+    const fs::path folder = library_folder() / where;
+    if (const fs::path bundled = folder / (name + ".toml"); fs::exists(bundled)) return bundled;
+    std::vector<std::string> names;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored))
+        if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+    std::ranges::sort(names);
+    std::string list;
+    for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
+    throw Error(fmt::format("no {} '{}': {} one of the library ({}){}", what, name,
+                            is_folder ? "a folder, and not" : "neither a file nor",
+                            list.empty() ? "which is empty; build first" : list, did_you_mean(name, names)));
+}
+
+}  // namespace
+
+namespace {
+
+/// 299980 → "299,980".
+std::string with_commas(std::size_t number) {
+    std::string text = std::to_string(number);
+    for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, 1, ',');
+    return text;
+}
+
+}  // namespace
+
+fs::path find_patch(const std::string& name) { return find_bundled(name, "patch", "patches"); }
+
+fs::path find_rig(const std::string& name) { return find_bundled(name, "rig", "rigs"); }
+
+std::optional<Plan> plan_of(Patch patch, const PatchOverrides& overrides, std::optional<std::uint64_t> seed,
+                            AssetCache* assets, Problems& problems) {
+    read_parts(patch);
+    apply_overrides(patch, overrides, problems);
+    if (seed) patch.seed = *seed;
+    // Without a sound text, what the compiler would say is mostly echo.
+    if (!problems.empty()) return std::nullopt;
+    std::optional<Plan> plan = compile(patch, catalogue(), problems);
+    if (plan && assets) assets->load(*plan, problems);
+    return plan;
+}
+
+std::optional<Plan> read_plan(const PatchChoice& choice, Problems& problems) {
+    return plan_of(load_patch(find_patch(choice.patch), problems), choice.overrides, choice.seed, nullptr, problems);
+}
+
+Plan load_plan(const PatchChoice& choice, AssetCache& assets) {
+    Problems problems;
+    std::optional<Plan> plan =
+        plan_of(load_patch(find_patch(choice.patch), problems), choice.overrides, choice.seed, &assets, problems);
+    throw_problems(problems);
+    return std::move(*plan);
+}
+
+std::vector<std::string> problem_lines(const Problems& problems) {
+    constexpr std::size_t most_shown = 20;
+    std::vector<std::string> lines;
+    for (const Error& error : problems.list | std::views::take(most_shown)) lines.emplace_back(error.what());
+    if (const std::size_t all = problems.list.size(); all > most_shown)
+        lines.push_back(
+            fmt::format("… and {} more error{}", with_commas(all - most_shown), all - most_shown == 1 ? "" : "s"));
+    return lines;
+}
+
+void throw_problems(const Problems& problems) {
+    if (problems.empty()) return;
+    const std::vector<std::string> lines = problem_lines(problems);
+    for (std::size_t i = 0; i + 1 < lines.size(); ++i) fmt::print(stderr, "tactus: {}\n", lines[i]);
+    if (lines.size() == problems.list.size()) throw problems.list.back();
+    throw Error(lines.back());
+}
+
+std::unique_ptr<TakeWriter> make_take(const PatchChoice& choice, const fs::path& folder, double seconds, bool live) {
+    TakeAbout about{find_patch(choice.patch), choice.overrides, choice.seed, seconds, live};
+    // A take is replayed from any folder.
+    for (std::string& asset : about.overrides.assets)
+        if (const auto equals = asset.find('='); equals != std::string::npos)
+            asset = asset.substr(0, equals + 1) + fs::absolute(asset.substr(equals + 1)).string();
+    return std::make_unique<TakeWriter>(folder, std::move(about));
+}
+
+void make_output_folder(const fs::path& folder) {
+    std::error_code failure;
+    fs::create_directories(folder, failure);
+    if (failure) throw Error(fmt::format("{}: cannot make the folder: {}", folder.string(), failure.message()));
+    const fs::path probe = folder / fmt::format(".write-{}.part", ::getpid());
+    std::FILE* file = std::fopen(probe.c_str(), "w");
+    if (!file) throw Error(fmt::format("{}: the folder is not writable", folder.string()));
+    std::fclose(file);
+    fs::remove(probe, failure);
+}
+
+}  // namespace tactus::session

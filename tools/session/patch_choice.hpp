@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which patch, and what is changed of it.
+#pragma once
+
+#include "graph/patch.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace tactus::session {
+
+struct PatchChoice {
+    std::string patch;  ///< a path, or a name in the library
+    PatchOverrides overrides;
+    std::optional<std::uint64_t> seed;
+};
+
+}  // namespace tactus::session

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/session/replayed_take.hpp"
+
+#include "dsp/core/error.hpp"
+#include "tools/session/load_plan.hpp"
+
+#include <optional>
+#include <utility>
+#include <variant>
+
+namespace tactus::session {
+
+namespace {
+
+Plan plan_in(const Take& take, const std::string& text, AssetCache& assets) {
+    Problems problems;
+    std::optional<Plan> plan = plan_of(read_patch(text, take.about.patch_file, problems), take.about.overrides,
+                                       take.about.seed, &assets, problems);
+    if (!problems.empty()) throw problems.list.front();
+    return std::move(*plan);
+}
+
+}  // namespace
+
+ReplayedTake::ReplayedTake(const Take& take, EngineOptions options, AssetCache& assets) {
+    options.replay = &take.log;
+    options.devices = &take.devices;
+    engine_ = std::make_unique<Engine>(plan_in(take, take.text, assets), options);
+    for (const auto& event : take.events) {
+        if (const auto* edit = std::get_if<TakenEdit>(&event))
+            engine_->schedule(plan_in(take, edit->text, assets), edit->when);
+        if (const auto* change = std::get_if<TakenChange>(&event))
+            engine_->schedule_change(change->id, change->node, change->param, change->value);
+    }
+}
+
+}  // namespace tactus::session

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/session/results.hpp"
+
+#include "assets/bone/bone.hpp"
+#include "devices/display/legend.hpp"
+#include "devices/display/picture_maker.hpp"
+#include "devices/display/png.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/terminal.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+namespace tactus::session {
+
+namespace {
+
+Vec3 vector_of(const Report& report, const char* key, const Vec3& otherwise) {
+    const auto site = report.sections.find("site");
+    if (site == report.sections.end() || !site->second.contains(key)) return otherwise;
+    const auto* list = std::get_if<std::vector<double>>(&site->second.at(key));
+    return list && list->size() == 3 ? Vec3((*list)[0], (*list)[1], (*list)[2]) : otherwise;
+}
+
+/// From before the cut and a little to its sides, so that the kerf shows its depth.
+Vec3 towards_site(const Report& report) {
+    const Vec3 normal = vector_of(report, "normal", Vec3(0.0, -1.0, 0.3));
+    const Vec3 stroke = vector_of(report, "stroke", Vec3(1.0, 0.0, 0.0));
+    return glm::normalize(-normal - 0.55 * glm::cross(normal, stroke) - 0.45 * stroke);
+}
+
+Image picture_of(const Bone& bone, const std::string& name, const Vec3& towards) {
+    constexpr int width = 1280, height = 800;
+    PictureMaker maker(width, height);
+    MeshPool& meshes = maker.renderer().meshes();
+    Picture picture;
+    picture.meshes = {{meshes.make(), {}, 1.0, true}};
+    const BoneEditor editor(bone.distance, bone.density, {.max_dirty = 1, .max_versions = 1});
+    BrickSurface mesher;
+    SurfacePatch patch;
+    for (int b = 0; b < editor.layout().brick_count(); ++b) {
+        mesher.make(editor.current(), static_cast<std::uint32_t>(b), patch);
+        meshes.set_part(picture.meshes.front().mesh, static_cast<std::uint32_t>(b), patch);
+        picture.bounds.add(bounds_of(patch));
+    }
+    OrbitCamera camera;
+    camera.look_along(towards, std::abs(towards.z) < 0.9 ? Vec3(0.0, 0.0, 1.0) : Vec3(0.0, -1.0, 0.0));
+    camera.fit(picture.bounds, static_cast<double>(width) / height, 1.2);
+    Image image = maker.draw(picture, views_of(camera, picture.bounds, width, height, StereoMode::mono));
+    Legend legend;
+    legend.title = name;
+    legend.scales.push_back(density_scale(mesher.colours));
+    add_legend(image, legend);
+    add_scale_bar(image, camera.metres_per_pixel(height));
+    return image;
+}
+
+}  // namespace
+
+WrittenFiles write_results(const Report& report, const std::filesystem::path& folder) {
+    WrittenFiles written;
+    std::vector<std::string> bones;
+    const auto write = [&written](std::vector<std::string>& names, const std::string& name, const auto& how) {
+        try {
+            how();
+            names.push_back(name);
+        } catch (const Error& error) {
+            written.losses.emplace_back(error.what());
+        }
+    };
+    // A bone before its picture: it can be drawn again.
+    for (const auto& [name, result] : report.results)
+        if (const auto* bone = std::any_cast<std::shared_ptr<const Bone>>(&result))
+            write(bones, name + ".vdb", [&, file = folder / (name + ".vdb")] { save_bone(**bone, file); });
+    for (const auto& [name, result] : report.results) {
+        const auto* bone = std::any_cast<std::shared_ptr<const Bone>>(&result);
+        if (!bone) continue;
+        Image picture;
+        try {
+            picture = picture_of(**bone, name, towards_site(report));
+        } catch (const Error& error) {
+            say(stderr, fmt::format("tactus: no picture of the {}: {}\n", name, error.what()));
+            continue;
+        }
+        write(written.names, name + ".png", [&] { write_png(picture, (folder / (name + ".png")).string()); });
+    }
+    written.names.insert(written.names.end(), bones.begin(), bones.end());
+    return written;
+}
+
+}  // namespace tactus::session

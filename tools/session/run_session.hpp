@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// One live run as the command line asked for it, from the patch's text to the summary.
+#pragma once
+
+#include "engine/engine.hpp"
+#include "tools/session/live_control.hpp"
+#include "tools/session/output_folder.hpp"
+#include "tools/session/run_choice.hpp"
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::session {
+
+class RunSession {
+public:
+    /// Loads the patch and its assets and prepares all nodes; `observer` may be null. Throws Error.
+    RunSession(const RunChoice& choice, AssetCache& assets, Observer* observer = nullptr);
+    ~RunSession();
+
+    struct Hooks {
+        std::function<void()> tend;  ///< about every 20 ms, on the thread that runs
+        std::function<void(const std::string&)> say;
+    };
+    /// Runs until its time is over or `stop` is set. Throws Error.
+    void run(const Hooks& hooks, const std::atomic<bool>& stop);
+    /// From Hooks::tend: the run is recorded from now on, in that folder when it is the first time; or no more. Throws
+    /// Error.
+    void record(const std::filesystem::path& folder);
+    void stop_recording() { engine_->record(false); }
+    /// Completes recordings and writes pictures, bones and the summary. What finds no room is among the losses.
+    void finish();
+    /// What could not be written to its end, and why; grows while it runs.
+    std::vector<std::string> losses() const;
+
+    Engine& engine() { return *engine_; }
+    /// Null unless it runs and may be edited.
+    LiveControl* control() { return control_.get(); }
+    const std::filesystem::path& folder() const { return folder_->path(); }
+    /// After `finish`.
+    const std::string& summary_json() const { return json_; }
+    const std::string& summary_text() const { return text_; }
+
+private:
+    void begin_journal(EngineOptions& options);
+    void drop_journal();
+
+    RunChoice choice_;
+    AssetCache& assets_;
+    std::unique_ptr<OutputFolder> folder_;
+    std::vector<std::string> late_losses_;  // of what is written after the run
+    bool is_journal_ = false;  // the take is not asked for yet
+    std::unique_ptr<TakeWriter> take_;
+    std::unique_ptr<Engine> engine_;
+    std::unique_ptr<LiveControl> control_;
+    double wall_s_ = 0.0;
+    std::string json_, text_;
+};
+
+}  // namespace tactus::session

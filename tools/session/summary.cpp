@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/session/summary.hpp"
+
+#include "dsp/core/error.hpp"
+#include "tools/session/live_table.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace tactus::session {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+Json group_json(const GroupRuntime& group, bool live) {
+    const GroupTelemetry& t = group.telemetry;
+    Json json{{"name", group.plan->name},
+              {"rate_hz", rate_of(group.plan->period)},
+              {"ticks", t.ticks.load()},
+              {"misses", t.misses.load()},
+              {"skipped", t.skipped.load()},
+              {"dropped", t.dropped.load()},
+              {"execution_us",
+               {{"p50", t.execution.quantile_ns(0.5) * 1e-3},
+                {"p99", t.execution.quantile_ns(0.99) * 1e-3},
+                {"max", static_cast<double>(t.execution.max_ns()) * 1e-3}}}};
+    if (live) {
+        const auto causes = [](const LateCounts& counts) {
+            return Json{{"woken_late", counts[LateCause::woken_late]},
+                        {"preempted", counts[LateCause::preempted]},
+                        {"ran_long", counts[LateCause::ran_long]}};
+        };
+        json["skipped_because"] = causes(t.skip_causes);
+        json["values_too_late_because"] = causes(t.withheld);
+        json["lateness_us"] = {{"p50", t.lateness.quantile_ns(0.5) * 1e-3},
+                               {"p99", t.lateness.quantile_ns(0.99) * 1e-3},
+                               {"max", static_cast<double>(t.lateness.max_ns()) * 1e-3}};
+    }
+    return json;
+}
+
+Json card_json(const SoundCard& card) {
+    const AudioStatistics s = card.statistics();
+    Json json{{"card", card.name()},
+              {"rate_hz", card.rate()},
+              {"largest_callback", card.largest_callback()},
+              {"frames_written", s.frames_written},
+              {"underflows", s.underflows},
+              {"frames_underflowed", s.frames_underflowed},
+              {"frames_dropped", s.frames_dropped},
+              {"frames_left_out", s.frames_left_out},
+              {"runs_fast_ppm", 1e6 * card.follower().loop().rate_error()},
+              {"losses", card.losses()}};
+    if (card.lost_at()) json["lost_at_s"] = tactus::seconds(*card.lost_at());
+    return json;
+}
+
+Json value_json(const Report::Value& value) {
+    return std::visit([](const auto& v) { return Json(v); }, value);
+}
+
+double number(const Report& report, const char* section, const char* key, double otherwise = 0.0) {
+    const auto s = report.sections.find(section);
+    if (s == report.sections.end()) return otherwise;
+    const auto k = s->second.find(key);
+    if (k == s->second.end()) return otherwise;
+    const double* v = std::get_if<double>(&k->second);
+    return v ? *v : otherwise;
+}
+
+}  // namespace
+
+std::string summary_json(const Engine& engine, const Report& report, double seconds, bool live,
+                         const std::vector<std::string>& files, const std::vector<std::string>& losses) {
+    Json json{{"patch", engine.plan().patch.title},
+              {"seconds", seconds},
+              {"live", live},
+              {"output_hash", fmt::format("{:016x}", engine.output_hash())},
+              {"groups", Json::array()}};
+    for (const auto& group : engine.groups()) json["groups"].push_back(group_json(*group, live));
+    for (const auto& [section, values] : report.sections)
+        for (const auto& [key, value] : values) json[section][key] = value_json(value);
+    json["slowest_nodes"] = Json::array();
+    for (const NodeTime& node : slowest_nodes(engine, 10))
+        json["slowest_nodes"].push_back({{"node", node.node},
+                                         {"group", node.group},
+                                         {"mean_us", node.mean_us},
+                                         {"max_us", node.max_us},
+                                         {"share", node.share}});
+    json["sound"] = Json::array();
+    for (const auto& card : engine.outside().cards) json["sound"].push_back(card_json(*card));
+    json["faults"] = Json::array();
+    for (const auto& slot : engine.outside().devices)
+        for (const DeviceFault& fault : slot->guard.faults())
+            json["faults"].push_back({{"device", slot->name},
+                                      {"reason", describe(fault.reason)},
+                                      {"time_s", tactus::seconds(fault.tick * slot->period)},
+                                      {"force_N", fault.force_N}});
+    json["signals"] = Json::array();
+    Json all = Json::array();
+    for (const auto& stream : engine.outside().streams) {
+        const StreamFormat& format = stream->format();
+        if (format.file.empty()) continue;
+        all.push_back(format.file);
+        if (format.type == &value::signal)
+            json["signals"].push_back(
+                {{"file", format.file}, {"unit", format.unit}, {"rate_hz", std::lround(rate_of(format.period))}});
+    }
+    for (const std::string& file : files) all.push_back(file);
+    json["files"] = all;
+    json["lost"] = losses;
+    json["notices"] = engine.outside().notices;
+    return json.dump(2) + "\n";
+}
+
+std::string summary_text(const Engine& engine, const Report& report, double seconds, double wall_seconds) {
+    std::string text = fmt::format("{:.3g} s in {:.3g} s ({:.1f} times real time), output {:016x}\n", seconds,
+                                   wall_seconds, seconds / wall_seconds, engine.output_hash());
+    for (const auto& group : engine.groups()) {
+        const GroupTelemetry& t = group->telemetry;
+        text += fmt::format("  {:>8}: {} ticks, {} misses, {} skipped; a call takes {:.1f} µs (p99 {:.1f})\n",
+                            group->plan->name, t.ticks.load(), t.misses.load(), t.skipped.load(),
+                            t.execution.quantile_ns(0.5) * 1e-3, t.execution.quantile_ns(0.99) * 1e-3);
+        if (const std::string late = describe_lateness(*group); !late.empty())
+            text += fmt::format("            {}\n", late);
+    }
+    if (number(report, "contact", "fraction", -1.0) >= 0.0)
+        text += fmt::format("  contact {:.0f} % of the time, at most {:.2f} mm deep; thrust {:.2f} N mean\n",
+                            100.0 * number(report, "contact", "fraction"),
+                            number(report, "contact", "max_penetration_mm"), number(report, "force", "thrust_mean_N"));
+    if (report.sections.contains("coupling"))
+        text += fmt::format("  touching {:.0f} % of the time, at most {:.2f} mm deep; balanced {:.1f} % of the ticks\n",
+                            100.0 * number(report, "coupling", "in_contact"),
+                            number(report, "coupling", "penetration_max_mm"),
+                            100.0 * number(report, "coupling", "balanced"));
+    if (report.sections.contains("carve"))
+        text += fmt::format("  removed {:.1f} mm³\n", number(report, "carve", "removed_mm3"));
+    for (const auto& card : engine.outside().cards)
+        text += fmt::format("  sound on {}: {}\n", card->name(), describe_sound(*card));
+    for (const auto& slot : engine.outside().devices)
+        for (const DeviceFault& fault : slot->guard.faults())
+            text += fmt::format("  fault of {} at {:.3f} s: {}; {:.2g} N faded to nothing\n", slot->name,
+                                tactus::seconds(fault.tick * slot->period), describe(fault.reason), fault.force_N);
+    for (const std::string& notice : engine.outside().notices) text += fmt::format("  note: {}\n", notice);
+    return text;
+}
+
+}  // namespace tactus::session

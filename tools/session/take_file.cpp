@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/session/take_file.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/spectrum/level.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace tactus::session {
+
+namespace {
+
+constexpr double worth_a_note = 1e-4;  // share of clipped samples
+
+}  // namespace
+
+TakeFile::TakeFile(const TakeChoice& choice)
+    : choice_(choice), reader_(std::make_shared<RecordReader>(choice.file, choice.log, std::nullopt)) {
+    const std::string& role = choice.role;
+    if (!(choice.scale > 0.0) || !std::isfinite(choice.scale))
+        throw Error(fmt::format("the scale of the {} must be above 0", role));
+    const std::size_t channels = reader_->channels().size();
+    if (static_cast<std::size_t>(choice.channel) > channels)
+        throw Error(fmt::format("{}: has {} channels; channel {} does not exist", choice.file.string(), channels,
+                                choice.channel));
+    RecordBlock block;
+    std::vector<double> mixed;
+    std::vector<std::size_t> pieces{0};
+    Level level, longest;
+    while (reader_->next(block)) {
+        if (block.after_gap) {
+            pieces.push_back(0);
+            level = {};
+        }
+        mix(block, mixed);
+        level.push(mixed);
+        pieces.back() += mixed.size();
+        if (pieces.back() < frames_) continue;
+        longest = level;
+        piece_ = pieces.size() - 1;
+        frames_ = pieces.back();
+    }
+    peak_ = longest.largest();
+    if (choice.channel == 0 && channels > 1)
+        notes_.push_back(fmt::format("the {} is the mean of {} channels", role, channels));
+    if (pieces.size() > 1)
+        notes_.push_back(fmt::format("the {} has gaps: the longest of its {} pieces is compared, {:.3g} s", role,
+                                     pieces.size(), static_cast<double>(frames_) / rate()));
+    if (reader_->log())
+        notes_.push_back(fmt::format("the {} is a log of {:.4g} rows a second, faithful to about {:.0f} Hz", role,
+                                     rate(), reader_->log()->usable));
+    const double share =
+        static_cast<double>(longest.clipped()) / static_cast<double>(std::max<std::size_t>(1, frames_));
+    if (share > worth_a_note)
+        notes_.push_back(
+            fmt::format("the {} is clipped: {:.2g} % of its samples stand at its limits", role, 100.0 * share));
+}
+
+void TakeFile::mix(const RecordBlock& block, std::vector<double>& out) const {
+    const std::size_t channels = block.channels.size();
+    const std::size_t first = choice_.channel == 0 ? 0 : static_cast<std::size_t>(choice_.channel) - 1;
+    out = block.channels[first];
+    if (choice_.channel == 0)
+        for (std::size_t c = 1; c < channels; ++c)
+            for (std::size_t i = 0; i < out.size(); ++i) out[i] += block.channels[c][i];
+    const double factor = choice_.scale / (choice_.channel == 0 ? static_cast<double>(channels) : 1.0);
+    for (double& x : out) x *= factor;
+}
+
+Take TakeFile::take() const {
+    return Take(rate(), frames_, [this] {
+        reader_->rewind();
+        return [this, block = RecordBlock(), mixed = std::vector<double>(),
+                piece = std::size_t{0}]() mutable -> std::span<const double> {
+            while (reader_->next(block)) {
+                if (block.after_gap) ++piece;
+                if (piece < piece_) continue;
+                if (piece > piece_) break;
+                mix(block, mixed);
+                return mixed;
+            }
+            return {};
+        };
+    });
+}
+
+}  // namespace tactus::session

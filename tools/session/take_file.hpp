@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// A file as a take to be compared: one channel of it, or their mean, read from the disk as often as needed.
+#pragma once
+
+#include "assets/recording/record_reader.hpp"
+#include "dsp/spectrum/comparison.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tactus::session {
+
+struct TakeChoice {
+    std::filesystem::path file;
+    std::string role;      ///< "reference" or "output", for what is said about it
+    LogSelection log;
+    double scale = 1.0;    ///< units per full scale, or per unit of a log
+    int channel = 0;       ///< from 1; 0: the mean of all
+};
+
+class TakeFile {
+public:
+    /// Reads all of the file once. Of a log with gaps, the longest piece is the take. Throws Error.
+    explicit TakeFile(const TakeChoice& choice);
+
+    Take take() const;
+    const std::filesystem::path& file() const { return choice_.file; }
+    double rate() const { return reader_->rate(); }  ///< Hz
+    double peak() const { return peak_; }            ///< largest distance from zero, with the scale
+    const std::vector<std::string>& notes() const { return notes_; }
+
+private:
+    /// One value of the chosen channel, or the mean, per frame.
+    void mix(const RecordBlock& block, std::vector<double>& out) const;
+
+    TakeChoice choice_;
+    std::shared_ptr<RecordReader> reader_;
+    std::size_t piece_ = 0, frames_ = 0;  // which one, and how long it is
+    double peak_ = 0.0;
+    std::vector<std::string> notes_;
+};
+
+}  // namespace tactus::session

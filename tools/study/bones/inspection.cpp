@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/bones/inspection.hpp"
+
+#include "assets/bone/labels.hpp"
+#include "assets/mesh/mesh.hpp"
+#include "assets/volume/lps_layers.hpp"
+#include "dsp/distance/components.hpp"
+#include "dsp/distance/resample.hpp"
+#include "dsp/distance/surface_net.hpp"
+#include "tools/study/workers.hpp"
+
+#include <glm/common.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace tactus::study {
+
+namespace {
+
+constexpr std::size_t most_parts = 20;
+constexpr int finest_view = 220;  // samples along the longest side of what is drawn
+
+std::array<double, 3> in_mm(const Vec3& v) { return {v.x * 1e3, v.y * 1e3, v.z * 1e3}; }
+
+std::array<std::array<double, 2>, 3> bounds_of(const TriangleSurface& surface) {
+    Vec3 low(surface.vertices.front()), high(low);
+    for (const Vec3& v : surface.vertices) low = glm::min(low, v), high = glm::max(high, v);
+    low *= 1e3, high *= 1e3;
+    return {{{low.x, high.x}, {low.y, high.y}, {low.z, high.z}}};
+}
+
+// To the outer sides of the voxels at the ends.
+std::array<std::array<double, 2>, 3> bounds_of(const Components::Box& box, const Grid& grid) {
+    std::array<std::array<double, 2>, 3> bounds{};
+    for (std::size_t a = 0; a < 3; ++a) {
+        const int axis = static_cast<int>(a);
+        bounds[a] = {(grid.origin[axis] + (box.first[a] - 0.5) * grid.spacing[axis]) * 1e3,
+                     (grid.origin[axis] + (box.last[a] + 0.5) * grid.spacing[axis]) * 1e3};
+    }
+    return bounds;
+}
+
+double voxel_mm3(const Grid& grid) { return grid.spacing.x * grid.spacing.y * grid.spacing.z * 1e9; }
+
+// A frame of `outside` around the samples closes the surface of what reaches the border.
+TriangleSurface view_surface(const Grid& grid, float iso, float outside) {
+    Grid layout = grid;
+    double step = 1.0;
+    for (const int n : grid.size) step = std::max(step, n / double(finest_view));
+    for (std::size_t a = 0; a < 3; ++a) {
+        layout.spacing[static_cast<int>(a)] *= step;
+        layout.size[a] = std::max(2, static_cast<int>((grid.size[a] - 1) / step) + 1);
+    }
+    Grid coarse = step > 1.0 ? resampled(grid, layout) : grid;
+    for (int k = 0; k < coarse.size[2]; ++k)
+        for (int j = 0; j < coarse.size[1]; ++j)
+            for (int i = 0; i < coarse.size[0]; ++i)
+                if (i == 0 || j == 0 || k == 0 || i == coarse.size[0] - 1 || j == coarse.size[1] - 1 ||
+                    k == coarse.size[2] - 1)
+                    coarse.at(i, j, k) = outside;
+    return surface_net(coarse, iso, true);
+}
+
+void inspect_ct(Inspection& found) {
+    const Grid& grid = found.grey;
+    found.threshold = suggested_threshold(grid.values, found.hu == "masked");
+    const auto iso = static_cast<float>(*found.threshold);
+    const Components components = components_above(grid, iso);
+    found.parts_in_all = components.voxels.size();
+    for (std::size_t n = 0; n < std::min(components.voxels.size(), most_parts); ++n) {
+        if (components.voxels[n] * 1000 < components.voxels[0]) break;
+        found.parts.push_back({fmt::format("part {}", n + 1),
+                               static_cast<double>(components.voxels[n]) * voxel_mm3(grid),
+                               bounds_of(components.boxes[n], grid)});
+    }
+    const auto low = static_cast<float>(found.range[0]);
+    found.surfaces.push_back({view_surface(grid, iso, low), Vec3(0.90, 0.86, 0.76)});
+    // Black well below the threshold, white where only the densest is.
+    found.window = {found.hu == "calibrated" ? std::max(found.range[0], -200.0) : found.range[0],
+                    std::max(*found.threshold * 3.0, *found.threshold + 200.0)};
+}
+
+void inspect_labels(Inspection& found, const ScanVolume& volume) {
+    const Grid& grid = found.grey;
+    struct Seen {
+        std::size_t voxels = 0;
+        Components::Box box{};
+    };
+    std::map<int, Seen> seen;
+    for (int k = 0; k < grid.size[2]; ++k)
+        for (int j = 0; j < grid.size[1]; ++j)
+            for (int i = 0; i < grid.size[0]; ++i) {
+                const int label = static_cast<int>(grid.at(i, j, k));
+                if (label == 0) continue;
+                Seen& s = seen[label];
+                const std::array<int, 3> at{i, j, k};
+                if (s.voxels++ == 0) s.box = {at, at};
+                for (std::size_t a = 0; a < 3; ++a)
+                    s.box.first[a] = std::min(s.box.first[a], at[a]), s.box.last[a] = std::max(s.box.last[a], at[a]);
+            }
+    for (const auto& [label, s] : seen) {
+        std::string name = fmt::format("label {}", label);
+        Vec3 colour = label_colour(label);
+        for (const Segment& segment : volume.segments)
+            if (segment.label == label) {
+                if (!segment.name.empty()) name += ": " + segment.name;
+                colour = segment.colour.value_or(colour);
+            }
+        found.parts.push_back({name, static_cast<double>(s.voxels) * voxel_mm3(grid), bounds_of(s.box, grid)});
+        Grid mask = grid;
+        for (float& value : mask.values) value = value == static_cast<float>(label) ? 1.0f : 0.0f;
+        if (found.surfaces.size() < most_parts) found.surfaces.push_back({view_surface(mask, 0.5f, 0.0f), colour});
+    }
+    found.parts_in_all = found.parts.size();
+    found.is_labels = true;
+}
+
+Inspection inspect_volume(const std::filesystem::path& path, const std::string& series) {
+    const std::unique_ptr<SliceReader> reader = open_volume(path, {series});
+    LpsLayers layers(*reader, on_threads());
+    if (layers.is_turned()) layers.settle();
+    Inspection found;
+    found.grey = whole_of(layers);
+    layers.settle();
+    const ScanVolume& about = reader->about;
+    found.kind = name_of(about.kind);
+    found.frame = name_of(about.file_frame);
+    found.hu = name_of(about.hu);
+    found.size = about.size;
+    found.spacing_mm = in_mm(about.spacing());
+    found.uniform = about.uniform;
+    found.tilt_deg = about.tilt_deg();
+    found.notes = about.notes;
+    found.histogram = histogram_of(found.grey.values, 24);
+    found.range = {layers.tally().low, layers.tally().high};
+    if (about.kind == VolumeKind::labels) inspect_labels(found, about);
+    else inspect_ct(found);
+    return found;
+}
+
+Inspection inspect_mesh(const std::filesystem::path& path) {
+    MeshOrigin origin;
+    const Mesh mesh = load_mesh(path, 1.0, &origin);
+    const MeshTopology topology = topology_of(mesh);
+    Inspection found;
+    found.kind = "mesh";
+    found.frame = name_of(origin.frame);
+    found.hu = "none";
+    std::vector<TriangleSurface> parts(topology.components);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        parts[static_cast<std::size_t>(topology.component_of[t])].triangles.push_back(mesh.triangles[t]);
+    for (TriangleSurface& part : parts) {
+        // Only its own points, in mm as they are in the file.
+        std::map<int, int> renamed;
+        for (auto& t : part.triangles)
+            for (int& corner : t) {
+                const auto [at, fresh] = renamed.insert({corner, static_cast<int>(part.vertices.size())});
+                if (fresh) part.vertices.push_back(mesh.vertices[static_cast<std::size_t>(corner)] * 1e-3);
+                corner = at->second;
+            }
+        found.parts.push_back({"", std::abs(volume_of(part)) * 1e9, bounds_of(part)});
+        found.surfaces.push_back({std::move(part), Vec3(0.90, 0.86, 0.76)});
+    }
+    std::stable_sort(found.parts.begin(), found.parts.end(),
+                     [](const auto& a, const auto& b) { return a.volume_mm3 > b.volume_mm3; });
+    found.parts_in_all = found.parts.size();
+    for (std::size_t n = 0; n < found.parts.size(); ++n) found.parts[n].name = fmt::format("part {}", n + 1);
+    if (found.parts.size() > most_parts) found.parts.resize(most_parts);
+    found.notes.push_back(
+        fmt::format("{} points, {} triangles; coordinates taken as mm", mesh.vertices.size(), mesh.triangles.size()));
+    if (!topology.is_watertight())
+        found.notes.push_back(
+            fmt::format("not watertight: {} boundary, {} non-manifold and {} flipped edges; volumes are rough",
+                        topology.boundary_edges, topology.non_manifold_edges, topology.flipped_edges));
+    return found;
+}
+
+Inspection inspect_bones(const std::filesystem::path& path) {
+    std::vector<Bone> bones;
+    if (file_of_bone(path) == path) bones = load_bones(path);
+    else bones.push_back(load_bone(path));
+    Inspection found;
+    found.kind = "bone";
+    found.frame = "LPS";
+    const Bone& first = bones.front();
+    const auto hu = first.provenance.find("hu");
+    found.hu = hu == first.provenance.end() ? "none" : hu->second;
+    found.size = first.distance.size;
+    found.spacing_mm = in_mm(first.distance.spacing);
+    found.range = {1e30, -1e30};
+    for (const Bone& bone : bones) {
+        for (std::size_t n = 0; n < bone.density.values.size(); ++n)
+            if (bone.distance.values[n] < 0.0f) {
+                found.range[0] = std::min(found.range[0], double(bone.density.values[n]));
+                found.range[1] = std::max(found.range[1], double(bone.density.values[n]));
+            }
+        TriangleSurface surface = export_surface(bone.distance);
+        if (surface.vertices.empty()) {
+            found.notes.push_back(fmt::format("'{}' has no surface", bone.name));
+            continue;
+        }
+        found.parts.push_back({bone.name, volume_of(surface) * 1e9, bounds_of(surface)});
+        found.surfaces.push_back({std::move(surface), bone.colour});
+    }
+    if (found.range[0] > found.range[1]) found.range = {0.0, 0.0};
+    found.parts_in_all = found.parts.size();
+    found.grey = first.density;
+    for (std::size_t n = 0; n < found.grey.values.size(); ++n)
+        if (first.distance.values[n] >= 0.0f) found.grey.values[n] *= 0.3f;
+    found.histogram = histogram_of(first.density.values, 24);
+    found.window = {0.0, std::max(found.range[1], 1.0)};
+    for (const auto& [key, value] : first.provenance) found.notes.push_back(key + ": " + value);
+    return found;
+}
+
+}  // namespace
+
+Inspection inspect(const std::filesystem::path& path, const std::string& series) {
+    const std::string kind = path.extension().string();
+    if (file_of_bone(path).extension() == ".vdb") return inspect_bones(path);
+    if (kind == ".stl" || kind == ".ply" || kind == ".obj") return inspect_mesh(path);
+    return inspect_volume(path, series);
+}
+
+}  // namespace tactus::study

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/bones/surface_file.hpp"
+
+#include "assets/mesh/mesh.hpp"
+#include "assets/mesh/write_mesh.hpp"
+#include "dsp/contact/sample_surface.hpp"
+#include "dsp/core/rotation.hpp"
+#include "tools/study/bones/fragment_file.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <numbers>
+
+namespace tactus::study {
+
+bool is_mesh(const std::filesystem::path& path) {
+    const auto extension = path.extension();
+    return extension == ".stl" || extension == ".ply" || extension == ".obj";
+}
+
+TriangleSurface surface_of_file(const std::filesystem::path& path, const Bone& bone) {
+    if (is_mesh(path)) return load_mesh(path, 1e-3);
+    return export_surface(bone.distance);
+}
+
+std::vector<SurfacePoint> points_of_file(const std::filesystem::path& path) {
+    if (!is_mesh(path)) {
+        const Bone bone = bone_of_file(path);
+        return bone.points.empty() ? sample_surface(bone.distance, {}) : bone.points;
+    }
+    const Mesh mesh = load_mesh(path, 1e-3);
+    std::vector<SurfacePoint> points(mesh.vertices.size());
+    for (std::size_t n = 0; n < points.size(); ++n) points[n] = {mesh.vertices[n], Vec3(0.0), 0.0, 0};
+    for (const auto& t : mesh.triangles) {
+        const auto corner = [&](std::size_t c) { return static_cast<std::size_t>(t[c]); };
+        const Vec3 across = glm::cross(mesh.vertices[corner(1)] - mesh.vertices[corner(0)],
+                                       mesh.vertices[corner(2)] - mesh.vertices[corner(0)]);
+        for (std::size_t c = 0; c < 3; ++c) {
+            points[corner(c)].normal += across;
+            points[corner(c)].area += glm::length(across) / 6.0;
+        }
+    }
+    std::erase_if(points, [](const SurfacePoint& p) { return !(glm::length(p.normal) > 0.0); });
+    for (SurfacePoint& p : points) p.normal = glm::normalize(p.normal);
+    return points;
+}
+
+double angle_deg(const Pose& pose) {
+    return glm::length(rotation_between({1.0, 0.0, 0.0, 0.0}, pose.orientation)) * 180.0 / std::numbers::pi;
+}
+
+Vec3 middle_of(std::span<const SurfacePoint> points) {
+    Vec3 middle(0.0);
+    for (const SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
+    return middle;
+}
+
+Motion motion_between(const Pose& from, const Pose& to, const Vec3& point) {
+    return {glm::length(to.apply(point) - from.apply(point)), angle_deg(to * from.inverse())};
+}
+
+}  // namespace tactus::study

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/displays/calibration.hpp"
+
+#include "assets/display/touch_file.hpp"
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/units.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::study {
+
+namespace {
+
+constexpr auto no_screen = "no screen is touched, and none is known from a rig before: a rig needs one";
+
+}  // namespace
+
+std::vector<RigTouch> calibration_steps(const CalibrationSettings& settings) {
+    std::vector<RigTouch> steps;
+    using Of = RigTouch::Of;
+    if (!settings.places.empty())
+        for (const Vec3& place : load_places(settings.places)) steps.push_back({Of::workspace, {}, {}, {}, place});
+    else if (!settings.tracker.empty())
+        for (int n = 0; n < settings.points; ++n) steps.push_back({Of::workspace, {}, {}, {}, {}});
+    if (settings.mirror)
+        for (int n = 0; n < settings.points; ++n) steps.push_back({Of::mirror, {}, {}, {}, {}});
+    const auto marks = [&](Of of, const std::string& screen) {
+        for (int row = 0; row < settings.grid; ++row)
+            for (int column = 0; column < settings.grid; ++column) {
+                const auto at = [&](int n) { return 0.1 + 0.8 * n / (settings.grid - 1.0); };
+                steps.push_back({of, screen, {at(column), at(row)}, {}, {}});
+            }
+    };
+    for (const std::string& screen : settings.screens) marks(Of::screen, screen);
+    for (const std::string& screen : settings.images) marks(Of::image, screen);
+    if (steps.empty())
+        throw Error("there is nothing to touch: a screen, the image of one, the mirror, known places or a tracker");
+    return steps;
+}
+
+void check_screens(const CalibrationSettings& settings, const RigFile& base) {
+    if (settings.screens.empty() && settings.images.empty() && base.screens.empty()) throw Error(no_screen);
+}
+
+std::string prompt_of(const RigTouch& step) {
+    const int u = static_cast<int>(step.shown.x * 100.0 + 0.5), v = static_cast<int>(step.shown.y * 100.0 + 0.5);
+    switch (step.of) {
+        case RigTouch::Of::workspace:
+            if (step.place == Vec3(0.0)) return "hold the tracked marker to the tip, somewhere new in the workspace";
+            return "touch the " + step.name();
+        case RigTouch::Of::mirror: return "touch the mirror with the tip, somewhere new, far from the touches before";
+        case RigTouch::Of::image:
+            return fmt::format(
+                "bring the tip to where the mirror shows the mark of screen '{}' at {} % of its width and "
+                "{} % of its height",
+                step.screen, u, v);
+        case RigTouch::Of::screen: break;
+    }
+    return fmt::format("touch screen '{}' at {} % of its width from the left and {} % of its height from below",
+                       step.screen, u, v);
+}
+
+RigFitOptions fit_options(const CalibrationSettings& settings, const RigFile& base) {
+    RigFitOptions options;
+    options.is_affine = settings.affine;
+    options.tolerance = parse_as(settings.tolerance, "mm");
+    if (!(options.tolerance > 0.0)) throw Error("the tolerance must be above 0 mm");
+    options.mirror = base.rig.mirror;
+    options.device = base.rig.haptic_world;
+    options.stretch = base.rig.haptic_stretch;
+    return options;
+}
+
+TouchesOff touches_off(const RigFit& fit) {
+    TouchesOff all;
+    double sum = 0.0;
+    for (const TouchedPart& part : fit.parts)
+        for (std::size_t i = 0; i < part.off.size(); ++i) {
+            sum += part.off[i] * part.off[i];
+            ++all.count;
+            if (part.off[i] < all.worst) continue;
+            all.worst = part.off[i];
+            all.worst_touch = part.touches[i];
+        }
+    if (all.count > 0) all.rms = std::sqrt(sum / static_cast<double>(all.count));
+    return all;
+}
+
+std::string part_text(const TouchedPart& part) {
+    return fmt::format("{}: {:.2f} mm rms, {:.2f} mm worst", part.what, part.residual.rms * 1e3,
+                       part.residual.worst * 1e3);
+}
+
+RigFile calibrated_rig(RigFile file, const RigFit& fit) {
+    file.rig.haptic_world = fit.device;
+    file.rig.haptic_stretch = fit.stretch;
+    file.rig.mirror = fit.mirror;
+    for (const auto& [name, screen] : fit.screens) {
+        const auto known = std::ranges::find(file.screens, name, &RigScreen::name);
+        if (known != file.screens.end()) {
+            file.rig.screens[static_cast<std::size_t>(known - file.screens.begin())] = screen;
+            continue;
+        }
+        file.rig.screens.push_back(screen);
+        file.screens.push_back({name, ScreenEyes::both, {}, {}, 0, {}});
+    }
+    if (file.screens.empty()) throw Error(no_screen);
+    return file;
+}
+
+void write_calibrated(const std::filesystem::path& file, const RigFile& rig, const RigFit& fit) {
+    std::vector<std::string> about{"Calibrated: how far the touches are off, root mean square and worst"};
+    for (const TouchedPart& part : fit.parts)
+        about.push_back(fmt::format("  {}: {:.2f} mm, {:.2f} mm of {} touches", part.what, part.residual.rms * 1e3,
+                                    part.residual.worst * 1e3, part.touches.size()));
+    write_whole_file(file, rig_text(rig, about));
+    // What is written can be read.
+    load_rig_file(file);
+}
+
+}  // namespace tactus::study

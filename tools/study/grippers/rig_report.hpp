@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a rig found.
+#pragma once
+
+#include "tools/study/grippers/rig_run.hpp"
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tactus::study {
+
+/// From which rate on the second motor renders better, over all that is assumed of both.
+struct RigCrossover {
+    double stiffness = 0.0, amplitude = 0.0;  ///< N/m, m
+    std::optional<double> low, high;          ///< Hz; none: not within the rates that were tried
+    int crossed = 0, of = 0;                  ///< pairs of assumptions
+    std::vector<double> rates;                ///< Hz
+    std::vector<std::pair<double, double>> slow_motor, fast_motor;  ///< least and greatest NRMSE per rate
+};
+
+/// A statement of the thesis, and for how many of the assumptions it holds.
+struct RigFinding {
+    std::string claim;
+    int holds = 0, of = 0;
+};
+
+/// The loop of the thesis beside one with feed-forward.
+struct RigLead {
+    RigCell cell;
+    double nrmse = 0.0, led_nrmse = 0.0;
+    double ratio() const { return nrmse / led_nrmse; }
+};
+
+struct RigExample {
+    std::string title;
+    RigSeries series;
+    RigCell cell;
+};
+
+struct RigReport {
+    std::string title, source;                   ///< of the patch; what was judged
+    std::vector<RigRow> rows;
+    double peak_cord_speed = 0.0;                ///< m/s at 1 Hz with the largest amplitude
+    std::optional<double> saturation_rate;       ///< Hz, free motion of the slowest motor, as found
+    std::optional<double> saturation_closed_form;
+    std::vector<RigCrossover> crossover;
+    std::vector<RigFinding> findings;
+    std::vector<RigLead> leads;
+    std::vector<RigAssumption> assumptions;
+    std::vector<RigExample> examples;
+    std::vector<std::string> notes;
+};
+
+}  // namespace tactus::study

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/grippers/rig_run.hpp"
+
+#include "engine/engine.hpp"
+#include "graph/sub_patch.hpp"
+#include "tools/session/load_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <map>
+#include <memory>
+
+namespace tactus::study {
+
+namespace {
+
+/// Keeps the values of one output as numbers.
+class KeptValues : public StreamEnd {
+public:
+    KeptValues(const ValueType& type, std::vector<double>& into) : type_(type), into_(into) {}
+    void take(std::int64_t, const std::byte* values, std::size_t count) override {
+        for (std::size_t i = 0; i < count; ++i) {
+            double number = 0.0;
+            type_.to_columns(values + i * type_.size, &number);
+            into_.push_back(number);
+        }
+    }
+    void finish() override {}
+
+private:
+    const ValueType& type_;
+    std::vector<double>& into_;
+};
+
+std::vector<std::uint8_t> flags(const std::vector<double>& numbers) {
+    std::vector<std::uint8_t> all;
+    for (const double n : numbers) all.push_back(n != 0.0);
+    return all;
+}
+
+/// A controller of the thumb part, which a rig does not pull at.
+bool moves_another_part(const Patch& patch, const PatchNode& node) {
+    for (const PatchWire& wire : patch.wires)
+        if (wire.from_node == node.name && wire.to_port == "thumb_speed") return true;
+    return false;
+}
+
+std::string only_node(const Patch& patch, const std::string& type) {
+    std::string found;
+    for (const PatchNode& node : patch.nodes) {
+        if (node.type != type || moves_another_part(patch, node)) continue;
+        if (!found.empty())
+            throw Error(node.where, fmt::format("a rig judges one finger: '{}' and '{}' are both of type {}", found,
+                                                node.name, type));
+        found = node.name;
+    }
+    if (found.empty())
+        throw Error(
+            {patch.file.string(), 0, 0},
+            fmt::format("no node of type {}; a rig needs gripper_input, admittance_controller, gripper_output and "
+                        "test_rig, as gripper-wqsm has them",
+                        type));
+    return found;
+}
+
+}  // namespace
+
+RigNodes find_rig_nodes(const session::PatchChoice& choice) {
+    Problems problems;
+    Patch patch = load_patch(session::find_patch(choice.patch), problems);
+    flatten(patch, problems);
+    session::throw_problems(problems);
+    return {only_node(patch, "gripper_input"), only_node(patch, "admittance_controller"),
+            only_node(patch, "gripper_output"), only_node(patch, "test_rig")};
+}
+
+ObjectSettings object_of(const RigObject& object) {
+    ObjectSettings settings;
+    settings.kind = object.kind;
+    settings.stiffness = object.stiffness;
+    settings.damping = object.damping;
+    return settings;
+}
+
+RigRun run_rig_cell(const session::PatchChoice& given, const RigNodes& nodes, const RigCell& cell, int cycles,
+                    AssetCache& assets) {
+    session::PatchChoice choice = given;
+    auto& set = choice.overrides.settings;
+    const auto put = [&set](const std::string& node, const char* param, const std::string& value) {
+        set.push_back(fmt::format("{}.{}={}", node, param, value));
+    };
+    put(nodes.input, "device", cell.motor);
+    put(nodes.output, "device", cell.motor);
+    put(nodes.controller, "object", cell.object.kind == ObjectKind::wall ? "wall" : "elastic");
+    put(nodes.controller, "sides", "both");
+    put(nodes.controller, "rest", "0 mm");
+    put(nodes.controller, "mass", "0 kg");
+    put(nodes.controller, "stiffness", fmt::format("{:.17g} N/m", cell.object.stiffness));
+    put(nodes.controller, "damping", fmt::format("{:.17g} N s/m", cell.object.damping));
+    if (cell.feed_forward) put(nodes.controller, "feed_forward", fmt::format("{:.17g}", *cell.feed_forward));
+    put(nodes.rig, "swings", fmt::format("{:.17g} Hz", cell.rate));
+    put(nodes.rig, "sweep_to", "0 Hz");
+    put(nodes.rig, "peak_to_peak", fmt::format("{:.17g} m", 2.0 * cell.amplitude));
+    set.insert(set.end(), cell.settings.begin(), cell.settings.end());
+
+    std::map<std::string, std::vector<double>> kept;
+    for (const std::string& port : {nodes.input + ".finger_force", nodes.input + ".finger_position",
+                                    nodes.input + ".slips", nodes.controller + ".saturated", nodes.input + ".max_speed",
+                                    nodes.output + ".holds", nodes.controller + ".holds"})
+        kept[port];
+    EngineOptions options;
+    options.seconds = rig_settle_s + (cycles + 0.05) / cell.rate;
+    options.hash = false;
+    options.time_nodes = false;
+    double period = 0.0;
+    options.tap = [&](const std::string& port, const ValueType& type,
+                      const GroupRuntime& group) -> std::unique_ptr<Stream> {
+        const auto wanted = kept.find(port);
+        if (wanted == kept.end()) return nullptr;
+        period = seconds(group.plan->period);
+        StreamFormat format;
+        format.type = &type;
+        format.period = group.plan->period;
+        return std::make_unique<Stream>(format, std::make_unique<KeptValues>(type, wanted->second));
+    };
+    Engine engine(session::load_plan(choice, assets), options);
+    engine.render(1);
+    engine.finish();
+    for (const std::string& port : {nodes.output + ".holds", nodes.controller + ".holds"})
+        for (const double held : kept[port])
+            if (held != 0.0)
+                throw Error(fmt::format("{}, {}, {:g} Hz, ±{:g} mm: the motor was held by a fault ({})", cell.motor,
+                                        cell.object.name, cell.rate, cell.amplitude * 1e3, port));
+    const std::vector<double>& speeds = kept[nodes.input + ".max_speed"];
+    return {{period, kept[nodes.input + ".finger_force"], kept[nodes.input + ".finger_position"],
+             flags(kept[nodes.input + ".slips"]), flags(kept[nodes.controller + ".saturated"])},
+            speeds.empty() ? 0.0 : speeds.back()};
+}
+
+RigRow judge_rig_cell(const RigCell& cell, const RigSeries& series) {
+    RigRow row{cell, {}, {}};
+    try {
+        row.fidelity = judge_fidelity(series, object_of(cell.object), cell.rate, rig_settle_s);
+    } catch (const Error& error) {
+        row.failure = error.message();
+    }
+    return row;
+}
+
+}  // namespace tactus::study

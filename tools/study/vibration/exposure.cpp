@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/vibration/exposure.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/spectrum/level.hpp"
+#include "dsp/spectrum/vibration_analysis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::study {
+
+ExposureOperation analyse_exposure(const std::filesystem::path& file, const ExposureSettings& settings, double duration,
+                                   const std::function<void(double)>& progress) {
+    RecordReader reader = open_record(file, settings.record);
+    const Calibration& calibration = reader.calibration();
+    if (!calibration.known && !settings.uncalibrated)
+        throw Error(fmt::format(
+            "{}: the record is not calibrated; say what full scale is worth with --full-scale \"49 m/s^2\", "
+            "or take its values as m/s^2 with --uncalibrated",
+            file.string()));
+    if (calibration.known && !calibration.is_acceleration)
+        throw Error(fmt::format("{}: exposure needs an acceleration, not {}", file.string(), calibration.unit));
+    const std::vector<std::size_t> chosen = chosen_channels(reader, file, settings.record);
+    if (chosen.size() > 3)
+        throw Error(fmt::format("{}: {} channels; choose the axes with --channel", file.string(), chosen.size()));
+    ExposureOperation out;
+    out.file = file.string();
+    out.rate = reader.rate();
+    out.duration = duration;
+    out.calibrated = calibration.known;
+    out.three_axes = chosen.size() == 3;
+    const double nyquist = reader.log() ? std::min(0.5 * out.rate, reader.log()->usable) : 0.5 * out.rate;
+    out.band_high = std::min(hand_arm_highest, nyquist);
+
+    WelchSettings welch;
+    welch.rate = out.rate;
+    welch.segment = suggested_segment(out.rate, reader.frames());
+    welch.overlap = welch.segment / 2;
+    std::vector<WelchStream<double>> spectra(chosen.size(), WelchStream<double>(welch));
+    std::vector<HandArmFilter> filters(chosen.size(), HandArmFilter(out.rate));
+    std::vector<double> squares(chosen.size()), offsets(chosen.size()), scaled;
+    std::vector<Level> levels(chosen.size());
+    std::size_t count = 0;
+    RecordBlock block;
+    while (reader.next(block)) {
+        for (std::size_t i = 0; i < chosen.size(); ++i) {
+            scaled = block.channels[chosen[i]];
+            for (double& x : scaled) x *= calibration.si;
+            levels[i].push(scaled);
+            if (block.after_gap) spectra[i].forget_waiting();
+            spectra[i].push(scaled);
+            // A constant is no vibration: the filter must not hear it begin.
+            if (count == 0) offsets[i] = scaled.front();
+            for (const double x : scaled) {
+                const double y = filters[i](x - offsets[i]);
+                squares[i] += y * y;
+            }
+        }
+        count += block.size();
+        progress(static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, reader.frames())));
+    }
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        out.axes.push_back(reader.channels()[chosen[i]]);
+        out.weighted.push_back(weighted_acceleration(spectra[i].spectrum()));
+        out.filtered.push_back(std::sqrt(squares[i] / static_cast<double>(std::max<std::size_t>(1, count))));
+        if (levels[i].clipped() > 0)
+            out.notes.push_back(fmt::format("axis {} is clipped in {} samples: the value is too low", out.axes.back(),
+                                            levels[i].clipped()));
+    }
+    if (!out.calibrated) out.notes.push_back("uncalibrated: values in the file were taken as m/s^2");
+    if (out.band_high < 1250.0)
+        out.notes.push_back(
+            fmt::format("the record ends at {:.0f} Hz, below 1250 Hz: the values are lower bounds", out.band_high));
+    if (!out.three_axes)
+        out.notes.push_back(
+            fmt::format("{} of three axes: no total value a_hv; A(8) and minutes come from these axes alone "
+                        "and are bounds",
+                        out.axes.size()));
+    if (out.rate < 20000.0)
+        out.notes.push_back("below 20 kHz the filter strays from the norm; the spectrum's values count");
+    const double minutes = static_cast<double>(count) / out.rate / 60.0;
+    if (minutes < 1.0) out.notes.push_back("the norm asks for at least one minute of measurement in all");
+    return out;
+}
+
+std::optional<double> exposure_of_day(std::span<const ExposureOperation> operations) {
+    std::vector<HandArmOperation> day;
+    double seconds = 0.0;
+    for (const ExposureOperation& one : operations) {
+        day.push_back({one.total(), one.duration});
+        seconds += one.duration;
+    }
+    if (seconds > 24.0 * 3600.0) return std::nullopt;
+    return daily_exposure(day);
+}
+
+}  // namespace tactus::study

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Levels of the orders of a machine whose rate changes.
+#pragma once
+
+#include "dsp/order/order_spectrum.hpp"
+#include "tools/study/vibration/record.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tactus::study {
+
+/// Where the rate comes from: a tachometer, else a known rate, else the strongest ridge of the spectrogram.
+struct OrdersSettings {
+    RecordSettings record;
+    int tacho = 0;                                ///< channel from 1; 0: none
+    double pulses = 1.0;                          ///< of the tachometer, per revolution
+    std::optional<double> fixed;                  ///< Hz
+    std::pair<double, double> range{20.0, 400.0}; ///< Hz, where a rate to be followed may lie
+    int highest = 10;                             ///< order
+};
+
+struct RateRange {
+    double low = 0.0, high = 0.0, mean = 0.0;  ///< Hz
+};
+
+struct OrdersOfChannel {
+    std::string name;
+    OrderSpectrum spectrum;
+};
+
+struct Orders {
+    double sample_rate = 0.0, duration = 0.0;  ///< Hz, s
+    Calibration calibration;
+    std::string source;                        ///< "tachometer", "fixed" or "ridge"
+    double prominence_db = 0.0;                ///< of the ridge
+    RateRange rate;
+    std::vector<OrdersOfChannel> channels;
+};
+
+/// Throws Error.
+Orders analyse_orders(const std::filesystem::path& file, const OrdersSettings& settings);
+
+}  // namespace tactus::study

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/vibration/record.hpp"
+
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+namespace tactus::study {
+
+RecordReader open_record(const std::filesystem::path& file, const RecordSettings& settings) {
+    std::optional<Calibration> calibration;
+    if (!settings.calibration.empty()) calibration = parse_calibration(settings.calibration);
+    return {file, settings.log, calibration};
+}
+
+std::vector<std::size_t> chosen_channels(const RecordReader& reader, const std::filesystem::path& file,
+                                         const RecordSettings& settings) {
+    std::vector<std::size_t> chosen;
+    for (const int channel : settings.channels) {
+        if (channel < 1 || static_cast<std::size_t>(channel) > reader.channels().size())
+            throw Error(fmt::format("{}: there is no channel {}; there are {}", file.string(), channel,
+                                    reader.channels().size()));
+        chosen.push_back(static_cast<std::size_t>(channel - 1));
+    }
+    if (chosen.empty()) {
+        chosen.resize(reader.channels().size());
+        std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+    }
+    return chosen;
+}
+
+std::vector<std::filesystem::path> expand_folders(const std::vector<std::filesystem::path>& files) {
+    constexpr std::array endings{".wav", ".w64", ".flac", ".aiff", ".aif", ".caf", ".ogg", ".au", ".csv", ".tsv"};
+    std::vector<std::filesystem::path> out;
+    for (const std::filesystem::path& file : files) {
+        if (!std::filesystem::is_directory(file)) {
+            out.push_back(file);
+            continue;
+        }
+        std::vector<std::filesystem::path> inside;
+        for (const auto& entry : std::filesystem::directory_iterator(file))
+            if (entry.is_regular_file() &&
+                std::find(endings.begin(), endings.end(), entry.path().extension().string()) != endings.end())
+                inside.push_back(entry.path());
+        if (inside.empty()) throw Error(fmt::format("{}: the folder holds no record", file.string()));
+        std::sort(inside.begin(), inside.end());
+        out.insert(out.end(), inside.begin(), inside.end());
+    }
+    return out;
+}
+
+WholeRecord read_whole(const std::filesystem::path& file, const RecordSettings& settings) {
+    RecordReader reader = open_record(file, settings);
+    const std::vector<std::size_t> chosen = chosen_channels(reader, file, settings);
+    if (reader.frames() > (std::size_t{1} << 28) / chosen.size())
+        throw Error(fmt::format("{}: longer than 2^28 values; cut it first", file.string()));
+    WholeRecord whole{reader.rate(), {}, std::vector<std::vector<double>>(chosen.size()), reader.calibration()};
+    for (const std::size_t channel : chosen) whole.names.push_back(reader.channels()[channel]);
+    RecordBlock block;
+    while (reader.next(block)) {
+        if (block.after_gap)
+            throw Error(
+                fmt::format("{}: the record has gaps; cut out the piece that is to be analysed", file.string()));
+        for (std::size_t i = 0; i < chosen.size(); ++i) {
+            const std::vector<double>& from = block.channels[chosen[i]];
+            whole.channels[i].insert(whole.channels[i].end(), from.begin(), from.end());
+        }
+    }
+    return whole;
+}
+
+}  // namespace tactus::study

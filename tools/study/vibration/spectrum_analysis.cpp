@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/vibration/spectrum_analysis.hpp"
+
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::study {
+
+namespace {
+
+WelchSettings psd_settings(const SpectrumSettings& settings, double rate, std::size_t frames) {
+    WelchSettings welch;
+    welch.rate = rate;
+    welch.segment =
+        std::min(settings.segment.value_or(suggested_segment(rate, frames)), std::max<std::size_t>(1, frames));
+    welch.overlap =
+        std::min(welch.segment - 1, static_cast<std::size_t>(settings.overlap * static_cast<double>(welch.segment)));
+    welch.window = settings.window;
+    welch.detrend = settings.detrend;
+    welch.averaging = settings.averaging;
+    return welch;
+}
+
+std::vector<std::string> warnings_of(const VibrationReport& report, const AnalysedFile& file) {
+    std::vector<std::string> warnings;
+    const Level& level = report.level;
+    if (level.largest() == 0.0) warnings.push_back("the channel is silent");
+    else if (level.rms() <= 1e-12 * level.largest()) warnings.push_back("the channel is constant: nothing vibrates");
+    if (level.clipped() > 0)
+        warnings.push_back(fmt::format(
+            "clipped: {} samples in runs at the limit ({:.3g} %); peaks and high orders are wrong", level.clipped(),
+            100.0 * static_cast<double>(level.clipped()) / static_cast<double>(level.count())));
+    if (report.lines.effective_segments < 4.0)
+        warnings.push_back(fmt::format("short: {} segments only, levels of noise are uncertain by {:.1f} dB",
+                                       report.lines.segments, 4.34 * report.lines.relative_deviation()));
+    if (report.fundamental.frequency > 0.0 && !report.fundamental.steady)
+        warnings.push_back(
+            fmt::format("the rate wavers between {:.1f} and {:.1f} Hz: lines are smeared, see 'tactus orders'",
+                        report.fundamental.low, report.fundamental.high));
+    if (file.log && file.log->lost_seconds > 0.0)
+        warnings.push_back(fmt::format("{} gaps, {:.3g} s lost", file.log->gaps, file.log->lost_seconds));
+    return warnings;
+}
+
+}  // namespace
+
+double band_deviation(const Band& band, const Spectrum& spectrum) {
+    const double bins = std::max(1.0, (band.high - band.low) / spectrum.noise_bandwidth);
+    return 10.0 / std::log(10.0) * spectrum.relative_deviation() / std::sqrt(bins);
+}
+
+double decibels(double power) { return 10.0 * std::log10(std::max(power, 1e-30)); }
+
+AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSettings& wanted,
+                          const std::function<void(double)>& progress) {
+    RecordReader reader = open_record(file, wanted.record);
+    const std::vector<std::size_t> chosen = chosen_channels(reader, file, wanted.record);
+    AnalysedFile out{file, reader.rate(), 0.0, reader.calibration(), reader.log(), {}, {}};
+    AnalysisSettings settings;
+    settings.psd = out.psd = psd_settings(wanted, reader.rate(), reader.frames());
+    std::tie(settings.lowest, settings.highest) = wanted.fundamental;
+    if (wanted.envelope) settings.envelope = *wanted.envelope;
+    settings.orders = wanted.orders;
+    settings.spectrogram = wanted.spectrogram;
+    std::vector<VibrationAnalysis> analyses;
+    try {
+        for (std::size_t i = 0; i < chosen.size(); ++i) analyses.emplace_back(settings, reader.frames());
+    } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", file.string(), error.message()));
+    }
+    RecordBlock block;
+    std::size_t done = 0;
+    while (reader.next(block)) {
+        for (std::size_t i = 0; i < chosen.size(); ++i) {
+            if (block.after_gap) analyses[i].gap();
+            analyses[i].push(block.channels[chosen[i]]);
+        }
+        done += block.size();
+        if (progress)
+            progress(static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, reader.frames())));
+    }
+    out.duration = static_cast<double>(done) / out.rate;
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        out.channels.push_back({reader.channels()[chosen[i]], analyses[i].report(), {}});
+        Spectrum& psd = out.channels.back().report.psd;
+        if (!wanted.is_density)
+            for (double& power : psd.power) power *= psd.noise_bandwidth;
+        out.channels.back().warnings = warnings_of(out.channels.back().report, out);
+    }
+    return out;
+}
+
+}  // namespace tactus::study

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// What vibrates in one record.
+#pragma once
+
+#include "dsp/spectrum/vibration_analysis.hpp"
+#include "tools/study/vibration/record.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tactus::study {
+
+struct SpectrumSettings {
+    RecordSettings record;
+    WindowKind window = WindowKind::hann;
+    Detrend detrend = Detrend::constant;
+    Averaging averaging = Averaging::mean;
+    bool is_density = true;                            ///< unit²/Hz; otherwise unit²
+    std::optional<std::size_t> segment;                ///< samples; none: about 0.75 s
+    double overlap = 0.5;                              ///< share of a segment
+    std::pair<double, double> fundamental{20.0, 500.0};  ///< Hz, where it may lie
+    std::optional<std::pair<double, double>> envelope;   ///< Hz, the band whose envelope is analysed
+    int orders = 10;
+    bool spectrogram = false;
+};
+
+struct AnalysedChannel {
+    std::string name;
+    VibrationReport report;
+    std::vector<std::string> warnings;
+};
+
+struct AnalysedFile {
+    std::filesystem::path file;
+    double rate = 0.0, duration = 0.0;  ///< Hz, s
+    Calibration calibration;
+    std::optional<LogFacts> log;
+    WelchSettings psd;
+    std::vector<AnalysedChannel> channels;
+};
+
+/// Reads and analyses a file; `progress` is told the share that is done. Throws Error.
+AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSettings& settings,
+                          const std::function<void(double)>& progress);
+
+/// 10 log10, not below −300 dB.
+double decibels(double power);
+/// How far a band's level scatters, dB: its bins are averaged over too.
+double band_deviation(const Band& band, const Spectrum& spectrum);
+
+}  // namespace tactus::study

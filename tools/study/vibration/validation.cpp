@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/vibration/validation.hpp"
+
+#include "assets/sound/sound.hpp"
+#include "engine/engine.hpp"
+#include "graph/sub_patch.hpp"
+#include "nodes/catalogue.hpp"
+#include "tools/session/load_plan.hpp"
+#include "tools/session/scratch_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::study {
+
+namespace {
+
+constexpr double settling = 1.0;  // s: the saw's run-up and the delay of an equaliser
+
+/// Samples of a sound from `from` seconds on.
+std::vector<float> after(const std::filesystem::path& file, double from, double& rate) {
+    const Sound sound = load_sound(file);
+    rate = sound.rate;
+    const auto first = std::min(sound.samples.size(), static_cast<std::size_t>(std::llround(from * rate)));
+    return {sound.samples.begin() + static_cast<std::ptrdiff_t>(first), sound.samples.end()};
+}
+
+/// The part of a recording that is played, in m/s² when that is known.
+std::vector<float> reference_of(const Recording& recording) {
+    const SawRecording part = saw_recordings({{}, {}, {}, {}, false, {recording}}).front();
+    const std::size_t end = part.loop_end == 0 ? recording.samples.size() : part.loop_end;
+    std::vector<float> samples(recording.samples.begin() + static_cast<std::ptrdiff_t>(part.loop_begin),
+                               recording.samples.begin() + static_cast<std::ptrdiff_t>(end));
+    for (float& x : samples) x *= static_cast<float>(part.gain);
+    return samples;
+}
+
+}  // namespace
+
+std::string ValidationRun::name() const {
+    return fmt::format("{}, {:.4g} Hz{}, {:+g} dB", recording->cutting ? "cutting" : "free air", recording->rate,
+                       recording->cutting ? fmt::format(", {:g} N", recording->load) : "", level_db);
+}
+
+std::string ValidationRun::file_name() const {
+    return fmt::format("{}_{:.4g}Hz{}_{:+g}dB", recording->cutting ? "cutting" : "free_air", recording->rate,
+                       recording->cutting ? fmt::format("_{:g}N", recording->load) : "", level_db);
+}
+
+Validation plan_validation(const ValidateSettings& settings) {
+    Validation validation;
+    const session::PatchChoice& choice = settings.patch;
+    validation.patch = choice.patch;
+    validation.thresholds = settings.thresholds;
+    Problems problems;
+    validation.source = load_patch(session::find_patch(choice.patch), problems);
+    apply_overrides(validation.source, choice.overrides, problems);
+    flatten(validation.source, problems);
+    session::throw_problems(problems);
+    if (choice.seed) validation.source.seed = *choice.seed;
+    validation.path = find_saw_path(validation.source, settings.saw, settings.out_port, catalogue());
+    validation.set = std::make_shared<const RecordingSet>(load_recording_set(settings.set));
+    for (const Recording& recording : validation.set->recordings)
+        for (const double level : settings.levels) {
+            ValidationRun& run = validation.runs.emplace_back();
+            run.recording = &recording;
+            run.level_db = level;
+        }
+    return validation;
+}
+
+void validate(Validation& validation, std::size_t index, const ValidateSettings& settings, bool pictures) {
+    ValidationRun& run = validation.runs[index];
+    const Recording& recording = *run.recording;
+    const SteadyPatch steady = steady_patch(
+        validation.source, validation.path,
+        {validation.set->path, recording.rate, recording.load, std::pow(10.0, run.level_db / 20.0)}, catalogue());
+    Problems problems;
+    AssetCache assets;
+    std::optional<Plan> plan = session::plan_of(steady.patch, {}, std::nullopt, &assets, problems);
+    if (!problems.empty()) throw problems.list.front();
+    const session::ScratchFolder folder;
+    EngineOptions options;
+    options.seconds = settling + settings.seconds;
+    options.folder = folder.path();
+    options.hash = false;
+    options.time_nodes = false;
+    Engine engine(std::move(*plan), options);
+    engine.render(1);
+    engine.finish();
+
+    double rate = 0.0;
+    const std::vector<float> output = after(folder.path() / steady.out_file, settling, rate);
+    if (!steady.drive_file.empty()) {
+        double drive_rate = 0.0, square = 0.0, peak = 0.0;
+        const std::vector<float> drive = after(folder.path() / steady.drive_file, settling, drive_rate);
+        for (const float v : drive) {
+            square += static_cast<double>(v) * static_cast<double>(v);
+            peak = std::max(peak, std::abs(static_cast<double>(v)));
+        }
+        run.drive_rms = std::sqrt(square / static_cast<double>(std::max<std::size_t>(1, drive.size())));
+        run.drive_peak = peak;
+    }
+    const std::vector<float> reference = reference_of(recording);
+    ComparedPair& pair = run.pair;
+    pair.reference = recording.file;
+    pair.output = run.name();
+    pair.thresholds = validation.thresholds;
+    if (!recording.full_scale) pair.notes.push_back("the recording is not calibrated: its level says nothing");
+    if (recording.rate_estimated) pair.notes.push_back("the rate of the saw was estimated from the recording");
+    try {
+        compare_takes(pair, Take(std::span<const float>(reference), recording.sample_rate),
+                      Take(std::span<const float>(output), rate), {.touch = settings.touch}, pictures);
+    } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", run.name(), error.message()));
+    }
+    pair.level_gap_db = pair.comparison.gain_db;
+    pair.verdict = judge(pair.comparison, pair.level_gap_db, validation.thresholds);
+}
+
+}  // namespace tactus::study

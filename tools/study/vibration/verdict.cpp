@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/vibration/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::study {
+
+namespace {
+
+std::vector<SpectralLine> stronger_than(const std::vector<SpectralLine>& lines, double least_db) {
+    std::vector<SpectralLine> out;
+    for (const SpectralLine& line : lines)
+        if (level_db(line) >= least_db) out.push_back(line);
+    return out;
+}
+
+}  // namespace
+
+bool Verdict::passed() const { return failed().empty(); }
+
+std::vector<std::string> Verdict::failed() const {
+    std::vector<std::string> names;
+    for (const Judged& score : scores)
+        if (!score.passed) names.push_back(score.name);
+    return names;
+}
+
+Verdict judge(const Comparison& c, double level_gap_db, const Thresholds& limits) {
+    Verdict verdict;
+    const auto add = [&](const char* name, std::optional<double> value, const std::optional<double>& limit,
+                         bool at_least, const char* about) {
+        if (!limit) return;
+        if (!value || !std::isfinite(*value)) {
+            verdict.not_judged.emplace_back(name);
+            return;
+        }
+        verdict.scores.push_back(
+            {name, *value, *limit, at_least, at_least ? *value >= *limit : *value <= *limit, about});
+    };
+    add("lsd_db", c.lsd_db, limits.lsd_db, false, "level differs over 40 to 500 Hz, rms, dB");
+    add("cosine_40_500", c.cosine_500, limits.cosine_40_500, true, "shape of the spectrum, 40 to 500 Hz");
+    add("cosine_40_1000", c.cosine_1000, limits.cosine_40_1000, true, "shape of the spectrum, 40 to 1000 Hz");
+    add("harmonic_error_db", c.harmonic_error_db, limits.harmonic_error_db, false, "worst order of the saw, dB");
+    add("third_octave_max_db", c.third_octave_max_db, limits.third_octave_max_db, false, "worst third-octave band, dB");
+    add("spectrogram_similarity", c.spectrogram_similarity, limits.spectrogram_similarity, true, "course over time");
+    add("st_sim", c.st_sim, limits.st_sim, true, "ST-SIM");
+    add("spqi", c.spqi, limits.spqi, true, "SPQI");
+    add("coherence_mean", c.coherence_mean, limits.coherence_mean, true, "coherence");
+    add("level_gap_db", level_gap_db, limits.level_gap_db, false, "softer than the reference, dB");
+
+    double strongest = -1e9;
+    for (const auto* lines : {&c.lines.in_both, &c.lines.only_in_reference})
+        for (const SpectralLine& line : *lines) strongest = std::max(strongest, level_db(line));
+    // Without a line in the reference, its whole power stands for the strongest.
+    if (strongest < -1e8) strongest = 20.0 * std::log10(std::sqrt(2.0) * c.reference_rms);
+    if (limits.added_line_db) {
+        verdict.added = stronger_than(c.lines.only_in_output, strongest + *limits.added_line_db - c.gain_db);
+        add("only_in_output", static_cast<double>(verdict.added.size()), 0.0, false, "lines that the output adds");
+    }
+    if (limits.missing_line_db) {
+        verdict.missing = stronger_than(c.lines.only_in_reference, strongest + *limits.missing_line_db);
+        add("only_in_reference", static_cast<double>(verdict.missing.size()), 0.0, false,
+            "lines that the output lacks");
+    }
+    return verdict;
+}
+
+std::string name_of_line(double hz, double fundamental_hz) {
+    if (fundamental_hz > 0.0) {
+        const double order = std::round(hz / fundamental_hz);
+        if (order >= 1.0 && std::abs(hz - order * fundamental_hz) < std::max(0.003 * hz, 1.0))
+            return fmt::format("order {:.0f}", order);
+    }
+    for (const double mains : {50.0, 60.0}) {
+        const double multiple = std::round(hz / mains);
+        if (multiple >= 1.0 && multiple <= 10.0 && std::abs(hz - multiple * mains) < 0.5)
+            return multiple == 1.0 ? fmt::format("mains hum, {:g} Hz", mains)
+                                   : fmt::format("mains hum, {:g} × {:g} Hz", multiple, mains);
+    }
+    return "";
+}
+
+}  // namespace tactus::study

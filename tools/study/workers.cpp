@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/workers.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace tactus::study {
+
+RunJobs on_threads(int threads) {
+    if (threads < 1) threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    return [threads](int count, const std::function<void(int)>& job) {
+        std::atomic<int> next{0};
+        std::exception_ptr failure;
+        std::mutex failing;
+        const auto work = [&] {
+            try {
+                for (int n = next++; n < count; n = next++) job(n);
+            } catch (...) {
+                next = count;
+                const std::lock_guard lock(failing);
+                if (!failure) failure = std::current_exception();
+            }
+        };
+        {
+            std::vector<std::jthread> others;
+            for (int n = 1; n < std::min(threads, count); ++n) others.emplace_back(work);
+            work();
+        }
+        if (failure) std::rethrow_exception(failure);
+    };
+}
+
+}  // namespace tactus::study

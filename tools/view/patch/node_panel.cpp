@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/patch/node_panel.hpp"
+
+#include "nodes/catalogue.hpp"
+#include "tools/view/spots.hpp"
+#include "tools/view/theme.hpp"
+
+#include <fmt/format.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::view {
+
+namespace {
+
+using Kind = ParameterField::Kind;
+
+void tip(const std::string& text) {
+    if (text.empty() || !ImGui::IsItemHovered()) return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(26.0f * ImGui::GetFontSize());
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+void dim(const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, tone::dim);
+    ImGui::TextWrapped("%s", text.c_str());
+    ImGui::PopStyleColor();
+}
+
+/// What is as wide as numbers go has no range to speak of.
+std::string range_text(const ParameterField& field) {
+    constexpr double endless = 1e12;
+    if (field.least <= -endless && field.most >= endless) return "any number";
+    return fmt::format("{:.4g} … {:.4g}", field.least, field.most);
+}
+
+std::string explanation(const ParameterField& field) {
+    std::string text = field.about;
+    if (field.kind == Kind::quantity)
+        text += fmt::format("\n{}{}{}, default {}", range_text(field), field.unit.empty() ? "" : " ", field.unit,
+                            field.standard);
+    else if (!field.standard.empty()) text += fmt::format("\ndefault {}", field.standard);
+    if (field.is_driven) text += "\ndriven by a wire";
+    else if (!field.is_live) text += "\nstructural: the node begins anew";
+    return text;
+}
+
+/// Whether a slider of equal steps would leave no room for what is common.
+bool is_logarithmic(const ParameterField& field) {
+    if (field.least > 0.0) return field.most / field.least > 1e3;
+    return field.least == 0.0 && field.normal > 0.0 && field.most / field.normal > 100.0;
+}
+
+/// Where the default lies, under the slider that was drawn last.
+void mark_default(const ParameterField& field) {
+    if (!(field.most > field.least)) return;
+    const auto share = [&](double x) {
+        if (!is_logarithmic(field)) return (x - field.least) / (field.most - field.least);
+        // Beside zero, the slider begins at the last digit that it shows.
+        const double least = field.least > 0.0 ? field.least : 1e-5;
+        return std::log(std::max(x, least) / least) / std::log(field.most / least);
+    };
+    const Point low = point(ImGui::GetItemRectMin()), high = point(ImGui::GetItemRectMax());
+    const double grab = static_cast<double>(ImGui::GetStyle().GrabMinSize);
+    const double x = low.x + 0.5 * grab + std::clamp(share(field.normal), 0.0, 1.0) * (high.x - low.x - grab);
+    ImGui::GetWindowDrawList()->AddLine(vec({x, high.y - 4.0}), vec({x, high.y}), tone::dim, 2.0f);
+}
+
+}  // namespace
+
+void NodePanel::quantity(const ParameterField& field, const std::string& node) {
+    const std::string id = node + "." + field.name;
+    double value = turning_ == id ? turned_to_ : field.value;
+    const bool is_wide = is_logarithmic(field);
+    const std::string format = fmt::format("%.5g {}", field.unit == "%" ? "%%" : field.unit);
+    const std::optional<double> speed = drag_speed(field);
+    const bool moved = speed ? ImGui::DragScalar("##value", ImGuiDataType_Double, &value, static_cast<float>(*speed),
+                                                 &field.least, &field.most, format.c_str())
+                             : ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &field.least, &field.most,
+                                                   format.c_str(), is_wide ? ImGuiSliderFlags_Logarithmic : 0);
+    mark_spot(field.name);
+    if (moved) {
+        turning_ = id;
+        turned_to_ = std::clamp(value, field.least, field.most);
+        if (field.is_live) bench_.turn(node, field.name, quantity_text(turned_to_, field.unit));
+    }
+    const bool ended = ImGui::IsItemDeactivatedAfterEdit();
+    tip(explanation(field) +
+        (speed ? "\ndrag: Shift is faster, Alt finer; Ctrl-click to type" : "\nCtrl-click to type"));
+    if (!speed) mark_default(field);
+    if (ended && turning_ == id) {
+        turning_.clear();
+        bench_.set(node, field.name, quantity_text(turned_to_, field.unit));
+    }
+}
+
+void NodePanel::field(const ParameterField& field, const std::string& node) {
+    ImGui::TableNextColumn();
+    ImGui::AlignTextToFramePadding();
+    if (field.is_set) ImGui::TextUnformatted(field.name.c_str());
+    else ImGui::TextDisabled("%s", field.name.c_str());
+    tip(explanation(field));
+    ImGui::TableNextColumn();
+    ImGui::SetNextItemWidth(-1.0f);
+    ImGui::BeginDisabled(is_read_only || field.is_driven);
+    switch (field.kind) {
+        case Kind::quantity: quantity(field, node); break;
+        case Kind::choice:
+        case Kind::asset:
+            if (ImGui::BeginCombo("##value", field.text.empty() ? "none" : field.text.c_str())) {
+                for (const std::string& option : field.options)
+                    if (ImGui::Selectable(option.c_str(), option == field.text)) bench_.set(node, field.name, option);
+                ImGui::EndCombo();
+            }
+            tip(explanation(field));
+            break;
+        case Kind::flag: {
+            bool on = field.text == "true";
+            const bool turned = ImGui::Checkbox("##value", &on);
+            mark_spot(field.name);
+            if (turned) bench_.set(node, field.name, on ? "true" : "false");
+            tip(explanation(field));
+            break;
+        }
+        case Kind::text:
+        case Kind::vector: {
+            const std::string id = node + "." + field.name;
+            std::string text = turning_ == id ? typed_ : field.text;
+            if (ImGui::InputText("##value", &text)) {
+                turning_ = id;
+                typed_ = text;
+            }
+            mark_spot(field.name);
+            const bool ended = ImGui::IsItemDeactivatedAfterEdit();
+            tip(explanation(field));
+            if (ended && turning_ == id) {
+                turning_.clear();
+                bench_.set(node, field.name, typed_);
+            }
+            break;
+        }
+    }
+    ImGui::EndDisabled();
+    ImGui::TableNextColumn();
+    if (field.kind == Kind::quantity) {
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextDisabled("%s", range_text(field).c_str());
+        tip(explanation(field));
+    }
+    ImGui::TableNextColumn();
+    if (field.is_set && !is_read_only) {
+        const bool pressed = ImGui::SmallButton("↺");
+        mark_spot("reset " + field.name);
+        if (pressed) bench_.reset(node, field.name);
+        tip("back to the default, " + (field.standard.empty() ? "none" : field.standard));
+    }
+}
+
+void NodePanel::draw_parameters(std::string& selected, const Fonts& fonts) {
+    const Plan* plan = bench_.plan();
+    const int index = bench_.picture().find(selected);
+    if (!plan || index < 0) return dim("Click a node of the patch: its parameters stand here.");
+    if (version_ != bench_.plan_version() || shown_ != selected) {
+        fields_ = parameters_of(*plan, index);
+        version_ = bench_.plan_version();
+        if (shown_ != selected) turning_.clear();
+        shown_ = renaming_ = selected;
+    }
+    const PictureNode node = bench_.picture().nodes[static_cast<std::size_t>(index)];
+    const auto type = std::ranges::find(catalogue(), node.type, [](const NodeType* t) { return t->name; });
+    ImGui::PushFont(fonts.bold);
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.55f);
+    ImGui::InputText("##name", &renaming_, is_read_only ? ImGuiInputTextFlags_ReadOnly : 0);
+    const bool renamed = ImGui::IsItemDeactivatedAfterEdit() && renaming_ != selected;
+    mark_spot("name");
+    ImGui::PopFont();
+    ImGui::SameLine();
+    ImGui::TextDisabled("%s, %s", node.type.c_str(),
+                        bench_.picture().lanes[static_cast<std::size_t>(node.group)].name.c_str());
+    if (type != catalogue().end()) dim(std::string((*type)->about));
+    const auto status = bench_.status();
+    const auto time = std::ranges::find(status->nodes, selected, &NodeStatus::name);
+    if (time != status->nodes.end() && time->mean_us > 0.0)
+        dim(fmt::format("{:.2f} µs a call, at most {:.1f} µs, {:.2f} % of its period", time->mean_us, time->max_us,
+                        100.0 * time->share));
+    ImGui::Spacing();
+    if (fields_.empty()) dim("no parameters");
+    if (ImGui::BeginTable("fields", 4, ImGuiTableFlags_SizingStretchProp)) {
+        ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 0.30f);
+        ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 0.48f);
+        ImGui::TableSetupColumn("range", ImGuiTableColumnFlags_WidthStretch, 0.22f);
+        ImGui::TableSetupColumn("reset", ImGuiTableColumnFlags_WidthFixed, 1.6f * ImGui::GetFontSize());
+        const std::string name = selected;
+        const std::vector<ParameterField> fields = fields_;
+        for (const ParameterField& each : fields) {
+            ImGui::PushID(each.name.c_str());
+            ImGui::TableNextRow();
+            field(each, name);
+            ImGui::PopID();
+        }
+        ImGui::EndTable();
+    }
+    ImGui::Spacing();
+    if (!is_read_only && ImGui::Button("Remove the node")) bench_.remove(selected);
+    if (renamed) {
+        if (bench_.rename(selected, renaming_)) selected = renaming_;
+        else renaming_ = selected;
+    }
+}
+
+void NodePanel::draw_draft(const Fonts& fonts, std::string& selected) {
+    Draft& draft = *bench_.draft();
+    ImGui::PushFont(fonts.bold);
+    ImGui::Text("%s", draft.node.type.c_str());
+    ImGui::PopFont();
+    ImGui::SameLine();
+    ImGui::TextDisabled("needs these wires before it can join");
+    ImGui::InputText("name", &draft.node.name);
+    const std::string name = draft.node.name;
+    std::string from, to;
+    for (const PicturePort& input : draft.inputs) {
+        if (input.is_optional) continue;
+        const auto wire = std::ranges::find(draft.node.wires, name + "." + input.name, &WireText::to);
+        const std::string shown = wire == draft.node.wires.end() ? "choose an output" : wire->from;
+        if (!ImGui::BeginCombo(input.name.c_str(), shown.c_str())) continue;
+        for (const PictureNode& node : bench_.picture().nodes)
+            for (const PicturePort& output : node.outputs) {
+                if (input.type && output.type != input.type) continue;
+                const std::string port = node.name + "." + output.name;
+                if (ImGui::Selectable(port.c_str())) from = port, to = input.name;
+            }
+        ImGui::EndCombo();
+    }
+    if (ImGui::Button("Discard")) bench_.draft().reset();
+    else if (!to.empty()) {
+        bench_.connect_draft(from, to);
+        if (!bench_.draft()) selected = name;
+    }
+}
+
+void NodePanel::draw_catalogue(std::string& selected, const Fonts& fonts) {
+    if (is_read_only) return dim("A take is looked at; run the patch to change it.");
+    if (bench_.draft()) return draw_draft(fonts, selected);
+    const auto& lanes = bench_.picture().lanes;
+    group_ = std::clamp(group_, 0, std::max(0, static_cast<int>(lanes.size()) - 1));
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.5f);
+    ImGui::InputTextWithHint("##search", "search by name or purpose", &search);
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-1.0f);
+    if (!lanes.empty() && ImGui::BeginCombo("##group", lanes[static_cast<std::size_t>(group_)].name.c_str())) {
+        for (std::size_t g = 0; g < lanes.size(); ++g)
+            if (ImGui::Selectable(lanes[g].name.c_str(), static_cast<int>(g) == group_)) group_ = static_cast<int>(g);
+        ImGui::EndCombo();
+    }
+    std::string wanted = search;
+    std::ranges::transform(wanted, wanted.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    ImGui::BeginChild("types");
+    std::string chosen;
+    for (const NodeType* type : catalogue()) {
+        std::string all = type->name + " " + std::string(type->about);
+        std::ranges::transform(all, all.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        if (all.find(wanted) == std::string::npos) continue;
+        if (ImGui::Selectable(type->name.c_str())) chosen = type->name;
+        mark_spot("type " + type->name);
+        tip(std::string(type->about));
+        ImGui::SameLine(11.0f * ImGui::GetFontSize());
+        ImGui::TextDisabled("%.*s", static_cast<int>(type->about.size()), type->about.data());
+    }
+    ImGui::EndChild();
+    if (chosen.empty()) return;
+    const std::string name = bench_.free_name(chosen);
+    bench_.begin_draft(chosen, group_);
+    if (!bench_.draft() && bench_.picture().find(name) >= 0) selected = name;
+}
+
+}  // namespace tactus::view

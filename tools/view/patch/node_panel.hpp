@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The chosen node's parameters, and the catalogue of what can be added.
+#pragma once
+
+#include "tools/view/painter.hpp"
+#include "tools/view/patch/parameters.hpp"
+#include "tools/view/workbench.hpp"
+
+#include <string>
+#include <vector>
+
+namespace tactus::view {
+
+class NodePanel {
+public:
+    explicit NodePanel(Workbench& bench) : bench_(bench) {}
+
+    void draw_parameters(std::string& selected, const Fonts& fonts);
+    void draw_catalogue(std::string& selected, const Fonts& fonts);
+
+    bool is_read_only = false;
+    std::string search;      ///< of the catalogue
+    bool wants_catalogue = false;  ///< bring it to the front
+
+private:
+    void field(const ParameterField& field, const std::string& node);
+    void quantity(const ParameterField& field, const std::string& node);
+    void draw_draft(const Fonts& fonts, std::string& selected);
+
+    Workbench& bench_;
+    std::vector<ParameterField> fields_;
+    std::string shown_, typed_, renaming_;
+    std::int64_t version_ = -1;
+    int group_ = 0;
+    std::string turning_;  ///< the slider that is held
+    double turned_to_ = 0.0;
+};
+
+}  // namespace tactus::view

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/scene/calibration_panel.hpp"
+
+#include "tools/view/spots.hpp"
+#include "tools/view/theme.hpp"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <filesystem>
+
+namespace tactus::view {
+
+using study::calibrated_rig;
+using study::calibration_steps;
+using study::check_screens;
+using study::fit_options;
+using study::part_text;
+using study::prompt_of;
+using study::touches_off;
+using study::TouchesOff;
+using study::write_calibrated;
+
+namespace {
+
+void words(ImU32 ink, const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ink);
+    ImGui::TextWrapped("%s", text.c_str());
+    ImGui::PopStyleColor();
+}
+
+void field(const char* label, const char* hint, std::string& text) {
+    ImGui::SetNextItemWidth(17.0f * ImGui::GetFontSize());
+    ImGui::InputTextWithHint(label, hint, &text);
+    mark_spot(label);
+}
+
+bool button(const char* label) {
+    const bool pressed = ImGui::Button(label);
+    mark_spot(label);
+    return pressed;
+}
+
+}  // namespace
+
+void CalibrationPanel::add_traced(std::set<std::string>& ports) const {
+    if (!watch_) return;
+    const std::set<std::string> wanted = watch_->traced();
+    ports.insert(wanted.begin(), wanted.end());
+}
+
+void CalibrationPanel::draw(const Feed* feed) {
+    if (!is_open) return;
+    const float unit = ImGui::GetFontSize();
+    ImGui::SetNextWindowPos(ImVec2(20.0f * unit, 5.0f * unit), ImGuiCond_Appearing);
+    ImGui::SetNextWindowSize(ImVec2(31.0f * unit, 0.0f));
+    if (ImGui::Begin("Calibration", &is_open, ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoCollapse)) {
+        if (lead_) {
+            if (feed) lead_on(*feed);
+            else words(tone::warm, "The run is over; run it again to go on.");
+        } else if (is_unwritten_) write_elsewhere();
+        else if (feed) choose(*feed);
+        else words(tone::dim, "Run a patch with a device in it: its tip touches screens, mirror and known places.");
+        if (!problem_.empty()) words(tone::bad, problem_);
+        if (fit_) show_fit();
+    }
+    ImGui::End();
+    if (is_open) return;
+    lead_.reset();
+    watch_.reset();
+    marks_.reset();
+}
+
+void CalibrationPanel::choose_source(const Feed& feed) {
+    const std::vector<TouchSource> sources = touch_sources(feed);
+    if (source_.pose.empty() && !sources.empty()) source_ = sources.front();
+    const auto list = [&](const char* label, const std::string& chosen, const char* none, const auto& choose_one) {
+        ImGui::SetNextItemWidth(17.0f * ImGui::GetFontSize());
+        if (!ImGui::BeginCombo(label, chosen.empty() ? none : chosen.c_str())) return;
+        if (ImGui::Selectable(none, chosen.empty())) choose_one(TouchSource{});
+        for (const TouchSource& one : sources)
+            if (ImGui::Selectable(one.pose.c_str(), one.pose == chosen)) choose_one(one);
+        ImGui::EndCombo();
+    };
+    list("hand", source_.pose, "none", [&](const TouchSource& one) {
+        source_.pose = one.pose;
+        source_.button = one.button;
+    });
+    list("tracker", source_.tracker, "none: the device is the world",
+         [&](const TouchSource& one) { source_.tracker = one.pose; });
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("a marker that is held to the tip: where the device stands before the viewer");
+}
+
+void CalibrationPanel::choose(const Feed& feed) {
+    words(tone::dim,
+          "Touch what there is with the tip of the device: the screen is then seen where it is felt. Leave empty what "
+          "is known already.");
+    choose_source(feed);
+    field("tip in the handle", "0 mm, 0 mm, 0 mm", choice_.tip);
+    field("known places", "file with x_mm, y_mm, z_mm", places_);
+    ImGui::Checkbox("mirror", &choice_.mirror);
+    mark_spot("mirror");
+    field("screen", "name: its marks are touched", screen_);
+    field("image of screen", "name: touched in the mirror", image_);
+    ImGui::SetNextItemWidth(17.0f * ImGui::GetFontSize());
+    ImGui::SliderInt("marks per side", &choice_.grid, 2, 5);
+    mark_spot("marks per side");
+    ImGui::SetNextItemWidth(17.0f * ImGui::GetFontSize());
+    ImGui::SliderInt("touches of a mirror", &choice_.points, 4, 20);
+    mark_spot("touches of a mirror");
+    const std::string on = marks_on_ < 0    ? "not shown"
+                           : marks_on_ == 0 ? "a window"
+                                            : fmt::format("monitor {}", marks_on_);
+    ImGui::SetNextItemWidth(17.0f * ImGui::GetFontSize());
+    ImGui::SliderInt("marks are on", &marks_on_, -1, 4, on.c_str());
+    choose_file();
+    if (scene_.rig()) words(tone::dim, "What is not touched stays as in the rig that is used now.");
+    const bool has_steps =
+        !places_.empty() || !source_.tracker.empty() || choice_.mirror || !screen_.empty() || !image_.empty();
+    ImGui::BeginDisabled(!has_steps || source_.pose.empty() || file_.empty());
+    if (button("begin")) begin();
+    ImGui::EndDisabled();
+}
+
+void CalibrationPanel::choose_file() {
+    field("file", "rig.toml", file_);
+    std::error_code unknown;
+    if (!file_.empty() && std::filesystem::exists(file_, unknown))
+        words(tone::warm, fmt::format("{} is there already: it will be replaced.", file_));
+}
+
+void CalibrationPanel::begin() {
+    problem_.clear();
+    said_.clear();
+    fit_.reset();
+    try {
+        choice_.places = places_;
+        choice_.tracker = places_.empty() ? source_.tracker : "";
+        choice_.screens.clear();
+        choice_.images.clear();
+        if (!screen_.empty()) choice_.screens.push_back(screen_);
+        if (!image_.empty()) choice_.images.push_back(image_);
+        base_ = scene_.rig().value_or(RigFile{});
+        check_screens(choice_, base_);
+        options_ = fit_options(choice_, base_);
+        TouchSource source = source_;
+        source.tip = parse_vector(choice_.tip, "mm");
+        source.tracker = choice_.tracker;
+        lead_.emplace(calibration_steps(choice_), !choice_.tracker.empty(),
+                      [this](std::span<const RigTouch> done) { fit_ = fit_rig(done, options_); });
+        watch_.emplace(std::move(source));
+        if (marks_on_ >= 0) marks_ = std::make_unique<MarkScreen>(marks_on_);
+    } catch (const Error& error) {
+        problem_ = error.what();
+        lead_.reset();
+        watch_.reset();
+    }
+}
+
+void CalibrationPanel::lead_on(const Feed& feed) {
+    try {
+        while (const auto touched = watch_->next(feed)) {
+            said_ = lead_->take(*touched);
+            if (lead_->is_done()) return finish();
+        }
+        show_mark();
+    } catch (const Error& error) {
+        problem_ = error.what();
+        lead_.reset();
+        watch_.reset();
+        marks_.reset();
+        return;
+    }
+    const RigTouch& step = lead_->steps()[lead_->due()];
+    words(tone::text, fmt::format("{} of {}: {}", lead_->due() + 1, lead_->steps().size(), prompt_of(step)));
+    ImGui::ProgressBar(static_cast<float>(lead_->due()) / static_cast<float>(lead_->steps().size()),
+                       ImVec2(-1.0f, 0.4f * ImGui::GetFontSize()), "");
+    if (!said_.empty()) words(tone::bad, said_);
+    if (watch_->is_reading()) words(tone::good, "hold still");
+    else
+        words(tone::dim, fmt::format("Hold the tip there and press {}.",
+                                     source_.button.empty() ? "Enter" : "the button of the device, or Enter"));
+    if (button("touch") ||
+        (!ImGui::GetIO().WantTextInput && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false)))
+        watch_->ask();
+    ImGui::SameLine();
+    if (!button("stop")) return;
+    lead_.reset();
+    watch_.reset();
+    marks_.reset();
+}
+
+void CalibrationPanel::finish() {
+    const std::vector<RigTouch> touches = lead_->steps();
+    lead_.reset();
+    watch_.reset();
+    marks_.reset();
+    fit_ = fit_rig(touches, options_);
+    write();
+}
+
+void CalibrationPanel::write() {
+    problem_.clear();
+    is_unwritten_ = true;
+    try {
+        write_calibrated(file_, calibrated_rig(base_, *fit_), *fit_);
+        scene_.use_rig(file_);
+    } catch (const Error& error) {
+        problem_ = error.what();
+        return;
+    }
+    is_unwritten_ = false;
+    const TouchesOff off = touches_off(*fit_);
+    bench_.tell(fmt::format("{} is written and used: {} touches, {:.2f} mm rms, {:.2f} mm worst", file_, off.count,
+                            off.rms * 1e3, off.worst * 1e3));
+}
+
+/// The touches are worth more than the name of a file.
+void CalibrationPanel::write_elsewhere() {
+    words(tone::text, "All is touched, but the rig is not written yet: choose another file.");
+    choose_file();
+    ImGui::BeginDisabled(file_.empty());
+    if (button("write")) write();
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    if (button("discard")) {
+        is_unwritten_ = false;
+        problem_.clear();
+        fit_.reset();
+    }
+}
+
+void CalibrationPanel::show_mark() {
+    if (!marks_) return;
+    if (marks_->wants_to_close()) marks_.reset();
+    else marks_->show(lead_->steps()[lead_->due()]);
+}
+
+/// Of the parts that are complete.
+void CalibrationPanel::show_fit() const {
+    ImGui::Separator();
+    for (const TouchedPart& part : fit_->parts) words(tone::text, part_text(part));
+    const TouchesOff off = touches_off(*fit_);
+    words(tone::dim, fmt::format("all {} touches: {:.2f} mm rms; touch {} is farthest off, {:.2f} mm", off.count,
+                                 off.rms * 1e3, off.worst_touch + 1, off.worst * 1e3));
+}
+
+}  // namespace tactus::view

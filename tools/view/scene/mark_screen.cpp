@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/scene/mark_screen.hpp"
+
+#include "tools/picture/scene/mark_window.hpp"
+
+#include <algorithm>
+
+namespace tactus::view {
+
+using picture::draw_mark;
+
+void MarkScreen::show(const RigTouch& touch) {
+    // The window knows its size once it showed something.
+    const int width = std::max(window_.width(), 64), height = std::max(window_.height(), 64);
+    target_.begin(width, height, 1);
+    draw_mark(touch, width, height);
+    target_.end();
+    window_.show(target_.texture(), 0, width, height, false);
+}
+
+}  // namespace tactus::view

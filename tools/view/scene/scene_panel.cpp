@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/scene/scene_panel.hpp"
+
+#include "dsp/core/error.hpp"
+#include "tools/view/theme.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace tactus::view {
+
+using picture::outline_of;
+using picture::parse_offset;
+using picture::parse_stereo;
+using picture::SceneOutline;
+
+namespace {
+
+// A picture of the scene costs far more than one of the panels: so many a second are enough while nobody moves it, and
+// fewer where it takes more than a third of the time. A head that moves wants all there are.
+constexpr double picture_every_s = 1.0 / 30.0, most_wait_s = 1.0;
+// Where the processor draws them, what moves is drawn coarser from here on; and a picture of very many small ones is
+// smooth enough with one sample per pixel.
+constexpr std::size_t many_triangles = 60'000, very_many_triangles = 300'000;
+
+}  // namespace
+
+void ScenePanel::attempt(const std::function<void()>& what) {
+    try {
+        what();
+    } catch (const Error& error) {
+        bench_.tell(error.what(), true);
+    }
+}
+
+void ScenePanel::look_from(NamedView view) {
+    camera.look_from(view);
+    is_aimed_ = false;
+}
+
+void ScenePanel::reset() {
+    look_from(NamedView::iso);
+    clip(-1, 0.5);
+    is_measuring = false;
+    marks_.clear();
+}
+
+void ScenePanel::clip(int axis, double share) {
+    clip_axis_ = axis;
+    clip_share_ = share;
+    needs_picture_ = true;
+}
+
+void ScenePanel::use(const SightChoice& choice) {
+    Sight sight(choice);
+    if (model_) sight.follow(model_->outline());
+    sight_ = std::move(sight);
+    rig_file_ = choice.rig.string();
+    if (!choice.offset.empty()) offset_ = choice.offset;
+    windows_ = Windows::where_rig_says;
+    needs_picture_ = true;
+}
+
+void ScenePanel::use_stereo(const std::string& mode) {
+    const bool is_number = mode.size() == 1 && mode[0] >= '0' && mode[0] <= '3';
+    sight_.stereo = is_number ? static_cast<StereoMode>(mode[0] - '0') : parse_stereo(mode);
+    // Which windows have a buffer for each eye is decided when they are opened.
+    if (screens_.are_open() || sight_.stereo == StereoMode::quad_buffer)
+        windows_ = screens_.are_open() ? Windows::all : Windows::where_rig_says;
+    needs_picture_ = true;
+}
+
+void ScenePanel::use_head(const std::string& port) {
+    sight_.head = port;
+    needs_picture_ = true;
+}
+
+void ScenePanel::use_rig(const std::string& file) {
+    sight_.use_rig(file);
+    if (model_) sight_.follow(model_->outline());
+    rig_file_ = file;
+    offset_ = "as the rig says";
+    windows_ = file.empty() ? Windows::none : Windows::where_rig_says;
+    needs_picture_ = true;
+}
+
+void ScenePanel::use_offset(const std::string& offset) {
+    sight_.set_offset(parse_offset(offset));
+    offset_ = offset;
+    needs_picture_ = true;
+}
+
+void ScenePanel::show_screens(bool wanted) { windows_ = wanted ? Windows::all : Windows::none; }
+
+/// Opens and closes windows between two pictures of the scene.
+void ScenePanel::tend_screens() {
+    screens_.tend();
+    const Windows wanted = std::exchange(windows_, Windows::as_they_are);
+    if (wanted == Windows::as_they_are) return;
+    needs_picture_ = true;
+    motion_.forget();
+    note_.clear();
+    screens_.close();
+    if (wanted == Windows::none) return;
+    try {
+        screens_.open(sight_, wanted == Windows::all);
+    } catch (const Error& error) {
+        bench_.tell(note_ = error.what(), true);
+        if (sight_.stereo == StereoMode::quad_buffer) sight_.stereo = StereoMode::side_by_side;
+    }
+}
+
+void ScenePanel::steer(int width, int height) {
+    if (!ImGui::IsItemHovered() && !ImGui::IsItemActive()) return;
+    const ImGuiIO& io = ImGui::GetIO();
+    const Point by = point(io.MouseDelta);
+    const OrbitCamera before = camera;
+    if (ImGui::IsMouseDragging(ImGuiMouseButton_Left, 2.0f) && !io.KeyShift)
+        camera.orbit(-by.x * 2.0 * std::numbers::pi / width, by.y * std::numbers::pi / height);
+    else if (ImGui::IsMouseDragging(ImGuiMouseButton_Right, 2.0f) ||
+             ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 2.0f) ||
+             ImGui::IsMouseDragging(ImGuiMouseButton_Left, 2.0f))
+        camera.pan(by.x / height, -by.y / height);
+    if (io.MouseWheel != 0.0f) camera.zoom(std::pow(1.15, static_cast<double>(io.MouseWheel)));
+    if (!io.WantTextInput)
+        for (int key = 1; key <= 7; ++key)
+            if (ImGui::IsKeyPressed('0' + key, false)) look_from(*view_of_number(key));
+    if (!io.WantTextInput && ImGui::IsKeyPressed('F', false)) fit();
+    if (!io.WantTextInput && ImGui::IsKeyPressed('R', false)) reset();
+    needs_picture_ = needs_picture_ || before.eye() != camera.eye() || before.target != camera.target;
+}
+
+void ScenePanel::render(int width, int height) {
+    const double now = ImGui::GetTime();
+    const bool same_size = width == width_ && height == height_;
+    if (std::exchange(was_drawn_, false)) cost_s_ = static_cast<double>(ImGui::GetIO().DeltaTime);
+    const double every = std::clamp((sight_.is_off_axis() ? 1.0 : 3.0) * cost_s_,
+                                    sight_.is_off_axis() ? 0.0 : picture_every_s, most_wait_s);
+    if (!needs_picture_ && is_aimed_ && same_size && now - looked_at_ < every) return;
+    looked_at_ = now;
+    needs_picture_ = false;
+    width_ = width;
+    height_ = height;
+    Picture& picture = model_->update();
+    sight_.update(*observer_);
+    screens_.lay_out(sight_, width, height);
+    const double aspect =
+        static_cast<double>(width) / height * (sight_.mode_of(0) == StereoMode::side_by_side ? 0.5 : 1.0);
+    if (!is_aimed_ && !model_->bounds().empty()) {
+        camera.fit(model_->bounds(), aspect);
+        is_aimed_ = true;
+    }
+    picture.clip.reset();
+    if (clip_axis_ >= 0 && !model_->bounds().empty()) {
+        const Bounds& box = model_->bounds();
+        Vec3 normal(0.0);
+        normal[clip_axis_] = 1.0;
+        picture.clip = Plane{box.low + clip_share_ * (box.high - box.low), normal};
+    }
+    const auto views = screens_.aim(sight_, camera, picture.bounds);
+    const bool has_coarse = renderer_->is_software() && model_->triangles() > many_triangles;
+    // In the panel it lies on top of the picture, in windows of their own it is a part of it.
+    const Legend drawn_legend = screens_.are_open() ? legend() : Legend{};
+    const auto next = motion_.next(looks_of(picture, renderer_->meshes().changes(), views, drawn_legend), has_coarse,
+                                   ImGui::IsItemActive(), now);
+    if (next == SceneMotion::Next::nothing) return screens_.show();
+    picture.grain = next == SceneMotion::Next::coarse ? grain_of_motion : 0.0;
+    // One fine picture of what stands still does not make those of what moves rarer.
+    was_drawn_ = next == SceneMotion::Next::coarse || !has_coarse;
+    screens_.samples = renderer_->is_software() && model_->triangles() > very_many_triangles ? 1 : 4;
+    screens_.draw(*renderer_, picture, sight_, drawn_legend);
+    screens_.show();
+}
+
+/// Head and device of the sight; what the scene is made of, the model watches itself.
+void ScenePanel::watch_sight() {
+    const std::vector<std::string> wanted = sight_.ports();
+    if (wanted == watched_) return;
+    for (const std::string& port : watched_) observer_->watch(port, Watch::nothing, this);
+    for (const std::string& port : wanted) observer_->watch(port, Watch::latest, this);
+    watched_ = wanted;
+}
+
+bool ScenePanel::is_empty() {
+    if (bench_.plan() && judged_version_ != bench_.plan_version()) {
+        is_empty_ = outline_of(*bench_.plan()).empty();
+        judged_version_ = bench_.plan_version();
+    }
+    return is_empty_;
+}
+
+void ScenePanel::rest() {
+    if (!observer_) return;
+    if (screens_.are_open()) windows_ = Windows::all;
+    screens_.close();
+    for (const std::string& port : watched_) observer_->watch(port, Watch::nothing, this);
+    watched_.clear();
+    model_.reset();
+    observer_.reset();
+    motion_.forget();
+    plan_version_ = -1;
+}
+
+void ScenePanel::draw(const std::shared_ptr<Observer>& observer, const Fonts& fonts) {
+    if (!observer || !bench_.plan()) return ImGui::TextDisabled("no run");
+    try {
+        if (!renderer_) renderer_ = std::make_unique<SceneRenderer>();
+        if (observer != observer_) {
+            model_.reset();
+            observer_ = observer;
+            watched_.clear();
+            motion_.forget();
+            plan_version_ = -1;
+        }
+        if (plan_version_ != bench_.plan_version()) {
+            SceneOutline outline = outline_of(*bench_.plan());
+            if (!model_) model_ = std::make_unique<SceneModel>(std::move(outline), *observer_, *renderer_);
+            else model_->follow(std::move(outline));
+            sight_.follow(model_->outline());
+            plan_version_ = bench_.plan_version();
+            is_aimed_ = false;
+        }
+        watch_sight();
+        tools();
+        const Point corner = point(ImGui::GetCursorScreenPos()), size = point(ImGui::GetContentRegionAvail());
+        // Where the screen counts several pixels as one, the picture still has them all.
+        const double dense = std::max(1.0, static_cast<double>(ImGui::GetIO().DisplayFramebufferScale.x));
+        const int width = static_cast<int>(size.x * dense), height = static_cast<int>(size.y * dense);
+        if (width < 8 || height < 8) return;
+        ImGui::InvisibleButton(
+            "space", vec(size),
+            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
+        steer(static_cast<int>(size.x), static_cast<int>(size.y));
+        tend_screens();
+        render(width, height);
+        if (is_measuring && ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
+            ImGui::GetIO().MouseDragMaxDistanceSqr[0] < 9.0f)
+            measure((point(ImGui::GetIO().MousePos) - corner) * dense);
+        const Painter paint(ImGui::GetWindowDrawList(), fonts);
+        if (sight_.rig()) paint.box({corner.x, corner.y, corner.x + size.x, corner.y + size.y}, colour(0x0b0e13), 6.0);
+        for (std::size_t i = 0; i < screens_.tiles().size(); ++i) {
+            const SceneScreens::Tile& tile = screens_.tiles()[i];
+            const Point at = corner + Point{tile.x / dense, tile.y / dense};
+            const Point far = at + Point{tile.width / dense, tile.height / dense};
+            paint.list()->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(tile.texture)),
+                                          vec(at), vec(far), ImVec2(0, 1), ImVec2(1, 0), 0xFFFFFFFF,
+                                          static_cast<float>(6.0 * fonts.scale));
+            if (sight_.rig())
+                paint.text(at + Point{8.0, 6.0}, 11.0 * fonts.scale, colour(0x1e293b), sight_.rig()->screens[i].name);
+        }
+        draw_marks(paint, corner, 1.0 / dense);
+        if (!screens_.are_open()) draw_legend(paint, corner, static_cast<int>(size.y), fonts.scale);
+    } catch (const Error& error) {
+        if (problem_ != error.what()) bench_.tell(problem_ = error.what(), true);
+        ImGui::TextWrapped("%s", problem_.c_str());
+    }
+}
+
+}  // namespace tactus::view

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// What lies on top of the scene's picture: measured points, and what the colours mean.
+#include "dsp/view/ruler.hpp"
+#include "tools/view/scene/scene_panel.hpp"
+#include "tools/view/theme.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <numbers>
+
+namespace tactus::view {
+
+namespace {
+
+ImU32 packed(const Vec3& rgb) {
+    const auto part = [](double x) { return static_cast<std::uint32_t>(std::clamp(x, 0.0, 1.0) * 255.0 + 0.5); };
+    return colour(part(rgb.x) << 16 | part(rgb.y) << 8 | part(rgb.z));
+}
+
+}  // namespace
+
+void ScenePanel::measure(Point pixel) {
+    for (const SceneScreens::Tile& tile : screens_.tiles()) {
+        if (tile.views.empty() || tile.width < 1 || tile.height < 1) continue;
+        const double x = (pixel.x - tile.x) * tile.picture_width / tile.width;
+        const double y = (tile.height - 1 - (pixel.y - tile.y)) * tile.picture_height / tile.height;
+        const auto view = std::ranges::find_if(tile.views, [&](const DrawnView& v) {
+            return x >= v.x && x < v.x + v.width && y >= v.y && y < v.y + v.height;
+        });
+        if (view == tile.views.end()) continue;
+        if (marks_.size() == 3) marks_.clear();
+        if (const auto picked = renderer_->pick(model_->update(), *view, x, y)) marks_.push_back(picked->position);
+        needs_picture_ = true;
+        return;
+    }
+}
+
+void ScenePanel::draw_marks(const Painter& paint, Point corner, double pixel) {
+    if (marks_.empty()) return;
+    std::string text;
+    if (marks_.size() >= 2) text = fmt::format("{:.2f} mm", 1e3 * path_length(std::span(marks_).first(2)));
+    if (marks_.size() == 3) {
+        text += fmt::format(", {:.2f} mm", 1e3 * path_length(std::span(marks_).last(2)));
+        if (const auto angle = angle_at(marks_[1], marks_[0], marks_[2]))
+            text += fmt::format(", {:.1f}°", *angle * 180.0 / std::numbers::pi);
+    }
+    const double size = static_cast<double>(ImGui::GetFontSize());
+    for (const SceneScreens::Tile& tile : screens_.tiles())
+        for (const DrawnView& view : tile.views) {
+            // Every eye sees them where they are.
+            const double across = pixel * tile.width / std::max(tile.picture_width, 1),
+                         down = pixel * tile.height / std::max(tile.picture_height, 1);
+            std::vector<Point> seen;
+            for (const Vec3& mark : marks_)
+                if (const auto at = view.projection.seen(mark))
+                    seen.push_back(corner + Point{pixel * tile.x + across * (view.x + 0.5 * (at->x + 1.0) * view.width),
+                                                  pixel * tile.y + down * 0.5 * (1.0 - at->y) * view.height});
+            if (seen.size() != marks_.size()) continue;
+            for (std::size_t i = 0; i < seen.size(); ++i) {
+                if (i > 0) paint.line(seen[i - 1], seen[i], tone::chosen, 2.0);
+                paint.dot(seen[i], 4.0, tone::chosen);
+            }
+            if (text.empty()) continue;
+            const double wide = paint.width_of(text, size);
+            const Point at = seen.back() + Point{10.0, -0.5 * size};
+            paint.box({at.x - 4, at.y - 2, at.x + wide + 4, at.y + size + 4}, colour(0x12161d, 220), 4.0);
+            paint.text(at, size, tone::chosen, text);
+        }
+}
+
+Legend ScenePanel::legend() const {
+    Legend legend = model_->legend();
+    legend.warnings.insert(legend.warnings.end(), sight_.warnings().begin(), sight_.warnings().end());
+    if (!note_.empty()) legend.warnings.push_back(note_);
+    return legend;
+}
+
+void ScenePanel::draw_legend(const Painter& paint, Point corner, int height, double scale) {
+    const Legend legend = this->legend();
+    if (legend.empty()) return;
+    const double line = 15.0 * scale, size = 11.0 * scale;
+    const std::size_t lines = legend.entries.size() + legend.scales.size() + legend.warnings.size();
+    if (lines == 0) return;
+    double wide = 60.0 * scale;
+    for (const auto& entry : legend.entries) wide = std::max(wide, paint.width_of(entry.text, size) + 26.0 * scale);
+    for (const auto& s : legend.scales)
+        wide = std::max(wide, paint.width_of(s.title + s.low_text + s.high_text, size) + 92.0 * scale);
+    for (const auto& text : legend.warnings) wide = std::max(wide, paint.width_of(text, size) + 12.0 * scale);
+    Point at{corner.x + 8.0 * scale,
+             corner.y + height - 8.0 * scale - (static_cast<double>(lines) * line + 6.0 * scale)};
+    paint.box({at.x, at.y, at.x + wide, corner.y + height - 8.0 * scale}, colour(0xffffff, 215), 5.0 * scale);
+    at = at + Point{6.0 * scale, 4.0 * scale};
+    const ImU32 ink = colour(0x1e293b);
+    for (const auto& s : legend.scales) {
+        double x = at.x;
+        paint.text({x, at.y}, size, ink, s.title);
+        x += paint.width_of(s.title, size) + 8.0 * scale;
+        paint.text({x, at.y}, size, ink, s.low_text);
+        x += paint.width_of(s.low_text, size) + 5.0 * scale;
+        paint.list()->AddRectFilledMultiColor(vec({x, at.y + 2.0 * scale}),
+                                              vec({x + 50.0 * scale, at.y + 11.0 * scale}), packed(s.low),
+                                              packed(s.high), packed(s.high), packed(s.low));
+        paint.text({x + 55.0 * scale, at.y}, size, ink, s.high_text);
+        at.y += line;
+    }
+    for (const auto& entry : legend.entries) {
+        paint.box({at.x, at.y + 2.0 * scale, at.x + 12.0 * scale, at.y + 12.0 * scale}, packed(entry.colour),
+                  2.0 * scale);
+        paint.text({at.x + 18.0 * scale, at.y}, size, ink, entry.text);
+        at.y += line;
+    }
+    for (const auto& text : legend.warnings) {
+        paint.text(at, size, colour(0xb91c1c), text);
+        at.y += line;
+    }
+}
+
+}  // namespace tactus::view

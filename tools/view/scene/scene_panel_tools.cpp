@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// The buttons above the scene's picture.
+#include "tools/view/scene/scene_panel.hpp"
+#include "tools/view/spots.hpp"
+
+#include <cstdio>
+
+namespace tactus::view {
+
+/// In the row where it fits, or else in the next one.
+static bool next_button(const char* label) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float end =
+        ImGui::GetItemRectMax().x + style.ItemSpacing.x + ImGui::CalcTextSize(label).x + 2.0f * style.FramePadding.x;
+    if (end < ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
+    return ImGui::SmallButton(label);
+}
+
+void ScenePanel::tools() {
+    for (std::size_t i = 0; i < view_names.size(); ++i) {
+        const std::string name(view_names[i]);
+        if (i == 0 ? ImGui::SmallButton(name.c_str()) : next_button(name.c_str())) look_from(static_cast<NamedView>(i));
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("key %d", static_cast<int>(i) + 1);
+    }
+    if (next_button("fit")) fit();
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("key F");
+    if (next_button("reset")) reset();
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("key R: from iso, all of it, nothing cut away");
+    if (next_button(is_measuring ? "measuring" : "measure")) {
+        is_measuring = !is_measuring;
+        marks_.clear();
+        needs_picture_ = true;
+    }
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("two clicks: distance; three: angle at the second");
+    sight_tools();
+    ImGui::SameLine();
+    const float unit = ImGui::GetFontSize();
+    static const char* const axes[] = {"no clip", "clip x", "clip y", "clip z"};
+    int axis = clip_axis_ + 1;
+    ImGui::SetNextItemWidth(6.0f * unit);
+    if (ImGui::Combo("##axis", &axis, axes, 4)) clip(axis - 1, clip_share_);
+    if (clip_axis_ < 0) return;
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-1.0f);
+    auto share = static_cast<float>(clip_share_);
+    if (ImGui::SliderFloat("##clip", &share, 0.0f, 1.0f, "%.2f")) clip(clip_axis_, static_cast<double>(share));
+}
+
+/// Stereo, head, rig, offset, windows.
+void ScenePanel::sight_tools() {
+    const float unit = ImGui::GetFontSize();
+    const auto chosen = static_cast<std::size_t>(sight_.stereo);
+    ImGui::SetNextItemWidth(7.5f * unit);
+    if (ImGui::BeginCombo("##stereo", std::string(stereo_names[chosen]).c_str())) {
+        for (std::size_t i = 0; i < stereo_names.size(); ++i)
+            if (ImGui::Selectable(std::string(stereo_names[i]).c_str(), i == chosen))
+                use_stereo(std::string(stereo_names[i]));
+        ImGui::EndCombo();
+    }
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(7.5f * unit);
+    if (ImGui::BeginCombo("##head", sight_.head.empty() ? "no head" : sight_.head.c_str())) {
+        if (ImGui::Selectable("no head", sight_.head.empty())) use_head("");
+        if (observer_)
+            for (const Observer::Port& port : observer_->ports())
+                if (port.type == &value::pose && ImGui::Selectable(port.name.c_str(), port.name == sight_.head))
+                    use_head(port.name);
+        ImGui::EndCombo();
+    }
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("the pose that is the viewer's head: the picture follows it");
+    ImGui::SameLine();
+    if (ImGui::SmallButton("screens...")) ImGui::OpenPopup("screens");
+    mark_spot("screens...");
+    if (!ImGui::BeginPopup("screens")) return;
+    static char file[512] = "";
+    if (ImGui::IsWindowAppearing()) std::snprintf(file, sizeof file, "%s", rig_file_.c_str());
+    ImGui::SetNextItemWidth(24.0f * unit);
+    ImGui::InputTextWithHint("rig", "file of 'tactus calibrate'", file, sizeof file);
+    if (ImGui::Button("use")) attempt([&] { use_rig(file); });
+    ImGui::SameLine();
+    if (ImGui::Button("none")) use_rig("");
+    ImGui::SameLine();
+    if (ImGui::Button("calibrate...")) {
+        wants_calibration = true;
+        ImGui::CloseCurrentPopup();
+    }
+    mark_spot("calibrate...");
+    if (sight_.rig()) {
+        ImGui::SetNextItemWidth(12.0f * unit);
+        if (ImGui::BeginCombo("seen against felt", offset_.c_str())) {
+            for (const char* name : {"none", "study"})
+                if (ImGui::Selectable(name, offset_ == name)) use_offset(name);
+            ImGui::EndCombo();
+        }
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("study: 0.3 m to the right");
+    }
+    bool open = screens_.are_open();
+    if (ImGui::Checkbox("windows of their own", &open)) show_screens(open);
+    ImGui::EndPopup();
+}
+
+}  // namespace tactus::view

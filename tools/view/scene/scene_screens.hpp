@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pictures of a scene, one for each screen of a rig, in tiles of a panel and in windows of their own.
+#pragma once
+
+#include "devices/display/legend.hpp"
+#include "devices/display/scene_renderer.hpp"
+#include "tools/picture/scene/sight.hpp"
+#include "tools/view/scene/screen_window.hpp"
+#include "tools/view/scene/texture_target.hpp"
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace tactus::view {
+
+using picture::Sight;
+
+class SceneScreens {
+public:
+    /// Where the picture of a screen lies in the panel, pixels from its upper left.
+    struct Tile {
+        int x = 0, y = 0, width = 0, height = 0;
+        std::uint32_t texture = 0;
+        std::vector<DrawnView> views;  ///< in pixels of the picture
+        int picture_width = 0, picture_height = 0;
+    };
+
+    /// Lays the screens out in a panel of so many pixels: each as large as it can be in its own shape.
+    void lay_out(const Sight& sight, int width, int height);
+    const std::vector<Tile>& tiles() const { return tiles_; }
+
+    /// A window of its own for every screen that names a place, or for all. Throws Error; none is open then.
+    void open(const Sight& sight, bool all);
+    void close() { windows_.clear(); }
+    bool are_open() const { return !windows_.empty(); }
+    /// Closes those whose close button was pressed.
+    void tend();
+
+    /// Where each is seen from. Returns all views, of all screens.
+    std::vector<DrawnView> aim(Sight& sight, const OrbitCamera& camera, const Bounds& scene);
+    /// Per pixel. Many small triangles are costly to sample more than once where there is no graphics card.
+    int samples = 4;
+    /// Draws the scene as it was aimed at, for all screens.
+    void draw(SceneRenderer& renderer, const Picture& picture, const Sight& sight, const Legend& legend);
+    /// What was drawn last, in their windows: what uncovers or resizes one of those has wiped it.
+    void show();
+
+private:
+    struct Target {
+        TextureTarget left, right;
+        bool has_two = false;
+    };
+    struct Opened {
+        std::size_t screen = 0;
+        std::unique_ptr<ScreenWindow> window;
+    };
+
+    ScreenWindow* window_of(std::size_t screen) const;
+    void draw_legend(std::size_t screen, TextureTarget& target, const Sight& sight, const Legend& legend,
+                     std::span<const DrawnView> views);
+
+    std::vector<Tile> tiles_;
+    std::vector<std::unique_ptr<Target>> targets_;
+    std::vector<Opened> windows_;
+    std::string legend_text_;
+    Image legend_image_;
+    double legend_scale_ = 0.0;
+};
+
+}  // namespace tactus::view

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/signal/plot.hpp"
+
+#include "assets/file/whole_file.hpp"
+#include "assets/recording/record_reader.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/view/theme.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::view {
+
+namespace {
+
+constexpr double lowest_db = -240.0;
+
+double db(double power) { return power > 0.0 ? std::max(10.0 * std::log10(power), lowest_db) : lowest_db; }
+
+/// First index at or after a time.
+std::size_t index_at(const Trace& trace, double time) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(trace.times, time) - trace.times.begin());
+}
+
+Curve curve_of(const Spectrum& spectrum, const std::string& name, std::uint32_t ink, Range hz, double shift_db) {
+    Curve curve{name, ink, {}, false};
+    // Where bins lie closer than a pixel, the largest of each of 600 equal steps of frequency.
+    constexpr double steps = 600.0;
+    double last = -1.0;
+    for (std::size_t k = 1; k < spectrum.power.size(); ++k) {
+        const double f = spectrum.frequency(k);
+        if (f < hz.low || f > hz.high) continue;
+        const double step = std::floor(steps * std::log(f / hz.low) / std::log(hz.high / hz.low));
+        const double level = db(spectrum.power[k]) + shift_db;
+        if (step == last) curve.points.back().y = std::max(curve.points.back().y, level);
+        else curve.points.push_back({f, level});
+        last = step;
+    }
+    return curve;
+}
+
+double power_between(const Spectrum& spectrum, Range hz) {
+    double sum = 0.0;
+    for (std::size_t k = 1; k < spectrum.power.size(); ++k)
+        if (spectrum.frequency(k) >= hz.low && spectrum.frequency(k) <= hz.high) sum += spectrum.power[k] * spectrum.df;
+    return sum;
+}
+
+Colour figure_colour(std::uint32_t ink) {
+    // The window's colours are made for a dark ground.
+    const auto part = [&](int shift) { return static_cast<std::uint8_t>((ink >> shift & 0xFF) * 7 / 10); };
+    return {part(0), part(8), part(16), 1.0};
+}
+
+}  // namespace
+
+double Plot::across(double value) const {
+    if (is_logarithmic) return std::log(std::max(value, 1e-12) / x.low) / std::log(x.high / x.low);
+    return (value - x.low) / x.span();
+}
+
+double Plot::up(double value) const { return (value - y.low) / y.span(); }
+
+double Plot::value_at(double share) const {
+    return is_logarithmic ? x.low * std::pow(x.high / x.low, share) : x.low + share * x.span();
+}
+
+Display display_of(const ValueType& type, const std::string& unit) {
+    if (&type == &value::pose) return {1e3, "mm", 3};
+    if (&type == &value::twist) return {1e3, "mm/s", 3};
+    if (&type == &value::wrench) return {1.0, "N", 3};
+    return {1.0, unit, 1};
+}
+
+Plot time_plot(const Trace& trace, const Display& display, double now, double span, int pixels) {
+    Plot plot;
+    plot.x = {now - span, now};
+    plot.x_unit = "s";
+    plot.y_unit = display.unit;
+    Range values{1e300, -1e300};
+    const std::size_t shown = std::min(display.columns, trace.columns.size());
+    const std::size_t first = index_at(trace, plot.x.low), count = trace.times.size() - first;
+    for (std::size_t c = 0; c < shown; ++c) {
+        Curve curve{c < trace.names.size() ? trace.names[c] : "", tone::curves[c % std::size(tone::curves)], {}, false};
+        const auto add = [&](double time, double value) {
+            curve.points.push_back({time, value});
+            values = {std::min(values.low, value), std::max(values.high, value)};
+        };
+        if (count <= 2 * static_cast<std::size_t>(std::max(pixels, 1))) {
+            for (std::size_t i = first; i < trace.times.size(); ++i)
+                add(trace.times[i], trace.columns[c][i] * display.factor);
+        } else {
+            const Envelope envelope = envelope_of(trace.times, trace.columns[c], plot.x, pixels);
+            for (int k = 0; k < pixels; ++k) {
+                const auto at = static_cast<std::size_t>(k);
+                if (std::isnan(envelope.low[at])) continue;
+                const double time = plot.x.low + (k + 0.5) / pixels * span;
+                add(time, envelope.low[at] * display.factor);
+                add(time, envelope.high[at] * display.factor);
+            }
+        }
+        plot.curves.push_back(std::move(curve));
+    }
+    plot.y = fitted({0.0, 0.0}, values.high >= values.low ? values : Range{-1.0, 1.0});
+    return plot;
+}
+
+Plot spectrum_plot(const Trace& trace, const Display& display, double rate, double now, double span,
+                   const Spectrum& reference) {
+    Plot plot;
+    plot.is_logarithmic = true;
+    plot.x = {std::max(10.0, 2.0 / span), 0.5 * rate};
+    if (plot.x.high <= 2.0 * plot.x.low) plot.x = {0.05 * rate, 0.5 * rate};
+    plot.x_unit = "Hz";
+    plot.y_unit = display.unit.empty() ? "dB/Hz" : fmt::format("dB re ({})²/Hz", display.unit);
+    const std::size_t first = index_at(trace, now - span);
+    Spectrum spectrum;
+    if (!trace.columns.empty() && trace.times.size() > first + 64) {
+        std::vector<double> record(trace.columns[0].begin() + static_cast<std::ptrdiff_t>(first),
+                                   trace.columns[0].end());
+        for (double& x : record) x *= display.factor;
+        WelchSettings settings;
+        settings.rate = rate;
+        settings.segment = suggested_segment(rate, record.size());
+        settings.overlap = settings.segment / 2;
+        spectrum = welch<double>(record, settings);
+    }
+    if (!reference.power.empty()) {
+        const Range both{plot.x.low, std::min(plot.x.high, reference.frequency(reference.power.size() - 1))};
+        const double mine = power_between(spectrum, both), its = power_between(reference, both);
+        const double shift = mine > 0.0 && its > 0.0 ? 10.0 * std::log10(mine / its) : 0.0;
+        plot.curves.push_back(curve_of(reference, "reference, at the same power", colour(0x64748b), plot.x, shift));
+        plot.curves.back().is_reference = true;
+    }
+    plot.curves.push_back(curve_of(spectrum, trace.names.empty() ? "" : trace.names[0], tone::curves[0], plot.x, 0.0));
+    double largest = lowest_db;
+    for (const Curve& curve : plot.curves)
+        for (const Point& p : curve.points) largest = std::max(largest, p.y);
+    if (largest <= lowest_db) largest = 0.0;
+    const double top = 10.0 * std::ceil((largest + 3.0) / 10.0);
+    plot.y = {top - 90.0, top};
+    return plot;
+}
+
+Spectrum spectrum_of_file(const std::filesystem::path& path) {
+    RecordReader reader(path, {}, std::nullopt);
+    WelchSettings settings;
+    settings.rate = reader.rate();
+    settings.segment = suggested_segment(reader.rate(), reader.frames());
+    settings.overlap = settings.segment / 2;
+    WelchStream<double> stream(settings);
+    for (RecordBlock block; reader.next(block);) {
+        if (block.after_gap) stream.forget_waiting();
+        stream.push(block.channels.front());
+    }
+    return stream.spectrum();
+}
+
+Figure figure_of(const Plot& plot, double width, double height) {
+    const double left = 64, right = width - 16, top = 34, bottom = height - 40;
+    Figure figure(width, height);
+    figure.text({left, 20}, plot.title, 13, {15, 23, 42}, TextAnchor::start, true);
+    const Colour grid{226, 232, 240}, ink{71, 85, 105};
+    const auto x_of = [&](double v) { return left + plot.across(v) * (right - left); };
+    const auto y_of = [&](double v) { return bottom - plot.up(v) * (bottom - top); };
+    const std::vector<double> across = plot.x_ticks(9), up = linear_ticks(plot.y, 6);
+    const double x_step = across.size() > 1 ? across[1] - across[0] : 1.0, y_step = up.size() > 1 ? up[1] - up[0] : 1.0;
+    for (const double v : across) {
+        figure.line({{x_of(v), top}, {x_of(v), bottom}}, grid, 1);
+        figure.text({x_of(v), bottom + 15}, plot.is_logarithmic ? fmt::format("{:g}", v) : tick_label(v, x_step), 10,
+                    ink, TextAnchor::middle);
+    }
+    for (const double v : up) {
+        figure.line({{left, y_of(v)}, {right, y_of(v)}}, grid, 1);
+        figure.text({left - 6, y_of(v) + 3.5}, tick_label(v, y_step), 10, ink, TextAnchor::end);
+    }
+    figure.text({0.5 * (left + right), height - 8}, plot.x_unit, 10, ink, TextAnchor::middle);
+    figure.text({14, 0.5 * (top + bottom)}, plot.y_unit, 10, ink, TextAnchor::middle, false, true);
+    figure.clip(left, top, right - left, bottom - top);
+    for (const Curve& curve : plot.curves) {
+        std::vector<FigurePoint> line;
+        for (const Point& p : curve.points) line.push_back({x_of(p.x), y_of(p.y)});
+        figure.line(std::move(line), figure_colour(curve.ink), 1.2);
+    }
+    figure.unclip();
+    double at = right;
+    for (auto curve = plot.curves.rbegin(); curve != plot.curves.rend(); ++curve) {
+        figure.text({at, 20}, curve->name, 10, figure_colour(curve->ink), TextAnchor::end);
+        at -= 12.0 + 6.2 * static_cast<double>(curve->name.size());
+    }
+    return figure;
+}
+
+void write_csv(const Trace& trace, Range time, const std::filesystem::path& path) {
+    std::string text = "time s";
+    for (const std::string& name : trace.names) text += "," + name;
+    text += "\n";
+    for (std::size_t i = index_at(trace, time.low); i < trace.times.size() && trace.times[i] <= time.high; ++i) {
+        text += fmt::format("{:.9g}", trace.times[i]);
+        for (const auto& column : trace.columns) text += fmt::format(",{:.9g}", column[i]);
+        text += "\n";
+    }
+    write_whole_file(path, text);
+}
+
+}  // namespace tactus::view

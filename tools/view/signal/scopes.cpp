@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/view/signal/scopes.hpp"
+
+#include "devices/display/png.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/view/spots.hpp"
+#include "tools/view/theme.hpp"
+
+#include <fmt/format.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::view {
+
+void Scopes::add(const std::string& port, bool is_spectrum) {
+    Scope scope;
+    scope.port = port;
+    scope.is_spectrum = is_spectrum;
+    scopes_.push_back(std::move(scope));
+}
+
+void Scopes::freeze(bool wanted) {
+    for (Scope& scope : scopes_) scope.is_frozen = wanted;
+}
+
+void Scopes::set_reference(const std::filesystem::path& path) {
+    reference_ = path.empty() ? Spectrum{} : spectrum_of_file(path);
+    for (Scope& scope : scopes_) scope.computed_at = -1.0;
+}
+
+std::set<std::string> Scopes::traced() const {
+    std::set<std::string> ports;
+    for (const Scope& scope : scopes_) ports.insert(scope.port);
+    return ports;
+}
+
+Display Scopes::display(const std::string& port) const {
+    std::string unit;
+    const std::size_t dot = port.find('.');
+    const int node = bench_.picture().find(port.substr(0, dot));
+    if (node >= 0)
+        for (const PicturePort& p : bench_.picture().nodes[static_cast<std::size_t>(node)].outputs)
+            if (p.name == port.substr(dot + 1)) unit = p.unit;
+    for (const Feed::Port& known : ports_)
+        if (known.name == port) return display_of(*known.type, unit);
+    return {1.0, unit, 1};
+}
+
+double Scopes::rate(const std::string& port) const {
+    for (const Feed::Port& known : ports_)
+        if (known.name == port) return known.rate;
+    return 1000.0;
+}
+
+void Scopes::refresh(Scope& scope, const Feed& feed, int pixels) {
+    const Trace* live = feed.trace(scope.port);
+    if (scope.is_frozen && !scope.held && live) {
+        scope.held = *live;
+        scope.held_at = live->times.empty() ? feed.now() : live->times.back();
+    }
+    if (!scope.is_frozen) scope.held.reset();
+    const Trace* trace = scope.held ? &*scope.held : live;
+    if (!trace) return;
+    const double now = scope.held ? scope.held_at : trace->times.empty() ? feed.now() : trace->times.back();
+    const Display shown = display(scope.port);
+    if (scope.is_spectrum) {
+        // A tenth of a second is as good as at once, and leaves time for the rest.
+        if (std::abs(now - scope.computed_at) < 0.1) return;
+        scope.computed_at = now;
+        scope.plot = spectrum_plot(*trace, shown, rate(scope.port), now, scope.span, reference_);
+    } else {
+        scope.plot = time_plot(*trace, shown, now, scope.span, pixels);
+        scope.y = scope.plot.y = fitted(scope.y, scope.plot.y);
+    }
+    scope.plot.title = scope.port;
+}
+
+void Scopes::write(std::size_t index, const Feed& feed, const std::filesystem::path& path) {
+    if (index >= scopes_.size()) throw Error(fmt::format("there are {} scopes", scopes_.size()));
+    Scope& scope = scopes_[index];
+    ports_ = feed.ports();
+    refresh(scope, feed, 700);
+    if (path.extension() == ".csv") {
+        const Trace* trace = scope.held ? &*scope.held : feed.trace(scope.port);
+        if (!trace || trace->times.empty()) throw Error(fmt::format("nothing was seen of {} yet", scope.port));
+        const double now = trace->times.back();
+        write_csv(*trace, {now - scope.span, now}, path);
+    } else write_png(figure_of(scope.plot).image(), path.string());
+    bench_.tell(fmt::format("wrote {}", path.string()));
+}
+
+void Scopes::head(Scope& scope, std::size_t index, const Feed& feed, bool& closes) {
+    const float unit = ImGui::GetFontSize();
+    const auto mark = [index](const char* what) { mark_spot(fmt::format("scope {} {}", index, what)); };
+    ImGui::SetNextItemWidth(13.0f * unit);
+    if (ImGui::BeginCombo("##port", scope.port.c_str())) {
+        ImGui::InputTextWithHint("##search", "search", &search_);
+        for (const Feed::Port& port : ports_) {
+            if (port.name.find(search_) == std::string::npos) continue;
+            if (!ImGui::Selectable(port.name.c_str(), port.name == scope.port)) continue;
+            const bool is_spectrum = scope.is_spectrum;
+            scope = {};
+            scope.port = port.name;
+            scope.is_spectrum = is_spectrum;
+        }
+        ImGui::EndCombo();
+    }
+    ImGui::SameLine();
+    if (ImGui::Button(scope.is_spectrum ? "spectrum" : "wave", ImVec2(5.5f * unit, 0))) {
+        scope.is_spectrum = !scope.is_spectrum;
+        scope.computed_at = -1.0;
+        scope.cursors.clear();
+    }
+    mark("kind");
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(5.0f * unit);
+    auto span = static_cast<float>(scope.span);
+    if (ImGui::DragFloat("##span", &span, 0.02f, 0.005f, static_cast<float>(LiveFeed::kept_s), "%.3g s",
+                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
+        scope.span = static_cast<double>(span);
+        scope.computed_at = -1.0;
+    }
+    ImGui::SameLine();
+    ImGui::Checkbox("freeze", &scope.is_frozen);
+    mark("freeze");
+    const auto save_as = [&](const char* ending) {
+        std::filesystem::path path;
+        for (int i = 1; path.empty() || std::filesystem::exists(path); ++i)
+            path = fmt::format("{}-{}{}", scope.port, i, ending);
+        try {
+            write(index, feed, path);
+        } catch (const Error& error) {
+            bench_.tell(error.what(), true);
+        }
+    };
+    ImGui::SameLine();
+    const bool wants_csv = ImGui::SmallButton("CSV");
+    mark("CSV");
+    if (wants_csv) save_as(".csv");
+    ImGui::SameLine();
+    const bool wants_png = ImGui::SmallButton("PNG");
+    mark("PNG");
+    if (wants_png) save_as(".png");
+    ImGui::SameLine();
+    closes = ImGui::SmallButton("×");
+    mark("close");
+}
+
+void Scopes::body(Scope& scope, std::size_t index, const Fonts& fonts, double height) {
+    const Painter paint(ImGui::GetWindowDrawList(), fonts);
+    const Point corner = point(ImGui::GetCursorScreenPos());
+    const double width = static_cast<double>(ImGui::GetContentRegionAvail().x), s = fonts.scale, small = 11.0 * s;
+    ImGui::InvisibleButton("plot", vec({width, height}));
+    mark_spot(fmt::format("scope {} plot", index));
+    const Box all{corner.x, corner.y, corner.x + width, corner.y + height};
+    const Box inner{all.left + 52.0 * s, all.top + 6.0 * s, all.right - 8.0 * s, all.bottom - 18.0 * s};
+    paint.box(all, colour(0x0f1319), 4.0 * s);
+    const Plot& plot = scope.plot;
+    if (!(plot.y.span() > 0.0) || inner.width() < 20.0 || inner.height() < 12.0) return;
+    const auto x_of = [&](double v) { return inner.left + plot.across(v) * inner.width(); };
+    const auto y_of = [&](double v) { return inner.bottom - plot.up(v) * inner.height(); };
+    const std::vector<double> across = plot.x_ticks(static_cast<int>(inner.width() / (52.0 * s))),
+                              up = linear_ticks(plot.y, std::max(2, static_cast<int>(inner.height() / (24.0 * s))));
+    const double x_step = across.size() > 1 ? across[1] - across[0] : 1.0, y_step = up.size() > 1 ? up[1] - up[0] : 1.0;
+    for (const double v : across) {
+        paint.line({x_of(v), inner.top}, {x_of(v), inner.bottom}, tone::grid);
+        const std::string label = plot.is_logarithmic ? fmt::format("{:g}", v) : tick_label(v, x_step);
+        paint.text({x_of(v) - 0.5 * paint.width_of(label, small), inner.bottom + 3.0 * s}, small, tone::dim, label);
+    }
+    for (const double v : up) {
+        paint.line({inner.left, y_of(v)}, {inner.right, y_of(v)}, tone::grid);
+        paint.text_left_of({inner.left - 5.0 * s, y_of(v) - 0.6 * small}, small, tone::dim, tick_label(v, y_step));
+    }
+    paint.list()->PushClipRect(vec({inner.left, inner.top}), vec({inner.right, inner.bottom}), true);
+    std::vector<ImVec2> line;
+    for (const Curve& curve : plot.curves) {
+        line.clear();
+        for (const Point& p : curve.points) line.push_back(vec({x_of(p.x), y_of(p.y)}));
+        if (curve.is_reference)
+            for (const ImVec2& p : line)
+                paint.list()->AddLine(p, ImVec2(p.x, static_cast<float>(inner.bottom)), faded(curve.ink, 0.22), 1.5f);
+        paint.list()->AddPolyline(line.data(), static_cast<int>(line.size()), curve.ink, 0,
+                                  static_cast<float>(1.3 * s));
+    }
+    const bool hovered = ImGui::IsItemHovered();
+    const Point mouse = point(ImGui::GetIO().MousePos);
+    if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
+        if (scope.cursors.size() == 2) scope.cursors.clear();
+        scope.cursors.push_back(plot.value_at((mouse.x - inner.left) / inner.width()));
+    }
+    for (const double cursor : scope.cursors)
+        paint.line({x_of(cursor), inner.top}, {x_of(cursor), inner.bottom}, tone::chosen, 1.2 * s);
+    paint.list()->PopClipRect();
+
+    Point at{inner.left + 6.0 * s, inner.top + 2.0 * s};
+    paint.text(at, small, tone::dim, plot.y_unit);
+    at.x += paint.width_of(plot.y_unit, small) + 12.0 * s;
+    for (const Curve& curve : plot.curves) {
+        std::string text = curve.name;
+        if (!curve.points.empty() && !plot.is_logarithmic) text += fmt::format(" {:.4g}", curve.points.back().y);
+        paint.text(at, small, curve.ink, text);
+        at.x += paint.width_of(text, small) + 12.0 * s;
+    }
+    const auto value_near = [&](double x) {
+        double best = 1e300, value = 0.0;
+        for (const Curve& curve : plot.curves)
+            if (!curve.is_reference)
+                for (const Point& p : curve.points)
+                    if (std::abs(p.x - x) < best) best = std::abs(p.x - x), value = p.y;
+        return value;
+    };
+    std::string reading;
+    if (scope.cursors.size() == 2) {
+        const double a = scope.cursors[0], b = scope.cursors[1];
+        reading =
+            fmt::format("Δ {:.4g} {}, Δ {:.4g} {}", b - a, plot.x_unit, value_near(b) - value_near(a), plot.y_unit);
+        if (!plot.is_logarithmic && a != b) reading += fmt::format(", {:.4g} Hz", 1.0 / std::abs(b - a));
+    } else if (scope.cursors.size() == 1 || hovered) {
+        const double x =
+            scope.cursors.empty() ? plot.value_at((mouse.x - inner.left) / inner.width()) : scope.cursors[0];
+        reading = fmt::format("{:.5g} {}: {:.4g} {}", x, plot.x_unit, value_near(x), plot.y_unit);
+    }
+    paint.text_left_of({inner.right - 4.0 * s, inner.top + 2.0 * s}, small, tone::chosen, reading);
+}
+
+void Scopes::draw(const Feed* feed, const Fonts& fonts) {
+    // There may be tens of thousands.
+    if (feed && (feed != listed_of_ || listed_ != feed->ports_version())) {
+        listed_of_ = feed;
+        listed_ = feed->ports_version();
+        ports_ = feed->ports();
+    }
+    if (ImGui::Button("+ scope") && feed)
+        for (const Feed::Port& port : ports_) {
+            add(port.name);
+            break;
+        }
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 6.0f * ImGui::GetFontSize());
+    const bool entered = ImGui::InputTextWithHint("##reference", "reference beneath the spectra: a sound file",
+                                                  &wanted_reference_, ImGuiInputTextFlags_EnterReturnsTrue);
+    ImGui::SameLine();
+    if (ImGui::Button("load") || entered) {
+        try {
+            set_reference(wanted_reference_);
+        } catch (const Error& error) {
+            bench_.tell(error.what(), true);
+        }
+    }
+    if (!feed) return ImGui::TextDisabled("no run");
+    if (scopes_.empty()) ImGui::TextDisabled("double-click an output of the patch to see it here");
+    const double row = static_cast<double>(ImGui::GetFrameHeightWithSpacing());
+    const double each = static_cast<double>(ImGui::GetContentRegionAvail().y) /
+                        std::max<double>(1.0, static_cast<double>(scopes_.size()));
+    const double height = std::max(each - row - 8.0 * fonts.scale, 70.0 * fonts.scale);
+    std::size_t closed = scopes_.size();
+    for (std::size_t i = 0; i < scopes_.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        bool closes = false;
+        head(scopes_[i], i, *feed, closes);
+        refresh(scopes_[i], *feed, std::max(50, static_cast<int>(ImGui::GetContentRegionAvail().x) - 60));
+        body(scopes_[i], i, fonts, height);
+        if (closes) closed = i;
+        ImGui::PopID();
+    }
+    if (closed < scopes_.size()) scopes_.erase(scopes_.begin() + static_cast<std::ptrdiff_t>(closed));
+}
+
+}  // namespace tactus::view
