@@ -2,7 +2,7 @@
 // What flattening looks things up in, so that a patch of n nodes takes n steps. Only sub_patch.cpp includes it.
 #pragma once
 
-#include "graph/sub_patch.hpp"
+#include "graph/patch/sub_patch.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -16,10 +16,10 @@ namespace tactus {
 
 /// A flattened part, and what is looked up in it each time it is used.
 struct FlatPart {
-    using Ends = std::vector<const PatchEnd*>;
+    using Ends = std::vector<const patch::PatchEnd*>;
     using Index = std::unordered_map<std::string_view, Ends>;
 
-    explicit FlatPart(Patch flat) : patch(std::move(flat)) {
+    explicit FlatPart(patch::Patch flat) : patch(std::move(flat)) {
         index(patch.offered, offered);
         index(patch.inputs, targets);
         index(patch.parameters, targets);
@@ -30,8 +30,8 @@ struct FlatPart {
     FlatPart(const FlatPart&) = delete;
     FlatPart& operator=(const FlatPart&) = delete;
 
-    static void index(const std::vector<PatchEnd>& ends, Index& by_name) {
-        for (const PatchEnd& end : ends) by_name[end.name].push_back(&end);
+    static void index(const std::vector<patch::PatchEnd>& ends, Index& by_name) {
+        for (const patch::PatchEnd& end : ends) by_name[end.name].push_back(&end);
     }
     static const Ends& find(const Index& by_name, const std::string& name) {
         static const Ends none;
@@ -40,7 +40,7 @@ struct FlatPart {
     }
     std::string file() const { return patch.file.filename().string(); }
 
-    Patch patch;
+    patch::Patch patch;
     Index offered, outputs, parameters;
     Index targets;  ///< where a wire may end: inputs, then parameters
     std::unordered_map<std::string_view, std::size_t> nodes;
@@ -49,9 +49,9 @@ struct FlatPart {
 /// The wires of a patch whose nodes are being replaced: what each of them has become, by the nodes it joins.
 class OuterWires {
 public:
-    OuterWires(std::vector<PatchWire> wires, const std::vector<PatchNode>& nodes) : pieces_(wires.size()) {
-        for (const PatchNode& node : nodes)
-            if (is_sub_patch(node)) touching_.try_emplace(node.name);
+    OuterWires(std::vector<patch::PatchWire> wires, const std::vector<patch::PatchNode>& nodes) : pieces_(wires.size()) {
+        for (const patch::PatchNode& node : nodes)
+            if (patch::is_sub_patch(node)) touching_.try_emplace(node.name);
         for (std::size_t w = 0; w < wires.size(); ++w) {
             note(wires[w].from_node, w);
             if (wires[w].to_node != wires[w].from_node) note(wires[w].to_node, w);
@@ -65,8 +65,8 @@ public:
         for (const std::size_t w : touching_.at(node)) replace(pieces_[w]);
     }
 
-    std::vector<PatchWire> joined() {
-        std::vector<PatchWire> wires;
+    std::vector<patch::PatchWire> joined() {
+        std::vector<patch::PatchWire> wires;
         for (auto& pieces : pieces_) std::ranges::move(pieces, std::back_inserter(wires));
         return wires;
     }
@@ -76,7 +76,7 @@ private:
         if (const auto found = touching_.find(node); found != touching_.end()) found->second.push_back(wire);
     }
 
-    std::vector<std::vector<PatchWire>> pieces_;
+    std::vector<std::vector<patch::PatchWire>> pieces_;
     std::unordered_map<std::string, std::vector<std::size_t>> touching_;  // of each node that is a patch
 };
 

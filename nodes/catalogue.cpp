@@ -9,17 +9,17 @@
 #define TACTUS_NODES(X)                 \
     X(Actuator, vibration)              \
     X(AdmittanceController, admittance) \
-    X(AudioOutput, output)              \
+    X(AudioOutput, device)              \
     X(BladeContact, contact)            \
     X(Body, contact)                    \
     X(Brush, planning)                  \
-    X(Button, input)                    \
+    X(Button, device)                    \
     X(Carve, contact)                   \
     X(CaseScene, planning)              \
-    X(Constant, input)                  \
-    X(DeviceInput, input)               \
-    X(DeviceOutput, input)              \
-    X(DeviceWrench, input)              \
+    X(Constant, math)                  \
+    X(DeviceInput, device)               \
+    X(DeviceOutput, device)              \
+    X(DeviceWrench, device)              \
     X(DirectCoupling, coupling)         \
     X(DynamicCoupling, coupling)        \
     X(Envelope, vibration)              \
@@ -37,38 +37,36 @@
     X(Mix, vibration)                   \
     X(PassivityObserver, coupling)      \
     X(PointProxy, coupling)             \
-    X(Probe, output)                    \
+    X(Probe, record)                    \
     X(QuasiStaticCoupling, coupling)    \
     X(Range, math)                      \
-    X(Record, output)                   \
+    X(Record, record)                   \
     X(Saw, vibration)                   \
     X(Scene, contact)                   \
     X(Shape, contact)                   \
-    X(SimulatedHead, input)             \
-    X(Sine, input)                      \
+    X(SimulatedHead, device)             \
+    X(Sine, math)                      \
     X(SnapToFit, coupling)              \
     X(SpectralMonitor, vibration)       \
     X(SpectrumAnalyser, vibration)      \
     X(SphereContact, contact)           \
     X(SphereProxy, coupling)            \
     X(Spring, coupling)                 \
-    X(Sweep, input)                     \
+    X(Sweep, vibration)                     \
     X(TestRig, admittance)              \
     X(VoxmapContact, contact)           \
-    X(Workspace, input)
+    X(Workspace, device)
 
-namespace tactus {
+namespace tactus::nodes {
 
-namespace nodes {
 #define X(Type, family) const NodeType& node_type_##Type();
 TACTUS_NODES(X)
 #undef X
-}  // namespace nodes
 
-Catalogue catalogue() {
+compile::Catalogue catalogue() {
     static const std::vector<const NodeType*> types = [] {
         std::vector<const NodeType*> all{
-#define X(Type, family) &nodes::node_type_##Type(),
+#define X(Type, family) &node_type_##Type(),
             TACTUS_NODES(X)
 #undef X
         };
@@ -78,4 +76,4 @@ Catalogue catalogue() {
     return types;
 }
 
-}  // namespace tactus
+}  // namespace tactus::nodes

@@ -2,11 +2,11 @@
 // The table of all node types.
 #pragma once
 
-#include "graph/plan.hpp"
+#include "graph/compile/plan.hpp"
 
-namespace tactus {
+namespace tactus::nodes {
 
 /// Every node type, sorted by name.
-Catalogue catalogue();
+compile::Catalogue catalogue();
 
-}  // namespace tactus
+}  // namespace tactus::nodes

@@ -5,7 +5,7 @@
 #include "assets/library/fragments.hpp"
 #include "assets/library/mandible.hpp"
 #include "assets/library/saw_recordings.hpp"
-#include "assets/plan/plan_file.hpp"
+#include "assets/cases/plan_file.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -23,30 +23,30 @@ namespace {
 
 /// The case of the patch 'planning-trauma': fragments, plan, the hand's script, and the truth, which the patch never
 /// reads.
-void make_case(const tactus::Bone& mandible, const fs::path& folder) {
+void make_case(const tactus::bone::Bone& mandible, const fs::path& folder) {
     fs::create_directories(folder);
-    const tactus::BrokenMandible broken = tactus::break_mandible(mandible);
+    const tactus::library::BrokenMandible broken = tactus::library::break_mandible(mandible);
     std::vector<std::string> files;
     std::vector<std::uint64_t> hashes;
     std::string truth = "# p_bone = R p_fragment + t: name, t in mm, quaternion w x y z, middle in mm\n";
     for (std::size_t n = 0; n < broken.fragments.size(); ++n) {
-        const tactus::Bone& fragment = broken.fragments[n];
+        const tactus::bone::Bone& fragment = broken.fragments[n];
         files.push_back(fragment.name + ".vdb");
-        tactus::save_bone(fragment, folder / files.back());
+        tactus::bone::save_bone(fragment, folder / files.back());
         tactus::Hash hash;
-        tactus::add_file(hash, folder / files.back());
+        tactus::file::add_file(hash, folder / files.back());
         hashes.push_back(hash.value());
         const tactus::Vec3 t = broken.truth[n].position * 1e3;
         const tactus::Quat& q = broken.truth[n].orientation;
         tactus::Vec3 middle(0.0);
-        for (const tactus::SurfacePoint& p : fragment.points)
+        for (const tactus::contact::SurfacePoint& p : fragment.points)
             middle += p.position * (1e3 / static_cast<double>(fragment.points.size()));
         truth += fmt::format("{} {} {} {} {} {} {} {} {} {} {}\n", fragment.name, t.x, t.y, t.z, q.w, q.x, q.y, q.z,
                              middle.x, middle.y, middle.z);
     }
-    tactus::write_whole_file(folder / "truth.txt", truth);
-    tactus::write_whole_file(folder / "hand.txt", broken.script);
-    tactus::save_case_plan(tactus::plan_of(broken, files, hashes), folder / "case.plan.json");
+    tactus::file::write_whole_file(folder / "truth.txt", truth);
+    tactus::file::write_whole_file(folder / "hand.txt", broken.script);
+    tactus::cases::save_case_plan(tactus::library::plan_of(broken, files, hashes), folder / "case.plan.json");
     fmt::print("{}: the hand needs {:.1f} s\n", (folder / "case.plan.json").string(), broken.seconds);
 }
 
@@ -56,14 +56,14 @@ void make_library(const fs::path& folder) {
     fs::create_directories(bone.parent_path(), failure);
     if (failure)
         throw tactus::Error(fmt::format("{}: cannot be made: {}", bone.parent_path().string(), failure.message()));
-    const tactus::Bone mandible = tactus::make_mandible();
-    tactus::save_bone(mandible, bone);
+    const tactus::bone::Bone mandible = tactus::library::make_mandible();
+    tactus::bone::save_bone(mandible, bone);
     fmt::print("{}\n", bone.string());
     make_case(mandible, folder / "cases" / "mandible-twelve");
     const fs::path fragments = folder / "bones" / "fragments.vdb";
-    tactus::save_bones(tactus::make_fragments(), fragments);
+    tactus::bone::save_bones(tactus::library::make_fragments(), fragments);
     fmt::print("{}\n", fragments.string());
-    tactus::make_saw_recordings(saw);
+    tactus::library::make_saw_recordings(saw);
     std::set<std::string> written;
     for (const auto& entry : fs::directory_iterator(saw)) written.insert(entry.path().string());
     for (const std::string& path : written) fmt::print("{}\n", path);

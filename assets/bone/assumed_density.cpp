@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace tactus {
+namespace tactus::bone {
 
 namespace {
 
@@ -18,8 +18,8 @@ float density_at(double depth) {
 
 }  // namespace
 
-Grid assumed_density(const Grid& distance) {
-    Grid density{distance.size, distance.origin, distance.spacing, {}};
+volume::Grid assumed_density(const volume::Grid& distance) {
+    volume::Grid density{distance.size, distance.origin, distance.spacing, {}};
     density.values.reserve(distance.count());
     for (const float d : distance.values) density.values.push_back(density_at(-double(d)));
     return density;
@@ -27,4 +27,4 @@ Grid assumed_density(const Grid& distance) {
 
 std::string assumed_density_law() { return "assumed: 1800 kg/m3 to 2 mm depth, falling to 400 at 3 mm"; }
 
-}  // namespace tactus
+}  // namespace tactus::bone

@@ -6,11 +6,11 @@
 
 #include <string>
 
-namespace tactus {
+namespace tactus::bone {
 
 /// kg/m³ from signed distance: a cortex over the outer 2 mm that falls to a core at 3 mm, 0 outside. An assumption.
-Grid assumed_density(const Grid& distance);
+volume::Grid assumed_density(const volume::Grid& distance);
 /// The same in words.
 std::string assumed_density_law();
 
-}  // namespace tactus
+}  // namespace tactus::bone

@@ -20,7 +20,7 @@
 #include <optional>
 #include <sstream>
 
-namespace tactus {
+namespace tactus::bone {
 
 namespace {
 
@@ -44,7 +44,7 @@ void for_each_block(const std::array<int, 3>& size, Visit visit) {
                                                               std::min(k + side, size[2])));
 }
 
-openvdb::FloatGrid::Ptr empty_vdb(const Grid& grid, const std::string& name, float background) {
+openvdb::FloatGrid::Ptr empty_vdb(const volume::Grid& grid, const std::string& name, float background) {
     auto vdb = openvdb::FloatGrid::create(background);
     vdb->setName(name);
     openvdb::Mat4d map = openvdb::Mat4d::identity();
@@ -57,7 +57,7 @@ openvdb::FloatGrid::Ptr empty_vdb(const Grid& grid, const std::string& name, flo
     return vdb;
 }
 
-openvdb::FloatGrid::Ptr to_vdb(const Grid& grid, const std::string& name) {
+openvdb::FloatGrid::Ptr to_vdb(const volume::Grid& grid, const std::string& name) {
     auto vdb = empty_vdb(grid, name, 0.0f);
     // Every sample is active, so that compression keeps its bits.
     for_each_block(grid.size, [&](const openvdb::Coord& first, const openvdb::Coord& end) {
@@ -98,8 +98,8 @@ VdbPair to_vdb(SparseBone& bone) {
     return vdb;
 }
 
-Grid from_vdb(const openvdb::FloatGrid& vdb, bool is_sparse, const std::string& file) {
-    Grid grid;
+volume::Grid from_vdb(const openvdb::FloatGrid& vdb, bool is_sparse, const std::string& file) {
+    volume::Grid grid;
     const auto size = vdb.metaValue<openvdb::Vec3i>("size");
     const auto origin = vdb.metaValue<openvdb::Vec3d>("origin");
     const auto spacing = vdb.metaValue<openvdb::Vec3d>("spacing");
@@ -113,7 +113,7 @@ Grid from_vdb(const openvdb::FloatGrid& vdb, bool is_sparse, const std::string& 
     if (!is_finite(grid.origin) || !is_finite(grid.spacing) ||
         !(std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}) > 0.0))
         throw Error(fmt::format("{}: grid '{}' has no usable origin and spacing", file, vdb.getName()));
-    require_room(claimed * sizeof(float), file, "the samples of one grid");
+    file::require_room(claimed * sizeof(float), file, "the samples of one grid");
     grid.values.resize(grid.count());
     for_each_block(grid.size, [&](const openvdb::Coord& first, const openvdb::Coord& end) {
         const auto* leaf = vdb.tree().probeConstLeaf(first);
@@ -127,7 +127,7 @@ Grid from_vdb(const openvdb::FloatGrid& vdb, bool is_sparse, const std::string& 
 }
 
 void check(const Bone& bone) {
-    const Grid &a = bone.distance, &b = bone.density;
+    const volume::Grid &a = bone.distance, &b = bone.density;
     if (a.size != b.size || a.origin != b.origin || a.spacing != b.spacing)
         throw Error("a bone's distance and density must be on the same grid");
     if (a.size[0] < 1 || a.size[1] < 1 || a.size[2] < 1 || a.values.size() != a.count() || b.values.size() != b.count())
@@ -150,7 +150,7 @@ void add_text(openvdb::MetaMap& meta, const std::string& key, const std::string&
     meta.insertMeta(key, openvdb::StringMetadata(value));
 }
 
-void add_place(Hash& hash, const Grid& grid) {
+void add_place(Hash& hash, const volume::Grid& grid) {
     hash.add_bytes(grid.size.data(), sizeof grid.size);
     hash.add_bytes(&grid.origin, sizeof grid.origin);
     hash.add_bytes(&grid.spacing, sizeof grid.spacing);
@@ -166,7 +166,7 @@ std::string identifier_of(std::span<const Bone> bones) {
     Hash hash;
     for (const Bone& bone : bones) {
         hash.add_text(bone.name);
-        for (const Grid* grid : {&bone.distance, &bone.density}) {
+        for (const volume::Grid* grid : {&bone.distance, &bone.density}) {
             add_place(hash, *grid);
             hash.add_bytes(grid->values.data(), grid->values.size() * sizeof(float));
         }
@@ -332,4 +332,4 @@ Bone load_bone(const std::filesystem::path& path) {
 
 std::filesystem::path file_of_bone(const std::filesystem::path& path) { return split(path).file; }
 
-}  // namespace tactus
+}  // namespace tactus::bone

@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::bone {
 
 /// A bone ready for contact, carving and pictures. Both grids have the same size, origin and spacing.
 struct Bone {
-    Grid distance;  ///< signed distance to the surface, m, negative inside; frame LPS, metres
-    Grid density;  ///< mass density, kg/m³, ≥ 0
+    volume::Grid distance;  ///< signed distance to the surface, m, negative inside; frame LPS, metres
+    volume::Grid density;  ///< mass density, kg/m³, ≥ 0
     std::string name;  ///< what people call it, e.g. "mandible"
     Vec3 colour{0.90, 0.86, 0.76};  ///< sRGB, 0 to 1; what it is drawn in where nothing else decides
 
@@ -24,7 +24,7 @@ struct Bone {
     std::map<std::string, std::string> provenance;
 
     /// Points of its surface for contact, with outward normals, areas and labels; often none. Frame as the grids'.
-    std::vector<SurfacePoint> points;
+    std::vector<contact::SurfacePoint> points;
 };
 
 /// Writes one OpenVDB file. A single bone's float grids are called "distance" and "density", those of several
@@ -47,4 +47,4 @@ Bone load_bone(const std::filesystem::path& path);
 /// The file of "FILE.vdb#NAME": without the name, unless a file is really called so.
 std::filesystem::path file_of_bone(const std::filesystem::path& path);
 
-}  // namespace tactus
+}  // namespace tactus::bone

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstdlib>
 
-namespace tactus {
+namespace tactus::bone {
 
 namespace {
 
@@ -38,7 +38,7 @@ float value_at(const Bone& bone, std::size_t n, BoneQuantity quantity, float thr
 }
 
 // Samples from `base` to the first of `grid`; throws when they lie between those of `base`.
-std::array<int, 3> steps_between(const Grid& base, const Grid& grid) {
+std::array<int, 3> steps_between(const volume::Grid& base, const volume::Grid& grid) {
     std::array<int, 3> steps{};
     for (int axis = 0; axis < 3; ++axis) {
         const double apart = (grid.origin[axis] - base.origin[axis]) / base.spacing[axis];
@@ -53,9 +53,9 @@ std::array<int, 3> steps_between(const Grid& base, const Grid& grid) {
 
 }  // namespace
 
-Grid volume_of_bones(std::span<const Bone> bones, BoneQuantity quantity) {
+volume::Grid volume_of_bones(std::span<const Bone> bones, BoneQuantity quantity) {
     if (bones.empty()) throw Error("no bone to export");
-    const Grid& base = bones.front().distance;
+    const volume::Grid& base = bones.front().distance;
     std::array<int, 3> first{}, last{};
     for (const Bone& bone : bones) {
         const auto steps = steps_between(base, bone.distance);
@@ -64,7 +64,7 @@ Grid volume_of_bones(std::span<const Bone> bones, BoneQuantity quantity) {
             last[a] = std::max(last[a], steps[a] + bone.distance.size[a] - 1);
         }
     }
-    Grid out{{}, base.position(first[0], first[1], first[2]), base.spacing, {}};
+    volume::Grid out{{}, base.position(first[0], first[1], first[2]), base.spacing, {}};
     double count = 1.0;
     for (std::size_t a = 0; a < 3; ++a) out.size[a] = last[a] - first[a] + 1, count *= out.size[a];
     if (count > 1e9) throw Error("the bones lie too far apart for one volume; export them one by one with --bone");
@@ -87,4 +87,4 @@ Grid volume_of_bones(std::span<const Bone> bones, BoneQuantity quantity) {
     return out;
 }
 
-}  // namespace tactus
+}  // namespace tactus::bone

@@ -6,7 +6,7 @@
 
 #include <span>
 
-namespace tactus {
+namespace tactus::bone {
 
 /// What a volume holds.
 enum class BoneQuantity {
@@ -17,6 +17,6 @@ enum class BoneQuantity {
 
 /// One volume of all bones on their common samples: the highest HU or density, the least distance. Air is -1000 HU; away
 /// from all grids the distance is 1000 mm. Throws Error when the bones' samples do not lie on one lattice.
-Grid volume_of_bones(std::span<const Bone> bones, BoneQuantity quantity);
+volume::Grid volume_of_bones(std::span<const Bone> bones, BoneQuantity quantity);
 
-}  // namespace tactus
+}  // namespace tactus::bone

@@ -2,8 +2,8 @@
 #include "assets/bone/from_hu.hpp"
 
 #include "dsp/core/error.hpp"
-#include "dsp/distance/components.hpp"
-#include "dsp/distance/iso_distance.hpp"
+#include "dsp/volume/components.hpp"
+#include "dsp/volume/iso_distance.hpp"
 #include "dsp/volume/compact_slice.hpp"
 #include "dsp/volume/grid_part.hpp"
 
@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace tactus {
+namespace tactus::bone {
 
 namespace {
 
@@ -24,7 +24,7 @@ constexpr int margin = 4;
 constexpr double air_around = 5e-3;  // m
 constexpr double density_slope = 1.067, density_offset = 131.0;
 
-using Box = Components::Box;
+using Box = volume::Components::Box;
 
 // Samples of air that bone is given around it, along each axis.
 std::array<int, 3> reach_of(const Vec3& spacing) {
@@ -36,7 +36,7 @@ std::array<int, 3> reach_of(const Vec3& spacing) {
 
 // Samples around the components that are kept: some millimetres of air, but only four layers outside the volume, which
 // tell a face where the scan ends.
-Box room_around(const Components& components, std::size_t keep, const Grid& layout) {
+Box room_around(const volume::Components& components, std::size_t keep, const volume::Grid& layout) {
     Box room = components.boxes.front();
     for (std::size_t n = 1; n < components.boxes.size() && (keep == 0 || n < keep); ++n)
         for (std::size_t a = 0; a < 3; ++a) {
@@ -52,15 +52,15 @@ Box room_around(const Components& components, std::size_t keep, const Grid& layo
 }
 
 // The same runs counted from the room's first sample; what lies outside of it is left out.
-Components moved_into(const Components& components, const Box& room) {
-    Components moved;
-    RunRows& rows = moved.rows;
+volume::Components moved_into(const volume::Components& components, const Box& room) {
+    volume::Components moved;
+    volume::RunRows& rows = moved.rows;
     for (std::size_t a = 0; a < 3; ++a) rows.size[a] = room.last[a] - room.first[a] + 1;
     const auto& from = components.rows;
     for (int k = room.first[2]; k <= room.last[2]; ++k)
         for (int j = room.first[1]; j <= room.last[1]; ++j) {
             if (j >= 0 && k >= 0 && j < from.size[1] && k < from.size[2])
-                for (SampleRun run : from.row(j, k)) {
+                for (volume::SampleRun run : from.row(j, k)) {
                     run.begin = std::max(run.begin, room.first[0]) - room.first[0];
                     run.end = std::min(run.end, room.last[0] + 1) - room.first[0];
                     if (run.begin < run.end) rows.runs.push_back(run);
@@ -78,7 +78,7 @@ int smoothing_passes(const Vec3& spacing) {
 // Samples of a layer that are worked on at one time; with what lies around them and beside them this makes some 25 bytes each.
 constexpr std::size_t samples_at_once = std::size_t{8} << 20;
 
-int layers_at_once(const Grid& layout) {
+int layers_at_once(const volume::Grid& layout) {
     const std::size_t layer = layout.index(0, 0, 1), wanted = samples_at_once / std::max<std::size_t>(layer, 1);
     const auto layers = static_cast<std::size_t>(layout.size[2]), most = std::clamp<std::size_t>(wanted, 1, layers);
     const std::size_t slabs = (layers + most - 1) / most, each = (layers + slabs - 1) / slabs;
@@ -101,13 +101,13 @@ struct Source {
         }
     }
 
-    Grid smooth(Grid slab) const {
-        for (int pass = 0; pass < passes; ++pass) slab = smoothed(std::move(slab), run);
+    volume::Grid smooth(volume::Grid slab) const {
+        for (int pass = 0; pass < passes; ++pass) slab = volume::smoothed(std::move(slab), run);
         return slab;
     }
 
     // The box along x and y around what reaches iso in a slab; high < low where nothing does.
-    void box_of(const Grid& slab, std::array<int, 2>& low, std::array<int, 2>& high) const {
+    void box_of(const volume::Grid& slab, std::array<int, 2>& low, std::array<int, 2>& high) const {
         std::vector<std::array<int, 4>> boxes(static_cast<std::size_t>(slab.size[2]));
         run(slab.size[2], [&](int k) {
             std::array<int, 4>& box = boxes[static_cast<std::size_t>(k)];
@@ -132,23 +132,23 @@ struct Source {
     }
 
     // What reaches iso once smoothed, over the whole volume.
-    RunRows runs(int at_once, const ImportInLayers& how) const {
-        RunRows rows{hu.layout.size, {0}, {}};
+    volume::RunRows runs(int at_once, const ImportInLayers& how) const {
+        volume::RunRows rows{hu.layout.size, {0}, {}};
         for (int k = 0; k < layers(); k += at_once) {
             const int count = std::min(at_once, layers() - k), below = std::min(passes, k);
-            Grid slab = hu.layers(k - below, std::min(count + below + passes, layers() - k + below),
+            volume::Grid slab = hu.layers(k - below, std::min(count + below + passes, layers() - k + below),
                                   {{0, 0}, {hu.layout.size[0] - 1, hu.layout.size[1] - 1}});
             std::array<int, 2> low{}, high{};
             if (passes > 0) box_of(slab, low, high);
             if (passes > 0 && high[0] >= 0) {
                 widen(low, high);
-                const Grid part = smooth(window_of(slab, low, high));
+                const volume::Grid part = smooth(volume::window_of(slab, low, high));
                 for (int z = 0; z < part.size[2]; ++z)
                     for (int y = 0; y < part.size[1]; ++y)
                         std::copy_n(&part.values[part.index(0, y, z)], part.size[0],
                                     &slab.values[slab.index(low[0], low[1] + y, z)]);
             }
-            append_above(rows, slab, iso, below, count, run);
+            volume::append_above(rows, slab, iso, below, count, run);
             how.progress(0.45 * (k + count) / layers());
         }
         return rows;
@@ -159,10 +159,10 @@ struct Source {
 struct Room {
     const Source& source;
     const Box& box;
-    const Components& components;  // in samples of the room, as the hollows
-    const RunRows& hollows;
+    const volume::Components& components;  // in samples of the room, as the hollows
+    const volume::RunRows& hollows;
     std::size_t keep;
-    std::map<int, CompactSlice> hu{};  // by layer of the room, inside of the volume
+    std::map<int, volume::CompactSlice> hu{};  // by layer of the room, inside of the volume
 
     // Samples of the volume in the room, along each axis.
     std::array<int, 3> inner_first() const {
@@ -174,9 +174,9 @@ struct Room {
                 std::min(box.last[2], size[2] - 1)};
     }
 
-    Grid layout() const {
-        const Grid& all = source.hu.layout;
-        Grid room{{}, all.position(box.first[0], box.first[1], box.first[2]), all.spacing, {}};
+    volume::Grid layout() const {
+        const volume::Grid& all = source.hu.layout;
+        volume::Grid room{{}, all.position(box.first[0], box.first[1], box.first[2]), all.spacing, {}};
         for (std::size_t a = 0; a < 3; ++a) room.size[a] = box.last[a] - box.first[a] + 1;
         return room;
     }
@@ -187,7 +187,7 @@ struct Room {
         return edge >= source.iso ? std::min(2.0f * source.iso - edge, source.iso - 1.0f) : edge;
     }
 
-    Grid grey(int first, int count) {
+    volume::Grid grey(int first, int count) {
         const int last_layer = source.layers() - 1, passes = source.passes;
         const int a = std::clamp(first + box.first[2], 0, last_layer),
                   b = std::clamp(first + count - 1 + box.first[2], 0, last_layer);
@@ -195,12 +195,12 @@ struct Room {
         const std::array<int, 3> inner = inner_first(), inner_end = inner_last();
         std::array<int, 2> low{inner[0], inner[1]}, high{inner_end[0], inner_end[1]};
         source.widen(low, high);
-        Grid part = source.hu.layers(a - below, b - a + 1 + below + above, {low, high});
+        volume::Grid part = source.hu.layers(a - below, b - a + 1 + below + above, {low, high});
         const std::array<int, 2> at{inner[0] - low[0], inner[1] - low[1]};
         remember(part, at, first, count, a - below);
         part = source.smooth(std::move(part));
 
-        Grid out = layout();
+        volume::Grid out = layout();
         out.size[2] = count;
         out.values.resize(out.count());
         const std::array<int, 2> to{inner_end[0] - low[0], inner_end[1] - low[1]};
@@ -220,13 +220,13 @@ struct Room {
                 }
             }
         });
-        if (keep > 0) keep_largest(out, source.iso, components, keep, first);
-        fill_hollows(out, source.iso, hollows, first);
+        if (keep > 0) volume::keep_largest(out, source.iso, components, keep, first);
+        volume::fill_hollows(out, source.iso, hollows, first);
         return out;
     }
 
     // Keeps the HU of new layers until their density is asked for.
-    void remember(const Grid& part, const std::array<int, 2>& at, int first, int count, int part_first) {
+    void remember(const volume::Grid& part, const std::array<int, 2>& at, int first, int count, int part_first) {
         const std::array<int, 3> inner = inner_first(), inner_end = inner_last();
         std::vector<float> values;
         for (int n = first; n < first + count; ++n) {
@@ -237,13 +237,13 @@ struct Room {
                 const float* row = &part.values[part.index(at[0], at[1] + j, z - part_first)];
                 values.insert(values.end(), row, row + (inner_end[0] - inner[0] + 1));
             }
-            hu[n] = CompactSlice(values);
+            hu[n] = volume::CompactSlice(values);
         }
     }
 
     // Density of layers whose grey values were made; afterwards their HU are forgotten.
-    Grid density(int first, int count) {
-        Grid out = layout();
+    volume::Grid density(int first, int count) {
+        volume::Grid out = layout();
         out.size[2] = count;
         out.values.assign(out.count(), 0.0f);
         const std::array<int, 3> inner = inner_first(), inner_end = inner_last();
@@ -283,9 +283,9 @@ SparseHuBone sparse_bone_from_hu(const HuLayers& hu, const BoneSurface& surface,
                                  const ImportInLayers& how) {
     const float iso = surface.threshold;
     const Source source{hu, iso, smoothing_passes(hu.layout.spacing), run};
-    RunRows rows = source.runs(how.at_once > 0 ? how.at_once : layers_at_once(hu.layout), how);
+    volume::RunRows rows = source.runs(how.at_once > 0 ? how.at_once : layers_at_once(hu.layout), how);
     how.check_values();
-    Components found = components_of(std::move(rows));
+    volume::Components found = volume::components_of(std::move(rows));
     if (found.voxels.empty())
         throw Error(
             fmt::format("nothing in the volume reaches {} HU, so there is no bone; lower the threshold or move "
@@ -294,19 +294,19 @@ SparseHuBone sparse_bone_from_hu(const HuLayers& hu, const BoneSurface& surface,
     SparseHuBone result;
     result.components = found.voxels.size();
     const Box box = room_around(found, surface.keep, hu.layout);
-    const Components components = moved_into(std::exchange(found, {}), box);
-    const RunRows no_hollows{components.rows.size, std::vector<std::size_t>(components.rows.start.size(), 0), {}};
-    const RunRows hollows = surface.fill ? hollows_of(components, surface.keep) : no_hollows;
+    const volume::Components components = moved_into(std::exchange(found, {}), box);
+    const volume::RunRows no_hollows{components.rows.size, std::vector<std::size_t>(components.rows.start.size(), 0), {}};
+    const volume::RunRows hollows = surface.fill ? volume::hollows_of(components, surface.keep) : no_hollows;
     Room room{source, box, components, hollows, surface.keep};
     const Vec3& h = hu.layout.spacing;
     const double reach = std::max(air_around, 6.0 * std::max({h.x, h.y, h.z}));
     result.bone = SparseBone(room.layout(), static_cast<float>(reach));
-    const Grid layout = room.layout();
+    const volume::Grid layout = room.layout();
     const int at_once = how.at_once > 0 ? (how.at_once + SparseBone::side - 1) / SparseBone::side * SparseBone::side
                                         : layers_at_once(layout);
-    distance_to_iso(
+    volume::distance_to_iso(
         layout, iso, {reach, at_once}, [&](int first, int count) { return room.grey(first, count); },
-        [&](int first, const Grid& distance) {
+        [&](int first, const volume::Grid& distance) {
             result.bone.add_layers(first, distance, room.density(first, distance.size[2]), run);
             how.progress(0.45 + 0.55 * (first + distance.size[2]) / layout.size[2]);
         },
@@ -317,13 +317,13 @@ SparseHuBone sparse_bone_from_hu(const HuLayers& hu, const BoneSurface& surface,
     return result;
 }
 
-HuBone bone_from_hu(Grid hu, const BoneSurface& surface, const RunJobs& run) {
-    const Grid layout{hu.size, hu.origin, hu.spacing, {}};
+HuBone bone_from_hu(volume::Grid hu, const BoneSurface& surface, const RunJobs& run) {
+    const volume::Grid layout{hu.size, hu.origin, hu.spacing, {}};
     const auto layers = [&hu](int first, int count, const HuLayers::Window& window) {
-        Grid all{{hu.size[0], hu.size[1], count}, hu.position(0, 0, first), hu.spacing, {}};
+        volume::Grid all{{hu.size[0], hu.size[1], count}, hu.position(0, 0, first), hu.spacing, {}};
         all.values.assign(hu.values.begin() + static_cast<std::ptrdiff_t>(hu.index(0, 0, first)),
                           hu.values.begin() + static_cast<std::ptrdiff_t>(hu.index(0, 0, first + count)));
-        return window_of(all, window.low, window.high);
+        return volume::window_of(all, window.low, window.high);
     };
     SparseHuBone made = sparse_bone_from_hu({layout, layers}, surface, run);
     HuBone result{dense_of(made.bone), made.components};
@@ -331,4 +331,4 @@ HuBone bone_from_hu(Grid hu, const BoneSurface& surface, const RunJobs& run) {
     return result;
 }
 
-}  // namespace tactus
+}  // namespace tactus::bone

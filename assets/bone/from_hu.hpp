@@ -12,7 +12,7 @@
 #include <map>
 #include <string>
 
-namespace tactus {
+namespace tactus::bone {
 
 /// How the surface of a bone is taken from CT values.
 struct BoneSurface {
@@ -34,9 +34,9 @@ struct HuLayers {
     struct Window {
         std::array<int, 2> low, high;
     };
-    Grid layout;  ///< size, origin and spacing; no values
+    volume::Grid layout;  ///< size, origin and spacing; no values
     /// What a window shows of `count` layers from `first` on; asked for in ascending order, twice.
-    std::function<Grid(int first, int count, const Window& window)> layers;
+    std::function<volume::Grid(int first, int count, const Window& window)> layers;
 };
 
 /// How much is worked on at one time, and who hears of it. Changes no bit of the result.
@@ -68,6 +68,6 @@ struct HuBone {
 };
 
 /// The same with all samples in memory.
-HuBone bone_from_hu(Grid hu, const BoneSurface& surface, const RunJobs& run = run_in_turn);
+HuBone bone_from_hu(volume::Grid hu, const BoneSurface& surface, const RunJobs& run = run_in_turn);
 
-}  // namespace tactus
+}  // namespace tactus::bone

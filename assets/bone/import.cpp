@@ -3,7 +3,7 @@
 
 #include "assets/bone/import_steps.hpp"
 
-namespace tactus {
+namespace tactus::bone {
 
 namespace {
 
@@ -51,7 +51,7 @@ Bone import_bone(const ImportOptions& options, const ImportProgress& progress, I
     const ImportReport report{progress};
     ImportSummary found;
     Bone bone;
-    if (is_volume_file(options.input)) {
+    if (volume::is_volume_file(options.input)) {
         SparseImport made = import_scan(options, report, found);
         bone = dense_of(made.bone);
         bone.name = std::move(made.about.name);
@@ -71,7 +71,7 @@ ImportSummary import_bone_file(const ImportOptions& options, const std::filesyst
     check_output(options, out);
     const ImportReport report{progress};
     ImportSummary found;
-    if (is_volume_file(options.input)) {
+    if (volume::is_volume_file(options.input)) {
         SparseImport made = import_scan(options, report, found);
         report(0.92, "writing");
         save_bone(std::move(made.bone), made.about, out);
@@ -84,4 +84,4 @@ ImportSummary import_bone_file(const ImportOptions& options, const std::filesyst
     return found;
 }
 
-}  // namespace tactus
+}  // namespace tactus::bone

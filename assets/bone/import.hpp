@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace tactus {
+namespace tactus::bone {
 
 /// What to import and how. Files are LPS and in mm.
 struct ImportOptions {
@@ -76,4 +76,4 @@ struct ImportedBone {
 /// One bone per chosen label of a label map, in ascending order of labels, in one frame. Throws Error like import_bone.
 std::vector<ImportedBone> import_labels(const ImportOptions& options, const ImportProgress& progress = {});
 
-}  // namespace tactus
+}  // namespace tactus::bone

@@ -3,7 +3,7 @@
 #include "assets/bone/import_steps.hpp"
 #include "assets/volume/lps_layers.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/distance/resample.hpp"
+#include "dsp/volume/resample.hpp"
 #include "dsp/volume/grid_part.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 #include <memory>
 #include <utility>
 
-namespace tactus {
+namespace tactus::bone {
 
 namespace {
 
@@ -42,8 +42,8 @@ Range parse_crop(const std::string& text) {
 }
 
 // Samples of the result: the file's own within the box, or new ones at `spacing`.
-Grid ct_layout(const Grid& ct, const Range& crop, std::optional<double> spacing) {
-    Grid layout{{}, {}, spacing ? Vec3(*spacing) : ct.spacing, {}};
+volume::Grid ct_layout(const volume::Grid& ct, const Range& crop, std::optional<double> spacing) {
+    volume::Grid layout{{}, {}, spacing ? Vec3(*spacing) : ct.spacing, {}};
     for (int axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
         const double last = ct.origin[axis] + (ct.size[a] - 1) * ct.spacing[axis];
@@ -64,12 +64,12 @@ Grid ct_layout(const Grid& ct, const Range& crop, std::optional<double> spacing)
 }
 
 // "1 (femur), 2": what the structures of a label map are called.
-std::string list_of_labels(const ScanVolume& about, const Tally& tally) {
+std::string list_of_labels(const volume::ScanVolume& about, const volume::Tally& tally) {
     std::vector<std::string> words;
     for (const int label : tally.labels) {
         if (label == 0) continue;
         const auto named = std::find_if(about.segments.begin(), about.segments.end(),
-                                        [&](const Segment& s) { return s.label == label && !s.name.empty(); });
+                                        [&](const volume::Segment& s) { return s.label == label && !s.name.empty(); });
         words.push_back(named == about.segments.end() ? std::to_string(label)
                                                       : fmt::format("{} ({})", label, named->name));
         if (words.size() == 12) break;
@@ -81,10 +81,10 @@ std::string list_of_labels(const ScanVolume& about, const Tally& tally) {
 
 }  // namespace
 
-void require_hu(ScanVolume& about, const Tally& tally, const ImportOptions& options,
+void require_hu(volume::ScanVolume& about, const volume::Tally& tally, const ImportOptions& options,
                 const std::filesystem::path& file) {
-    if (options.rescale) about.hu = HuKind::calibrated;
-    if (about.hu != HuKind::scanner) return;
+    if (options.rescale) about.hu = volume::HuKind::calibrated;
+    if (about.hu != volume::HuKind::scanner) return;
     throw Error(
         fmt::format("{}: values {:g} to {:g} are not HU (no air near -1000): scanner numbers. Say which of them are "
                     "which HU, as in --hu-calibration 60:-1000,1100:40 (air and water or muscle), or convert the "
@@ -96,13 +96,13 @@ SparseImport import_ct(const ImportOptions& options, const ImportReport& report,
     const Range crop = parse_crop(options.crop);
     const std::size_t keep = parse_component(options.component);
     report(0.0, "reading");
-    const std::unique_ptr<SliceReader> reader = open_volume(options.input, {options.series});
-    ScanVolume& about = reader->about;
-    LpsLayers source(*reader, options.run);
+    const std::unique_ptr<volume::SliceReader> reader = volume::open_volume(options.input, {options.series});
+    volume::ScanVolume& about = reader->about;
+    volume::LpsLayers source(*reader, options.run);
     source.set_line(options.rescale);
     const auto check = [&] {
         source.settle();
-        if (about.kind == VolumeKind::labels && !options.rescale)
+        if (about.kind == volume::VolumeKind::labels && !options.rescale)
             throw Error(
                 fmt::format("{}: a label map, not a CT: its values are numbers of structures. Say which of them is the "
                             "bone with --label N or its name, or --label all for one bone each ({})",
@@ -110,19 +110,19 @@ SparseImport import_ct(const ImportOptions& options, const ImportReport& report,
         require_hu(about, source.tally(), options, options.input);
     };
     if (source.is_turned()) check();
-    const Grid& ct = source.layout();
-    const Grid layout = ct_layout(ct, crop, options.spacing);
+    const volume::Grid& ct = source.layout();
+    const volume::Grid layout = ct_layout(ct, crop, options.spacing);
     // Samples of the file itself need not be made anew, so only what is looked at is fetched.
     const bool same = ct.size == layout.size && ct.origin == layout.origin && ct.spacing == layout.spacing;
     const auto layers = [&](int first, int count, const HuLayers::Window& window) {
         if (same) return source.layers(first, count, {window.low, window.high});
         // Whole layers are resampled, but not many at one time.
         constexpr int at_once = 16;
-        Grid all;
+        volume::Grid all;
         for (int k = first; k < first + count; k += at_once) {
-            const LayerRange wanted{k, std::min(at_once, first + count - k)}, from = layers_for(ct, layout, wanted);
-            Grid part =
-                window_of(resampled_layers(source.layers(from.first, from.count), ct, layout, wanted, options.run),
+            const volume::LayerRange wanted{k, std::min(at_once, first + count - k)}, from = volume::layers_for(ct, layout, wanted);
+            volume::Grid part =
+                volume::window_of(volume::resampled_layers(source.layers(from.first, from.count), ct, layout, wanted, options.run),
                           window.low, window.high);
             if (all.values.empty()) {
                 all = std::move(part);
@@ -143,18 +143,18 @@ SparseImport import_ct(const ImportOptions& options, const ImportReport& report,
     };
     SparseHuBone made =
         sparse_bone_from_hu(hu, {static_cast<float>(options.threshold), keep, options.fill}, options.run, how);
-    summary.hu = name_of(about.hu);
+    summary.hu = volume::name_of(about.hu);
     summary.notes = about.notes;
     summary.components = made.components;
     SparseImport result{std::move(made.bone), {}};
     result.about.provenance = std::move(made.provenance);
     auto& provenance = result.about.provenance;
     provenance["encoding"] = about.encoding;
-    provenance["file_frame"] = name_of(about.file_frame);
+    provenance["file_frame"] = volume::name_of(about.file_frame);
     if (source.is_turned()) provenance["axes"] = "turned; resampled to LPS";
     if (options.rescale)
         provenance["rescale"] = fmt::format("HU = {} * value + {}", options.rescale->first, options.rescale->second);
     return result;
 }
 
-}  // namespace tactus
+}  // namespace tactus::bone

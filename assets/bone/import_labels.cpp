@@ -3,7 +3,7 @@
 #include "assets/bone/labels.hpp"
 #include "assets/volume/lps_layers.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/distance/components.hpp"
+#include "dsp/volume/components.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,47 +14,47 @@
 #include <memory>
 #include <optional>
 
-namespace tactus {
+namespace tactus::bone {
 
 namespace {
 
 // Those of the map that `wanted` means: "all", a number, or a name that the file gives.
-std::vector<Segment> choose_segments(const std::string& wanted, const std::vector<int>& labels,
-                                     const std::vector<Segment>& named, const std::string& file) {
+std::vector<volume::Segment> choose_segments(const std::string& wanted, const std::vector<int>& labels,
+                                     const std::vector<volume::Segment>& named, const std::string& file) {
     if (labels.empty()) throw Error(fmt::format("{}: every voxel is 0; there is no label", file));
-    std::vector<Segment> all;
+    std::vector<volume::Segment> all;
     std::vector<std::string> names;
     for (const int label : labels) {
-        const auto known = std::find_if(named.begin(), named.end(), [&](const Segment& s) { return s.label == label; });
-        all.push_back(known != named.end() ? *known : Segment{label, "", {}});
+        const auto known = std::find_if(named.begin(), named.end(), [&](const volume::Segment& s) { return s.label == label; });
+        all.push_back(known != named.end() ? *known : volume::Segment{label, "", {}});
         // A name that another label has already would not tell them apart.
         if (all.back().name.empty() || std::count(names.begin(), names.end(), all.back().name) > 0)
             all.back().name = fmt::format("label {}", label);
         names.push_back(all.back().name);
     }
     if (wanted == "all") return all;
-    for (const Segment& segment : all)
+    for (const volume::Segment& segment : all)
         if (wanted == std::to_string(segment.label) || wanted == segment.name) return {segment};
     throw Error(fmt::format("{}: has no label '{}' but {}{}", file, wanted, fmt::join(labels, ", "),
                             did_you_mean(wanted, names)));
 }
 
-std::size_t pieces_of(Grid distance) {
+std::size_t pieces_of(volume::Grid distance) {
     for (float& value : distance.values) value = -value;
-    return components_above(distance, 0.0f).voxels.size();
+    return volume::components_above(distance, 0.0f).voxels.size();
 }
 
 constexpr double air_around = 5e-3;  // m
 
 // The samples at the ends of each label.
-std::map<int, Components::Box> boxes_of(LpsLayers& source) {
+std::map<int, volume::Components::Box> boxes_of(volume::LpsLayers& source) {
     constexpr int at_once = 16;
     const auto& size = source.layout().size;
-    std::map<int, Components::Box> boxes;
+    std::map<int, volume::Components::Box> boxes;
     for (int k = 0; k < size[2]; k += at_once) {
-        const Grid slab = source.layers(k, std::min(at_once, size[2] - k));
+        const volume::Grid slab = source.layers(k, std::min(at_once, size[2] - k));
         int last = 0;
-        Components::Box* box = nullptr;
+        volume::Components::Box* box = nullptr;
         for (int z = 0; z < slab.size[2]; ++z)
             for (int y = 0; y < slab.size[1]; ++y)
                 for (int x = 0; x < slab.size[0]; ++x) {
@@ -76,7 +76,7 @@ std::map<int, Components::Box> boxes_of(LpsLayers& source) {
 }
 
 // The labels that there are, ascending. Throws Error when the values are none.
-std::vector<int> labels_of(const Tally& tally, const std::string& file) {
+std::vector<int> labels_of(const volume::Tally& tally, const std::string& file) {
     if (!tally.whole)
         throw Error(
             fmt::format("{}: values of {:g} to {:g} are no labels: labels are whole numbers from 0 to 65535; leave "
@@ -91,8 +91,8 @@ std::vector<int> labels_of(const Tally& tally, const std::string& file) {
 }
 
 // Samples of `source` around those of `box`, which count on `layout`; `more` samples beyond the air that a bone is given.
-Grid part_around(LpsLayers& source, const Grid& layout, const Components::Box& box, int more) {
-    const Grid& all = source.layout();
+volume::Grid part_around(volume::LpsLayers& source, const volume::Grid& layout, const volume::Components::Box& box, int more) {
+    const volume::Grid& all = source.layout();
     std::array<int, 3> low{}, high{};
     for (int axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
@@ -102,7 +102,7 @@ Grid part_around(LpsLayers& source, const Grid& layout, const Components::Box& b
         low[a] = std::clamp(static_cast<int>(std::floor(from / all.spacing[axis])), 0, all.size[a] - 1);
         high[a] = std::clamp(static_cast<int>(std::ceil(to / all.spacing[axis])), low[a], all.size[a] - 1);
     }
-    return part_of(source, low, high);
+    return volume::part_of(source, low, high);
 }
 
 }  // namespace
@@ -113,40 +113,40 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
     const ImportReport report{progress};
     const std::string file = options.input.string();
     report(0.0, "reading");
-    const std::unique_ptr<SliceReader> reader = open_volume(options.input, {options.series});
-    LpsLayers source(*reader, options.run);
-    reader->about.kind = VolumeKind::labels;
+    const std::unique_ptr<volume::SliceReader> reader = volume::open_volume(options.input, {options.series});
+    volume::LpsLayers source(*reader, options.run);
+    reader->about.kind = volume::VolumeKind::labels;
     if (source.is_turned()) source.settle();
-    const std::map<int, Components::Box> boxes = boxes_of(source);
+    const std::map<int, volume::Components::Box> boxes = boxes_of(source);
     source.settle();
-    const std::vector<Segment> chosen =
+    const std::vector<volume::Segment> chosen =
         choose_segments(options.label, labels_of(source.tally(), file), reader->about.segments, file);
     LabelBone how;
     how.spacing = options.spacing;
-    std::unique_ptr<SliceReader> grey;
-    std::optional<LpsLayers> ct;
-    HuKind hu = HuKind::none;
+    std::unique_ptr<volume::SliceReader> grey;
+    std::optional<volume::LpsLayers> ct;
+    volume::HuKind hu = volume::HuKind::none;
     if (!options.ct.empty()) {
-        grey = open_volume(options.ct);
+        grey = volume::open_volume(options.ct);
         ct.emplace(*grey, options.run);
         ct->set_line(options.rescale);
         ct->settle();
         require_hu(grey->about, ct->tally(), options, options.ct);
         hu = grey->about.hu;
-        how.hu_is_masked = hu == HuKind::masked;
+        how.hu_is_masked = hu == volume::HuKind::masked;
     }
     const std::string source_hash = hash_of_source(options.input);
     std::vector<ImportedBone> bones;
-    for (const Segment& segment : chosen) {
+    for (const volume::Segment& segment : chosen) {
         report(0.1 + 0.9 * static_cast<double>(bones.size()) / static_cast<double>(chosen.size()), segment.name);
         // Only what lies around one label is in memory at one time.
-        const Components::Box& box = boxes.at(segment.label);
-        const Grid map = part_around(source, source.layout(), box, 0);
-        const Grid values = ct ? part_around(*ct, source.layout(), box, 4) : Grid{};
+        const volume::Components::Box& box = boxes.at(segment.label);
+        const volume::Grid map = part_around(source, source.layout(), box, 0);
+        const volume::Grid values = ct ? part_around(*ct, source.layout(), box, 4) : volume::Grid{};
         how.hu = ct ? &values : nullptr;
         ImportedBone made;
         made.bone = bone_of_label(map, segment, how, options.run);
-        made.summary.hu = name_of(hu);
+        made.summary.hu = volume::name_of(hu);
         made.summary.notes = reader->about.notes;
         made.summary.components = pieces_of(made.bone.distance);
         measure(made.bone, made.summary);
@@ -159,4 +159,4 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
     return bones;
 }
 
-}  // namespace tactus
+}  // namespace tactus::bone

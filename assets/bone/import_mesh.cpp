@@ -4,7 +4,7 @@
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/repair.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/distance/surface_distance.hpp"
+#include "dsp/volume/surface_distance.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -13,7 +13,7 @@
 #include <cmath>
 #include <utility>
 
-namespace tactus {
+namespace tactus::bone {
 
 namespace {
 
@@ -41,19 +41,19 @@ double unit_of(const ImportOptions& options, double extent) {
 }
 
 // Keeps the components of largest enclosed volume, each turned to look outwards.
-Mesh largest_components(const Mesh& mesh, const MeshTopology& topology, std::size_t keep) {
-    std::vector<Mesh> parts(topology.components);
+mesh::Mesh largest_components(const mesh::Mesh& mesh, const mesh::MeshTopology& topology, std::size_t keep) {
+    std::vector<mesh::Mesh> parts(topology.components);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
         parts[static_cast<std::size_t>(topology.component_of[t])].triangles.push_back(mesh.triangles[t]);
     std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t p = 0; p < parts.size(); ++p) {
         parts[p].vertices = mesh.vertices;
-        order.push_back({volume_of(parts[p]), p});
+        order.push_back({mesh::volume_of(parts[p]), p});
         parts[p].vertices.clear();
     }
     std::stable_sort(order.begin(), order.end(),
                      [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });
-    Mesh kept;
+    mesh::Mesh kept;
     kept.vertices = mesh.vertices;
     if (keep == 0 || keep > order.size()) keep = order.size();
     for (std::size_t n = 0; n < keep; ++n)
@@ -71,24 +71,24 @@ Bone import_mesh(const ImportOptions& options, const ImportReport& report, Impor
     if (!options.crop.empty()) throw Error("a crop box is for CT volumes; cut the mesh in a mesh editor");
     const std::size_t keep = parse_component(options.component);
     report(0.0, "reading");
-    MeshOrigin origin;
-    Mesh mesh = load_mesh(options.input, 1.0, &origin);
+    mesh::MeshOrigin origin;
+    mesh::Mesh mesh = mesh::load_mesh(options.input, 1.0, &origin);
     Vec3 low = mesh.vertices.front(), high = low;
     for (const Vec3& v : mesh.vertices) low = glm::min(low, v), high = glm::max(high, v);
     const auto widest = [](const Vec3& v) { return std::max({v.x, v.y, v.z}); };
     const double unit = unit_of(options, widest(high - low));
     for (Vec3& v : mesh.vertices) v *= unit;
-    const MeshRepair repaired = repair(mesh, options.input.string());
+    const mesh::MeshRepair repaired = mesh::repair(mesh, options.input.string());
     if (!repaired.is_clean()) summary.notes.push_back(repaired.describe());
     if (origin.without_area > 0)
         summary.notes.push_back(fmt::format("{} triangles without area dropped", origin.without_area));
-    const MeshTopology topology = topology_of(mesh);
+    const mesh::MeshTopology topology = mesh::topology_of(mesh);
     mesh = largest_components(mesh, topology, keep);
     const auto corner = [&](const auto& t, std::size_t c) { return mesh.vertices[static_cast<std::size_t>(t[c])]; };
     low = high = corner(mesh.triangles.front(), 0);
     for (const auto& t : mesh.triangles)
         for (std::size_t c = 0; c < 3; ++c) low = glm::min(low, corner(t, c)), high = glm::max(high, corner(t, c));
-    Grid layout{{}, {}, Vec3(options.spacing.value_or(std::max(0.4 * mm, widest(high - low) / 400.0))), {}};
+    volume::Grid layout{{}, {}, Vec3(options.spacing.value_or(std::max(0.4 * mm, widest(high - low) / 400.0))), {}};
     layout.origin = low - 4.0 * layout.spacing;
     for (int axis = 0; axis < 3; ++axis) {
         const double steps = std::ceil((high[axis] - low[axis]) / layout.spacing[axis]) + 9.0;
@@ -98,7 +98,7 @@ Bone import_mesh(const ImportOptions& options, const ImportReport& report, Impor
     check_layout(layout, most_mesh_voxels);
     report(0.3, "distance");
     Bone bone;
-    bone.distance = signed_distance(layout, mesh, options.run);
+    bone.distance = volume::signed_distance(layout, mesh, options.run);
     bone.density = assumed_density(bone.distance);
     if (options.mesh_density)
         for (std::size_t n = 0; n < bone.density.values.size(); ++n)
@@ -108,9 +108,9 @@ Bone import_mesh(const ImportOptions& options, const ImportReport& report, Impor
     bone.provenance["calibration"] = options.mesh_density
                                          ? fmt::format("assumed: density = {} kg/m3 throughout", *options.mesh_density)
                                          : assumed_density_law();
-    bone.provenance["file_frame"] = fmt::format("{}{}", name_of(origin.frame), origin.frame_stated ? "" : " (assumed)");
+    bone.provenance["file_frame"] = fmt::format("{}{}", volume::name_of(origin.frame), origin.frame_stated ? "" : " (assumed)");
     bone.provenance["unit"] = fmt::format("{} m{}", unit, options.unit ? "" : " (assumed)");
     return bone;
 }
 
-}  // namespace tactus
+}  // namespace tactus::bone

@@ -15,7 +15,7 @@
 #include <limits>
 #include <vector>
 
-namespace tactus {
+namespace tactus::bone {
 
 namespace {
 
@@ -63,7 +63,7 @@ std::size_t parse_component(const std::string& text) {
     return count;
 }
 
-void check_layout(const Grid& layout, double most) {
+void check_layout(const volume::Grid& layout, double most) {
     double count = 1.0;
     for (const int n : layout.size) count *= n;
     if (count > most)
@@ -73,13 +73,13 @@ void check_layout(const Grid& layout, double most) {
 }
 
 void measure(const Bone& bone, ImportSummary& summary) {
-    const TriangleSurface surface = iso_surface(bone.distance, 0.0f, false);
+    const geometry::TriangleSurface surface = geometry::iso_surface(bone.distance, 0.0f, false);
     summary.frame = "LPS";
     summary.size = bone.distance.size;
     for (int axis = 0; axis < 3; ++axis)
         summary.voxel_mm[static_cast<std::size_t>(axis)] = bone.distance.spacing[axis] / mm;
-    summary.bone_volume_mm3 = volume_of(surface) / (mm * mm * mm);
-    summary.surface_area_mm2 = area_of(surface) / (mm * mm);
+    summary.bone_volume_mm3 = mesh::volume_of(surface) / (mm * mm * mm);
+    summary.surface_area_mm2 = mesh::area_of(surface) / (mm * mm);
     double sum = 0.0, low = std::numeric_limits<double>::infinity(), high = 0.0;
     std::size_t inside = 0;
     for (std::size_t n = 0; n < bone.distance.values.size(); ++n) {
@@ -110,7 +110,7 @@ void measure(const SparseBone& bone, ImportSummary& summary, const RunJobs& run)
 
 void add_points(Bone& bone, const ImportOptions& options, ImportSummary& summary) {
     if (!options.pointshell) return;
-    bone.points = sample_surface(bone.distance,
+    bone.points = contact::sample_surface(bone.distance,
                                  {.spacing = *options.pointshell, .follow_curvature = options.pointshell_by_curvature});
     bone.provenance["pointshell"] =
         fmt::format("{} mm{}", *options.pointshell / mm, options.pointshell_by_curvature ? ", by curvature" : "");
@@ -129,8 +129,8 @@ void add_provenance(Bone& bone, const ImportOptions& options, const ImportSummar
 
 std::string hash_of_source(const std::filesystem::path& path) {
     Hash hash;
-    for (const std::filesystem::path& file : source_files(path)) add_file(hash, file);
+    for (const std::filesystem::path& file : source_files(path)) file::add_file(hash, file);
     return fmt::format("{:016x}", hash.value());
 }
 
-}  // namespace tactus
+}  // namespace tactus::bone

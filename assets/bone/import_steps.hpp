@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-namespace tactus {
+namespace tactus::bone {
 
 /// Progress that may be listened to by nobody.
 struct ImportReport {
@@ -42,10 +42,10 @@ void check_output(const ImportOptions& options, const std::filesystem::path& out
 std::size_t parse_component(const std::string& text);
 
 /// Throws Error for more voxels than `most`.
-void check_layout(const Grid& layout, double most);
+void check_layout(const volume::Grid& layout, double most);
 
 /// What a line given for scanner numbers makes them. Throws Error when the numbers cannot be HU and none is.
-void require_hu(ScanVolume& about, const Tally& tally, const ImportOptions& options, const std::filesystem::path& file);
+void require_hu(volume::ScanVolume& about, const volume::Tally& tally, const ImportOptions& options, const std::filesystem::path& file);
 
 /// Fills in frame, size, volume, area and densities. Throws Error for a bone without a sample inside.
 void measure(const Bone& bone, ImportSummary& summary);
@@ -61,4 +61,4 @@ void add_provenance(Bone& bone, const ImportOptions& options, const ImportSummar
 /// Of a file, or of all files of a folder in the order of their names; 16 hexadecimal digits.
 std::string hash_of_source(const std::filesystem::path& path);
 
-}  // namespace tactus
+}  // namespace tactus::bone

@@ -5,10 +5,10 @@
 #include "assets/bone/from_hu.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/distance/cubic_interpolant.hpp"
-#include "dsp/distance/resample.hpp"
-#include "dsp/distance/surface_distance.hpp"
-#include "dsp/distance/surface_net.hpp"
+#include "dsp/volume/cubic_interpolant.hpp"
+#include "dsp/volume/resample.hpp"
+#include "dsp/volume/surface_distance.hpp"
+#include "dsp/geometry/surface_net.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -18,7 +18,7 @@
 #include <array>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::bone {
 
 namespace {
 
@@ -35,7 +35,7 @@ struct Box {
 };
 
 // One where the label is, on the samples around it; outside of the map counts as not labelled.
-Grid mask_of(const Grid& labels, int label, std::size_t& count) {
+volume::Grid mask_of(const volume::Grid& labels, int label, std::size_t& count) {
     Box box{labels.size, {-1, -1, -1}};
     const auto wanted = static_cast<float>(label);
     count = 0;
@@ -49,7 +49,7 @@ Grid mask_of(const Grid& labels, int label, std::size_t& count) {
                 ++count;
             }
     if (count == 0) throw Error(fmt::format("no voxel has label {}", label));
-    Grid mask{{}, {}, labels.spacing, {}};
+    volume::Grid mask{{}, {}, labels.spacing, {}};
     for (std::size_t a = 0; a < 3; ++a) {
         const int reach = 6 + static_cast<int>(std::ceil(air_around / labels.spacing[static_cast<int>(a)]));
         box.first[a] -= reach;
@@ -70,10 +70,10 @@ Grid mask_of(const Grid& labels, int label, std::size_t& count) {
 
 // Grey values beside a surface of labels.
 struct Grey {
-    const Grid& labels;
-    const Grid& mask;
-    const Grid& hu;
-    CubicInterpolant f{hu};
+    const volume::Grid& labels;
+    const volume::Grid& mask;
+    const volume::Grid& hu;
+    volume::CubicInterpolant f{hu};
 
     Vec3 place(const Vec3& at) const { return (at - hu.origin) / hu.spacing; }
 
@@ -115,7 +115,7 @@ struct Grey {
     }
 
     // The level that as many values inside miss as outside reach.
-    std::optional<double> level(const SurfaceNet& net) const {
+    std::optional<double> level(const geometry::SurfaceNet& net) const {
         std::vector<double> inside, outside;
         for (const auto& cell : net.cell)
             for_each_edge(cell, [&](double in, double out) { inside.push_back(in), outside.push_back(out); });
@@ -131,7 +131,7 @@ struct Grey {
 };
 
 // Share of a cell's edges that cross the level, spread a little so that the surface does not tear where it ends.
-std::vector<double> trust_in(const Grey& grey, const SurfaceNet& net, double level) {
+std::vector<double> trust_in(const Grey& grey, const geometry::SurfaceNet& net, double level) {
     std::vector<double> trust;
     for (const auto& cell : net.cell) {
         int good = 0;
@@ -151,7 +151,7 @@ std::vector<double> trust_in(const Grey& grey, const SurfaceNet& net, double lev
     return trust;
 }
 
-void move_to_level(const Grey& grey, SurfaceNet& net, double level) {
+void move_to_level(const Grey& grey, geometry::SurfaceNet& net, double level) {
     const std::vector<double> trust = trust_in(grey, net, level);
     const double cell = std::min({grey.mask.spacing.x, grey.mask.spacing.y, grey.mask.spacing.z});
     for (std::size_t n = 0; n < net.vertices.size(); ++n) {
@@ -172,7 +172,7 @@ void move_to_level(const Grey& grey, SurfaceNet& net, double level) {
 }
 
 // Shifts the whole surface until it encloses as much as the labelled voxels, of which every one stays inside.
-void keep_volume(Grid& distance, const Grid& mask, double voxels) {
+void keep_volume(volume::Grid& distance, const volume::Grid& mask, double voxels) {
     const double wanted = voxels * mask.spacing.x * mask.spacing.y * mask.spacing.z;
     const double cell = std::min({mask.spacing.x, mask.spacing.y, mask.spacing.z});
     for (int round = 0; round < 2; ++round) {
@@ -180,9 +180,9 @@ void keep_volume(Grid& distance, const Grid& mask, double voxels) {
             for (std::size_t n = 0; n < distance.values.size(); ++n)
                 if (mask.values[n] > 0.5f)
                     distance.values[n] = std::min(distance.values[n], static_cast<float>(-0.02 * cell));
-        const TriangleSurface surface = iso_surface(distance, 0.0f, false);
+        const geometry::TriangleSurface surface = geometry::iso_surface(distance, 0.0f, false);
         if (surface.triangles.empty()) return;
-        const double outwards = std::clamp((wanted - volume_of(surface)) / area_of(surface), -0.5 * cell, 0.5 * cell);
+        const double outwards = std::clamp((wanted - mesh::volume_of(surface)) / mesh::area_of(surface), -0.5 * cell, 0.5 * cell);
         for (float& d : distance.values) d -= static_cast<float>(outwards);
     }
 }
@@ -191,7 +191,7 @@ void keep_volume(Grid& distance, const Grid& mask, double voxels) {
 
 Vec3 label_colour(int label) { return colours[static_cast<std::size_t>(std::max(label - 1, 0)) % colours.size()]; }
 
-std::vector<int> labels_in(const Grid& labels) {
+std::vector<int> labels_in(const volume::Grid& labels) {
     std::vector<char> seen(65536, 0);
     float last = 0.0f;
     for (const float value : labels.values) {
@@ -209,13 +209,13 @@ std::vector<int> labels_in(const Grid& labels) {
     return found;
 }
 
-Bone bone_of_label(const Grid& labels, const Segment& segment, const LabelBone& how, const RunJobs& run,
+Bone bone_of_label(const volume::Grid& labels, const volume::Segment& segment, const LabelBone& how, const RunJobs& run,
                    std::size_t* voxels) {
     std::size_t count = 0;
-    const Grid mask = mask_of(labels, segment.label, count);
+    const volume::Grid mask = mask_of(labels, segment.label, count);
     if (voxels) *voxels = count;
-    SurfaceNet net = surface_net(mask, 0.5f, true);
-    relax(net, mask, relax_passes, run);
+    geometry::SurfaceNet net = geometry::surface_net(mask, 0.5f, true);
+    geometry::relax(net, mask, relax_passes, run);
     bool from_grey = false;
     std::string surface = "label edges, staircase taken off, volume kept";
     // A masked CT holds nothing beyond the labels that an edge could be seen against.
@@ -228,7 +228,7 @@ Bone bone_of_label(const Grid& labels, const Segment& segment, const LabelBone& 
         }
     }
     Bone bone;
-    Grid layout{mask.size, mask.origin, mask.spacing, {}};
+    volume::Grid layout{mask.size, mask.origin, mask.spacing, {}};
     if (how.spacing) {
         const Vec3 extent = Vec3(mask.size[0] - 1, mask.size[1] - 1, mask.size[2] - 1) * mask.spacing;
         layout.spacing = Vec3(*how.spacing);
@@ -239,10 +239,10 @@ Bone bone_of_label(const Grid& labels, const Segment& segment, const LabelBone& 
             layout.size[static_cast<std::size_t>(a)] = static_cast<int>(steps);
         }
     }
-    bone.distance = signed_distance(layout, net, run);
+    bone.distance = volume::signed_distance(layout, net, run);
     if (!from_grey) keep_volume(bone.distance, mask, static_cast<double>(count));
     if (how.hu) {
-        bone.density = resampled(*how.hu, layout);
+        bone.density = volume::resampled(*how.hu, layout);
         for (float& value : bone.density.values) value = density_of_hu(value);
         bone.provenance["calibration"] = density_calibration();
     } else {
@@ -257,4 +257,4 @@ Bone bone_of_label(const Grid& labels, const Segment& segment, const LabelBone& 
     return bone;
 }
 
-}  // namespace tactus
+}  // namespace tactus::bone

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace tactus {
+namespace tactus::bone {
 
 namespace {
 
@@ -19,12 +19,12 @@ static_assert(std::endian::native == std::endian::little, "bone files are little
 
 }  // namespace
 
-std::string to_bytes(std::span<const SurfacePoint> points) {
+std::string to_bytes(std::span<const contact::SurfacePoint> points) {
     std::string bytes(mark);
     bytes.reserve(head_size + points.size() * point_size);
     const std::uint64_t count = points.size();
     bytes.append(reinterpret_cast<const char*>(&count), 8);
-    for (const SurfacePoint& p : points) {
+    for (const contact::SurfacePoint& p : points) {
         const double numbers[7] = {p.position.x, p.position.y, p.position.z, p.normal.x,
                                    p.normal.y,   p.normal.z,   p.area};
         bytes.append(reinterpret_cast<const char*>(numbers), sizeof numbers);
@@ -33,7 +33,7 @@ std::string to_bytes(std::span<const SurfacePoint> points) {
     return bytes;
 }
 
-std::vector<SurfacePoint> points_from(std::string_view bytes, const std::string& file) {
+std::vector<contact::SurfacePoint> points_from(std::string_view bytes, const std::string& file) {
     if (!bytes.starts_with(mark))
         throw Error(fmt::format("{}: its surface points are of a format that this program does not read", file));
     std::uint64_t count = 0;
@@ -41,9 +41,9 @@ std::vector<SurfacePoint> points_from(std::string_view bytes, const std::string&
     if (bytes.size() < head_size || (bytes.size() - head_size) % point_size != 0 ||
         (bytes.size() - head_size) / point_size != count)
         throw Error(fmt::format("{}: holds fewer or more surface points than it says", file));
-    std::vector<SurfacePoint> points(count);
+    std::vector<contact::SurfacePoint> points(count);
     const char* at = bytes.data() + head_size;
-    for (SurfacePoint& p : points) {
+    for (contact::SurfacePoint& p : points) {
         double numbers[7];
         std::memcpy(numbers, at, sizeof numbers);
         for (const double number : numbers)
@@ -57,4 +57,4 @@ std::vector<SurfacePoint> points_from(std::string_view bytes, const std::string&
     return points;
 }
 
-}  // namespace tactus
+}  // namespace tactus::bone

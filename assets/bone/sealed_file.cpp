@@ -13,7 +13,7 @@
 #include <cstring>
 #include <string_view>
 
-namespace tactus {
+namespace tactus::bone {
 
 namespace {
 
@@ -79,7 +79,7 @@ void SealedFile::flush_block() {
 }
 
 std::string read_sealed(const std::filesystem::path& path) {
-    std::string bytes = read_whole_file(path);
+    std::string bytes = file::read_whole_file(path);
     if (bytes.size() < seal_size || bytes.compare(bytes.size() - seal_size, seal_mark.size(), seal_mark) != 0)
         throw Error(fmt::format("{}: not a whole bone file; make it again with 'tactus import'", path.string()));
     std::uint64_t stated = 0;
@@ -93,4 +93,4 @@ std::string read_sealed(const std::filesystem::path& path) {
     return bytes;
 }
 
-}  // namespace tactus
+}  // namespace tactus::bone

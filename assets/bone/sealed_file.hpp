@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::bone {
 
 /// Takes what OpenVDB writes to `path` + ".part" in blocks, so that a large bone is not in memory once more, with
 /// another identifier (36 characters) and with the seal behind it. The file appears under its name by seal(); without
@@ -46,4 +46,4 @@ private:
 /// Throws Error for a file without seal or with another checksum.
 std::string read_sealed(const std::filesystem::path& path);
 
-}  // namespace tactus
+}  // namespace tactus::bone

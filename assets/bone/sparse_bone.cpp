@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace tactus {
+namespace tactus::bone {
 
 namespace {
 
@@ -18,8 +18,8 @@ std::size_t sample_index(int x, int y, int z) { return static_cast<std::size_t>(
 
 // Samples that `values` points to in a block; `elsewhere` where there is none.
 template <typename Values>
-Grid dense(const SparseBone& sparse, float elsewhere, Values values) {
-    Grid grid = sparse.layout;
+volume::Grid dense(const SparseBone& sparse, float elsewhere, Values values) {
+    volume::Grid grid = sparse.layout;
     grid.values.assign(grid.count(), elsewhere);
     const auto [nx, ny, nz] = sparse.blocks_per_axis();
     const auto& size = grid.size;
@@ -39,7 +39,7 @@ Grid dense(const SparseBone& sparse, float elsewhere, Values values) {
 
 }  // namespace
 
-SparseBone::SparseBone(Grid size_and_place, float outside_of_blocks)
+SparseBone::SparseBone(volume::Grid size_and_place, float outside_of_blocks)
     : layout(std::move(size_and_place)), outside(outside_of_blocks) {
     layout.values.clear();
     const auto [x, y, z] = blocks_per_axis();
@@ -62,7 +62,7 @@ std::size_t SparseBone::stored() const {
         std::count_if(blocks.begin(), blocks.end(), [](const auto& b) { return b != nullptr; }));
 }
 
-void SparseBone::add_layers(int first, const Grid& distance, const Grid& density, const RunJobs& run) {
+void SparseBone::add_layers(int first, const volume::Grid& distance, const volume::Grid& density, const RunJobs& run) {
     const auto [nx, ny, nz] = blocks_per_axis();
     const int begin = first / side, end = (first + distance.size[2] + side - 1) / side;
     run((end - begin) * ny, [&](int job) {
@@ -94,7 +94,7 @@ void SparseBone::add_layers(int first, const Grid& distance, const Grid& density
     });
 }
 
-void SparseBone::copy_distance(const std::array<int, 3>& low, Grid& into) const {
+void SparseBone::copy_distance(const std::array<int, 3>& low, volume::Grid& into) const {
     for (int k = 0; k < into.size[2]; ++k)
         for (int j = 0; j < into.size[1]; ++j)
             for (int i = 0; i < into.size[0]; ++i) {
@@ -105,7 +105,7 @@ void SparseBone::copy_distance(const std::array<int, 3>& low, Grid& into) const 
             }
 }
 
-Grid dense_distance_of(const SparseBone& sparse) {
+volume::Grid dense_distance_of(const SparseBone& sparse) {
     return dense(sparse, sparse.outside, [](const SparseBone::Block& block) { return block.distance.data(); });
 }
 
@@ -128,7 +128,7 @@ BoneMeasures measures_of(const SparseBone& bone, const RunJobs& run) {
             const SparseBone::Block* block = bone.blocks[bone.block_index(bx, by, bz)].get();
             if (!block) continue;
             const std::array<int, 3> low{bx * side, by * side, bz * side};
-            Grid cells{{}, bone.layout.position(low[0], low[1], low[2]), bone.layout.spacing, {}};
+            volume::Grid cells{{}, bone.layout.position(low[0], low[1], low[2]), bone.layout.spacing, {}};
             for (std::size_t a = 0; a < 3; ++a) cells.size[a] = std::min(side + 1, size[a] - low[a]);
             cells.values.resize(cells.count());
             bone.copy_distance(low, cells);
@@ -142,14 +142,14 @@ BoneMeasures measures_of(const SparseBone& bone, const RunJobs& run) {
                         part.most = std::max(part.most, density);
                         ++part.inside;
                     }
-            const TriangleSurface surface = iso_surface(cells, 0.0f, false);
+            const geometry::TriangleSurface surface = geometry::iso_surface(cells, 0.0f, false);
             for (const auto& t : surface.triangles) {
                 const auto at = [&](std::size_t c) {
                     return surface.vertices[static_cast<std::size_t>(t[c])] - bone.layout.origin;
                 };
                 part.volume += glm::dot(at(0), glm::cross(at(1), at(2))) / 6.0;
             }
-            part.area += area_of(surface);
+            part.area += mesh::area_of(surface);
         }
     });
     BoneMeasures all;
@@ -166,4 +166,4 @@ BoneMeasures measures_of(const SparseBone& bone, const RunJobs& run) {
     return all;
 }
 
-}  // namespace tactus
+}  // namespace tactus::bone

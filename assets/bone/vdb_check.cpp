@@ -17,7 +17,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace tactus {
+namespace tactus::bone {
 
 namespace {
 
@@ -65,7 +65,7 @@ public:
         for (std::uint32_t n = 0; n < grids; ++n) pass_grid();
         if (at_ != bytes_.size()) fail(fmt::format("goes on for {} bytes after its last grid", bytes_.size() - at_));
         // What OpenVDB keeps of each node: its values, or a pointer per value.
-        require_room(static_cast<double>(memory_), file_, "its grids");
+        file::require_room(static_cast<double>(memory_), file_, "its grids");
     }
 
 private:
@@ -265,4 +265,4 @@ private:
 
 void check_vdb(std::string& bytes, const std::string& file) { Walk(bytes, file).run(); }
 
-}  // namespace tactus
+}  // namespace tactus::bone

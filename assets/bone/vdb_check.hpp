@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace tactus {
+namespace tactus::bone {
 
 /// Follows what OpenVDB will read of a file without its seal: header, metadata, and per grid the topology and the values
 /// of each node. Every count must fit in what is left of the file, and every chunk must hold, packed or not, as many bytes
@@ -13,4 +13,4 @@ namespace tactus {
 /// that OpenVDB skips. `file` is for messages. Throws Error; NoRoom when the trees would not fit in memory.
 void check_vdb(std::string& bytes, const std::string& file);
 
-}  // namespace tactus
+}  // namespace tactus::bone

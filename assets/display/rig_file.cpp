@@ -13,15 +13,15 @@
 
 #include <algorithm>
 
-namespace tactus {
+namespace tactus::display {
 
 namespace {
 
 constexpr std::size_t most_screens = 64;
 
-class RigReader : TomlFile {
+class RigReader : file::TomlFile {
 public:
-    explicit RigReader(const std::filesystem::path& path) : TomlFile(path, "a display rig") {}
+    explicit RigReader(const std::filesystem::path& path) : file::TomlFile(path, "a display rig") {}
 
     RigFile read() {
         const toml::table& root = this->root();
@@ -173,7 +173,7 @@ private:
         if (const auto* node = table.get("position")) pose.position = vector(*node, "mm");
         const auto *turns = table.get("rotation"), *quaternion = table.get("orientation");
         if (turns && quaternion) fail(*turns, "give either rotation or orientation");
-        if (turns) pose.orientation = rotation_xyz(vector(*turns, "deg"));
+        if (turns) pose.orientation = coupling::rotation_xyz(vector(*turns, "deg"));
         if (quaternion) {
             const std::vector<double> q = list(*quaternion, 4, "an orientation is a quaternion: w, x, y, z");
             pose.orientation = Quat(q[0], q[1], q[2], q[3]);
@@ -259,4 +259,4 @@ std::string rig_text(const RigFile& file, const std::vector<std::string>& about)
     return text;
 }
 
-}  // namespace tactus
+}  // namespace tactus::display

@@ -3,7 +3,7 @@
 // screen is for. `tactus calibrate` writes one; people write and change them by hand.
 #pragma once
 
-#include "dsp/view/screen.hpp"
+#include "dsp/display/screen.hpp"
 
 #include <array>
 #include <filesystem>
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::display {
 
 /// Which eyes of the head a screen is for.
 enum class ScreenEyes : std::uint8_t { both, left, right, middle };
@@ -75,4 +75,4 @@ std::string rig_text(const RigFile& rig, const std::vector<std::string>& about =
 /// "1 mm, 2 mm, 3 mm" in SI, each part like `unit`. Throws Error.
 Vec3 parse_vector(std::string_view text, std::string_view unit);
 
-}  // namespace tactus
+}  // namespace tactus::display

@@ -10,13 +10,13 @@
 #include <charconv>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::display {
 
 namespace {
 
 constexpr std::array<std::string_view, 4> kinds{"workspace", "screen", "image", "mirror"};
 
-double number(const NumberTable& table, const char* column, std::size_t row) {
+double number(const table::NumberTable& table, const char* column, std::size_t row) {
     const std::string& text = table.text(column)[row];
     double value = 0.0;
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -25,14 +25,14 @@ double number(const NumberTable& table, const char* column, std::size_t row) {
     return value;
 }
 
-Vec3 place(const NumberTable& table, std::array<const char*, 3> columns, std::size_t row) {
+Vec3 place(const table::NumberTable& table, std::array<const char*, 3> columns, std::size_t row) {
     return 1e-3 * Vec3(number(table, columns[0], row), number(table, columns[1], row), number(table, columns[2], row));
 }
 
 }  // namespace
 
 std::vector<RigTouch> load_touches(const std::filesystem::path& path) {
-    const NumberTable table = load_number_table(path);
+    const table::NumberTable table = table::load_number_table(path);
     std::vector<RigTouch> touches;
     for (std::size_t row = 0; row < table.rows(); ++row) {
         RigTouch touch;
@@ -70,10 +70,10 @@ std::string touches_text(std::span<const RigTouch> touches) {
 }
 
 std::vector<Vec3> load_places(const std::filesystem::path& path) {
-    const NumberTable table = load_number_table(path);
+    const table::NumberTable table = table::load_number_table(path);
     std::vector<Vec3> places;
     for (std::size_t row = 0; row < table.rows(); ++row) places.push_back(place(table, {"x_mm", "y_mm", "z_mm"}, row));
     return places;
 }
 
-}  // namespace tactus
+}  // namespace tactus::display

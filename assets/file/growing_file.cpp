@@ -12,7 +12,7 @@
 #include <cstring>
 #include <utility>
 
-namespace tactus {
+namespace tactus::file {
 
 namespace {
 
@@ -84,4 +84,4 @@ void GrowingFile::close() {
     if (!shut() && !has_failed_) fail(errno);
 }
 
-}  // namespace tactus
+}  // namespace tactus::file

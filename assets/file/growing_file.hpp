@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tactus {
+namespace tactus::file {
 
 class GrowingFile {
 public:
@@ -39,4 +39,4 @@ private:
     bool has_failed_ = false;
 };
 
-}  // namespace tactus
+}  // namespace tactus::file

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <utility>
 
-namespace tactus {
+namespace tactus::file {
 
 namespace {
 
@@ -64,4 +64,4 @@ void require_possible(double claimed, double most, const std::filesystem::path& 
                             file.string(), claimed, what));
 }
 
-}  // namespace tactus
+}  // namespace tactus::file

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace tactus {
+namespace tactus::file {
 
 /// A file needs more memory than there is for it: nothing is wrong with the file. It is a bad_alloc, so that whoever
 /// handles short memory handles this.
@@ -36,4 +36,4 @@ void require_room(double bytes, const std::filesystem::path& file, std::string_v
 /// require_possible(frames, 8192.0 * bytes, file, "samples").
 void require_possible(double claimed, double most, const std::filesystem::path& file, std::string_view what);
 
-}  // namespace tactus
+}  // namespace tactus::file

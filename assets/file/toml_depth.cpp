@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace tactus {
+namespace tactus::file {
 
 namespace {
 
@@ -46,4 +46,4 @@ std::optional<std::size_t> overlong_key(std::string_view toml) {
     return std::nullopt;
 }
 
-}  // namespace tactus
+}  // namespace tactus::file

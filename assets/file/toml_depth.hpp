@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-namespace tactus {
+namespace tactus::file {
 
 /// Dots that one key may have: no file of ours needs more than two, as in [nodes.hand].
 inline constexpr int most_dots_in_key = 32;
@@ -14,4 +14,4 @@ inline constexpr int most_dots_in_key = 32;
 /// Offset of the first dot that is one too many, or nothing. Dots in strings and comments do not count.
 std::optional<std::size_t> overlong_key(std::string_view toml);
 
-}  // namespace tactus
+}  // namespace tactus::file

@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-namespace tactus {
+namespace tactus::file {
 
 void TomlTableDeleter::operator()(toml::table* table) const noexcept { delete table; }
 
@@ -58,4 +58,4 @@ std::string TomlFile::word(const toml::node& node) const {
     return node.as_string()->get();
 }
 
-}  // namespace tactus
+}  // namespace tactus::file

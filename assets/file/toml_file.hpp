@@ -19,7 +19,7 @@ struct source_region;
 }  // namespace v3
 }  // namespace toml
 
-namespace tactus {
+namespace tactus::file {
 
 struct TomlTableDeleter {
     void operator()(toml::table* table) const noexcept;
@@ -51,4 +51,4 @@ private:
     TomlTable root_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::file

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace tactus {
+namespace tactus::file {
 
 namespace {
 
@@ -111,4 +111,4 @@ void write_durable_file(const std::filesystem::path& path, std::string_view byte
     write_beside(path, bytes, Disk::now);
 }
 
-}  // namespace tactus
+}  // namespace tactus::file

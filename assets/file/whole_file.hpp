@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace tactus {
+namespace tactus::file {
 
 /// Every reader asks this before it opens a file: a pipe or a device would make it wait, or never end. Throws Error
 /// unless `path` is a regular file; gives its size in bytes.
@@ -28,4 +28,4 @@ void write_whole_file(const std::filesystem::path& path, std::string_view bytes)
 /// new one is there.
 void write_durable_file(const std::filesystem::path& path, std::string_view bytes);
 
-}  // namespace tactus
+}  // namespace tactus::file

@@ -2,14 +2,14 @@
 #include "assets/library/broken_mandible.hpp"
 
 #include "assets/bone/labels.hpp"
-#include "assets/fracture/break_bone.hpp"
-#include "assets/fracture/paint.hpp"
+#include "assets/cases/break_bone.hpp"
+#include "assets/cases/paint.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
-#include "dsp/distance/point_tree.hpp"
-#include "dsp/planning/faces.hpp"
+#include "dsp/geometry/point_tree.hpp"
+#include "dsp/fit/faces.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -20,7 +20,7 @@
 #include <numbers>
 #include <utility>
 
-namespace tactus {
+namespace tactus::library {
 
 namespace {
 
@@ -28,9 +28,9 @@ Vec3 direction(const Random& random, std::uint64_t n) {
     return glm::normalize(Vec3(random.normal(n), random.normal(n + 1), random.normal(n + 2)));
 }
 
-Vec3 middle_of(const std::vector<SurfacePoint>& points) {
+Vec3 middle_of(const std::vector<contact::SurfacePoint>& points) {
     Vec3 middle(0.0);
-    for (const SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
+    for (const contact::SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
     return middle;
 }
 
@@ -40,7 +40,7 @@ Pose about(const Vec3& middle, const Vec3& way, const Vec3& turn) {
     return {middle + way - q * middle, q};
 }
 
-std::size_t samples_inside(const Grid& solid) {
+std::size_t samples_inside(const volume::Grid& solid) {
     return static_cast<std::size_t>(std::ranges::count_if(solid.values, [](float d) { return d < 0.0f; }));
 }
 
@@ -55,9 +55,9 @@ std::vector<std::vector<FacePoint>> paint_of(const BrokenMandible& broken) {
     std::vector<std::vector<FacePoint>> paint(broken.fragments.size());
     std::size_t faces = 0;
     for (std::size_t n = 0; n < paint.size(); ++n)
-        for (const auto& face : split_faces(broken.fragments[n].points)) {
+        for (const auto& face : fit::split_faces(broken.fragments[n].points)) {
             for (const std::size_t i : face) {
-                const SurfacePoint& p = broken.fragments[n].points[i];
+                const contact::SurfacePoint& p = broken.fragments[n].points[i];
                 paint[n].push_back({broken.truth[n].apply(p.position), broken.truth[n].rotate(p.normal), faces});
             }
             ++faces;
@@ -67,7 +67,7 @@ std::vector<std::vector<FacePoint>> paint_of(const BrokenMandible& broken) {
 
 /// How much of a piece's largest fitting face lies on what stands, in points; 0 when none touches it. A face that is
 /// covered as a whole shows its place better than a larger one that is not.
-double worth_of(const std::vector<FacePoint>& piece, const std::vector<FacePoint>& standing, const PointTree& tree,
+double worth_of(const std::vector<FacePoint>& piece, const std::vector<FacePoint>& standing, const geometry::PointTree& tree,
                 double kerf) {
     struct Covered {
         std::size_t near = 0, touching = 0;
@@ -101,7 +101,7 @@ std::vector<std::size_t> order_from(std::size_t first, const std::vector<std::ve
     for (;;) {
         std::vector<Vec3> places;
         for (const FacePoint& p : standing) places.push_back(p.position);
-        const PointTree tree(places);
+        const geometry::PointTree tree(places);
         std::size_t best = first;
         double most = 0.0;
         for (std::size_t n = 0; n < paint.size() && !standing.empty(); ++n) {
@@ -116,7 +116,7 @@ std::vector<std::size_t> order_from(std::size_t first, const std::vector<std::ve
 }
 
 /// From which side a piece comes to its place with the most room to those that stand, of the sides before the bone.
-Vec3 way_in(const std::vector<SurfacePoint>& points, const Pose& truth, const PointTree& tree,
+Vec3 way_in(const std::vector<contact::SurfacePoint>& points, const Pose& truth, const geometry::PointTree& tree,
             const std::vector<Vec3>& standing) {
     Vec3 best(0.0, -1.0, 0.0);
     double widest = -1.0;
@@ -177,7 +177,7 @@ std::string script_of(const BrokenMandible& broken, const BrokenMandibleOptions&
     const auto& order = broken.order;
     std::vector<Vec3> standing;
     const auto stand = [&](std::size_t n) {
-        for (const SurfacePoint& p : broken.fragments[n].points) standing.push_back(broken.truth[n].apply(p.position));
+        for (const contact::SurfacePoint& p : broken.fragments[n].points) standing.push_back(broken.truth[n].apply(p.position));
     };
     stand(0);
     script.go(0.0, {middle_of(broken.fragments[order[0]].points), {1.0, 0.0, 0.0, 0.0}}, "");
@@ -189,7 +189,7 @@ std::string script_of(const BrokenMandible& broken, const BrokenMandibleOptions&
         script.go(0.6, grip, "");
         script.stay(0.1, "trigger");
         script.stay(0.1, "trigger");
-        const Vec3 way = way_in(broken.fragments[n].points, broken.truth[n], PointTree(standing), standing);
+        const Vec3 way = way_in(broken.fragments[n].points, broken.truth[n], geometry::PointTree(standing), standing);
         stand(n);
         // Off the table, before its place, and in.
         script.go(0.4, about(middle, Vec3(0.0, 25e-3, 0.0), Vec3(0.0)) * grip, "trigger");
@@ -213,11 +213,11 @@ std::string script_of(const BrokenMandible& broken, const BrokenMandibleOptions&
 
 }  // namespace
 
-BrokenMandible break_mandible(const Bone& bone, const BrokenMandibleOptions& options) {
-    std::vector<Grid> solids = break_bone(
+BrokenMandible break_mandible(const bone::Bone& bone, const BrokenMandibleOptions& options) {
+    std::vector<volume::Grid> solids = cases::break_bone(
         bone.distance, {.pieces = options.pieces, .seed = options.seed, .chips = options.chips, .kerf = options.kerf});
     std::ranges::stable_sort(solids, std::ranges::greater{}, samples_inside);
-    const Voxmap whole = make_voxmap(bone.distance);
+    const contact::Voxmap whole = contact::make_voxmap(bone.distance);
     const Vec3 centre =
         bone.distance.position(bone.distance.size[0] / 2, bone.distance.size[1] / 2, bone.distance.size[2] / 2);
     if (options.missing < 0 || options.missing > options.pieces - 2) throw Error("at least two pieces must be left");
@@ -225,20 +225,20 @@ BrokenMandible break_mandible(const Bone& bone, const BrokenMandibleOptions& opt
     BrokenMandible broken;
     for (std::size_t n = 0; n < solids.size(); ++n) {
         const Random random{options.seed * 1009 + n};
-        const Grid& solid = solids[n];
+        const volume::Grid& solid = solids[n];
         const Vec3 middle = solid.position(solid.size[0] / 2, solid.size[1] / 2, solid.size[2] / 2);
         // Laid out in rows before the bone.
         const Vec3 to = centre + Vec3(36e-3 * (static_cast<double>(n % 4) - 1.5), -options.apart,
                                       36e-3 * (static_cast<double>(n / 4) - 1.0));
         const Pose placement = n == 0 ? Pose{} : about(middle, to - middle, options.turn * direction(random, 0));
-        Bone fragment;
-        fragment.distance = scan_solid(solid, placement, {.seed = options.seed * 2003 + n});
+        bone::Bone fragment;
+        fragment.distance = cases::scan_solid(solid, placement, {.seed = options.seed * 2003 + n});
         fragment.density = fragment.distance;
         for (float& d : fragment.density.values) d = d < 0.0f ? 1200.0f : 0.0f;
-        fragment.points = sample_surface(fragment.distance, {.spacing = 0.42e-3});
-        paint_fracture(fragment.points, whole, placement.inverse());
+        fragment.points = contact::sample_surface(fragment.distance, {.spacing = 0.42e-3});
+        cases::paint_fracture(fragment.points, whole, placement.inverse());
         fragment.name = fmt::format("fragment_{:02}", n + 1);
-        fragment.colour = label_colour(static_cast<int>(n) + 1);
+        fragment.colour = bone::label_colour(static_cast<int>(n) + 1);
         fragment.provenance = {
             {"source", "simulated scan of a piece of the bundled mandible"}, {"frame", "LPS"}, {"hu", "simulated"}};
         broken.truth.push_back(placement.inverse());
@@ -264,18 +264,18 @@ BrokenMandible break_mandible(const Bone& bone, const BrokenMandibleOptions& opt
     return broken;
 }
 
-CasePlan plan_of(const BrokenMandible& broken, const std::vector<std::string>& files,
+cases::CasePlan plan_of(const BrokenMandible& broken, const std::vector<std::string>& files,
                  const std::vector<std::uint64_t>& hashes) {
-    CasePlan plan;
+    cases::CasePlan plan;
     plan.title = "A mandible in twelve pieces";
     for (std::size_t n = 0; n < broken.fragments.size(); ++n)
         plan.fragments.push_back({broken.fragments[n].name, files[n], hashes[n], broken.fragments[n].colour});
-    PlanStep lock;
-    lock.kind = StepKind::lock;
+    cases::PlanStep lock;
+    lock.kind = cases::StepKind::lock;
     lock.by = "command";
     lock.fragments = {0};
-    add_step(plan, lock);
+    cases::add_step(plan, lock);
     return plan;
 }
 
-}  // namespace tactus
+}  // namespace tactus::library

@@ -3,13 +3,13 @@
 #pragma once
 
 #include "assets/bone/bone.hpp"
-#include "assets/plan/case_plan.hpp"
+#include "assets/cases/case_plan.hpp"
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::library {
 
 struct BrokenMandibleOptions {
     int pieces = 12;
@@ -23,7 +23,7 @@ struct BrokenMandibleOptions {
 };
 
 struct BrokenMandible {
-    std::vector<Bone> fragments;  ///< as scanned; painted where they broke; the first is in its place
+    std::vector<bone::Bone> fragments;  ///< as scanned; painted where they broke; the first is in its place
     std::vector<Pose> truth;      ///< of each: p_bone = R p_fragment + t
     std::vector<std::size_t> order;  ///< in which those are put together that hang together with the first
     /// What lost pieces cut off from the first: of each part the piece that its others are brought to, and these in
@@ -38,10 +38,10 @@ struct BrokenMandible {
 /// direction, snaps, settles and lets go; then it takes each twice more where it lies and settles it on all its
 /// neighbours. It knows the truth for no more than where to stop. Deterministic. Throws Error as break_bone does, and
 /// when a piece touches none of the others although none is missing.
-BrokenMandible break_mandible(const Bone& bone, const BrokenMandibleOptions& options = {});
+BrokenMandible break_mandible(const bone::Bone& bone, const BrokenMandibleOptions& options = {});
 
 /// The plan of the case as it is scanned, for fragments in files of their names; the first one is locked.
-CasePlan plan_of(const BrokenMandible& broken, const std::vector<std::string>& files,
+cases::CasePlan plan_of(const BrokenMandible& broken, const std::vector<std::string>& files,
                  const std::vector<std::uint64_t>& hashes);
 
-}  // namespace tactus
+}  // namespace tactus::library

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace tactus {
+namespace tactus::library {
 
 struct FractureOptions {
     double voxel = 0.35e-3;        ///< m
@@ -19,6 +19,6 @@ struct FractureOptions {
 /// Two bones, "left" (x < 0) and "right": a bent bar of egg-shaped section, 12 mm by 24 mm and 70 mm long, broken across
 /// its middle (x = 0) along a rough surface without undercuts. Both lie where they fit. Their points are saved with them,
 /// those of the fracture labelled. Deterministic.
-std::vector<Bone> make_fragments(const FractureOptions& options = {});
+std::vector<bone::Bone> make_fragments(const FractureOptions& options = {});
 
-}  // namespace tactus
+}  // namespace tactus::library

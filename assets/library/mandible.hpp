@@ -4,14 +4,14 @@
 
 #include "assets/bone/bone.hpp"
 
-namespace tactus {
+namespace tactus::library {
 
 /// CT values (HU) of the segment at 0.3 mm voxels, LPS, slightly blurred: 55 mm along a parabolic arch, egg-shaped
 /// section of 12 mm by 28 mm (z up), cortex of 2.2 to 3 mm thicker at the lower border, trabecular core, and a
 /// mandibular canal of 3 mm bore with a thin wall, filled with soft matter. Typical adult values, not measured from one.
-Grid mandible_hu();
+volume::Grid mandible_hu();
 
 /// The same as a bone, through the steps that an imported CT takes. Deterministic.
-Bone make_mandible();
+bone::Bone make_mandible();
 
-}  // namespace tactus
+}  // namespace tactus::library

@@ -5,7 +5,7 @@
 #include "assets/sound/sound.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
-#include "dsp/filter/biquad.hpp"
+#include "dsp/signal/filter/biquad.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tactus {
+namespace tactus::library {
 
 namespace {
 
@@ -69,7 +69,7 @@ Signal drive(double rate, const Random& random) {
 Signal chips(double rate, const Random& random) {
     Signal noise(count), out(count);
     for (std::size_t i = 0; i < count; ++i) noise[i] = random.normal(i + 100);
-    Biquad above{highpass(300.0, sample_rate)}, below{lowpass(1500.0, sample_rate)};
+    signal::Biquad above{signal::highpass(300.0, sample_rate)}, below{signal::lowpass(1500.0, sample_rate)};
     // Once round to settle, once to keep: the end then runs into the start.
     for (int round = 0; round < 2; ++round)
         for (std::size_t i = 0; i < count; ++i) out[i] = below(above(noise[i] * std::abs(std::sin(angle(i, rate)))));
@@ -136,7 +136,7 @@ void make_saw_recordings(const std::filesystem::path& folder) {
         const std::string state = load > 0.0 ? "cutting" : "free_air";
         const std::string file = load > 0.0 ? fmt::format("{}_{:g}_{:g}N.flac", state, rate, load)
                                             : fmt::format("{}_{:g}.flac", state, rate);
-        SoundWriter writer(folder / file, 1, sample_rate, SoundFormat::flac);
+        sound::SoundWriter writer(folder / file, 1, sample_rate, sound::SoundFormat::flac);
         writer.write(synthesise(rate, load, seed++).data(), count);
         writer.finish();
         set += fmt::format("\n[[recording]]\nfile = \"{}\"\nstate = \"{}\"\nrate = \"{:g} Hz\"\n", file, state, rate);
@@ -147,7 +147,7 @@ void make_saw_recordings(const std::filesystem::path& folder) {
         for (const double load : loads) record(rate, load);
     }
     // Last, so that a set that is there is whole.
-    write_whole_file(folder / "reciprocating.toml", set);
+    file::write_whole_file(folder / "reciprocating.toml", set);
 }
 
-}  // namespace tactus
+}  // namespace tactus::library

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace tactus {
+namespace tactus::library {
 
 /// Writes a synthesised recording set of a reciprocating bone saw into `folder` (made if missing): `reciprocating.toml`
 /// and 12 FLAC files of 2 s at 48 kHz, in free air and cutting at 3, 7 and 12 N, at 150, 190 and 233 Hz.
@@ -13,4 +13,4 @@ namespace tactus {
 /// teeth pass fastest at mid-stroke, twice a cycle. The same bytes each time. Throws Error.
 void make_saw_recordings(const std::filesystem::path& folder);
 
-}  // namespace tactus
+}  // namespace tactus::library

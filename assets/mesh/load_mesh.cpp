@@ -11,7 +11,7 @@
 #include <numeric>
 #include <tuple>
 
-namespace tactus {
+namespace tactus::mesh {
 
 namespace {
 
@@ -21,7 +21,7 @@ std::string lower_extension(const std::filesystem::path& path) {
     return text.empty() ? text : text.substr(1);
 }
 
-void check_numbers(const TriangleSurface& mesh, const std::string& file) {
+void check_numbers(const geometry::TriangleSurface& mesh, const std::string& file) {
     for (const Vec3& v : mesh.vertices)
         if (!is_finite(v) || std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) > 1e9)
             throw Error(fmt::format("{}: a point's coordinates are not numbers; repair the mesh first", file));
@@ -32,7 +32,7 @@ void check_numbers(const TriangleSurface& mesh, const std::string& file) {
 }
 
 // Returns how many triangles had no area and were dropped.
-std::size_t join_equal_points(TriangleSurface& mesh) {
+std::size_t join_equal_points(geometry::TriangleSurface& mesh) {
     std::vector<int> order(mesh.vertices.size());
     std::iota(order.begin(), order.end(), 0);
     const auto key = [&mesh](int n) {
@@ -55,9 +55,9 @@ std::size_t join_equal_points(TriangleSurface& mesh) {
 
 }  // namespace
 
-std::optional<Frame> stated_frame(std::string_view text) {
-    if (text.find("SPACE=RAS") != std::string_view::npos) return Frame::ras;
-    if (text.find("SPACE=LPS") != std::string_view::npos) return Frame::lps;
+std::optional<volume::Frame> stated_frame(std::string_view text) {
+    if (text.find("SPACE=RAS") != std::string_view::npos) return volume::Frame::ras;
+    if (text.find("SPACE=LPS") != std::string_view::npos) return volume::Frame::lps;
     return {};
 }
 
@@ -86,19 +86,19 @@ Mesh load_mesh(const std::filesystem::path& path, double scale, MeshOrigin* orig
     const std::string file = path.string(), kind = lower_extension(path);
     if (kind != "stl" && kind != "ply" && kind != "obj")
         throw Error(fmt::format("{}: a mesh is read from .stl, .ply or .obj", file));
-    const std::string bytes = read_whole_file(path);
+    const std::string bytes = file::read_whole_file(path);
     MeshText text = kind == "stl"   ? read_stl(bytes, file)
                     : kind == "ply" ? read_ply(bytes, file)
                                     : read_obj(bytes, file);
     check_numbers(text.surface, file);
-    MeshOrigin found{text.frame.value_or(Frame::lps), text.frame.has_value(), 0};
-    for (Vec3& v : text.surface.vertices) v = (found.frame == Frame::ras ? turned_about_z(v) : v) * scale;
+    MeshOrigin found{text.frame.value_or(volume::Frame::lps), text.frame.has_value(), 0};
+    for (Vec3& v : text.surface.vertices) v = (found.frame == volume::Frame::ras ? volume::turned_about_z(v) : v) * scale;
     found.without_area = join_equal_points(text.surface);
     if (text.surface.triangles.empty()) throw Error(fmt::format("{}: holds no triangles", file));
     if (origin) *origin = found;
     Mesh mesh;
-    static_cast<TriangleSurface&>(mesh) = std::move(text.surface);
+    static_cast<geometry::TriangleSurface&>(mesh) = std::move(text.surface);
     return mesh;
 }
 
-}  // namespace tactus
+}  // namespace tactus::mesh

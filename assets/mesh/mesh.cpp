@@ -7,19 +7,19 @@
 #include <numeric>
 #include <utility>
 
-namespace tactus {
+namespace tactus::mesh {
 
 namespace {
 
-const Vec3& corner(const TriangleSurface& mesh, const std::array<int, 3>& triangle, std::size_t n) {
+const Vec3& corner(const geometry::TriangleSurface& mesh, const std::array<int, 3>& triangle, std::size_t n) {
     return mesh.vertices[static_cast<std::size_t>(triangle[n])];
 }
 
 }  // namespace
 
-Mesh surface_of(const Grid& distance) {
+Mesh surface_of(const volume::Grid& distance) {
     Mesh mesh;
-    static_cast<TriangleSurface&>(mesh) = iso_surface(distance, 0.0f, false);
+    static_cast<geometry::TriangleSurface&>(mesh) = geometry::iso_surface(distance, 0.0f, false);
     const auto& size = distance.size;
     for (const Vec3& vertex : mesh.vertices) {
         const Vec3 u = (vertex - distance.origin) / distance.spacing;
@@ -36,7 +36,7 @@ Mesh surface_of(const Grid& distance) {
     return mesh;
 }
 
-double volume_of(const TriangleSurface& mesh) {
+double volume_of(const geometry::TriangleSurface& mesh) {
     if (mesh.vertices.empty()) return 0.0;
     const Vec3 base = mesh.vertices.front();  // near the mesh, so that little cancels
     double six = 0.0;
@@ -45,7 +45,7 @@ double volume_of(const TriangleSurface& mesh) {
     return six / 6.0;
 }
 
-double area_of(const TriangleSurface& mesh) {
+double area_of(const geometry::TriangleSurface& mesh) {
     double twice = 0.0;
     for (const auto& t : mesh.triangles)
         twice +=
@@ -53,7 +53,7 @@ double area_of(const TriangleSurface& mesh) {
     return 0.5 * twice;
 }
 
-MeshTopology topology_of(const TriangleSurface& mesh) {
+MeshTopology topology_of(const geometry::TriangleSurface& mesh) {
     struct Edge {
         int low, high, forward;
         bool operator<(const Edge& other) const { return std::pair(low, high) < std::pair(other.low, other.high); }
@@ -95,4 +95,4 @@ MeshTopology topology_of(const TriangleSurface& mesh) {
     return found;
 }
 
-}  // namespace tactus
+}  // namespace tactus::mesh

@@ -3,21 +3,21 @@
 #pragma once
 
 #include "assets/volume/patient_frame.hpp"
-#include "dsp/distance/iso_surface.hpp"
+#include "dsp/geometry/iso_surface.hpp"
 
 #include <cstddef>
 #include <filesystem>
 
-namespace tactus {
+namespace tactus::mesh {
 
 /// Triangles with shared vertices (m inside; as in the file after load_mesh), and optionally one unit normal each.
-struct Mesh : TriangleSurface {
+struct Mesh : geometry::TriangleSurface {
     std::vector<Vec3> normals;  ///< empty or one per vertex
 };
 
 /// What load_mesh found in a file besides its triangles.
 struct MeshOrigin {
-    Frame frame = Frame::lps;       ///< what the coordinates were in
+    volume::Frame frame = volume::Frame::lps;       ///< what the coordinates were in
     bool frame_stated = false;      ///< by "SPACE=RAS" or "SPACE=LPS" in a header or comment; else LPS is assumed
     std::size_t without_area = 0;   ///< triangles dropped, for two of their corners are one point
 };
@@ -28,10 +28,10 @@ struct MeshOrigin {
 Mesh load_mesh(const std::filesystem::path& path, double scale = 1.0, MeshOrigin* origin = nullptr);
 
 /// The zero surface of a signed distance (m, negative inside) with normals from its gradient.
-Mesh surface_of(const Grid& distance);
+Mesh surface_of(const volume::Grid& distance);
 
-double volume_of(const TriangleSurface& mesh);  ///< m³, positive when triangles look outwards; mesh must be closed
-double area_of(const TriangleSurface& mesh);    ///< m²
+double volume_of(const geometry::TriangleSurface& mesh);  ///< m³, positive when triangles look outwards; mesh must be closed
+double area_of(const geometry::TriangleSurface& mesh);    ///< m²
 
 /// How the triangles hang together. Watertight: every edge has two triangles that pass it in opposite directions.
 struct MeshTopology {
@@ -43,6 +43,6 @@ struct MeshTopology {
 
     bool is_watertight() const { return boundary_edges + non_manifold_edges + flipped_edges == 0; }
 };
-MeshTopology topology_of(const TriangleSurface& mesh);
+MeshTopology topology_of(const geometry::TriangleSurface& mesh);
 
-}  // namespace tactus
+}  // namespace tactus::mesh

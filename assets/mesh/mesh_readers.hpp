@@ -3,18 +3,18 @@
 #pragma once
 
 #include "assets/volume/patient_frame.hpp"
-#include "dsp/distance/iso_surface.hpp"
+#include "dsp/geometry/iso_surface.hpp"
 
 #include <optional>
 #include <string>
 #include <string_view>
 
-namespace tactus {
+namespace tactus::mesh {
 
 /// Triangles of a file (polygons as fans) with its points in its own unit and frame, not yet joined or checked.
 struct MeshText {
-    TriangleSurface surface;
-    std::optional<Frame> frame;  ///< from "SPACE=RAS" or "SPACE=LPS" in a header or comment
+    geometry::TriangleSurface surface;
+    std::optional<volume::Frame> frame;  ///< from "SPACE=RAS" or "SPACE=LPS" in a header or comment
 };
 
 MeshText read_stl(const std::string& bytes, const std::string& file);
@@ -22,7 +22,7 @@ MeshText read_ply(const std::string& bytes, const std::string& file);
 MeshText read_obj(const std::string& bytes, const std::string& file);
 
 /// What a header or comment says about the frame, if it does.
-std::optional<Frame> stated_frame(std::string_view text);
+std::optional<volume::Frame> stated_frame(std::string_view text);
 
 /// Splits text at blanks and line ends without copying it.
 class Words {
@@ -38,4 +38,4 @@ private:
     std::size_t at_ = 0;
 };
 
-}  // namespace tactus
+}  // namespace tactus::mesh

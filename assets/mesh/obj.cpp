@@ -6,7 +6,7 @@
 
 #include <charconv>
 
-namespace tactus {
+namespace tactus::mesh {
 
 namespace {
 
@@ -51,4 +51,4 @@ MeshText read_obj(const std::string& bytes, const std::string& file) {
     return mesh;
 }
 
-}  // namespace tactus
+}  // namespace tactus::mesh

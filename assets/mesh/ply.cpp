@@ -11,7 +11,7 @@
 #include <cstring>
 #include <vector>
 
-namespace tactus {
+namespace tactus::mesh {
 
 namespace {
 
@@ -80,7 +80,7 @@ std::string_view line_at(std::string_view bytes, std::size_t& at) {
     return line;
 }
 
-Header header_of(std::string_view bytes, const std::string& file, std::optional<Frame>& frame) {
+Header header_of(std::string_view bytes, const std::string& file, std::optional<volume::Frame>& frame) {
     Header header;
     std::size_t at = 0;
     bool has_coding = false;
@@ -125,7 +125,7 @@ Header header_of(std::string_view bytes, const std::string& file, std::optional<
     throw Error(fmt::format("{}: no end of its PLY header", file));
 }
 
-void read_element(Body& body, const Element& element, const std::string& file, TriangleSurface& surface) {
+void read_element(Body& body, const Element& element, const std::string& file, geometry::TriangleSurface& surface) {
     const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
     if (element.properties.empty()) return;
     for (double n = 0.0; n < element.count; n += 1.0) {
@@ -166,4 +166,4 @@ MeshText read_ply(const std::string& bytes, const std::string& file) {
     return mesh;
 }
 
-}  // namespace tactus
+}  // namespace tactus::mesh

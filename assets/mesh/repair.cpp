@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace tactus {
+namespace tactus::mesh {
 
 namespace {
 
@@ -146,7 +146,7 @@ std::vector<Loop> loops_of(std::map<int, std::vector<int>> next) {
     return loops;
 }
 
-void close_loop(const Loop& loop, TriangleSurface& mesh) {
+void close_loop(const Loop& loop, geometry::TriangleSurface& mesh) {
     if (loop.size() == 3) {
         mesh.triangles.push_back({loop[0], loop[1], loop[2]});
         return;
@@ -174,7 +174,7 @@ std::string MeshRepair::describe() const {
     return text;
 }
 
-MeshRepair repair(TriangleSurface& mesh, const std::string& file) {
+MeshRepair repair(geometry::TriangleSurface& mesh, const std::string& file) {
     MeshRepair done;
     done.duplicates = drop_duplicates(mesh.triangles);
     done.turned = orient(mesh.triangles);
@@ -208,4 +208,4 @@ MeshRepair repair(TriangleSurface& mesh, const std::string& file) {
     return done;
 }
 
-}  // namespace tactus
+}  // namespace tactus::mesh

@@ -2,12 +2,12 @@
 // Meshes that are not quite closed become surfaces with an inside.
 #pragma once
 
-#include "dsp/distance/iso_surface.hpp"
+#include "dsp/geometry/iso_surface.hpp"
 
 #include <cstddef>
 #include <string>
 
-namespace tactus {
+namespace tactus::mesh {
 
 /// What repair() found and did.
 struct MeshRepair {
@@ -25,6 +25,6 @@ struct MeshRepair {
 
 /// Makes every edge be passed as often forwards as backwards, which is what winding numbers need. Throws Error with
 /// the numbers when the surface has but one side, or when closing its holes would add more than 5 % to its area.
-MeshRepair repair(TriangleSurface& mesh, const std::string& file);
+MeshRepair repair(geometry::TriangleSurface& mesh, const std::string& file);
 
-}  // namespace tactus
+}  // namespace tactus::mesh

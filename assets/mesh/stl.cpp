@@ -8,17 +8,17 @@
 #include <cstdint>
 #include <cstring>
 
-namespace tactus {
+namespace tactus::mesh {
 
 namespace {
 
-void add_triangle(TriangleSurface& surface, const std::array<Vec3, 3>& corners) {
+void add_triangle(geometry::TriangleSurface& surface, const std::array<Vec3, 3>& corners) {
     const int first = static_cast<int>(surface.vertices.size());
     surface.vertices.insert(surface.vertices.end(), corners.begin(), corners.end());
     surface.triangles.push_back({first, first + 1, first + 2});
 }
 
-void read_text(const std::string& bytes, const std::string& file, TriangleSurface& surface) {
+void read_text(const std::string& bytes, const std::string& file, geometry::TriangleSurface& surface) {
     Words words(bytes);
     std::array<Vec3, 3> corners;
     std::size_t corner = 0;
@@ -66,4 +66,4 @@ MeshText read_stl(const std::string& bytes, const std::string& file) {
     return mesh;
 }
 
-}  // namespace tactus
+}  // namespace tactus::mesh

@@ -4,8 +4,8 @@
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/distance/cubic_interpolant.hpp"
-#include "dsp/distance/surface_net.hpp"
+#include "dsp/volume/cubic_interpolant.hpp"
+#include "dsp/geometry/surface_net.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -16,7 +16,7 @@
 #include <cstdint>
 #include <string>
 
-namespace tactus {
+namespace tactus::mesh {
 
 namespace {
 
@@ -79,8 +79,8 @@ std::string ply_of(std::span<const ColouredSurface> surfaces, std::uint32_t tria
 }
 
 // Two steps onto the surface between the samples, each at most a quarter of a cell.
-void settle(TriangleSurface& surface, const Grid& distance) {
-    const CubicInterpolant f{distance};
+void settle(geometry::TriangleSurface& surface, const volume::Grid& distance) {
+    const volume::CubicInterpolant f{distance};
     const double cell = std::min({distance.spacing.x, distance.spacing.y, distance.spacing.z});
     for (Vec3& v : surface.vertices)
         for (int step = 0; step < 2; ++step) {
@@ -102,17 +102,17 @@ void write_mesh(std::span<const ColouredSurface> surfaces, const std::filesystem
     if (triangles > 500'000'000)
         throw Error(fmt::format("{}: {} triangles are too many for a file", path.string(), triangles));
     const std::string kind = path.extension().string();
-    if (kind == ".stl") write_whole_file(path, stl_of(surfaces, static_cast<std::uint32_t>(triangles)));
-    else if (kind == ".ply") write_whole_file(path, ply_of(surfaces, static_cast<std::uint32_t>(triangles)));
+    if (kind == ".stl") file::write_whole_file(path, stl_of(surfaces, static_cast<std::uint32_t>(triangles)));
+    else if (kind == ".ply") file::write_whole_file(path, ply_of(surfaces, static_cast<std::uint32_t>(triangles)));
     else throw Error(fmt::format("{}: a mesh is written as .stl or .ply", path.string()));
 }
 
-TriangleSurface export_surface(const Grid& distance) {
-    SurfaceNet net = surface_net(distance, 0.0f, false);
-    TriangleSurface surface = topology_of(net).is_watertight() ? static_cast<TriangleSurface>(std::move(net))
-                                                               : iso_surface(distance, 0.0f, false);
+geometry::TriangleSurface export_surface(const volume::Grid& distance) {
+    geometry::SurfaceNet net = geometry::surface_net(distance, 0.0f, false);
+    geometry::TriangleSurface surface = topology_of(net).is_watertight() ? static_cast<geometry::TriangleSurface>(std::move(net))
+                                                               : geometry::iso_surface(distance, 0.0f, false);
     settle(surface, distance);
     return surface;
 }
 
-}  // namespace tactus
+}  // namespace tactus::mesh

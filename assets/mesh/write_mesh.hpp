@@ -2,16 +2,16 @@
 // Meshes to files, in LPS and mm.
 #pragma once
 
-#include "dsp/distance/iso_surface.hpp"
+#include "dsp/geometry/iso_surface.hpp"
 
 #include <filesystem>
 #include <span>
 
-namespace tactus {
+namespace tactus::mesh {
 
 /// A surface and the colour it is drawn in (sRGB, 0 to 1).
 struct ColouredSurface {
-    TriangleSurface surface;  ///< m, LPS
+    geometry::TriangleSurface surface;  ///< m, LPS
     Vec3 colour{0.90, 0.86, 0.76};
 };
 
@@ -22,6 +22,6 @@ void write_mesh(std::span<const ColouredSurface> surfaces, const std::filesystem
 
 /// The zero surface of a signed distance (m, negative inside) for use elsewhere: a net with vertices on the surface of the
 /// cubic interpolant, or tetrahedra where the net would not be watertight.
-TriangleSurface export_surface(const Grid& distance);
+geometry::TriangleSurface export_surface(const volume::Grid& distance);
 
-}  // namespace tactus
+}  // namespace tactus::mesh

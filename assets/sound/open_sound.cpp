@@ -11,7 +11,7 @@
 #include <cstring>
 #include <fstream>
 
-namespace tactus {
+namespace tactus::sound {
 
 namespace {
 
@@ -41,7 +41,7 @@ SoundHandle open_sound(const std::filesystem::path& path, SF_INFO& info) {
     const auto fail = [&path](const std::string& why) { throw Error(fmt::format("{}: {}", path.string(), why)); };
     if (!std::filesystem::exists(path)) fail("no such sound file");
     if (std::filesystem::is_directory(path)) fail("is a folder, not a sound file");
-    const auto size = static_cast<double>(require_file(path));
+    const auto size = static_cast<double>(file::require_file(path));
     SoundHandle file(sf_open(path.c_str(), SFM_READ, &info));
     if (!file) fail(fmt::format("cannot be read as sound: {}", sf_strerror(nullptr)));
     check_riff_length(path);
@@ -51,8 +51,8 @@ SoundHandle open_sound(const std::filesystem::path& path, SF_INFO& info) {
         fail(
             fmt::format("its header claims {} samples per second; at most {} are read", info.samplerate, fastest_rate));
     if (info.frames < unknown_length)
-        require_possible(static_cast<double>(info.frames), most_frames_per_byte * size, path, "samples");
+        file::require_possible(static_cast<double>(info.frames), most_frames_per_byte * size, path, "samples");
     return file;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sound

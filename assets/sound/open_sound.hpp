@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <memory>
 
-namespace tactus {
+namespace tactus::sound {
 
 struct CloseSound {
     void operator()(SNDFILE* file) const { sf_close(file); }
@@ -22,4 +22,4 @@ inline void keep_whole_frames(SNDFILE* file, sf_count_t frames) {
 /// Opens for reading and fills `info`. Throws Error when the file is missing, no sound, empty, or cut short.
 SoundHandle open_sound(const std::filesystem::path& path, SF_INFO& info);
 
-}  // namespace tactus
+}  // namespace tactus::sound

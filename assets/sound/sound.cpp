@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::sound {
 
 namespace {
 
@@ -25,7 +25,7 @@ Sound load_sound(const std::filesystem::path& path) {
     if (static_cast<std::size_t>(info.frames) > most_samples / static_cast<std::size_t>(info.channels))
         fail("the sound is longer than 2^28 samples; cut it first");
     Sound sound{info.samplerate, info.channels, static_cast<std::size_t>(info.frames), {}};
-    require_room(double(info.frames) * info.channels * sizeof(float), path, "its samples");
+    file::require_room(double(info.frames) * info.channels * sizeof(float), path, "its samples");
     // A header may claim anything: memory grows with what is really there.
     const std::size_t chunk_frames = std::min<std::size_t>(65536, sound.frames);
     std::vector<float> chunk(chunk_frames * static_cast<std::size_t>(info.channels));
@@ -110,4 +110,4 @@ void SoundWriter::finish() {
                                 failure.message()));
 }
 
-}  // namespace tactus
+}  // namespace tactus::sound

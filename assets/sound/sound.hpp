@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-namespace tactus {
+namespace tactus::sound {
 
 struct Sound {
     int rate = 0;                ///< samples per second, Hz
@@ -52,4 +52,4 @@ private:
     std::unique_ptr<File> file_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sound

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace tactus {
+namespace tactus::sound {
 
 struct SoundReader::File {
     std::filesystem::path path;
@@ -48,4 +48,4 @@ std::size_t SoundReader::read(double* samples, std::size_t frames) {
     return count;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sound

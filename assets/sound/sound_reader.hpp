@@ -7,7 +7,7 @@
 #include <memory>
 #include <span>
 
-namespace tactus {
+namespace tactus::sound {
 
 class SoundReader {
 public:
@@ -32,4 +32,4 @@ private:
     std::unique_ptr<File> file_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sound

@@ -11,7 +11,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::table {
 
 namespace {
 
@@ -93,7 +93,7 @@ NumberTable read_number_table(std::string_view text, const std::string& file) {
 }
 
 NumberTable load_number_table(const std::filesystem::path& path) {
-    return read_number_table(read_whole_file(path), path.string());
+    return read_number_table(file::read_whole_file(path), path.string());
 }
 
-}  // namespace tactus
+}  // namespace tactus::table

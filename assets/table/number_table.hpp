@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tactus {
+namespace tactus::table {
 
 struct NumberTable {
     std::string file;
@@ -29,4 +29,4 @@ struct NumberTable {
 NumberTable read_number_table(std::string_view text, const std::string& file);
 NumberTable load_number_table(const std::filesystem::path& path);
 
-}  // namespace tactus
+}  // namespace tactus::table

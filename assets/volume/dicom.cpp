@@ -17,7 +17,7 @@
 #include <optional>
 #include <span>
 
-namespace tactus {
+namespace tactus::volume {
 
 namespace {
 
@@ -330,4 +330,4 @@ std::unique_ptr<SliceReader> open_dicom(const std::filesystem::path& path, const
     return std::make_unique<DicomSlices>(path, options);
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

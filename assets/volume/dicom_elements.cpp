@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-namespace tactus {
+namespace tactus::volume {
 
 namespace {
 
@@ -143,8 +143,8 @@ private:
 }  // namespace
 
 void check_dicom_elements(const std::filesystem::path& path) {
-    const std::string file = path.string(), bytes = read_whole_file(path);
+    const std::string file = path.string(), bytes = file::read_whole_file(path);
     Walk(bytes, file).whole_file();
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -21,7 +21,7 @@
 #include <cstdlib>
 #include <cstring>
 
-namespace tactus {
+namespace tactus::volume {
 
 namespace {
 
@@ -224,7 +224,7 @@ std::vector<float> dicom_samples(const std::vector<DicomImage>& images) {
         const std::size_t each = static_cast<std::size_t>(first.rows) * static_cast<std::size_t>(first.columns);
         if (picture.GetBufferLength() != each * images.size() * bytes) refuse("not as many samples as its header says");
         // Its bytes as GDCM keeps them, as they are handed out, and as float.
-        require_room(double(picture.GetBufferLength()) * (2.0 + sizeof(float) / double(bytes)), file, "its samples");
+        file::require_room(double(picture.GetBufferLength()) * (2.0 + sizeof(float) / double(bytes)), file, "its samples");
         std::vector<char> buffer(picture.GetBufferLength());
         if (!picture.GetBuffer(buffer.data())) refuse("damaged or cut short");
         std::vector<float> values(each * images.size());
@@ -238,7 +238,7 @@ std::vector<float> dicom_samples(const std::vector<DicomImage>& images) {
         return values;
     } catch (const Error&) {
         throw;
-    } catch (const NoRoom&) {
+    } catch (const file::NoRoom&) {
         throw;
     } catch (const std::exception& failure) {
         refuse(failure.what());
@@ -246,4 +246,4 @@ std::vector<float> dicom_samples(const std::vector<DicomImage>& images) {
     return {};
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::volume {
 
 /// One image: a file, or one frame of a multi-frame file. Lengths in mm, LPS, as in the standard.
 struct DicomImage {
@@ -36,4 +36,4 @@ std::vector<DicomImage> dicom_images(const std::filesystem::path& file);
 /// decoded. `images` are those of the file, as dicom_images gave them.
 std::vector<float> dicom_samples(const std::vector<DicomImage>& images);
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <optional>
 
-namespace tactus {
+namespace tactus::volume {
 
 namespace {
 
@@ -175,4 +175,4 @@ private:
 
 std::unique_ptr<SliceReader> open_inv3(const std::filesystem::path& path) { return std::make_unique<Inv3Slices>(path); }
 
-}  // namespace tactus
+}  // namespace tactus::volume

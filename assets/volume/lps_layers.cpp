@@ -13,7 +13,7 @@
 #include <limits>
 #include <utility>
 
-namespace tactus {
+namespace tactus::volume {
 
 namespace {
 
@@ -245,7 +245,7 @@ Grid LpsLayers::layers(int first, int count, const Window& window) {
              layout_.position(i0, j0, first),
              layout_.spacing,
              {}};
-    require_room(double(out.count()) * sizeof(float), reader_.about.source, "some of its slices");
+    file::require_room(double(out.count()) * sizeof(float), reader_.about.source, "some of its slices");
     out.values.resize(out.count());
     const bool labels = reader_.about.kind == VolumeKind::labels;
     run_(count, [&](int layer) {
@@ -272,7 +272,7 @@ Grid part_of(LpsLayers& layers, const std::array<int, 3>& low, const std::array<
     const Grid& all = layers.layout();
     Grid out{{}, all.position(low[0], low[1], low[2]), all.spacing, {}};
     for (std::size_t a = 0; a < 3; ++a) out.size[a] = high[a] - low[a] + 1;
-    require_room(double(out.count()) * sizeof(float), layers.source(), "its samples");
+    file::require_room(double(out.count()) * sizeof(float), layers.source(), "its samples");
     out.values.resize(out.count());
     for (int k = 0; k < out.size[2]; k += at_once) {
         const Grid slab =
@@ -294,4 +294,4 @@ Grid lps_grid(ScanVolume volume) {
     return whole_of(layers);
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace tactus {
+namespace tactus::volume {
 
 /// The volume of a reader with its axes along those of LPS: mirrored and permuted axes are sorted, turned and sheared ones
 /// interpolated onto the box around them (cubic; labels: the nearest sample), the outside being its lowest value.
@@ -83,4 +83,4 @@ Grid part_of(LpsLayers& layers, const std::array<int, 3>& low, const std::array<
 /// All samples.
 Grid whole_of(LpsLayers& layers);
 
-}  // namespace tactus
+}  // namespace tactus::volume

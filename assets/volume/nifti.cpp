@@ -14,7 +14,7 @@
 #include <cstring>
 #include <optional>
 
-namespace tactus {
+namespace tactus::volume {
 
 namespace {
 
@@ -215,4 +215,4 @@ std::unique_ptr<SliceReader> open_nifti(const std::filesystem::path& path) {
     return std::make_unique<NiftiSlices>(path);
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

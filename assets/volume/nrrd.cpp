@@ -23,7 +23,7 @@
 #include <optional>
 #include <span>
 
-namespace tactus {
+namespace tactus::volume {
 
 namespace {
 
@@ -314,7 +314,7 @@ private:
     // Text and bzip2: all at once.
     void read_by_teem(const std::string& file) {
         // Its numbers as they are, and as float.
-        require_room(12.0 * double(about.count()) * double(layers_), file, "its samples");
+        file::require_room(12.0 * double(about.count()) * double(layers_), file, "its samples");
         const NrrdPointer nrrd(nrrdNew(), nrrdNuke);
         if (nrrdLoad(nrrd.get(), file.c_str(), nullptr)) refuse(file);
         const auto lookup = nrrdFLookup[nrrd->type];
@@ -339,4 +339,4 @@ private:
 
 std::unique_ptr<SliceReader> open_nrrd(const std::filesystem::path& path) { return std::make_unique<NrrdSlices>(path); }
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-namespace tactus {
+namespace tactus::volume {
 
 namespace {
 
@@ -27,7 +27,7 @@ bool may_be_long(std::string_view line) {
 }  // namespace
 
 void check_nrrd_header(const std::filesystem::path& path) {
-    require_file(path);
+    file::require_file(path);
     const std::string file = path.string();
     std::ifstream stream(path, std::ios::binary);
     std::string head(most_bytes, '\0');
@@ -54,4 +54,4 @@ void check_nrrd_header(const std::filesystem::path& path) {
     if (!is_all) throw Error(fmt::format("{}: its header is longer than {} MB", file, most_bytes >> 20));
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -4,11 +4,11 @@
 
 #include <filesystem>
 
-namespace tactus {
+namespace tactus::volume {
 
 /// Throws Error unless the file begins with an NRRD header that teem can be given: at most 10 000 lines and 16 MB in
 /// all, and no field longer than 700 bytes. Comments, key/value pairs and 'content', which teem copies into memory of
 /// their size, may be longer.
 void check_nrrd_header(const std::filesystem::path& path);
 
-}  // namespace tactus
+}  // namespace tactus::volume

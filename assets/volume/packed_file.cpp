@@ -15,7 +15,7 @@
 #include <cstring>
 #include <vector>
 
-namespace tactus {
+namespace tactus::volume {
 
 namespace {
 
@@ -52,7 +52,7 @@ void unpack(std::span<const char> bytes, SampleType type, bool swapped, std::spa
 
 PackedFile::PackedFile(const std::filesystem::path& path, std::uint64_t start, bool may_be_packed)
     : name_(path.string()) {
-    const std::uintmax_t size = require_file(path);
+    const std::uintmax_t size = file::require_file(path);
     if (start > size) throw Error(fmt::format("{}: cut short; copy the file again", name_));
     size_ = static_cast<double>(size - start);
     if (!may_be_packed) {
@@ -135,4 +135,4 @@ void read_samples(PackedFile& file, SampleType type, bool swapped, std::span<flo
     }
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

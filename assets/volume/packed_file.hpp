@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-namespace tactus {
+namespace tactus::volume {
 
 class PackedFile {
 public:
@@ -49,4 +49,4 @@ struct SampleType {
 /// Reads `values.size()` samples, turned about from the other byte order when `swapped`.
 void read_samples(PackedFile& file, SampleType type, bool swapped, std::span<float> values);
 
-}  // namespace tactus
+}  // namespace tactus::volume

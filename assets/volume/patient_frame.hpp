@@ -4,7 +4,7 @@
 
 #include "dsp/core/types.hpp"
 
-namespace tactus {
+namespace tactus::volume {
 
 /// Axes towards left, posterior, superior (DICOM, and this program inside) or right, anterior, superior (NIfTI).
 enum class Frame { lps, ras };
@@ -35,4 +35,4 @@ inline SampleMap<Frame::ras> to_ras(const SampleMap<Frame::lps>& map) {
     return out;
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -10,7 +10,7 @@
 #include <cctype>
 #include <fstream>
 
-namespace tactus {
+namespace tactus::volume {
 
 namespace {
 
@@ -26,7 +26,7 @@ bool ends_with(const std::filesystem::path& path, std::string_view ending) {
 // The first bytes tell NRRD and DICOM; gzip'ed files and NIfTI go by their names.
 Format format_of(const std::filesystem::path& path) {
     if (std::filesystem::is_directory(path)) return Format::dicom;
-    require_file(path);
+    file::require_file(path);
     if (ends_with(path, ".nrrd") || ends_with(path, ".nhdr")) return Format::nrrd;
     if (ends_with(path, ".nii") || ends_with(path, ".nii.gz")) return Format::nifti;
     if (ends_with(path, ".inv3")) return Format::inv3;
@@ -56,4 +56,4 @@ ScanVolume read_volume(const std::filesystem::path& path, const ReadOptions& opt
     return read_all(*open_volume(path, options));
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

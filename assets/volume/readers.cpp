@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::volume {
 
 namespace {
 
@@ -67,4 +67,4 @@ void settle_meaning(ScanVolume& volume, const Tally& tally, bool integers) {
     volume.hu = volume.kind == VolumeKind::labels ? HuKind::none : guess_hu(tally);
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-namespace tactus {
+namespace tactus::volume {
 
 std::unique_ptr<SliceReader> open_nrrd(const std::filesystem::path& path);
 std::unique_ptr<SliceReader> open_nifti(const std::filesystem::path& path);
@@ -29,4 +29,4 @@ void check_map(const SampleMap<Frame::lps>& map, const std::string& file);
 /// -1000 shows HU; a masked volume has zeros all around and in most places; all else is scanner numbers.
 void settle_meaning(ScanVolume& volume, const Tally& tally, bool integers);
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace tactus {
+namespace tactus::volume {
 
 void SampleStream::read(std::size_t first, std::span<float> values) {
     std::size_t piece = 0, at = first;
@@ -26,4 +26,4 @@ void SampleStream::read(std::size_t first, std::span<float> values) {
     }
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace tactus {
+namespace tactus::volume {
 
 class SampleStream {
 public:
@@ -40,4 +40,4 @@ private:
     std::size_t piece_ = 0, at_ = 0;
 };
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::volume {
 
 std::string_view name_of(HuKind kind) {
     switch (kind) {
@@ -32,4 +32,4 @@ double ScanVolume::tilt_deg() const {
     return std::acos(std::min(cosine, 1.0)) * 57.29577951308232;
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tactus {
+namespace tactus::volume {
 
 /// What the numbers of a volume are.
 enum class HuKind {
@@ -73,4 +73,4 @@ bool is_volume_file(const std::filesystem::path& path);
 /// The same volume on axes of LPS, see LpsLayers.
 Grid lps_grid(ScanVolume volume);
 
-}  // namespace tactus
+}  // namespace tactus::volume

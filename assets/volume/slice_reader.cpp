@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace tactus {
+namespace tactus::volume {
 
 void Tally::add(std::span<const float> slice, int k, const std::array<int, 3>& size) {
     if (slice.empty()) return;
@@ -56,7 +56,7 @@ void Tally::add(const Tally& other) {
 }
 
 ScanVolume read_all(SliceReader& reader) {
-    require_room(double(reader.about.count()) * sizeof(float), reader.about.source, "its samples");
+    file::require_room(double(reader.about.count()) * sizeof(float), reader.about.source, "its samples");
     std::vector<float> values(reader.about.count());
     Tally tally;
     const std::size_t each = reader.slice_size();
@@ -71,4 +71,4 @@ ScanVolume read_all(SliceReader& reader) {
     return volume;
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::volume {
 
 /// What all values together say about a volume.
 struct Tally {
@@ -55,4 +55,4 @@ std::unique_ptr<SliceReader> open_volume(const std::filesystem::path& path, cons
 /// The volume with all its values.
 ScanVolume read_all(SliceReader& reader);
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace tactus {
+namespace tactus::volume {
 
 namespace {
 
@@ -110,10 +110,10 @@ std::string nifti_of(const Grid& grid, SampleType type) {
 
 void write_volume(const Grid& grid, SampleType type, const std::filesystem::path& path) {
     const std::string name = path.filename().string();
-    if (name.ends_with(".nrrd")) write_whole_file(path, nrrd_of(grid, type));
-    else if (name.ends_with(".nii.gz")) write_whole_file(path, gzipped(nifti_of(grid, type)));
-    else if (name.ends_with(".nii")) write_whole_file(path, nifti_of(grid, type));
+    if (name.ends_with(".nrrd")) file::write_whole_file(path, nrrd_of(grid, type));
+    else if (name.ends_with(".nii.gz")) file::write_whole_file(path, gzipped(nifti_of(grid, type)));
+    else if (name.ends_with(".nii")) file::write_whole_file(path, nifti_of(grid, type));
     else throw Error(fmt::format("{}: a volume is written as .nrrd, .nii or .nii.gz", path.string()));
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-namespace tactus {
+namespace tactus::volume {
 
 /// How samples are stored.
 enum class SampleType { int16, float32 };
@@ -18,4 +18,4 @@ enum class SampleType { int16, float32 };
 /// whole or not at all.
 void write_volume(const Grid& grid, SampleType type, const std::filesystem::path& path);
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -15,7 +15,7 @@
 #include <memory>
 #include <thread>
 
-namespace tactus {
+namespace tactus::audio {
 
 namespace {
 
@@ -135,4 +135,4 @@ Captured play_and_capture(const Duplex& duplex, const std::vector<float>& sample
     return captured;
 }
 
-}  // namespace tactus
+}  // namespace tactus::audio

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::audio {
 
 struct Duplex {
     std::string device;      ///< part of a name from `list_audio_outputs` that also listens; "" the default
@@ -27,4 +27,4 @@ struct Captured {
 Captured play_and_capture(const Duplex& duplex, const std::vector<float>& samples,
                           const std::function<void(double)>& progress = {});
 
-}  // namespace tactus
+}  // namespace tactus::audio

@@ -3,7 +3,7 @@
 
 #include <jack/jack.h>
 
-namespace tactus {
+namespace tactus::audio {
 
 JackWatch::JackWatch() noexcept {
     jack_client_t* const client = jack_client_open("tactus-watch", JackNoStartServer, nullptr);
@@ -19,4 +19,4 @@ JackWatch::~JackWatch() {
     if (client_ != nullptr) jack_client_close(static_cast<jack_client_t*>(client_));
 }
 
-}  // namespace tactus
+}  // namespace tactus::audio

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <cstdint>
 
-namespace tactus {
+namespace tactus::audio {
 
 /// A second, silent client of the server that PortAudio plays on. In freewheel the server does not keep time and waits
 /// for every client: only then may a callback wait.
@@ -27,4 +27,4 @@ private:
     std::atomic<bool> freewheels_{false}, gone_{false};
 };
 
-}  // namespace tactus
+}  // namespace tactus::audio

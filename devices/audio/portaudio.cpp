@@ -16,7 +16,7 @@
 #include <memory>
 #include <thread>
 
-namespace tactus {
+namespace tactus::audio {
 namespace {
 
 using namespace std::chrono_literals;
@@ -184,4 +184,4 @@ std::unique_ptr<AudioSink> make_portaudio_sink(std::string device, double lead_s
     return std::make_unique<PortAudioSink>(std::move(device), lead_s);
 }
 
-}  // namespace tactus
+}  // namespace tactus::audio

@@ -2,13 +2,13 @@
 // Sound card output through PortAudio.
 #pragma once
 
-#include "graph/device.hpp"
+#include "graph/node/device.hpp"
 
 #include <memory>
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::audio {
 
 /// An output device of this machine.
 struct AudioOutput {
@@ -30,4 +30,4 @@ std::vector<AudioOutput> list_audio_outputs();
 /// `prepare` throws Error when there is no such output, so that the caller can go on without sound.
 std::unique_ptr<AudioSink> make_portaudio_sink(std::string device = {}, double lead_s = 0.0);
 
-}  // namespace tactus
+}  // namespace tactus::audio

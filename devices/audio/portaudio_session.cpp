@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <portaudio.h>
 
-namespace tactus {
+namespace tactus::audio {
 
 PortAudioSession::PortAudioSession() {
     const QuietStderr quiet;
@@ -23,4 +23,4 @@ std::string audio_device_name(int device) {
     return fmt::format("{}: {}", Pa_GetHostApiInfo(info.hostApi)->name, info.name);
 }
 
-}  // namespace tactus
+}  // namespace tactus::audio

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace tactus {
+namespace tactus::audio {
 
 /// PortAudio in use; it counts its users itself. Throws Error when the sound system cannot be used.
 class PortAudioSession {
@@ -18,4 +18,4 @@ public:
 /// "JACK Audio Connection Kit: system". `device` is PortAudio's index.
 std::string audio_device_name(int device);
 
-}  // namespace tactus
+}  // namespace tactus::audio

@@ -9,7 +9,7 @@
 
 #include <cstdio>
 
-namespace tactus {
+namespace tactus::audio {
 
 QuietStderr::QuietStderr() {
     std::fflush(stderr);
@@ -49,4 +49,4 @@ void require_alsa_default() {
             "/usr/share/alsa/alsa.conf");
 }
 
-}  // namespace tactus
+}  // namespace tactus::audio

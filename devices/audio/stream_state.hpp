@@ -3,14 +3,14 @@
 #pragma once
 
 #include "dsp/core/ring.hpp"
-#include "graph/device.hpp"
+#include "graph/node/device.hpp"
 
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 
-namespace tactus {
+namespace tactus::audio {
 
 /// Interleaved frames on their way to a card, and what happened to them.
 class StreamState {
@@ -128,4 +128,4 @@ private:
     bool is_playing_ = false;
 };
 
-}  // namespace tactus
+}  // namespace tactus::audio

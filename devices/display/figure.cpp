@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace tactus {
+namespace tactus::display {
 
 namespace {
 
@@ -97,4 +97,4 @@ std::string Figure::svg() const {
     return out + "</svg>\n";
 }
 
-}  // namespace tactus
+}  // namespace tactus::display

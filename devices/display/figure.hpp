@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-namespace tactus {
+namespace tactus::display {
 
 struct Colour {
     std::uint8_t red = 0, green = 0, blue = 0;
@@ -76,4 +76,4 @@ private:
     std::vector<Item> items_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::display

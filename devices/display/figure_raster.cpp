@@ -22,7 +22,7 @@
 #include <stb/stb_truetype.h>
 #pragma GCC diagnostic pop
 
-namespace tactus {
+namespace tactus::display {
 
 namespace {
 
@@ -281,4 +281,4 @@ private:
 
 Image Figure::image(double scale) const { return FigureRaster(*this, scale).draw(); }
 
-}  // namespace tactus
+}  // namespace tactus::display

@@ -7,7 +7,7 @@
 #include <EGL/eglext.h>
 #include <fmt/format.h>
 
-namespace tactus {
+namespace tactus::display {
 namespace {
 
 [[noreturn]] void fail(const char* step) {
@@ -45,4 +45,4 @@ SurfacelessContext::~SurfacelessContext() {
     eglDestroyContext(display_, context_);
 }
 
-}  // namespace tactus
+}  // namespace tactus::display

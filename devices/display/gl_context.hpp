@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace tactus {
+namespace tactus::display {
 
 /// A current OpenGL 3.3 core context without a surface, for as long as it lives. Throws Error when there is none.
 class SurfacelessContext {
@@ -16,4 +16,4 @@ private:
     void* context_ = nullptr;
 };
 
-}  // namespace tactus
+}  // namespace tactus::display

@@ -10,7 +10,7 @@
 
 #include <array>
 
-namespace tactus {
+namespace tactus::display {
 namespace {
 
 GLuint compile(GLenum kind, const char* source) {
@@ -48,4 +48,4 @@ void GlProgram::use() const { glUseProgram(program_); }
 
 int GlProgram::uniform(const char* name) const { return glGetUniformLocation(program_, name); }
 
-}  // namespace tactus
+}  // namespace tactus::display

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace tactus {
+namespace tactus::display {
 
 /// A linked pair of shaders. The context it was made in must be current whenever it is used or destroyed.
 class GlProgram {
@@ -23,4 +23,4 @@ private:
     unsigned program_ = 0;
 };
 
-}  // namespace tactus
+}  // namespace tactus::display

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::display {
 
 namespace {
 
@@ -57,7 +57,7 @@ void lay_over(Image& image, const Image& over, int x, int y, double opacity) {
 
 }  // namespace
 
-Legend::Scale density_scale(const DensityColours& colours) {
+Legend::Scale density_scale(const geometry::DensityColours& colours) {
     return {"density of the bone, mg/cm3", fmt::format("core {:g}", colours.core_density),
             fmt::format("{:g} cortex", colours.cortex_density), colours.core, colours.cortex};
 }
@@ -136,4 +136,4 @@ void add_scale_bar(Image& image, double metres_per_pixel) {
     lay_over(image, box, image.width - box.width - gap, image.height - box.height - gap, 0.9);
 }
 
-}  // namespace tactus
+}  // namespace tactus::display

@@ -3,13 +3,13 @@
 #pragma once
 
 #include "devices/display/offscreen.hpp"
-#include "dsp/view/brick_surface.hpp"
-#include "dsp/view/screen.hpp"
+#include "dsp/geometry/brick_surface.hpp"
+#include "dsp/display/screen.hpp"
 
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::display {
 
 struct Legend {
     struct Entry {
@@ -29,7 +29,7 @@ struct Legend {
 };
 
 /// What the colours of a bone mean.
-Legend::Scale density_scale(const DensityColours& colours);
+Legend::Scale density_scale(const geometry::DensityColours& colours);
 
 /// The legend on a light ground, as an image of its own; `scale` pixels per unit, 13 units for a line of text.
 Image legend_image(const Legend& legend, double scale);
@@ -42,4 +42,4 @@ void add_legend(Image& image, const Legend& legend, int x, int width, Turned tur
 /// A bar of a round length in the lower right corner. `metres_per_pixel` holds at the depth of what is looked at.
 void add_scale_bar(Image& image, double metres_per_pixel);
 
-}  // namespace tactus
+}  // namespace tactus::display

@@ -3,7 +3,7 @@
 
 #include "devices/display/gl_program.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/view/frustum.hpp"
+#include "dsp/display/frustum.hpp"
 
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
@@ -14,11 +14,11 @@
 #include <bit>
 #include <cstddef>
 
-namespace tactus {
+namespace tactus::display {
 
-Bounds bounds_of(const SurfacePatch& patch) {
+Bounds bounds_of(const geometry::SurfacePatch& patch) {
     Bounds bounds;
-    for (const SurfaceVertex& v : patch.vertices)
+    for (const geometry::SurfaceVertex& v : patch.vertices)
         bounds.add(Vec3(static_cast<double>(v.position[0]), static_cast<double>(v.position[1]),
                         static_cast<double>(v.position[2])));
     return bounds;
@@ -56,9 +56,9 @@ void MeshPool::describe_vertices() const {
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, index_buffer_);
     if (vertex_buffer_ == 0) return;
     const auto at = [](std::size_t offset) { return reinterpret_cast<const void*>(offset); };
-    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(SurfaceVertex), at(offsetof(SurfaceVertex, position)));
-    glVertexAttribPointer(1, 3, GL_SHORT, GL_TRUE, sizeof(SurfaceVertex), at(offsetof(SurfaceVertex, normal)));
-    glVertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(SurfaceVertex), at(offsetof(SurfaceVertex, colour)));
+    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(geometry::SurfaceVertex), at(offsetof(geometry::SurfaceVertex, position)));
+    glVertexAttribPointer(1, 3, GL_SHORT, GL_TRUE, sizeof(geometry::SurfaceVertex), at(offsetof(geometry::SurfaceVertex, normal)));
+    glVertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(geometry::SurfaceVertex), at(offsetof(geometry::SurfaceVertex, colour)));
     for (GLuint location = 0; location < 3; ++location) glEnableVertexAttribArray(location);
 }
 
@@ -88,7 +88,7 @@ MeshPool::Mesh MeshPool::make() {
     return static_cast<Mesh>(at);
 }
 
-MeshPool::Mesh MeshPool::make(const SurfaceGrid& grid) {
+MeshPool::Mesh MeshPool::make(const geometry::SurfaceGrid& grid) {
     const Mesh mesh = make();
     meshes_[static_cast<std::size_t>(mesh)].grid = grid;
     return mesh;
@@ -109,11 +109,11 @@ void MeshPool::give_back(const Part& part) {
     }
 }
 
-MeshPool::Place MeshPool::put(const SurfacePatch& patch) {
+MeshPool::Place MeshPool::put(const geometry::SurfacePatch& patch) {
     if (patch.triangles.empty()) return {};
     const Place place{vertex_shelf_.take(patch.vertices.size()), patch.vertices.size(),
                       index_shelf_.take(patch.triangles.size()), patch.triangles.size()};
-    ensure(vertex_buffer_, vertex_bytes_, vertex_shelf_.end() * sizeof(SurfaceVertex));
+    ensure(vertex_buffer_, vertex_bytes_, vertex_shelf_.end() * sizeof(geometry::SurfaceVertex));
     ensure(index_buffer_, index_bytes_, index_shelf_.end() * sizeof(std::uint32_t));
     const auto send = [](GLuint buffer, std::size_t first, const auto& values) {
         const std::size_t size = sizeof values.front();
@@ -126,7 +126,7 @@ MeshPool::Place MeshPool::put(const SurfacePatch& patch) {
     return place;
 }
 
-void MeshPool::set_part(Mesh mesh, std::uint32_t number, const SurfacePatch& patch) {
+void MeshPool::set_part(Mesh mesh, std::uint32_t number, const geometry::SurfacePatch& patch) {
     if (std::ranges::any_of(patch.triangles, [&](std::uint32_t v) { return v >= patch.vertices.size(); }))
         throw Error("a mesh for a picture names a vertex that it does not have");
     Parts& parts = meshes_[static_cast<std::size_t>(mesh)];
@@ -142,7 +142,7 @@ void MeshPool::set_part(Mesh mesh, std::uint32_t number, const SurfacePatch& pat
     part.bounds = bounds_of(patch);
     part.levels[0] = put(patch);
     if (!parts.grid) return;
-    const CoarseSurface::Levels& coarse = coarse_.make(patch, *parts.grid);
+    const geometry::CoarseSurface::Levels& coarse = coarse_.make(patch, *parts.grid);
     for (std::size_t level = 0; level < coarse.size(); ++level) part.levels[level + 1] = put(coarse[level]);
 }
 
@@ -169,7 +169,7 @@ std::size_t MeshPool::level_for(const Parts& parts, const Mat4& to_clip, int wid
     const Vec3& voxel = parts.grid->voxel;
     const double voxel_pixels = std::max({voxel.x, voxel.y, voxel.z}) * pixels_per_m;
     std::size_t level = 0;
-    while (level < CoarseSurface::factors.size() && CoarseSurface::factors[level] * voxel_pixels <= grain) ++level;
+    while (level < geometry::CoarseSurface::factors.size() && geometry::CoarseSurface::factors[level] * voxel_pixels <= grain) ++level;
     return level;
 }
 
@@ -199,4 +199,4 @@ std::size_t MeshPool::draw(Mesh mesh, const Mat4& to_clip, int width, int height
     return drawn;
 }
 
-}  // namespace tactus
+}  // namespace tactus::display

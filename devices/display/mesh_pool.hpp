@@ -4,9 +4,9 @@
 // drawn with fewer triangles where the picture may.
 #pragma once
 
-#include "dsp/view/brick_surface.hpp"
-#include "dsp/view/camera.hpp"
-#include "dsp/view/coarse_surface.hpp"
+#include "dsp/geometry/brick_surface.hpp"
+#include "dsp/display/camera.hpp"
+#include "dsp/geometry/coarse_surface.hpp"
 
 #include <array>
 #include <cstddef>
@@ -15,10 +15,10 @@
 #include <optional>
 #include <vector>
 
-namespace tactus {
+namespace tactus::display {
 
 /// The box around its vertices.
-Bounds bounds_of(const SurfacePatch& patch);
+Bounds bounds_of(const geometry::SurfacePatch& patch);
 
 /// Places in a long buffer, in powers of two, so that what is given back fits again.
 class BufferShelf {
@@ -46,10 +46,10 @@ public:
 
     Mesh make();
     /// One that is also kept with the cells of CoarseSurface; `grid`: what its parts are made from.
-    Mesh make(const SurfaceGrid& grid);
+    Mesh make(const geometry::SurfaceGrid& grid);
     void remove(Mesh mesh);
     /// Replaces one part; an empty one takes it away. Throws Error when a triangle names a vertex that is not there.
-    void set_part(Mesh mesh, std::uint32_t part, const SurfacePatch& patch);
+    void set_part(Mesh mesh, std::uint32_t part, const geometry::SurfacePatch& patch);
     /// Draws the parts that are within a picture of `width` × `height` pixels; `to_clip` starts from the frame of the mesh.
     /// Its cells may be `grain` pixels wide where it is nearest, 0: all triangles. Returns how many were drawn.
     std::size_t draw(Mesh mesh, const Mat4& to_clip, int width, int height, double grain) const;
@@ -62,23 +62,23 @@ private:
         std::size_t first_vertex = 0, vertices = 0, first_index = 0, indices = 0;
     };
     struct Part {
-        std::array<Place, 1 + CoarseSurface::factors.size()> levels;  // all triangles first
+        std::array<Place, 1 + geometry::CoarseSurface::factors.size()> levels;  // all triangles first
         Bounds bounds;
     };
     struct Parts {
         std::map<std::uint32_t, Part> of;
-        std::optional<SurfaceGrid> grid;
+        std::optional<geometry::SurfaceGrid> grid;
         bool is_used = false;
     };
 
-    Place put(const SurfacePatch& patch);
+    Place put(const geometry::SurfacePatch& patch);
     void give_back(const Part& part);
     std::size_t level_for(const Parts& parts, const Mat4& to_clip, int width, int height, double grain) const;
     void ensure(std::uint32_t& buffer, std::size_t& size, std::size_t wanted);
     void describe_vertices() const;
 
     std::vector<Parts> meshes_;
-    CoarseSurface coarse_;
+    geometry::CoarseSurface coarse_;
     std::uint64_t changes_ = 0;
     // What the driver is given.
     mutable std::vector<const Part*> seen_;
@@ -89,4 +89,4 @@ private:
     std::size_t vertex_bytes_ = 0, index_bytes_ = 0;
 };
 
-}  // namespace tactus
+}  // namespace tactus::display

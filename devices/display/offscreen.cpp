@@ -10,16 +10,16 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::display {
 
 namespace {
 
-SurfacePatch patch_of(const PictureMesh& mesh) {
+geometry::SurfacePatch patch_of(const PictureMesh& mesh) {
     const std::size_t vertices = mesh.positions.size() / 3;
     if (mesh.positions.size() != 3 * vertices || mesh.normals.size() != 3 * vertices ||
         mesh.colours.size() != 3 * vertices || mesh.triangles.size() % 3 != 0)
         throw Error("a mesh for a picture needs position, normal and colour per vertex and whole triangles");
-    SurfacePatch patch;
+    geometry::SurfacePatch patch;
     patch.triangles = mesh.triangles;
     for (std::size_t i = 0; i < 3 * vertices; i += 3) {
         const auto at = [i](const std::vector<float>& from) {
@@ -27,8 +27,8 @@ SurfacePatch patch_of(const PictureMesh& mesh) {
                         static_cast<double>(from[i + 2]));
         };
         patch.vertices.push_back({{mesh.positions[i], mesh.positions[i + 1], mesh.positions[i + 2]},
-                                  packed_normal(at(mesh.normals)),
-                                  packed_colour(at(mesh.colours))});
+                                  geometry::packed_normal(at(mesh.normals)),
+                                  geometry::packed_colour(at(mesh.colours))});
     }
     return patch;
 }
@@ -47,11 +47,11 @@ View fit_view(const Vec3& low, const Vec3& high, const Vec3& direction, const Ve
 }
 
 Image render_picture(std::span<const PictureMesh> meshes, const View& view, int width, int height) {
-    std::vector<SurfacePatch> patches;
+    std::vector<geometry::SurfacePatch> patches;
     for (const PictureMesh& mesh : meshes) patches.push_back(patch_of(mesh));
     PictureMaker maker(width, height);
     Picture picture;
-    for (const SurfacePatch& patch : patches) {
+    for (const geometry::SurfacePatch& patch : patches) {
         picture.meshes.push_back({maker.renderer().meshes().make(), {}, 1.0, false});
         maker.renderer().meshes().set_part(picture.meshes.back().mesh, 0, patch);
         picture.bounds.add(bounds_of(patch));
@@ -63,4 +63,4 @@ Image render_picture(std::span<const PictureMesh> meshes, const View& view, int 
     return maker.draw(picture, {&drawn, 1});
 }
 
-}  // namespace tactus
+}  // namespace tactus::display

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace tactus {
+namespace tactus::display {
 
 /// A lit triangle mesh; both sides of a triangle are seen.
 struct PictureMesh {
@@ -49,4 +49,4 @@ View fit_view(const Vec3& low, const Vec3& high, const Vec3& direction, const Ve
 /// pixels.
 Image render_picture(std::span<const PictureMesh> meshes, const View& view, int width, int height);
 
-}  // namespace tactus
+}  // namespace tactus::display

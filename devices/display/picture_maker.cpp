@@ -11,7 +11,7 @@
 
 #include <algorithm>
 
-namespace tactus {
+namespace tactus::display {
 
 namespace {
 
@@ -80,4 +80,4 @@ Image PictureMaker::draw(const Picture& picture, std::span<const DrawnView> view
     return image;
 }
 
-}  // namespace tactus
+}  // namespace tactus::display

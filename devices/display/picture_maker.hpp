@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <span>
 
-namespace tactus {
+namespace tactus::display {
 
 /// Holds an OpenGL context of its own, which is the current one of its thread for as long as it lives.
 class PictureMaker {
@@ -32,4 +32,4 @@ private:
     std::unique_ptr<SceneRenderer> renderer_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::display

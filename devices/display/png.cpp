@@ -11,7 +11,7 @@
 #endif
 #include <stb/stb_image_write.h>
 
-namespace tactus {
+namespace tactus::display {
 
 std::string png_bytes(const Image& image) {
     std::string bytes;
@@ -23,6 +23,6 @@ std::string png_bytes(const Image& image) {
     return bytes;
 }
 
-void write_png(const Image& image, const std::string& path) { write_whole_file(path, png_bytes(image)); }
+void write_png(const Image& image, const std::string& path) { file::write_whole_file(path, png_bytes(image)); }
 
-}  // namespace tactus
+}  // namespace tactus::display

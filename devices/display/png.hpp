@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace tactus {
+namespace tactus::display {
 
 /// Writes `path` + ".part" and renames it when whole. Throws Error when the file cannot be written.
 void write_png(const Image& image, const std::string& path);
@@ -13,4 +13,4 @@ void write_png(const Image& image, const std::string& path);
 /// The bytes of such a file, for pages that carry their pictures.
 std::string png_bytes(const Image& image);
 
-}  // namespace tactus
+}  // namespace tactus::display

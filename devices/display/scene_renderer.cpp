@@ -16,7 +16,7 @@
 #include <cmath>
 #include <string_view>
 
-namespace tactus {
+namespace tactus::display {
 
 namespace {
 
@@ -174,11 +174,11 @@ void SceneRenderer::draw_points(const Picture& picture, const Projection& projec
     if (picture.points.empty()) return;
     glBindVertexArray(programs_->point_array);
     glBindBuffer(GL_ARRAY_BUFFER, programs_->point_buffer);
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(picture.points.size() * sizeof(SurfaceVertex)),
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(picture.points.size() * sizeof(geometry::SurfaceVertex)),
                  picture.points.data(), GL_STREAM_DRAW);
-    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(SurfaceVertex), nullptr);
-    glVertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(SurfaceVertex),
-                          reinterpret_cast<const void*>(offsetof(SurfaceVertex, colour)));
+    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(geometry::SurfaceVertex), nullptr);
+    glVertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(geometry::SurfaceVertex),
+                          reinterpret_cast<const void*>(offsetof(geometry::SurfaceVertex, colour)));
     glEnableVertexAttribArray(0);
     glEnableVertexAttribArray(2);
     const GlProgram& program = programs_->points;
@@ -288,4 +288,4 @@ std::optional<Picked> SceneRenderer::pick(const Picture& picture, const DrawnVie
     return Picked{Vec3(at) / at.w, number - 1};
 }
 
-}  // namespace tactus
+}  // namespace tactus::display

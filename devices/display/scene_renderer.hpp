@@ -4,8 +4,8 @@
 #pragma once
 
 #include "devices/display/mesh_pool.hpp"
-#include "dsp/view/camera.hpp"
-#include "dsp/view/screen.hpp"
+#include "dsp/display/camera.hpp"
+#include "dsp/display/screen.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-namespace tactus {
+namespace tactus::display {
 
 /// A mesh where it stands. World frame: LPS, m.
 struct DrawnMesh {
@@ -32,7 +32,7 @@ inline constexpr double grain_of_motion = 4.0;
 /// Everything that is to be seen.
 struct Picture {
     std::vector<DrawnMesh> meshes;
-    std::vector<SurfaceVertex> points;  ///< dots that lie on top of what is less than 2 mm before them; normals unused
+    std::vector<geometry::SurfaceVertex> points;  ///< dots that lie on top of what is less than 2 mm before them; normals unused
     double point_size = 7.0;  ///< pixels
     std::optional<Plane> clip;  ///< what is above it is taken away, and cut bodies show a flat section
     Vec3 section{0.72, 0.56, 0.46};  ///< sRGB of a section
@@ -98,4 +98,4 @@ private:
     bool is_software_ = false;
 };
 
-}  // namespace tactus
+}  // namespace tactus::display

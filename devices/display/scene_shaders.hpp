@@ -2,7 +2,7 @@
 // What the graphics card runs for a scene. Light is computed in linear light and shown as sRGB.
 #pragma once
 
-namespace tactus::scene_shaders {
+namespace tactus::display::scene_shaders {
 
 inline constexpr const char* background_vertex = R"(#version 330 core
 out float height;
@@ -98,4 +98,4 @@ uniform uint number;
 out uint picked;
 void main() { picked = number; })";
 
-}  // namespace tactus::scene_shaders
+}  // namespace tactus::display::scene_shaders

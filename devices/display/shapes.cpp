@@ -6,17 +6,17 @@
 #include <cmath>
 #include <numbers>
 
-namespace tactus {
+namespace tactus::display {
 
 namespace {
 
 constexpr int sides = 32;
 
-std::uint32_t add_vertex(SurfacePatch& patch, const Vec3& at, const Vec3& normal, const Vec3& colour,
+std::uint32_t add_vertex(geometry::SurfacePatch& patch, const Vec3& at, const Vec3& normal, const Vec3& colour,
                          double opacity = 1.0) {
     patch.vertices.push_back({{static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)},
-                              packed_normal(normal),
-                              packed_colour(colour, opacity)});
+                              geometry::packed_normal(normal),
+                              geometry::packed_colour(colour, opacity)});
     return static_cast<std::uint32_t>(patch.vertices.size() - 1);
 }
 
@@ -36,7 +36,7 @@ struct Around {
 };
 
 /// The band between two circles; a radius of nought closes it. Seen from outside when `to` lies along the axis.
-void add_band(SurfacePatch& patch, const Around& around, const Vec3& from, double from_radius, const Vec3& to,
+void add_band(geometry::SurfacePatch& patch, const Around& around, const Vec3& from, double from_radius, const Vec3& to,
               double to_radius, const Vec3& colour) {
     const double rise = glm::dot(to - from, around.axis), shrink = from_radius - to_radius;
     const bool is_disc = std::abs(rise) < 1e-12;
@@ -55,13 +55,13 @@ void add_band(SurfacePatch& patch, const Around& around, const Vec3& from, doubl
 
 }  // namespace
 
-void add_triangle(SurfacePatch& patch, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& colour,
+void add_triangle(geometry::SurfacePatch& patch, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& colour,
                   double opacity) {
     const Vec3 normal = glm::cross(b - a, c - a);
     for (const Vec3& corner : {a, b, c}) patch.triangles.push_back(add_vertex(patch, corner, normal, colour, opacity));
 }
 
-void add_ball(SurfacePatch& patch, const Vec3& centre, double radius, const Vec3& colour) {
+void add_ball(geometry::SurfacePatch& patch, const Vec3& centre, double radius, const Vec3& colour) {
     constexpr int rows = sides / 2;
     const auto first = static_cast<std::uint32_t>(patch.vertices.size());
     for (int row = 0; row <= rows; ++row)
@@ -77,7 +77,7 @@ void add_ball(SurfacePatch& patch, const Vec3& centre, double radius, const Vec3
         }
 }
 
-void add_box(SurfacePatch& patch, const Vec3& low, const Vec3& high, const Vec3& colour, const Pose& frame) {
+void add_box(geometry::SurfacePatch& patch, const Vec3& low, const Vec3& high, const Vec3& colour, const Pose& frame) {
     for (int axis = 0; axis < 3; ++axis)
         for (const bool far : {false, true}) {
             const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -95,7 +95,7 @@ void add_box(SurfacePatch& patch, const Vec3& low, const Vec3& high, const Vec3&
         }
 }
 
-void add_arrow(SurfacePatch& patch, const Vec3& from, const Vec3& to, double radius, const Vec3& colour) {
+void add_arrow(geometry::SurfacePatch& patch, const Vec3& from, const Vec3& to, double radius, const Vec3& colour) {
     const double length = glm::length(to - from);
     if (!is_finite(from) || !is_finite(to) || !(length > 0.0)) return;
     const Around around(to - from);
@@ -107,7 +107,7 @@ void add_arrow(SurfacePatch& patch, const Vec3& from, const Vec3& to, double rad
     add_band(patch, around, neck, head, to, 0.0, colour);
 }
 
-void add_axes(SurfacePatch& patch, const Pose& pose, double length) {
+void add_axes(geometry::SurfacePatch& patch, const Pose& pose, double length) {
     const Vec3 colours[] = {{0.80, 0.20, 0.18}, {0.25, 0.60, 0.25}, {0.20, 0.35, 0.80}};
     for (int axis = 0; axis < 3; ++axis) {
         Vec3 along(0.0);
@@ -117,7 +117,7 @@ void add_axes(SurfacePatch& patch, const Pose& pose, double length) {
     add_ball(patch, pose.position, 0.06 * length, {0.35, 0.36, 0.38});
 }
 
-void add_blade(SurfacePatch& patch, const BladeShape& shape, const Vec3& colour) {
+void add_blade(geometry::SurfacePatch& patch, const contact::BladeShape& shape, const Vec3& colour) {
     constexpr double pitch = 1.4e-3;  // 18 teeth per inch
     const int teeth = std::max(2, static_cast<int>(shape.length / pitch));
     const double tooth = shape.length / teeth, half = 0.5 * shape.thickness, root = -0.8 * tooth;
@@ -136,7 +136,7 @@ void add_blade(SurfacePatch& patch, const BladeShape& shape, const Vec3& colour)
     }
 }
 
-void add_square(SurfacePatch& patch, const Vec3& centre, const Vec3& normal, double side, const Vec3& colour,
+void add_square(geometry::SurfacePatch& patch, const Vec3& centre, const Vec3& normal, double side, const Vec3& colour,
                 double opacity) {
     const Around around(normal);
     const Vec3 u = 0.5 * side * around.u, v = 0.5 * side * around.v;
@@ -144,4 +144,4 @@ void add_square(SurfacePatch& patch, const Vec3& centre, const Vec3& normal, dou
     add_triangle(patch, centre - u - v, centre + u + v, centre - u + v, colour, opacity);
 }
 
-}  // namespace tactus
+}  // namespace tactus::display

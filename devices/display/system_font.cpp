@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string_view>
 
-namespace tactus {
+namespace tactus::display {
 
 std::string system_font(bool bold) {
     for (const char* name : {"dejavu/DejaVuSans", "liberation/LiberationSans", "noto/NotoSans", "freefont/FreeSans"}) {
@@ -20,4 +20,4 @@ std::string system_font(bool bold) {
     return {};
 }
 
-}  // namespace tactus
+}  // namespace tactus::display

@@ -3,9 +3,9 @@
 
 #include <string>
 
-namespace tactus {
+namespace tactus::display {
 
 /// Path of a scalable font that the system has, empty when none of the usual ones is installed.
 std::string system_font(bool bold);
 
-}  // namespace tactus
+}  // namespace tactus::display

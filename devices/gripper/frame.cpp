@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace tactus {
+namespace tactus::gripper {
 
 namespace {
 
@@ -145,4 +145,4 @@ bool FrameReader::look() noexcept {
     return false;
 }
 
-}  // namespace tactus
+}  // namespace tactus::gripper

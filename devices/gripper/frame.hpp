@@ -26,7 +26,7 @@
 #include <cstdint>
 #include <span>
 
-namespace tactus {
+namespace tactus::gripper {
 
 enum class FrameKind : std::uint8_t { drive = 1, sample = 2 };
 
@@ -89,4 +89,4 @@ private:
     Counts counts_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::gripper

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/gripper/serial_gripper.hpp"
 
-#include "assets/deflection/deflection_file.hpp"
+#include "assets/table/deflection_file.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <utility>
 
-namespace tactus {
+namespace tactus::gripper {
 
 namespace {
 
@@ -103,7 +103,7 @@ void SerialGripper::send(const DriveFrame& drive) noexcept {
     if (!port_.write({bytes.bytes.data(), bytes.size})) ++counts_.unsent;
 }
 
-std::unique_ptr<HapticDevice> open_serial_gripper(Options& options, const PathResolver& resolve) {
+std::unique_ptr<HapticDevice> open_serial_gripper(Options& options, const haptic::PathResolver& resolve) {
     SerialGripperSettings s;
     s.port = options.text("port", "/dev/ttyUSB0");
     const double baud = options.quantity("baud", "115200", "9600", "1000000");
@@ -114,7 +114,7 @@ std::unique_ptr<HapticDevice> open_serial_gripper(Options& options, const PathRe
     s.fingers = static_cast<int>(options.quantity("fingers", "1", "1", "2"));
     s.pulse = 1.0 / options.quantity("encoder", "3555.6 mm^-1", "0.01 mm^-1", "1e7 mm^-1");
     const double newton = options.quantity("newton_per_count", "1 mN", "1e-9 N", "100 N");
-    for (LineFit& gauge : s.gauge) gauge.slope = newton;
+    for (simulate::LineFit& gauge : s.gauge) gauge.slope = newton;
     const std::array<std::string, 2> calibrations{options.text("calibration", ""),
                                                   options.text("thumb_calibration", "")};
     s.max_speed = options.quantity("max_speed", "70 mm/s", "0.1 mm/s", "10 m/s");
@@ -122,7 +122,7 @@ std::unique_ptr<HapticDevice> open_serial_gripper(Options& options, const PathRe
     s.timeout = options.quantity("timeout", "20 ms", "1 ms", "10 s");
     options.finish();
     for (std::size_t i = 0; i < calibrations.size(); ++i)
-        if (!calibrations[i].empty()) s.gauge[i] = load_force_calibration(resolve(calibrations[i]));
+        if (!calibrations[i].empty()) s.gauge[i] = table::load_force_calibration(resolve(calibrations[i]));
     try {
         return std::make_unique<SerialGripper>(std::move(s));
     } catch (const Error& error) {
@@ -130,4 +130,4 @@ std::unique_ptr<HapticDevice> open_serial_gripper(Options& options, const PathRe
     }
 }
 
-}  // namespace tactus
+}  // namespace tactus::gripper

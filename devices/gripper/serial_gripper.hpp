@@ -5,23 +5,23 @@
 #include "devices/gripper/frame.hpp"
 #include "devices/gripper/serial_port.hpp"
 #include "devices/haptic/replay.hpp"
-#include "dsp/gripper/sensors.hpp"
-#include "graph/device.hpp"
-#include "graph/options.hpp"
+#include "dsp/simulate/gripper/sensors.hpp"
+#include "graph/node/device.hpp"
+#include "graph/node/options.hpp"
 
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
 
-namespace tactus {
+namespace tactus::gripper {
 
 struct SerialGripperSettings {
     std::string port;              ///< "/dev/ttyUSB0"
     int baud = 115200;
     int fingers = 1;
     double pulse = 4.5e-3 / 16e3;  ///< m of the finger per pulse of its encoder
-    std::array<LineFit, 2> gauge{{{1e-3, 0.0, 1.0, 0.0}, {1e-3, 0.0, 1.0, 0.0}}};  ///< N from counts
+    std::array<simulate::LineFit, 2> gauge{{{1e-3, 0.0, 1.0, 0.0}, {1e-3, 0.0, 1.0, 0.0}}};  ///< N from counts
     double max_speed = 0.07;       ///< m/s
     double least_speed = 0.0;      ///< m/s; the motor turns no slower
     double timeout = 0.02;         ///< s without a good sample after which the device is not valid
@@ -66,6 +66,6 @@ private:
 
 /// Options: port, baud, fingers, encoder (pulses per m of the finger), newton_per_count, or calibration and
 /// thumb_calibration (assets; see load_force_calibration), max_speed, least_speed, timeout. Throws Error.
-std::unique_ptr<HapticDevice> open_serial_gripper(Options& options, const PathResolver& resolve);
+std::unique_ptr<HapticDevice> open_serial_gripper(Options& options, const haptic::PathResolver& resolve);
 
-}  // namespace tactus
+}  // namespace tactus::gripper

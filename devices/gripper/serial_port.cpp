@@ -12,7 +12,7 @@
 #include <cstring>
 #include <utility>
 
-namespace tactus {
+namespace tactus::gripper {
 
 namespace {
 
@@ -84,4 +84,4 @@ bool SerialPort::write(std::span<const std::uint8_t> bytes) noexcept {
     return count == static_cast<ssize_t>(bytes.size());
 }
 
-}  // namespace tactus
+}  // namespace tactus::gripper

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-namespace tactus {
+namespace tactus::gripper {
 
 /// A serial line, 8 data bits, no parity, one stop bit, no flow control (termios). Never waits.
 class SerialPort {
@@ -32,4 +32,4 @@ private:
     int file_ = -1;
 };
 
-}  // namespace tactus
+}  // namespace tactus::gripper

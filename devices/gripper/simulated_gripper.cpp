@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/gripper/simulated_gripper.hpp"
 
-#include "dsp/gripper/finger.hpp"
+#include "dsp/simulate/gripper/finger.hpp"
 
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace tactus {
+namespace tactus::gripper {
 
 namespace {
 
@@ -27,7 +27,7 @@ struct Breakage {
 
 class SimulatedGripper final : public HapticDevice {
 public:
-    SimulatedGripper(DeviceInfo info, std::vector<Finger> fingers, Breakage breakage)
+    SimulatedGripper(DeviceInfo info, std::vector<simulate::Finger> fingers, Breakage breakage)
         : info_(std::move(info)), initial_(std::move(fingers)), fingers_(initial_), breakage_(breakage) {}
 
     const DeviceInfo& info() const override { return info_; }
@@ -43,7 +43,7 @@ public:
         time_ += elapsed_s;
         const bool broken = breakage_.holds(time_);
         for (std::size_t i = 0; i < fingers_.size(); ++i) {
-            Finger& finger = fingers_[i];
+            simulate::Finger& finger = fingers_[i];
             const bool stands = broken && breakage_.kind == PlantedFault::stuck;
             finger.advance(stands ? 0.0 : drive_.speed[i], i == 0 ? drive_.cord : 0.0, elapsed_s, drive_.free);
             const auto index = static_cast<std::uint64_t>(sample_.counter);
@@ -71,7 +71,7 @@ public:
 
 private:
     DeviceInfo info_;
-    std::vector<Finger> initial_, fingers_;
+    std::vector<simulate::Finger> initial_, fingers_;
     Breakage breakage_;
     DeviceSample sample_;
     MotorDrive drive_;
@@ -79,9 +79,9 @@ private:
 };
 
 /// What both grippers share.
-Finger read_finger(Options& options) {
+simulate::Finger read_finger(Options& options) {
     static const std::array<std::string, 2> holders{"rig", "hand"};
-    Finger finger;
+    simulate::Finger finger;
     finger.on_rig = options.choice("held_by", holders, "rig") == 0;
     finger.rig.stiffness = options.quantity("spring", "0.19 N/mm", "0 N/mm", "10 N/mm");
     finger.rig.pretension = options.quantity("pretension", "35 mm", "0 mm", "1 m");
@@ -120,9 +120,9 @@ DeviceInfo describe_gripper(std::string name, int fingers, double max_speed, dou
 
 }  // namespace
 
-std::unique_ptr<HapticDevice> open_walking_gripper(Options& options, const PathResolver&) {
-    Finger finger = read_finger(options);
-    WalkingMotorSettings s;
+std::unique_ptr<HapticDevice> open_walking_gripper(Options& options, const haptic::PathResolver&) {
+    simulate::Finger finger = read_finger(options);
+    simulate::WalkingMotorSettings s;
     s.leverage = options.quantity("leverage", "4.5", "0.1", "100");
     s.drive_limit = options.quantity("drive_limit", "3 kHz", "1 Hz", "100 kHz");
     const double fastest = options.quantity("max_speed", "70 mm/s", "0.1 mm/s", "10 m/s");
@@ -133,18 +133,18 @@ std::unique_ptr<HapticDevice> open_walking_gripper(Options& options, const PathR
     const double pulses = options.quantity("encoder", "16000 mm^-1", "0.01 mm^-1", "1e7 mm^-1");
     const Breakage breakage = read_breakage(options);
     options.finish();
-    finger.motor = WalkingMotor{s};
+    finger.motor = simulate::WalkingMotor{s};
     finger.encoder.step = s.leverage / pulses;  // the encoder is on the rod
     return std::make_unique<SimulatedGripper>(
         describe_gripper("simulated gripper, walking motor", 1, s.max_speed(), 0.0), std::vector{finger}, breakage);
 }
 
-std::unique_ptr<HapticDevice> open_wave_gripper(Options& options, const PathResolver&) {
+std::unique_ptr<HapticDevice> open_wave_gripper(Options& options, const haptic::PathResolver&) {
     static const std::array<std::string, 3> controls{"phase", "frequency", "amplitude"};
-    static constexpr std::array control_of{WaveControl::phase, WaveControl::frequency, WaveControl::amplitude};
-    Finger finger = read_finger(options);
-    WaveMotor motor;
-    WaveMotorSettings& s = motor.settings;
+    static constexpr std::array control_of{simulate::WaveControl::phase, simulate::WaveControl::frequency, simulate::WaveControl::amplitude};
+    simulate::Finger finger = read_finger(options);
+    simulate::WaveMotor motor;
+    simulate::WaveMotorSettings& s = motor.settings;
     s.resonance = options.quantity("resonance", "40 kHz", "1 kHz", "1 MHz");
     s.width = options.quantity("width", "800 Hz", "1 Hz", "100 kHz");
     s.max_speed = options.quantity("max_speed", "600 mm/s", "1 mm/s", "10 m/s");
@@ -161,11 +161,11 @@ std::unique_ptr<HapticDevice> open_wave_gripper(Options& options, const PathReso
     options.finish();
     finger.motor = motor;
     finger.encoder.step = 2.0 * std::numbers::pi * lever / pulses;
-    Finger thumb = finger;
+    simulate::Finger thumb = finger;
     thumb.gauge.random.seed += 1;
     return std::make_unique<SimulatedGripper>(
         describe_gripper("simulated gripper, traveling-wave motors", 2, s.max_speed, s.least_speed),
         std::vector{finger, thumb}, breakage);
 }
 
-}  // namespace tactus
+}  // namespace tactus::gripper

@@ -2,23 +2,23 @@
 // Simulated grippers (thesis 6.3.1, 6.3.2), on the test rig or on a hand that squeezes.
 #pragma once
 
-#include "graph/device.hpp"
-#include "graph/options.hpp"
+#include "graph/node/device.hpp"
+#include "graph/node/options.hpp"
 
 #include "devices/haptic/replay.hpp"
 
 #include <memory>
 
-namespace tactus {
+namespace tactus::gripper {
 
 /// One finger, a walking quasi-static motor behind a lever. Options: those of WalkingMotorSettings and, for both
 /// grippers, held_by (rig, hand), spring, pretension, hand_stiffness, squeeze, squeeze_from, squeeze_until,
 /// squeeze_rise, gauge_step, gauge_noise, delay, seed, fault (none, nan, stuck, unplugged), fault_at, fault_until.
 /// Throws Error.
-std::unique_ptr<HapticDevice> open_walking_gripper(Options& options, const PathResolver& resolve);
+std::unique_ptr<HapticDevice> open_walking_gripper(Options& options, const haptic::PathResolver& resolve);
 
 /// Finger plate and thumb, a traveling-wave ultrasonic motor each, driven directly. Options: those of
 /// WaveMotorSettings, control, lever, and those above. Throws Error.
-std::unique_ptr<HapticDevice> open_wave_gripper(Options& options, const PathResolver& resolve);
+std::unique_ptr<HapticDevice> open_wave_gripper(Options& options, const haptic::PathResolver& resolve);
 
-}  // namespace tactus
+}  // namespace tactus::gripper

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace tactus {
+namespace tactus::haptic {
 
 namespace {
 
@@ -23,10 +23,10 @@ std::vector<HapticDriver>& drivers() {
         {"scripted", "a hand that goes to given places at given times and yields to force", open_scripted},
         {"replay", "a recorded movement led through a hand that yields to force", open_replay},
         {"wqsm_gripper", "a simulated gripper with a walking quasi-static motor, on a rig or in a hand",
-         open_walking_gripper},
+         gripper::open_walking_gripper},
         {"twum_gripper", "a simulated gripper with two traveling-wave ultrasonic motors, on a rig or in a hand",
-         open_wave_gripper},
-        {"serial_gripper", "a gripper whose controller is at a serial port", open_serial_gripper, true},
+         gripper::open_wave_gripper},
+        {"serial_gripper", "a gripper whose controller is at a serial port", gripper::open_serial_gripper, true},
     };
     return all;
 }
@@ -57,4 +57,4 @@ std::unique_ptr<HapticDevice> open_haptic_device(std::string_view driver, const 
                                    did_you_mean(driver, names), fmt::join(names, ", ")));
 }
 
-}  // namespace tactus
+}  // namespace tactus::haptic

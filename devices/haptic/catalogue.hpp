@@ -3,15 +3,15 @@
 #pragma once
 
 #include "devices/haptic/replay.hpp"
-#include "graph/device.hpp"
-#include "graph/options.hpp"
+#include "graph/node/device.hpp"
+#include "graph/node/options.hpp"
 
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 
-namespace tactus {
+namespace tactus::haptic {
 
 struct HapticDriver {
     std::string name;
@@ -35,4 +35,4 @@ bool is_real_driver(std::string_view driver);
 std::unique_ptr<HapticDevice> open_haptic_device(std::string_view driver, const SourceLocation& where, Options& options,
                                                  const PathResolver& resolve);
 
-}  // namespace tactus
+}  // namespace tactus::haptic

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/haptic/operated.hpp"
 
-namespace tactus {
+namespace tactus::haptic {
 
-HandDynamics read_hand(Options& options) {
-    HandDynamics hand;
+simulate::HandDynamics read_hand(Options& options) {
+    simulate::HandDynamics hand;
     hand.mass = options.quantity("mass", "0.2 kg", "0.01 kg", "5 kg");
     hand.inertia = options.quantity("inertia", "4e-4 kg m^2", "1e-6 kg m^2", "1 kg m^2");
     hand.stiffness = options.quantity("stiffness", "800 N/m", "0 N/m", "20000 N/m");
@@ -14,7 +14,7 @@ HandDynamics read_hand(Options& options) {
     return hand;
 }
 
-DeviceInfo read_device_info(Options& options, const HandDynamics& hand, std::string name) {
+DeviceInfo read_device_info(Options& options, const simulate::HandDynamics& hand, std::string name) {
     DeviceInfo info;
     info.name = std::move(name);
     info.max_force = options.quantity("max_force", "20 N", "0.1 N", "200 N");
@@ -26,4 +26,4 @@ DeviceInfo read_device_info(Options& options, const HandDynamics& hand, std::str
     return info;
 }
 
-}  // namespace tactus
+}  // namespace tactus::haptic

@@ -2,20 +2,20 @@
 // What every simulated device shares: a hand on it that feels its force.
 #pragma once
 
-#include "dsp/operator/hand.hpp"
-#include "graph/device.hpp"
-#include "graph/options.hpp"
+#include "dsp/simulate/hand.hpp"
+#include "graph/node/device.hpp"
+#include "graph/node/options.hpp"
 
 #include <atomic>
 #include <utility>
 
-namespace tactus {
+namespace tactus::haptic {
 
 /// Reads the options of the hand and of what the device can do: mass, inertia, stiffness, damping, angular_stiffness,
 /// angular_damping, max_force, max_torque, torque (false: a
 /// device of three degrees of freedom, that gives none).
-HandDynamics read_hand(Options& options);
-DeviceInfo read_device_info(Options& options, const HandDynamics& hand, std::string name);
+simulate::HandDynamics read_hand(Options& options);
+DeviceInfo read_device_info(Options& options, const simulate::HandDynamics& hand, std::string name);
 
 /// The force that a device was given last. A watchdog may give one while the device is read.
 class SharedWrench {
@@ -38,12 +38,12 @@ private:
     std::atomic<double> parts_[6] = {};
 };
 
-/// A device moved by a hand that `Operator` leads. Operator: the call of `advance` in dsp/operator/hand.hpp, `start()`
+/// A device moved by a hand that `Operator` leads. Operator: the call of `advance` in dsp/simulate/hand.hpp, `start()`
 /// and `buttons()`.
 template <typename Operator>
 class OperatedDevice final : public HapticDevice {
 public:
-    OperatedDevice(DeviceInfo info, const HandDynamics& dynamics, Operator initial)
+    OperatedDevice(DeviceInfo info, const simulate::HandDynamics& dynamics, Operator initial)
         : info_(std::move(info)), initial_(std::move(initial)), operator_(initial_) {
         hand_.dynamics = dynamics;
         hand_.pose = operator_.start();
@@ -60,7 +60,7 @@ public:
     }
 
     DeviceSample acquire(double elapsed_s) noexcept override {
-        advance(hand_, operator_, force_.get(), elapsed_s);
+        simulate::advance(hand_, operator_, force_.get(), elapsed_s);
         return {hand_.pose, hand_.twist, operator_.buttons(), ++counter_, is_valid(hand_.pose)};
     }
 
@@ -69,9 +69,9 @@ public:
 private:
     DeviceInfo info_;
     Operator initial_, operator_;
-    Hand hand_;
+    simulate::Hand hand_;
     SharedWrench force_;
     std::int64_t counter_ = 0;
 };
 
-}  // namespace tactus
+}  // namespace tactus::haptic

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/haptic/replay.hpp"
 
-#include "assets/trajectory/trajectory.hpp"
+#include "assets/table/trajectory.hpp"
 #include "devices/haptic/operated.hpp"
-#include "dsp/operator/alignment.hpp"
+#include "dsp/simulate/path_alignment.hpp"
 
 #include <fmt/format.h>
 
@@ -11,18 +11,18 @@
 #include <cmath>
 #include <limits>
 
-namespace tactus {
+namespace tactus::haptic {
 namespace {
 
 struct Replaying {
-    std::shared_ptr<const TrajectoryPlayer> player;  // shared by the copy that `prepare` goes back to
+    std::shared_ptr<const simulate::TrajectoryPlayer> player;  // shared by the copy that `prepare` goes back to
     double trigger_from = 0.0;                       // s
     double time = 0.0;
     std::size_t hint = 0;
     bool gap = false, done = false;
 
-    Intention operator()(double h, const Wrench&, const Pose&) noexcept {
-        const TrajectoryState state = player->at(time + 0.5 * h, hint);
+    simulate::Intention operator()(double h, const Wrench&, const Pose&) noexcept {
+        const simulate::TrajectoryState state = player->at(time + 0.5 * h, hint);
         time += h;
         gap = state.gap;
         done = state.done;
@@ -48,7 +48,7 @@ double read_trigger(Options& options) {
 
 std::unique_ptr<HapticDevice> open_replay(Options& options, const PathResolver& resolve) {
     const std::string file = options.text("file", "");
-    TrajectorySelection selection;
+    table::TrajectorySelection selection;
     selection.tool = options.text("tool", "");
     const double trial = options.quantity("trial", "0", "0", "1000000");
     if (trial != std::floor(trial))
@@ -60,19 +60,19 @@ std::unique_ptr<HapticDevice> open_replay(Options& options, const PathResolver& 
     const double reach = options.quantity("reach", "9 mm", "-1 m", "1 m");
     Replaying operated;
     operated.trigger_from = read_trigger(options);
-    const HandDynamics hand = read_hand(options);
+    const simulate::HandDynamics hand = read_hand(options);
     DeviceInfo info = read_device_info(options, hand, "replayed hand");
     options.finish();
     if (file.empty())
         throw Error(options.where(),
                     fmt::format("{} replays a recording; name it with the option 'file'", options.owner()));
-    Trajectory trajectory = read_trajectory(resolve(file), selection);
+    table::Trajectory trajectory = table::read_trajectory(resolve(file), selection);
     // Tools work towards −z of the device, as with the simulated hand.
-    if (at_rest) align_to_rest(trajectory.samples, Vec3(0.0, 0.0, -1.0), reach);
-    TrajectoryRules rules = trajectory.rules();
+    if (at_rest) simulate::align_to_rest(trajectory.samples, Vec3(0.0, 0.0, -1.0), reach);
+    simulate::TrajectoryRules rules = trajectory.rules();
     rules.max_speed = max_speed;
-    operated.player = std::make_shared<const TrajectoryPlayer>(trajectory.samples, trajectory.breaks, rules);
+    operated.player = std::make_shared<const simulate::TrajectoryPlayer>(trajectory.samples, trajectory.breaks, rules);
     return std::make_unique<OperatedDevice<Replaying>>(std::move(info), hand, std::move(operated));
 }
 
-}  // namespace tactus
+}  // namespace tactus::haptic

@@ -2,15 +2,15 @@
 // Driver "replay": a recorded movement is what the hand intends; the hand still yields to the device's force.
 #pragma once
 
-#include "graph/device.hpp"
-#include "graph/options.hpp"
+#include "graph/node/device.hpp"
+#include "graph/node/options.hpp"
 
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
 
-namespace tactus {
+namespace tactus::haptic {
 
 /// Finds the file that a patch names. Throws Error when there is none.
 using PathResolver = std::function<std::filesystem::path(const std::string&)>;
@@ -22,4 +22,4 @@ inline constexpr std::uint32_t button_gap = 2u;
 /// gaps), and those of HandDynamics. Throws Error.
 std::unique_ptr<HapticDevice> open_replay(Options& options, const PathResolver& resolve);
 
-}  // namespace tactus
+}  // namespace tactus::haptic

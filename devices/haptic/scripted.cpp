@@ -5,7 +5,7 @@
 #include "devices/haptic/operated.hpp"
 #include "dsp/core/units.hpp"
 #include "dsp/coupling/placement.hpp"
-#include "dsp/operator/script.hpp"
+#include "dsp/simulate/script.hpp"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 #include <string>
 #include <string_view>
 
-namespace tactus {
+namespace tactus::haptic {
 namespace {
 
 /// Bits of DeviceSample::buttons that are held from a time on.
@@ -25,11 +25,11 @@ struct Press {
 };
 
 struct Following {
-    ScriptOperator moves;
+    simulate::ScriptOperator moves;
     double trigger_on = 0.0, trigger_off = 0.0;
     std::shared_ptr<const std::vector<Press>> presses;  // shared by the copy that `prepare` goes back to
 
-    Intention operator()(double h, const Wrench& force, const Pose& hand) noexcept { return moves(h, force, hand); }
+    simulate::Intention operator()(double h, const Wrench& force, const Pose& hand) noexcept { return moves(h, force, hand); }
     Pose start() const { return moves.start(); }
     std::uint32_t buttons() const noexcept {
         if (presses->empty()) return moves.time() >= trigger_on && moves.time() < trigger_off ? button_trigger : 0;
@@ -55,16 +55,16 @@ Vec3 three(std::string_view text, std::string_view example) {
     return value;
 }
 
-HandTarget read_target(std::string_view text) {
+simulate::HandTarget read_target(std::string_view text) {
     const auto colon = text.find(':');
     if (colon == std::string_view::npos) throw Error(fmt::format("'{}' has no time; write \"2 s: 0 0 -30 mm\"", text));
     const std::string_view place = text.substr(colon + 1);
     const auto comma = place.find(',');
-    HandTarget target;
+    simulate::HandTarget target;
     target.time = parse_as(trimmed(text.substr(0, colon)), "s");
     target.pose.position = three(trimmed(place.substr(0, comma)), "0 0 0 mm");
     if (comma != std::string_view::npos)
-        target.pose.orientation = glm::normalize(rotation_xyz(three(trimmed(place.substr(comma + 1)), "0 0 0 deg")));
+        target.pose.orientation = glm::normalize(coupling::rotation_xyz(three(trimmed(place.substr(comma + 1)), "0 0 0 deg")));
     return target;
 }
 
@@ -111,11 +111,11 @@ std::uint32_t read_buttons(std::string_view text) {
 
 /// Targets and buttons: of the options, or of the file that one of them names. In a file, a line is a target, and what
 /// stands behind a bar is held from then on.
-void read_script(Options& options, const PathResolver& resolve, std::vector<HandTarget>& targets,
+void read_script(Options& options, const PathResolver& resolve, std::vector<simulate::HandTarget>& targets,
                  std::vector<Press>& presses) {
     const std::string asset = options.text("file", "");
     const bool is_file = !asset.empty();
-    const std::string text = is_file ? read_whole_file(resolve(asset)) : options.text("targets", "0 s: 0 0 0 mm");
+    const std::string text = is_file ? file::read_whole_file(resolve(asset)) : options.text("targets", "0 s: 0 0 0 mm");
     read_list(options, is_file ? "file" : "targets", text, [&](std::string_view one) {
         const auto bar = one.find('|');
         targets.push_back(read_target(trimmed(one.substr(0, bar))));
@@ -136,22 +136,22 @@ void read_script(Options& options, const PathResolver& resolve, std::vector<Hand
 }  // namespace
 
 std::unique_ptr<HapticDevice> open_scripted(Options& options, const PathResolver& resolve) {
-    std::vector<HandTarget> targets;
+    std::vector<simulate::HandTarget> targets;
     std::vector<Press> presses;
     read_script(options, resolve, targets, presses);
-    HandWiggle wiggle;
+    simulate::HandWiggle wiggle;
     wiggle.amplitude = options.quantity("wiggle", "0 mm", "0 mm", "20 mm");
     wiggle.turn = options.quantity("wiggle_turn", "0 deg", "0 deg", "45 deg");
     wiggle.rate = options.quantity("wiggle_rate", "1.5 Hz", "0 Hz", "10 Hz");
     const double on = options.quantity("trigger_on", "0 s", "0 s"),
                  off = options.quantity("trigger_off", "1e9 s", "0 s");
-    const HandDynamics hand = read_hand(options);
+    const simulate::HandDynamics hand = read_hand(options);
     DeviceInfo info = read_device_info(options, hand, "scripted hand");
     options.finish();
     return std::make_unique<OperatedDevice<Following>>(
         std::move(info), hand,
-        Following{ScriptOperator(std::move(targets), wiggle), on, off,
+        Following{simulate::ScriptOperator(std::move(targets), wiggle), on, off,
                   std::make_shared<const std::vector<Press>>(std::move(presses))});
 }
 
-}  // namespace tactus
+}  // namespace tactus::haptic

@@ -3,12 +3,12 @@
 #pragma once
 
 #include "devices/haptic/replay.hpp"
-#include "graph/device.hpp"
-#include "graph/options.hpp"
+#include "graph/node/device.hpp"
+#include "graph/node/options.hpp"
 
 #include <memory>
 
-namespace tactus {
+namespace tactus::haptic {
 
 /// Options: targets ("0 s: 0 0 0 mm; 2 s: 0 0 -30 mm, 0 0 15 deg": times, positions, and turns about x, y, z if any),
 /// wiggle, wiggle_turn, wiggle_rate, trigger_on, trigger_off, buttons ("1 s: trigger; 3 s: trigger second; 4 s:": what is
@@ -16,4 +16,4 @@ namespace tactus {
 /// HandDynamics. Throws Error.
 std::unique_ptr<HapticDevice> open_scripted(Options& options, const PathResolver& resolve);
 
-}  // namespace tactus
+}  // namespace tactus::haptic

@@ -2,14 +2,14 @@
 #include "devices/haptic/simulated.hpp"
 
 #include "devices/haptic/operated.hpp"
-#include "dsp/operator/stroke.hpp"
+#include "dsp/simulate/stroke.hpp"
 
 #include <fmt/format.h>
 
 #include <charconv>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::haptic {
 namespace {
 
 /// Three numbers separated by spaces, scaled to unit length.
@@ -31,17 +31,17 @@ Vec3 read_axis(Options& options, std::string_view name, std::string_view standar
 }
 
 struct Sawing {
-    StrokePlan plan;
-    StrokeOperator moves;
+    simulate::StrokePlan plan;
+    simulate::StrokeOperator moves;
 
-    explicit Sawing(const StrokePlan& given) : plan(given), moves(given) {}
-    Intention operator()(double h, const Wrench& force, const Pose& hand) noexcept { return moves(h, force, hand); }
+    explicit Sawing(const simulate::StrokePlan& given) : plan(given), moves(given) {}
+    simulate::Intention operator()(double h, const Wrench& force, const Pose& hand) noexcept { return moves(h, force, hand); }
     Pose start() const { return plan.start; }
     std::uint32_t buttons() const noexcept { return moves.trigger() ? button_trigger : 0; }
 };
 
-StrokePlan read_plan(Options& options) {
-    StrokePlan plan;
+simulate::StrokePlan read_plan(Options& options) {
+    simulate::StrokePlan plan;
     plan.start.position.x = options.quantity("start_x", "0 mm", "-1 m", "1 m");
     plan.start.position.y = options.quantity("start_y", "0 mm", "-1 m", "1 m");
     plan.start.position.z = options.quantity("start_z", "0 mm", "-1 m", "1 m");
@@ -69,11 +69,11 @@ StrokePlan read_plan(Options& options) {
 }  // namespace
 
 std::unique_ptr<HapticDevice> open_simulated(Options& options) {
-    const StrokePlan plan = read_plan(options);
-    const HandDynamics hand = read_hand(options);
+    const simulate::StrokePlan plan = read_plan(options);
+    const simulate::HandDynamics hand = read_hand(options);
     DeviceInfo info = read_device_info(options, hand, "simulated hand");
     options.finish();
     return std::make_unique<OperatedDevice<Sawing>>(std::move(info), hand, Sawing(plan));
 }
 
-}  // namespace tactus
+}  // namespace tactus::haptic

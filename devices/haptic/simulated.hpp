@@ -2,14 +2,14 @@
 // Driver "simulated": an operator who presses a blade into whatever is in the way and saws.
 #pragma once
 
-#include "graph/device.hpp"
-#include "graph/options.hpp"
+#include "graph/node/device.hpp"
+#include "graph/node/options.hpp"
 
 #include <memory>
 
-namespace tactus {
+namespace tactus::haptic {
 
 /// Options are those of StrokePlan and HandDynamics; `tactus devices` and a wrong name list them. Throws Error.
 std::unique_ptr<HapticDevice> open_simulated(Options& options);
 
-}  // namespace tactus
+}  // namespace tactus::haptic

@@ -8,7 +8,7 @@
 #include <array>
 #include <cstdint>
 
-namespace tactus {
+namespace tactus::carve {
 
 /// See Carver. A Field adds to what CuttingEdge needs: `float get(i, j, k)`, `bool set(i, j, k, float)` (false: no room
 /// for more changes), `std::array<int, 3> size()`, `Vec3 origin()`, `Vec3 spacing()`.
@@ -246,4 +246,4 @@ private:
     bool cutting_ = false;
 };
 
-}  // namespace tactus
+}  // namespace tactus::carve

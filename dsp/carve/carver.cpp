@@ -8,14 +8,14 @@
 #include <string_view>
 #include <utility>
 
-namespace tactus {
+namespace tactus::carve {
 
 namespace {
 
 /// What CarveCore needs of a field: the bone as edited so far.
 struct EditedBone {
-    BoneEditor& bone;
-    BoneSnapshot now;
+    volume::BoneEditor& bone;
+    volume::BoneSnapshot now;
 
     double value(const Vec3& p) const noexcept { return now.value(p); }
     double density(const Vec3& p) const noexcept { return now.density(p); }
@@ -61,7 +61,7 @@ void check(const CarveSettings& s) {
 
 }  // namespace
 
-void Carver::prepare(const BoneEditor& bone, const CarveSettings& settings) {
+void Carver::prepare(const volume::BoneEditor& bone, const CarveSettings& settings) {
     check(settings);
     if (bone.layout().far <= 0.5 * settings.kerf) {
         throw Error(
@@ -74,7 +74,7 @@ void Carver::prepare(const BoneEditor& bone, const CarveSettings& settings) {
     by_density_ = {};
 }
 
-CarveResult Carver::update(BoneEditor& bone, std::span<const CarveSample> samples) noexcept {
+CarveResult Carver::update(volume::BoneEditor& bone, std::span<const CarveSample> samples) noexcept {
     EditedBone field{bone, bone.working()};
     CarveResult result = core_.update(field, samples);
     result.dirty_bricks = bone.dirty();
@@ -83,4 +83,4 @@ CarveResult Carver::update(BoneEditor& bone, std::span<const CarveSample> sample
     return result;
 }
 
-}  // namespace tactus
+}  // namespace tactus::carve

@@ -8,7 +8,7 @@
 #include <array>
 #include <span>
 
-namespace tactus {
+namespace tactus::carve {
 
 /// Cuts the bone along the true path of the blade (thesis 6.2.2: removal at a rate over density), at any call rate.
 ///
@@ -25,7 +25,7 @@ class Carver {
 public:
     /// Throws Error when a setting is not positive and finite, the stroke is shorter than the tooth pitch, or half the
     /// kerf exceeds the band outside of which the bone is not stored.
-    void prepare(const BoneEditor& bone, const CarveSettings& settings);
+    void prepare(const volume::BoneEditor& bone, const CarveSettings& settings);
 
     /// Changes speed, reference values and force exponent from the next update on; the blade's shape stays. A law that
     /// gives no finite speed removes nothing.
@@ -33,7 +33,7 @@ public:
 
     /// Cuts along `samples`, oldest first; samples that are not finite are ignored. The caller publishes the edits. When
     /// the bricks that may change run out, the rest is cut by the next update. Allocates nothing.
-    CarveResult update(BoneEditor& bone, std::span<const CarveSample> samples) noexcept;
+    CarveResult update(volume::BoneEditor& bone, std::span<const CarveSample> samples) noexcept;
 
     /// Kerf over the largest voxel edge; below 3 the walls of the cut are not resolved.
     double kerf_voxels() const noexcept { return core_.settings().kerf / core_.voxel(); }
@@ -48,4 +48,4 @@ private:
     std::array<double, 4> by_density_{};
 };
 
-}  // namespace tactus
+}  // namespace tactus::carve

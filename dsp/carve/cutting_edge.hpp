@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace tactus {
+namespace tactus::carve {
 
 /// One point of the edge, in the bone's frame, m.
 struct EdgeNode {
@@ -217,4 +217,4 @@ private:
     std::vector<EdgeNode> nodes_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::carve

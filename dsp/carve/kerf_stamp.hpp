@@ -10,7 +10,7 @@
 #include <array>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::carve {
 
 /// d ← max(d, radius − distance to the swept edge), and the volume that is gone by it.
 struct KerfStamp {
@@ -92,4 +92,4 @@ private:
     }
 };
 
-}  // namespace tactus
+}  // namespace tactus::carve

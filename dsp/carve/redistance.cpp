@@ -6,11 +6,11 @@
 #include <cmath>
 #include <utility>
 
-namespace tactus {
+namespace tactus::carve {
 
 namespace {
 
-constexpr int side = brick_side + 2;  // a brick and one sample around it
+constexpr int side = volume::brick_side + 2;  // a brick and one sample around it
 constexpr std::array<int, 3> stride{1, side, side* side};
 constexpr double far_away = 1e9;
 constexpr double noticed = 5e-6;  // m: smaller changes are not written
@@ -68,9 +68,9 @@ struct Block {
 
 template <class Each>
 void inner(Each&& each, int order = 0) {
-    for (int z = 1; z <= brick_side; ++z) {
-        for (int y = 1; y <= brick_side; ++y) {
-            for (int x = 1; x <= brick_side; ++x) {
+    for (int z = 1; z <= volume::brick_side; ++z) {
+        for (int y = 1; y <= volume::brick_side; ++y) {
+            for (int x = 1; x <= volume::brick_side; ++x) {
                 const int ox = order & 1 ? side - 1 - x : x, oy = order & 2 ? side - 1 - y : y;
                 const int oz = order & 4 ? side - 1 - z : z;
                 each(ox, oy, oz, (oz * side + oy) * side + ox);
@@ -81,7 +81,7 @@ void inner(Each&& each, int order = 0) {
 
 }  // namespace
 
-void Redistance::prepare(const BoneEditor& bone, double reach) {
+void Redistance::prepare(const volume::BoneEditor& bone, double reach) {
     queue_.assign(static_cast<std::size_t>(bone.layout().brick_count()), 0);
     queued_.assign(queue_.size(), 0);
     head_ = count_ = 0;
@@ -98,8 +98,8 @@ void Redistance::add(std::span<const std::uint32_t> bricks) noexcept {
     for (const std::uint32_t brick : bricks) push(brick);
 }
 
-std::size_t Redistance::tick(BoneEditor& bone, int bricks) noexcept {
-    const BrickLayout& layout = bone.layout();
+std::size_t Redistance::tick(volume::BoneEditor& bone, int bricks) noexcept {
+    const volume::BrickLayout& layout = bone.layout();
     for (; bricks > 0 && count_ > 0; --bricks) {
         if (bone.dirty_left() < 27) break;  // samples on a brick's border belong to its neighbours too
         const std::uint32_t brick = queue_[head_];
@@ -163,4 +163,4 @@ std::size_t Redistance::tick(BoneEditor& bone, int bricks) noexcept {
     return count_;
 }
 
-}  // namespace tactus
+}  // namespace tactus::carve

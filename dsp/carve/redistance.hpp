@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace tactus {
+namespace tactus::carve {
 
 /// Fast sweeping (Zhao 2005) over single bricks, taken from a queue in the order they were put in.
 ///
@@ -20,14 +20,14 @@ namespace tactus {
 class Redistance {
 public:
     /// `reach`: m from the surface up to which the field matters.
-    void prepare(const BoneEditor& bone, double reach);
+    void prepare(const volume::BoneEditor& bone, double reach);
 
     /// Puts bricks at the end of the queue; those that wait already are left where they are. Wait-free.
     void add(std::span<const std::uint32_t> bricks) noexcept;
 
     /// Works on at most `bricks` of the queue; returns how many still wait. Stops early where the editor has no room for
     /// more changes. About 0.1 ms per brick.
-    std::size_t tick(BoneEditor& bone, int bricks) noexcept;
+    std::size_t tick(volume::BoneEditor& bone, int bricks) noexcept;
 
     std::size_t waiting() const noexcept { return count_; }
 
@@ -40,4 +40,4 @@ private:
     double reach_ = 0.0;
 };
 
-}  // namespace tactus
+}  // namespace tactus::carve

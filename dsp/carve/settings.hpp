@@ -6,7 +6,7 @@
 
 #include <array>
 
-namespace tactus {
+namespace tactus::carve {
 
 /// One stretch of the blade's path. Blade frame: x along the blade (the stroke), y the direction it cuts in, towards the
 /// bone, z normal to the blade; origin in the middle of the tooth edge. The pose is the blade's at the end of `dt`.
@@ -43,4 +43,4 @@ struct CarveResult {
     bool budget_hit = false;  ///< some of the cut had to be left to the next update
 };
 
-}  // namespace tactus
+}  // namespace tactus::carve

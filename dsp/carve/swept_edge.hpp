@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace tactus {
+namespace tactus::carve {
 
 /// A stretch of edge between two nodes, before (0) and after (1), m. Frame: x along the edge, y where the blade cuts.
 struct SweptSpan {
@@ -146,4 +146,4 @@ private:
     double first_ = 0.0, step_ = 1.0, per_step_ = 1.0;
 };
 
-}  // namespace tactus
+}  // namespace tactus::carve

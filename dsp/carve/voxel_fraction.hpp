@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::carve {
 
 /// Fraction of a box on the negative side of a plane at signed distance d from its centre. Summed over a grid it gives
 /// the exact volume below any plane with this normal, wherever the plane lies between the samples.
@@ -57,4 +57,4 @@ private:
     double scale_ = 0.0;
 };
 
-}  // namespace tactus
+}  // namespace tactus::carve

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <span>
 
-namespace tactus {
+namespace tactus::contact {
 
 BladePoints::BladePoints(const BladeShape& shape) {
     for (int i = 0; i < blade_row; ++i) {
@@ -52,7 +52,7 @@ void push(std::span<const Touch> touches, double k, const Vec3& about, Wrench& i
 
 }  // namespace
 
-BladeContact blade_contact(const BoneSnapshot& bone, const BladePoints& blade, const Pose& tool, const Vec3& about,
+BladeContact blade_contact(const volume::BoneSnapshot& bone, const BladePoints& blade, const Pose& tool, const Vec3& about,
                            double stiffness) noexcept {
     BladeContact contact;
     if (!is_valid(tool)) return contact;
@@ -64,7 +64,7 @@ BladeContact blade_contact(const BoneSnapshot& bone, const BladePoints& blade, c
         const Vec3 position = tool.apply(blade.local[i]);
         // The spline may dip below zero only where the cheap value nearly does.
         if (!(bone.value(position) < reach)) continue;
-        const Sample sample = bone.smooth_sample(position);
+        const volume::Sample sample = bone.smooth_sample(position);
         if (!sample.inside || sample.value >= 0.0) continue;
         touches[static_cast<std::size_t>(contact.count++)] = {position, sample.gradient, -sample.value};
         contact.penetration = std::max(contact.penetration, -sample.value);
@@ -78,4 +78,4 @@ BladeContact blade_contact(const BoneSnapshot& bone, const BladePoints& blade, c
     return contact;
 }
 
-}  // namespace tactus
+}  // namespace tactus::contact

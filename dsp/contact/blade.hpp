@@ -7,7 +7,7 @@
 
 #include <array>
 
-namespace tactus {
+namespace tactus::contact {
 
 /// Blade frame: origin in the middle of the tooth edge, x along the blade (the stroke), y the cutting direction, towards
 /// the bone, z across the blade.
@@ -43,7 +43,7 @@ struct BladeContact {
 /// curvature of the energy, the stiffness felt, stays below K: c = 4 for the edge, whose points are pushed back
 /// alike (one tooth alone gives K/4, a whole edge 0.64·K); c = 22 for the faces, which a kerf can pinch from both
 /// sides. Deterministic; a pose that is not finite gives nothing.
-BladeContact blade_contact(const BoneSnapshot& bone, const BladePoints& blade, const Pose& tool, const Vec3& about,
+BladeContact blade_contact(const volume::BoneSnapshot& bone, const BladePoints& blade, const Pose& tool, const Vec3& about,
                            double stiffness) noexcept;
 
-}  // namespace tactus
+}  // namespace tactus::contact

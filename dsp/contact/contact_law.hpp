@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace tactus {
+namespace tactus::contact {
 
 /// Where the force of a point looks.
 enum class ForceDirection : std::uint8_t {
@@ -75,4 +75,4 @@ private:
     }
 };
 
-}  // namespace tactus
+}  // namespace tactus::contact

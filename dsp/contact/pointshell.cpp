@@ -13,7 +13,7 @@
 #include <limits>
 #include <numeric>
 
-namespace tactus {
+namespace tactus::contact {
 
 namespace {
 
@@ -202,4 +202,4 @@ Pointshell make_pointshell(std::span<const SurfacePoint> points) {
     return shell;
 }
 
-}  // namespace tactus
+}  // namespace tactus::contact

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tactus {
+namespace tactus::contact {
 
 /// What a point of the surface is. Other values are free for the user's own marks.
 namespace surface_label {
@@ -70,4 +70,4 @@ struct Pointshell {
 /// length stays zero. Throws Error for positions, normals or areas that are not finite, and areas below zero.
 Pointshell make_pointshell(std::span<const SurfacePoint> points);
 
-}  // namespace tactus
+}  // namespace tactus::contact

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <tuple>
 
-namespace tactus {
+namespace tactus::contact {
 
 namespace {
 
@@ -50,7 +50,7 @@ struct Relation {
 
     kernel::PairFrame frame(const ContactLaw& law, ContactParts parts) const noexcept {
         kernel::PairFrame frame(law);
-        const Grid& grid = map->grid;
+        const volume::Grid& grid = map->grid;
         frame.values = grid.values.data();
         frame.row = grid.size[0];
         frame.plane = static_cast<std::ptrdiff_t>(grid.size[0]) * grid.size[1];
@@ -76,7 +76,7 @@ struct Relation {
 
     kernel::ChunkFrame chunk(std::size_t n) const noexcept {
         const ShellNode& node = shell->nodes[n];
-        const Grid& grid = map->grid;
+        const volume::Grid& grid = map->grid;
         const Vec3 centre = shift + turn * node.centre, at = (centre - grid.origin) / grid.spacing;
         kernel::ChunkFrame frame;
         frame.chunk = &shell->chunks[n];
@@ -243,4 +243,4 @@ ContactSum PointshellContact::operator()(std::span<const ContactPair> pairs, con
     return sum;
 }
 
-}  // namespace tactus
+}  // namespace tactus::contact

@@ -25,7 +25,7 @@
 #include <span>
 #include <vector>
 
-namespace tactus {
+namespace tactus::contact {
 
 /// A shell near a voxmap, both with poses in the world.
 struct ContactPair {
@@ -87,4 +87,4 @@ private:
     std::vector<Entry> frontier_, next_, chosen_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::contact

@@ -13,7 +13,7 @@
 #include "dsp/contact/pointshell_kernel_sums-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace tactus::kernel::HWY_NAMESPACE {
+namespace tactus::contact::kernel::HWY_NAMESPACE {
 
 HWY_INLINE void locate_cells(const PairFrame& pair, const ChunkFrame& at, Places& places) {
     if (at.border) locate<true, false>(pair, at, places);
@@ -76,11 +76,11 @@ void evaluate_chunks(const PairFrame& pair, const ChunkFrame* chunks, std::size_
     }
 }
 
-}  // namespace tactus::kernel::HWY_NAMESPACE
+}  // namespace tactus::contact::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tactus::kernel {
+namespace tactus::contact::kernel {
 
 HWY_EXPORT(evaluate_chunks);
 
@@ -121,5 +121,5 @@ bool use_variant(std::string_view name) {
     return false;
 }
 
-}  // namespace tactus::kernel
+}  // namespace tactus::contact::kernel
 #endif

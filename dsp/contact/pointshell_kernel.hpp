@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tactus::kernel {
+namespace tactus::contact::kernel {
 
 inline constexpr std::size_t lanes = 16;
 /// In one call. Lanes are summed in single precision within a call: few enough to keep seven digits.
@@ -68,4 +68,4 @@ std::string_view variant_in_use();
 /// Uses that variant from now on, "" for the best. False when this processor cannot run it. Not while others compute.
 bool use_variant(std::string_view name);
 
-}  // namespace tactus::kernel
+}  // namespace tactus::contact::kernel

@@ -17,7 +17,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tactus::kernel::HWY_NAMESPACE {
+namespace tactus::contact::kernel::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -214,7 +214,7 @@ HWY_INLINE Field quadratic(const Taps& taps, const Places& places, std::size_t l
             sum3(sz.weight, along_y[0], along_y[1], along_y[2]), sum3(sz.slope, value[0], value[1], value[2])};
 }
 
-}  // namespace tactus::kernel::HWY_NAMESPACE
+}  // namespace tactus::contact::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -11,7 +11,7 @@
 #include "dsp/contact/pointshell_kernel_field-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace tactus::kernel::HWY_NAMESPACE {
+namespace tactus::contact::kernel::HWY_NAMESPACE {
 
 /// Points that push, row by row: energy, force, stiffness, direction and moment.
 struct Pushes {
@@ -141,7 +141,7 @@ HWY_INLINE void add_up(const Pushes& pushes, LaneSums& into, bool energy_only) {
     }
 }
 
-}  // namespace tactus::kernel::HWY_NAMESPACE
+}  // namespace tactus::contact::kernel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

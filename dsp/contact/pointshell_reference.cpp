@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::contact {
 
 namespace {
 
@@ -37,7 +37,7 @@ ContactSum contact_reference(std::span<const ContactPair> pairs, const Vec3& abo
         const double sign = pair.shell_moves ? 1.0 : -1.0;
         for (std::size_t i = 0; i < pair.shell->size(); ++i) {
             const Vec3 local = into_map.apply(pair.shell->position[i]);
-            const Sample sample = law.interpolation == Interpolation::trilinear ? pair.map->sample(local)
+            const volume::Sample sample = law.interpolation == Interpolation::trilinear ? pair.map->sample(local)
                                                                                 : pair.map->smooth_sample(local);
             ++sum.evaluated;
             if (!sample.inside) continue;
@@ -57,4 +57,4 @@ ContactSum contact_reference(std::span<const ContactPair> pairs, const Vec3& abo
     return sum;
 }
 
-}  // namespace tactus
+}  // namespace tactus::contact

@@ -13,7 +13,7 @@
 #include <limits>
 #include <numeric>
 
-namespace tactus {
+namespace tactus::contact {
 
 namespace {
 
@@ -75,7 +75,7 @@ struct Candidates {
     std::vector<double> area, radius;  // radius: no accepted point may be nearer
 };
 
-double area_of_triangle(const TriangleSurface& s, const std::array<int, 3>& t, Vec3& normal) {
+double area_of_triangle(const geometry::TriangleSurface& s, const std::array<int, 3>& t, Vec3& normal) {
     const auto at = [&](int n) { return s.vertices[static_cast<std::size_t>(t[static_cast<std::size_t>(n)])]; };
     normal = glm::cross(at(1) - at(0), at(2) - at(0));
     const double twice = glm::length(normal);
@@ -85,7 +85,7 @@ double area_of_triangle(const TriangleSurface& s, const std::array<int, 3>& t, V
 
 /// Points at random on the triangles, in proportion to their area: each triangle gets the whole part of its share and
 /// hands on the rest, so small triangles are not forgotten.
-Candidates scatter(const TriangleSurface& surface, double per_area, const SurfaceSampling& sampling) {
+Candidates scatter(const geometry::TriangleSurface& surface, double per_area, const SurfaceSampling& sampling) {
     const Random random{sampling.seed};
     Candidates made;
     double owed = 0.5;
@@ -177,7 +177,7 @@ Vec3 normal_in(const Voxmap& map, const Vec3& position, const Vec3& otherwise) {
 }
 
 /// With a map, the turn of the surface is told by its normals: those of triangles follow the noise of the samples.
-std::vector<SurfacePoint> spread(const TriangleSurface& surface, const SurfaceSampling& sampling, const Voxmap* map) {
+std::vector<SurfacePoint> spread(const geometry::TriangleSurface& surface, const SurfaceSampling& sampling, const Voxmap* map) {
     if (!(sampling.spacing > 0.0) || !std::isfinite(sampling.spacing))
         throw Error("the spacing of a pointshell must be positive");
     double area = 0.0;
@@ -202,18 +202,18 @@ std::vector<SurfacePoint> spread(const TriangleSurface& surface, const SurfaceSa
 
 }  // namespace
 
-std::vector<SurfacePoint> sample_surface(const TriangleSurface& surface, const SurfaceSampling& sampling) {
+std::vector<SurfacePoint> sample_surface(const geometry::TriangleSurface& surface, const SurfaceSampling& sampling) {
     return spread(surface, sampling, nullptr);
 }
 
-std::vector<SurfacePoint> sample_surface(const Grid& distance, const SurfaceSampling& sampling) {
-    const TriangleSurface surface = iso_surface(distance, 0.0f, /*inside_above=*/false);
+std::vector<SurfacePoint> sample_surface(const volume::Grid& distance, const SurfaceSampling& sampling) {
+    const geometry::TriangleSurface surface = geometry::iso_surface(distance, 0.0f, /*inside_above=*/false);
     if (surface.triangles.empty()) return spread(surface, sampling, nullptr);
     const Voxmap map = make_voxmap(distance);
     std::vector<SurfacePoint> points = spread(surface, sampling, &map);
     for (SurfacePoint& point : points) {
         for (int step = 0; step < 3; ++step) {
-            const Sample here = map.sample(point.position);
+            const volume::Sample here = map.sample(point.position);
             const double steep2 = glm::dot(here.gradient, here.gradient);
             if (!here.inside || steep2 < 0.25) break;
             const Vec3 move = here.gradient * (here.value / steep2);
@@ -230,7 +230,7 @@ std::size_t label_facing(std::span<SurfacePoint> points, const Voxmap& other, co
                          double most_angle, std::uint8_t label) {
     std::size_t count = 0;
     for (SurfacePoint& point : points) {
-        const Sample there = other.smooth_sample(into_map.apply(point.position));
+        const volume::Sample there = other.smooth_sample(into_map.apply(point.position));
         const double steep = glm::length(there.gradient);
         if (!there.inside || std::abs(there.value) > reach || !(steep > 0.0)) continue;
         const double against = -glm::dot(into_map.rotate(point.normal), there.gradient) / steep;
@@ -241,4 +241,4 @@ std::size_t label_facing(std::span<SurfacePoint> points, const Voxmap& other, co
     return count;
 }
 
-}  // namespace tactus
+}  // namespace tactus::contact

@@ -4,14 +4,14 @@
 
 #include "dsp/contact/pointshell.hpp"
 #include "dsp/contact/voxmap.hpp"
-#include "dsp/distance/iso_surface.hpp"
+#include "dsp/geometry/iso_surface.hpp"
 #include "dsp/volume/grid.hpp"
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-namespace tactus {
+namespace tactus::contact {
 
 /// How densely a surface is sampled.
 struct SurfaceSampling {
@@ -28,11 +28,11 @@ struct SurfaceSampling {
 /// shares of the surface that add up to it. Normals are those of the triangles, which look outwards. The same surface
 /// and options give the same points. Throws Error when the spacing is not positive, or so fine that there would be more
 /// than `most_points`.
-std::vector<SurfacePoint> sample_surface(const TriangleSurface& surface, const SurfaceSampling& sampling);
+std::vector<SurfacePoint> sample_surface(const geometry::TriangleSurface& surface, const SurfaceSampling& sampling);
 
 /// On the zero surface of a signed distance (m, negative inside): points lie on the zero of the trilinear interpolant,
 /// normals are its smoothed gradient. No points when nothing crosses zero.
-std::vector<SurfacePoint> sample_surface(const Grid& distance, const SurfaceSampling& sampling);
+std::vector<SurfacePoint> sample_surface(const volume::Grid& distance, const SurfaceSampling& sampling);
 
 /// Labels points that face another body: within `reach` of its surface (m), with a normal that looks against the
 /// other's within `most_angle` (rad). So fragments near their fitted places find their fracture surfaces. `into_map`
@@ -40,4 +40,4 @@ std::vector<SurfacePoint> sample_surface(const Grid& distance, const SurfaceSamp
 std::size_t label_facing(std::span<SurfacePoint> points, const Voxmap& other, const Pose& into_map, double reach,
                          double most_angle, std::uint8_t label = surface_label::fracture);
 
-}  // namespace tactus
+}  // namespace tactus::contact

@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-namespace tactus {
+namespace tactus::contact {
 
 namespace {
 
@@ -17,13 +17,13 @@ int parts(double length, double spacing) { return std::max(1, static_cast<int>(s
 
 }  // namespace
 
-Grid centred_layout(int samples_per_side, double spacing) {
+volume::Grid centred_layout(int samples_per_side, double spacing) {
     const int n = samples_per_side;
     return {{n, n, n}, Vec3(-0.5 * (n - 1) * spacing), Vec3(spacing), {}};
 }
 
-Grid layout_around(const Vec3& low, const Vec3& high, double spacing, double margin) {
-    Grid grid{{}, low - Vec3(margin), Vec3(spacing), {}};
+volume::Grid layout_around(const Vec3& low, const Vec3& high, double spacing, double margin) {
+    volume::Grid grid{{}, low - Vec3(margin), Vec3(spacing), {}};
     const Vec3 extent = high + Vec3(margin) - grid.origin;
     for (int axis = 0; axis < 3; ++axis)
         grid.size[static_cast<std::size_t>(axis)] = static_cast<int>(std::ceil(extent[axis] / spacing)) + 1;
@@ -150,4 +150,4 @@ Turned make_bushing(double bore, double diameter, double height, double bevel) {
     return turned;
 }
 
-}  // namespace tactus
+}  // namespace tactus::contact

@@ -10,12 +10,12 @@
 
 #include <vector>
 
-namespace tactus {
+namespace tactus::contact {
 
 /// A cube of samples about the origin, m; values are left to whoever fills them.
-Grid centred_layout(int samples_per_side, double spacing);
+volume::Grid centred_layout(int samples_per_side, double spacing);
 /// A box of samples `spacing` apart that holds all from `low` to `high` and `margin` around it, m.
-Grid layout_around(const Vec3& low, const Vec3& high, double spacing, double margin);
+volume::Grid layout_around(const Vec3& low, const Vec3& high, double spacing, double margin);
 
 /// `count` points on a ball about the origin, evenly spread along a spiral of the golden angle.
 std::vector<SurfacePoint> spread_over_ball(int count, double radius);
@@ -63,4 +63,4 @@ Voxmap voxmap_of(const Shape& shape, double spacing, double margin) {
                          [&](const Vec3& p) { return shape.distance(p); });
 }
 
-}  // namespace tactus
+}  // namespace tactus::contact

@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-namespace tactus {
+namespace tactus::contact {
 
 namespace {
 
@@ -22,7 +22,7 @@ namespace {
 constexpr double lattice_factor = 1.1284;
 constexpr std::size_t most_samples = std::size_t(1) << 30;
 
-double steepness_of(const Grid& grid) {
+double steepness_of(const volume::Grid& grid) {
     struct Step {
         int x, y, z;
         double inverse_length;
@@ -54,7 +54,7 @@ double steepness_of(const Grid& grid) {
 
 }  // namespace
 
-Voxmap make_voxmap(Grid distance) {
+Voxmap make_voxmap(volume::Grid distance) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (distance.size[axis] < 2) throw Error("a voxmap needs at least two samples along each axis");
         const double spacing = distance.spacing[static_cast<int>(axis)];
@@ -82,8 +82,8 @@ Voxmap make_voxmap(Grid distance) {
     return map;
 }
 
-Voxmap make_voxmap(const BoneSnapshot& bone) {
-    Grid grid = to_grid(bone);
+Voxmap make_voxmap(const volume::BoneSnapshot& bone) {
+    volume::Grid grid = volume::to_grid(bone);
     // Bricks reach beyond the band; cut there, so that the field does not jump where none is stored.
     const auto far = static_cast<float>(bone.layout().far);
     for (float& d : grid.values) d = std::min(d, far);
@@ -92,18 +92,18 @@ Voxmap make_voxmap(const BoneSnapshot& bone) {
     return map;
 }
 
-Sample Voxmap::sample(const Vec3& position) const noexcept {
-    const GridCell cell = find_grid_cell(grid.origin, grid.spacing, grid.size, position);
+volume::Sample Voxmap::sample(const Vec3& position) const noexcept {
+    const volume::GridCell cell = volume::find_grid_cell(grid.origin, grid.spacing, grid.size, position);
     if (!cell.inside) return {far, Vec3(0.0), false};
     const auto row = static_cast<std::size_t>(grid.size[0]), plane = row * static_cast<std::size_t>(grid.size[1]);
-    const Interpolated at = Trilinear(&grid.values[grid.index(cell.i, cell.j, cell.k)], row, plane)(cell);
+    const volume::Interpolated at = volume::Trilinear(&grid.values[grid.index(cell.i, cell.j, cell.k)], row, plane)(cell);
     return {at.value, at.slope / grid.spacing, true};
 }
 
-Sample Voxmap::smooth_sample(const Vec3& position) const noexcept {
-    if (!find_grid_cell(grid.origin, grid.spacing, grid.size, position).inside) return {far, Vec3(0.0), false};
-    const QuadraticSpline spline(grid.origin, grid.spacing, grid.size, position);
-    const Interpolated at = spline([&](int i, int j, int k) {
+volume::Sample Voxmap::smooth_sample(const Vec3& position) const noexcept {
+    if (!volume::find_grid_cell(grid.origin, grid.spacing, grid.size, position).inside) return {far, Vec3(0.0), false};
+    const volume::QuadraticSpline spline(grid.origin, grid.spacing, grid.size, position);
+    const volume::Interpolated at = spline([&](int i, int j, int k) {
         return static_cast<double>(grid.at(spline.index[0][i], spline.index[1][j], spline.index[2][k]));
     });
     return {at.value, at.slope / grid.spacing, true};
@@ -131,7 +131,7 @@ double Voxmap::least_within(const Vec3& position, double radius) const noexcept 
     return std::min(far, static_cast<double>(value) - fall);
 }
 
-Grid chamfer_distance(const Grid& distance) {
+volume::Grid chamfer_distance(const volume::Grid& distance) {
     const Vec3& h = distance.spacing;
     const double size = h.x;
     if (!(size > 0.0) || std::abs(h.y - size) > 1e-3 * size || std::abs(h.z - size) > 1e-3 * size)
@@ -163,7 +163,7 @@ Grid chamfer_distance(const Grid& distance) {
     };
     pass(1);
     pass(-1);
-    Grid result = distance;
+    volume::Grid result = distance;
     // The surface lies half a cell from the samples next to it.
     for (std::size_t n = 0; n < steps.size(); ++n) {
         const double d = (static_cast<double>(steps[n]) / 3.0 - 0.5) * size;
@@ -172,4 +172,4 @@ Grid chamfer_distance(const Grid& distance) {
     return result;
 }
 
-}  // namespace tactus
+}  // namespace tactus::contact

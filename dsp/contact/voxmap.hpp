@@ -8,7 +8,7 @@
 
 #include <string_view>
 
-namespace tactus {
+namespace tactus::contact {
 
 /// Signed distances to a body (m, negative inside) at the samples of a grid in the body's frame. Never changes.
 /// Between the samples it is interpolated, and gradients are exact derivatives of the interpolant, so forces made of
@@ -17,14 +17,14 @@ namespace tactus {
 struct Voxmap {
     static constexpr std::string_view wire_name = "voxmap";
 
-    Grid grid;             ///< at least 2 samples per axis
+    volume::Grid grid;             ///< at least 2 samples per axis
     double far = 1.0;      ///< m, what is read outside of the grid
     double steepness = 1.0;  ///< greatest |difference| of neighbouring samples (26) per distance, at least 1
 
     /// Trilinear value and its exact gradient. `position` in the body's frame, m.
-    Sample sample(const Vec3& position) const noexcept;
+    volume::Sample sample(const Vec3& position) const noexcept;
     /// The same of a quadratic B-spline over 27 samples (border repeated): continuous gradient.
-    Sample smooth_sample(const Vec3& position) const noexcept;
+    volume::Sample smooth_sample(const Vec3& position) const noexcept;
     /// No point within `radius` of `position` reads less than this from either interpolant: what a whole group of
     /// points is left out by. Outside of the grid, the distance to the grid counts.
     double least_within(const Vec3& position, double radius) const noexcept;
@@ -32,14 +32,14 @@ struct Voxmap {
 
 /// Takes a distance grid as it is. Throws Error for less than 2 samples along an axis, spacings that are not positive,
 /// more than 2³⁰ samples and values that are not finite.
-Voxmap make_voxmap(Grid distance);
+Voxmap make_voxmap(volume::Grid distance);
 
 /// Of one version of a bone: exact near its surface, `far` where it stores no bricks.
-Voxmap make_voxmap(const BoneSnapshot& bone);
+Voxmap make_voxmap(const volume::BoneSnapshot& bone);
 
 /// Samples any distance function `distance(Vec3) -> m` at the places of `layout` (whose values are not read).
 template <class Distance>
-Voxmap sample_voxmap(Grid layout, const Distance& distance) {
+Voxmap sample_voxmap(volume::Grid layout, const Distance& distance) {
     layout.values.resize(layout.count());
     for (int k = 0; k < layout.size[2]; ++k)
         for (int j = 0; j < layout.size[1]; ++j)
@@ -51,6 +51,6 @@ Voxmap sample_voxmap(Grid layout, const Distance& distance) {
 /// The distance that the thesis used, for comparison: whole steps between samples, 3 along an axis, 4 and 5 along
 /// diagonals of faces and cells (Borgefors 1986), divided by 3 and counted from the middle between inside and outside,
 /// taken from the signs of `distance` alone. Needs cubic cells (within 0.1 %); throws Error otherwise.
-Grid chamfer_distance(const Grid& distance);
+volume::Grid chamfer_distance(const volume::Grid& distance);
 
-}  // namespace tactus
+}  // namespace tactus::contact

@@ -10,7 +10,7 @@
 #include <limits>
 #include <numbers>
 
-namespace tactus {
+namespace tactus::coupling {
 
 /// A spring whose force stays at `limit` once it is stretched that far: energy ½ k u² up to there, straight on beyond.
 struct SaturatedSpring {
@@ -45,4 +45,4 @@ inline Vec3 rotation_near(const Quat& from, const Quat& to, const Vec3& before) 
     return glm::dot(a, a) <= glm::dot(b, b) ? short_way : long_way;
 }
 
-}  // namespace tactus
+}  // namespace tactus::coupling

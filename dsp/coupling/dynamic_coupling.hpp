@@ -4,7 +4,7 @@
 
 #include "dsp/coupling/quasi_static.hpp"
 
-namespace tactus {
+namespace tactus::coupling {
 
 struct DynamicSettings {
     CouplingSprings springs;
@@ -19,7 +19,7 @@ struct DynamicState {
     Pose proxy;
     Twist twist;
     Wrench wrench;  ///< on the hand: spring and damper
-    ContactSum contact;  ///< where the last step began
+    contact::ContactSum contact;  ///< where the last step began
     bool hand_is_valid = true;
 };
 
@@ -44,13 +44,13 @@ public:
         if (state_.hand_is_valid) hand_ = {hand.position, glm::normalize(hand.orientation)};
         const Twist drive = state_.hand_is_valid ? hand_twist : Twist{};
         const DynamicSettings& s = settings;
-        state_.contact = contact(state_.proxy, ContactParts::all);
+        state_.contact = contact(state_.proxy, contact::ContactParts::all);
         turn_ = rotation_near(hand_.orientation, state_.proxy.orientation, turn_);
         const auto linear = s.springs.linear(state_.proxy.position - hand_.position);
         const auto angular = s.springs.angular(turn_);
         // (M/h² + D/h + K) δ = M v/h + D v_hand − forces, for the way δ of this tick.
-        Matrix6 k = state_.contact.stiffness;
-        Vector6 push{}, way{};
+        geometry::Matrix6 k = state_.contact.stiffness;
+        geometry::Vector6 push{}, way{};
         for (int i = 0; i < 3; ++i) {
             const auto n = static_cast<std::size_t>(i);
             k[7 * n] += s.mass / (h * h) + s.damping / h + linear.curvature;
@@ -60,7 +60,7 @@ public:
             push[n + 3] = s.inertia / h * state_.twist.angular[i] + s.angular_damping * drive.angular[i] -
                           angular.force[i] - state_.contact.gradient[n + 3];
         }
-        if (!solve_symmetric6(k, push, way)) state_.twist = {};
+        if (!geometry::solve_symmetric6(k, push, way)) state_.twist = {};
         const double length =
             std::hypot(way[0], way[1], way[2]) + std::hypot(way[3], way[4], way[5]) * std::max(s.reach, 1e-6);
         if (length > s.step) {
@@ -85,4 +85,4 @@ private:
     Vec3 turn_{0.0};
 };
 
-}  // namespace tactus
+}  // namespace tactus::coupling

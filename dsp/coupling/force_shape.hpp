@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace tactus {
+namespace tactus::coupling {
 
 /// Sizes up to `straight` pass; beyond, they approach `most` with a continuous slope. `most` ≤ `straight` cuts off there.
 inline double soft_limit(double size, double straight, double most) noexcept {
@@ -22,4 +22,4 @@ inline Vec3 soft_limit(const Vec3& v, double straight, double most) noexcept {
     return size > 0.0 ? v * (soft_limit(size, straight, most) / size) : v;
 }
 
-}  // namespace tactus
+}  // namespace tactus::coupling

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace tactus {
+namespace tactus::coupling {
 
 /// Contact of the held body and a second pair of saturated springs, to a target: the hand feels no more of them than they
 /// can pull, and can always pull harder.
@@ -21,8 +21,8 @@ public:
     /// `contact` must live as long as this.
     explicit GuidedContact(HeldContact& contact) noexcept : contact_(contact) {}
 
-    ContactSum operator()(const Pose& handle, ContactParts parts) noexcept {
-        ContactSum sum = contact_(handle, parts);
+    contact::ContactSum operator()(const Pose& handle, contact::ContactParts parts) noexcept {
+        contact::ContactSum sum = contact_(handle, parts);
         if (!(share > 0.0)) return sum;
         const double part = std::min(share, 1.0);
         const auto linear = springs.linear(handle.position - target.position);
@@ -43,4 +43,4 @@ private:
     HeldContact& contact_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::coupling

@@ -6,22 +6,22 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::coupling {
 
 namespace {
 
 // A balanced tree of four children per node has a third more nodes than leaves, of which some are not full.
-std::size_t nodes_of(std::size_t points) { return 2 * (points / chunk_points + 1) + 64; }
+std::size_t nodes_of(std::size_t points) { return 2 * (points / contact::chunk_points + 1) + 64; }
 
 /// The way that no point of the shell can touch the map within. The upper levels of the shell's tree stand for it.
-double clearance_of(const ContactPair& pair, double enough) noexcept {
+double clearance_of(const contact::ContactPair& pair, double enough) noexcept {
     constexpr std::size_t most_nodes = 96;
     const Pose into_map = pair.map_pose.inverse() * pair.shell_pose;
     const auto& nodes = pair.shell->nodes;
     const std::size_t count = std::min(nodes.size(), most_nodes);
     double least = enough;
     for (std::size_t n = 0; n < count && least > 0.0; ++n) {
-        const ShellNode& node = nodes[n];
+        const contact::ShellNode& node = nodes[n];
         if (node.children > 0 && node.first_child + node.children <= count) continue;
         least = std::min(least, pair.map->least_within(into_map.apply(node.centre), node.radius) / pair.map->steepness);
     }
@@ -32,7 +32,7 @@ double clearance_of(const ContactPair& pair, double enough) noexcept {
 
 HeldContact::HeldContact(std::size_t most_points) : kernel_(nodes_of(most_points)) {}
 
-void HeldContact::set(const Scene& scene, int held, const Pose& grip, const ContactLaw& law, bool both_ways,
+void HeldContact::set(const Scene& scene, int held, const Pose& grip, const contact::ContactLaw& law, bool both_ways,
                       std::size_t budget) noexcept {
     law_ = law;
     budget_ = budget;
@@ -56,7 +56,7 @@ void HeldContact::set(const Scene& scene, int held, const Pose& grip, const Cont
 }
 
 void HeldContact::add(const SceneObject& mine, const Pose& beside, const SceneObject& other, bool both_ways) noexcept {
-    const auto put = [&](const ContactPair& pair) {
+    const auto put = [&](const contact::ContactPair& pair) {
         beside_[count_] = beside;
         pairs_[count_++] = pair;
     };
@@ -64,14 +64,14 @@ void HeldContact::add(const SceneObject& mine, const Pose& beside, const SceneOb
     if (both_ways && other.body.shell && mine.body.map) put({other.body.shell, other.pose, mine.body.map, {}, false});
 }
 
-std::span<const ContactPair> HeldContact::place(const Pose& handle) noexcept {
+std::span<const contact::ContactPair> HeldContact::place(const Pose& handle) noexcept {
     const Pose body = handle * grip_;
     for (std::size_t i = 0; i < count_; ++i)
         (pairs_[i].shell_moves ? pairs_[i].shell_pose : pairs_[i].map_pose) = body * beside_[i];
     return std::span(pairs_).first(count_);
 }
 
-ContactSum HeldContact::operator()(const Pose& handle, ContactParts parts) noexcept {
+contact::ContactSum HeldContact::operator()(const Pose& handle, contact::ContactParts parts) noexcept {
     return kernel_(place(handle), handle.position, law_, budget_, parts);
 }
 
@@ -79,7 +79,7 @@ double HeldContact::clearance(const Pose& handle) const noexcept {
     const Pose body = handle * grip_;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < count_; ++i) {
-        ContactPair pair = pairs_[i];
+        contact::ContactPair pair = pairs_[i];
         (pair.shell_moves ? pair.shell_pose : pair.map_pose) = body * beside_[i];
         least = std::min(least, clearance_of(pair, least));
         if (!(least > 0.0)) return 0.0;
@@ -97,4 +97,4 @@ double HeldContact::gyration() const noexcept {
     return std::sqrt(held_shell_->gyration * held_shell_->gyration + glm::dot(arm, arm));
 }
 
-}  // namespace tactus
+}  // namespace tactus::coupling

@@ -6,12 +6,12 @@
 // learned may mislead; it is used as long as it has mostly led downhill.
 #pragma once
 
-#include "dsp/coupling/symmetric6.hpp"
+#include "dsp/geometry/symmetric6.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::coupling {
 
 class LearnedCurvature {
 public:
@@ -24,16 +24,16 @@ public:
         trust_ = went_down ? std::min(trust_ + 1, most_trust) : std::max(trust_ - 2, -most_trust);
     }
 
-    Matrix6 added_to(const Matrix6& known) const noexcept {
-        Matrix6 sum = known;
+    geometry::Matrix6 added_to(const geometry::Matrix6& known) const noexcept {
+        geometry::Matrix6 sum = known;
         for (std::size_t i = 0; i < 36; ++i) sum[i] += extra_[i];
         return sum;
     }
 
     /// Over the step s (m, rad) the gradient (N, N·m) changed by `change`, where `known` is the stiffness as far as it is
     /// known. `lever` (m) weighs turns against shifts.
-    void learn(const Vector6& s, const Vector6& change, const Matrix6& known, double lever) noexcept {
-        Vector6 rest{};
+    void learn(const geometry::Vector6& s, const geometry::Vector6& change, const geometry::Matrix6& known, double lever) noexcept {
+        geometry::Vector6 rest{};
         double along = 0.0, rests = 0.0, steps = 0.0;
         for (std::size_t i = 0; i < 6; ++i) {
             rest[i] = change[i];
@@ -52,9 +52,9 @@ public:
 private:
     static constexpr double least_share = 1e-3;
     static constexpr int most_trust = 8, chance_every = 16;
-    Matrix6 extra_{};
+    geometry::Matrix6 extra_{};
     int trust_ = most_trust / 2;
     unsigned passed_over_ = 0;
 };
 
-}  // namespace tactus
+}  // namespace tactus::coupling

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::coupling {
 
 /// Passivity observer and controller in the time domain (Hannaford and Ryu 2002), with the force of a tick held until
 /// the next: the energy that the hand put in so far, less what it got back. Below zero the scene is active.
@@ -56,4 +56,4 @@ private:
     bool started_ = false;
 };
 
-}  // namespace tactus
+}  // namespace tactus::coupling

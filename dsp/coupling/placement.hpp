@@ -4,7 +4,7 @@
 
 #include "dsp/core/types.hpp"
 
-namespace tactus {
+namespace tactus::coupling {
 
 /// Turns about the fixed x axis first, then y, then z; angles in rad.
 inline Quat rotation_xyz(const Vec3& angles) {
@@ -34,4 +34,4 @@ inline Wrench wrench_on_hand(const Wrench& on_tool, const Vec3& tool, const Pose
     return {back * on_tool.force * scale, back * (on_tool.torque + glm::cross(tool - frame.position, on_tool.force))};
 }
 
-}  // namespace tactus
+}  // namespace tactus::coupling

@@ -7,7 +7,7 @@
 #include <initializer_list>
 #include <limits>
 
-namespace tactus {
+namespace tactus::coupling {
 
 namespace {
 
@@ -91,4 +91,4 @@ ProxyPlanes ProxyPlanes::shaded() const noexcept {
     return planes;
 }
 
-}  // namespace tactus
+}  // namespace tactus::coupling

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <span>
 
-namespace tactus {
+namespace tactus::coupling {
 
 /// normal · (x − place of the proxy) ≥ −gap.
 struct ProxyPlane {
@@ -37,4 +37,4 @@ private:
 /// The point nearest to `goal` in all half-spaces, planes counted from `from`. At most eight planes are heeded.
 Vec3 nearest_within(const Vec3& goal, const Vec3& from, std::span<const ProxyPlane> planes) noexcept;
 
-}  // namespace tactus
+}  // namespace tactus::coupling

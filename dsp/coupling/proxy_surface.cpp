@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tactus {
+namespace tactus::coupling {
 
 namespace {
 
@@ -20,13 +20,13 @@ struct Reading {
 
 /// Outside of its grid a field goes on as the distance to the surface point next to where the grid ends, so that a ball
 /// may be larger than the margin of the field.
-Reading read(const Voxmap& map, const Vec3& at) noexcept {
-    const Sample inside = map.smooth_sample(at);
+Reading read(const contact::Voxmap& map, const Vec3& at) noexcept {
+    const volume::Sample inside = map.smooth_sample(at);
     if (inside.inside || map.grid.values.empty()) return {inside.value, inside.gradient};
-    const Grid& grid = map.grid;
+    const volume::Grid& grid = map.grid;
     const Vec3 last(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1), skin = 1e-9 * grid.spacing;
     const Vec3 border = glm::clamp(at, grid.origin + skin, grid.origin + last * grid.spacing - skin);
-    const Sample sample = map.smooth_sample(border);
+    const volume::Sample sample = map.smooth_sample(border);
     const double slope2 = glm::dot(sample.gradient, sample.gradient);
     // A body that reaches the border ends there.
     if (!sample.inside || sample.value <= 0.0) return {map.far, Vec3(0.0)};
@@ -56,7 +56,7 @@ ProxySurface::Level ProxySurface::level(const Vec3& at, const ProxyShape& shape)
     Reading reading;
     double steepness = 1.0;
     if (triangles) {
-        const TriangleTree::Near near = triangles->nearest(local);
+        const geometry::TriangleTree::Near near = triangles->nearest(local);
         reading.value = near.distance;
         if (near.distance > 0.0 && std::isfinite(near.distance))
             reading.gradient = (local - near.point) / near.distance;
@@ -89,7 +89,7 @@ double ProxySurface::stride(const ProxyShape& shape) const noexcept {
 
 void ProxySurface::touched(const Vec3& at, const ProxyShape& shape, ProxyPlanes& into) const noexcept {
     const Vec3 local = pose.inverse().apply(at);
-    std::array<TriangleTree::Near, 32> near;
+    std::array<geometry::TriangleTree::Near, 32> near;
     const std::size_t count = triangles->all_near(local, shape.radius + proxy_hover + proxy_touch, near);
     for (std::size_t i = 0; i < count; ++i) {
         if (!(near[i].distance > 0.0)) continue;
@@ -107,9 +107,9 @@ double ProxySurface::free_way(const Vec3& at, const Vec3& way, double length, co
     if (!(share < 1.0)) return length;
     // A little less, so that the next move does not begin within reach; never less than half.
     const Vec3 there = from + share * along;
-    const TriangleTree::Near near = triangles->nearest(there, 2.0 * shape.radius);
+    const geometry::TriangleTree::Near near = triangles->nearest(there, 2.0 * shape.radius);
     const double approach = -glm::dot(along, there - near.point) / (length * std::max(near.distance, 1e-12));
     return share * length - std::min(0.5 * share * length, proxy_hover / std::max(approach, 1e-3));
 }
 
-}  // namespace tactus
+}  // namespace tactus::coupling

@@ -9,9 +9,9 @@
 #include "dsp/contact/voxmap.hpp"
 #include "dsp/core/types.hpp"
 #include "dsp/coupling/proxy_planes.hpp"
-#include "dsp/coupling/triangle_tree.hpp"
+#include "dsp/geometry/triangle_tree.hpp"
 
-namespace tactus {
+namespace tactus::coupling {
 
 struct ProxyShape {
     double radius = 0.0;  ///< m, of the ball
@@ -22,8 +22,8 @@ struct ProxyShape {
 
 /// One surface: a distance field, or triangles when there are any.
 struct ProxySurface {
-    const Voxmap* map = nullptr;
-    const TriangleTree* triangles = nullptr;
+    const contact::Voxmap* map = nullptr;
+    const geometry::TriangleTree* triangles = nullptr;
     Pose pose;
 
     /// How a field, or a surface with waves, looks from a place: one surface, round everywhere.
@@ -47,4 +47,4 @@ struct ProxySurface {
 inline constexpr double proxy_hover = 1e-7;  ///< m: how far off a surface a proxy is held
 inline constexpr double proxy_touch = 3e-7;  ///< m: what is nearer counts as touched
 
-}  // namespace tactus
+}  // namespace tactus::coupling

@@ -13,19 +13,19 @@
 #include "dsp/contact/pointshell_contact.hpp"
 #include "dsp/coupling/coupling_spring.hpp"
 #include "dsp/coupling/learned_curvature.hpp"
-#include "dsp/coupling/symmetric6.hpp"
+#include "dsp/geometry/symmetric6.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace tactus {
+namespace tactus::coupling {
 
 /// What the solver sees: contact of the held body at a trial pose of the handle, about the handle's origin, and a lower
 /// bound of the way that every point may go from there before it can touch anything.
 template <class T>
 concept HeldContactLike = requires(T& contact, const Pose& handle) {
-    { contact(handle, ContactParts::all) } -> std::same_as<ContactSum>;
+    { contact(handle, contact::ContactParts::all) } -> std::same_as<contact::ContactSum>;
     { contact.clearance(handle) } -> std::convertible_to<double>;
 };
 
@@ -47,7 +47,7 @@ struct QuasiStaticSettings {
 struct QuasiStaticState {
     Pose proxy;  ///< of the handle
     Wrench wrench;  ///< on the hand, about its own origin; equals the contact's about the proxy when balanced
-    ContactSum contact;  ///< at the proxy
+    contact::ContactSum contact;  ///< at the proxy
     double residual = 0.0;  ///< N, of the balance
     double energy = 0.0;  ///< J, of contact and springs
     double energy_before = 0.0;  ///< J, of the last proxy under this tick's hand
@@ -106,17 +106,17 @@ public:
 
 private:
     struct Balance {
-        ContactSum contact;
+        contact::ContactSum contact;
         SaturatedSpring::Value linear, angular;
         Vec3 turn{0.0};
         double energy = 0.0;
-        Vector6 gradient{};
+        geometry::Vector6 gradient{};
     };
 
     template <class Contact>
     Balance balance(const Pose& proxy, Contact& contact) noexcept {
         Balance b;
-        b.contact = contact(proxy, ContactParts::all);
+        b.contact = contact(proxy, contact::ContactParts::all);
         ++state_.evaluations;
         b.turn = rotation_near(hand_.orientation, proxy.orientation, turn_);
         b.linear = settings.springs.linear(proxy.position - hand_.position);
@@ -133,15 +133,15 @@ private:
     bool may_evaluate() const noexcept { return state_.evaluations < settings.evaluations; }
 
     double residual(const Balance& b) const noexcept {
-        const Vector6& g = b.gradient;
+        const geometry::Vector6& g = b.gradient;
         const double lever = std::max(settings.gyration, 1e-6);
         return std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2] +
                          (g[3] * g[3] + g[4] * g[4] + g[5] * g[5]) / (lever * lever));
     }
 
     /// As far as Gauss–Newton knows it.
-    static Matrix6 stiffness(const Balance& b) noexcept {
-        Matrix6 k = b.contact.stiffness;
+    static geometry::Matrix6 stiffness(const Balance& b) noexcept {
+        geometry::Matrix6 k = b.contact.stiffness;
         for (std::size_t i = 0; i < 3; ++i) {
             k[7 * i] += b.linear.curvature;
             k[7 * (i + 3)] += b.angular.curvature;
@@ -152,7 +152,7 @@ private:
     /// One step downhill; false when none was found.
     template <class Contact>
     bool improve(Balance& now, Contact& contact) noexcept {
-        const Matrix6 known = stiffness(now);
+        const geometry::Matrix6 known = stiffness(now);
         if (now.contact.in_contact == 0) curvature_.forget();
         turn_ = now.turn;
         Step step;
@@ -171,16 +171,16 @@ private:
     }
 
     struct Step {
-        Vector6 way{};
+        geometry::Vector6 way{};
         double slope = 0.0;  ///< of the energy along it, J
     };
 
     /// False when there is none that leads down.
     template <class Contact>
-    bool find_step(Step& step, const Matrix6& k, const Balance& now, Contact& contact) const noexcept {
-        Vector6 down{};
+    bool find_step(Step& step, const geometry::Matrix6& k, const Balance& now, Contact& contact) const noexcept {
+        geometry::Vector6 down{};
         for (std::size_t i = 0; i < 6; ++i) down[i] = -now.gradient[i];
-        if (!solve_symmetric6(k, down, step.way)) return false;
+        if (!geometry::solve_symmetric6(k, down, step.way)) return false;
         limit(step.way, contact);
         step.slope = 0.0;
         for (std::size_t i = 0; i < 6; ++i) step.slope += now.gradient[i] * step.way[i];
@@ -189,11 +189,11 @@ private:
 
     /// Takes the step if it lowers the energy enough (Armijo 1966).
     template <class Contact>
-    bool try_step(const Step& step, const Matrix6& known, Balance& now, Contact& contact) noexcept {
+    bool try_step(const Step& step, const geometry::Matrix6& known, Balance& now, Contact& contact) noexcept {
         const Pose trial = moved(state_.proxy, step.way);
         const Balance there = balance(trial, contact);
         if (!(there.energy <= now.energy + 1e-4 * step.slope)) return false;
-        Vector6 change{};
+        geometry::Vector6 change{};
         for (std::size_t i = 0; i < 6; ++i) change[i] = there.gradient[i] - now.gradient[i];
         curvature_.learn(step.way, change, known, std::max(settings.gyration, 1e-6));
         state_.proxy = trial;
@@ -207,12 +207,12 @@ private:
         return std::hypot(shift.x, shift.y, shift.z) +
                std::hypot(turn.x, turn.y, turn.z) * std::max(settings.reach, 1e-6);
     }
-    double way_of(const Vector6& step) const noexcept {
+    double way_of(const geometry::Vector6& step) const noexcept {
         return way_of(Vec3(step[0], step[1], step[2]), Vec3(step[3], step[4], step[5]));
     }
 
     template <class Contact>
-    void limit(Vector6& step, Contact& contact) const noexcept {
+    void limit(geometry::Vector6& step, Contact& contact) const noexcept {
         const double way = way_of(step);
         double most = left_;
         if (way > settings.step)
@@ -222,7 +222,7 @@ private:
         for (double& s : step) s *= share;
     }
 
-    static Pose moved(const Pose& pose, const Vector6& step) noexcept {
+    static Pose moved(const Pose& pose, const geometry::Vector6& step) noexcept {
         return {pose.position + Vec3(step[0], step[1], step[2]),
                 glm::normalize(rotation_by(Vec3(step[3], step[4], step[5])) * pose.orientation)};
     }
@@ -236,4 +236,4 @@ private:
     double left_ = 0.0;  // m that the points may still move in this tick
 };
 
-}  // namespace tactus
+}  // namespace tactus::coupling

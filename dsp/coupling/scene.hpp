@@ -11,18 +11,21 @@
 #include <cstdint>
 #include <string_view>
 
-namespace tactus {
-
+namespace tactus::geometry {
 class TriangleTree;
+}
+
+namespace tactus::coupling {
+
 
 /// What can touch: the surface as points, the distance around it, or its triangles; in one frame, any may be missing.
 /// A handle: whoever made it keeps what it points at.
 struct Body {
     static constexpr std::string_view wire_name = "body";
 
-    const Pointshell* shell = nullptr;
-    const Voxmap* map = nullptr;
-    const TriangleTree* triangles = nullptr;
+    const contact::Pointshell* shell = nullptr;
+    const contact::Voxmap* map = nullptr;
+    const geometry::TriangleTree* triangles = nullptr;
     Pose home;  ///< where its file has it: the frame of the body in the frame of the file
     std::int64_t version = 0;
     std::uint64_t content_hash = 0;
@@ -58,4 +61,4 @@ inline std::uint64_t hash_of(const Scene& scene) noexcept {
     return hash.state;
 }
 
-}  // namespace tactus
+}  // namespace tactus::coupling

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::coupling {
 
 namespace {
 
@@ -151,4 +151,4 @@ const ProxyState& SurfaceProxy::update(const Vec3& goal, std::span<const ProxySu
     return state_;
 }
 
-}  // namespace tactus
+}  // namespace tactus::coupling

@@ -15,7 +15,7 @@
 #include <cstddef>
 #include <span>
 
-namespace tactus {
+namespace tactus::coupling {
 
 struct ProxySettings {
     ProxyShape shape;  ///< a point is a ball of a micrometre
@@ -68,4 +68,4 @@ private:
     std::size_t seen_count_ = 0;
 };
 
-}  // namespace tactus
+}  // namespace tactus::coupling

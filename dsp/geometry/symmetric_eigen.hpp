@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <numeric>
 
-namespace tactus {
+namespace tactus::geometry {
 
 /// Eigenvalues ascending; eigenvectors of unit length as rows, in the same order.
 template <std::size_t N>
@@ -64,4 +64,4 @@ SymmetricEigen<N> symmetric_eigen(std::array<double, N * N> m) noexcept {
     return eigen;
 }
 
-}  // namespace tactus
+}  // namespace tactus::geometry

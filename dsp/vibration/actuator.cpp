@@ -2,7 +2,7 @@
 #include "dsp/vibration/actuator.hpp"
 
 #include "dsp/core/error.hpp"
-#include "dsp/filter/one_pole.hpp"
+#include "dsp/signal/filter/one_pole.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::vibration {
 
 namespace {
 
@@ -27,8 +27,8 @@ constexpr std::array<ActuatorModel, 3> models{{
 }};
 
 /// s² / (s² + 2 ζ ω0 s + ω0²) through the bilinear transform, exact at f0.
-BiquadCoefficients resonance(const ActuatorModel& model, double rate) {
-    return highpass(model.resonance, rate, 1.0 / (2.0 * model.damping));
+signal::BiquadCoefficients resonance(const ActuatorModel& model, double rate) {
+    return signal::highpass(model.resonance, rate, 1.0 / (2.0 * model.damping));
 }
 
 double coil_gain(const ActuatorModel& model, double frequency) {
@@ -62,7 +62,7 @@ Actuator::Actuator(const ActuatorModel& model, double mass, double rate) : rate_
         throw Error(fmt::format("an actuator with its resonance at {} Hz needs a higher rate than {} Hz",
                                 model.resonance, rate));
     voltage_limit_ = std::min(model.voltage_limit, model.current_limit * model.resistance);
-    coil_share_ = lag_share(model.inductance / model.resistance, 1.0 / rate);
+    coil_share_ = signal::lag_share(model.inductance / model.resistance, 1.0 / rate);
     resonator_.coefficients = resonance(model, rate);
     const double shape = std::abs(resonator_.coefficients.response(model.reference_frequency, rate)) *
                          coil_gain(model, model.reference_frequency);
@@ -87,4 +87,4 @@ double Actuator::gain(double frequency) const {
     return std::abs(resonator_.coefficients.response(frequency, rate_) * coil_share_ / (1.0 - (1.0 - coil_share_) * z));
 }
 
-}  // namespace tactus
+}  // namespace tactus::vibration

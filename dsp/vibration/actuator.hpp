@@ -3,12 +3,12 @@
 // acceleration of the handle out.
 #pragma once
 
-#include "dsp/filter/biquad.hpp"
+#include "dsp/signal/filter/biquad.hpp"
 
 #include <span>
 #include <string_view>
 
-namespace tactus {
+namespace tactus::vibration {
 
 /// What is known of an actuator. The moving mass on its spring gives the housing
 ///   a/v = k s² / (s² + 2 ζ ω0 s + ω0²),
@@ -60,9 +60,9 @@ public:
     double greatest_voltage() const { return voltage_limit_; }
 
 private:
-    Biquad resonator_;
+    signal::Biquad resonator_;
     double rate_ = 48000.0, resistance_ = 1.0, voltage_limit_ = 0.0;
     double coil_share_ = 1.0, coil_ = 0.0;  // coil_ is R times the current
 };
 
-}  // namespace tactus
+}  // namespace tactus::vibration

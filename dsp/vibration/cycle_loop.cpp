@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <numbers>
 
-namespace tactus {
+namespace tactus::vibration {
 
 namespace {
 
@@ -195,4 +195,4 @@ double likeness(const CycleLoop& a, const CycleLoop& b) {
     return scale > 0.0 ? std::clamp(product / scale, -0.5, 1.0) : 0.0;
 }
 
-}  // namespace tactus
+}  // namespace tactus::vibration

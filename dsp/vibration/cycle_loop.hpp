@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace tactus {
+namespace tactus::vibration {
 
 /// Made from a recording of something that repeats `reciprocation_rate` times per second. The loop is stored at about
 /// the output's sample rate with a whole number of samples, so that it closes without a gap.
@@ -50,4 +50,4 @@ double likeness(const CycleLoop& a, const CycleLoop& b);
 /// (1 − x) power_a + x power_b.
 double fade_gain(double x, double power_a, double power_b, double correlation);
 
-}  // namespace tactus
+}  // namespace tactus::vibration

@@ -2,7 +2,7 @@
 #include "dsp/vibration/equaliser.hpp"
 
 #include "dsp/core/error.hpp"
-#include "dsp/spectrum/transform.hpp"
+#include "dsp/signal/spectrum/transform.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tactus {
+namespace tactus::vibration {
 
 namespace {
 
@@ -59,13 +59,13 @@ std::vector<Complex> to_minimum_phase(const std::vector<Complex>& spectrum) {
     double greatest = 0.0;
     for (const Complex& value : spectrum) greatest = std::max(greatest, std::abs(value));
     for (std::size_t k = 0; k < half.size(); ++k) half[k] = std::log(std::max(std::abs(spectrum[k]), 1e-6 * greatest));
-    std::vector<double> cepstrum = samples_of(half);
+    std::vector<double> cepstrum = signal::samples_of(half);
     const std::size_t size = cepstrum.size();
     for (std::size_t i = 1; i < size / 2; ++i) {
         cepstrum[i] *= 2.0;
         cepstrum[size - i] = 0.0;
     }
-    half = spectrum_of(cepstrum, size);
+    half = signal::spectrum_of(cepstrum, size);
     for (Complex& value : half) value = std::exp(value);
     return half;
 }
@@ -109,7 +109,7 @@ Equaliser design_equaliser(const FrequencyResponse& response, const EqualiserDes
     }
     if (!linear) spectrum = to_minimum_phase(spectrum);
     spectrum.back() = spectrum.back().real();
-    const std::vector<double> impulse = samples_of(spectrum);
+    const std::vector<double> impulse = signal::samples_of(spectrum);
 
     const std::size_t centre = linear ? count / 2 : 0;
     const double fade = linear ? 0.5 * static_cast<double>(count) : 0.25 * static_cast<double>(count);
@@ -124,4 +124,4 @@ Equaliser design_equaliser(const FrequencyResponse& response, const EqualiserDes
     return out;
 }
 
-}  // namespace tactus
+}  // namespace tactus::vibration

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace tactus {
+namespace tactus::vibration {
 
 enum class EqualiserKind {
     minimum_phase,  ///< adds at most 2 ms: for what a hand drives
@@ -41,4 +41,4 @@ struct Equaliser {
 /// the band, D a delay, and β rising to 1 outside the band. The response must cover the band. Throws Error. Allocates.
 Equaliser design_equaliser(const FrequencyResponse& response, const EqualiserDesign& design = {});
 
-}  // namespace tactus
+}  // namespace tactus::vibration

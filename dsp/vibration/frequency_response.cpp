@@ -10,7 +10,7 @@
 #include <limits>
 #include <numbers>
 
-namespace tactus {
+namespace tactus::vibration {
 
 namespace {
 
@@ -169,4 +169,4 @@ Resonance fit_resonance(const FrequencyResponse& response, double lowest, double
     return best;
 }
 
-}  // namespace tactus
+}  // namespace tactus::vibration

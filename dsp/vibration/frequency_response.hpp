@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace tactus {
+namespace tactus::vibration {
 
 struct FrequencyResponse {
     std::vector<double> hz;                  ///< rising, above 0
@@ -41,4 +41,4 @@ struct Resonance {
 /// well, or within 0.5 dB, has no resonance there. Throws Error with fewer than 8 frequencies there. Allocates.
 Resonance fit_resonance(const FrequencyResponse& response, double lowest, double highest);
 
-}  // namespace tactus
+}  // namespace tactus::vibration

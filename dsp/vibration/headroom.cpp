@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/headroom.hpp"
 
-#include "dsp/spectrum/transform.hpp"
+#include "dsp/signal/spectrum/transform.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numbers>
 
-namespace tactus {
+namespace tactus::vibration {
 
 namespace {
 
@@ -18,7 +18,7 @@ std::vector<double> powers(std::span<const double> samples, std::size_t size) {
     const double turn = 2.0 * std::numbers::pi / static_cast<double>(samples.size());
     for (std::size_t i = 0; i < windowed.size(); ++i)
         windowed[i] *= 0.5 - 0.5 * std::cos(turn * (static_cast<double>(i) + 0.5));
-    for (const auto& value : spectrum_of(windowed, size)) out.push_back(std::norm(value));
+    for (const auto& value : signal::spectrum_of(windowed, size)) out.push_back(std::norm(value));
     return out;
 }
 
@@ -68,4 +68,4 @@ Headroom headroom(std::span<const double> drive, double rate, double limit) {
     return result;
 }
 
-}  // namespace tactus
+}  // namespace tactus::vibration

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace tactus {
+namespace tactus::vibration {
 
 struct BandLoss {
     double hz = 0.0;       ///< true centre of the third-octave band
@@ -25,4 +25,4 @@ Headroom headroom(std::span<const double> drive, double rate, double limit);
 /// Greatest voltage that the limits allow: the amplifier's, or that which drives the greatest current through the coil.
 double voltage_within(double voltage_limit, double current_limit, double resistance);
 
-}  // namespace tactus
+}  // namespace tactus::vibration

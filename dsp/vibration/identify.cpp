@@ -2,7 +2,7 @@
 #include "dsp/vibration/identify.hpp"
 
 #include "dsp/core/error.hpp"
-#include "dsp/spectrum/transform.hpp"
+#include "dsp/signal/spectrum/transform.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include <limits>
 #include <numbers>
 
-namespace tactus {
+namespace tactus::vibration {
 
 namespace {
 
@@ -41,13 +41,13 @@ Spectra transform(const SweepRun& run, std::span<const float> captured, double r
     spectra.step = rate / static_cast<double>(spectra.size);
     std::vector<double> samples(period);
     for (std::size_t i = 0; i < period; ++i) samples[i] = run.amplitude * run.sweep(static_cast<double>(i) / rate);
-    spectra.drive = spectrum_of(samples, spectra.size);
+    spectra.drive = signal::spectrum_of(samples, spectra.size);
     for (std::size_t r = 0; r < repeats; ++r) {
         for (std::size_t i = 0; i < period; ++i) {
             const std::size_t at = r * period + i;
             samples[i] = at < captured.size() ? static_cast<double>(captured[at]) : 0.0;
         }
-        spectra.answers.push_back(spectrum_of(samples, spectra.size));
+        spectra.answers.push_back(signal::spectrum_of(samples, spectra.size));
     }
     return spectra;
 }
@@ -98,7 +98,7 @@ double coarse_delay(const SweepRun& run, const Spectra& spectra, double rate) {
             cross[k] += window * window * std::conj(spectra.drive[k]) * answer[k] /
                         (std::norm(spectra.drive[k]) + 1e-6 * greatest);
     }
-    const std::vector<double> impulse = samples_of(cross);
+    const std::vector<double> impulse = signal::samples_of(cross);
     const auto end = static_cast<std::size_t>(run.pause * rate);
     std::size_t peak = 0;
     for (std::size_t i = 0; i < std::min(end, impulse.size()); ++i)
@@ -176,4 +176,4 @@ Identified identify(const SweepRun& run, std::span<const float> captured, double
     return out;
 }
 
-}  // namespace tactus
+}  // namespace tactus::vibration

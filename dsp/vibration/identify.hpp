@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace tactus {
+namespace tactus::vibration {
 
 /// How the sweep was played.
 struct SweepRun {
@@ -37,4 +37,4 @@ struct Identified {
 Identified identify(const SweepRun& run, std::span<const float> captured, double rate, int highest_order = 5,
                     int per_octave = 48);
 
-}  // namespace tactus
+}  // namespace tactus::vibration

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/refine_rate.hpp"
 
-#include "dsp/filter/biquad.hpp"
+#include "dsp/signal/filter/biquad.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-namespace tactus {
+namespace tactus::vibration {
 
 namespace {
 
@@ -22,7 +22,7 @@ Decimated decimate(std::span<const float> samples, double rate, double wanted, d
     const auto step = static_cast<std::size_t>(std::max(1.0, std::floor(rate / wanted)));
     Decimated out{{}, rate / static_cast<double>(step)};
     out.samples.reserve(samples.size() / step + 1);
-    Biquad first{highpass(30.0, rate)}, second{lowpass(cutoff, rate, 0.541)}, third{lowpass(cutoff, rate, 1.307)};
+    signal::Biquad first{signal::highpass(30.0, rate)}, second{signal::lowpass(cutoff, rate, 0.541)}, third{signal::lowpass(cutoff, rate, 1.307)};
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const double y = third(second(first(samples[i])));
         if (i % step == 0) out.samples.push_back(y);
@@ -71,4 +71,4 @@ double refine_rate(std::span<const float> samples, double sample_rate, double ra
     return 0.5 * (a + b);
 }
 
-}  // namespace tactus
+}  // namespace tactus::vibration

@@ -4,7 +4,7 @@
 
 #include <span>
 
-namespace tactus {
+namespace tactus::vibration {
 
 /// The rate within ±`range` (a ratio) of `rate` at which the lines of order 1 to `orders` of the Hann-windowed samples
 /// together are strongest, exact to a small part of 1/duration for a steady sound: the phase of the whole record counts,
@@ -12,4 +12,4 @@ namespace tactus {
 /// unchanged when the record is shorter than 8 periods. Allocates.
 double refine_rate(std::span<const float> samples, double sample_rate, double rate, double range, int orders = 6);
 
-}  // namespace tactus
+}  // namespace tactus::vibration

@@ -2,7 +2,7 @@
 #include "dsp/vibration/saw_voice.hpp"
 
 #include "dsp/core/error.hpp"
-#include "dsp/filter/one_pole.hpp"
+#include "dsp/signal/filter/one_pole.hpp"
 #include "dsp/vibration/refine_rate.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::vibration {
 
 namespace {
 
@@ -31,8 +31,8 @@ void SawVoice::prepare(double rate, std::span<const SawRecording> recordings, co
     *this = SawVoice{};
     rate_ = rate;
     behaviour_ = behaviour;
-    up_share_ = lag_share(behaviour.spin_up_time, 1.0 / rate);
-    down_share_ = lag_share(behaviour.spin_down_time, 1.0 / rate);
+    up_share_ = signal::lag_share(behaviour.spin_up_time, 1.0 / rate);
+    down_share_ = signal::lag_share(behaviour.spin_down_time, 1.0 / rate);
     fade_step_ = behaviour.fade_time * rate > 1.0 ? 1.0 / (behaviour.fade_time * rate) : 1.0;
     bool any[2] = {false, false};
     for (const SawRecording& recording : recordings) {
@@ -199,4 +199,4 @@ int SawVoice::loudest_recording() const {
     return loudest == layers_.end() ? -1 : static_cast<int>(loudest->loop);
 }
 
-}  // namespace tactus
+}  // namespace tactus::vibration

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace tactus {
+namespace tactus::vibration {
 
 /// One recording of a saw at a steady rate, mono. The samples need to live only while `prepare` runs.
 struct SawRecording {
@@ -102,4 +102,4 @@ private:
     SawState state_ = SawState::off;
 };
 
-}  // namespace tactus
+}  // namespace tactus::vibration

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tactus {
+namespace tactus::vibration {
 
 /// sin[2π f1 L (e^{t/L} − 1)] with L = T / ln(f2/f1), faded in and out by half cosines (Farina 2000).
 struct ExponentialSweep {
@@ -31,4 +31,4 @@ struct ExponentialSweep {
     double lead(int order) const noexcept { return growth() * std::log(static_cast<double>(order)); }
 };
 
-}  // namespace tactus
+}  // namespace tactus::vibration

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <utility>
 
-namespace tactus {
+namespace tactus::volume {
 
 namespace {
 
@@ -255,4 +255,4 @@ Grid to_grid(const BoneSnapshot& bone) {
     return grid;
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

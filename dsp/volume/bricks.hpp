@@ -18,7 +18,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tactus {
+namespace tactus::volume {
 
 inline constexpr int brick_cells = 8, brick_side = brick_cells + 1,
                      brick_samples = brick_side * brick_side * brick_side;
@@ -144,4 +144,4 @@ private:
 /// The distance of a version as a dense grid again, for files and pictures.
 Grid to_grid(const BoneSnapshot& bone);
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace tactus {
+namespace tactus::volume {
 
 CompactSlice::CompactSlice(std::span<const float> values) {
     if (values.empty()) return;
@@ -40,4 +40,4 @@ void CompactSlice::copy(std::size_t first, std::span<float> into) const {
     }
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

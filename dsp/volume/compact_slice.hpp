@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace tactus {
+namespace tactus::volume {
 
 /// Two bytes per value where all are whole numbers within 65536 of each other, as in nearly every CT; else four.
 class CompactSlice {
@@ -27,4 +27,4 @@ private:
     std::int32_t offset_ = 0;
 };
 
-}  // namespace tactus
+}  // namespace tactus::volume

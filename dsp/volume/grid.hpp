@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace tactus {
+namespace tactus::volume {
 
 /// Samples at origin + (i·spacing.x, j·spacing.y, k·spacing.z), x fastest. Frame: LPS, metres.
 struct Grid {
@@ -31,4 +31,4 @@ struct Grid {
     }
 };
 
-}  // namespace tactus
+}  // namespace tactus::volume

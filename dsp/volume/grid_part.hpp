@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-namespace tactus {
+namespace tactus::volume {
 
 /// All layers, along x and y only the samples from `low` to `high` (inclusive).
 inline Grid window_of(const Grid& grid, const std::array<int, 2>& low, const std::array<int, 2>& high) {
@@ -20,4 +20,4 @@ inline Grid window_of(const Grid& grid, const std::array<int, 2>& low, const std
     return out;
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

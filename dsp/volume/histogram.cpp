@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace tactus {
+namespace tactus::volume {
 
 Histogram histogram_of(std::span<const float> values, std::size_t bins) {
     Histogram histogram;
@@ -56,4 +56,4 @@ double suggested_threshold(std::span<const float> values, bool masked) {
     return histogram.high;
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

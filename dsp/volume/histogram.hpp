@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace tactus {
+namespace tactus::volume {
 
 /// Counts of values in bins of equal width between the least and the greatest.
 struct Histogram {
@@ -27,4 +27,4 @@ std::size_t otsu(const Histogram& histogram, std::size_t first = 0);
 /// what is above. In a masked volume (zeros around the bone) half the median of what is above zero.
 double suggested_threshold(std::span<const float> values, bool masked);
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -9,7 +9,7 @@
 #include <array>
 #include <cstddef>
 
-namespace tactus {
+namespace tactus::volume {
 
 /// The cell of a grid that holds a position, and where in it.
 struct GridCell {
@@ -115,4 +115,4 @@ struct QuadraticSpline {
     }
 };
 
-}  // namespace tactus
+}  // namespace tactus::volume

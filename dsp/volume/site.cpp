@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-namespace tactus {
+namespace tactus::volume {
 
 namespace {
 
@@ -230,4 +230,4 @@ std::optional<SawSite> find_saw_site(const Grid& distance, const Grid& density, 
     return Search(distance, density, request).run();
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -6,7 +6,7 @@
 
 #include <optional>
 
-namespace tactus {
+namespace tactus::volume {
 
 /// The blade and the room that it needs; m.
 struct SiteRequest {
@@ -35,4 +35,4 @@ struct SawSite {
 /// there is no such place. The same grid gives the same site.
 std::optional<SawSite> find_saw_site(const Grid& distance, const Grid& density, const SiteRequest& request = {});
 
-}  // namespace tactus
+}  // namespace tactus::volume

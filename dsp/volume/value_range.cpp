@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdint>
 
-namespace tactus {
+namespace tactus::volume {
 
 ValueRange range_of(std::span<const float> values) {
     float low = values[0], high = values[0];
@@ -23,4 +23,4 @@ ValueRange range_of(std::span<const float> values) {
     return range;
 }
 
-}  // namespace tactus
+}  // namespace tactus::volume

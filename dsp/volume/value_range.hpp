@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-namespace tactus {
+namespace tactus::volume {
 
 struct ValueRange {
     float low = 0.0f, high = 0.0f;
@@ -15,4 +15,4 @@ struct ValueRange {
 /// Of at least one value.
 ValueRange range_of(std::span<const float> values);
 
-}  // namespace tactus
+}  // namespace tactus::volume

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/admittance/controller.hpp"
+#include "dsp/control/controller.hpp"
 
-#include "graph/assets.hpp"
-#include "graph/node.hpp"
+#include "graph/node/assets.hpp"
+#include "graph/node/node.hpp"
 
 #include <fmt/format.h>
 
@@ -37,7 +37,7 @@ struct AdmittanceController {
     Param mass{"0 kg", "0 kg", "10 kg", "of an elastic object"};
     Param rest{"0 mm", "-500 mm", "500 mm", "where the object is without force"};
     Param free_damping{"20 N s/m", "0 N s/m", "1000 N s/m", "felt before an object of one side"};
-    Asset<DeflectionTable> table{optional, "force and deflection as measured, for object = \"table\""};
+    Asset<control::DeflectionTable> table{optional, "force and deflection as measured, for object = \"table\""};
     Param gain{"0 s^-1", "0 s^-1", "10000 s^-1", "of the position loop; 0: gain_share of what is stable"};
     Param gain_share{"0.5", "0.01", "0.95", "of the gain's limit"};
     Param feed_forward{"0", "0", "1", "share of the object's velocity added to the loop's; the thesis had none"};
@@ -60,11 +60,11 @@ struct AdmittanceController {
     void prepare(const Setup& setup) {
         period_ = seconds(setup.period);
         if (object.is("table") && !table) setup.fail("object = \"table\" needs an asset 'table'");
-        const ControllerSettings wanted_settings = settings();
+        const control::ControllerSettings wanted_settings = settings();
         if (!wanted_settings.object.is_renderable())
             setup.fail("an object without stiffness, damping and mass would leave with any force; give a damping");
         if (!control_.set(wanted_settings)) {
-            const double limit = tactus::gain_limit(wanted_settings.loop, wanted_settings.object);
+            const double limit = tactus::control::gain_limit(wanted_settings.loop, wanted_settings.object);
             setup.fail(
                 fmt::format("with gain {:.4g} s^-1 this object is unstable in a hand of {:.3g} N/mm: the limit is "
                             "{:.4g} s^-1; lower the gain, leave it 0, soften the hand, or set allow_unstable",
@@ -77,21 +77,21 @@ struct AdmittanceController {
     }
 
     void process(const Tick& tick) noexcept {
-        if (const ControllerSettings now = settings(); now != seen_) {
+        if (const control::ControllerSettings now = settings(); now != seen_) {
             seen_ = now;
             refused_ = !control_.set(now);
             refusals_ += refused_;
         }
         if (recover.value != asked_) control_.recover();
         asked_ = recover;
-        const Fault before = control_.fault();
+        const control::Fault before = control_.fault();
         const int periods = static_cast<int>(std::lround(std::min(tick.elapsed_seconds() / period_, 1e6)));
         const double speed = control_.tick(force, position, sensed(), periods, slips.connected && slips.get());
-        if (control_.fault() != Fault::none && before == Fault::none) {
+        if (control_.fault() != control::Fault::none && before == control::Fault::none) {
             last_ = control_.fault();
             ++faults_;
         }
-        held_s_ += control_.fault() != Fault::none ? tick.elapsed_seconds() : 0.0;
+        held_s_ += control_.fault() != control::Fault::none ? tick.elapsed_seconds() : 0.0;
         saturated_s_ += control_.saturated() ? tick.elapsed_seconds() : 0.0;
         tell(speed);
     }
@@ -99,7 +99,7 @@ struct AdmittanceController {
     void report(Report& report) const {
         report.set(name_, "gain_per_s", control_.gain());
         report.set(name_, "gain_limit_per_s", control_.limit());
-        report.set(name_, "fault", std::string(describe(last_)));
+        report.set(name_, "fault", std::string(control::describe(last_)));
         report.set(name_, "faults", static_cast<double>(faults_));
         report.set(name_, "held_s", held_s_);
         report.set(name_, "saturated_s", saturated_s_);
@@ -107,11 +107,11 @@ struct AdmittanceController {
     }
 
 private:
-    ControllerSettings settings() const noexcept {
-        ControllerSettings s;
-        s.object.kind = object.is("wall")    ? ObjectKind::wall
-                        : object.is("table") ? ObjectKind::table
-                                             : ObjectKind::elastic;
+    control::ControllerSettings settings() const noexcept {
+        control::ControllerSettings s;
+        s.object.kind = object.is("wall")    ? control::ObjectKind::wall
+                        : object.is("table") ? control::ObjectKind::table
+                                             : control::ObjectKind::elastic;
         s.object.stiffness = stiffness;
         s.object.damping = damping;
         s.object.mass = mass < 1e-6 ? 0.0 : mass.value;  // less than a milligram only costs digits
@@ -135,24 +135,24 @@ private:
         return s;
     }
 
-    Fault sensed() const noexcept { return fault.connected ? fault_of_number(fault.get()) : Fault::none; }
+    control::Fault sensed() const noexcept { return fault.connected ? control::fault_of_number(fault.get()) : control::Fault::none; }
 
     void tell(double speed) noexcept {
         velocity = speed;
         wanted = control_.wanted();
         saturated = control_.saturated();
-        holds = control_.fault() != Fault::none;
+        holds = control_.fault() != control::Fault::none;
         reason = static_cast<double>(control_.fault());
         refused = refused_;
         used_gain = control_.gain();
         gain_limit = control_.limit();
     }
 
-    AdmittanceControl control_;
+    control::AdmittanceControl control_;
     std::string name_;
-    ControllerSettings seen_;
+    control::ControllerSettings seen_;
     double period_ = 1.0 / 150.0, asked_ = 0.0, held_s_ = 0.0, saturated_s_ = 0.0;
-    Fault last_ = Fault::none;
+    control::Fault last_ = control::Fault::none;
     std::int64_t faults_ = 0, refusals_ = 0;
     bool refused_ = false;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 
 #include <cmath>
 
@@ -35,8 +35,8 @@ private:
         const DeviceSample& s = port_->sample;
         unchanged_for_ = s.counter == counter_ ? unchanged_for_ + elapsed : 0.0;
         counter_ = s.counter;
-        const Fault found = fault_of(s);
-        const bool good = found == Fault::none;
+        const control::Fault found = fault_of(s);
+        const bool good = found == control::Fault::none;
         if (good) last_ = s.fingers;
         finger_position = last_[0].position;
         finger_force = good ? last_[0].force : 0.0;
@@ -51,12 +51,12 @@ private:
         least_speed = port_->info.least_speed;
     }
 
-    Fault fault_of(const DeviceSample& s) const noexcept {
-        if (!s.valid) return Fault::invalid_input;
-        if (unchanged_for_ > stale_after) return Fault::stale_input;
+    control::Fault fault_of(const DeviceSample& s) const noexcept {
+        if (!s.valid) return control::Fault::invalid_input;
+        if (unchanged_for_ > stale_after) return control::Fault::stale_input;
         for (const FingerSample& finger : s.fingers)
-            if (!std::isfinite(finger.position) || !std::isfinite(finger.force)) return Fault::not_finite;
-        return Fault::none;
+            if (!std::isfinite(finger.position) || !std::isfinite(finger.force)) return control::Fault::not_finite;
+        return control::Fault::none;
     }
 
     DevicePort* port_ = nullptr;

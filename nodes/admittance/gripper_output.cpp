@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,44 +32,44 @@ struct GripperOutput {
 
     void process(const Tick& tick) noexcept {
         const double second = thumb_speed.connected ? thumb_speed.get() : 0.0;
-        const Fault found = fault_of(finger_speed, second);
-        if (found != Fault::none && reason_ == Fault::none) {
+        const control::Fault found = fault_of(finger_speed, second);
+        if (found != control::Fault::none && reason_ == control::Fault::none) {
             reason_ = last_ = found;
             ++faults_;
         }
-        if (recover.value != asked_ && found == Fault::none) reason_ = Fault::none;
+        if (recover.value != asked_ && found == control::Fault::none) reason_ = control::Fault::none;
         asked_ = recover;
-        const bool still = reason_ != Fault::none || port_->hold_off;
+        const bool still = reason_ != control::Fault::none || port_->hold_off;
         MotorDrive& motors = port_->motors;
         motors.speed = {still ? 0.0 : finger_speed.get(), still ? 0.0 : second};
         motors.free = !still && low_friction >= 0.5;
         if (cord.connected && std::isfinite(cord.get())) motors.cord = cord;
-        port_->fault = reason_ != Fault::none ? reason_ : upstream();
+        port_->fault = reason_ != control::Fault::none ? reason_ : upstream();
         given = motors.speed[0];
         const double fastest = port_->info.max_speed;
         cycles = fastest > 0.0 ? std::min(1.0, std::abs(motors.speed[0]) / fastest) * drive_limit : 0.0;
-        holds = reason_ != Fault::none;
+        holds = reason_ != control::Fault::none;
         held_s_ += still ? tick.elapsed_seconds() : 0.0;
     }
 
     void report(Report& report) const {
-        report.set("gripper", "fault", std::string(describe(last_)));
+        report.set("gripper", "fault", std::string(control::describe(last_)));
         report.set("gripper", "faults", static_cast<double>(faults_));
         report.set("gripper", "held_s", held_s_);
     }
 
 private:
-    Fault fault_of(double first, double second) const noexcept {
-        if (!std::isfinite(first) || !std::isfinite(second)) return Fault::not_finite;
+    control::Fault fault_of(double first, double second) const noexcept {
+        if (!std::isfinite(first) || !std::isfinite(second)) return control::Fault::not_finite;
         const double most = port_->info.max_speed * (1.0 + 1e-6);
-        return most > 0.0 && std::max(std::abs(first), std::abs(second)) > most ? Fault::beyond_drive_limit
-                                                                                : Fault::none;
+        return most > 0.0 && std::max(std::abs(first), std::abs(second)) > most ? control::Fault::beyond_drive_limit
+                                                                                : control::Fault::none;
     }
-    Fault upstream() const noexcept { return fault.connected ? fault_of_number(fault.get()) : Fault::none; }
+    control::Fault upstream() const noexcept { return fault.connected ? control::fault_of_number(fault.get()) : control::Fault::none; }
 
     DevicePort* port_ = nullptr;
     double asked_ = 0.0, held_s_ = 0.0;
-    Fault reason_ = Fault::none, last_ = Fault::none;
+    control::Fault reason_ = control::Fault::none, last_ = control::Fault::none;
     std::int64_t faults_ = 0;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/gripper/held_weight.hpp"
+#include "dsp/simulate/gripper/held_weight.hpp"
 
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +41,7 @@ struct HeldWeight {
             speed_ = hand_twist.connected ? hand_twist->linear : Vec3(0.0);
         }
         const double press = good ? std::clamp(grip_force.get() - threshold, 0.0, 1000.0) : 0.0;
-        const WeightSettings settings{mass, friction, stiffness, damping, 9.81, 0.0};
+        const simulate::WeightSettings settings{mass, friction, stiffness, damping, 9.81, 0.0};
         // Fine enough for the lightest weight in the stiffest grip.
         const int steps = std::max(1, static_cast<int>(std::ceil(std::min(dt, 1.0) / 0.25e-3 - 1e-6)));
         Vec3 felt(0.0);
@@ -60,7 +60,7 @@ struct HeldWeight {
     }
 
 private:
-    tactus::HeldWeight weight_;
+    tactus::simulate::HeldWeight weight_;
     Vec3 hand_{0.0}, speed_{0.0};
     double highest_ = 0.0, heaviest_ = 0.0;
 };

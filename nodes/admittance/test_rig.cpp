@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/gripper/rig.hpp"
-#include "graph/node.hpp"
+#include "dsp/simulate/gripper/rig.hpp"
+#include "graph/node/node.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,14 +28,14 @@ struct TestRig {
     void process(const Tick& tick) noexcept {
         const double rate = rate_at(tick.time_seconds());
         const double now = swing_.at(0.5 * peak_to_peak);
-        fastest_ = std::max(fastest_, peak_cord_speed(peak_to_peak, rate));
+        fastest_ = std::max(fastest_, simulate::peak_cord_speed(peak_to_peak, rate));
         tell(now, rate);
         cord = swing_.advance(0.5 * peak_to_peak, rate, tick.elapsed_seconds());
     }
 
     void report(Report& report) const {
         report.set("rig", "peak_cord_speed_mm_s", fastest_ * 1e3);
-        report.set("rig", "stiffness_N_per_mm", RigSprings{spring, pretension}.at_finger() * 1e-3);
+        report.set("rig", "stiffness_N_per_mm", simulate::RigSprings{spring, pretension}.at_finger() * 1e-3);
     }
 
 private:
@@ -46,10 +46,10 @@ private:
     void tell(double now, double rate) noexcept {
         cord = now;
         swing_rate = rate;
-        spring_force = finger.connected ? RigSprings{spring, pretension}.force(now, finger) : 0.0;
+        spring_force = finger.connected ? simulate::RigSprings{spring, pretension}.force(now, finger) : 0.0;
     }
 
-    CordSwing swing_;
+    simulate::CordSwing swing_;
     double fastest_ = 0.0;
 };
 

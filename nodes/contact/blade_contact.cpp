@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/contact/blade.hpp"
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -12,7 +12,7 @@ struct BladeContact {
         "Forces on a saw blade in a bone, from 132 points on its edge and faces (thesis 6.2.2).";
 
     In<Pose> pose{"blade: x along the stroke, y into the bone, origin in the middle of the teeth"};
-    In<BoneSnapshot> bone{"the bone as carved so far"};
+    In<volume::BoneSnapshot> bone{"the bone as carved so far"};
     Out<Wrench> wrench{"on the blade, about its origin", "N"};
     Out<double> load{"thrust against the cutting direction", "N"};
     Out<double> penetration{"depth of the deepest point", "m"};
@@ -22,10 +22,10 @@ struct BladeContact {
     Param height{structural, "10 mm", "1 mm", "100 mm", "of the blade, from the teeth back"};
     Param thickness{structural, "0.7 mm", "0.1 mm", "5 mm", "of the blade; the teeth cut a little wider"};
 
-    void prepare(const Setup&) { points_.emplace(BladeShape{length, height, thickness}); }
+    void prepare(const Setup&) { points_.emplace(contact::BladeShape{length, height, thickness}); }
 
     void process(const Tick&) noexcept {
-        const tactus::BladeContact now = blade_contact(bone.get(), *points_, pose.get(), pose->position, stiffness);
+        const tactus::contact::BladeContact now = contact::blade_contact(bone.get(), *points_, pose.get(), pose->position, stiffness);
         wrench = now.wrench;
         load = now.load;
         penetration = now.penetration;
@@ -45,7 +45,7 @@ struct BladeContact {
     }
 
 private:
-    std::optional<BladePoints> points_;
+    std::optional<contact::BladePoints> points_;
     double ticks_ = 0.0, touching_ = 0.0, thrust_ = 0.0, deepest_ = 0.0;
 };
 

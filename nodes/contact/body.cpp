@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/contact/sample_surface.hpp"
-#include "graph/assets.hpp"
-#include "graph/node.hpp"
+#include "graph/node/assets.hpp"
+#include "graph/node/node.hpp"
 #include "nodes/contact/body_parts.hpp"
 
 #include <algorithm>
@@ -14,9 +14,9 @@ struct Body {
         "A bone as a body that can touch and be touched: points on its surface and the distance field around it. Its "
         "frame is that of the file, moved to the middle of its points.";
 
-    Out<tactus::Body> body{"for a scene"};
+    Out<tactus::coupling::Body> body{"for a scene"};
     Out<double> count{"points on the surface"};
-    Asset<Bone> bone{"what it is made of"};
+    Asset<bone::Bone> bone{"what it is made of"};
     Param spacing{structural, "0 mm", "0 mm", "20 mm", "of the points; 0: those that the file holds, or else 0.5 mm"};
     Flag triangles{false, "make the triangles of its surface too, for point_proxy and sphere_proxy"};
 
@@ -36,19 +36,19 @@ struct Body {
 
 private:
     void make() {
-        std::vector<SurfacePoint> points = bone->points;
+        std::vector<contact::SurfacePoint> points = bone->points;
         if (spacing > 0.0 || points.empty()) {
-            SurfaceSampling sampling;
+            contact::SurfaceSampling sampling;
             if (spacing > 0.0) sampling.spacing = spacing;
-            points = sample_surface(bone->distance, sampling);
+            points = contact::sample_surface(bone->distance, sampling);
         }
         Vec3 middle(0.0);
-        for (const SurfacePoint& p : points) middle += p.position;
+        for (const contact::SurfacePoint& p : points) middle += p.position;
         middle /= static_cast<double>(std::max<std::size_t>(points.size(), 1));
-        for (SurfacePoint& p : points) p.position -= middle;
-        Grid field = bone->distance;
+        for (contact::SurfacePoint& p : points) p.position -= middle;
+        volume::Grid field = bone->distance;
         field.origin -= middle;
-        parts_ = std::make_shared<const BodyParts>(make_pointshell(points), make_voxmap(std::move(field)),
+        parts_ = std::make_shared<const BodyParts>(contact::make_pointshell(points), contact::make_voxmap(std::move(field)),
                                                    Pose{middle, {1.0, 0.0, 0.0, 0.0}}, triangles);
     }
     void tell() noexcept {

@@ -6,8 +6,8 @@
 #include "dsp/contact/voxmap.hpp"
 #include "dsp/core/hash.hpp"
 #include "dsp/coupling/scene.hpp"
-#include "dsp/coupling/triangle_tree.hpp"
-#include "dsp/distance/iso_surface.hpp"
+#include "dsp/geometry/triangle_tree.hpp"
+#include "dsp/geometry/iso_surface.hpp"
 
 #include <optional>
 
@@ -15,15 +15,15 @@ namespace tactus::nodes {
 
 /// Points and distances of one body, and if wanted the triangles of the field's zero surface.
 struct BodyParts {
-    Pointshell shell;
-    Voxmap map;
-    std::optional<TriangleTree> triangles;
+    contact::Pointshell shell;
+    contact::Voxmap map;
+    std::optional<geometry::TriangleTree> triangles;
     Pose home;
     std::uint64_t content_hash = 0;
 
-    BodyParts(Pointshell points, Voxmap field, const Pose& at, bool with_triangles)
+    BodyParts(contact::Pointshell points, contact::Voxmap field, const Pose& at, bool with_triangles)
         : shell(std::move(points)), map(std::move(field)), home(at) {
-        if (with_triangles) triangles.emplace(iso_surface(map.grid, 0.0f, false));
+        if (with_triangles) triangles.emplace(geometry::iso_surface(map.grid, 0.0f, false));
         Hash hash;
         hash.add_bytes(shell.position.data(), shell.position.size() * sizeof(Vec3));
         hash.add_bytes(map.grid.values.data(), map.grid.values.size() * sizeof(float));
@@ -31,7 +31,7 @@ struct BodyParts {
         hash.add_word(with_triangles ? 1 : 0);
         content_hash = hash.state;
     }
-    Body body() const noexcept { return {&shell, &map, triangles ? &*triangles : nullptr, home, 1, content_hash}; }
+    coupling::Body body() const noexcept { return {&shell, &map, triangles ? &*triangles : nullptr, home, 1, content_hash}; }
 };
 
 }  // namespace tactus::nodes

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/carve/carver.hpp"
-#include "graph/assets.hpp"
-#include "graph/node.hpp"
+#include "graph/node/assets.hpp"
+#include "graph/node/node.hpp"
 
 #include <fmt/format.h>
 
@@ -20,9 +20,9 @@ struct Carve {
     Batch<double> load{optional, "thrust at each pose; unconnected: the reference force", "N"};
     In<bool> running{optional, "only a running saw removes; unconnected: always"};
     In<double> strokes{optional, "reciprocation; unconnected: the reference rate", "Hz"};
-    Out<BoneSnapshot> bone{"the bone as carved so far"};
+    Out<volume::BoneSnapshot> bone{"the bone as carved so far"};
     Out<double> removed{"volume removed since the start", "m^3"};
-    Asset<Bone> source{"the bone that is carved"};
+    Asset<bone::Bone> source{"the bone that is carved"};
     Param speed{"0.67 mm/s", "0 mm/s", "100 mm/s",
                 "of removal in the reference density at the reference force and rate"};
     Param reference_force{"7 N", "0.1 N", "100 N", "thrust at which the speed holds"};
@@ -36,11 +36,11 @@ struct Carve {
 
     void prepare(const Setup& setup) {
         bone_ = source.shared();
-        BoneEditorOptions options;
+        volume::BoneEditorOptions options;
         options.max_dirty = static_cast<int>(bricks_per_tick);
         options.band =
             4.0 * std::max({bone_->distance.spacing.x, bone_->distance.spacing.y, bone_->distance.spacing.z}) + kerf;
-        editor_ = std::make_unique<BoneEditor>(bone_->distance, bone_->density, options);
+        editor_ = std::make_unique<volume::BoneEditor>(bone_->distance, bone_->density, options);
         carver_.prepare(*editor_, settings());
         if (carver_.kerf_voxels() < 3.0)
             setup.fail(fmt::format(
@@ -57,11 +57,11 @@ struct Carve {
         // A version that no reader took is never looked at, unless an earlier publication of it was.
         if (bone.last_was_dropped && last_was_new_) editor_->forget(last_);
         editor_->reclaim(bone.oldest_readable);
-        const CarveResult now = carver_.update(*editor_, samples_);
+        const carve::CarveResult now = carver_.update(*editor_, samples_);
         total_ += now.removed_m3;
         for (std::size_t i = 0; i < by_density_.size(); ++i) by_density_[i] += now.removed_by_density[i];
         if (now.budget_hit) ++budget_hits_;
-        const BoneSnapshot next = editor_->publish();
+        const volume::BoneSnapshot next = editor_->publish();
         last_was_new_ = next.version != last_;
         last_ = next.version;
         bone = next;
@@ -75,14 +75,14 @@ struct Carve {
         report.set("carve", "by_density", classes);
         report.set("carve", "kerf_voxels", carver_.kerf_voxels());
         report.set("carve", "ticks_over_budget", budget_hits_);
-        auto carved = std::make_shared<Bone>(*bone_);
-        carved->distance = to_grid(editor_->current());
-        report.results["bone"] = std::shared_ptr<const Bone>(std::move(carved));
+        auto carved = std::make_shared<bone::Bone>(*bone_);
+        carved->distance = volume::to_grid(editor_->current());
+        report.results["bone"] = std::shared_ptr<const bone::Bone>(std::move(carved));
     }
 
 private:
-    CarveSettings settings() const {
-        CarveSettings s;
+    carve::CarveSettings settings() const {
+        carve::CarveSettings s;
         s.blade_length = length;
         s.kerf = kerf;
         s.stroke = stroke;
@@ -109,10 +109,10 @@ private:
         }
     }
 
-    std::shared_ptr<const Bone> bone_;
-    std::unique_ptr<BoneEditor> editor_;
-    Carver carver_;
-    std::vector<CarveSample> samples_;
+    std::shared_ptr<const bone::Bone> bone_;
+    std::unique_ptr<volume::BoneEditor> editor_;
+    carve::Carver carver_;
+    std::vector<carve::CarveSample> samples_;
     std::array<double, 4> by_density_{};
     double total_ = 0.0, thrust_ = 0.0, budget_hits_ = 0.0;
     std::int64_t last_ = 0;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "dsp/coupling/held_contact.hpp"
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 
 #include <cstddef>
 #include <optional>
@@ -24,22 +24,22 @@ struct ContactParameters {
     TACTUS_GROUP(both_ways, point_stiffness, area_stiffness, blend, saturation, interpolation, direction, points,
                  budget)
 
-    HeldContact make() const { return HeldContact(static_cast<std::size_t>(points)); }
+    coupling::HeldContact make() const { return coupling::HeldContact(static_cast<std::size_t>(points)); }
 
     /// Body `held` of the scene against all others from now on, as the parameters say.
-    void set(HeldContact& contact, const Scene& scene, int held, const Pose& grip) const noexcept {
+    void set(coupling::HeldContact& contact, const coupling::Scene& scene, int held, const Pose& grip) const noexcept {
         contact.set(scene, held, grip, law(), both_ways, static_cast<std::size_t>(budget));
     }
 
 private:
-    ContactLaw law() const noexcept {
-        ContactLaw law;
+    contact::ContactLaw law() const noexcept {
+        contact::ContactLaw law;
         law.by_area = area_stiffness > 0.0;
         law.stiffness = law.by_area ? area_stiffness : point_stiffness;
         law.blend = blend;
         law.saturation = saturation > 2.0 * blend ? saturation.value : 1e6;
-        law.interpolation = interpolation.index == 0 ? Interpolation::trilinear : Interpolation::quadratic;
-        law.direction = direction.index == 0 ? ForceDirection::field_gradient : ForceDirection::shell_normal;
+        law.interpolation = interpolation.index == 0 ? contact::Interpolation::trilinear : contact::Interpolation::quadratic;
+        law.direction = direction.index == 0 ? contact::ForceDirection::field_gradient : contact::ForceDirection::shell_normal;
         return law;
     }
 };

@@ -2,7 +2,7 @@
 #include "dsp/coupling/scene.hpp"
 
 #include "dsp/coupling/placement.hpp"
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 
 #include <cmath>
 
@@ -14,17 +14,17 @@ struct Scene {
         "where "
         "its file has it, moved by its vector, unless a wire gives its pose or it was moved by a hand.";
 
-    In<Body> a{"place 0"};
-    In<Body> b{optional, "place 1"};
-    In<Body> c{optional, "place 2"};
-    In<Body> d{optional, "place 3"};
+    In<coupling::Body> a{"place 0"};
+    In<coupling::Body> b{optional, "place 1"};
+    In<coupling::Body> c{optional, "place 2"};
+    In<coupling::Body> d{optional, "place 3"};
     In<Pose> a_pose{optional, "of body a, the whole time", "m"};
     In<Pose> b_pose{optional, "of body b, the whole time", "m"};
     In<Pose> c_pose{optional, "of body c, the whole time", "m"};
     In<Pose> d_pose{optional, "of body d, the whole time", "m"};
     In<Pose> moved{optional, "where a hand has put the body at place 'which'; it stays there", "m"};
     In<double> which{optional, "place of the body that 'moved' speaks of; -1: of none"};
-    Out<tactus::Scene> scene{"for contact, couplings and grasp"};
+    Out<tactus::coupling::Scene> scene{"for contact, couplings and grasp"};
     Param middle{"-1", "-1", "3", "place of the body whose middle is the origin of the scene; -1: that of the files"};
     Vector a_at{"0 mm, 0 mm, 0 mm", "body a is moved by"};
     Vector b_at{"0 mm, 0 mm, 0 mm", "body b is moved by"};
@@ -36,9 +36,9 @@ struct Scene {
     Vector d_turn{"0 deg, 0 deg, 0 deg", "body d is turned by, in place: about x first, then y, then z"};
 
     void process(const Tick&) noexcept {
-        tactus::Scene now;
+        tactus::coupling::Scene now;
         Vec3 origin(0.0);
-        const In<Body>* bodies[] = {&a, &b, &c, &d};
+        const In<coupling::Body>* bodies[] = {&a, &b, &c, &d};
         const In<Pose>* poses[] = {&a_pose, &b_pose, &c_pose, &d_pose};
         const Vec3 at[] = {a_at, b_at, c_at, d_at}, turn[] = {a_turn, b_turn, c_turn, d_turn};
         const double first = middle;
@@ -48,12 +48,12 @@ struct Scene {
         for (std::size_t i = 0; i < places; ++i) {
             if (!bodies[i]->connected && i > 0) continue;
             now.count = i + 1;
-            SceneObject& object = now.objects[i];
+            coupling::SceneObject& object = now.objects[i];
             object.body = bodies[i]->get();
             if (!put_[i].is_put) {
                 const Pose& home = object.body.home;
                 object.pose = {home.position - origin + at[i],
-                               glm::normalize(rotation_xyz(turn[i]) * home.orientation)};
+                               glm::normalize(coupling::rotation_xyz(turn[i]) * home.orientation)};
             } else object.pose = put_[i].pose;
             if (poses[i]->connected && is_valid(poses[i]->get())) object.pose = poses[i]->get();
         }
@@ -66,7 +66,7 @@ struct Scene {
             }
         }
         now.version = ++version_;
-        now.content_hash = hash_of(now);
+        now.content_hash = coupling::hash_of(now);
         scene = now;
     }
 

@@ -2,8 +2,8 @@
 #include "dsp/contact/shape.hpp"
 
 #include "dsp/coupling/scene.hpp"
-#include "dsp/coupling/triangle_tree.hpp"
-#include "graph/node.hpp"
+#include "dsp/geometry/triangle_tree.hpp"
+#include "graph/node/node.hpp"
 #include "nodes/contact/body_parts.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ struct Shape {
         "block "
         "with a hole.";
 
-    Out<Body> body{"for a scene"};
+    Out<coupling::Body> body{"for a scene"};
     Choice kind{{"ball", "box", "cylinder", "hole"},
                 "ball and box about their middle, a cylinder up from z = 0, a hole down from z = 0 in a round block"};
     Vector size{"20 mm, 20 mm, 20 mm", "of a box"};
@@ -33,10 +33,10 @@ struct Shape {
 
     void prepare(const Setup& setup) {
         try {
-            if (kind.is("ball")) make(Ball{0.5 * diameter});
-            else if (kind.is("box")) make(Box{size});
-            else if (kind.is("cylinder")) make(make_cylinder(diameter, height, bevel));
-            else make(make_bushing(bore(setup), bore(setup) + 2.0 * wall, height, bevel));
+            if (kind.is("ball")) make(contact::Ball{0.5 * diameter});
+            else if (kind.is("box")) make(contact::Box{size});
+            else if (kind.is("cylinder")) make(contact::make_cylinder(diameter, height, bevel));
+            else make(contact::make_bushing(bore(setup), bore(setup) + 2.0 * wall, height, bevel));
         } catch (const Error& error) {
             setup.fail(error.message());
         }
@@ -57,8 +57,8 @@ private:
             throw Error("the distance field would have over 200 million samples; raise 'voxel'");
         if (!(extent.x * extent.y + extent.y * extent.z + extent.z * extent.x < 1e7 * spacing * spacing))
             throw Error("the surface would have over 10 million points; raise 'spacing'");
-        parts_ = std::make_shared<const BodyParts>(make_pointshell(shape.points(spacing)),
-                                                   voxmap_of(shape, voxel, margin), Pose{}, triangles);
+        parts_ = std::make_shared<const BodyParts>(contact::make_pointshell(shape.points(spacing)),
+                                                   contact::voxmap_of(shape, voxel, margin), Pose{}, triangles);
     }
 
     std::shared_ptr<const BodyParts> parts_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/coupling/held_contact.hpp"
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 #include "nodes/contact/contact_parameters.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ struct VoxmapContact {
         "proportion to depth. Stands open; couplings bring their own.";
 
     In<Pose> pose{"of the body", "m"};
-    In<tactus::Scene> scene{"everything that can be touched"};
+    In<tactus::coupling::Scene> scene{"everything that can be touched"};
     Out<Wrench> wrench{"on the body, about its origin", "N, N m"};
     Out<double> stiffness{"of all touching points together, along the stiffest of the three axes", "N/m"};
     Out<double> penetration{"of the deepest point", "m"};
@@ -27,7 +27,7 @@ struct VoxmapContact {
 
     void process(const Tick&) noexcept {
         contact.set(*contact_, scene, static_cast<int>(held), {});
-        const ContactSum now = is_valid(pose.get()) ? (*contact_)(pose, ContactParts::all) : ContactSum{};
+        const contact::ContactSum now = is_valid(pose.get()) ? (*contact_)(pose, contact::ContactParts::all) : contact::ContactSum{};
         wrench = now.wrench();
         stiffness = std::max({now.stiffness[0], now.stiffness[7], now.stiffness[14]});
         penetration = now.penetration;
@@ -38,7 +38,7 @@ struct VoxmapContact {
     void report(Report& report) const { report.set("contact", "penetration_max_mm", deepest_ * 1e3); }
 
 private:
-    std::optional<HeldContact> contact_;
+    std::optional<coupling::HeldContact> contact_;
     double deepest_ = 0.0;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/coupling/dynamic_coupling.hpp"
 
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 #include "nodes/contact/contact_parameters.hpp"
 #include "nodes/coupling/held_body.hpp"
 
@@ -16,7 +16,7 @@ struct DynamicCoupling {
         "per tick.";
 
     In<Pose> device{"the hand in the scene", "m"};
-    In<tactus::Scene> scene{"everything that can be touched, and the body that is held"};
+    In<tactus::coupling::Scene> scene{"everything that can be touched, and the body that is held"};
     In<Twist> device_twist{optional, "velocity of the hand in the scene; unconnected: what the damper feels is at rest",
                            "m/s, rad/s"};
     In<Pose> grip{optional, "held body in the frame of the hand; unconnected: 'grip_at'", "m"};
@@ -65,7 +65,7 @@ struct DynamicCoupling {
             return;
         }
         const Twist velocity = device_twist.connected ? device_twist.get() : Twist{};
-        const DynamicState& now = solver_.update(device, velocity, seconds(tick.period), *contact_);
+        const coupling::DynamicState& now = solver_.update(device, velocity, seconds(tick.period), *contact_);
         last_ = now.wrench;
         wrench = now.wrench * hold_.strength;
         pose = now.proxy * in_hand;
@@ -77,8 +77,8 @@ struct DynamicCoupling {
     void report(Report& report) const { report.set("coupling", "penetration_max_mm", deepest_ * 1e3); }
 
 private:
-    std::optional<HeldContact> contact_;
-    tactus::DynamicCoupling solver_;
+    std::optional<coupling::HeldContact> contact_;
+    tactus::coupling::DynamicCoupling solver_;
     Hold hold_;
     Wrench last_;
     double deepest_ = 0.0;

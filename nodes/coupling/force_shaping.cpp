@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/coupling/force_shape.hpp"
 
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -30,8 +30,8 @@ struct ForceShaping {
             cutoff > 0.0 ? -std::expm1(-2.0 * std::numbers::pi * cutoff * tick.elapsed_seconds()) : 1.0;
         smooth_ = smooth_ + (now + smooth_ * -1.0) * share;
         if (!is_finite(smooth_)) smooth_ = {};
-        wrench = {soft_limit(smooth_.force, straight_force, max_force),
-                  soft_limit(smooth_.torque, straight_torque, max_torque)};
+        wrench = {coupling::soft_limit(smooth_.force, straight_force, max_force),
+                  coupling::soft_limit(smooth_.torque, straight_torque, max_torque)};
     }
 
 private:

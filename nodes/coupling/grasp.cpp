@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/coupling/scene.hpp"
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -14,7 +14,7 @@ struct Grasp {
         "is, and lets go of it again; forces come and go without a jump.";
 
     In<Pose> hand{"in the scene", "m"};
-    In<tactus::Scene> scene{"what can be taken"};
+    In<tactus::coupling::Scene> scene{"what can be taken"};
     In<bool> trigger{"hold"};
     Out<double> held{"place of the body in the scene until its force has faded, -1 without one"};
     Out<Pose> grip{"the body in the frame of the hand", "m"};
@@ -42,7 +42,7 @@ private:
     void take() noexcept {
         double nearest = reach;
         for (std::size_t i = static_cast<std::size_t>(fixed); i < scene->count; ++i) {
-            const SceneObject& object = scene->objects[i];
+            const coupling::SceneObject& object = scene->objects[i];
             if (!object.body.map || !is_valid(object.pose)) continue;
             const double distance = object.body.map->sample(object.pose.inverse().apply(hand->position)).value;
             if (!(distance < nearest)) continue;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "dsp/coupling/held_contact.hpp"
-#include "graph/port.hpp"
+#include "graph/node/port.hpp"
 
 #include <algorithm>
 
@@ -15,7 +15,7 @@ struct Hold {
     bool holds = false, taken = false;  ///< taken: in this tick
     double strength = 1.0;
 
-    void update(const Scene& scene, double wanted, const In<bool>& holding, const In<double>& felt) noexcept {
+    void update(const coupling::Scene& scene, double wanted, const In<bool>& holding, const In<double>& felt) noexcept {
         const int now = wanted >= 0.0 && wanted < static_cast<double>(scene.count) ? static_cast<int>(wanted) : -1;
         const bool keeps = now >= 0 && (!holding.connected || holding.get());
         taken = now >= 0 && (now != place || (keeps && !holds));

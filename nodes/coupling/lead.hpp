@@ -4,7 +4,7 @@
 #pragma once
 
 #include "dsp/core/types.hpp"
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 
 #include <glm/geometric.hpp>
 

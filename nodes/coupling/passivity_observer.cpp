@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/coupling/passivity.hpp"
 
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 
 #include <algorithm>
 
@@ -33,7 +33,7 @@ struct PassivityObserver {
     void report(Report& report) const { report.set("passivity", "least_energy_J", least_); }
 
 private:
-    tactus::PassivityObserver observer_;
+    tactus::coupling::PassivityObserver observer_;
     double least_ = 0.0;
 };
 

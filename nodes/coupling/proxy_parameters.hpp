@@ -4,7 +4,7 @@
 
 #include "dsp/coupling/scene.hpp"
 #include "dsp/coupling/surface_proxy.hpp"
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 
 #include <array>
 #include <span>
@@ -14,18 +14,18 @@ namespace tactus::nodes {
 /// The bodies of a scene as a proxy sees them.
 class ProxySurfaces {
 public:
-    ProxySurfaces(const Scene& scene, bool by_triangles) noexcept {
+    ProxySurfaces(const coupling::Scene& scene, bool by_triangles) noexcept {
         for (std::size_t i = 0; i < scene.count; ++i) {
-            const SceneObject& object = scene.objects[i];
+            const coupling::SceneObject& object = scene.objects[i];
             if (!is_valid(object.pose)) continue;
             if (by_triangles && object.body.triangles) list_[count_++] = {nullptr, object.body.triangles, object.pose};
             if (!by_triangles && object.body.map) list_[count_++] = {object.body.map, nullptr, object.pose};
         }
     }
-    std::span<const ProxySurface> span() const noexcept { return std::span(list_).first(count_); }
+    std::span<const coupling::ProxySurface> span() const noexcept { return std::span(list_).first(count_); }
 
 private:
-    std::array<ProxySurface, Scene::most_objects> list_;
+    std::array<coupling::ProxySurface, coupling::Scene::most_objects> list_;
     std::size_t count_ = 0;
 };
 
@@ -45,8 +45,8 @@ struct ProxyParameters {
                  shading)
 
     /// One tick of a proxy of that radius, m: towards the place of `device` as far as the scene lets it.
-    const ProxyState& update(SurfaceProxy& proxy, double radius, const Pose& device,
-                             const Scene& scene) const noexcept {
+    const coupling::ProxyState& update(coupling::SurfaceProxy& proxy, double radius, const Pose& device,
+                             const coupling::Scene& scene) const noexcept {
         proxy.settings = {{radius, texture_height, texture_length, step},
                           stiffness,
                           max_force,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/coupling/guidance.hpp"
-#include "dsp/coupling/quantile.hpp"
+#include "dsp/core/quantile.hpp"
 #include "dsp/coupling/quasi_static.hpp"
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 #include "nodes/contact/contact_parameters.hpp"
 #include "nodes/coupling/held_body.hpp"
 #include "nodes/coupling/lead.hpp"
@@ -23,7 +23,7 @@ struct QuasiStaticCoupling {
         "second pair of springs, which the hand can always pull against.";
 
     In<Pose> device{"the hand in the scene", "m"};
-    In<tactus::Scene> scene{"everything that can be touched, and the body that is held"};
+    In<tactus::coupling::Scene> scene{"everything that can be touched, and the body that is held"};
     In<Pose> grip{optional, "held body in the frame of the hand; unconnected: 'grip_at'", "m"};
     In<bool> holding{optional, "false: the body stays where it was let go; unconnected: held all the time"};
     In<double> strength{optional, "share of the force that is felt, 0 to 1; unconnected: all of it"};
@@ -89,7 +89,7 @@ private:
     }
 
     void guide(const Pose& in_hand, double elapsed) noexcept {
-        GuidedContact& g = *guided_contact_;
+        coupling::GuidedContact& g = *guided_contact_;
         const bool is_its = !target_of.connected || target_of.get() == static_cast<double>(hold_.place);
         const bool wanted = hold_.holds && guided.connected && guided.get() && is_its &&
                             (!has_target.connected || has_target.get()) && target.connected && is_valid(target.get());
@@ -101,7 +101,7 @@ private:
     }
 
     void solve(const Pose& in_hand) noexcept {
-        const QuasiStaticState& now = solver_.update(device, *guided_contact_);
+        const coupling::QuasiStaticState& now = solver_.update(device, *guided_contact_);
         wrench = now.wrench * hold_.strength;
         pose = now.proxy * in_hand;
         penetration = now.contact.penetration;
@@ -128,10 +128,10 @@ private:
         if (hold_.strength == 0.0) last_ = {};
     }
 
-    std::optional<HeldContact> contact_;
-    std::optional<GuidedContact> guided_contact_;
+    std::optional<coupling::HeldContact> contact_;
+    std::optional<coupling::GuidedContact> guided_contact_;
     Lead lead_;
-    tactus::QuasiStaticCoupling solver_;
+    tactus::coupling::QuasiStaticCoupling solver_;
     Hold hold_;
     Wrench last_;
     SizeCounts residuals_;  // of ticks that were not slowed

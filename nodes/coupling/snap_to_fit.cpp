@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/coupling/quantile.hpp"
+#include "dsp/core/quantile.hpp"
 #include "dsp/coupling/quasi_static.hpp"
-#include "dsp/snap/fit.hpp"
-#include "dsp/snap/held_fit.hpp"
-#include "graph/assets.hpp"
-#include "graph/node.hpp"
+#include "dsp/fit/fit.hpp"
+#include "dsp/fit/held_fit.hpp"
+#include "graph/node/assets.hpp"
+#include "graph/node/node.hpp"
 #include "nodes/contact/contact_parameters.hpp"
 #include "nodes/coupling/held_body.hpp"
 #include "nodes/coupling/lead.hpp"
@@ -23,7 +23,7 @@ struct SnapToFit {
         "alone.";
 
     In<Pose> device{"the hand in the scene", "m"};
-    In<tactus::Scene> scene{"the fragments and all else that can be touched"};
+    In<tactus::coupling::Scene> scene{"the fragments and all else that can be touched"};
     In<Pose> grip{optional, "held body in the frame of the hand; unconnected: its own frame", "m"};
     In<bool> holding{optional, "false: the body stays where it was let go; unconnected: held all the time"};
     In<double> strength{optional, "share of the force that is felt, 0 to 1; unconnected: all of it"};
@@ -37,8 +37,8 @@ struct SnapToFit {
     Out<double> penetration{"of the deepest point", "m"};
     Out<double> residual{"of the balance", "N"};
     Out<bool> in_contact{"some point has a force"};
-    Asset<Bone> moving{"the fragment that is held, with painted points"};
-    Asset<Bone> fixed{"the one it is drawn to"};
+    Asset<bone::Bone> moving{"the fragment that is held, with painted points"};
+    Asset<bone::Bone> fixed{"the one it is drawn to"};
     Param held{"1", "-1", "15", "place of the held body in the scene; grasp drives it"};
     Param target{"0", "0", "15", "place of the other fragment"};
     Choice mode{{"extended", "thesis"}, "extended: both paints, robust, narrowing; thesis: a steady pull of one"};
@@ -82,11 +82,11 @@ struct SnapToFit {
     }
 
 private:
-    static std::optional<FitSurface> surface_of(const Bone& bone) {
+    static std::optional<fit::FitSurface> surface_of(const bone::Bone& bone) {
         const auto painted = std::ranges::count_if(
-            bone.points, [](const SurfacePoint& p) { return p.label == surface_label::fracture; });
+            bone.points, [](const contact::SurfacePoint& p) { return p.label == contact::surface_label::fracture; });
         if (painted < 30) return std::nullopt;
-        return make_live_fit_surface(bone.points, bone.distance);
+        return fit::make_live_fit_surface(bone.points, bone.distance);
     }
 
     void take() noexcept {
@@ -97,10 +97,10 @@ private:
     }
 
     void set_law() noexcept {
-        FitLaw& law = energy_->law;
+        fit::FitLaw& law = energy_->law;
         law.reach = reach;
         law.two_sided = law.gated = mode.index == 0;
-        law.kernel = mode.index == 0 ? FitKernel::robust : FitKernel::steady;
+        law.kernel = mode.index == 0 ? fit::FitKernel::robust : fit::FitKernel::steady;
         law.outline = mode.index == 0 ? 0.3 : 0.0;
         law.scale = scale_;
         // The robust kernel's force is greatest at scale / √3, where it is 0.325 of strength × scale, on each side.
@@ -120,13 +120,13 @@ private:
         Pose moving_file, fixed_file;
         if (pulls) {
             set_law();
-            const auto file_of = [](const SceneObject& o) { return o.body.home.inverse(); };
+            const auto file_of = [](const coupling::SceneObject& o) { return o.body.home.inverse(); };
             moving_file = in_hand * file_of(scene->objects[static_cast<std::size_t>(hold_.place)]);
             fixed_file = scene->objects[other].pose * file_of(scene->objects[other]);
             fit_->look(solver_.state().proxy, moving_file, fixed_file, lead_.share());
             narrow(elapsed);
         }
-        const QuasiStaticState& now = solver_.update(device, *fit_);
+        const coupling::QuasiStaticState& now = solver_.update(device, *fit_);
         const double drawing = fit_->force();
         wrench = now.wrench * hold_.strength;
         pose = now.proxy * in_hand;
@@ -141,7 +141,7 @@ private:
         if (pulls && ticks_++ % score_every == 0) {
             energy_->law.stride = std::max<std::size_t>(1, moving_paint_->position.size() / 300);
             score_ = energy_
-                         ->quality(between_centres(*moving_paint_, *fixed_paint_,
+                         ->quality(fit::between_centres(*moving_paint_, *fixed_paint_,
                                                    fixed_file.inverse() * (now.proxy * moving_file)),
                                    0.2e-3)
                          .score;
@@ -169,11 +169,11 @@ private:
     }
 
     static constexpr std::uint64_t score_every = 100;
-    std::optional<HeldContact> contact_;
-    std::optional<FitSurface> moving_paint_, fixed_paint_;
-    std::optional<FitEnergy> energy_;
-    std::optional<HeldFit> fit_;
-    tactus::QuasiStaticCoupling solver_;
+    std::optional<coupling::HeldContact> contact_;
+    std::optional<fit::FitSurface> moving_paint_, fixed_paint_;
+    std::optional<fit::FitEnergy> energy_;
+    std::optional<fit::HeldFit> fit_;
+    tactus::coupling::QuasiStaticCoupling solver_;
     Hold hold_;
     Wrench last_;
     SizeCounts residuals_;

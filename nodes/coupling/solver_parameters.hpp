@@ -4,7 +4,7 @@
 
 #include "dsp/coupling/held_contact.hpp"
 #include "dsp/coupling/quasi_static.hpp"
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 
 namespace tactus::nodes {
 
@@ -20,7 +20,7 @@ struct SolverParameters {
     TACTUS_GROUP(stiffness, angular_stiffness, max_force, max_torque, iterations, tolerance, step)
 
     /// For the body that `contact` is set to; the springs with a share of their strength.
-    void set(QuasiStaticSettings& settings, const HeldContact& contact, double share) const noexcept {
+    void set(coupling::QuasiStaticSettings& settings, const coupling::HeldContact& contact, double share) const noexcept {
         settings.springs = {{stiffness * share, max_force * share}, {angular_stiffness * share, max_torque * share}};
         settings.iterations = static_cast<int>(iterations);
         settings.tolerance = tolerance;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 #include "nodes/coupling/proxy_parameters.hpp"
 
 namespace tactus::nodes {
@@ -10,7 +10,7 @@ struct SphereProxy {
         "through no gap narrower than itself.";
 
     In<Pose> device{"the hand in the scene; only its place counts", "m"};
-    In<tactus::Scene> scene{"everything that can be touched"};
+    In<tactus::coupling::Scene> scene{"everything that can be touched"};
     Out<Wrench> wrench{"on the hand, about its origin; no torque", "N, N m"};
     Out<Pose> proxy{"where the hand would be if it could not go in", "m"};
     Out<bool> in_contact{"it touches something"};
@@ -18,14 +18,14 @@ struct SphereProxy {
     ProxyParameters parameters;
 
     void process(const Tick&) noexcept {
-        const ProxyState& now = parameters.update(solver_, radius, device, scene);
+        const coupling::ProxyState& now = parameters.update(solver_, radius, device, scene);
         wrench = {now.force, Vec3(0.0)};
         proxy = {now.proxy, is_valid(device.get()) ? device->orientation : Quat(1.0, 0.0, 0.0, 0.0)};
         in_contact = now.in_contact;
     }
 
 private:
-    SurfaceProxy solver_;
+    coupling::SurfaceProxy solver_;
 };
 
 TACTUS_NODE(SphereProxy, device, scene, wrench, proxy, in_contact, radius, parameters)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/core/rotation.hpp"
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 
 namespace tactus::nodes {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/contact/sample_surface.hpp"
-#include "dsp/planning/surface_brush.hpp"
-#include "graph/assets.hpp"
-#include "graph/node.hpp"
+#include "dsp/fit/surface_brush.hpp"
+#include "graph/node/assets.hpp"
+#include "graph/node/node.hpp"
 
 #include <memory>
 #include <string>
@@ -23,35 +23,35 @@ struct Brush {
     Out<double> painted{"points that are fracture"};
     Out<double> area{"that they stand for", "m^2"};
     Out<double> distance{"from the middle of the brush to the nearest point, 20 mm at most", "m"};
-    Asset<Bone> bone{"the fragment"};
+    Asset<bone::Bone> bone{"the fragment"};
     Param radius{"1.5 mm", "0.1 mm", "50 mm", "of the brush"};
     Flag start_clean{false, "take the file's paint off first"};
 
     void prepare(const Setup& setup) {
         name_ = setup.name;
-        std::vector<SurfacePoint> points = bone->points;
-        if (points.empty()) points = sample_surface(bone->distance, {});
+        std::vector<contact::SurfacePoint> points = bone->points;
+        if (points.empty()) points = contact::sample_surface(bone->distance, {});
         if (points.empty()) setup.fail("bone '" + bone.name + "' has no surface");
         if (start_clean)
-            for (SurfacePoint& p : points) p.label = surface_label::none;
-        brush_ = std::make_unique<SurfaceBrush>(std::move(points));
-        tell(SurfaceBrush::farthest);
+            for (contact::SurfacePoint& p : points) p.label = contact::surface_label::none;
+        brush_ = std::make_unique<fit::SurfaceBrush>(std::move(points));
+        tell(fit::SurfaceBrush::farthest);
     }
 
     void process(const Tick&) noexcept {
         if (!is_valid(tool.get()) || (body.connected && !is_valid(body.get()))) return tell(distance_);
         const Vec3 middle = body.connected ? body->inverse().apply(tool->position) : tool->position;
-        if (erase.connected && erase.get()) brush_->stroke(middle, radius, surface_label::none);
-        else if (paint.get()) brush_->stroke(middle, radius, surface_label::fracture);
+        if (erase.connected && erase.get()) brush_->stroke(middle, radius, contact::surface_label::none);
+        else if (paint.get()) brush_->stroke(middle, radius, contact::surface_label::fracture);
         tell(brush_->distance(middle));
     }
 
     void report(Report& report) const {
         report.set(name_, "painted_points", static_cast<double>(brush_->labelled()));
         report.set(name_, "painted_mm2", brush_->area() * 1e6);
-        auto out = std::make_shared<Bone>(*bone);
+        auto out = std::make_shared<bone::Bone>(*bone);
         out->points.assign(brush_->points().begin(), brush_->points().end());
-        report.results[name_] = std::shared_ptr<const Bone>(std::move(out));
+        report.results[name_] = std::shared_ptr<const bone::Bone>(std::move(out));
     }
 
 private:
@@ -62,7 +62,7 @@ private:
         distance = away;
     }
 
-    std::unique_ptr<SurfaceBrush> brush_;
+    std::unique_ptr<fit::SurfaceBrush> brush_;
     std::string name_;
     double distance_ = 0.0;
 };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/planning/arrangement.hpp"
-#include "dsp/planning/step_tree.hpp"
-#include "dsp/snap/fit.hpp"
-#include "graph/assets.hpp"
-#include "graph/node.hpp"
+#include "dsp/fit/arrangement.hpp"
+#include "dsp/fit/step_tree.hpp"
+#include "dsp/fit/fit.hpp"
+#include "graph/node/assets.hpp"
+#include "graph/node/node.hpp"
 #include "nodes/contact/body_parts.hpp"
 #include "nodes/planning/step_record.hpp"
 
@@ -43,24 +43,24 @@ struct CaseScene {
     In<bool> show{optional, "pressed: all that is hidden is there again"};
     In<bool> undo{optional, "pressed: one step back"};
     In<bool> redo{optional, "pressed: one step on"};
-    Out<tactus::Scene> scene{"for grasp, coupling and fragment_matcher"};
+    Out<tactus::coupling::Scene> scene{"for grasp, coupling and fragment_matcher"};
     Out<double> steps{"done so far, without those that were undone"};
     Out<bool> settled{"the body in the hand has been put where it fits"};
-    Asset<CaseBones> plan{"the plan with its fragments; new steps follow where it stands"};
+    Asset<cases::CaseBones> plan{"the plan with its fragments; new steps follow where it stands"};
     Text file{"case.plan.json", "name of the plan with the steps of the run, within the run's folder; empty: none"};
     Param loose{"8 mm", "0.1 mm", "100 mm",
                 "a settled body that the hand takes farther than this from where it had it is free again"};
 
     void prepare(const Setup& setup) {
-        if (plan->bones.size() > tactus::Scene::most_objects)
+        if (plan->bones.size() > tactus::coupling::Scene::most_objects)
             setup.fail("plan '" + plan.name + "' has more than 16 fragments; hide none, but plan them in parts");
         name_ = setup.name;
         parts_.clear();
-        for (const Bone& bone : plan->bones) parts_.push_back(body_of(bone));
-        now_ = std::make_unique<Arrangement>(state_of(plan->plan).arrangement);
-        kept_ = std::make_unique<Arrangement>(*now_);
-        tree_ = std::make_unique<StepTree>(parts_.size(), plan->plan.steps.size(), most_steps);
-        visit_steps(plan->plan, [this](int n, const PlanState& from, const PlanState& to) {
+        for (const bone::Bone& bone : plan->bones) parts_.push_back(body_of(bone));
+        now_ = std::make_unique<fit::Arrangement>(cases::state_of(plan->plan).arrangement);
+        kept_ = std::make_unique<fit::Arrangement>(*now_);
+        tree_ = std::make_unique<fit::StepTree>(parts_.size(), plan->plan.steps.size(), most_steps);
+        cases::visit_steps(plan->plan, [this](int n, const cases::PlanState& from, const cases::PlanState& to) {
             tree_->put(n, plan->plan.steps[static_cast<std::size_t>(n)].before, from.arrangement, to.arrangement);
         });
         tree_->stand(plan->plan.place());
@@ -88,14 +88,14 @@ private:
     // A step a second for nine hours; what a run does beyond that is kept, but those before are not undone any more.
     static constexpr std::size_t most_steps = 32768;
 
-    static std::shared_ptr<const BodyParts> body_of(const Bone& bone) {
-        std::vector<SurfacePoint> points = bone.points;
+    static std::shared_ptr<const BodyParts> body_of(const bone::Bone& bone) {
+        std::vector<contact::SurfacePoint> points = bone.points;
         Vec3 middle(0.0);
-        for (const SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
-        for (SurfacePoint& p : points) p.position -= middle;
-        Grid field = bone.distance;
+        for (const contact::SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
+        for (contact::SurfacePoint& p : points) p.position -= middle;
+        volume::Grid field = bone.distance;
         field.origin -= middle;
-        return std::make_shared<const BodyParts>(make_pointshell(points), make_voxmap(std::move(field)),
+        return std::make_shared<const BodyParts>(contact::make_pointshell(points), contact::make_voxmap(std::move(field)),
                                                  Pose{middle, {1.0, 0.0, 0.0, 0.0}}, false);
     }
 
@@ -139,28 +139,28 @@ private:
             const int other = partner_place();
             const int both[] = {last_, other};
             keep_held(tick);
-            if (other >= 0 && now_->join(both) != Arrangement::none) arranged(tick, StepKind::group, other);
+            if (other >= 0 && now_->join(both) != fit::Arrangement::none) arranged(tick, cases::StepKind::group, other);
         }
         if (edge(split, 2) && last_ >= 0) {
             keep_held(tick);
-            if (now_->remove(last_)) arranged(tick, StepKind::remove, -1);
+            if (now_->remove(last_)) arranged(tick, cases::StepKind::remove, -1);
         }
         if (edge(lock, 3) && last_ >= 0) {
             keep_held(tick);
             now_->lock(last_, !now_->is_locked(last_));
-            arranged(tick, now_->is_locked(last_) ? StepKind::lock : StepKind::unlock, -1);
+            arranged(tick, now_->is_locked(last_) ? cases::StepKind::lock : cases::StepKind::unlock, -1);
         }
         if (edge(hide, 6) && last_ >= 0 && !now_->is_hidden(last_)) {
             keep_held(tick);
             now_->hide(last_, true);
-            arranged(tick, StepKind::hide, -1);
+            arranged(tick, cases::StepKind::hide, -1);
         }
         if (edge(show, 7)) show_all(tick);
         const bool back = edge(undo, 4), on = edge(redo, 5);
         if (!holding_ && back != on && (back ? tree_->undo(*now_) : tree_->redo(*now_))) {
             *kept_ = *now_;
             arrange_scene();
-            StepRow row = next(static_cast<double>(row_goes_to));
+            cases::StepRow row = next(static_cast<double>(cases::row_goes_to));
             write(tick, row);
         }
     }
@@ -190,8 +190,8 @@ private:
         return pressed;
     }
 
-    StepRow next(double kind) const noexcept {
-        StepRow row;
+    cases::StepRow next(double kind) const noexcept {
+        cases::StepRow row;
         row.step = static_cast<double>(tree_->count());
         row.after = static_cast<double>(tree_->head());
         row.kind = kind;
@@ -200,11 +200,11 @@ private:
 
     /// The one in the hand and all that moves with it stand where they are now.
     void placed(const Tick& tick, double by) noexcept {
-        StepRow row = next(static_cast<double>(StepKind::place));
+        cases::StepRow row = next(static_cast<double>(cases::StepKind::place));
         row.by = by;
         if (by > 0.0) {
             row.other = partner_place();
-            row.verdict = static_cast<double>(FitVerdict::fit);
+            row.verdict = static_cast<double>(fit::FitVerdict::fit);
             const auto told = [](const In<double>& figure) { return figure.connected ? figure.get() : 0.0; };
             row.score = told(score);
             row.margin = told(margin);
@@ -227,8 +227,8 @@ private:
         show_unit(last_);
     }
 
-    void arranged(const Tick& tick, StepKind kind, int other) noexcept {
-        StepRow row = next(static_cast<double>(kind));
+    void arranged(const Tick& tick, cases::StepKind kind, int other) noexcept {
+        cases::StepRow row = next(static_cast<double>(kind));
         row.fragment = last_;
         row.other = other;
         write(tick, row);
@@ -237,7 +237,7 @@ private:
     }
 
     void show_all(const Tick& tick) noexcept {
-        StepRow row = next(static_cast<double>(StepKind::show));
+        cases::StepRow row = next(static_cast<double>(cases::StepKind::show));
         const auto count = static_cast<int>(parts_.size());
         for (int n = 0; n < count; ++n) row.left += now_->is_hidden(n);
         if (row.left == 0.0) return;
@@ -255,7 +255,7 @@ private:
         arrange_scene();
     }
 
-    void write(const Tick& tick, const StepRow& row) noexcept {
+    void write(const Tick& tick, const cases::StepRow& row) noexcept {
         if (stream_ && !stream_->write(tick.index, &row, 1, sizeof row)) not_kept_ = true;
     }
 
@@ -274,8 +274,8 @@ private:
         scene_.count = parts_.size();
         for (std::size_t n = 0; n < parts_.size(); ++n) {
             const int fragment = static_cast<int>(n);
-            SceneObject& object = scene_.objects[n];
-            object.body = now_->is_hidden(fragment) ? Body{} : parts_[n]->body();
+            coupling::SceneObject& object = scene_.objects[n];
+            object.body = now_->is_hidden(fragment) ? coupling::Body{} : parts_[n]->body();
             object.body.home = parts_[n]->home;
             object.unit = now_->outermost(fragment);
             show_place(fragment);
@@ -289,15 +289,15 @@ private:
         is_changed_ = true;
     }
     void show_place(int fragment) noexcept {
-        SceneObject& object = scene_.objects[static_cast<std::size_t>(fragment)];
+        coupling::SceneObject& object = scene_.objects[static_cast<std::size_t>(fragment)];
         object.pose = now_->pose(fragment) * parts_[static_cast<std::size_t>(fragment)]->home;
-        object.stands = now_->is_locked(fragment) || now_->fitted_to(fragment) != Arrangement::none;
+        object.stands = now_->is_locked(fragment) || now_->fitted_to(fragment) != fit::Arrangement::none;
     }
 
     void tell() noexcept {
         if (is_changed_) {
             ++scene_.version;
-            scene_.content_hash = hash_of(scene_);
+            scene_.content_hash = coupling::hash_of(scene_);
             is_changed_ = false;
         }
         scene = scene_;
@@ -306,12 +306,12 @@ private:
     }
 
     std::vector<std::shared_ptr<const BodyParts>> parts_;
-    std::unique_ptr<Arrangement> kept_, now_;  // after the last step, and with what the hand does since
-    std::unique_ptr<StepTree> tree_;
+    std::unique_ptr<fit::Arrangement> kept_, now_;  // after the last step, and with what the hand does since
+    std::unique_ptr<fit::StepTree> tree_;
     std::shared_ptr<StepKeeper> keeper_;
     RecordStream* stream_ = nullptr;
     std::string name_;
-    tactus::Scene scene_;
+    tactus::coupling::Scene scene_;
     int last_ = -1;
     Vec3 let_at_{0.0};  // where the hand had the middle of a body when it was settled
     bool holding_ = false, settled_ = false, is_changed_ = false, not_kept_ = false;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/planning/fragment_matcher.hpp"
+#include "dsp/fit/fragment_matcher.hpp"
 
 #include "dsp/coupling/scene.hpp"
-#include "dsp/planning/as_scanned.hpp"
-#include "graph/assets.hpp"
-#include "graph/node.hpp"
+#include "dsp/fit/as_scanned.hpp"
+#include "graph/node/assets.hpp"
+#include "graph/node/node.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -21,7 +21,7 @@ struct FragmentMatcher {
         "the "
         "scan has it already is no fit.";
 
-    In<tactus::Scene> scene{"case_scene.scene, of the same plan"};
+    In<tactus::coupling::Scene> scene{"case_scene.scene, of the same plan"};
     In<double> held{"place of the fragment in the hand, -1 without one"};
     In<bool> engaged{optional, "look for a fit; unconnected: all the time"};
     Out<Pose> target{"of the fragment in the hand, in the scene; as it is while there is no fit", "m"};
@@ -36,19 +36,19 @@ struct FragmentMatcher {
     Out<double> penetration{"exceeded by 1 % of the points of both faces", "m"};
     Out<double> overlap{"area that lies on the other", "m^2"};
     Out<double> faces{"pairs of faces that were fitted together"};
-    Asset<CaseBones> plan{"the plan that the scene shows"};
+    Asset<cases::CaseBones> plan{"the plan that the scene shows"};
     Choice partners{{"standing", "all"}, "standing: those that are locked or were fitted; all: any other"};
     Choice reach{{"near", "anywhere"}, "near: from where it is; anywhere: also every face on every other, in turn"};
     Param least_score{"0.2", "0", "1", "below it nothing matches"};
     Param points{structural, "700", "100", "20000", "of each face that take part"};
 
     void prepare(const Setup& setup) {
-        std::vector<FragmentSurface> surfaces;
-        for (const Bone& bone : plan->bones) surfaces.push_back({bone.points, &bone.distance});
-        MatcherSettings settings;
+        std::vector<fit::FragmentSurface> surfaces;
+        for (const bone::Bone& bone : plan->bones) surfaces.push_back({bone.points, &bone.distance});
+        fit::MatcherSettings settings;
         settings.most_points = static_cast<std::size_t>(points);
         try {
-            matcher_ = std::make_unique<tactus::FragmentMatcher>(surfaces, settings);
+            matcher_ = std::make_unique<tactus::fit::FragmentMatcher>(surfaces, settings);
         } catch (const Error& error) {
             setup.fail("plan '" + plan.name + "': " + error.message());
         }
@@ -78,9 +78,9 @@ struct FragmentMatcher {
 private:
     void look(int place) noexcept {
         const std::size_t count = scene->count;
-        const SceneObject& mine = scene->objects[static_cast<std::size_t>(place)];
+        const coupling::SceneObject& mine = scene->objects[static_cast<std::size_t>(place)];
         for (std::size_t n = 0; n < count; ++n) {
-            const SceneObject& other = scene->objects[n];
+            const coupling::SceneObject& other = scene->objects[n];
             if (!is_valid(other.pose)) return nothing();
             poses_[n] = Pose{other.pose.position, glm::normalize(other.pose.orientation)} * other.body.home.inverse();
             const bool goes_along = n == static_cast<std::size_t>(place) || (mine.unit >= 0 && mine.unit == other.unit);
@@ -89,16 +89,16 @@ private:
         const std::span<const Pose> poses(poses_.data(), count);
         const std::span<const char> stands(stands_.data(), count);
         matcher_->settings.fit.least_score = least_score;
-        FragmentMatch match = judged(matcher_->near(place, poses, stands));
-        if (match.verdict != FitVerdict::fit && reach.index == 1) {
+        fit::FragmentMatch match = judged(matcher_->near(place, poses, stands));
+        if (match.verdict != fit::FitVerdict::fit && reach.index == 1) {
             if (was_ != place) matcher_->begin_search();
-            const FragmentMatch found = judged(matcher_->search(place, poses, stands));
-            if (found.verdict == FitVerdict::fit) match = found;
+            const fit::FragmentMatch found = judged(matcher_->search(place, poses, stands));
+            if (found.verdict == fit::FitVerdict::fit) match = found;
         }
         was_ = place;
         ++looks_;
-        fits_ += match.verdict == FitVerdict::fit;
-        const bool is_fit = match.verdict == FitVerdict::fit;
+        fits_ += match.verdict == fit::FitVerdict::fit;
+        const bool is_fit = match.verdict == fit::FitVerdict::fit;
         target = is_fit ? match.pose * mine.body.home : mine.pose;
         fits = is_fit;
         fragment = place;
@@ -114,13 +114,13 @@ private:
     }
 
     /// A border between two labels of a scan fits itself wherever the fragments lie.
-    FragmentMatch judged(FragmentMatch match) const noexcept {
-        if (match.verdict != FitVerdict::fit) return match;
+    fit::FragmentMatch judged(fit::FragmentMatch match) const noexcept {
+        if (match.verdict != fit::FitVerdict::fit) return match;
         const auto moving = static_cast<std::size_t>(match.moving), other = static_cast<std::size_t>(match.partner);
-        const Body& body = scene->objects[other].body;
+        const coupling::Body& body = scene->objects[other].body;
         const Pose into = body.home.inverse();
-        if (is_as_scanned(plan->bones[moving].points, into * poses_[other].inverse() * match.pose, *body.map, into))
-            match.verdict = FitVerdict::ambiguous;
+        if (fit::is_as_scanned(plan->bones[moving].points, into * poses_[other].inverse() * match.pose, *body.map, into))
+            match.verdict = fit::FitVerdict::ambiguous;
         return match;
     }
 
@@ -129,7 +129,7 @@ private:
         fits = false;
         fragment = -1.0;
         partner = -1.0;
-        verdict = static_cast<double>(FitVerdict::no_match);
+        verdict = static_cast<double>(fit::FitVerdict::no_match);
         score = 0.0;
         margin = 0.0;
         rms = 0.0;
@@ -139,9 +139,9 @@ private:
         faces = 0.0;
     }
 
-    std::unique_ptr<tactus::FragmentMatcher> matcher_;
-    std::array<Pose, tactus::Scene::most_objects> poses_;
-    std::array<char, tactus::Scene::most_objects> stands_{};
+    std::unique_ptr<tactus::fit::FragmentMatcher> matcher_;
+    std::array<Pose, tactus::coupling::Scene::most_objects> poses_;
+    std::array<char, tactus::coupling::Scene::most_objects> stands_{};
     std::string name_;
     double looks_ = 0.0, fits_ = 0.0;
     int was_ = -1;

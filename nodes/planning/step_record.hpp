@@ -2,9 +2,9 @@
 // The steps of a run on their way from the tick to the plan's file.
 #pragma once
 
-#include "assets/plan/plan_keeper.hpp"
-#include "graph/setup.hpp"
-#include "graph/value.hpp"
+#include "assets/cases/plan_keeper.hpp"
+#include "graph/node/setup.hpp"
+#include "graph/node/value.hpp"
 
 #include <cstring>
 #include <memory>
@@ -17,12 +17,12 @@ namespace tactus::nodes {
 /// Rows in a stream.
 inline const ValueType step_row_type{
     .name = "plan step",
-    .size = sizeof(StepRow),
-    .columns = step_row_names,
-    .hash = [](Hash& hash, const void* p) { hash.add_bytes(p, sizeof(StepRow)); },
+    .size = sizeof(cases::StepRow),
+    .columns = cases::step_row_names,
+    .hash = [](Hash& hash, const void* p) { hash.add_bytes(p, sizeof(cases::StepRow)); },
     .interpolate = nullptr,
-    .to_columns = [](const void* p, double* out) { std::memcpy(out, p, sizeof(StepRow)); },
-    .make_default = [](void* out) { new (out) StepRow{}; },
+    .to_columns = [](const void* p, double* out) { std::memcpy(out, p, sizeof(cases::StepRow)); },
+    .make_default = [](void* out) { new (out) cases::StepRow{}; },
     .version = nullptr,
     .load_asset = nullptr,
 };
@@ -30,12 +30,12 @@ inline const ValueType step_row_type{
 /// Gives the rows of a stream to the plan's keeper.
 class StepKeeper : public StreamKeeper {
 public:
-    StepKeeper(const CasePlan& plan, Flicks period) : plan_(plan), period_(period) {}
+    StepKeeper(const cases::CasePlan& plan, Flicks period) : plan_(plan), period_(period) {}
 
     void open(const std::string& path) override { plan_keeper_.emplace(std::move(plan_), path); }
     void take(std::int64_t first, const std::byte* values, std::size_t count) override {
         for (std::size_t n = 0; n < count; ++n) {
-            StepRow row;
+            cases::StepRow row;
             std::memcpy(static_cast<void*>(&row), values + n * sizeof row, sizeof row);
             plan_keeper_->add(row, seconds((first + static_cast<std::int64_t>(n)) * period_));
         }
@@ -50,9 +50,9 @@ public:
     const std::string& trouble() const { return trouble_; }
 
 private:
-    CasePlan plan_;
+    cases::CasePlan plan_;
     Flicks period_;
-    std::optional<PlanKeeper> plan_keeper_;
+    std::optional<cases::PlanKeeper> plan_keeper_;
     std::string trouble_;
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/actuator.hpp"
 
-#include "dsp/filter/sample.hpp"
-#include "graph/node.hpp"
+#include "dsp/signal/filter/sample.hpp"
+#include "graph/node/node.hpp"
 
 namespace tactus::nodes {
 
@@ -25,14 +25,14 @@ struct Actuator {
 
     void prepare(const Setup& setup) {
         try {
-            ActuatorModel data = find_actuator(preset.options[static_cast<std::size_t>(preset.index)]);
+            vibration::ActuatorModel data = vibration::find_actuator(preset.options[static_cast<std::size_t>(preset.index)]);
             override_with(data.resonance, resonance);
             override_with(data.damping, damping);
             override_with(data.resistance, resistance);
             override_with(data.inductance, inductance);
             override_with(data.voltage_limit, voltage_limit);
             override_with(data.current_limit, current_limit);
-            actuator_ = tactus::Actuator(data, mass, setup.rate());
+            actuator_ = tactus::vibration::Actuator(data, mass, setup.rate());
         } catch (const Error& error) {
             setup.fail(error.message());
         }
@@ -42,9 +42,9 @@ struct Actuator {
     void process(const Tick& tick) noexcept {
         const double volts = gain;
         for (int i = 0; i < tick.frames; ++i) {
-            const ActuatorOutput out = actuator_(volts * finite_or_zero(drive[i]));
-            voltage[i] = to_sample(out.voltage);
-            signal[i] = to_sample(out.acceleration);
+            const vibration::ActuatorOutput out = actuator_(volts * signal::finite_or_zero(drive[i]));
+            voltage[i] = signal::to_sample(out.voltage);
+            signal[i] = signal::to_sample(out.acceleration);
             limited_ += out.limited;
         }
     }
@@ -56,7 +56,7 @@ private:
         if (given > 0.0) value = given;
     }
 
-    tactus::Actuator actuator_;
+    tactus::vibration::Actuator actuator_;
     std::int64_t limited_ = 0;
     std::string name_;
 };

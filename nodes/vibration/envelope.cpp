@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/filter/one_pole.hpp"
-#include "dsp/filter/sample.hpp"
-#include "graph/node.hpp"
+#include "dsp/signal/filter/one_pole.hpp"
+#include "dsp/signal/filter/sample.hpp"
+#include "graph/node/node.hpp"
 
 namespace tactus::nodes {
 
@@ -17,16 +17,16 @@ struct Envelope {
     void prepare(const Setup& setup) { dt_ = seconds(setup.period); }
 
     void process(const Tick& tick) noexcept {
-        follower_.attack_share = lag_share(attack, dt_);
-        follower_.release_share = lag_share(release, dt_);
+        follower_.attack_share = signal::lag_share(attack, dt_);
+        follower_.release_share = signal::lag_share(release, dt_);
         for (int i = 0; i < tick.frames; ++i) {
-            level[i] = follower_(finite_or_zero(in[i]));
+            level[i] = follower_(signal::finite_or_zero(in[i]));
             out[i] = static_cast<float>(level[i]);
         }
     }
 
 private:
-    EnvelopeFollower follower_;
+    signal::EnvelopeFollower follower_;
     double dt_ = 0.0;
 };
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/equaliser.hpp"
 
-#include "dsp/filter/fir.hpp"
-#include "dsp/filter/sample.hpp"
-#include "graph/assets.hpp"
-#include "graph/node.hpp"
+#include "dsp/signal/filter/fir.hpp"
+#include "dsp/signal/filter/sample.hpp"
+#include "graph/node/assets.hpp"
+#include "graph/node/node.hpp"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ struct Equaliser {
 
     In<Signal> in{"the vibration that is wanted"};
     Out<Signal> out{"what the actuator must be driven with to make it"};
-    Asset<tactus::Equaliser> filter{"the file of 'tactus equalise'"};
+    Asset<tactus::vibration::Equaliser> filter{"the file of 'tactus equalise'"};
     Param amount{"1", "0", "1", "0 passes the signal on with the same delay, 1 equalises it; between, a mix"};
 
     void prepare(const Setup& setup) {
@@ -27,7 +27,7 @@ struct Equaliser {
                 "the equaliser was made for {:g} Hz and this node runs at {:g} Hz; repeat 'tactus equalise' "
                 "with --rate {:g}",
                 filter->rate, setup.rate(), setup.rate()));
-        fir_ = Fir(filter->taps);
+        fir_ = signal::Fir(filter->taps);
         delay_ = static_cast<std::size_t>(std::llround(filter->delay * filter->rate));
     }
 
@@ -35,7 +35,7 @@ struct Equaliser {
         const auto share = static_cast<float>(amount);
         for (int i = 0; i < tick.frames; ++i) {
             const float equalised = fir_(bounded(in[i]));
-            out[i] = to_sample(static_cast<double>(share * equalised) +
+            out[i] = signal::to_sample(static_cast<double>(share * equalised) +
                                static_cast<double>((1.0f - share) * fir_.past(delay_)));
         }
     }
@@ -44,10 +44,10 @@ private:
     /// A sample that would overflow the sum, or is not finite, would stay in the filter's memory.
     static float bounded(float x) noexcept {
         constexpr double largest = 1e12;
-        return static_cast<float>(std::clamp(finite_or_zero(x), -largest, largest));
+        return static_cast<float>(std::clamp(signal::finite_or_zero(x), -largest, largest));
     }
 
-    Fir fir_;
+    signal::Fir fir_;
     std::size_t delay_ = 0;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/filter/biquad.hpp"
-#include "dsp/filter/sample.hpp"
-#include "graph/node.hpp"
+#include "dsp/signal/filter/biquad.hpp"
+#include "dsp/signal/filter/sample.hpp"
+#include "graph/node/node.hpp"
 
 namespace tactus::nodes {
 
@@ -20,19 +20,19 @@ struct Filter {
 
     void process(const Tick& tick) noexcept {
         if (frequency != frequency_ || q != q_) design();
-        for (int i = 0; i < tick.frames; ++i) out[i] = to_sample(section_(finite_or_zero(in[i])));
+        for (int i = 0; i < tick.frames; ++i) out[i] = signal::to_sample(section_(signal::finite_or_zero(in[i])));
     }
 
 private:
     void design() noexcept {
         frequency_ = frequency;
         q_ = q;
-        using Design = BiquadCoefficients (*)(double, double, double) noexcept;
-        constexpr Design designs[] = {lowpass, highpass, bandpass, notch};
+        using Design = signal::BiquadCoefficients (*)(double, double, double) noexcept;
+        constexpr Design designs[] = {signal::lowpass, signal::highpass, signal::bandpass, signal::notch};
         section_.coefficients = designs[kind.index](frequency_, rate_, q_);
     }
 
-    Biquad section_;
+    signal::Biquad section_;
     double rate_ = 48000.0, frequency_ = 0.0, q_ = 0.0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 
 namespace tactus::nodes {
 

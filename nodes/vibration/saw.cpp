@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/saw_voice.hpp"
-#include "graph/assets.hpp"
-#include "graph/node.hpp"
+#include "graph/node/assets.hpp"
+#include "graph/node/node.hpp"
 
 namespace tactus::nodes {
 
@@ -13,7 +13,7 @@ struct Saw {
     Out<Signal> signal{"vibration; of full scale when the recordings are not calibrated", "m/s^2"};
     Out<double> rate{"strokes of the blade per second", "Hz"};
     Out<bool> running{"the blade moves"};
-    Asset<RecordingSet> saw{"the recordings"};
+    Asset<sound::RecordingSet> saw{"the recordings"};
     Param blade_rate{"233 Hz", "0 Hz", "1 kHz", "strokes to and fro per second that the operator has set"};
     Param gain{structural, "1", "0", "1000", "factor of the vibration"};
     Param spin_up{structural, "80 ms", "0 ms", "10 s", "time constant of the rate after the trigger is pulled"};
@@ -24,7 +24,7 @@ struct Saw {
 
     void prepare(const Setup& setup) {
         try {
-            voice_.prepare(setup.rate(), saw_recordings(*saw), {spin_up, spin_down, load_on, load_off, fade, gain});
+            voice_.prepare(setup.rate(), sound::saw_recordings(*saw), {spin_up, spin_down, load_on, load_off, fade, gain});
         } catch (const Error& error) {
             setup.fail(error.message());
         }
@@ -41,7 +41,7 @@ struct Saw {
     }
 
 private:
-    SawVoice voice_;
+    vibration::SawVoice voice_;
 };
 
 TACTUS_NODE(Saw, load, trigger, signal, rate, running, saw, blade_rate, gain, spin_up, spin_down, load_on, load_off,

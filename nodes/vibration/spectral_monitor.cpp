@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/spectrum/live_comparison.hpp"
-#include "graph/node.hpp"
+#include "dsp/signal/spectrum/live_comparison.hpp"
+#include "graph/node/node.hpp"
 
 #include <algorithm>
 #include <string>
@@ -28,7 +28,7 @@ struct SpectralMonitor {
         const double reference_rate = rate_of(reference.period), output_rate = rate_of(output.period);
         if (!(std::min(reference_rate, output_rate) >= least_rate))
             setup.fail("signals slower than 223 Hz carry too little of a vibration to be compared");
-        comparison_ = LiveComparison(reference_rate, output_rate, memory);
+        comparison_ = signal::LiveComparison(reference_rate, output_rate, memory);
         name_ = setup.name;
         scores_ = comparison_.scores();
         tell();
@@ -63,8 +63,8 @@ private:
                 scores_.third_octave_max_db <= most_band_error;
     }
 
-    LiveComparison comparison_;
-    LiveScores scores_;
+    signal::LiveComparison comparison_;
+    signal::LiveScores scores_;
     std::string name_;
     double heard_s_ = 0.0, alike_s_ = 0.0;
 };

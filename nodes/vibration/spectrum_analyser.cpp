@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/spectrum/bands.hpp"
-#include "dsp/spectrum/comb.hpp"
-#include "dsp/spectrum/live_spectrum.hpp"
-#include "graph/node.hpp"
+#include "dsp/signal/spectrum/bands.hpp"
+#include "dsp/signal/spectrum/comb.hpp"
+#include "dsp/signal/spectrum/live_spectrum.hpp"
+#include "graph/node/node.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +31,7 @@ struct SpectrumAnalyser {
         const double rate = rate_of(in.period);
         const auto samples = static_cast<std::size_t>(std::llround(rate * segment));
         if (samples < 16) setup.fail("a segment holds fewer than 16 samples; make it longer");
-        spectrum_ = LiveSpectrum(rate, samples, memory);
+        spectrum_ = signal::LiveSpectrum(rate, samples, memory);
         comb_ = {};
         name_ = setup.name;
         tell({});
@@ -42,10 +42,10 @@ struct SpectrumAnalyser {
     }
 
     void report(Report& report) const {
-        const Spectrum& now = spectrum_.spectrum();
+        const signal::Spectrum& now = spectrum_.spectrum();
         report.set(name_, "segments", static_cast<double>(now.segments));
         std::vector<double> hz, db;
-        for (const Band& band : third_octaves(now)) {
+        for (const signal::Band& band : signal::third_octaves(now)) {
             hz.push_back(band.centre);
             db.push_back(10.0 * std::log10(std::max(band.power, 1e-30)));
         }
@@ -53,7 +53,7 @@ struct SpectrumAnalyser {
         report.set(name_, "third_octave_db", db);
         std::vector<double> orders;
         if (comb_.best.frequency > 0.0)
-            for (const Harmonic& h : harmonic_table(now, comb_.best.frequency, 10))
+            for (const signal::Harmonic& h : signal::harmonic_table(now, comb_.best.frequency, 10))
                 orders.push_back(h.present ? std::sqrt(2.0 * h.power) : 0.0);
         report.set(name_, "order_amplitudes", orders);
         report.set(name_, "fundamental_hz", comb_.best.frequency);
@@ -61,21 +61,21 @@ struct SpectrumAnalyser {
     }
 
 private:
-    void tell(const Spectrum& now) noexcept {
-        level = std::sqrt(band_power(now, lowest, highest));
-        SpectralLine top;
+    void tell(const signal::Spectrum& now) noexcept {
+        level = std::sqrt(signal::band_power(now, lowest, highest));
+        signal::SpectralLine top;
         if (now.segments > 0)
-            each_line(now, lowest, highest, 0.0, [&](const SpectralLine& line) {
+            signal::each_line(now, lowest, highest, 0.0, [&](const signal::SpectralLine& line) {
                 if (line.power > top.power) top = line;
             });
         strongest = top.frequency;
-        comb_ = now.segments > 0 ? fit_comb(now, lowest, highest_rate) : Comb{};
+        comb_ = now.segments > 0 ? signal::fit_comb(now, lowest, highest_rate) : signal::Comb{};
         fundamental = comb_.best.frequency;
         confidence = comb_.confidence;
     }
 
-    LiveSpectrum spectrum_;
-    Comb comb_;
+    signal::LiveSpectrum spectrum_;
+    signal::Comb comb_;
     std::string name_;
 };
 

@@ -17,13 +17,13 @@ namespace {
 constexpr double voxel = 0.00033;
 const Vec3 low{-0.023, -0.012, -0.006}, high{0.023, 0.0, 0.006};
 
-std::unique_ptr<BoneEditor> slab(double density) {
-    Grid grid;
+std::unique_ptr<volume::BoneEditor> slab(double density) {
+    volume::Grid grid;
     grid.spacing = Vec3(voxel);
     grid.origin = low - Vec3(0.004);
     grid.size = {164, 61, 61};
     grid.values.resize(grid.count());
-    Grid rho = grid;
+    volume::Grid rho = grid;
     for (int k = 0; k < grid.size[2]; ++k) {
         for (int j = 0; j < grid.size[1]; ++j) {
             for (int i = 0; i < grid.size[0]; ++i) {
@@ -35,16 +35,16 @@ std::unique_ptr<BoneEditor> slab(double density) {
             }
         }
     }
-    return std::make_unique<BoneEditor>(grid, rho, BoneEditorOptions{});
+    return std::make_unique<volume::BoneEditor>(grid, rho, volume::BoneEditorOptions{});
 }
 
 /// Arguments: density in kg/m³; inclination of the blade to the surface in mrad.
 void carve_update(benchmark::State& state) {
     const Quat tilt = glm::angleAxis(1e-3 * static_cast<double>(state.range(1)), Vec3(0, 0, 1));
     const Quat orientation = tilt * glm::angleAxis(std::numbers::pi, Vec3(1, 0, 0));
-    std::unique_ptr<BoneEditor> bone;
-    Carver carver;
-    std::vector<CarveSample> samples(17);
+    std::unique_ptr<volume::BoneEditor> bone;
+    carve::Carver carver;
+    std::vector<carve::CarveSample> samples(17);
     int updates = 0;
     for (auto _ : state) {
         state.PauseTiming();
@@ -67,15 +67,15 @@ void carve_update(benchmark::State& state) {
 /// What re-distancing would add: four bricks with a field twice too steep.
 void redistance_four_bricks(benchmark::State& state) {
     const auto bone = slab(1800.0);
-    const BrickLayout& layout = bone->layout();
-    Redistance redistance;
+    const volume::BrickLayout& layout = bone->layout();
+    carve::Redistance redistance;
     redistance.prepare(*bone, 0.003);
     const std::vector<std::uint32_t> bricks{1, 2, 3, 4};
     for (auto _ : state) {
         state.PauseTiming();
-        for (int k = 0; k <= brick_cells; ++k) {
-            for (int j = 0; j <= brick_cells; ++j) {
-                for (int i = brick_cells; i <= 5 * brick_cells; ++i) {
+        for (int k = 0; k <= volume::brick_cells; ++k) {
+            for (int j = 0; j <= volume::brick_cells; ++j) {
+                for (int i = volume::brick_cells; i <= 5 * volume::brick_cells; ++i) {
                     bone->set(i, j, k, static_cast<float>(2.0 * layout.spacing.z * (k - 3.5)));
                 }
             }

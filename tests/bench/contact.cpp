@@ -17,8 +17,8 @@ using namespace tactus;
 constexpr double radius = 0.015;
 
 /// A ball of bone in a cube of 128 samples, 0.35 mm apart.
-Grid ball() {
-    Grid grid{{128, 128, 128}, Vec3(-0.0222), Vec3(0.35e-3), {}};
+volume::Grid ball() {
+    volume::Grid grid{{128, 128, 128}, Vec3(-0.0222), Vec3(0.35e-3), {}};
     grid.values.resize(grid.count());
     for (int k = 0; k < grid.size[2]; ++k)
         for (int j = 0; j < grid.size[1]; ++j)
@@ -27,11 +27,11 @@ Grid ball() {
     return grid;
 }
 
-const BoneEditor& bone() {
-    static const BoneEditor editor = [] {
-        Grid density = ball();
+const volume::BoneEditor& bone_of() {
+    static const volume::BoneEditor editor = [] {
+        volume::Grid density = ball();
         std::ranges::fill(density.values, 1800.0f);
-        return BoneEditor(ball(), density, {.band = 0.1, .max_dirty = 1, .max_versions = 1});
+        return volume::BoneEditor(ball(), density, {.band = 0.1, .max_dirty = 1, .max_versions = 1});
     }();
     return editor;
 }
@@ -51,7 +51,7 @@ const std::vector<Vec3>& positions() {
     return made;
 }
 
-Sample sample_dense(const Grid& grid, const Vec3& p) {
+volume::Sample sample_dense(const volume::Grid& grid, const Vec3& p) {
     const Vec3 at = (p - grid.origin) / grid.spacing;
     const int i = static_cast<int>(at.x), j = static_cast<int>(at.y), k = static_cast<int>(at.z);
     if (!(at.x >= 0.0 && at.y >= 0.0 && at.z >= 0.0) || i > grid.size[0] - 2 || j > grid.size[1] - 2 ||
@@ -71,7 +71,7 @@ Sample sample_dense(const Grid& grid, const Vec3& p) {
 }
 
 void sample_in_bricks(benchmark::State& state) {
-    const BoneSnapshot snapshot = bone().current();
+    const volume::BoneSnapshot snapshot = bone_of().current();
     for (auto _ : state)
         for (const Vec3& p : positions()) benchmark::DoNotOptimize(snapshot.sample(p));
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(positions().size()));
@@ -79,7 +79,7 @@ void sample_in_bricks(benchmark::State& state) {
 BENCHMARK(sample_in_bricks);
 
 void sample_in_dense_array(benchmark::State& state) {
-    const Grid grid = ball();
+    const volume::Grid grid = ball();
     for (auto _ : state)
         for (const Vec3& p : positions()) benchmark::DoNotOptimize(sample_dense(grid, p));
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(positions().size()));
@@ -87,14 +87,14 @@ void sample_in_dense_array(benchmark::State& state) {
 BENCHMARK(sample_in_dense_array);
 
 void blade_pass(benchmark::State& state) {
-    const BoneSnapshot snapshot = bone().current();
-    const BladePoints blade;
+    const volume::BoneSnapshot snapshot = bone_of().current();
+    const contact::BladePoints blade;
     int step = 0;
     for (auto _ : state) {
         // A stroke of 4 mm along the blade, the teeth 0.5 mm deep.
         const double along = 0.002 * std::sin(0.01 * step++);
         const Pose tool{Vec3(along, 0.5e-3 - radius, 0.0), Quat(1, 0, 0, 0)};
-        benchmark::DoNotOptimize(blade_contact(snapshot, blade, tool, tool.position, 3000.0));
+        benchmark::DoNotOptimize(contact::blade_contact(snapshot, blade, tool, tool.position, 3000.0));
     }
 }
 BENCHMARK(blade_pass);

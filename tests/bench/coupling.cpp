@@ -3,7 +3,7 @@
 // the hand in each frame.
 #include "assets/library/fragments.hpp"
 #include "dsp/coupling/held_contact.hpp"
-#include "dsp/coupling/quantile.hpp"
+#include "dsp/core/quantile.hpp"
 #include "dsp/coupling/quasi_static.hpp"
 
 #include <benchmark/benchmark.h>
@@ -17,31 +17,31 @@ namespace {
 using namespace tactus;
 
 struct Half {
-    Pointshell shell;
-    Voxmap map;
+    contact::Pointshell shell;
+    contact::Voxmap map;
     Pose at;
 
-    explicit Half(Bone bone) {
-        for (const SurfacePoint& p : bone.points) at.position += p.position;
+    explicit Half(bone::Bone bone) {
+        for (const contact::SurfacePoint& p : bone.points) at.position += p.position;
         at.position /= static_cast<double>(bone.points.size());
-        for (SurfacePoint& p : bone.points) p.position -= at.position;
+        for (contact::SurfacePoint& p : bone.points) p.position -= at.position;
         bone.distance.origin -= at.position;
-        shell = make_pointshell(bone.points);
-        map = make_voxmap(std::move(bone.distance));
+        shell = contact::make_pointshell(bone.points);
+        map = contact::make_voxmap(std::move(bone.distance));
     }
 };
 
 /// spacing of the points in µm, most iterations.
 void coupled_fragments(benchmark::State& state) {
-    const std::vector<Bone> bones = make_fragments({.spacing = 1e-6 * static_cast<double>(state.range(0))});
+    const std::vector<bone::Bone> bones = library::make_fragments({.spacing = 1e-6 * static_cast<double>(state.range(0))});
     const Half left(bones[0]), right(bones[1]);
-    Scene scene;
+    coupling::Scene scene;
     scene.count = 2;
     scene.objects[0] = {{&left.shell, &left.map, nullptr, {}, 1, 1}, left.at};
     scene.objects[1] = {{&right.shell, &right.map, nullptr, {}, 1, 2}, right.at};
-    HeldContact contact(1000000);
+    coupling::HeldContact contact(1000000);
     contact.set(scene, 1, {}, {}, false);
-    QuasiStaticCoupling coupling;
+    coupling::QuasiStaticCoupling coupling;
     coupling.settings.iterations = static_cast<int>(state.range(1));
     coupling.settings.reach = contact.reach();
     coupling.settings.gyration = contact.gyration();
@@ -55,7 +55,7 @@ void coupled_fragments(benchmark::State& state) {
         const Vec3 at = 1e-3 * Vec3(-2.0 + std::sin(4.0 * t), 2.0 * std::sin(5.0 * t), 2.0 * std::sin(6.0 * t));
         const Pose hand{right.at.position + at, rotation_by(0.03 * Vec3(std::sin(3.0 * t), std::sin(7.0 * t), 0.0))};
         const auto begin = std::chrono::steady_clock::now();
-        const QuasiStaticState& now = coupling.update(hand, contact);
+        const coupling::QuasiStaticState& now = coupling.update(hand, contact);
         times.add(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
         iterations += now.iterations;
         balanced += now.balanced ? 1.0 : 0.0;

@@ -2,8 +2,8 @@
 // Signed distance to the surface of a CT of a ring (13 and 5 mm radius, 0.35 mm voxels, 128^3): this program, OpenVDB's
 // meshToLevelSet on marching tetrahedra of the same values, and a 3-4-5 chamfer of the thresholded voxels. Counters: error
 // against the exact distance within three voxels of the surface, in voxels.
-#include "dsp/distance/iso_distance.hpp"
-#include "dsp/distance/iso_surface.hpp"
+#include "dsp/volume/iso_distance.hpp"
+#include "dsp/geometry/iso_surface.hpp"
 #include "tools/study/workers.hpp"
 
 #include <openvdb/openvdb.h>
@@ -25,9 +25,9 @@ constexpr int size = 128;
 
 double exact(const Vec3& p) { return std::hypot(std::hypot(p.x, p.y) - 13e-3, p.z) - 5e-3; }
 
-const Grid& ring() {
-    static const Grid grid = [] {
-        Grid made{{size, size, size}, Vec3(-0.5 * (size - 1) * voxel), Vec3(voxel), {}};
+const volume::Grid& ring() {
+    static const volume::Grid grid = [] {
+        volume::Grid made{{size, size, size}, Vec3(-0.5 * (size - 1) * voxel), Vec3(voxel), {}};
         for (int k = 0; k < size; ++k)
             for (int j = 0; j < size; ++j)
                 for (int i = 0; i < size; ++i)
@@ -38,7 +38,7 @@ const Grid& ring() {
     return grid;
 }
 
-void report(benchmark::State& state, const Grid& distance) {
+void report(benchmark::State& state, const volume::Grid& distance) {
     std::vector<double> errors;
     for (int k = 0; k < size; ++k)
         for (int j = 0; j < size; ++j)
@@ -56,8 +56,8 @@ void report(benchmark::State& state, const Grid& distance) {
 
 void distance_by_tactus(benchmark::State& state) {
     const RunJobs run = on_threads(static_cast<int>(state.range(0)));
-    Grid distance;
-    for (auto _ : state) distance = distance_to_iso(ring(), 300.0f, run);
+    volume::Grid distance;
+    for (auto _ : state) distance = volume::distance_to_iso(ring(), 300.0f, run);
     report(state, distance);
 }
 BENCHMARK(distance_by_tactus)->ArgName("threads")->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
@@ -65,7 +65,7 @@ BENCHMARK(distance_by_tactus)->ArgName("threads")->Arg(1)->Arg(2)->Unit(benchmar
 /// Only the band, where this program fills the whole volume; OpenVDB uses all cores.
 void distance_by_openvdb(benchmark::State& state) {
     openvdb::initialize();
-    const TriangleSurface surface = iso_surface(ring(), 300.0f, true);
+    const geometry::TriangleSurface surface = geometry::iso_surface(ring(), 300.0f, true);
     std::vector<openvdb::Vec3s> points;
     std::vector<openvdb::Vec3I> triangles;
     for (const Vec3& v : surface.vertices) points.emplace_back(float(v.x), float(v.y), float(v.z));
@@ -78,7 +78,7 @@ void distance_by_openvdb(benchmark::State& state) {
     openvdb::FloatGrid::Ptr level_set;
     for (auto _ : state)
         level_set = openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(*transform, points, triangles, 3.0f);
-    Grid distance = ring();
+    volume::Grid distance = ring();
     const auto access = level_set->getConstAccessor();
     for (int k = 0; k < size; ++k)
         for (int j = 0; j < size; ++j)
@@ -112,7 +112,7 @@ void distance_by_chamfer(benchmark::State& state) {
     std::vector<char> inside;
     for (const float value : ring().values) inside.push_back(value >= 300.0f);
     std::vector<int> in(inside.size()), out(inside.size());
-    Grid distance = ring();
+    volume::Grid distance = ring();
     for (auto _ : state) {
         chamfer(inside, in, true);
         chamfer(inside, out, false);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a node and a wire between groups cost per activation, hashing of every published value included.
-#include "engine/engine.hpp"
+#include "engine/run/engine.hpp"
 #include "nodes/catalogue.hpp"
 
 #include <benchmark/benchmark.h>
@@ -12,10 +12,10 @@ using namespace tactus;
 
 namespace {
 
-Plan plan_of(const std::string& text) {
-    Problems problems;
-    const Patch patch = read_patch(text, "bench.toml", problems);
-    std::optional<Plan> plan = compile(patch, catalogue(), problems);
+compile::Plan plan_of(const std::string& text) {
+    patch::Problems problems;
+    const patch::Patch patch = patch::read_patch(text, "bench.toml", problems);
+    std::optional<compile::Plan> plan = compile::compile(patch, nodes::catalogue(), problems);
     if (!problems.empty()) throw problems.list.front();
     return std::move(*plan);
 }
@@ -29,13 +29,13 @@ std::string chain(int gains) {
     return "wires = [" + wires + "]\n" + nodes;
 }
 
-void run(benchmark::State& state, const std::string& text, double seconds, int block) {
+void run_patch(benchmark::State& state, const std::string& text, double seconds, int block) {
     for (auto _ : state) {
         state.PauseTiming();
-        EngineOptions options;
+        run::EngineOptions options;
         options.seconds = seconds;
         options.block = block;
-        Engine engine(plan_of(text), options);
+        run::Engine engine(plan_of(text), options);
         state.ResumeTiming();
         engine.render(1);
         benchmark::DoNotOptimize(engine.output_hash());
@@ -47,7 +47,7 @@ void node_in_a_chain(benchmark::State& state) {
     constexpr int gains = 400;
     const int block = static_cast<int>(state.range(0));
     const double seconds = block == 1 ? 0.02 : 0.5;
-    run(state, chain(gains), seconds, block);
+    run_patch(state, chain(gains), seconds, block);
     const double calls = 48000.0 * seconds / block * (gains + 1);
     state.counters["ns_per_node_and_call"] =
         benchmark::Counter(calls * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
@@ -81,7 +81,7 @@ void wires_between_groups(benchmark::State& state) {
             "Hz\"\n",
             i);
     }
-    run(state, "wires = [" + wires + "]\n" + nodes, 2.0, 0);
+    run_patch(state, "wires = [" + wires + "]\n" + nodes, 2.0, 0);
     state.counters["ns_per_wire_and_producer_tick"] = benchmark::Counter(
         100 * 2000 * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }

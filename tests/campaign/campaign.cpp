@@ -36,9 +36,9 @@ std::pair<fs::path, std::string> make_mutant(const Format& format, const fs::pat
         std::sort(files.begin(), files.end());
         file = files[dice.below(files.size())];
     }
-    std::string bytes = format.open(tactus::read_whole_file(file));
+    std::string bytes = format.open(tactus::file::read_whole_file(file));
     const std::string done = mutate(bytes, dice);
-    tactus::write_whole_file(file, format.close(std::move(bytes), number));
+    tactus::file::write_whole_file(file, format.close(std::move(bytes), number));
     return {mutant, file.filename().string() + ": " + done};
 }
 

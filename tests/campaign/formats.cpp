@@ -96,8 +96,8 @@ std::string mend_riff(std::string bytes, std::uint64_t number) {
 
 void pack_seeds(const fs::path& folder) {
     for (const fs::path& file : files_in(folder))
-        write_whole_file(fs::path(file.string() + (file.extension() == ".tar" ? ".inv3" : ".gz")),
-                         gzip(read_whole_file(file)));
+        file::write_whole_file(fs::path(file.string() + (file.extension() == ".tar" ? ".inv3" : ".gz")),
+                         gzip(file::read_whole_file(file)));
 }
 
 std::vector<fs::path> with_ending(const fs::path& folder, const std::string& ending) {
@@ -135,8 +135,8 @@ std::vector<fs::path> small_sounds(const fs::path& folder) {
     const fs::path made = folder / "sounds";
     fs::create_directories(made);
     for (const auto& [name, format] :
-         {std::pair{"two.wav", SoundFormat::float_wav}, std::pair{"two.flac", SoundFormat::flac}}) {
-        SoundWriter writer(made / name, 2, 1000, format);
+         {std::pair{"two.wav", sound::SoundFormat::float_wav}, std::pair{"two.flac", sound::SoundFormat::flac}}) {
+        sound::SoundWriter writer(made / name, 2, 1000, format);
         writer.write(samples.data(), samples.size() / 2);
         writer.finish();
     }
@@ -202,7 +202,7 @@ std::vector<Format> make_formats(const fs::path& folder) {
          .verbs = {{"spectrum", "FILE"},
                    {"render", "saw-vibration", "--seconds", "0.02", "--out", "out", "--log", "FILE"}}},
         {.name = "patch",
-         .seeds = {seed("graph/patch.seeds/small.toml"), source / "assets/library/patches/touch-sphere.toml",
+         .seeds = {seed("graph/patch/patch.seeds/small.toml"), source / "assets/library/patches/touch-sphere.toml",
                    source / "assets/library/patches/saw-vibration.toml"},
          .verbs = {{"check", "FILE"}, {"draw", "FILE"}}},
         {.name = "table",

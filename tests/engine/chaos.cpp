@@ -110,9 +110,9 @@ struct Planted {
 };
 TACTUS_NODE(Planted, pose, wrench, fault, at, stall)
 
-Catalogue chaos_catalogue() {
+compile::Catalogue chaos_catalogue() {
     static const std::vector<const NodeType*> types = [] {
-        const Catalogue all = catalogue();
+        const compile::Catalogue all = nodes::catalogue();
         std::vector<const NodeType*> with(all.begin(), all.end());
         for (const NodeType* type :
              {&node_type_Chaos(), &node_type_ChaosSignal(), &node_type_BatchSum(), &node_type_Planted()})
@@ -133,11 +133,11 @@ std::string PatchText::toml() const {
     return text;
 }
 
-Plan compile_text(const std::string& toml) {
-    Problems problems;
-    const Patch patch = read_patch(toml, "test.toml", problems);
-    std::optional<Plan> plan;
-    if (problems.empty()) plan = compile(patch, chaos_catalogue(), problems);
+compile::Plan compile_text(const std::string& toml) {
+    patch::Problems problems;
+    const patch::Patch patch = patch::read_patch(toml, "test.toml", problems);
+    std::optional<compile::Plan> plan;
+    if (problems.empty()) plan = compile::compile(patch, chaos_catalogue(), problems);
     for (const Error& problem : problems.list) UNSCOPED_INFO(problem.what());
     REQUIRE(problems.empty());
     return std::move(*plan);

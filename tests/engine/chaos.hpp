@@ -2,7 +2,7 @@
 // Node types whose state is chaotic: one wrong, late or doubled value anywhere changes every later output.
 #pragma once
 
-#include "engine/engine.hpp"
+#include "engine/run/engine.hpp"
 
 #include <string>
 #include <string_view>
@@ -12,7 +12,7 @@
 namespace tactus::test {
 
 /// The types below plus the whole catalogue.
-Catalogue chaos_catalogue();
+compile::Catalogue chaos_catalogue();
 
 /// A patch from lines: nodes as {name, type, rate} and wires as in a patch file's `wires`.
 struct PatchText {
@@ -28,7 +28,7 @@ struct PatchText {
 };
 
 /// Compiles, with REQUIRE that there are no problems.
-Plan compile_text(const std::string& toml);
+compile::Plan compile_text(const std::string& toml);
 
 /// 48 kHz, 1 kHz, 150 Hz and 60 Hz groups, wired in cycles across rates, with every mode of delivery.
 std::string four_rates();

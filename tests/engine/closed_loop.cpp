@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stiffness sheet against the physics it promises: a mass with damping pressed against a sampled wall.
-#include "graph/stiffness.hpp"
+#include "graph/analyse/stiffness.hpp"
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/played_device.hpp"
 
@@ -65,9 +65,9 @@ double restlessness(double damping, double newton_per_millimetre, int delay) {
         return handle.after(count, elapsed, force.force.z);
     };
     play_as("handle", performance);
-    EngineOptions options;
+    run::EngineOptions options;
     options.seconds = 12.0;
-    Engine engine(compile_text(pressed_on_a_wall(newton_per_millimetre, delay)), options);
+    run::Engine engine(compile_text(pressed_on_a_wall(newton_per_millimetre, delay)), options);
     engine.render(1);
     return worst;
 }
@@ -77,8 +77,8 @@ double restlessness(double damping, double newton_per_millimetre, int delay) {
 TEST_CASE("a wall below the limit of the sheet comes to rest, one above it hums") {
     for (const double damping : {1.0, 2.0, 5.0})
         for (const int delay : {0, 1, 2}) {
-            const Plan plan = compile_text(pressed_on_a_wall(1.0, delay));
-            const auto loops = force_loops(plan, [&](const std::string&) { return damping; });
+            const compile::Plan plan = compile_text(pressed_on_a_wall(1.0, delay));
+            const auto loops = analyse::force_loops(plan, [&](const std::string&) { return damping; });
             REQUIRE(loops.size() == 1);
             const double limit = loops[0].limit * 1e-3;
             CAPTURE(damping, delay, limit);

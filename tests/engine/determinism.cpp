@@ -12,11 +12,11 @@ using namespace tactus::test;
 namespace {
 
 std::uint64_t rendered(const std::string& toml, int threads, int block, bool random_blocks, double length = 1.0) {
-    EngineOptions options;
+    run::EngineOptions options;
     options.seconds = length;
     options.block = block;
     options.random_blocks = random_blocks;
-    Engine engine(compile_text(toml), options);
+    run::Engine engine(compile_text(toml), options);
     engine.render(threads);
     return engine.output_hash();
 }
@@ -42,9 +42,9 @@ TEST_CASE("another seed gives another output") {
 }
 
 TEST_CASE("every group runs the activations that start before the end, and no more") {
-    EngineOptions options;
+    run::EngineOptions options;
     options.seconds = 0.5;
-    Engine engine(compile_text(four_rates()), options);
+    run::Engine engine(compile_text(four_rates()), options);
     engine.render(2);
     std::vector<std::int64_t> ticks;
     for (const auto& group : engine.groups()) ticks.push_back(group->telemetry.ticks.load());
@@ -57,22 +57,22 @@ TEST_CASE("a live run that misses nothing has the offline hash, and one that mis
     const std::uint64_t offline = rendered(patch, 1, 0, false, 0.4);
     for (const double dilate : {1.0, 4.0, 16.0}) {
         const auto log = scratch("determinism.log");
-        EngineOptions options;
+        run::EngineOptions options;
         options.seconds = 0.4;
         options.live = true;
-        Engine live(compile_text(patch), options);
+        run::Engine live(compile_text(patch), options);
         live.run_live({.dilate = dilate, .log = log, .stop = nullptr, .watch = {}});
         std::int64_t misses = 0;
         for (const auto& group : live.groups())
             misses += group->telemetry.misses + group->telemetry.skipped + group->telemetry.dropped;
         INFO("dilated " << dilate << ", misses " << misses);
         if (misses == 0) CHECK(live.output_hash() == offline);
-        const TimingLog recorded = TimingLog::load(log);
+        const take::TimingLog recorded = take::TimingLog::load(log);
         for (const int threads : {1, 3}) {
-            EngineOptions again;
+            run::EngineOptions again;
             again.seconds = 0.4;
             again.replay = &recorded;
-            Engine replay(compile_text(patch), again);
+            run::Engine replay(compile_text(patch), again);
             replay.render(threads);
             CHECK(replay.port_hashes() == live.port_hashes());
         }
@@ -90,20 +90,20 @@ TEST_CASE("an overloaded live run skips, drops and holds, and its log still give
     slow_down("a", "100000");
     slow_down("slow", "100000");
     const auto log = scratch("overload.log");
-    EngineOptions options;
+    run::EngineOptions options;
     options.seconds = 0.3;
     options.live = true;
-    Engine live(compile_text(patch), options);
+    run::Engine live(compile_text(patch), options);
     live.run_live({.dilate = 0.2, .log = log, .stop = nullptr, .watch = {}});
     std::int64_t decisions = 0;
     for (const auto& group : live.groups())
         decisions += group->telemetry.misses + group->telemetry.skipped + group->telemetry.dropped;
     CHECK(decisions > 0);
-    const TimingLog recorded = TimingLog::load(log);
-    EngineOptions again;
+    const take::TimingLog recorded = take::TimingLog::load(log);
+    run::EngineOptions again;
     again.seconds = 0.3;
     again.replay = &recorded;
-    Engine replay(compile_text(patch), again);
+    run::Engine replay(compile_text(patch), again);
     replay.render(2);
     CHECK(replay.port_hashes() == live.port_hashes());
     std::filesystem::remove(log);
@@ -121,25 +121,25 @@ TEST_CASE(
     stand_still("loudly", "48 kHz", 30'000);
     stand_still("slowly", "60 Hz", 60);
     const auto log = scratch("standstill.log");
-    EngineOptions options;
+    run::EngineOptions options;
     options.seconds = 1.6;
     options.live = true;
-    Engine live(compile_text(patch), options);
+    run::Engine live(compile_text(patch), options);
     live.run_live({.dilate = 1.0, .log = log, .stop = nullptr, .watch = {}});
     std::int64_t skipped = 0;
     for (const auto& group : live.groups()) skipped += group->telemetry.skipped;
     CHECK(skipped > 100);
-    const TimingLog recorded = TimingLog::load(log);
+    const take::TimingLog recorded = take::TimingLog::load(log);
     for (const int threads : {1, 3})
         for (const bool random : {false, true})
             for (const int block : {0, 1, 480}) {
                 INFO(threads << " threads, blocks of " << block << (random ? " at random" : ""));
-                EngineOptions again;
+                run::EngineOptions again;
                 again.seconds = options.seconds;
                 again.replay = &recorded;
                 again.block = block;
                 again.random_blocks = random;
-                Engine replay(compile_text(patch), again);
+                run::Engine replay(compile_text(patch), again);
                 replay.render(threads);
                 CHECK(replay.port_hashes() == live.port_hashes());
             }
@@ -148,16 +148,16 @@ TEST_CASE(
 
 TEST_CASE("a damaged or foreign log is refused") {
     const auto log = scratch("damaged.log");
-    EngineOptions options;
+    run::EngineOptions options;
     options.seconds = 0.05;
     options.live = true;
-    Engine live(compile_text(four_rates()), options);
+    run::Engine live(compile_text(four_rates()), options);
     live.run_live({.dilate = 1.0, .log = log, .stop = nullptr, .watch = {}});
     const auto size = std::filesystem::file_size(log);
     std::filesystem::resize_file(log, size - 200);
-    CHECK_THROWS_WITH(TimingLog::load(log), Catch::Contains("stops before the end"));
+    CHECK_THROWS_WITH(take::TimingLog::load(log), Catch::Contains("stops before the end"));
     std::filesystem::resize_file(log, 10);
-    CHECK_THROWS_WITH(TimingLog::load(log), Catch::Contains("not a timing log"));
+    CHECK_THROWS_WITH(take::TimingLog::load(log), Catch::Contains("not a timing log"));
     std::filesystem::remove(log);
-    CHECK_THROWS_WITH(TimingLog::load(log), Catch::Contains("cannot read"));
+    CHECK_THROWS_WITH(take::TimingLog::load(log), Catch::Contains("cannot read"));
 }

@@ -29,7 +29,7 @@ DeviceSample pressing(std::int64_t count) {
     return sample;
 }
 
-std::string patch(const std::string& fault, int at, const std::string& stall = "0 ms", const std::string& more = "") {
+std::string patch_text(const std::string& fault, int at, const std::string& stall = "0 ms", const std::string& more = "") {
     return PatchText{{{"hand", "device_input", "1 kHz", {{"device", "faulty"}}},
                       {"plant", "planted", "1 kHz", {{"fault", fault}, {"at", std::to_string(at)}, {"stall", stall}}},
                       {"out",
@@ -56,11 +56,11 @@ struct Given {
 
 struct Outcome {
     std::vector<Given> given;
-    std::vector<DeviceFault> faults;
+    std::vector<io::DeviceFault> faults;
     std::int64_t other_ran = 0, other_skipped = 0;
 };
 
-Outcome run(const std::string& toml, double length, const std::function<DeviceSample(std::int64_t)>& hand,
+Outcome run_patch(const std::string& toml, double length, const std::function<DeviceSample(std::int64_t)>& hand,
             const std::optional<std::filesystem::path>& live_log = {}) {
     Outcome outcome;
     outcome.given.reserve(100'000);
@@ -69,10 +69,10 @@ Outcome run(const std::string& toml, double length, const std::function<DeviceSa
     // Nothing else keeps the two threads apart here: that is the guard's promise.
     performance.commit = [&](const Wrench& w) { outcome.given.push_back({w, std::this_thread::get_id()}); };
     play_as("faulty", performance);
-    EngineOptions options;
+    run::EngineOptions options;
     options.seconds = length;
     options.live = live_log.has_value();
-    Engine engine(compile_text(toml), options);
+    run::Engine engine(compile_text(toml), options);
     if (live_log) engine.run_live({.dilate = 1.0, .log = live_log, .stop = nullptr, .watch = {}});
     else engine.render(1);
     for (const auto& slot : engine.outside().devices)
@@ -83,11 +83,11 @@ Outcome run(const std::string& toml, double length, const std::function<DeviceSa
             outcome.other_skipped = group->telemetry.skipped;
         }
     if (!live_log) return outcome;
-    const TimingLog log = TimingLog::load(*live_log);
-    EngineOptions again;
+    const take::TimingLog log = take::TimingLog::load(*live_log);
+    run::EngineOptions again;
     again.seconds = length;
     again.replay = &log;
-    Engine replay(compile_text(toml), again);
+    run::Engine replay(compile_text(toml), again);
     replay.render(1);
     CHECK(replay.port_hashes() == engine.port_hashes());
     std::filesystem::remove(*live_log);
@@ -121,7 +121,7 @@ const auto plain_hand = [](std::int64_t count) { return pressing(count); };
 }  // namespace
 
 TEST_CASE("without a fault the hand feels the spring, and nothing is told") {
-    const Outcome o = run(patch("none", 0), 1.0, plain_hand);
+    const Outcome o = run_patch(patch_text("none", 0), 1.0, plain_hand);
     check_bounds(o);
     CHECK(force_at(o, 900) == Approx(4.0));
     CHECK(o.faults.empty());
@@ -129,20 +129,20 @@ TEST_CASE("without a fault the hand feels the spring, and nothing is told") {
 
 TEST_CASE("a force that is not a number, or infinite, fades to zero within 10 ms and never returns") {
     for (const std::string fault : {"nan", "inf"}) {
-        const Outcome o = run(patch(fault, 500), 3.0, plain_hand);
+        const Outcome o = run_patch(patch_text(fault, 500), 3.0, plain_hand);
         INFO(fault);
         check_bounds(o);
         CHECK(force_at(o, 499) == Approx(4.0));
         for (std::size_t i = 509; i < o.given.size(); ++i) REQUIRE(force_at(o, i) == 0.0);
         REQUIRE(o.faults.size() == 1);
-        CHECK(o.faults[0].reason == Fault::not_finite);
+        CHECK(o.faults[0].reason == control::Fault::not_finite);
         CHECK(o.faults[0].tick == 500);
         CHECK(o.faults[0].force_N == Approx(4.0));
     }
 }
 
 TEST_CASE("a driver whose sample counter stops is given up after 10 ticks, and without force 10 ms later") {
-    const Outcome o = run(patch("none", 0), 3.0, [](std::int64_t count) {
+    const Outcome o = run_patch(patch_text("none", 0), 3.0, [](std::int64_t count) {
         DeviceSample sample = pressing(count);
         sample.counter = count < 500 || count > 700 ? count : 500;
         // It comes back pressing; only once it has let go do forces ramp in again.
@@ -154,11 +154,11 @@ TEST_CASE("a driver whose sample counter stops is given up after 10 ticks, and w
     for (std::size_t i = 520; i < 2295; ++i) REQUIRE(force_at(o, i) == 0.0);
     CHECK(force_at(o, 2900) == Approx(4.0));
     REQUIRE(o.faults.size() == 1);
-    CHECK(o.faults[0].reason == Fault::stale_input);
+    CHECK(o.faults[0].reason == control::Fault::stale_input);
 }
 
 TEST_CASE("an invalid sample fades the force at once") {
-    const Outcome o = run(patch("none", 0), 1.0, [](std::int64_t count) {
+    const Outcome o = run_patch(patch_text("none", 0), 1.0, [](std::int64_t count) {
         DeviceSample sample = pressing(count);
         sample.valid = count != 500;
         return sample;
@@ -166,16 +166,16 @@ TEST_CASE("an invalid sample fades the force at once") {
     check_bounds(o);
     for (std::size_t i = 510; i < o.given.size(); ++i) REQUIRE(force_at(o, i) == 0.0);
     REQUIRE(o.faults.size() == 1);
-    CHECK(o.faults[0].reason == Fault::invalid_input);
+    CHECK(o.faults[0].reason == control::Fault::invalid_input);
 }
 
 TEST_CASE("a force spike, a jump of 15 mm and a flip of 180 degrees reach the hand no faster than the slew limit") {
-    const Outcome spike = run(patch("spike", 500), 1.0, plain_hand);
+    const Outcome spike = run_patch(patch_text("spike", 500), 1.0, plain_hand);
     check_bounds(spike);
     CHECK(glm::length(spike.given[502].wrench.force) < 6.0);
     CHECK(force_at(spike, 520) == Approx(4.0));
 
-    const Outcome jump = run(patch("none", 0), 1.0, [](std::int64_t count) {
+    const Outcome jump = run_patch(patch_text("none", 0), 1.0, [](std::int64_t count) {
         DeviceSample sample = pressing(count);
         if (count >= 500) sample.pose.position.x = 15e-3;
         return sample;
@@ -183,7 +183,7 @@ TEST_CASE("a force spike, a jump of 15 mm and a flip of 180 degrees reach the ha
     check_bounds(jump);
     CHECK(force_at(jump, 900) == Approx(max_force));
 
-    const Outcome flip = run(patch("none", 0), 1.0, [](std::int64_t count) {
+    const Outcome flip = run_patch(patch_text("none", 0), 1.0, [](std::int64_t count) {
         DeviceSample sample = pressing(count);
         if (count >= 500) sample.pose.orientation = {0.0, 0.0, 1.0, 0.0};
         return sample;
@@ -196,11 +196,11 @@ TEST_CASE("no node gets round the limits that the device states") {
     DeviceInfo device;
     device.max_force = 10.0;
     device.max_torque = 1.0;
-    CHECK(glm::length(bearable({{30.0, 40.0, 0.0}, {}}, device).force) == Approx(10.0));
-    CHECK(glm::length(bearable({{}, {0.0, 3.0, 4.0}}, device).torque) == Approx(1.0));
-    CHECK(bearable({{1.0, 2.0, 3.0}, {}}, device).force == Vec3(1.0, 2.0, 3.0));
-    CHECK(bearable({{std::nan(""), 2.0, 3.0}, {0.1, 0.0, 0.0}}, device).torque == Vec3(0.0));
-    CHECK(bearable({{30.0, 40.0, 0.0}, {}}, {}).force == Vec3(30.0, 40.0, 0.0));
+    CHECK(glm::length(io::bearable({{30.0, 40.0, 0.0}, {}}, device).force) == Approx(10.0));
+    CHECK(glm::length(io::bearable({{}, {0.0, 3.0, 4.0}}, device).torque) == Approx(1.0));
+    CHECK(io::bearable({{1.0, 2.0, 3.0}, {}}, device).force == Vec3(1.0, 2.0, 3.0));
+    CHECK(io::bearable({{std::nan(""), 2.0, 3.0}, {0.1, 0.0, 0.0}}, device).torque == Vec3(0.0));
+    CHECK(io::bearable({{30.0, 40.0, 0.0}, {}}, {}).force == Vec3(30.0, 40.0, 0.0));
 }
 
 TEST_CASE("a stalled tick loses the hand to the watchdog, which fades it; the other groups and the log go on") {
@@ -220,7 +220,7 @@ TEST_CASE("a stalled tick loses the hand to the watchdog, which fades it; the ot
         }
         if (must_be_taken) {
             CHECK(taken);
-            CHECK(std::ranges::any_of(o.faults, [](const DeviceFault& f) { return f.reason == Fault::late_commit; }));
+            CHECK(std::ranges::any_of(o.faults, [](const io::DeviceFault& f) { return f.reason == control::Fault::late_commit; }));
         }
         // At the end of the run nothing is left on the hand.
         CHECK(force_at(o, o.given.size() - 1) == 0.0);
@@ -229,12 +229,12 @@ TEST_CASE("a stalled tick loses the hand to the watchdog, which fades it; the ot
     };
     for (const int stall : {3, 20, 200}) {
         INFO("stalled for " << stall << " ms");
-        const Outcome o = run(patch("stall", 300, std::to_string(stall) + " ms"), 0.8, plain_hand, log);
+        const Outcome o = run_patch(patch_text("stall", 300, std::to_string(stall) + " ms"), 0.8, plain_hand, log);
         check_watchdog(o, stall > 3);
     }
     INFO("a driver that hangs while it is read");
-    const Outcome o = run(
-        patch("none", 0), 0.8,
+    const Outcome o = run_patch(
+        patch_text("none", 0), 0.8,
         [](std::int64_t count) {
             if (count == 300) std::this_thread::sleep_for(std::chrono::milliseconds(100));
             return pressing(count);

@@ -34,7 +34,7 @@ const std::string replaced = held("other", "\"hand.pose -> other.device\",\n\"pl
 
 /// Force on the hand at every tick of 600, with an edit at 300 ms.
 std::vector<double> forces(const std::string& edited) {
-    struct Sink : StreamEnd {
+    struct Sink : io::StreamEnd {
         explicit Sink(std::vector<double>& forces_) : forces(forces_) {}
         void take(std::int64_t, const std::byte* values, std::size_t count) override {
             for (std::size_t i = 0; i < count; ++i)
@@ -44,17 +44,17 @@ std::vector<double> forces(const std::string& edited) {
         std::vector<double>& forces;
     };
     std::vector<double> seen;
-    EngineOptions options;
+    run::EngineOptions options;
     options.seconds = 0.6;
     options.tap = [&](const std::string& port, const ValueType& type,
-                      const GroupRuntime& group) -> std::unique_ptr<Stream> {
+                      const run::GroupRuntime& group) -> std::unique_ptr<io::Stream> {
         if (port != "out.applied") return nullptr;
         StreamFormat format;
         format.type = &type;
         format.period = group.plan->period;
-        return std::make_unique<Stream>(format, std::make_unique<Sink>(seen));
+        return std::make_unique<io::Stream>(format, std::make_unique<Sink>(seen));
     };
-    Engine engine(compile_text(base), options);
+    run::Engine engine(compile_text(base), options);
     engine.schedule(compile_text(edited), 300 * ms);
     engine.render(1);
     return seen;

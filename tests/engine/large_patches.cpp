@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a node of a patch costs does not grow with the patch.
-#include "engine/engine.hpp"
-#include "graph/draw.hpp"
-#include "graph/latency.hpp"
-#include "graph/stiffness.hpp"
+#include "engine/run/engine.hpp"
+#include "graph/analyse/draw.hpp"
+#include "graph/analyse/latency.hpp"
+#include "graph/analyse/stiffness.hpp"
 #include "nodes/catalogue.hpp"
 
 #include <fmt/format.h>
@@ -62,10 +62,10 @@ std::string voices(int nodes) {
     return "wires = [" + wires + "]\n" + text + "[[parts]]\npath = \"voice.toml\"\ntext = '''\n" + voice + "'''\n";
 }
 
-Plan compiled(const std::string& text) {
-    Problems problems;
-    const Patch patch = read_patch(text, "large.toml", problems);
-    std::optional<Plan> plan = problems.empty() ? compile(patch, catalogue(), problems) : std::nullopt;
+compile::Plan compiled(const std::string& text) {
+    patch::Problems problems;
+    const patch::Patch patch = patch::read_patch(text, "large.toml", problems);
+    std::optional<compile::Plan> plan = problems.empty() ? compile::compile(patch, nodes::catalogue(), problems) : std::nullopt;
     for (const Error& problem : problems.list) UNSCOPED_INFO(problem.what());
     REQUIRE(plan);
     return std::move(*plan);
@@ -83,13 +83,13 @@ double time_per_node(std::string (*patch_of)(int), int nodes) {
     };
     const double begin = now();
     {
-        Plan plan = compiled(text);
-        path_latencies(plan);
-        force_loops(plan, [](const std::string&) { return 1.0; });
-        REQUIRE_FALSE(draw_svg(plan).empty());
-        EngineOptions options;
+        compile::Plan plan = compiled(text);
+        analyse::path_latencies(plan);
+        analyse::force_loops(plan, [](const std::string&) { return 1.0; });
+        REQUIRE_FALSE(analyse::draw_svg(plan).empty());
+        run::EngineOptions options;
         options.seconds = 0.02;
-        Engine engine(std::move(plan), options);
+        run::Engine engine(std::move(plan), options);
         engine.schedule(compiled(edited), flicks_per_second / 100);
         engine.render(1);
         REQUIRE(engine.output_hash() != 0);

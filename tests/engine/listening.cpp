@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Analysis in a slow group, fed from audio by batches: what it says of what plays.
-#include "engine/engine.hpp"
-#include "graph/compile.hpp"
+#include "engine/run/engine.hpp"
+#include "graph/compile/compile.hpp"
 #include "nodes/catalogue.hpp"
 
 #include <catch2/catch.hpp>
@@ -13,13 +13,13 @@ using namespace tactus;
 namespace {
 
 Report rendered(const char* text, double seconds) {
-    Problems problems;
-    const Patch patch = read_patch(text, "test.toml", problems);
-    std::optional<Plan> plan = compile(patch, catalogue(), problems);
+    patch::Problems problems;
+    const patch::Patch patch = patch::read_patch(text, "test.toml", problems);
+    std::optional<compile::Plan> plan = compile::compile(patch, nodes::catalogue(), problems);
     for (const Error& error : problems.list) FAIL(error.what());
-    EngineOptions options;
+    run::EngineOptions options;
     options.seconds = seconds;
-    Engine engine(std::move(*plan), options);
+    run::Engine engine(std::move(*plan), options);
     engine.render(1);
     engine.finish();
     return engine.report();
@@ -117,14 +117,14 @@ type = "spectral_monitor"
 rate = "4 Hz"
 )";
     const auto hash = [&](int threads, bool random_blocks) {
-        Problems problems;
-        std::optional<Plan> plan = compile(read_patch(text, "test.toml", problems), catalogue(), problems);
+        patch::Problems problems;
+        std::optional<compile::Plan> plan = compile::compile(patch::read_patch(text, "test.toml", problems), nodes::catalogue(), problems);
         for (const Error& error : problems.list) FAIL(error.what());
-        EngineOptions options;
+        run::EngineOptions options;
         options.seconds = 3.0;
         options.random_blocks = random_blocks;
         if (random_blocks) options.block = 480;
-        Engine engine(std::move(*plan), options);
+        run::Engine engine(std::move(*plan), options);
         engine.render(threads);
         engine.finish();
         return engine.output_hash();

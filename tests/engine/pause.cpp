@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A live run that pauses: forces fade, logical time stands still, and a take knows nothing of how long.
-#include "engine/take_stream.hpp"
+#include "engine/take/take_stream.hpp"
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/repeat.hpp"
 
@@ -50,7 +50,7 @@ using Seconds = std::chrono::duration<double>;
 
 TEST_CASE("a pause fades the force, stops logical time for all groups, and replays to the bit") {
     auto folder = scratch("pause");
-    Engine::PortHashes live_hashes;
+    run::Engine::PortHashes live_hashes;
     double stood_at = 0.0, stood_for = 0.0, moved = 0.0;
     std::size_t faults = 0, hiccups = 0;
     // A machine that is too busy for 1 kHz faults now and then; a pause that is not rested through, every time.
@@ -61,20 +61,20 @@ TEST_CASE("a pause fades the force, stops logical time for all groups, and repla
             folder = scratch("pause");
             faults = hiccups = 0;
         }
-        TakeWriter take(folder, {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 0.8, .live = true});
-        EngineOptions options;
+        take::TakeWriter take(folder, {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 0.8, .live = true});
+        run::EngineOptions options;
         options.seconds = 0.8;
         options.live = true;
         options.take = &take;
-        Engine engine(compile_text(held), options);
-        LiveOptions live;
+        run::Engine engine(compile_text(held), options);
+        run::LiveOptions live;
         std::chrono::steady_clock::time_point began;
         int stage = 0;
         live.watch = [&] {
             if (stage == 0 && engine.progress_seconds() > 0.3) {
                 engine.pause(true);
                 stage = 1;
-            } else if (stage == 1 && engine.pausing() == Engine::Pausing::stands) {
+            } else if (stage == 1 && engine.pausing() == run::Engine::Pausing::stands) {
                 began = std::chrono::steady_clock::now();
                 stood_at = engine.progress_seconds();
                 stage = 2;
@@ -88,10 +88,10 @@ TEST_CASE("a pause fades the force, stops logical time for all groups, and repla
         engine.run_live(live);
         engine.finish();
         CHECK(stage == 3);
-        CHECK(engine.pausing() == Engine::Pausing::runs);
+        CHECK(engine.pausing() == run::Engine::Pausing::runs);
         live_hashes = engine.port_hashes();
         for (const auto& slot : engine.outside().devices)
-            for (const DeviceFault& fault : slot->guard.faults()) {
+            for (const io::DeviceFault& fault : slot->guard.faults()) {
                 const bool is_at_pause = std::abs(static_cast<double>(fault.tick) * 1e-3 - stood_at) < 0.02;
                 (is_at_pause ? faults : hiccups) += 1;
             }
@@ -113,12 +113,12 @@ TEST_CASE("a pause fades the force, stops logical time for all groups, and repla
         std::filesystem::remove_all(folder);
         return;
     }
-    const Take take = Take::load(folder);
+    const take::Take take = take::Take::load(folder);
     const auto forces = [&](const std::string& port) {
         std::vector<double> force;
-        for (const TakeStreamInfo& info : take.streams) {
+        for (const take::TakeStreamInfo& info : take.streams) {
             if (info.port != port) continue;
-            TakeStreamReader reader(folder / info.file, info);
+            take::TakeStreamReader reader(folder / info.file, info);
             for (std::int64_t tick = 0; const double* frame = reader.frame(tick); ++tick)
                 force.push_back(std::hypot(frame[0], frame[1], frame[2]));
         }
@@ -146,16 +146,16 @@ TEST_CASE("a pause fades the force, stops logical time for all groups, and repla
 }
 
 TEST_CASE("a run that is to end while it pauses goes on to its end") {
-    EngineOptions options;
+    run::EngineOptions options;
     options.seconds = 5.0;
     options.live = true;
-    Engine engine(compile_text(held), options);
+    run::Engine engine(compile_text(held), options);
     std::atomic<bool> stop{false};
-    LiveOptions live;
+    run::LiveOptions live;
     live.stop = &stop;
     live.watch = [&] {
         if (engine.progress_seconds() > 0.05) engine.pause(true);
-        if (engine.pausing() == Engine::Pausing::stands) stop = true;
+        if (engine.pausing() == run::Engine::Pausing::stands) stop = true;
     };
     engine.run_live(live);
     CHECK(stop);
@@ -166,22 +166,22 @@ TEST_CASE(
     "a node of a new rate that an edit brings while a run pauses waits with the others, and the take repeats it") {
     const auto folder = scratch("pause-edit");
     const std::string more = held + "[nodes.fresh]\ntype = \"chaos\"\nrate = \"200 Hz\"\n";
-    TakeWriter take(folder, {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 0.6, .live = true});
-    EngineOptions options;
+    take::TakeWriter take(folder, {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 0.6, .live = true});
+    run::EngineOptions options;
     options.seconds = 0.6;
     options.live = true;
     options.take = &take;
-    Engine engine(compile_text(held), options);
-    LiveOptions live;
+    run::Engine engine(compile_text(held), options);
+    run::LiveOptions live;
     int stage = 0;
     std::int64_t ran_while_paused = 0;
     std::chrono::steady_clock::time_point asked;
-    const auto fresh = [&]() -> const GroupRuntime& { return *engine.groups().back(); };
+    const auto fresh = [&]() -> const run::GroupRuntime& { return *engine.groups().back(); };
     live.watch = [&] {
         if (stage == 0 && engine.progress_seconds() > 0.2) {
             engine.pause(true);
             stage = 1;
-        } else if (stage == 1 && engine.pausing() == Engine::Pausing::stands) {
+        } else if (stage == 1 && engine.pausing() == run::Engine::Pausing::stands) {
             engine.edit([&] { return compile_text(more); }, {});
             stage = 2;
         } else if (stage == 2 && engine.edits() == 1) {

@@ -27,13 +27,13 @@ public:
 private:
     Performance& performance_;
     std::int64_t count_ = 0;
-    SharedWrench force_;
+    haptic::SharedWrench force_;
 };
 
 Performance* performances[2] = {};
 
 template <int slot>
-std::unique_ptr<HapticDevice> open_played(Options&, const PathResolver&) {
+std::unique_ptr<HapticDevice> open_played(Options&, const haptic::PathResolver&) {
     return std::make_unique<PlayedDevice>(*performances[slot]);
 }
 
@@ -43,7 +43,7 @@ void play_as(const std::string& name, Performance& performance) {
     static std::map<std::string, int> slots;
     const int slot = slots.try_emplace(name, static_cast<int>(slots.size()) % 2).first->second;
     performances[slot] = &performance;
-    add_haptic_driver({name, "a test plays it", slot == 0 ? open_played<0> : open_played<1>});
+    haptic::add_haptic_driver({name, "a test plays it", slot == 0 ? open_played<0> : open_played<1>});
 }
 
 }  // namespace tactus::test

@@ -17,20 +17,20 @@ using namespace tactus::test;
 
 namespace {
 
-TakeAbout about() { return {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 1.0, .live = true}; }
+take::TakeAbout about() { return {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 1.0, .live = true}; }
 
 /// A run of a second whose control thread does at each time what is written beside it.
-Engine::PortHashes run_with(const std::filesystem::path& folder, std::map<double, std::function<void(Engine&)>> deeds,
-                            const std::function<void(EngineOptions&)>& choose = {}) {
-    TakeWriter take(folder, about());
-    EngineOptions options;
+run::Engine::PortHashes run_with(const std::filesystem::path& folder, std::map<double, std::function<void(run::Engine&)>> deeds,
+                            const std::function<void(run::EngineOptions&)>& choose = {}) {
+    take::TakeWriter take(folder, about());
+    run::EngineOptions options;
     options.seconds = 1.0;
     options.live = true;
     options.take = &take;
     options.record_values = false;
     if (choose) choose(options);
-    Engine engine(compile_text(edited(3)), options);
-    LiveOptions live;
+    run::Engine engine(compile_text(edited(3)), options);
+    run::LiveOptions live;
     live.watch = [&] {
         while (!deeds.empty() && engine.progress_seconds() >= deeds.begin()->first && engine.is_settled()) {
             deeds.begin()->second(engine);
@@ -43,7 +43,7 @@ Engine::PortHashes run_with(const std::filesystem::path& folder, std::map<double
     return engine.port_hashes();
 }
 
-void change_to(Engine& engine, std::uint64_t seed) {
+void change_to(run::Engine& engine, std::uint64_t seed) {
     engine.edit([seed] { return compile_text(edited(seed)); }, {});
 }
 
@@ -52,25 +52,25 @@ void change_to(Engine& engine, std::uint64_t seed) {
 TEST_CASE("recording begins within a run for all outputs at one time, and the take repeats the run to the bit") {
     const auto folder = scratch("record");
     Flicks begun = 0;
-    const auto hashes = run_with(folder, {{0.1, [](Engine& e) { change_to(e, 4); }},
+    const auto hashes = run_with(folder, {{0.1, [](run::Engine& e) { change_to(e, 4); }},
                                           {0.3,
-                                           [&](Engine& e) {
+                                           [&](run::Engine& e) {
                                                e.record(true);
                                                begun = static_cast<Flicks>(e.progress_seconds() * 1e6) *
                                                        (flicks_per_second / 1'000'000);
                                            }},
-                                          {0.5, [](Engine& e) { change_to(e, 5); }},
-                                          {0.7, [](Engine& e) { e.record(false); }},
-                                          {0.75, [](Engine& e) { CHECK_FALSE(e.is_recording()); }}});
-    const Take take = Take::load(folder);
+                                          {0.5, [](run::Engine& e) { change_to(e, 5); }},
+                                          {0.7, [](run::Engine& e) { e.record(false); }},
+                                          {0.75, [](run::Engine& e) { CHECK_FALSE(e.is_recording()); }}});
+    const take::Take take = take::Take::load(folder);
     REQUIRE_FALSE(take.streams.empty());
     // Streams of nodes that were there already begin together, to the tick of each group.
     std::multiset<Flicks> starts;
-    for (const TakeStreamInfo& info : take.streams) {
+    for (const take::TakeStreamInfo& info : take.streams) {
         const Flicks start = info.start * info.period;
         CHECK(start >= begun);
         starts.insert(start / (flicks_per_second / 60));
-        const TakeStreamReader reader(folder / info.file, info);
+        const take::TakeStreamReader reader(folder / info.file, info);
         CHECK(seconds((info.start + reader.frames()) * info.period) < 0.95);
     }
     CHECK(starts.count(*starts.begin()) + starts.count(*starts.begin() + 1) >= take.streams.size() / 2);
@@ -84,12 +84,12 @@ TEST_CASE("recording begins within a run for all outputs at one time, and the ta
 
 TEST_CASE("a run that is recorded twice has two stretches of each output in one take") {
     const auto folder = scratch("twice");
-    const auto hashes = run_with(folder, {{0.1, [](Engine& e) { e.record(true); }},
-                                          {0.25, [](Engine& e) { e.record(false); }},
-                                          {0.5, [](Engine& e) { e.record(true); }}});
-    const Take take = Take::load(folder);
+    const auto hashes = run_with(folder, {{0.1, [](run::Engine& e) { e.record(true); }},
+                                          {0.25, [](run::Engine& e) { e.record(false); }},
+                                          {0.5, [](run::Engine& e) { e.record(true); }}});
+    const take::Take take = take::Take::load(folder);
     std::map<std::string, int> stretches;
-    for (const TakeStreamInfo& info : take.streams) ++stretches[info.port];
+    for (const take::TakeStreamInfo& info : take.streams) ++stretches[info.port];
     for (const auto& [port, count] : stretches) CHECK(count == 2);
     const Repetition again = repeat(folder, 1);
     if (again.difference) FAIL(again.difference->port << " differs at tick " << again.difference->tick);
@@ -100,10 +100,10 @@ TEST_CASE("a run that is recorded twice has two stretches of each output in one 
 
 TEST_CASE("a value that was changed in the second stretch of a take is found") {
     const auto folder = scratch("forged");
-    run_with(folder, {{0.1, [](Engine& e) { e.record(true); }},
-                      {0.25, [](Engine& e) { e.record(false); }},
-                      {0.5, [](Engine& e) { e.record(true); }}});
-    const Take take = Take::load(folder);
+    run_with(folder, {{0.1, [](run::Engine& e) { e.record(true); }},
+                      {0.25, [](run::Engine& e) { e.record(false); }},
+                      {0.5, [](run::Engine& e) { e.record(true); }}});
+    const take::Take take = take::Take::load(folder);
     const auto second = std::ranges::find_if(take.streams, [](const auto& s) {
         return s.port == "a.out" && s.start * s.period > flicks_per_second * 2 / 5;
     });
@@ -127,14 +127,14 @@ TEST_CASE("a journal that grows too long is given up, and only recording is refu
     std::vector<std::string> notices;
     run_with(folder,
              {{0.8,
-               [&](Engine& e) {
+               [&](run::Engine& e) {
                    CHECK_THROWS_WITH(e.record(true), Catch::Contains("begin it anew"));
                    was_refused = true;
                    notices = e.outside().notices;
                }}},
-             [](EngineOptions& options) { options.longest_journal = 100; });
+             [](run::EngineOptions& options) { options.longest_journal = 100; });
     CHECK(was_refused);
     CHECK(std::ranges::any_of(notices, [](const auto& n) { return n.find("no longer be recorded") != n.npos; }));
-    CHECK(Take::load(folder).streams.empty());
+    CHECK(take::Take::load(folder).streams.empty());
     std::filesystem::remove_all(folder);
 }

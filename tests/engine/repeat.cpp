@@ -13,19 +13,19 @@
 namespace tactus::test {
 
 Repetition repeat(const std::filesystem::path& folder, int threads) {
-    const Take take = Take::load(folder);
-    TakeComparison comparison(take);
-    EngineOptions options;
+    const take::Take take = take::Take::load(folder);
+    take::TakeComparison comparison(take);
+    run::EngineOptions options;
     options.seconds = take.about.seconds;
     options.replay = &take.log;
     options.devices = &take.devices;
-    options.tap = [&](const std::string& port, const ValueType& type, const GroupRuntime& group) {
+    options.tap = [&](const std::string& port, const ValueType& type, const run::GroupRuntime& group) {
         return comparison.tap(port, type, group);
     };
-    Engine engine(compile_text(take.text), options);
+    run::Engine engine(compile_text(take.text), options);
     for (const auto& event : take.events) {
-        if (const auto* edit = std::get_if<TakenEdit>(&event)) engine.schedule(compile_text(edit->text), edit->when);
-        if (const auto* change = std::get_if<TakenChange>(&event))
+        if (const auto* edit = std::get_if<take::TakenEdit>(&event)) engine.schedule(compile_text(edit->text), edit->when);
+        if (const auto* change = std::get_if<take::TakenChange>(&event))
             engine.schedule_change(change->id, change->node, change->param, change->value);
     }
     engine.render(threads);

@@ -2,8 +2,8 @@
 // Repeats a take of a patch that may use the chaotic types.
 #pragma once
 
-#include "engine/engine.hpp"
-#include "engine/take_compare.hpp"
+#include "engine/run/engine.hpp"
+#include "engine/take/take_compare.hpp"
 
 #include <filesystem>
 #include <string>
@@ -11,9 +11,9 @@
 namespace tactus::test {
 
 struct Repetition {
-    Engine::PortHashes hashes;
+    run::Engine::PortHashes hashes;
     std::uint64_t compared = 0;
-    std::optional<TakeDifference> difference;
+    std::optional<take::TakeDifference> difference;
     bool matches_result = false;  ///< all hashes are those in the take
 };
 

@@ -13,11 +13,11 @@ TEST_CASE("taking a plan over, setting a parameter and recording a take are real
     if (!watch.missing.empty()) WARN(watch.missing);
     const auto folder = scratch("swaps");
     {
-        TakeWriter take(folder,
+        take::TakeWriter take(folder,
                         {.patch_file = "swaps.toml", .overrides = {}, .seed = {}, .seconds = 1.0, .live = false});
-        EngineOptions options;
+        run::EngineOptions options;
         options.take = &take;
-        Engine engine(compile_text(edited(0)), options);
+        run::Engine engine(compile_text(edited(0)), options);
         for (int i = 1; i <= 40; ++i)
             engine.schedule(compile_text(edited(static_cast<std::uint64_t>(i))), i * flicks_per_second / 50);
         const RealtimeViolations seen = watch_scopes([&] { engine.render(1); });

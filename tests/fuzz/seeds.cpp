@@ -34,20 +34,20 @@ WrittenVolume ball() {
 void write_nrrd(const Path& folder) {
     const WrittenVolume v = ball();
     std::string plain = nrrd_bytes(v);
-    write_whole_file(folder / "raw.nrrd", plain);
+    file::write_whole_file(folder / "raw.nrrd", plain);
     const std::size_t end = plain.find("\n\n");
-    write_whole_file(folder / "named.nrrd",
+    file::write_whole_file(folder / "named.nrrd",
                      std::string(plain).insert(end,
                                                "\nSegment0_ID:=a\nSegment0_LabelValue:=1\nSegment0_Name:=jaw\n"
                                                "Segment0_Color:=0.9 0.8 0.7\nSegment0_Layer:=0"));
     std::string text = plain.substr(0, end + 2);
     text.replace(text.find("encoding: raw"), 13, "encoding: ascii");
     for (const std::int16_t value : v.hu) text += fmt::format("{} ", value);
-    write_whole_file(folder / "ascii.nrrd", text);
-    Grid grid{v.size, v.origin * 1e-3, Vec3(0.5e-3, 0.6e-3, 1.5e-3), {}};
+    file::write_whole_file(folder / "ascii.nrrd", text);
+    volume::Grid grid{v.size, v.origin * 1e-3, Vec3(0.5e-3, 0.6e-3, 1.5e-3), {}};
     grid.values.assign(v.hu.begin(), v.hu.end());
-    write_volume(grid, SampleType::int16, folder / "gzip.nrrd");
-    write_whole_file(folder / "layers.nrrd",
+    volume::write_volume(grid, volume::SampleType::int16, folder / "gzip.nrrd");
+    file::write_whole_file(folder / "layers.nrrd",
                      "NRRD0005\ntype: uchar\ndimension: 4\nspace: right-anterior-superior\nsizes: 2 3 2 2\n"
                      "space directions: none (1,0,0) (0,1,0) (0,0,1)\nkinds: list domain domain domain\n"
                      "encoding: raw\nspace origin: (0,0,0)\nSegment0_ID:=a\nSegment0_LabelValue:=1\nSegment0_Layer:=0\n"
@@ -57,15 +57,15 @@ void write_nrrd(const Path& folder) {
 
 void write_nifti(const Path& folder) {
     const WrittenVolume v = ball();
-    write_whole_file(folder / "first.nii", nifti_bytes(v));
-    write_whole_file(folder / "second.nii", nifti_bytes(v, {.second = true}));
-    write_whole_file(folder / "quaternion.nii", nifti_bytes(v, {.swapped = true, .quaternion = true}));
+    file::write_whole_file(folder / "first.nii", nifti_bytes(v));
+    file::write_whole_file(folder / "second.nii", nifti_bytes(v, {.second = true}));
+    file::write_whole_file(folder / "quaternion.nii", nifti_bytes(v, {.swapped = true, .quaternion = true}));
 }
 
 void write_dicom(const Path& folder) {
     const WrittenVolume v = ball();
-    write_whole_file(folder / "slice.dcm", dicom_bytes(v, 1));
-    write_whole_file(folder / "frames.dcm", enhanced_dicom_bytes(v));
+    file::write_whole_file(folder / "slice.dcm", dicom_bytes(v, 1));
+    file::write_whole_file(folder / "frames.dcm", enhanced_dicom_bytes(v));
     // Implicit elements, as the oldest scanners wrote them: group, number, length.
     std::string implicit = dicom_bytes(v, 0).substr(0, 132);
     const auto put = [&implicit](const std::string& text) { implicit += text; };
@@ -75,10 +75,10 @@ void write_dicom(const Path& folder) {
                     26));
     put(std::string("\x28\0\2\0\2\0\0\0\1\0\x28\0\x10\0\2\0\0\0\2\0\x28\0\x11\0\2\0\0\0\2\0", 30));
     put(std::string("\x28\0\0\1\2\0\0\0\x10\0\xe0\x7f\x10\0\x8\0\0\0\0\0\1\0\2\0\3\0", 26));
-    write_whole_file(folder / "implicit.dcm", implicit);
+    file::write_whole_file(folder / "implicit.dcm", implicit);
 }
 
-TriangleSurface tetrahedron() {
+geometry::TriangleSurface tetrahedron() {
     return {{Vec3(0.0), Vec3(0.02, 0.0, 0.0), Vec3(0.0, 0.02, 0.0), Vec3(0.0, 0.0, 0.02)},
             {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
 }
@@ -113,14 +113,14 @@ void write_texts(const Path& folder, const std::string& kind) {
             }
             text += "endsolid\n";
         }
-        write_whole_file(folder / ((triangles == &closed ? "closed." : "open.") + kind), text);
+        file::write_whole_file(folder / ((triangles == &closed ? "closed." : "open.") + kind), text);
     }
 }
 
 void write_bones(const Path& folder) {
-    Bone bone;
+    bone::Bone bone;
     bone.name = "ball";
-    bone.distance = Grid{{8, 8, 8}, Vec3(-3.5e-3), Vec3(1e-3), {}};
+    bone.distance = volume::Grid{{8, 8, 8}, Vec3(-3.5e-3), Vec3(1e-3), {}};
     for (int k = 0; k < 8; ++k)
         for (int j = 0; j < 8; ++j)
             for (int i = 0; i < 8; ++i)
@@ -128,14 +128,14 @@ void write_bones(const Path& folder) {
     bone.density = bone.distance;
     for (float& value : bone.density.values) value = value < 0.0f ? 1800.0f : 0.0f;
     bone.provenance["frame"] = "LPS";
-    Bone other = bone;
+    bone::Bone other = bone;
     other.name = "other";
-    other.points = {SurfacePoint{}};
-    save_bone(bone, folder / "one.vdb");
-    save_bones(std::vector{bone, other}, folder / "two.vdb");
+    other.points = {contact::SurfacePoint{}};
+    bone::save_bone(bone, folder / "one.vdb");
+    bone::save_bones(std::vector{bone, other}, folder / "two.vdb");
     for (const std::uint32_t packing : {0u, 1u, 2u, 3u, 4u, 6u})
-        write_whole_file(folder / fmt::format("packed{}.vdb", packing),
-                         test::sealed(test::repacked(read_sealed(folder / "one.vdb"), packing)));
+        file::write_whole_file(folder / fmt::format("packed{}.vdb", packing),
+                         test::sealed(test::repacked(bone::read_sealed(folder / "one.vdb"), packing)));
 }
 
 }  // namespace
@@ -148,10 +148,10 @@ void write_seeds(const std::filesystem::path& root) {
     write_nrrd(folder("assets_nrrd"));
     write_nifti(folder("assets_nifti"));
     write_dicom(folder("assets_dicom"));
-    write_whole_file(folder("assets_inv3") / "project.tar", inv3_tar(ball()));
+    file::write_whole_file(folder("assets_inv3") / "project.tar", inv3_tar(ball()));
     for (const std::string kind : {"stl", "ply", "obj"}) write_texts(folder("assets_" + kind), kind);
     for (const std::string kind : {"stl", "ply"})
-        write_mesh(std::vector<ColouredSurface>{{tetrahedron()}}, folder("assets_" + kind) / ("binary." + kind));
+        mesh::write_mesh(std::vector<mesh::ColouredSurface>{{tetrahedron()}}, folder("assets_" + kind) / ("binary." + kind));
     write_bones(folder("assets_vdb"));
 }
 

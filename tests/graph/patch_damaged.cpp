@@ -54,15 +54,15 @@ TEST_CASE("nesting without end is refused, however it is written") {
 
 TEST_CASE("dots in texts and comments are not nesting") {
     const std::string dots(1000, '.');
-    CHECK_FALSE(overlong_key("a = \"" + dots + "\"\n"));
-    CHECK_FALSE(overlong_key("a = '" + dots + "'\n"));
-    CHECK_FALSE(overlong_key("a = \"\"\"\n" + dots + "\\\"\"\"\n" + dots + "\"\"\"\n"));
-    CHECK_FALSE(overlong_key("# " + dots + "\na = 1\n"));
-    CHECK_FALSE(overlong_key("a = \"\\\"" + dots + "\"\n"));
-    CHECK_FALSE(overlong_key(repeated("x.y = 1.5\n", 1000)));
-    CHECK_FALSE(overlong_key("a = \"" + dots));
-    CHECK_FALSE(overlong_key("a = \"\\"));
-    CHECK(overlong_key("a = \"x\"\nb" + dots) == std::size_t{9 + most_dots_in_key});
+    CHECK_FALSE(file::overlong_key("a = \"" + dots + "\"\n"));
+    CHECK_FALSE(file::overlong_key("a = '" + dots + "'\n"));
+    CHECK_FALSE(file::overlong_key("a = \"\"\"\n" + dots + "\\\"\"\"\n" + dots + "\"\"\"\n"));
+    CHECK_FALSE(file::overlong_key("# " + dots + "\na = 1\n"));
+    CHECK_FALSE(file::overlong_key("a = \"\\\"" + dots + "\"\n"));
+    CHECK_FALSE(file::overlong_key(repeated("x.y = 1.5\n", 1000)));
+    CHECK_FALSE(file::overlong_key("a = \"" + dots));
+    CHECK_FALSE(file::overlong_key("a = \"\\"));
+    CHECK(file::overlong_key("a = \"x\"\nb" + dots) == std::size_t{9 + file::most_dots_in_key});
 }
 
 TEST_CASE("a megabyte of text is read or refused, with a short message") {
@@ -75,10 +75,10 @@ TEST_CASE("a megabyte of text is read or refused, with a short message") {
 }
 
 TEST_CASE("what cannot be opened as a patch says why") {
-    Problems problems;
+    patch::Problems problems;
     const auto refusal = [&](const std::filesystem::path& file) -> std::string {
         try {
-            load_patch(file, problems);
+            patch::load_patch(file, problems);
         } catch (const Error& error) {
             return error.what();
         }

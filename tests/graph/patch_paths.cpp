@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/patch_paths.hpp"
-#include "graph/patch_editor.hpp"
+#include "graph/edit/patch_editor.hpp"
 
 #include <unistd.h>
 #include <catch2/catch.hpp>
@@ -48,7 +48,7 @@ TEST_CASE("a patch saved as another file keeps its history there, and the first 
         return text.str();
     };
     std::ofstream(folder / "a.toml") << "one";
-    PatchEditor editor("one", folder / "a.toml", [](std::string_view) { return std::nullopt; });
+    edit::PatchEditor editor("one", folder / "a.toml", [](std::string_view) { return std::nullopt; });
     for (const char* next : {"one two", "one two three", "one two three four"})
         editor.apply([&](std::string_view) { return std::string(next); });
     editor.undo();

@@ -22,7 +22,7 @@ std::vector<const ValueType*> wires_of(const NodeType& type) {
 
 template <class Check>
 void for_every_node(Check&& check) {
-    for (const NodeType* type : catalogue())
+    for (const NodeType* type : nodes::catalogue())
         for (const ValueType* any : wires_of(*type)) {
             INFO(type->name << " on a wire of " << any->name);
             check(*type, any);
@@ -122,7 +122,7 @@ TEST_CASE("a node runs with every optional input left open") {
 }
 
 TEST_CASE("every member is explained and every default lies in its range") {
-    for (const NodeType* type : catalogue()) {
+    for (const NodeType* type : nodes::catalogue()) {
         INFO(type->name);
         CHECK_FALSE(type->about.empty());
         void* node = type->create();

@@ -84,7 +84,7 @@ bool runs_clean(const NodeType& type, const ValueType* any, const Situation& s,
 TEST_CASE("every node is real-time safe in its first ticks, open or connected, driven, with good and bad input") {
     if (const RealtimeWatch watch = realtime_watch(); !watch.missing.empty())
         WARN("skipped in part: " << watch.missing);
-    for (const NodeType* type : catalogue()) {
+    for (const NodeType* type : nodes::catalogue()) {
         std::vector<const ValueType*> wires{&value::number};
         if (NodeHarness(*type).takes_any())
             wires = {&value::number, &value::boolean, &value::pose, &value::twist, &value::wrench, &value::signal};
@@ -103,7 +103,7 @@ TEST_CASE("every node is real-time safe in its first ticks, open or connected, d
 
 TEST_CASE("the walk meets batches and snapshots") {
     int batches = 0, snapshots = 0;
-    for (const NodeType* type : catalogue()) {
+    for (const NodeType* type : nodes::catalogue()) {
         const Inventory inventory = inventory_of(*type);
         batches += inventory.batches;
         snapshots += inventory.snapshots;

@@ -18,7 +18,7 @@ constexpr std::int64_t hold = 24;
 constexpr int most_in_batch = 20;
 
 const NodeType& find_type(std::string_view name) {
-    for (const NodeType* type : catalogue())
+    for (const NodeType* type : nodes::catalogue())
         if (type->name == name) return *type;
     throw Error("no node type '" + std::string(name) + "' in the catalogue");
 }

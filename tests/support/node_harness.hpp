@@ -3,7 +3,7 @@
 // an outside world that is memory.
 #pragma once
 
-#include "graph/node.hpp"
+#include "graph/node/node.hpp"
 
 #include <cstdint>
 #include <cstring>

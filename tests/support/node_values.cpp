@@ -3,7 +3,7 @@
 
 #include "dsp/contact/shape.hpp"
 #include "dsp/coupling/scene.hpp"
-#include "dsp/coupling/triangle_tree.hpp"
+#include "dsp/geometry/triangle_tree.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -62,9 +62,9 @@ Draw draw_at(const Random& random, std::int64_t k, Feed feed) {
 namespace {
 
 /// A cube of bone, the same for every activation.
-const BoneEditor& sample_bone() {
-    static const BoneEditor bone = [] {
-        Grid distance{{20, 20, 20}, Vec3(-0.01), Vec3(0.001), std::vector<float>(8000)};
+const volume::BoneEditor& sample_bone() {
+    static const volume::BoneEditor bone = [] {
+        volume::Grid distance{{20, 20, 20}, Vec3(-0.01), Vec3(0.001), std::vector<float>(8000)};
         for (int k = 0; k < 20; ++k)
             for (int j = 0; j < 20; ++j)
                 for (int i = 0; i < 20; ++i) {
@@ -72,8 +72,8 @@ const BoneEditor& sample_bone() {
                     distance.at(i, j, k) =
                         static_cast<float>(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) - 0.006);
                 }
-        const Grid density{distance.size, distance.origin, distance.spacing, std::vector<float>(8000, 1600.0f)};
-        return BoneEditor(distance, density, {.band = 0.1, .max_dirty = 1, .max_versions = 1});
+        const volume::Grid density{distance.size, distance.origin, distance.spacing, std::vector<float>(8000, 1600.0f)};
+        return volume::BoneEditor(distance, density, {.band = 0.1, .max_dirty = 1, .max_versions = 1});
     }();
     return bone;
 }
@@ -81,20 +81,20 @@ const BoneEditor& sample_bone() {
 }  // namespace
 
 /// A ball of bone on a table, the same for every activation.
-const Scene& sample_scene() {
-    static const Pointshell shell = make_pointshell(Ball{5e-3}.points(1e-3));
-    static const Voxmap map = sample_voxmap({{31, 31, 31}, Vec3(-15e-3), Vec3(1e-3), {}},
-                                            [](const Vec3& p) { return Ball{5e-3}.distance(p); });
-    static const TriangleTree triangles(iso_surface(map.grid, 0.0f, false));
-    static const Scene scene = [] {
-        Scene made;
+const coupling::Scene& sample_scene() {
+    static const contact::Pointshell shell = contact::make_pointshell(contact::Ball{5e-3}.points(1e-3));
+    static const contact::Voxmap map = contact::sample_voxmap({{31, 31, 31}, Vec3(-15e-3), Vec3(1e-3), {}},
+                                            [](const Vec3& p) { return contact::Ball{5e-3}.distance(p); });
+    static const geometry::TriangleTree triangles(geometry::iso_surface(map.grid, 0.0f, false));
+    static const coupling::Scene scene = [] {
+        coupling::Scene made;
         made.count = 2;
         for (std::size_t i = 0; i < 2; ++i) {
             made.objects[i].body = {&shell, &map, &triangles, {}, 1, 7};
             made.objects[i].pose.position.x = 9e-3 * static_cast<double>(i);
         }
         made.version = 1;
-        made.content_hash = hash_of(made);
+        made.content_hash = coupling::hash_of(made);
         return made;
     }();
     return scene;
@@ -116,9 +116,9 @@ void sample_value(const ValueType& type, const Random& random, std::int64_t k, F
         // A conversion of what a float cannot hold is undefined; its own largest value stands in.
         const double largest = std::numeric_limits<float>::max();
         put(out, std::isfinite(v) && std::abs(v) > largest ? std::numeric_limits<float>::max() : static_cast<float>(v));
-    } else if (&type == &value::snapshot<BoneSnapshot>) put(out, sample_bone().current());
-    else if (&type == &value::snapshot<Body>) put(out, sample_scene().objects[0].body);
-    else if (&type == &value::snapshot<Scene>) put(out, sample_scene());
+    } else if (&type == &value::snapshot<volume::BoneSnapshot>) put(out, sample_bone().current());
+    else if (&type == &value::snapshot<coupling::Body>) put(out, sample_scene().objects[0].body);
+    else if (&type == &value::snapshot<coupling::Scene>) put(out, sample_scene());
     else throw Error("no sample values for a " + std::string(type.name));
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Assets for tests, made in memory: a ball of bone, a saw of two recordings and a short equaliser.
 #include "dsp/contact/sample_surface.hpp"
-#include "graph/assets.hpp"
+#include "graph/node/assets.hpp"
 #include "tests/support/node_harness.hpp"
 
 #include <cmath>
@@ -11,10 +11,10 @@ namespace tactus::test {
 
 namespace {
 
-Bone ball() {
-    Bone bone;
+bone::Bone ball() {
+    bone::Bone bone;
     bone.name = "ball";
-    Grid& d = bone.distance;
+    volume::Grid& d = bone.distance;
     d.size = {84, 84, 84};
     d.spacing = Vec3(1.0 / 3200.0);
     d.origin = -0.5 * 83.0 * d.spacing;
@@ -30,8 +30,8 @@ Bone ball() {
     return bone;
 }
 
-Recording tone(bool cutting, double rate, double load) {
-    Recording r;
+sound::Recording tone(bool cutting, double rate, double load) {
+    sound::Recording r;
     r.cutting = cutting;
     r.rate = rate;
     r.load = load;
@@ -48,30 +48,30 @@ Recording tone(bool cutting, double rate, double load) {
 }  // namespace
 
 std::shared_ptr<const void> sample_asset(std::string_view type_name) {
-    if (type_name == AssetLoader<Bone>::name) return std::make_shared<const Bone>(ball());
-    if (type_name == AssetLoader<CaseBones>::name) {
-        CaseBones made;
+    if (type_name == AssetLoader<bone::Bone>::name) return std::make_shared<const bone::Bone>(ball());
+    if (type_name == AssetLoader<cases::CaseBones>::name) {
+        cases::CaseBones made;
         for (const char* name : {"ball", "other"}) {
             made.plan.fragments.push_back({name, name, 0, Vec3(1.0)});
             made.bones.push_back(ball());
-            made.bones.back().points = sample_surface(made.bones.back().distance, {.spacing = 1.5e-3});
+            made.bones.back().points = contact::sample_surface(made.bones.back().distance, {.spacing = 1.5e-3});
         }
-        return std::make_shared<const CaseBones>(std::move(made));
+        return std::make_shared<const cases::CaseBones>(std::move(made));
     }
-    if (type_name == AssetLoader<RecordingSet>::name) {
-        RecordingSet set;
+    if (type_name == AssetLoader<sound::RecordingSet>::name) {
+        sound::RecordingSet set;
         set.recordings = {tone(false, 200.0, 0.0), tone(true, 200.0, 7.0)};
-        return std::make_shared<const RecordingSet>(std::move(set));
+        return std::make_shared<const sound::RecordingSet>(std::move(set));
     }
-    if (type_name == AssetLoader<Equaliser>::name) {
-        Equaliser equaliser;
+    if (type_name == AssetLoader<vibration::Equaliser>::name) {
+        vibration::Equaliser equaliser;
         equaliser.taps = {0.5f, -0.25f, 0.125f};
         equaliser.delay = 1.0 / 48000.0;
-        return std::make_shared<const Equaliser>(std::move(equaliser));
+        return std::make_shared<const vibration::Equaliser>(std::move(equaliser));
     }
-    if (type_name == AssetLoader<DeflectionTable>::name)
-        return std::make_shared<const DeflectionTable>(
-            DeflectionTable{{-1.0, 0.0, 1.0, 5.0}, {-1e-3, 0.0, 2e-3, 4e-3}, {-0.5e-3, 1e-3, 3e-3, 4e-3}});
+    if (type_name == AssetLoader<control::DeflectionTable>::name)
+        return std::make_shared<const control::DeflectionTable>(
+            control::DeflectionTable{{-1.0, 0.0, 1.0, 5.0}, {-1e-3, 0.0, 2e-3, 4e-3}, {-0.5e-3, 1e-3, 3e-3, 4e-3}});
     throw Error("no sample of a " + std::string(type_name));
 }
 

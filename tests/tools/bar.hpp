@@ -11,10 +11,10 @@
 namespace tactus::test {
 
 /// A bar of egg-shaped section, 12 by 22 mm and 40 mm long.
-inline Bone bar() {
+inline bone::Bone bar() {
     constexpr double mm = 1e-3;
-    Bone bone;
-    Grid& grid = bone.distance;
+    bone::Bone bone;
+    volume::Grid& grid = bone.distance;
     grid = {{95, 37, 59}, Vec3(-23.5, -9.0, -14.5) * mm, Vec3(0.5 * mm), {}};
     for (int k = 0; k < grid.size[2]; ++k)
         for (int j = 0; j < grid.size[1]; ++j)

@@ -57,8 +57,8 @@ struct Folder {
 constexpr double mm = 1e-3;
 
 // Two balls of 6 and 4 mm radius, far from the origin: HU, or labels 1 and 2.
-Grid two_balls(bool labels) {
-    Grid grid{{60, 36, 34}, Vec3(0.9, -0.2, 1.1), Vec3(0.5 * mm, 0.5 * mm, 0.6 * mm), {}};
+volume::Grid two_balls(bool labels) {
+    volume::Grid grid{{60, 36, 34}, Vec3(0.9, -0.2, 1.1), Vec3(0.5 * mm, 0.5 * mm, 0.6 * mm), {}};
     for (int k = 0; k < 34; ++k)
         for (int j = 0; j < 36; ++j)
             for (int i = 0; i < 60; ++i) {
@@ -78,8 +78,8 @@ double ball_mm3(double radius) { return 4.0 / 3.0 * std::numbers::pi * radius * 
 
 TEST_CASE("info answers the same questions for a CT and a label map and a mesh and bones") {
     const Folder folder;
-    write_volume(two_balls(false), SampleType::int16, folder / "ct.nrrd");
-    write_volume(two_balls(true), SampleType::int16, folder / "labels.nrrd");
+    volume::write_volume(two_balls(false), volume::SampleType::int16, folder / "ct.nrrd");
+    volume::write_volume(two_balls(true), volume::SampleType::int16, folder / "labels.nrrd");
     REQUIRE(folder
                 .tactus("import " + folder / "labels.nrrd" + " --label all --ct " + folder / "ct.nrrd" + " -o " +
                         folder / "two.vdb")
@@ -119,11 +119,11 @@ TEST_CASE("info answers the same questions for a CT and a label map and a mesh a
 
 TEST_CASE("a label map goes in and comes out: import, load by name, export, import again") {
     const Folder folder;
-    write_volume(two_balls(true), SampleType::int16, folder / "labels.nrrd");
+    volume::write_volume(two_balls(true), volume::SampleType::int16, folder / "labels.nrrd");
     const json made = folder.answer("import " + folder / "labels.nrrd --label all --json -o " + folder / "two.vdb");
     REQUIRE(made["bones"].size() == 2);
     CHECK(made["bones"][1]["label"] == 2);
-    CHECK(load_bone(folder / "two.vdb#label 2").provenance.at("label") == "2");
+    CHECK(bone::load_bone(folder / "two.vdb#label 2").provenance.at("label") == "2");
     const json one = folder.answer("export " + folder / "two.vdb --bone 'label 2' --json -o " + folder / "b.ply");
     CHECK(one["volume_mm3"].get<double>() == Approx(ball_mm3(4.0)).epsilon(0.04));
     const json again = folder.answer("import " + folder / "b.ply --json -o " + folder / "b.vdb");
@@ -144,7 +144,7 @@ TEST_CASE("a label map goes in and comes out: import, load by name, export, impo
 TEST_CASE("a render leaves the cut bone; it is smaller and goes out as a mesh") {
     const Folder folder;
     REQUIRE(folder.tactus("render saw-training --seconds 3 --out " + folder / "saw").code == 0);
-    const Bone cut = load_bone(folder / "saw/bone.vdb");
+    const bone::Bone cut = bone::load_bone(folder / "saw/bone.vdb");
     const json mesh = folder.answer("export " + folder / "saw/bone.vdb --json -o " + folder / "cut.stl");
     const json summary = json::parse(Folder::slurp(folder / "saw/summary.json"));
     CHECK(mesh["volume_mm3"].get<double>() > 1000.0);

@@ -26,9 +26,9 @@ constexpr int width = 1920, height = 1080;
 
 /// How a rig really stands: a monitor above a half-transparent mirror, a device beneath it.
 struct TrueRig {
-    Pose device{{0.03, -0.24, -0.28}, rotation_xyz({0.2, -0.1, 0.4})};
-    Plane mirror{{0.0, 0.0, 0.0}, glm::normalize(Vec3(0.0, -0.25, 0.97))};
-    Screen image{{0.26, -0.14, -0.2}, {-0.26, -0.14, -0.2}, {0.26, 0.14, -0.12}};  // left and right swapped
+    Pose device{{0.03, -0.24, -0.28}, coupling::rotation_xyz({0.2, -0.1, 0.4})};
+    display::Plane mirror{{0.0, 0.0, 0.0}, glm::normalize(Vec3(0.0, -0.25, 0.97))};
+    display::Screen image{{0.26, -0.14, -0.2}, {-0.26, -0.14, -0.2}, {0.26, 0.14, -0.12}};  // left and right swapped
     Vec3 work = image.low_left + 0.5 * (image.right() + image.up());
 
     Vec3 mark(double u, double v) const { return image.low_left + u * image.right() + v * image.up(); }
@@ -51,24 +51,24 @@ struct Noise {
     }
 };
 
-std::vector<RigTouch> touches_of(const TrueRig& rig, Noise noise) {
-    std::vector<RigTouch> touches;
-    const auto add = [&](RigTouch touch, const Vec3& at) {
+std::vector<display::RigTouch> touches_of(const TrueRig& rig, Noise noise) {
+    std::vector<display::RigTouch> touches;
+    const auto add = [&](display::RigTouch touch, const Vec3& at) {
         touch.reading = rig.device.inverse().apply(at) + noise();
         touches.push_back(touch);
     };
     for (int n = 0; n < 12; ++n) {
         const Vec3 at = rig.work + 0.1 * (n < 8 ? Vec3((n & 1) * 2 - 1, (n & 2) - 1, (n >> 2) * 2 - 1)
                                                 : Vec3(n == 8 ? 1 : 0, n == 9 ? -1 : 0, n == 10 ? 1 : -0.5));
-        add({RigTouch::Of::workspace, {}, {}, {}, at}, at);
+        add({display::RigTouch::Of::workspace, {}, {}, {}, at}, at);
     }
     const Vec3 along(1.0, 0.0, 0.0), across = glm::cross(rig.mirror.normal, along);
     for (int n = 0; n < 12; ++n)
-        add({RigTouch::Of::mirror, {}, {}, {}, {}},
+        add({display::RigTouch::Of::mirror, {}, {}, {}, {}},
             rig.mirror.point + 0.15 * ((n % 4 - 1.5) * along + (n / 4 - 1.0) * across));
     for (int n = 0; n < 16; ++n) {
         const glm::dvec2 shown(0.05 + 0.3 * (n % 4), 0.05 + 0.3 * (n / 4));
-        add({RigTouch::Of::image, "monitor", shown, {}, {}}, rig.mark(shown.x, shown.y));
+        add({display::RigTouch::Of::image, "monitor", shown, {}, {}}, rig.mark(shown.x, shown.y));
     }
     return touches;
 }
@@ -81,9 +81,9 @@ public:
     explicit Beholder(const fs::path& rig) : sight_({"quad-buffer", "head.pose", rig, {}}) {
         const Pose nowhere;
         port_ = observer_.open({"head.pose", flicks_per_second / 60, 1}, value::pose, bytes_of(nowhere));
-        observer_.watch("head.pose", Watch::latest);
+        observer_.watch("head.pose", observe::Watch::latest);
     }
-    std::vector<DrawnView> look(const Pose& head, const Bounds& scene) {
+    std::vector<display::DrawnView> look(const Pose& head, const display::Bounds& scene) {
         port_->see(++ticks_, bytes_of(head), 1, 0);
         observer_.advance();
         sight_.update(observer_);
@@ -94,13 +94,13 @@ public:
     }
 
 private:
-    Observer observer_;
+    observe::Observer observer_;
     Sight sight_;
-    std::shared_ptr<ObservedPort> port_;
+    std::shared_ptr<observe::ObservedPort> port_;
     std::int64_t ticks_ = 0;
 };
 
-glm::dvec2 pixel(const DrawnView& view, const Vec3& scene) {
+glm::dvec2 pixel(const display::DrawnView& view, const Vec3& scene) {
     const auto at = view.projection.seen(scene);
     REQUIRE(at);
     return {0.5 * (at->x + 1.0) * width, 0.5 * (at->y + 1.0) * height};
@@ -113,19 +113,19 @@ Vec3 crossing(const Vec3& a, const Vec3& towards_a, const Vec3& b, const Vec3& t
     return 0.5 * (a + u * ((uv * e - d) / share) + b + v * ((e - uv * d) / share));
 }
 
-Bounds cube(const Vec3& middle) {
-    Bounds box;
+display::Bounds cube(const Vec3& middle) {
+    display::Bounds box;
     box.add(middle - Vec3(0.12));
     box.add(middle + Vec3(0.12));
     return box;
 }
 
 Pose head_at(const TrueRig& rig, const Vec3& off) {
-    return {rig.work + Vec3(0.0, -0.35, 0.45) + off, rotation_xyz({0.6, 0.1, -0.1})};
+    return {rig.work + Vec3(0.0, -0.35, 0.45) + off, coupling::rotation_xyz({0.6, 0.1, -0.1})};
 }
 
 fs::path calibrated(const Folder& folder, const TrueRig& rig, double sigma, json* answer = nullptr) {
-    folder.write("touches.csv", touches_text(touches_of(rig, {sigma})));
+    folder.write("touches.csv", display::touches_text(touches_of(rig, {sigma})));
     const fs::path file = folder.path / "rig.toml";
     const Outcome outcome = folder.tactus("calibrate --touches " + (folder.path / "touches.csv").string() + " -o " +
                                           file.string() + " --json");
@@ -148,7 +148,7 @@ TEST_CASE("after a calibration with noisy touches, a point is seen within 1 mm o
     double worst = 0.0;
     for (int n = 0; n < 5; ++n) {
         const Pose head = head_at(rig, Vec3(0.1 * (n - 2), 0.05 * (n % 2), 0.03 * n));
-        const Eyes eyes = eyes_of(head, 0.063);
+        const display::Eyes eyes = display::eyes_of(head, 0.063);
         // The scene is the device's own frame: no node places it elsewhere.
         const auto views = beholder.look(head, cube(rig.device.inverse().apply(rig.work)));
         for (int corner = 0; corner < 27; ++corner) {
@@ -181,7 +181,7 @@ TEST_CASE("through the file of a rig, every pixel is within half a one of the an
     double worst = 0.0, parallax = 0.0;
     for (int n = 0; n < 200; ++n) {
         const Pose head = head_at(rig, within(0.2));
-        const Eyes eyes = eyes_of(head, 0.063);
+        const display::Eyes eyes = display::eyes_of(head, 0.063);
         const auto views = beholder.look(head, cube(rig.device.inverse().apply(rig.work)));
         const Vec3 felt = rig.work + within(0.1);
         const auto analytic = [&](const Vec3& eye) {
@@ -229,17 +229,17 @@ TEST_CASE("a simulated hand touches the marks of a screen; one that went wrong i
     REQUIRE(outcome.code == 0);
     CHECK(outcome.err.find("9 of 9") != std::string::npos);
     CHECK(outcome.err.find("touch 2, mark (0.5, 0.1) of screen 'monitor', is 30.0 mm off") != std::string::npos);
-    const RigFile rig = load_rig_file(out);
+    const display::RigFile rig = display::load_rig_file(out);
     REQUIRE(rig.screens.size() == 1);
     CHECK(rig.screens[0].name == "monitor");
     CHECK(glm::length(rig.rig.screens[0].low_left - Vec3(-0.2, 0.1, 0.05)) < 0.2e-3);
     CHECK(glm::length(rig.rig.screens[0].low_right - Vec3(0.2, 0.1, 0.05)) < 0.2e-3);
-    CHECK(load_touches(folder.path / "touches.csv").size() == 9);
+    CHECK(display::load_touches(folder.path / "touches.csv").size() == 9);
     // The kept touches give the same rig, and what is known of it otherwise stays.
     const Outcome again = folder.tactus("calibrate --touches " + (folder.path / "touches.csv").string() + " --base " +
                                         out + " -o " + (folder.path / "again.toml").string());
     CHECK(again.code == 0);
-    CHECK(glm::length(load_rig_file(folder.path / "again.toml").rig.screens[0].high_left -
+    CHECK(glm::length(display::load_rig_file(folder.path / "again.toml").rig.screens[0].high_left -
                       rig.rig.screens[0].high_left) < 1e-8);
 }
 
@@ -248,7 +248,7 @@ TEST_CASE("a calibration that cannot be trusted writes nothing and says which to
     const Folder folder;
     auto touches = touches_of(rig, {0.2e-3});
     touches[30].reading.x += 0.015;
-    folder.write("touches.csv", touches_text(touches));
+    folder.write("touches.csv", display::touches_text(touches));
     const std::string out = (folder.path / "rig.toml").string();
     const auto calibrate = [&] {
         return folder.tactus("calibrate --touches " + (folder.path / "touches.csv").string() + " -o " + out);
@@ -261,7 +261,7 @@ TEST_CASE("a calibration that cannot be trusted writes nothing and says which to
     CHECK_FALSE(fs::exists(out));
     CHECK_FALSE(fs::exists(out + ".part"));
     touches.resize(14);
-    folder.write("touches.csv", touches_text(touches));
+    folder.write("touches.csv", display::touches_text(touches));
     CHECK(calibrate().err.find("mirror") != std::string::npos);
     CHECK(folder.tactus("calibrate -o " + out).err.find("--device") != std::string::npos);
     CHECK(folder.tactus("calibrate --device scripted -o " + out).err.find("nothing to touch") != std::string::npos);

@@ -4,7 +4,7 @@
 
 #include "devices/display/gl_context.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/view/camera.hpp"
+#include "dsp/display/camera.hpp"
 #include "tests/support/places.hpp"
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ namespace {
 
 bool can_render() {
     try {
-        const SurfacelessContext context;
+        const display::SurfacelessContext context;
         return true;
     } catch (const Error& error) {
         WARN("skipped: " << error.what());
@@ -250,7 +250,7 @@ stereo = "mono"
                           " --size 1280x720 --overwrite --out " + (folder.path / "out").string());
         INFO(outcome.err);
         REQUIRE(outcome.code == 0);
-        OrbitCamera looking;
+        display::OrbitCamera looking;
         looking.look_along(-head);
         const Vec3 right = looking.orientation * Vec3(0.032, 0.0, 0.0);
         const Pixels above(folder.path / "out/frame_0001_above.png");

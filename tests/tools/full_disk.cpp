@@ -82,7 +82,7 @@ TEST_CASE("on a disk that gets full, a render and a run keep every whole row and
         CHECK(summary["groups"].size() == 2);
         // What there was no room for at all leaves no file.
         if (fs::exists(folder.path / out / "sound.wav")) {
-            const tactus::Sound sound = tactus::load_sound(folder.path / out / "sound.wav");
+            const tactus::sound::Sound sound = tactus::sound::load_sound(folder.path / out / "sound.wav");
             CHECK(sound.frames < 96000);
         }
         if (fs::exists(folder.path / out / "table.csv")) CHECK(whole_rows(folder.path / out / "table.csv") < 2000);
@@ -103,8 +103,8 @@ TEST_CASE("one output that finds no room ends whole, the others are whole to the
     INFO(sound.out << sound.err);
     CHECK(sound.code == 3);
     CHECK(slurp(folder.path / "a/table.csv") == slurp(folder.path / "good/table.csv"));
-    const tactus::Sound whole = tactus::load_sound(folder.path / "good/sound.wav"),
-                        cut = tactus::load_sound(folder.path / "a/sound.wav");
+    const tactus::sound::Sound whole = tactus::sound::load_sound(folder.path / "good/sound.wav"),
+                        cut = tactus::sound::load_sound(folder.path / "a/sound.wav");
     CHECK(cut.frames > 0);
     CHECK(cut.frames < whole.frames);
     CHECK(std::equal(cut.samples.begin(), cut.samples.end(), whole.samples.begin()));

@@ -141,7 +141,7 @@ TEST_CASE("exported transforms and landmarks, read by other code, move the scan 
     REQUIRE(done.code == 0);
     const FromParent transform(slurp(boxes.folder.path / "out/b.tfm"));
     // Corners of the exported mesh, carried back, are those of the scan.
-    const Mesh scan = load_mesh(boxes.file("b.stl")), placed = load_mesh(boxes.file("out/b.stl"));
+    const mesh::Mesh scan = mesh::load_mesh(boxes.file("b.stl")), placed = mesh::load_mesh(boxes.file("out/b.stl"));
     REQUIRE(scan.vertices.size() == 8);
     REQUIRE(placed.vertices.size() == 8);
     for (const Vec3& corner : placed.vertices) {
@@ -170,13 +170,13 @@ TEST_CASE("exported transforms and landmarks, read by other code, move the scan 
     const Pose told = pose_in(json::parse(done.out)[1]["pose"]);
     CHECK(glm::length(transform.back(told.apply(Vec3(0.01, 0.02, 0.03)) / mm) - Vec3(10.0, 20.0, 30.0)) < 1e-9);
     CHECK(boxes.run("export", "--format ply --out " + boxes.file("ply")).code == 0);
-    CHECK(load_mesh(boxes.file("ply/a.ply")).vertices.size() == 8);
+    CHECK(mesh::load_mesh(boxes.file("ply/a.ply")).vertices.size() == 8);
 }
 
 TEST_CASE("broken bone is put together by a plan, measured, and written up on one page") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
-    save_bone(bar(), file("bar.vdb"));
+    bone::save_bone(bar(), file("bar.vdb"));
     REQUIRE(folder.tactus("fracture " + file("bar.vdb") + " -o " + file("f") + " --seed 4 --spread 5 --turn 10").code ==
             0);
     const json truth = json::parse(slurp(folder.path / "f/truth.json"));
@@ -209,7 +209,7 @@ TEST_CASE("broken bone is put together by a plan, measured, and written up on on
     CHECK(page.find("place fragment_02, fit to fragment_01") != std::string::npos);
     CHECK(page.find("src=\"http") == std::string::npos);
     // A file that is not what it was is named, and the plan itself is still shown.
-    save_bone(bar(), file("f/fragment_02.vdb"));
+    bone::save_bone(bar(), file("f/fragment_02.vdb"));
     for (const std::string verb : {"snap", "report"}) {
         const Outcome refused = folder.tactus("plan " + verb + " " + plan + (verb == "snap" ? " fragment_02" : ""));
         CHECK(refused.code == 2);
@@ -221,9 +221,9 @@ TEST_CASE("broken bone is put together by a plan, measured, and written up on on
 TEST_CASE("fragments a metre from the origin are planned like any others") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
-    Bone far = bar();
-    for (Grid* grid : {&far.distance, &far.density}) grid->origin += Vec3(1.0, -0.6, 0.8);
-    save_bone(far, file("bar.vdb"));
+    bone::Bone far = bar();
+    for (volume::Grid* grid : {&far.distance, &far.density}) grid->origin += Vec3(1.0, -0.6, 0.8);
+    bone::save_bone(far, file("bar.vdb"));
     REQUIRE(folder.tactus("fracture " + file("bar.vdb") + " -o " + file("f") + " --seed 4 --spread 5 --turn 10").code ==
             0);
     const json truth = json::parse(slurp(folder.path / "f/truth.json"));
@@ -241,7 +241,7 @@ TEST_CASE("fragments a metre from the origin are planned like any others") {
 TEST_CASE("paint goes to a file of strokes that a hand may correct, and comes back from it") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
-    save_bone(bar(), file("bar.vdb"));
+    bone::save_bone(bar(), file("bar.vdb"));
     REQUIRE(folder.tactus("fracture " + file("bar.vdb") + " -o " + file("f") + " --seed 4 --spread 5 --turn 10").code ==
             0);
     json strokes;

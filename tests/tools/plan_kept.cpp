@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Nothing of a plan is lost: not by a run that is killed, not by two programs at once, not by a disk that is full.
-#include "assets/plan/plan_file.hpp"
-#include "assets/plan/plan_lock.hpp"
+#include "assets/cases/plan_file.hpp"
+#include "assets/cases/plan_lock.hpp"
 #include "tests/support/places.hpp"
 #include "tests/tools/background_run.hpp"
 
@@ -28,10 +28,10 @@ struct Bare {
     std::string plan = (folder.path / "case.plan.json").string();
 
     Bare() {
-        CasePlan made;
+        cases::CasePlan made;
         made.title = "two";
         for (const char* name : {"a", "b"}) made.fragments.push_back({name, std::string(name) + ".vdb", 1, Vec3(1.0)});
-        save_case_plan(made, plan);
+        cases::save_case_plan(made, plan);
     }
     Outcome run(const std::string& verb, const std::string& rest = "") const {
         return folder.tactus("plan " + verb + " " + plan + " " + rest);
@@ -63,19 +63,19 @@ TEST_CASE("a live case that is killed is on disk as far as it went, and opens wi
     {
         Run run(folder, "planning-trauma --audio none --out " + out.string() + " --record " + take.string());
         REQUIRE(wait_for([&] { return fs::exists(plan); }));
-        begun = load_case_plan(plan).steps.size();
+        begun = cases::load_case_plan(plan).steps.size();
         // Whenever it is looked at, it is whole. Each settled piece is a step.
-        REQUIRE(wait_for([&] { return (most = load_case_plan(plan).steps.size()) >= begun + 2; }));
+        REQUIRE(wait_for([&] { return (most = cases::load_case_plan(plan).steps.size()) >= begun + 2; }));
         run.stop(SIGKILL);
     }
     const std::string text = slurp(plan);
-    const CasePlan kept = load_case_plan(plan);
+    const cases::CasePlan kept = cases::load_case_plan(plan);
     CHECK(kept.steps.size() >= most);
-    CHECK(plan_text(kept) == text);
+    CHECK(cases::plan_text(kept) == text);
     const json shown = json::parse(folder.tactus("plan show " + plan.string() + " --json").out);
     CHECK(shown["problems"].empty());
     CHECK(shown["steps_done"] == kept.steps.size());
-    const PlanState state = state_of(kept);
+    const cases::PlanState state = cases::state_of(kept);
     for (int n = 0; n < static_cast<int>(kept.fragments.size()); ++n)
         for (int axis = 0; axis < 3; ++axis)
             CHECK(shown["fragments"][static_cast<std::size_t>(n)]["pose"]["position_mm"][static_cast<std::size_t>(axis)]
@@ -97,7 +97,7 @@ TEST_CASE("a live case and the same one on a virtual clock leave the same bytes 
     REQUIRE(run.code == 0);
     REQUIRE(folder.tactus("render planning-trauma --seconds 5 --out " + virt + " --log " + log).code == 0);
     const std::string text = slurp(fs::path(live) / "case.plan.json");
-    CHECK(load_case_plan(fs::path(live) / "case.plan.json").steps.size() > 1);
+    CHECK(cases::load_case_plan(fs::path(live) / "case.plan.json").steps.size() > 1);
     CHECK(slurp(fs::path(virt) / "case.plan.json") == text);
     CHECK(json::parse(run.out)["notices"].dump().find("saved") == std::string::npos);
 }
@@ -109,12 +109,12 @@ TEST_CASE("programs that change a plan at the same time do it one after the othe
         script += tactus::test::command() + " plan move " + bare.plan + " a --pose " + std::to_string(n) +
                   ",0,0,1,0,0,0 &\n";
     shell(bare.folder, script + "wait\n");
-    const CasePlan plan = load_case_plan(bare.plan);
+    const cases::CasePlan plan = cases::load_case_plan(bare.plan);
     CHECK(plan.steps.size() == 6);
     for (std::size_t n = 0; n < plan.steps.size(); ++n) CHECK(plan.steps[n].before == static_cast<int>(n) - 1);
     CHECK(bare.files() == std::vector<std::string>{"case.plan.json"});
     // A run keeps its plan to itself for as long as it lasts; reading is free.
-    const PlanLock lock(bare.plan);
+    const cases::PlanLock lock(bare.plan);
     const Outcome refused = bare.run("undo");
     CHECK(refused.code == 2);
     CHECK_THAT(refused.err, Catch::Contains("another program is changing this plan"));

@@ -175,7 +175,7 @@ std::vector<float> rendered(const Folder& folder, const std::string& patch) {
         folder.tactus("render " + patch + " --seconds 1.5 --overwrite --out " + (folder.path / "r").string());
     INFO(done.err);
     REQUIRE(done.code == 0);
-    const tactus::Sound sound = tactus::load_sound(folder.path / "r/speaker.wav");
+    const tactus::sound::Sound sound = tactus::sound::load_sound(folder.path / "r/speaker.wav");
     std::vector<float> samples(sound.samples.begin(), sound.samples.end());
     return {std::ranges::find_if(samples, [](float x) { return x != 0.0F; }), samples.end()};
 }

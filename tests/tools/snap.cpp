@@ -34,7 +34,7 @@ Pose pose_in(const json& j) {
 TEST_CASE("a bone that fracture broke is put together by snap, and a stranger's half is refused") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
-    save_bone(bar(), file("bar.vdb"));
+    bone::save_bone(bar(), file("bar.vdb"));
     const Outcome broken = folder.tactus("fracture " + file("bar.vdb") + " -o " + file("a") + " --seed 4 --json");
     INFO(broken.err);
     REQUIRE(broken.code == 0);
@@ -69,7 +69,7 @@ TEST_CASE("a bone that fracture broke is put together by snap, and a stranger's 
 TEST_CASE("halves that touch in one scan are not called a fit where the scan has them") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
-    save_bone(bar(), file("bar.vdb"));
+    bone::save_bone(bar(), file("bar.vdb"));
     REQUIRE(folder.tactus("fracture " + file("bar.vdb") + " -o " + file("a") + " --seed 4 --spread 0 --turn 0").code ==
             0);
     const std::string halves = file("a/fragment_02.vdb") + " " + file("a/fragment_01.vdb");
@@ -95,7 +95,7 @@ TEST_CASE("halves that touch in one scan are not called a fit where the scan has
 TEST_CASE("the break is proposed by the unbroken bone, laid on the piece by itself or on the main fragment") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
-    save_bone(bar(), file("bar.vdb"));
+    bone::save_bone(bar(), file("bar.vdb"));
     REQUIRE(folder.tactus("fracture " + file("bar.vdb") + " -o " + file("a") + " --seed 4 --spread 4 --turn 5").code ==
             0);
     const auto area = [](const json& found) {
@@ -141,7 +141,7 @@ TEST_CASE("the break is proposed by the unbroken bone, laid on the piece by itse
 TEST_CASE("snap and fracture refuse what they cannot use with one clear line") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
-    save_bone(bar(), file("bar.vdb"));
+    bone::save_bone(bar(), file("bar.vdb"));
     for (const std::string& arguments : {"snap " + file("bar.vdb") + " " + file("none.vdb"),
                                          "snap " + file("bar.vdb") + " " + file("bar.vdb") + " --start 1,2",
                                          "snap " + file("bar.vdb") + " " + file("bar.vdb") + " --start 0,0,0,2,0,0,0",

@@ -32,7 +32,7 @@ struct SoundShape {
     double seconds = 3.0;
 };
 
-fs::path sound(const Folder& folder, const std::string& name, const std::function<double(double)>& value,
+fs::path sound_of(const Folder& folder, const std::string& name, const std::function<double(double)>& value,
                const SoundShape& shape = {}) {
     SF_INFO info{};
     info.samplerate = shape.rate;
@@ -150,8 +150,8 @@ TEST_CASE("with its equaliser the bundled actuator plays what the saw did; witho
 
 TEST_CASE("two takes of one saw pass with null where scores need one recording; another saw fails") {
     const Folder folder;
-    const std::string reference = sound(folder, "a.wav", saw(233.0), {.seconds = 6.0}).string();
-    const std::string same = sound(folder, "b.wav", saw(233.4, 0.1, 77), {.rate = 44100, .seconds = 5.0}).string();
+    const std::string reference = sound_of(folder, "a.wav", saw(233.0), {.seconds = 6.0}).string();
+    const std::string same = sound_of(folder, "b.wav", saw(233.4, 0.1, 77), {.rate = 44100, .seconds = 5.0}).string();
     const json pass = compared(folder, reference + " " + same, 0);
     CHECK(pass["alignment"] == "none");
     for (const char* key : {"delay_s", "st_sim", "spqi", "coherence_mean"}) CHECK(pass[key].is_null());
@@ -166,7 +166,7 @@ TEST_CASE("two takes of one saw pass with null where scores need one recording; 
     const auto hummed = [hum = saw(233.0, 0.5, 5)](double t) mutable {
         return hum(t) + 0.025 * std::sin(2.0 * std::numbers::pi * 50.0 * t);
     };
-    const json fail = compared(folder, reference + " " + sound(folder, "c.wav", hummed).string(), 1);
+    const json fail = compared(folder, reference + " " + sound_of(folder, "c.wav", hummed).string(), 1);
     CHECK(fail["verdict"] == "fail");
     REQUIRE(fail["only_in_output"].size() == 1);
     CHECK(fail["only_in_output"][0]["hz"].get<double>() == Approx(50.0).margin(0.1));
@@ -179,7 +179,7 @@ TEST_CASE("two takes of one saw pass with null where scores need one recording; 
 
 TEST_CASE("a person reads the verdict first, then why; a figure is written as its name says") {
     const Folder folder;
-    const std::string a = sound(folder, "a.wav", saw(233.0)).string(), b = sound(folder, "b.wav", saw(150.0)).string();
+    const std::string a = sound_of(folder, "a.wav", saw(233.0)).string(), b = sound_of(folder, "b.wav", saw(150.0)).string();
     const std::string svg = (folder.path / "f.svg").string(), png = (folder.path / "f.png").string();
     const Outcome text = folder.tactus("compare " + a + " " + b + " --plot " + svg);
     CHECK(text.code == 1);
@@ -194,11 +194,11 @@ TEST_CASE("a person reads the verdict first, then why; a figure is written as it
 
 TEST_CASE("a report is one page that needs nothing else and names what it found") {
     const Folder folder;
-    const std::string a = sound(folder, "a.wav", saw(233.0)).string();
+    const std::string a = sound_of(folder, "a.wav", saw(233.0)).string();
     const auto hummed = [tone = saw(233.0)](double t) mutable {
         return tone(t) + 0.2 * std::sin(2.0 * std::numbers::pi * 50.0 * t);
     };
-    const std::string b = sound(folder, "b&c.wav", hummed).string();
+    const std::string b = sound_of(folder, "b&c.wav", hummed).string();
     const fs::path page = folder.path / "page.html";
     CHECK(folder.tactus("compare " + a + " '" + b + "' --report " + page.string()).code == 1);
     const std::string html = slurp(page);
@@ -215,7 +215,7 @@ TEST_CASE("a report is one page that needs nothing else and names what it found"
     }
     // Aligned takes have coherence; those of two recordings say that they have none.
     CHECK(html.find("One recording") != std::string::npos);
-    const std::string other = sound(folder, "other.wav", saw(233.4, 0.3, 77)).string();
+    const std::string other = sound_of(folder, "other.wav", saw(233.4, 0.3, 77)).string();
     const fs::path second = folder.path / "second.html";
     CHECK(folder.tactus("compare " + a + " " + other + " --report " + second.string()).code != 2);
     CHECK(slurp(second).find("Two recordings") != std::string::npos);
@@ -224,7 +224,7 @@ TEST_CASE("a report is one page that needs nothing else and names what it found"
 
 TEST_CASE("compare answers or says what is wrong with a file, once, and ends with exit code 2") {
     const Folder folder;
-    const std::string good = sound(folder, "good.wav", saw(233.0)).string();
+    const std::string good = sound_of(folder, "good.wav", saw(233.0)).string();
     const auto against = [&](const fs::path& file) { return folder.tactus("compare " + good + " " + file.string()); };
     const auto refused = [&](const fs::path& file, const std::string& why) {
         const Outcome outcome = against(file);
@@ -239,12 +239,12 @@ TEST_CASE("compare answers or says what is wrong with a file, once, and ends wit
     refused(folder.write("text.wav", std::string(1000, 'x')), "cannot be read as sound");
     fs::create_directories(folder.path / "bare");
     refused(folder.path / "bare", "folder");
-    refused(sound(folder, "silent.wav", [](double) { return 0.0; }), "output is silent");
-    refused(sound(folder, "constant.wav", [](double) { return 0.5; }), "output is silent");
-    refused(sound(folder, "one.wav", saw(233.0), {.seconds = 1.0 / 48000.0}), "shorter than 0.5 s");
-    refused(sound(folder, "nan.wav", [](double t) { return t > 1.0 ? std::numeric_limits<double>::quiet_NaN() : 0.1; }),
+    refused(sound_of(folder, "silent.wav", [](double) { return 0.0; }), "output is silent");
+    refused(sound_of(folder, "constant.wav", [](double) { return 0.5; }), "output is silent");
+    refused(sound_of(folder, "one.wav", saw(233.0), {.seconds = 1.0 / 48000.0}), "shorter than 0.5 s");
+    refused(sound_of(folder, "nan.wav", [](double t) { return t > 1.0 ? std::numeric_limits<double>::quiet_NaN() : 0.1; }),
             "NaN");
-    refused(sound(folder, "slow.wav", saw(30.0), {.rate = 200}), "too low");
+    refused(sound_of(folder, "slow.wav", saw(30.0), {.rate = 200}), "too low");
     const std::string bytes = slurp(good);
     refused(folder.write("cut.wav", bytes.substr(0, bytes.size() / 2)), "cut short");
 
@@ -252,20 +252,20 @@ TEST_CASE("compare answers or says what is wrong with a file, once, and ends wit
         INFO(file);
         CHECK(against(file).code == 0);
     };
-    passes(sound(folder, "loud.wav", saw(233.0, 5.0, 3)));
-    passes(sound(folder, "u8.wav", saw(233.0, 0.4, 3), {.format = SF_FORMAT_WAV | SF_FORMAT_PCM_U8}));
-    passes(sound(folder, "b24.flac", saw(233.0, 0.3, 3), {.format = SF_FORMAT_FLAC | SF_FORMAT_PCM_24}));
-    passes(sound(folder, "w64.w64", saw(233.0, 0.3, 3), {.format = SF_FORMAT_W64 | SF_FORMAT_FLOAT}));
-    passes(sound(folder, "k192.wav", saw(233.0, 0.3, 3), {.rate = 192000}));
-    passes(sound(folder, "k3.wav", saw(233.0, 0.3, 3), {.rate = 3000}));
-    passes(sound(folder, "seven.wav",
+    passes(sound_of(folder, "loud.wav", saw(233.0, 5.0, 3)));
+    passes(sound_of(folder, "u8.wav", saw(233.0, 0.4, 3), {.format = SF_FORMAT_WAV | SF_FORMAT_PCM_U8}));
+    passes(sound_of(folder, "b24.flac", saw(233.0, 0.3, 3), {.format = SF_FORMAT_FLAC | SF_FORMAT_PCM_24}));
+    passes(sound_of(folder, "w64.w64", saw(233.0, 0.3, 3), {.format = SF_FORMAT_W64 | SF_FORMAT_FLOAT}));
+    passes(sound_of(folder, "k192.wav", saw(233.0, 0.3, 3), {.rate = 192000}));
+    passes(sound_of(folder, "k3.wav", saw(233.0, 0.3, 3), {.rate = 3000}));
+    passes(sound_of(folder, "seven.wav",
                  [s = saw(233.0, 0.3, 3), value = 0.0, channel = 0](double t) mutable {
                      if (channel++ % 7 == 0) value = s(t);
                      return value;
                  },
                  {.channels = 7}));
     const Outcome clipped = against(
-        sound(folder, "clipped.wav", [s = saw(233.0)](double t) mutable { return std::clamp(3.0 * s(t), -1.0, 1.0); }));
+        sound_of(folder, "clipped.wav", [s = saw(233.0)](double t) mutable { return std::clamp(3.0 * s(t), -1.0, 1.0); }));
     CHECK(clipped.code != 2);
     CHECK(clipped.out.find("clipped") != std::string::npos);
 }
@@ -286,7 +286,7 @@ TEST_CASE("compare reads logs as it reads sounds, each with its own columns, and
     };
     const std::string whole = log("a.csv", "time_ms,flag,accel\n", 0.0, 6.0, 0.0);
     const std::string parted = log("b.csv", "when_ms,flag,value\n", 1.0, 9.0, 0.5);
-    const std::string wave = sound(folder, "a.wav",
+    const std::string wave = sound_of(folder, "a.wav",
                                    [](double t) {
                                        double y = 0.0;
                                        for (int k = 1; k <= 3; ++k)
@@ -308,7 +308,7 @@ TEST_CASE("compare reads logs as it reads sounds, each with its own columns, and
 TEST_CASE("compare needs no more memory for a longer recording") {
     const Folder folder;
     const auto kilobytes = [&](double seconds) {
-        const fs::path file = sound(folder, "long.wav", saw(233.0), {.rate = 8000, .seconds = seconds});
+        const fs::path file = sound_of(folder, "long.wav", saw(233.0), {.rate = 8000, .seconds = seconds});
         const pid_t child = fork();
         if (child == 0) {
             if (std::freopen("/dev/null", "w", stdout) == nullptr) _exit(9);
@@ -359,7 +359,7 @@ TEST_CASE("measure and equalise refuse what makes no sense with one line") {
 TEST_CASE("equalise says how much of a recording the actuator's limits cut") {
     const Folder folder;
     const std::string table = folder.write("t.csv", "20 0\n100 0\n200 0\n2000 0\n").string();
-    const std::string take = sound(folder, "a.wav", saw(233.0, 0.5)).string();
+    const std::string take = sound_of(folder, "a.wav", saw(233.0, 0.5)).string();
     const auto headroom = [&](const char* volts) {
         const Outcome made = folder.tactus("equalise " + table + " --json --signal " + take + " --volts " + volts +
                                            " -o " + (folder.path / "f.toml").string());

@@ -30,8 +30,8 @@ using Json = nlohmann::ordered_json;
 constexpr int grid_size = 256;
 const std::string grid_name = fmt::format("{0}x{0}x{0}", grid_size);
 
-Voxmap ball(double radius) {
-    return sample_voxmap(centred_layout(grid_size, voxel), [=](const Vec3& p) { return Ball{radius}.distance(p); });
+contact::Voxmap ball(double radius) {
+    return contact::sample_voxmap(contact::centred_layout(grid_size, voxel), [=](const Vec3& p) { return contact::Ball{radius}.distance(p); });
 }
 
 // A shell just below the surface of the ball: every point in contact, as between fitted fracture surfaces. The points
@@ -40,8 +40,8 @@ constexpr Case cases[] = {
     {"conforming", 5'000, 24.0, 0.0},
     {"conforming", 50'000, 76.0, 0.0},
     {"conforming", 200'000, 115.0, 0.0},
-    {"conforming, quadratic", 50'000, 76.0, 0.0, Interpolation::quadratic},
-    {"conforming, budget 20000", 200'000, 115.0, 0.0, Interpolation::trilinear, 20'000},
+    {"conforming, quadratic", 50'000, 76.0, 0.0, contact::Interpolation::quadratic},
+    {"conforming, budget 20000", 200'000, 115.0, 0.0, contact::Interpolation::trilinear, 20'000},
     {"light", 50'000, 60.0, 2.0},
     {"light", 1'000'000, 60.0, 2.0},
 };
@@ -49,21 +49,21 @@ constexpr Case cases[] = {
 constexpr Case frames_of_coupling[] = {{"converged frame", 5'000, 24.0, 0.0}, {"converged frame", 50'000, 76.0, 0.0}};
 
 Json measure(const Case& c, int rounds) {
-    const Pointshell shell = make_pointshell(spread_over_ball(c.points, c.radius * voxel));
-    const Voxmap map = ball(c.ball());
-    ContactLaw law;
+    const contact::Pointshell shell = contact::make_pointshell(contact::spread_over_ball(c.points, c.radius * voxel));
+    const contact::Voxmap map = ball(c.ball());
+    contact::ContactLaw law;
     law.interpolation = c.interpolation;
-    PointshellContact contact(shell.nodes.size());
+    contact::PointshellContact contact(shell.nodes.size());
     const ContactGridPeer peer(map.grid);
     const int frames = rounds * std::clamp(2'000'000 / c.points, 10, 200);
     // Reading single places is what the peer does, so it is compared where every point is read.
     const bool has_peer = c.apart == 0.0 && c.budget > static_cast<std::size_t>(c.points);
     std::vector<double> ours, theirs;
-    ContactSum sum;
+    contact::ContactSum sum;
     double checked = 0.0;
     for (int frame = -1; frame < frames; ++frame) {  // the first is not counted
         const Pose pose = pose_of(c, static_cast<std::uint64_t>(frame + 1));
-        const ContactPair pair{&shell, pose, &map, {}, true};
+        const contact::ContactPair pair{&shell, pose, &map, {}, true};
         const double begin = thread_seconds();
         sum = contact({&pair, 1}, pose.position, law, c.budget);
         const double end = thread_seconds();
@@ -74,9 +74,9 @@ Json measure(const Case& c, int rounds) {
         theirs.push_back(thread_seconds() - peer_begin);
     }
     const Pose pose = pose_of(c, 0);
-    const ContactPair pair{&shell, pose, &map, {}, true};
-    const ContactSum exact = contact_reference({&pair, 1}, pose.position, law);
-    const ContactSum fast = contact({&pair, 1}, pose.position, law, c.budget);
+    const contact::ContactPair pair{&shell, pose, &map, {}, true};
+    const contact::ContactSum exact = contact::contact_reference({&pair, 1}, pose.position, law);
+    const contact::ContactSum fast = contact({&pair, 1}, pose.position, law, c.budget);
     double error = 0.0;
     for (std::size_t i = 0; i < 6; ++i)
         error = std::max(error, std::abs(exact.gradient[i] - fast.gradient[i]) / (i < 3 ? 1.0 : shell.reach));
@@ -123,16 +123,16 @@ Json contact_libraries(const Case& c, int rounds) {
 /// frame is solved until springs and contact balance.
 Json measure_frames(const Case& c, int rounds) {
     const double radius = c.radius * voxel;
-    const Pointshell shell = make_pointshell(spread_over_ball(c.points, radius));
-    const Voxmap hole = sample_voxmap(centred_layout(grid_size, voxel),
+    const contact::Pointshell shell = contact::make_pointshell(contact::spread_over_ball(c.points, radius));
+    const contact::Voxmap hole = contact::sample_voxmap(contact::centred_layout(grid_size, voxel),
                                       [=](const Vec3& p) { return radius + 0.02e-3 - glm::length(p); });
-    Scene scene;
+    coupling::Scene scene;
     scene.count = 2;
     scene.objects[0].body = {&shell, nullptr, nullptr, {}, 1, 1};
     scene.objects[1].body = {nullptr, &hole, nullptr, {}, 1, 2};
-    HeldContact contact(static_cast<std::size_t>(c.points));
-    contact.set(scene, 0, {}, ContactLaw{}, false);
-    QuasiStaticCoupling coupling;
+    coupling::HeldContact contact(static_cast<std::size_t>(c.points));
+    contact.set(scene, 0, {}, contact::ContactLaw{}, false);
+    coupling::QuasiStaticCoupling coupling;
     coupling.settings.iterations = 10;
     coupling.settings.reach = contact.reach();
     coupling.settings.gyration = contact.gyration();
@@ -146,14 +146,14 @@ Json measure_frames(const Case& c, int rounds) {
             1e-3 * Vec3(std::sin(0.7 * w) + 0.2 * std::sin(2.9 * w), std::sin(0.9 * w + 1.0), std::sin(1.1 * w + 2.0));
         const Vec3 turn = 0.07 * Vec3(std::sin(0.8 * w), std::sin(1.2 * w), std::sin(0.6 * w));
         const double begin = thread_seconds();
-        const QuasiStaticState& now = coupling.update({at, rotation_by(turn)}, contact);
+        const coupling::QuasiStaticState& now = coupling.update({at, rotation_by(turn)}, contact);
         const double end = thread_seconds();
         if (frame < 0) continue;
         seconds.push_back(end - begin);
         balanced += now.balanced;
         evaluations += now.evaluations;
     }
-    const ContactSum& last = coupling.state().contact;
+    const contact::ContactSum& last = coupling.state().contact;
     const double p50 = percentile(seconds, 0.5);
     return {{"name", c.name},
             {"points", c.points},
@@ -216,7 +216,7 @@ int bench_contact(const BenchChoice& choice) {
         fmt::print(
             "energy, gradient and 6x6 stiffness; kernel {}; voxels of {} mm; processor time of one thread\n"
             "{:26} {:>9} {:>10} {:>9} {:>9} {:>9} {:>9} {:>9} {:>6}\n",
-            kernel::variant_in_use(), 1e3 * voxel, "", "points", "in contact", "ns/point", "p50 us", "p99 us", "error",
+            contact::kernel::variant_in_use(), 1e3 * voxel, "", "points", "in contact", "ns/point", "p50 us", "p99 us", "error",
             "OpenVDB", "ratio");
     for (const Case& c : cases) {
         rows.push_back(measure(c, choice.rounds));
@@ -230,14 +230,14 @@ int bench_contact(const BenchChoice& choice) {
         const Case& c = cases[i];
         // Theirs depends neither on interpolation nor on a budget.
         if (c.points > 50'000 && c.apart == 0.0) continue;
-        if (c.interpolation != Interpolation::trilinear) continue;
+        if (c.interpolation != contact::Interpolation::trilinear) continue;
         Json found = contact_libraries(c, choice.rounds);
         if (found.empty()) continue;
         for (Json& peer : found)
             peer["ratio"] = peer["ns_per_point"].get<double>() / rows[i]["ns_per_point"].get<double>();
         rows[i]["libraries"] = std::move(found);
     }
-    if (choice.json) fmt::print("{}\n", Json{{"kernel", kernel::variant_in_use()}, {"rows", rows}}.dump(2));
+    if (choice.json) fmt::print("{}\n", Json{{"kernel", contact::kernel::variant_in_use()}, {"rows", rows}}.dump(2));
     else print_libraries(rows);
     return done;
 }

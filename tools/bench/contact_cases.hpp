@@ -26,7 +26,7 @@ struct Case {
     int points;
     double radius;  ///< of the shell, in voxels
     double apart;   ///< of the centres, in radii: 0 for a shell within the ball, 2 for two balls that touch
-    Interpolation interpolation = Interpolation::trilinear;
+    contact::Interpolation interpolation = contact::Interpolation::trilinear;
     std::size_t budget = std::numeric_limits<std::size_t>::max();
 
     /// m, of the ball that the shell is held against.

@@ -14,7 +14,7 @@ struct ContactGridPeer::Tree {
     Vec3 origin, per_spacing;
 };
 
-ContactGridPeer::ContactGridPeer(const Grid& distance) : tree_(std::make_unique<Tree>()) {
+ContactGridPeer::ContactGridPeer(const volume::Grid& distance) : tree_(std::make_unique<Tree>()) {
     openvdb::initialize();
     const auto [nx, ny, nz] = distance.size;
     const openvdb::CoordBBox box(openvdb::Coord(0), openvdb::Coord(nx - 1, ny - 1, nz - 1));

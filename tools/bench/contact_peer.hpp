@@ -13,7 +13,7 @@ namespace tactus::bench {
 /// A dense grid as an OpenVDB float grid with every sample active.
 class ContactGridPeer {
 public:
-    explicit ContactGridPeer(const Grid& distance);
+    explicit ContactGridPeer(const volume::Grid& distance);
     ~ContactGridPeer();
     ContactGridPeer(const ContactGridPeer&) = delete;
     ContactGridPeer& operator=(const ContactGridPeer&) = delete;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a node costs: a chain of gains in this engine, and the same chain in Pure Data and scsynth, in one run.
-#include "engine/engine.hpp"
-#include "graph/latency.hpp"
-#include "graph/stiffness.hpp"
+#include "engine/run/engine.hpp"
+#include "graph/analyse/latency.hpp"
+#include "graph/analyse/stiffness.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/engine_peers.hpp"
@@ -49,27 +49,27 @@ std::string patch_of(int nodes) {
     return "wires = [" + wires + "]\n[nodes.tone]\ntype = \"sine\"\nrate = \"48 kHz\"\nfrequency = \"440 Hz\"\n" + text;
 }
 
-Patch read_chain(const std::string& text) {
-    Problems problems;
-    Patch patch = read_patch(text, "chain.toml", problems);
+patch::Patch read_chain(const std::string& text) {
+    patch::Problems problems;
+    patch::Patch patch = patch::read_patch(text, "chain.toml", problems);
     if (!problems.empty()) throw problems.list.front();
     return patch;
 }
 
-Plan compile_chain(const Patch& patch) {
-    Problems problems;
-    std::optional<Plan> plan = compile(patch, catalogue(), problems);
+compile::Plan compile_chain(const patch::Patch& patch) {
+    patch::Problems problems;
+    std::optional<compile::Plan> plan = compile::compile(patch, nodes::catalogue(), problems);
     if (!problems.empty()) throw problems.list.front();
     return std::move(*plan);
 }
 
 double run_here(const Chain& chain, bool hash, bool time_nodes) {
-    EngineOptions options;
+    run::EngineOptions options;
     options.seconds = chain.seconds;
     options.block = chain.block;
     options.hash = hash;
     options.time_nodes = time_nodes;
-    Engine engine(compile_chain(read_chain(patch_of(chain.nodes))), options);
+    run::Engine engine(compile_chain(read_chain(patch_of(chain.nodes))), options);
     return seconds_of([&] { engine.render(1); });
 }
 
@@ -128,14 +128,14 @@ void bench_chain(int nodes, int block, int rounds, const std::filesystem::path& 
 void bench_compile(int rounds, Json& rows) {
     constexpr int nodes = 1000;
     const std::string text = patch_of(nodes);
-    const Patch patch = read_chain(text);
+    const patch::Patch patch = read_chain(text);
     double read = 1.0, compiled = 1.0, prepared = 1.0;
     for (int i = 0; i < 3 * rounds; ++i) {
         read = std::min(read, seconds_of([&] { read_chain(text); }));
-        std::optional<Plan> plan;
+        std::optional<compile::Plan> plan;
         compiled = std::min(compiled, seconds_of([&] { plan = compile_chain(patch); }));
-        std::optional<Engine> engine;
-        prepared = std::min(prepared, seconds_of([&] { engine.emplace(std::move(*plan), EngineOptions{}); }));
+        std::optional<run::Engine> engine;
+        prepared = std::min(prepared, seconds_of([&] { engine.emplace(std::move(*plan), run::EngineOptions{}); }));
     }
     rows.push_back(row("read patch", nodes, 0, read * 1e9 / nodes, nullptr));
     rows.push_back(row("compile", nodes, 0, compiled * 1e9 / nodes, nullptr));
@@ -151,14 +151,14 @@ void bench_scaling(int rounds, Json& rows) {
         for (std::size_t k = 0; k < sizes.size(); ++k) {
             const std::string text = patch_of(sizes[k]);
             checked[k] = std::min(checked[k], seconds_of([&] {
-                                      const Engine engine(compile_chain(read_chain(text)), EngineOptions{});
-                                      path_latencies(engine.plan());
-                                      force_loops(engine.plan(), [](const std::string&) { return 0.0; });
+                                      const run::Engine engine(compile_chain(read_chain(text)), run::EngineOptions{});
+                                      analyse::path_latencies(engine.plan());
+                                      analyse::force_loops(engine.plan(), [](const std::string&) { return 0.0; });
                                   }));
             rendered[k] = std::min(rendered[k], seconds_of([&] {
-                                       EngineOptions options;
+                                       run::EngineOptions options;
                                        options.seconds = brief;
-                                       Engine engine(compile_chain(read_chain(text)), options);
+                                       run::Engine engine(compile_chain(read_chain(text)), options);
                                        engine.render(1);
                                        engine.finish();
                                        session::summary_json(engine, engine.report(), brief, false, {}, {});

@@ -3,8 +3,8 @@
 #include "assets/library/mandible.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
-#include "dsp/snap/fit.hpp"
-#include "engine/clock.hpp"
+#include "dsp/fit/fit.hpp"
+#include "engine/run/clock.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/snap_cases.hpp"
 #include "tools/bench/snap_live.hpp"
@@ -57,9 +57,9 @@ struct Tally {
         angle.push_back(glm::length(rotation_between(pair.truth.orientation, pose.orientation)) / degree);
         time.push_back(seconds);
     }
-    void judge(FitVerdict verdict) {
+    void judge(fit::FitVerdict verdict) {
         ++judged;
-        const bool failed = !(error.back() < success), flagged = verdict != FitVerdict::fit;
+        const bool failed = !(error.back() < success), flagged = verdict != fit::FitVerdict::fit;
         failures += failed;
         failures_flagged += failed && flagged;
         alarms += !failed && flagged;
@@ -72,8 +72,8 @@ struct Tally {
 
 using Tallies = std::map<std::string, Tally>;
 
-constexpr std::pair<const char*, FitMode> modes[] = {
-    {"extended", FitMode::extended}, {"global", FitMode::global}, {"thesis", FitMode::thesis}};
+constexpr std::pair<const char*, fit::FitMode> modes[] = {
+    {"extended", fit::FitMode::extended}, {"global", fit::FitMode::global}, {"thesis", fit::FitMode::thesis}};
 constexpr IcpKind peers[] = {IcpKind::point, IcpKind::plane, IcpKind::generalised};
 constexpr IcpSchedule schedules[] = {IcpSchedule::unlimited, IcpSchedule::trimmed, IcpSchedule::annealed};
 
@@ -82,13 +82,13 @@ bool is_chosen(const SnapBenchChoice& choice, std::string_view method) {
 }
 
 struct TimedFit {
-    Fit fit;
+    fit::Fit fit;
     double seconds = 0.0;
 
-    TimedFit(const FracturePair& pair, const Pose& start, FitMode mode) {
-        const std::int64_t begin = thread_ns();
-        fit = find_fit(pair.moving, pair.fixed, start, mode);
-        seconds = 1e-9 * static_cast<double>(thread_ns() - begin);
+    TimedFit(const FracturePair& pair, const Pose& start, fit::FitMode mode) {
+        const std::int64_t begin = run::thread_ns();
+        fit = fit::find_fit(pair.moving, pair.fixed, start, mode);
+        seconds = 1e-9 * static_cast<double>(run::thread_ns() - begin);
     }
 };
 
@@ -97,20 +97,20 @@ void try_all(const FracturePair& pair, const IcpTarget& target, const Pose& star
              std::optional<TimedFit>& anywhere, Tallies& tallies) {
     for (const auto& [name, mode] : modes) {
         if (!is_chosen(choice, name)) continue;
-        const bool is_known = mode == FitMode::global && anywhere;
+        const bool is_known = mode == fit::FitMode::global && anywhere;
         const TimedFit found = is_known ? *anywhere : TimedFit(pair, start, mode);
-        if (mode == FitMode::global) anywhere = found;
+        if (mode == fit::FitMode::global) anywhere = found;
         tallies[name].add(pair, found.fit.pose, found.seconds);
         tallies[name].judge(found.fit.verdict);
     }
-    const Pose centres = between_centres(pair.moving, pair.fixed, start);
+    const Pose centres = fit::between_centres(pair.moving, pair.fixed, start);
     for (const IcpKind kind : peers)
         for (const IcpSchedule schedule : schedules) {
             if (!is_chosen(choice, name_of(kind))) continue;
-            const std::int64_t begin = thread_ns();
+            const std::int64_t begin = run::thread_ns();
             const Pose pose = run_icp(pair.moving, target, centres, kind, schedule);
             tallies[fmt::format("{} {}", name_of(kind), name_of(schedule))].add(
-                pair, between_bodies(pair.moving, pair.fixed, pose), 1e-9 * static_cast<double>(thread_ns() - begin));
+                pair, fit::between_bodies(pair.moving, pair.fixed, pose), 1e-9 * static_cast<double>(run::thread_ns() - begin));
         }
 }
 
@@ -188,7 +188,7 @@ void print_live(const Json& rows) {
 }
 
 /// What an outlier of a chain of pieces is must be seen: the worst beside the median.
-Json whole_case_row(const Bone& bone, const WholeCase& kind, const SnapBenchChoice& choice) {
+Json whole_case_row(const bone::Bone& bone, const WholeCase& kind, const SnapBenchChoice& choice) {
     const WholeCaseResult r = put_together(bone, kind, choice.seed, choice.seeds);
     return {{"case", kind.name},
             {"method", "matcher"},
@@ -219,7 +219,7 @@ void print_whole_case(const Json& row) {
 }
 
 /// The whole cases that are asked for by name.
-Json whole_case_rows(const SnapBenchChoice& choice, const Bone& bone) {
+Json whole_case_rows(const SnapBenchChoice& choice, const bone::Bone& bone) {
     Json rows = Json::array();
     for (const WholeCase& kind : whole_cases()) {
         if (std::ranges::count(choice.cases, kind.name) == 0) continue;
@@ -254,7 +254,7 @@ std::vector<FractureCase> chosen_cases(const std::vector<std::string>& names) {
 int bench_snap(const SnapBenchChoice& choice) {
     const std::vector<FractureCase> cases = chosen_cases(choice.cases);
     const bool live = choice.cases.empty() || std::ranges::count(choice.cases, live_case) > 0;
-    const Bone bone = choice.bone.empty() ? make_mandible() : study::bone_of_file(choice.bone);
+    const bone::Bone bone = choice.bone.empty() ? library::make_mandible() : study::bone_of_file(choice.bone);
     Json rows = whole_case_rows(choice, bone);
     if (!choice.json && !cases.empty())
         fmt::print(

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/bench/snap_cases.hpp"
 
-#include "assets/fracture/break_bone.hpp"
-#include "assets/fracture/paint.hpp"
+#include "assets/cases/break_bone.hpp"
+#include "assets/cases/paint.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
-#include "dsp/snap/fit.hpp"
+#include "dsp/fit/fit.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -26,19 +26,19 @@ Vec3 any_direction(const Random& random, std::uint64_t first) {
 }
 
 struct Piece {
-    std::vector<SurfacePoint> points;
-    FitSurface surface;
+    std::vector<contact::SurfacePoint> points;
+    fit::FitSurface surface;
     Pose placement;
 };
 
-Piece scan_piece(const Grid& solid, const Voxmap& bone, const FractureKind& kind, std::uint64_t seed) {
+Piece scan_piece(const volume::Grid& solid, const contact::Voxmap& bone, const FractureKind& kind, std::uint64_t seed) {
     const Random random{seed};
     Piece piece;
     piece.placement.orientation = any_turn(random, 0);
-    const Grid distance = scan_solid(solid, piece.placement, {.noise = kind.noise, .seed = seed});
-    piece.points = sample_surface(distance, {.spacing = 0.42e-3});
-    paint_fracture(piece.points, bone, piece.placement.inverse(), kind.spill);
-    piece.surface = make_fit_surface(piece.points, distance);
+    const volume::Grid distance = cases::scan_solid(solid, piece.placement, {.noise = kind.noise, .seed = seed});
+    piece.points = contact::sample_surface(distance, {.spacing = 0.42e-3});
+    cases::paint_fracture(piece.points, bone, piece.placement.inverse(), kind.spill);
+    piece.surface = fit::make_fit_surface(piece.points, distance);
     return piece;
 }
 
@@ -56,9 +56,9 @@ const std::vector<FractureCase>& fracture_cases() {
     return cases;
 }
 
-FracturePair make_fracture_pair(const Grid& bone, const FractureKind& kind, std::uint64_t seed) {
-    const std::vector<Grid> solids = break_bone(bone, {.seed = seed, .roughness = kind.roughness, .chips = kind.chips});
-    const Voxmap map = make_voxmap(bone);
+FracturePair make_fracture_pair(const volume::Grid& bone, const FractureKind& kind, std::uint64_t seed) {
+    const std::vector<volume::Grid> solids = cases::break_bone(bone, {.seed = seed, .roughness = kind.roughness, .chips = kind.chips});
+    const contact::Voxmap map = contact::make_voxmap(bone);
     Piece moving = scan_piece(solids[0], map, kind, 2 * seed), fixed = scan_piece(solids[1], map, kind, 2 * seed + 1);
     return {std::move(moving.points), std::move(moving.surface), std::move(fixed.surface),
             fixed.placement * moving.placement.inverse()};
@@ -66,7 +66,7 @@ FracturePair make_fracture_pair(const Grid& bone, const FractureKind& kind, std:
 
 double FracturePair::error(const Pose& pose) const {
     double sum = 0.0;
-    for (const SurfacePoint& p : moving_points) {
+    for (const contact::SurfacePoint& p : moving_points) {
         const Vec3 off = pose.apply(p.position) - truth.apply(p.position);
         sum += glm::dot(off, off);
     }
@@ -75,19 +75,19 @@ double FracturePair::error(const Pose& pose) const {
 
 Pose start_beside(const FracturePair& pair, double offset, double angle, bool pushed, std::uint64_t seed) {
     const Random random{seed};
-    Pose centres = between_centres(pair.moving, pair.fixed, pair.truth);
+    Pose centres = fit::between_centres(pair.moving, pair.fixed, pair.truth);
     centres.position += offset * any_direction(random, 0);
     centres.orientation = glm::normalize(rotation_by(angle * any_direction(random, 3)) * centres.orientation);
     for (int n = 0; pushed && n < 400; ++n) {
         double deepest = 0.0;
         for (const Vec3& p : pair.moving.position) {
-            const Sample here = pair.fixed.field.sample(centres.apply(p));
+            const volume::Sample here = pair.fixed.field.sample(centres.apply(p));
             if (here.inside) deepest = std::min(deepest, here.value);
         }
         if (deepest > -0.05e-3) break;
         centres.position += 0.1e-3 * glm::normalize(pair.fixed.mean_normal);
     }
-    return between_bodies(pair.moving, pair.fixed, centres);
+    return fit::between_bodies(pair.moving, pair.fixed, centres);
 }
 
 }  // namespace tactus::bench

@@ -2,7 +2,7 @@
 // Fractures with a known truth, and starts beside it.
 #pragma once
 
-#include "dsp/snap/fit_surface.hpp"
+#include "dsp/fit/fit_surface.hpp"
 
 #include <cstdint>
 #include <span>
@@ -33,8 +33,8 @@ struct FractureCase {
 const std::vector<FractureCase>& fracture_cases();
 
 struct FracturePair {
-    std::vector<SurfacePoint> moving_points;  ///< of the whole moving piece, in its file's frame
-    FitSurface moving, fixed;
+    std::vector<contact::SurfacePoint> moving_points;  ///< of the whole moving piece, in its file's frame
+    fit::FitSurface moving, fixed;
     Pose truth;  ///< of the moving piece in the fixed one's frame
 
     /// Root mean square over the moving piece's surface of how far a pose is from the truth, m.
@@ -42,7 +42,7 @@ struct FracturePair {
 };
 
 /// Breaks `bone` in two, scans each half as it lies, with a turn of its own, and paints what was not its surface before.
-FracturePair make_fracture_pair(const Grid& bone, const FractureKind& kind, std::uint64_t seed);
+FracturePair make_fracture_pair(const volume::Grid& bone, const FractureKind& kind, std::uint64_t seed);
 
 /// The truth, moved by `offset` (m) and turned by `angle` (rad) about the middle of the moving paint in random
 /// directions; if `pushed`, then moved out along the fracture's normal until the paints do not cut into each other.

@@ -4,9 +4,9 @@
 #include "assets/library/fragments.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/coupling/quasi_static.hpp"
-#include "dsp/snap/fit.hpp"
-#include "dsp/snap/held_fit.hpp"
-#include "engine/clock.hpp"
+#include "dsp/fit/fit.hpp"
+#include "dsp/fit/held_fit.hpp"
+#include "engine/run/clock.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,17 +29,17 @@ Pose wandering_hand(const Vec3& arm, double t) {
 }
 
 /// As the node snap_to_fit sets it while a fragment lies where it fits.
-FitLaw law_of(FitMode mode) {
-    FitLaw law;
+fit::FitLaw law_of(fit::FitMode mode) {
+    fit::FitLaw law;
     law.reach = 4.0 * mm;
     law.scale = 0.4 * mm;
-    if (mode == FitMode::extended) {
+    if (mode == fit::FitMode::extended) {
         law.outline = 0.3;
         law.strength = 10.0 / (0.65 * law.scale);
         return law;
     }
     law.two_sided = law.gated = false;
-    law.kernel = FitKernel::steady;
+    law.kernel = fit::FitKernel::steady;
     law.strength = 10.0;
     return law;
 }
@@ -47,26 +47,26 @@ FitLaw law_of(FitMode mode) {
 }  // namespace
 
 std::vector<LiveTicks> bench_snap_live() {
-    FractureOptions options;
+    library::FractureOptions options;
     options.spacing *= 0.82;  // about 5,000 painted points on both together
-    const std::vector<Bone> bones = make_fragments(options);
-    const FitSurface moving = make_live_fit_surface(bones[1].points, bones[1].distance),
-                     fixed = make_live_fit_surface(bones[0].points, bones[0].distance);
-    const Pointshell shells[] = {make_pointshell(bones[0].points), make_pointshell(bones[1].points)};
-    const Voxmap maps[] = {make_voxmap(bones[0].distance), make_voxmap(bones[1].distance)};
-    Scene scene;
+    const std::vector<bone::Bone> bones = library::make_fragments(options);
+    const fit::FitSurface moving = fit::make_live_fit_surface(bones[1].points, bones[1].distance),
+                     fixed = fit::make_live_fit_surface(bones[0].points, bones[0].distance);
+    const contact::Pointshell shells[] = {contact::make_pointshell(bones[0].points), contact::make_pointshell(bones[1].points)};
+    const contact::Voxmap maps[] = {contact::make_voxmap(bones[0].distance), contact::make_voxmap(bones[1].distance)};
+    coupling::Scene scene;
     scene.count = 2;
     for (std::size_t i = 0; i < 2; ++i) scene.objects[i].body = {&shells[i], &maps[i], nullptr, {}, 1, i + 1};
     const Vec3 arm(10.0 * mm, 0.0, 0.0);
     const Pose grip{-arm, {1, 0, 0, 0}};
-    HeldContact contact(shells[0].size() + shells[1].size());
-    contact.set(scene, 1, grip, ContactLaw{}, false);
-    FitEnergy energy(moving, fixed);
+    coupling::HeldContact contact(shells[0].size() + shells[1].size());
+    contact.set(scene, 1, grip, contact::ContactLaw{}, false);
+    fit::FitEnergy energy(moving, fixed);
     std::vector<LiveTicks> rows;
-    for (const FitMode mode : {FitMode::extended, FitMode::thesis}) {
+    for (const fit::FitMode mode : {fit::FitMode::extended, fit::FitMode::thesis}) {
         energy.law = law_of(mode);
-        HeldFit fit(contact, &energy);
-        QuasiStaticCoupling coupling;
+        fit::HeldFit fit(contact, &energy);
+        coupling::QuasiStaticCoupling coupling;
         coupling.settings.springs = {{1e3, 10.0}, {1.0, 0.5}};
         coupling.settings.reach = contact.reach();
         coupling.settings.gyration = contact.gyration();
@@ -75,15 +75,15 @@ std::vector<LiveTicks> bench_snap_live() {
         double evaluations = 0.0;
         for (int n = 0; n < all_ticks; ++n) {
             const Pose hand = wandering_hand(arm, n * 1e-3);
-            const std::int64_t begin = thread_ns();
+            const std::int64_t begin = run::thread_ns();
             fit.look(coupling.state().proxy, grip, {}, 1.0);
             evaluations += coupling.update(hand, fit).evaluations;
-            seconds.push_back(1e-9 * static_cast<double>(thread_ns() - begin));
+            seconds.push_back(1e-9 * static_cast<double>(run::thread_ns() - begin));
         }
         std::ranges::sort(seconds);
         const auto at = [&](double share) { return seconds[static_cast<std::size_t>(share * (all_ticks - 1))] * 1e3; };
         const auto in_time = std::ranges::count_if(seconds, [](double s) { return s < 0.5e-3; });
-        rows.push_back({mode == FitMode::extended ? "extended" : "thesis",
+        rows.push_back({mode == fit::FitMode::extended ? "extended" : "thesis",
                         moving.position.size() + fixed.position.size(), all_ticks,
                         static_cast<double>(in_time) / all_ticks, at(0.5), at(0.99), evaluations / all_ticks});
     }

@@ -2,7 +2,7 @@
 #include "tools/bench/snap_peers.hpp"
 
 #include "dsp/core/rotation.hpp"
-#include "dsp/coupling/symmetric6.hpp"
+#include "dsp/geometry/symmetric6.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -50,8 +50,8 @@ std::string_view name_of(IcpSchedule schedule) {
     return names[static_cast<std::size_t>(schedule)];
 }
 
-Pose run_icp(const FitSurface& moving, const IcpTarget& target, const Pose& start, IcpKind kind, IcpSchedule schedule) {
-    const FitSurface& fixed = target.surface();
+Pose run_icp(const fit::FitSurface& moving, const IcpTarget& target, const Pose& start, IcpKind kind, IcpSchedule schedule) {
+    const fit::FitSurface& fixed = target.surface();
     Pose pose = start;
     std::vector<Match> matches(moving.position.size());
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
@@ -70,8 +70,8 @@ Pose run_icp(const FitSurface& moving, const IcpTarget& target, const Pose& star
             std::nth_element(all.begin(), all.begin() + rank, all.end());
             most = std::sqrt(all[static_cast<std::size_t>(rank)]);
         }
-        Matrix6 k{};
-        Vector6 push{}, step{};
+        geometry::Matrix6 k{};
+        geometry::Vector6 push{}, step{};
         for (const Match& m : matches) {
             if (!(m.distance2 <= most * most)) continue;
             const Vec3 arm = turn * moving.position[m.from];
@@ -91,7 +91,7 @@ Pose run_icp(const FitSurface& moving, const IcpTarget& target, const Pose& star
                 for (std::size_t b = 0; b < 6; ++b) k[6 * a + b] += glm::dot(weighed, motion[b]);
             }
         }
-        if (!solve_symmetric6(k, push, step)) break;
+        if (!geometry::solve_symmetric6(k, push, step)) break;
         const Vec3 way(step[0], step[1], step[2]), spin(step[3], step[4], step[5]);
         pose = {pose.position + way, glm::normalize(rotation_by(spin) * pose.orientation)};
         const bool still = glm::length(way) + glm::length(spin) * moving.gyration < 1e-7;

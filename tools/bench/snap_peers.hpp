@@ -2,8 +2,8 @@
 // Iterative closest point in its usual forms, which snap-to-fit is measured against.
 #pragma once
 
-#include "dsp/distance/point_tree.hpp"
-#include "dsp/snap/fit_surface.hpp"
+#include "dsp/geometry/point_tree.hpp"
+#include "dsp/fit/fit_surface.hpp"
 
 #include <string_view>
 #include <vector>
@@ -21,17 +21,17 @@ std::string_view name_of(IcpSchedule schedule);
 /// Nearest points by a balanced tree over the painted points of the fixed side.
 class IcpTarget {
 public:
-    explicit IcpTarget(const FitSurface& fixed) : surface_(fixed), tree_(fixed.position) {}
+    explicit IcpTarget(const fit::FitSurface& fixed) : surface_(fixed), tree_(fixed.position) {}
 
-    const FitSurface& surface() const { return surface_; }
+    const fit::FitSurface& surface() const { return surface_; }
     std::size_t nearest(const Vec3& position) const { return tree_.nearest(position); }
 
 private:
-    const FitSurface& surface_;
-    PointTree tree_;
+    const fit::FitSurface& surface_;
+    geometry::PointTree tree_;
 };
 
 /// From `start` (between the middles of the paints) to where it settles, at most 100 iterations.
-Pose run_icp(const FitSurface& moving, const IcpTarget& fixed, const Pose& start, IcpKind kind, IcpSchedule schedule);
+Pose run_icp(const fit::FitSurface& moving, const IcpTarget& fixed, const Pose& start, IcpKind kind, IcpSchedule schedule);
 
 }  // namespace tactus::bench

@@ -3,8 +3,8 @@
 
 #include "assets/library/broken_mandible.hpp"
 #include "dsp/core/rotation.hpp"
-#include "dsp/planning/fragment_matcher.hpp"
-#include "engine/clock.hpp"
+#include "dsp/fit/fragment_matcher.hpp"
+#include "engine/run/clock.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -18,13 +18,13 @@ namespace {
 
 constexpr double most_error = 0.3e-3, most_angle = 0.5;
 
-void put_together_once(const BrokenMandible& broken, WholeCaseResult& result) {
-    std::vector<FragmentSurface> surfaces;
-    for (const Bone& bone : broken.fragments) surfaces.push_back({bone.points, &bone.distance});
-    FragmentMatcher matcher(surfaces);
+void put_together_once(const library::BrokenMandible& broken, WholeCaseResult& result) {
+    std::vector<fit::FragmentSurface> surfaces;
+    for (const bone::Bone& bone : broken.fragments) surfaces.push_back({bone.points, &bone.distance});
+    fit::FragmentMatcher matcher(surfaces);
     std::vector<Pose> poses = broken.beside;
     std::vector<char> stands(poses.size(), 0);
-    std::vector<FragmentMatch> last(poses.size());
+    std::vector<fit::FragmentMatch> last(poses.size());
     const auto stand = [&](std::size_t n) {
         poses[n] = broken.truth[n];
         stands[n] = 1;
@@ -39,10 +39,10 @@ void put_together_once(const BrokenMandible& broken, WholeCaseResult& result) {
         result.islands += island.size() > 1;
     }
     const auto look = [&](std::size_t n) {
-        const std::int64_t begin = thread_ns();
+        const std::int64_t begin = run::thread_ns();
         last[n] = matcher.near(static_cast<int>(n), poses, stands);
-        result.seconds.push_back(1e-9 * static_cast<double>(thread_ns() - begin));
-        if (last[n].verdict != FitVerdict::fit) return;
+        result.seconds.push_back(1e-9 * static_cast<double>(run::thread_ns() - begin));
+        if (last[n].verdict != fit::FitVerdict::fit) return;
         poses[n] = last[n].pose;
         stands[n] = 1;
     };
@@ -55,14 +55,14 @@ void put_together_once(const BrokenMandible& broken, WholeCaseResult& result) {
     for (const std::size_t n : order) {
         Vec3 middle(0.0);
         const auto& points = broken.fragments[n].points;
-        for (const SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
+        for (const contact::SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
         const double error = glm::length(poses[n].apply(middle) - broken.truth[n].apply(middle));
         const double angle =
             glm::length(rotation_between(broken.truth[n].orientation, poses[n].orientation)) * 180.0 / std::numbers::pi;
         result.error.push_back(error);
         result.angle.push_back(angle);
         result.gap.push_back(last[n].quality.gap);
-        const bool fits = last[n].verdict == FitVerdict::fit;
+        const bool fits = last[n].verdict == fit::FitVerdict::fit;
         result.fitted += fits;
         result.within += fits && error < most_error && angle < most_angle;
     }
@@ -81,11 +81,11 @@ const std::vector<WholeCase>& whole_cases() {
 double WholeCaseResult::worst_error() const { return greatest(error); }
 double WholeCaseResult::worst_angle() const { return greatest(angle); }
 
-WholeCaseResult put_together(const Bone& bone, const WholeCase& kind, std::uint64_t seed, int seeds) {
+WholeCaseResult put_together(const bone::Bone& bone, const WholeCase& kind, std::uint64_t seed, int seeds) {
     WholeCaseResult result;
     for (int n = 0; n < seeds; ++n)
         put_together_once(
-            break_mandible(bone,
+            library::break_mandible(bone,
                            {.seed = seed + static_cast<std::uint64_t>(n), .kerf = kind.kerf, .missing = kind.missing}),
             result);
     return result;

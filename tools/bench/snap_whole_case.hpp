@@ -34,6 +34,6 @@ struct WholeCaseResult {
 };
 
 /// Each piece starts 5 mm and 10 degrees beside its place, is fitted, and settled twice more when all are there.
-WholeCaseResult put_together(const Bone& bone, const WholeCase& kind, std::uint64_t seed, int seeds);
+WholeCaseResult put_together(const bone::Bone& bone, const WholeCase& kind, std::uint64_t seed, int seeds);
 
 }  // namespace tactus::bench

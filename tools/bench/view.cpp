@@ -3,8 +3,8 @@
 // volumeToMesh of the whole, in processor time; and what a picture of a large bone costs.
 #include "dsp/carve/carver.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/view/brick_surface.hpp"
-#include "dsp/view/coarse_surface.hpp"
+#include "dsp/geometry/brick_surface.hpp"
+#include "dsp/geometry/coarse_surface.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/view_peer.hpp"
 #include "tools/bench/view_pictures.hpp"
@@ -32,7 +32,7 @@ double now_ms() {
 }
 
 /// A shaft of 24 mm with a cortex of 3 mm around a porous core, along z. `fineness` 2: voxels half as large.
-void make_shaft(Grid& distance, Grid& density, double fineness) {
+void make_shaft(volume::Grid& distance, volume::Grid& density, double fineness) {
     const double voxel = 0.3e-3 / fineness;
     const auto samples = [&](double cells) { return static_cast<int>(std::lround(cells * fineness)) + 1; };
     distance = {{samples(96), samples(96), samples(256)}, Vec3(-14.4e-3, -14.4e-3, -38.4e-3), Vec3(voxel), {}};
@@ -57,33 +57,33 @@ double quantile(std::vector<double> values, double q) {
 }  // namespace
 
 int bench_view(const BenchChoice& choice) {
-    Grid distance, density;
+    volume::Grid distance, density;
     make_shaft(distance, density, 1.0);
     std::vector<double> cuts_ms, bricks, peer_ms, whole_ms;
     std::size_t triangles = 0, peer_triangles = 0;
     for (int round = 0; round < choice.rounds; ++round) {
-        BoneEditor editor(distance, density, {.band = 2.2e-3});
-        Carver carver;
-        CarveSettings settings;
+        volume::BoneEditor editor(distance, density, {.band = 2.2e-3});
+        carve::Carver carver;
+        carve::CarveSettings settings;
         settings.speed = 5e-3;
         carver.prepare(editor, settings);
-        BrickSurface mesher;
-        CoarseSurface coarse;
-        const SurfaceGrid grid{editor.layout().origin, editor.layout().spacing, brick_cells};
-        std::vector<SurfacePatch> surface(static_cast<std::size_t>(editor.layout().brick_count()));
+        geometry::BrickSurface mesher;
+        geometry::CoarseSurface coarse;
+        const geometry::SurfaceGrid grid{editor.layout().origin, editor.layout().spacing, volume::brick_cells};
+        std::vector<geometry::SurfacePatch> surface(static_cast<std::size_t>(editor.layout().brick_count()));
         double begin = now_ms();
         for (std::uint32_t b = 0; b < surface.size(); ++b) mesher.make(editor.current(), b, surface[b]);
         whole_ms.push_back(now_ms() - begin);
         constexpr int ticks = 120, poses = 17;  // 2 s at 60 Hz, the blade at 1 kHz
         for (int tick = 0; tick < ticks; ++tick) {
-            std::vector<CarveSample> path;
+            std::vector<carve::CarveSample> path;
             for (int n = 0; n < poses; ++n) {
                 const double depth = -12.5e-3 + 5e-3 * (tick + n / double(poses)) / 60.0;
                 // y of the blade leads into the bone, along the scene's y; x across the shaft.
                 path.push_back({{{0.0, depth, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 1e-3, 7.0, 228.0, true});
             }
             carver.update(editor, path);
-            const BoneSnapshot bone = editor.publish();
+            const volume::BoneSnapshot bone = editor.publish();
             begin = now_ms();
             for (const std::uint32_t b : editor.changed_bricks()) {
                 mesher.make(bone, b, surface[b]);
@@ -96,8 +96,8 @@ int bench_view(const BenchChoice& choice) {
             editor.reclaim(bone.version);
         }
         triangles = 0;
-        for (const SurfacePatch& patch : surface) triangles += patch.triangles.size() / 3;
-        const ViewGridPeer peer(to_grid(editor.current()));
+        for (const geometry::SurfacePatch& patch : surface) triangles += patch.triangles.size() / 3;
+        const ViewGridPeer peer(volume::to_grid(editor.current()));
         begin = now_ms();
         peer_triangles = peer.triangles();
         peer_ms.push_back(now_ms() - begin);

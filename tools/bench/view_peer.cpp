@@ -16,7 +16,7 @@ struct ViewGridPeer::Tree {
 };
 
 /// A level set with a band of three voxels, as OpenVDB likes it best.
-ViewGridPeer::ViewGridPeer(const Grid& distance) : tree_(std::make_unique<Tree>()) {
+ViewGridPeer::ViewGridPeer(const volume::Grid& distance) : tree_(std::make_unique<Tree>()) {
     openvdb::initialize();
     const auto band = static_cast<float>(3.0 * distance.spacing.x);
     std::vector<float> values = distance.values;

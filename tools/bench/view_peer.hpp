@@ -11,7 +11,7 @@ namespace tactus::bench {
 
 class ViewGridPeer {
 public:
-    explicit ViewGridPeer(const Grid& distance);
+    explicit ViewGridPeer(const volume::Grid& distance);
     ~ViewGridPeer();
     ViewGridPeer(const ViewGridPeer&) = delete;
     ViewGridPeer& operator=(const ViewGridPeer&) = delete;

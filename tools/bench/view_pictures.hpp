@@ -23,6 +23,6 @@ struct PictureCosts {
 };
 
 /// Four samples per pixel. Throws Error when no OpenGL context can be had.
-PictureCosts picture_costs(const Grid& distance, const Grid& density, int rounds);
+PictureCosts picture_costs(const volume::Grid& distance, const volume::Grid& density, int rounds);
 
 }  // namespace tactus::bench

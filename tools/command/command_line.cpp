@@ -55,7 +55,7 @@ int place_of_verb(const CLI::App& app, int argc, char** argv) {
 int command_line(const Program& program, int argc, char** argv) {
     CLI::App app{program.about, program.name};
     app.add_option_function<std::string>(
-           "--memory", [](const std::string& size) { set_memory_limit(parse_memory_size(size)); },
+           "--memory", [](const std::string& size) { file::set_memory_limit(file::parse_memory_size(size)); },
            "most memory that one file may take, as in \"2 GB\" (default: half of the machine's)")
         ->trigger_on_parse();
     KnownVerbs known;
@@ -74,7 +74,7 @@ int command_line(const Program& program, int argc, char** argv) {
         return chosen.verb->forward ? chosen.verb->forward(handed_on) : chosen.run();
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? done : bad_input;
-    } catch (const NoRoom& error) {
+    } catch (const file::NoRoom& error) {
         say(stderr, fmt::format("tactus: {}\n", error.what()));
         return machine_failed;
     } catch (const std::bad_alloc&) {

@@ -2,7 +2,7 @@
 #include "tools/session/live_control.hpp"
 
 #include "dsp/core/error.hpp"
-#include "graph/sub_patch.hpp"
+#include "graph/patch/sub_patch.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 
 namespace tactus::session {
 
-LiveControl::LiveControl(Engine& engine, PatchChoice choice, AssetCache& assets,
+LiveControl::LiveControl(run::Engine& engine, PatchChoice choice, compile::AssetCache& assets,
                          std::function<void(const std::string&)> say)
     : engine_(engine),
       choice_(std::move(choice)),
@@ -18,7 +18,7 @@ LiveControl::LiveControl(Engine& engine, PatchChoice choice, AssetCache& assets,
       say_(std::move(say)),
       file_(find_patch(choice_.patch)),
       watch_(file_) {
-    watch_.follow(part_files(engine.plan().patch));
+    watch_.follow(patch::part_files(engine.plan().patch));
     if (!watch_.is_working())
         say_(fmt::format("{} cannot be watched; edits take effect at the next start", file_.string()));
     try {
@@ -35,33 +35,33 @@ void LiveControl::tend() {
 
 void LiveControl::take_over_file() {
     // Read here: what the take keeps is what is compiled, even if the file changes again.
-    Patch patch;
+    patch::Patch patch;
     try {
-        Problems unread;
-        patch = load_patch(file_, unread);
+        patch::Problems unread;
+        patch = patch::load_patch(file_, unread);
     } catch (const Error& error) {
         return say_(error.what());
     }
-    watch_.follow(part_files(patch));
+    watch_.follow(patch::part_files(patch));
     if (saved) return saved();
-    const Patch& runs = engine_.plan().patch;
+    const patch::Patch& runs = engine_.plan().patch;
     if (patch.text != runs.text || patch.parts != runs.parts) edit(std::move(patch.text));
 }
 
 void LiveControl::edit(std::string text) {
     const auto make = [this, text] {
-        Problems problems;
-        std::optional<Plan> plan =
-            plan_of(read_patch(text, file_, problems), choice_.overrides, choice_.seed, &assets_, problems);
+        patch::Problems problems;
+        std::optional<compile::Plan> plan =
+            plan_of(patch::read_patch(text, file_, problems), choice_.overrides, choice_.seed, &assets_, problems);
         if (problems.empty()) return std::move(*plan);
         std::string all;
         for (const std::string& line : problem_lines(problems)) all += (all.empty() ? "" : "\n") + line;
         throw Error(all);
     };
-    engine_.edit(make, [this](const EditOutcome& outcome) {
+    engine_.edit(make, [this](const run::EditOutcome& outcome) {
         if (outcome.error) say_(fmt::format("{}\nthe edit was not made; the patch runs on as it was", *outcome.error));
         else {
-            watch_.follow(part_files(engine_.plan().patch));
+            watch_.follow(patch::part_files(engine_.plan().patch));
             say_(fmt::format("edit {} takes over at {:.3f} s; {} of {} nodes go on", outcome.generation,
                              seconds(outcome.when), outcome.kept, outcome.nodes));
         }

@@ -2,7 +2,7 @@
 // What changes a patch while it runs: its file being saved, and lines on the control socket.
 #pragma once
 
-#include "engine/engine.hpp"
+#include "engine/run/engine.hpp"
 #include "tools/session/control_socket.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/session/patch_watch.hpp"
@@ -17,7 +17,7 @@ namespace tactus::session {
 class LiveControl {
 public:
     /// `say` tells the user of edits and of why one was not made.
-    LiveControl(Engine& engine, PatchChoice choice, AssetCache& assets, std::function<void(const std::string&)> say);
+    LiveControl(run::Engine& engine, PatchChoice choice, compile::AssetCache& assets, std::function<void(const std::string&)> say);
 
     /// From LiveOptions::watch.
     void tend();
@@ -31,9 +31,9 @@ private:
     void take_over_file();
     std::string answer(const std::string& line);
 
-    Engine& engine_;
+    run::Engine& engine_;
     PatchChoice choice_;
-    AssetCache& assets_;
+    compile::AssetCache& assets_;
     std::function<void(const std::string&)> say_;
     std::filesystem::path file_;
     PatchWatch watch_;

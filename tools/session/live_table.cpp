@@ -9,26 +9,26 @@ namespace tactus::session {
 
 namespace {
 
-constexpr const char* cause_names[late_causes] = {"woken late", "preempted", "ran long"};
+constexpr const char* cause_names[observe::late_causes] = {"woken late", "preempted", "ran long"};
 
-std::string describe_counts(const char* what, std::int64_t all, const LateCounts& counts) {
+std::string describe_counts(const char* what, std::int64_t all, const observe::LateCounts& counts) {
     if (all == 0) return {};
     std::string causes;
-    for (std::size_t c = 0; c < late_causes; ++c)
-        if (const std::int64_t n = counts[static_cast<LateCause>(c)]; n > 0)
+    for (std::size_t c = 0; c < observe::late_causes; ++c)
+        if (const std::int64_t n = counts[static_cast<observe::LateCause>(c)]; n > 0)
             causes += fmt::format("{}{} {}", causes.empty() ? "" : ", ", n, cause_names[c]);
     return fmt::format("{} {}{}", all, what, causes.empty() ? "" : " (" + causes + ")");
 }
 
-double force_of(const Engine& engine) {
+double force_of(const run::Engine& engine) {
     double force = 0.0;
     for (const auto& group : engine.groups())
         force = std::max(force, group->telemetry.force_N.load(std::memory_order_relaxed));
     return force;
 }
 
-std::string group_row(const GroupRuntime& group) {
-    const GroupTelemetry& t = group.telemetry;
+std::string group_row(const run::GroupRuntime& group) {
+    const observe::GroupTelemetry& t = group.telemetry;
     const double rate = rate_of(group.plan->period);
     return fmt::format("\n{:>10} {:>9.6g} {:>10} {:>7} {:>9.3f} {:>9.1f} {:>9.1f} {:>9.1f} {:>6.1f}", group.plan->name,
                        rate, t.ticks.load(), t.misses.load() + t.skipped.load(),
@@ -39,7 +39,7 @@ std::string group_row(const GroupRuntime& group) {
 
 }  // namespace
 
-std::vector<NodeTime> slowest_nodes(const Engine& engine, std::size_t count) {
+std::vector<NodeTime> slowest_nodes(const run::Engine& engine, std::size_t count) {
     std::vector<NodeTime> all;
     for (const auto& node : engine.nodes()) {
         if (node->time.calls.load() == 0) continue;
@@ -53,28 +53,28 @@ std::vector<NodeTime> slowest_nodes(const Engine& engine, std::size_t count) {
     return all;
 }
 
-std::string describe_lateness(const GroupRuntime& group) {
-    const GroupTelemetry& t = group.telemetry;
+std::string describe_lateness(const run::GroupRuntime& group) {
+    const observe::GroupTelemetry& t = group.telemetry;
     std::int64_t withheld = 0;
-    for (std::size_t c = 0; c < late_causes; ++c) withheld += t.withheld[static_cast<LateCause>(c)];
+    for (std::size_t c = 0; c < observe::late_causes; ++c) withheld += t.withheld[static_cast<observe::LateCause>(c)];
     const std::string skipped = describe_counts("skipped", t.skipped.load(), t.skip_causes);
     const std::string late = describe_counts("values too late for others", withheld, t.withheld);
     return skipped + (skipped.empty() || late.empty() ? "" : ", ") + late;
 }
 
-std::string describe_sound(const SoundCard& card) {
+std::string describe_sound(const io::SoundCard& card) {
     const AudioStatistics s = card.statistics();
     return fmt::format("{}{:+.0f} ppm, {} underflows ({} frames of silence), {} frames dropped, {} left out",
                        card.is_lost() ? "LOST, " : "", 1e6 * card.follower().loop().rate_error(), s.underflows,
                        s.frames_underflowed, s.frames_dropped, s.frames_left_out);
 }
 
-std::string live_table(const Engine& engine) {
+std::string live_table(const run::Engine& engine) {
     std::string text = fmt::format("{:.1f} s, {:.1f} N on the hand", engine.progress_seconds(), force_of(engine));
     for (const auto& slot : engine.outside().devices)
         if (const auto faults = slot->guard.faults(); !faults.empty())
             text += fmt::format("; fault of {} at {:.1f} s: {}", slot->name, seconds(faults.back().tick * slot->period),
-                                describe(faults.back().reason));
+                                control::describe(faults.back().reason));
     for (const auto& card : engine.outside().cards) text += "; sound " + describe_sound(*card);
     text += fmt::format("\n{:>10} {:>9} {:>10} {:>7} {:>9} {:>9} {:>9} {:>9} {:>6}", "group", "Hz", "ticks", "missed",
                         "late ms", "p50 µs", "p99 µs", "max µs", "load %");

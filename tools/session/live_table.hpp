@@ -2,7 +2,7 @@
 // How a run goes, as a table for people: its groups, and the nodes that take longest.
 #pragma once
 
-#include "engine/engine.hpp"
+#include "engine/run/engine.hpp"
 
 #include <string>
 #include <vector>
@@ -17,15 +17,15 @@ struct NodeTime {
 };
 
 /// At most `count` nodes, the largest share first. Control thread, or after the run.
-std::vector<NodeTime> slowest_nodes(const Engine& engine, std::size_t count);
+std::vector<NodeTime> slowest_nodes(const run::Engine& engine, std::size_t count);
 
 /// "3 skipped (2 woken late, 1 preempted)", or "" when there is nothing.
-std::string describe_lateness(const GroupRuntime& group);
+std::string describe_lateness(const run::GroupRuntime& group);
 
 /// "+12 ppm, 0 underflows (0 frames of silence), 0 frames dropped, 0 left out".
-std::string describe_sound(const SoundCard& card);
+std::string describe_sound(const io::SoundCard& card);
 
 /// Several lines without a line end behind the last: time, force, faults, a row per group and the slowest nodes.
-std::string live_table(const Engine& engine);
+std::string live_table(const run::Engine& engine);
 
 }  // namespace tactus::session

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/session/load_plan.hpp"
 
-#include "graph/sub_patch.hpp"
+#include "graph/patch/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
 
 #include <fmt/format.h>
@@ -80,31 +80,31 @@ fs::path find_patch(const std::string& name) { return find_bundled(name, "patch"
 
 fs::path find_rig(const std::string& name) { return find_bundled(name, "rig", "rigs"); }
 
-std::optional<Plan> plan_of(Patch patch, const PatchOverrides& overrides, std::optional<std::uint64_t> seed,
-                            AssetCache* assets, Problems& problems) {
-    read_parts(patch);
-    apply_overrides(patch, overrides, problems);
+std::optional<compile::Plan> plan_of(patch::Patch patch, const patch::PatchOverrides& overrides, std::optional<std::uint64_t> seed,
+                            compile::AssetCache* assets, patch::Problems& problems) {
+    patch::read_parts(patch);
+    patch::apply_overrides(patch, overrides, problems);
     if (seed) patch.seed = *seed;
     // Without a sound text, what the compiler would say is mostly echo.
     if (!problems.empty()) return std::nullopt;
-    std::optional<Plan> plan = compile(patch, catalogue(), problems);
+    std::optional<compile::Plan> plan = compile::compile(patch, nodes::catalogue(), problems);
     if (plan && assets) assets->load(*plan, problems);
     return plan;
 }
 
-std::optional<Plan> read_plan(const PatchChoice& choice, Problems& problems) {
-    return plan_of(load_patch(find_patch(choice.patch), problems), choice.overrides, choice.seed, nullptr, problems);
+std::optional<compile::Plan> read_plan(const PatchChoice& choice, patch::Problems& problems) {
+    return plan_of(patch::load_patch(find_patch(choice.patch), problems), choice.overrides, choice.seed, nullptr, problems);
 }
 
-Plan load_plan(const PatchChoice& choice, AssetCache& assets) {
-    Problems problems;
-    std::optional<Plan> plan =
-        plan_of(load_patch(find_patch(choice.patch), problems), choice.overrides, choice.seed, &assets, problems);
+compile::Plan load_plan(const PatchChoice& choice, compile::AssetCache& assets) {
+    patch::Problems problems;
+    std::optional<compile::Plan> plan =
+        plan_of(patch::load_patch(find_patch(choice.patch), problems), choice.overrides, choice.seed, &assets, problems);
     throw_problems(problems);
     return std::move(*plan);
 }
 
-std::vector<std::string> problem_lines(const Problems& problems) {
+std::vector<std::string> problem_lines(const patch::Problems& problems) {
     constexpr std::size_t most_shown = 20;
     std::vector<std::string> lines;
     for (const Error& error : problems.list | std::views::take(most_shown)) lines.emplace_back(error.what());
@@ -114,7 +114,7 @@ std::vector<std::string> problem_lines(const Problems& problems) {
     return lines;
 }
 
-void throw_problems(const Problems& problems) {
+void throw_problems(const patch::Problems& problems) {
     if (problems.empty()) return;
     const std::vector<std::string> lines = problem_lines(problems);
     for (std::size_t i = 0; i + 1 < lines.size(); ++i) fmt::print(stderr, "tactus: {}\n", lines[i]);
@@ -122,13 +122,13 @@ void throw_problems(const Problems& problems) {
     throw Error(lines.back());
 }
 
-std::unique_ptr<TakeWriter> make_take(const PatchChoice& choice, const fs::path& folder, double seconds, bool live) {
-    TakeAbout about{find_patch(choice.patch), choice.overrides, choice.seed, seconds, live};
+std::unique_ptr<take::TakeWriter> make_take(const PatchChoice& choice, const fs::path& folder, double seconds, bool live) {
+    take::TakeAbout about{find_patch(choice.patch), choice.overrides, choice.seed, seconds, live};
     // A take is replayed from any folder.
     for (std::string& asset : about.overrides.assets)
         if (const auto equals = asset.find('='); equals != std::string::npos)
             asset = asset.substr(0, equals + 1) + fs::absolute(asset.substr(equals + 1)).string();
-    return std::make_unique<TakeWriter>(folder, std::move(about));
+    return std::make_unique<take::TakeWriter>(folder, std::move(about));
 }
 
 void make_output_folder(const fs::path& folder) {

@@ -2,7 +2,7 @@
 // Which patch, and what is changed of it.
 #pragma once
 
-#include "graph/patch.hpp"
+#include "graph/patch/patch.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -12,7 +12,7 @@ namespace tactus::session {
 
 struct PatchChoice {
     std::string patch;  ///< a path, or a name in the library
-    PatchOverrides overrides;
+    patch::PatchOverrides overrides;
     std::optional<std::uint64_t> seed;
 };
 

@@ -12,9 +12,9 @@ namespace tactus::session {
 
 namespace {
 
-Plan plan_in(const Take& take, const std::string& text, AssetCache& assets) {
-    Problems problems;
-    std::optional<Plan> plan = plan_of(read_patch(text, take.about.patch_file, problems), take.about.overrides,
+compile::Plan plan_in(const take::Take& take, const std::string& text, compile::AssetCache& assets) {
+    patch::Problems problems;
+    std::optional<compile::Plan> plan = plan_of(patch::read_patch(text, take.about.patch_file, problems), take.about.overrides,
                                        take.about.seed, &assets, problems);
     if (!problems.empty()) throw problems.list.front();
     return std::move(*plan);
@@ -22,14 +22,14 @@ Plan plan_in(const Take& take, const std::string& text, AssetCache& assets) {
 
 }  // namespace
 
-ReplayedTake::ReplayedTake(const Take& take, EngineOptions options, AssetCache& assets) {
+ReplayedTake::ReplayedTake(const take::Take& take, run::EngineOptions options, compile::AssetCache& assets) {
     options.replay = &take.log;
     options.devices = &take.devices;
-    engine_ = std::make_unique<Engine>(plan_in(take, take.text, assets), options);
+    engine_ = std::make_unique<run::Engine>(plan_in(take, take.text, assets), options);
     for (const auto& event : take.events) {
-        if (const auto* edit = std::get_if<TakenEdit>(&event))
+        if (const auto* edit = std::get_if<take::TakenEdit>(&event))
             engine_->schedule(plan_in(take, edit->text, assets), edit->when);
-        if (const auto* change = std::get_if<TakenChange>(&event))
+        if (const auto* change = std::get_if<take::TakenChange>(&event))
             engine_->schedule_change(change->id, change->node, change->param, change->value);
     }
 }

@@ -2,9 +2,9 @@
 // A take made ready to run again: its plans, edits and parameter changes.
 #pragma once
 
-#include "engine/engine.hpp"
-#include "engine/take_reader.hpp"
-#include "graph/load_assets.hpp"
+#include "engine/run/engine.hpp"
+#include "engine/take/take_reader.hpp"
+#include "graph/compile/load_assets.hpp"
 
 #include <memory>
 
@@ -14,12 +14,12 @@ class ReplayedTake {
 public:
     /// `options` says what is wanted of the repetition; what repeats the run is filled in. `take` must outlive it. Throws
     /// Error.
-    ReplayedTake(const Take& take, EngineOptions options, AssetCache& assets);
+    ReplayedTake(const take::Take& take, run::EngineOptions options, compile::AssetCache& assets);
 
-    Engine& engine() { return *engine_; }
+    run::Engine& engine() { return *engine_; }
 
 private:
-    std::unique_ptr<Engine> engine_;
+    std::unique_ptr<run::Engine> engine_;
 };
 
 }  // namespace tactus::session

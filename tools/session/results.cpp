@@ -33,29 +33,29 @@ Vec3 towards_site(const Report& report) {
     return glm::normalize(-normal - 0.55 * glm::cross(normal, stroke) - 0.45 * stroke);
 }
 
-Image picture_of(const Bone& bone, const std::string& name, const Vec3& towards) {
+display::Image picture_of(const bone::Bone& bone, const std::string& name, const Vec3& towards) {
     constexpr int width = 1280, height = 800;
-    PictureMaker maker(width, height);
-    MeshPool& meshes = maker.renderer().meshes();
-    Picture picture;
+    display::PictureMaker maker(width, height);
+    display::MeshPool& meshes = maker.renderer().meshes();
+    display::Picture picture;
     picture.meshes = {{meshes.make(), {}, 1.0, true}};
-    const BoneEditor editor(bone.distance, bone.density, {.max_dirty = 1, .max_versions = 1});
-    BrickSurface mesher;
-    SurfacePatch patch;
+    const volume::BoneEditor editor(bone.distance, bone.density, {.max_dirty = 1, .max_versions = 1});
+    geometry::BrickSurface mesher;
+    geometry::SurfacePatch patch;
     for (int b = 0; b < editor.layout().brick_count(); ++b) {
         mesher.make(editor.current(), static_cast<std::uint32_t>(b), patch);
         meshes.set_part(picture.meshes.front().mesh, static_cast<std::uint32_t>(b), patch);
-        picture.bounds.add(bounds_of(patch));
+        picture.bounds.add(display::bounds_of(patch));
     }
-    OrbitCamera camera;
+    display::OrbitCamera camera;
     camera.look_along(towards, std::abs(towards.z) < 0.9 ? Vec3(0.0, 0.0, 1.0) : Vec3(0.0, -1.0, 0.0));
     camera.fit(picture.bounds, static_cast<double>(width) / height, 1.2);
-    Image image = maker.draw(picture, views_of(camera, picture.bounds, width, height, StereoMode::mono));
-    Legend legend;
+    display::Image image = maker.draw(picture, display::views_of(camera, picture.bounds, width, height, display::StereoMode::mono));
+    display::Legend legend;
     legend.title = name;
-    legend.scales.push_back(density_scale(mesher.colours));
-    add_legend(image, legend);
-    add_scale_bar(image, camera.metres_per_pixel(height));
+    legend.scales.push_back(display::density_scale(mesher.colours));
+    display::add_legend(image, legend);
+    display::add_scale_bar(image, camera.metres_per_pixel(height));
     return image;
 }
 
@@ -74,19 +74,19 @@ WrittenFiles write_results(const Report& report, const std::filesystem::path& fo
     };
     // A bone before its picture: it can be drawn again.
     for (const auto& [name, result] : report.results)
-        if (const auto* bone = std::any_cast<std::shared_ptr<const Bone>>(&result))
-            write(bones, name + ".vdb", [&, file = folder / (name + ".vdb")] { save_bone(**bone, file); });
+        if (const auto* bone = std::any_cast<std::shared_ptr<const bone::Bone>>(&result))
+            write(bones, name + ".vdb", [&, file = folder / (name + ".vdb")] { bone::save_bone(**bone, file); });
     for (const auto& [name, result] : report.results) {
-        const auto* bone = std::any_cast<std::shared_ptr<const Bone>>(&result);
+        const auto* bone = std::any_cast<std::shared_ptr<const bone::Bone>>(&result);
         if (!bone) continue;
-        Image picture;
+        display::Image picture;
         try {
             picture = picture_of(**bone, name, towards_site(report));
         } catch (const Error& error) {
             say(stderr, fmt::format("tactus: no picture of the {}: {}\n", name, error.what()));
             continue;
         }
-        write(written.names, name + ".png", [&] { write_png(picture, (folder / (name + ".png")).string()); });
+        write(written.names, name + ".png", [&] { display::write_png(picture, (folder / (name + ".png")).string()); });
     }
     written.names.insert(written.names.end(), bones.begin(), bones.end());
     return written;

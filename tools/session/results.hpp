@@ -2,7 +2,7 @@
 // What `render` and `run` leave in the folder besides the recordings.
 #pragma once
 
-#include "engine/engine.hpp"
+#include "engine/run/engine.hpp"
 
 #include <filesystem>
 #include <string>

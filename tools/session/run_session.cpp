@@ -24,7 +24,7 @@ namespace {
 constexpr double for_ever = 86400.0;
 
 /// The log may be anywhere, but not where a recording is.
-void check_log(const Engine& engine, const fs::path& log, const fs::path& folder) {
+void check_log(const run::Engine& engine, const fs::path& log, const fs::path& folder) {
     std::error_code ignored;
     const fs::path file = fs::weakly_canonical(log, ignored);
     for (const auto& stream : engine.outside().streams)
@@ -34,9 +34,9 @@ void check_log(const Engine& engine, const fs::path& log, const fs::path& folder
 
 }  // namespace
 
-RunSession::RunSession(const RunChoice& choice, AssetCache& assets, Observer* observer)
+RunSession::RunSession(const RunChoice& choice, compile::AssetCache& assets, observe::Observer* observer)
     : choice_(choice), assets_(assets) {
-    EngineOptions options;
+    run::EngineOptions options;
     options.seconds = choice.seconds.value_or(for_ever);
     options.live = true;
     options.observer = observer;
@@ -46,7 +46,7 @@ RunSession::RunSession(const RunChoice& choice, AssetCache& assets, Observer* ob
             throw Error("a card plays at its own pace: --dilate needs --audio file or none");
         if (choice.audio.empty()) options.audio.device = "file";
     }
-    Plan plan = load_plan(choice, assets);
+    compile::Plan plan = load_plan(choice, assets);
     const bool is_default = choice.out.empty();
     folder_ = std::make_unique<OutputFolder>(
         OutputChoice{is_default ? fs::path(fs::path(choice.patch).stem().string() + "-run") : choice.out,
@@ -56,14 +56,14 @@ RunSession::RunSession(const RunChoice& choice, AssetCache& assets, Observer* ob
         take_ = make_take(choice, choice.record, options.seconds, true);
         options.take = take_.get();
     } else if (choice.keeps_journal) begin_journal(options);
-    engine_ = std::make_unique<Engine>(std::move(plan), options);
+    engine_ = std::make_unique<run::Engine>(std::move(plan), options);
     check_log(*engine_, choice.log, folder());
 }
 
 RunSession::~RunSession() { drop_journal(); }
 
 /// A take without values, which becomes one with them when that is asked for.
-void RunSession::begin_journal(EngineOptions& options) {
+void RunSession::begin_journal(run::EngineOptions& options) {
     constexpr std::string_view name = "journal-";
     std::error_code ignored;
     // What runs that were killed have left.
@@ -98,7 +98,7 @@ void RunSession::record(const fs::path& folder) {
 }
 
 void RunSession::run(const Hooks& hooks, const std::atomic<bool>& stop) {
-    LiveOptions live;
+    run::LiveOptions live;
     live.dilate = choice_.dilate;
     if (!choice_.log.empty()) live.log = choice_.log;
     live.stop = &stop;

@@ -2,7 +2,7 @@
 // One live run as the command line asked for it, from the patch's text to the summary.
 #pragma once
 
-#include "engine/engine.hpp"
+#include "engine/run/engine.hpp"
 #include "tools/session/live_control.hpp"
 #include "tools/session/output_folder.hpp"
 #include "tools/session/run_choice.hpp"
@@ -19,7 +19,7 @@ namespace tactus::session {
 class RunSession {
 public:
     /// Loads the patch and its assets and prepares all nodes; `observer` may be null. Throws Error.
-    RunSession(const RunChoice& choice, AssetCache& assets, Observer* observer = nullptr);
+    RunSession(const RunChoice& choice, compile::AssetCache& assets, observe::Observer* observer = nullptr);
     ~RunSession();
 
     struct Hooks {
@@ -37,7 +37,7 @@ public:
     /// What could not be written to its end, and why; grows while it runs.
     std::vector<std::string> losses() const;
 
-    Engine& engine() { return *engine_; }
+    run::Engine& engine() { return *engine_; }
     /// Null unless it runs and may be edited.
     LiveControl* control() { return control_.get(); }
     const std::filesystem::path& folder() const { return folder_->path(); }
@@ -46,16 +46,16 @@ public:
     const std::string& summary_text() const { return text_; }
 
 private:
-    void begin_journal(EngineOptions& options);
+    void begin_journal(run::EngineOptions& options);
     void drop_journal();
 
     RunChoice choice_;
-    AssetCache& assets_;
+    compile::AssetCache& assets_;
     std::unique_ptr<OutputFolder> folder_;
     std::vector<std::string> late_losses_;  // of what is written after the run
     bool is_journal_ = false;  // the take is not asked for yet
-    std::unique_ptr<TakeWriter> take_;
-    std::unique_ptr<Engine> engine_;
+    std::unique_ptr<take::TakeWriter> take_;
+    std::unique_ptr<run::Engine> engine_;
     std::unique_ptr<LiveControl> control_;
     double wall_s_ = 0.0;
     std::string json_, text_;

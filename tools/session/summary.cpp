@@ -15,8 +15,8 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-Json group_json(const GroupRuntime& group, bool live) {
-    const GroupTelemetry& t = group.telemetry;
+Json group_json(const run::GroupRuntime& group, bool live) {
+    const observe::GroupTelemetry& t = group.telemetry;
     Json json{{"name", group.plan->name},
               {"rate_hz", rate_of(group.plan->period)},
               {"ticks", t.ticks.load()},
@@ -28,10 +28,10 @@ Json group_json(const GroupRuntime& group, bool live) {
                 {"p99", t.execution.quantile_ns(0.99) * 1e-3},
                 {"max", static_cast<double>(t.execution.max_ns()) * 1e-3}}}};
     if (live) {
-        const auto causes = [](const LateCounts& counts) {
-            return Json{{"woken_late", counts[LateCause::woken_late]},
-                        {"preempted", counts[LateCause::preempted]},
-                        {"ran_long", counts[LateCause::ran_long]}};
+        const auto causes = [](const observe::LateCounts& counts) {
+            return Json{{"woken_late", counts[observe::LateCause::woken_late]},
+                        {"preempted", counts[observe::LateCause::preempted]},
+                        {"ran_long", counts[observe::LateCause::ran_long]}};
         };
         json["skipped_because"] = causes(t.skip_causes);
         json["values_too_late_because"] = causes(t.withheld);
@@ -42,7 +42,7 @@ Json group_json(const GroupRuntime& group, bool live) {
     return json;
 }
 
-Json card_json(const SoundCard& card) {
+Json card_json(const io::SoundCard& card) {
     const AudioStatistics s = card.statistics();
     Json json{{"card", card.name()},
               {"rate_hz", card.rate()},
@@ -73,7 +73,7 @@ double number(const Report& report, const char* section, const char* key, double
 
 }  // namespace
 
-std::string summary_json(const Engine& engine, const Report& report, double seconds, bool live,
+std::string summary_json(const run::Engine& engine, const Report& report, double seconds, bool live,
                          const std::vector<std::string>& files, const std::vector<std::string>& losses) {
     Json json{{"patch", engine.plan().patch.title},
               {"seconds", seconds},
@@ -94,9 +94,9 @@ std::string summary_json(const Engine& engine, const Report& report, double seco
     for (const auto& card : engine.outside().cards) json["sound"].push_back(card_json(*card));
     json["faults"] = Json::array();
     for (const auto& slot : engine.outside().devices)
-        for (const DeviceFault& fault : slot->guard.faults())
+        for (const io::DeviceFault& fault : slot->guard.faults())
             json["faults"].push_back({{"device", slot->name},
-                                      {"reason", describe(fault.reason)},
+                                      {"reason", control::describe(fault.reason)},
                                       {"time_s", tactus::seconds(fault.tick * slot->period)},
                                       {"force_N", fault.force_N}});
     json["signals"] = Json::array();
@@ -116,11 +116,11 @@ std::string summary_json(const Engine& engine, const Report& report, double seco
     return json.dump(2) + "\n";
 }
 
-std::string summary_text(const Engine& engine, const Report& report, double seconds, double wall_seconds) {
+std::string summary_text(const run::Engine& engine, const Report& report, double seconds, double wall_seconds) {
     std::string text = fmt::format("{:.3g} s in {:.3g} s ({:.1f} times real time), output {:016x}\n", seconds,
                                    wall_seconds, seconds / wall_seconds, engine.output_hash());
     for (const auto& group : engine.groups()) {
-        const GroupTelemetry& t = group->telemetry;
+        const observe::GroupTelemetry& t = group->telemetry;
         text += fmt::format("  {:>8}: {} ticks, {} misses, {} skipped; a call takes {:.1f} µs (p99 {:.1f})\n",
                             group->plan->name, t.ticks.load(), t.misses.load(), t.skipped.load(),
                             t.execution.quantile_ns(0.5) * 1e-3, t.execution.quantile_ns(0.99) * 1e-3);
@@ -141,9 +141,9 @@ std::string summary_text(const Engine& engine, const Report& report, double seco
     for (const auto& card : engine.outside().cards)
         text += fmt::format("  sound on {}: {}\n", card->name(), describe_sound(*card));
     for (const auto& slot : engine.outside().devices)
-        for (const DeviceFault& fault : slot->guard.faults())
+        for (const io::DeviceFault& fault : slot->guard.faults())
             text += fmt::format("  fault of {} at {:.3f} s: {}; {:.2g} N faded to nothing\n", slot->name,
-                                tactus::seconds(fault.tick * slot->period), describe(fault.reason), fault.force_N);
+                                tactus::seconds(fault.tick * slot->period), control::describe(fault.reason), fault.force_N);
     for (const std::string& notice : engine.outside().notices) text += fmt::format("  note: {}\n", notice);
     return text;
 }

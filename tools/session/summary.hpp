@@ -2,7 +2,7 @@
 // What a run was, for programs and for people.
 #pragma once
 
-#include "engine/engine.hpp"
+#include "engine/run/engine.hpp"
 
 #include <string>
 #include <vector>
@@ -11,10 +11,10 @@ namespace tactus::session {
 
 /// The summary as JSON text. `files` are those written besides the recordings; `losses`: what could not be written to
 /// its end, and why.
-std::string summary_json(const Engine& engine, const Report& report, double seconds, bool live,
+std::string summary_json(const run::Engine& engine, const Report& report, double seconds, bool live,
                          const std::vector<std::string>& files, const std::vector<std::string>& losses);
 
 /// The same in a few lines.
-std::string summary_text(const Engine& engine, const Report& report, double seconds, double wall_seconds);
+std::string summary_text(const run::Engine& engine, const Report& report, double seconds, double wall_seconds);
 
 }  // namespace tactus::session

@@ -2,7 +2,7 @@
 #include "tools/session/take_file.hpp"
 
 #include "dsp/core/error.hpp"
-#include "dsp/spectrum/level.hpp"
+#include "dsp/signal/spectrum/level.hpp"
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ constexpr double worth_a_note = 1e-4;  // share of clipped samples
 }  // namespace
 
 TakeFile::TakeFile(const TakeChoice& choice)
-    : choice_(choice), reader_(std::make_shared<RecordReader>(choice.file, choice.log, std::nullopt)) {
+    : choice_(choice), reader_(std::make_shared<sound::RecordReader>(choice.file, choice.log, std::nullopt)) {
     const std::string& role = choice.role;
     if (!(choice.scale > 0.0) || !std::isfinite(choice.scale))
         throw Error(fmt::format("the scale of the {} must be above 0", role));
@@ -25,10 +25,10 @@ TakeFile::TakeFile(const TakeChoice& choice)
     if (static_cast<std::size_t>(choice.channel) > channels)
         throw Error(fmt::format("{}: has {} channels; channel {} does not exist", choice.file.string(), channels,
                                 choice.channel));
-    RecordBlock block;
+    sound::RecordBlock block;
     std::vector<double> mixed;
     std::vector<std::size_t> pieces{0};
-    Level level, longest;
+    signal::Level level, longest;
     while (reader_->next(block)) {
         if (block.after_gap) {
             pieces.push_back(0);
@@ -58,7 +58,7 @@ TakeFile::TakeFile(const TakeChoice& choice)
             fmt::format("the {} is clipped: {:.2g} % of its samples stand at its limits", role, 100.0 * share));
 }
 
-void TakeFile::mix(const RecordBlock& block, std::vector<double>& out) const {
+void TakeFile::mix(const sound::RecordBlock& block, std::vector<double>& out) const {
     const std::size_t channels = block.channels.size();
     const std::size_t first = choice_.channel == 0 ? 0 : static_cast<std::size_t>(choice_.channel) - 1;
     out = block.channels[first];
@@ -69,10 +69,10 @@ void TakeFile::mix(const RecordBlock& block, std::vector<double>& out) const {
     for (double& x : out) x *= factor;
 }
 
-Take TakeFile::take() const {
-    return Take(rate(), frames_, [this] {
+signal::Take TakeFile::take() const {
+    return signal::Take(rate(), frames_, [this] {
         reader_->rewind();
-        return [this, block = RecordBlock(), mixed = std::vector<double>(),
+        return [this, block = sound::RecordBlock(), mixed = std::vector<double>(),
                 piece = std::size_t{0}]() mutable -> std::span<const double> {
             while (reader_->next(block)) {
                 if (block.after_gap) ++piece;

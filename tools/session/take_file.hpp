@@ -2,8 +2,8 @@
 // A file as a take to be compared: one channel of it, or their mean, read from the disk as often as needed.
 #pragma once
 
-#include "assets/recording/record_reader.hpp"
-#include "dsp/spectrum/comparison.hpp"
+#include "assets/sound/record_reader.hpp"
+#include "dsp/signal/spectrum/comparison.hpp"
 
 #include <memory>
 #include <string>
@@ -14,7 +14,7 @@ namespace tactus::session {
 struct TakeChoice {
     std::filesystem::path file;
     std::string role;      ///< "reference" or "output", for what is said about it
-    LogSelection log;
+    table::LogSelection log;
     double scale = 1.0;    ///< units per full scale, or per unit of a log
     int channel = 0;       ///< from 1; 0: the mean of all
 };
@@ -24,7 +24,7 @@ public:
     /// Reads all of the file once. Of a log with gaps, the longest piece is the take. Throws Error.
     explicit TakeFile(const TakeChoice& choice);
 
-    Take take() const;
+    signal::Take take() const;
     const std::filesystem::path& file() const { return choice_.file; }
     double rate() const { return reader_->rate(); }  ///< Hz
     double peak() const { return peak_; }            ///< largest distance from zero, with the scale
@@ -32,10 +32,10 @@ public:
 
 private:
     /// One value of the chosen channel, or the mean, per frame.
-    void mix(const RecordBlock& block, std::vector<double>& out) const;
+    void mix(const sound::RecordBlock& block, std::vector<double>& out) const;
 
     TakeChoice choice_;
-    std::shared_ptr<RecordReader> reader_;
+    std::shared_ptr<sound::RecordReader> reader_;
     std::size_t piece_ = 0, frames_ = 0;  // which one, and how long it is
     double peak_ = 0.0;
     std::vector<std::string> notes_;

@@ -52,7 +52,7 @@ std::vector<std::string> words_of(const std::string& line) {
 }  // namespace
 
 Script::Script(const std::filesystem::path& file) : file_(file) {
-    std::istringstream text(read_whole_file(file));
+    std::istringstream text(file::read_whole_file(file));
     int number = 0;
     for (std::string written; std::getline(text, written);) {
         ++number;
@@ -150,7 +150,7 @@ bool Script::wait_for(const Line& line, Desk& desk, Window& window) {
         // One picture to draw what was done, one to keep.
         if (pictures_ == 1) window.want_picture();
         if (pictures_ < 2) return false;
-        write_png(window.picture(), word(line, 1));
+        display::write_png(window.picture(), word(line, 1));
         return true;
     }
     if (what == "click" || what == "drag") {
@@ -236,7 +236,7 @@ bool Script::perform(const Line& line, Desk& desk, Window& window) {
     else if (is("scale")) window.rescale(number(line, 1));
     else if (is("minimise", "restore")) window.minimise(what == "minimise");
     else if (is("from")) {
-        const auto view = view_of_name(word(line, 1));
+        const auto view = display::view_of_name(word(line, 1));
         if (!view) throw Error(fmt::format("no view '{}'", word(line, 1)));
         desk.scene().look_from(*view);
     } else if (is("stereo")) desk.scene().use_stereo(word(line, 1));

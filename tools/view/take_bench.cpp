@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/take_bench.hpp"
 
-#include "engine/engine.hpp"
+#include "engine/run/engine.hpp"
 #include "tools/picture/scene/scene_outline.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/session/replayed_take.hpp"
@@ -23,19 +23,19 @@ struct Outdated {};
 
 /// What is seen of a run is there for as long as the run is.
 struct Repetition {
-    Observer observer{Observer::Pace::kept};
+    observe::Observer observer{observe::Observer::Pace::kept};
     std::unique_ptr<ReplayedTake> run;
 };
 
 /// What the scenes of all patches of a take need; a text that does not compile needs nothing.
-std::set<std::string> scene_ports(const Take& take) {
+std::set<std::string> scene_ports(const take::Take& take) {
     std::vector<std::string> texts{take.text};
     for (const auto& event : take.events)
-        if (const auto* edit = std::get_if<TakenEdit>(&event)) texts.push_back(edit->text);
+        if (const auto* edit = std::get_if<take::TakenEdit>(&event)) texts.push_back(edit->text);
     std::set<std::string> all;
     for (const std::string& text : texts) {
-        Problems problems;
-        const std::optional<Plan> plan = plan_of(read_patch(text, take.about.patch_file, problems),
+        patch::Problems problems;
+        const std::optional<compile::Plan> plan = plan_of(patch::read_patch(text, take.about.patch_file, problems),
                                                  take.about.overrides, take.about.seed, nullptr, problems);
         if (!plan) continue;
         const std::vector<std::string> ports = outline_of(*plan).ports();
@@ -47,7 +47,7 @@ std::set<std::string> scene_ports(const Take& take) {
 }  // namespace
 
 TakeBench::TakeBench(const std::filesystem::path& folder)
-    : take_(Take::load(folder)), feed_(take_), scene_ports_(scene_ports(take_)), thread_([this] { work(); }) {}
+    : take_(take::Take::load(folder)), feed_(take_), scene_ports_(scene_ports(take_)), thread_([this] { work(); }) {}
 
 TakeBench::~TakeBench() { ends_ = true; }
 
@@ -63,13 +63,13 @@ void TakeBench::tend(double elapsed) {
 }
 
 void TakeBench::show_scene() {
-    const std::shared_ptr<Observer> observer = scene();
+    const std::shared_ptr<observe::Observer> observer = scene();
     if (!observer) return;
     // What the repetition has not reached as a whole is not looked at.
     observer->advance(static_cast<Flicks>(std::min(time(), repeated()) * static_cast<double>(flicks_per_second)));
 }
 
-std::shared_ptr<Observer> TakeBench::scene() const {
+std::shared_ptr<observe::Observer> TakeBench::scene() const {
     const std::lock_guard lock(lock_);
     return scene_;
 }
@@ -101,19 +101,19 @@ void TakeBench::work() {
             const std::lock_guard lock(lock_);
             doubt_ = "the scene may be another: " + doubts.front();
         }
-        EngineOptions options;
+        run::EngineOptions options;
         options.observer = &repetition->observer;
         options.hash = options.time_nodes = false;
         // At least one tick of everything: what nodes begin with is only there when they were prepared.
         options.seconds = std::max(length(), 1e-3);
         repetition->run = std::make_unique<ReplayedTake>(take_, options, assets_);
-        for (const std::string& port : scene_ports_) repetition->observer.watch(port, Watch::latest, this);
+        for (const std::string& port : scene_ports_) repetition->observer.watch(port, observe::Watch::latest, this);
         {
             const std::lock_guard lock(lock_);
-            scene_ = std::shared_ptr<Observer>(repetition, &repetition->observer);
+            scene_ = std::shared_ptr<observe::Observer>(repetition, &repetition->observer);
             repeated_ = 0.0;
         }
-        Engine& engine = repetition->run->engine();
+        run::Engine& engine = repetition->run->engine();
         engine.render(1, [&](double) {
             if (ends_) throw Outdated();
             const std::lock_guard lock(lock_);

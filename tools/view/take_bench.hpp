@@ -3,9 +3,9 @@
 // which all that changed is kept.
 #pragma once
 
-#include "engine/observer.hpp"
-#include "engine/take_reader.hpp"
-#include "graph/load_assets.hpp"
+#include "engine/observe/observer.hpp"
+#include "engine/take/take_reader.hpp"
+#include "graph/compile/load_assets.hpp"
 #include "tools/view/signal/feed.hpp"
 
 #include <atomic>
@@ -24,7 +24,7 @@ public:
     explicit TakeBench(const std::filesystem::path& folder);
     ~TakeBench();
 
-    const Take& take() const { return take_; }
+    const take::Take& take() const { return take_; }
     TakeFeed& feed() { return feed_; }
     double time() const { return feed_.now(); }
     double length() const { return feed_.length(); }
@@ -35,7 +35,7 @@ public:
     void tend(double elapsed);
 
     /// What the run had made of the scene by then, null before it is there at all.
-    std::shared_ptr<Observer> scene() const;
+    std::shared_ptr<observe::Observer> scene() const;
     /// The run was repeated up to here, s; beyond, the scene stands still.
     double repeated() const;
     bool scene_is_there() const;  ///< of the time that is shown
@@ -45,15 +45,15 @@ private:
     void work();
     void show_scene();
 
-    Take take_;
+    take::Take take_;
     TakeFeed feed_;
-    AssetCache assets_;
+    compile::AssetCache assets_;
     const std::set<std::string> scene_ports_;
     bool is_playing_ = false;
     mutable std::mutex lock_;
     double repeated_ = -1.0;
     bool is_whole_ = false;
-    std::shared_ptr<Observer> scene_;
+    std::shared_ptr<observe::Observer> scene_;
     std::string problem_, doubt_;
     std::atomic<bool> ends_{false};
     std::jthread thread_;

@@ -2,7 +2,7 @@
 // Colours and sizes of the window.
 #pragma once
 
-#include "graph/value.hpp"
+#include "graph/node/value.hpp"
 
 #include <cstdint>
 

@@ -78,7 +78,7 @@ fs::path reserve(const fs::path& stem) {
 fs::path keep_at(const fs::path& stem, std::string_view text) {
     const fs::path path = reserve(stem);
     try {
-        write_durable_file(path, text);
+        file::write_durable_file(path, text);
     } catch (const Error&) {
         std::error_code ignored;
         fs::remove(path, ignored);

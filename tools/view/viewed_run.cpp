@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/viewed_run.hpp"
 
-#include "dsp/safety/force_limiter.hpp"
+#include "dsp/control/force_limiter.hpp"
 #include "tools/session/live_table.hpp"
 #include "tools/session/run_session.hpp"
 
@@ -14,8 +14,8 @@ namespace tactus::view {
 
 namespace {
 
-GroupStatus status_of(const GroupRuntime& group) {
-    const GroupTelemetry& t = group.telemetry;
+GroupStatus status_of(const run::GroupRuntime& group) {
+    const observe::GroupTelemetry& t = group.telemetry;
     const double rate = rate_of(group.plan->period);
     const double execution_us = t.execution.quantile_ns(0.5) * 1e-3;
     return {group.plan->name,
@@ -28,7 +28,7 @@ GroupStatus status_of(const GroupRuntime& group) {
             execution_us * 1e-6 * rate / group.max_frames};
 }
 
-NodeStatus status_of(const LiveNode& node) {
+NodeStatus status_of(const build::LiveNode& node) {
     const double period_us = seconds(node.group->plan->period) * 1e6 * node.group->max_frames;
     const double mean = node.time.mean_ns() * 1e-3;
     return {node.name, mean, static_cast<double>(node.time.max_ns.load()) * 1e-3, mean / period_us};
@@ -36,7 +36,7 @@ NodeStatus status_of(const LiveNode& node) {
 
 }  // namespace
 
-ViewedRun::ViewedRun(RunChoice choice, AssetCache& assets, Observer& observer)
+ViewedRun::ViewedRun(RunChoice choice, compile::AssetCache& assets, observe::Observer& observer)
     : choice_(std::move(choice)), assets_(assets), observer_(observer), thread_([this] { work(); }) {}
 
 ViewedRun::~ViewedRun() {
@@ -92,7 +92,7 @@ void ViewedRun::tend(RunSession& session) {
 }
 
 void ViewedRun::look_at(RunSession& session) {
-    Engine& engine = session.engine();
+    run::Engine& engine = session.engine();
     RunStatus status;
     constexpr RunStatus::State states[] = {RunStatus::State::runs, RunStatus::State::fades, RunStatus::State::stands};
     status.state = states[static_cast<std::size_t>(engine.pausing())];
@@ -108,9 +108,9 @@ void ViewedRun::look_at(RunSession& session) {
     }
     for (const auto& node : engine.nodes()) status.nodes.push_back(status_of(*node));
     for (const auto& slot : engine.outside().devices)
-        for (const DeviceFault& fault : slot->guard.faults())
+        for (const io::DeviceFault& fault : slot->guard.faults())
             status.faults.push_back(fmt::format("{} at {:.1f} s: {}", slot->name, seconds(fault.tick * slot->period),
-                                                describe(fault.reason)));
+                                                control::describe(fault.reason)));
     const std::lock_guard lock(lock_);
     status_ = std::make_shared<RunStatus>(std::move(status));
 }

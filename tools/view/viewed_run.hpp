@@ -2,8 +2,8 @@
 // A live run on threads of its own, beside a window: what it tells is copied, what it is asked for is queued.
 #pragma once
 
-#include "engine/observer.hpp"
-#include "graph/load_assets.hpp"
+#include "engine/observe/observer.hpp"
+#include "graph/compile/load_assets.hpp"
 #include "tools/session/run_choice.hpp"
 
 #include <atomic>
@@ -50,7 +50,7 @@ struct RunStatus {
 class ViewedRun {
 public:
     /// Starts at once; loading happens on its own thread.
-    ViewedRun(RunChoice choice, AssetCache& assets, Observer& observer);
+    ViewedRun(RunChoice choice, compile::AssetCache& assets, observe::Observer& observer);
     /// Ends the run and waits for it.
     ~ViewedRun();
 
@@ -84,8 +84,8 @@ private:
     void ask(std::function<void(RunSession&)> what);
 
     RunChoice choice_;
-    AssetCache& assets_;
-    Observer& observer_;
+    compile::AssetCache& assets_;
+    observe::Observer& observer_;
     mutable std::mutex lock_;
     std::vector<std::function<void(RunSession&)>> asked_;
     std::vector<std::string> messages_;

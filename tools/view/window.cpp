@@ -79,7 +79,7 @@ void Window::load_fonts() {
     static const ImWchar glyphs[] = {0x20,   0x17f,  0x370,  0x3ff,  0x2010, 0x205e, 0x2070, 0x209f,
                                      0x2190, 0x21ff, 0x2200, 0x22ff, 0x25a0, 0x25ff, 0};
     const auto size = static_cast<float>(std::round(14.0 * scale_));
-    const std::string plain = system_font(false), heavy = system_font(true);
+    const std::string plain = display::system_font(false), heavy = display::system_font(true);
     if (!plain.empty() && !heavy.empty()) {
         body = io.Fonts->AddFontFromFileTTF(plain.c_str(), size, nullptr, glyphs);
         bold = io.Fonts->AddFontFromFileTTF(heavy.c_str(), size, nullptr, glyphs);

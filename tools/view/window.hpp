@@ -41,7 +41,7 @@ public:
     double drawn_s() const { return drawn_s_; }
     /// Keeps what the next `end` shows, in `picture`.
     void want_picture();
-    const Image& picture() const { return shown_; }
+    const display::Image& picture() const { return shown_; }
 
     ImFont* body = nullptr;
     ImFont* bold = nullptr;
@@ -60,7 +60,7 @@ private:
     double scale_ = 1.0;
     bool follows_screen_ = false;  // its scale
     double began_s_ = 0.0, drawn_s_ = 0.0;
-    Image shown_;
+    display::Image shown_;
     bool wants_picture_ = false;
 };
 

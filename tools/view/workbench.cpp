@@ -54,7 +54,7 @@ bool Draft::is_complete() const {
 
 Workbench::Workbench(const RunChoice& choice) : choice_(choice) {
     const fs::path file = find_patch(choice.patch);
-    editor_ = std::make_unique<PatchEditor>(read_whole_file(file), file,
+    editor_ = std::make_unique<edit::PatchEditor>(file::read_whole_file(file), file,
                                             [this](std::string_view text) { return check(text); });
     if (const auto problem = check(editor_->text())) tell(*problem, true);
     adopt();
@@ -72,13 +72,13 @@ void Workbench::tell(std::string text, bool is_problem) {
 }
 
 std::optional<std::string> Workbench::check(std::string_view text) {
-    Problems problems;
-    std::optional<Plan> plan =
-        plan_of(read_patch(without_mark(text), editor_ ? editor_->file() : fs::path(choice_.patch), problems),
+    patch::Problems problems;
+    std::optional<compile::Plan> plan =
+        plan_of(patch::read_patch(without_mark(text), editor_ ? editor_->file() : fs::path(choice_.patch), problems),
                 choice_.overrides, choice_.seed, nullptr, problems);
     checked_.reset();
     if (plan && problems.empty()) {
-        checked_ = std::make_unique<Plan>(std::move(*plan));
+        checked_ = std::make_unique<compile::Plan>(std::move(*plan));
         return std::nullopt;
     }
     if (problems.empty()) return "the patch does not compile";
@@ -108,7 +108,7 @@ void Workbench::follow() {
     followed_ = plan_;
 }
 
-bool Workbench::edit(const PatchEditor::Edit& how, std::string done) {
+bool Workbench::edit(const edit::PatchEditor::Edit& how, std::string done) {
     const std::int64_t version = editor_->version();
     if (const auto problem = editor_->apply(how)) {
         tell(*problem, true);
@@ -122,36 +122,36 @@ bool Workbench::edit(const PatchEditor::Edit& how, std::string done) {
 }
 
 bool Workbench::set(const std::string& node, const std::string& param, const std::string& value) {
-    return edit([&](std::string_view text) { return with_setting(text, node, param, value); },
+    return edit([&](std::string_view text) { return edit::with_setting(text, node, param, value); },
                 fmt::format("{}.{} = {}", node, param, value));
 }
 
 bool Workbench::reset(const std::string& node, const std::string& param) {
-    return edit([&](std::string_view text) { return without_setting(text, node, param); },
+    return edit([&](std::string_view text) { return edit::without_setting(text, node, param); },
                 fmt::format("{}.{} has its default", node, param));
 }
 
-bool Workbench::add(const NewNode& node) {
-    return edit([&](std::string_view text) { return with_node(text, node); },
+bool Workbench::add(const edit::NewNode& node) {
+    return edit([&](std::string_view text) { return edit::with_node(text, node); },
                 fmt::format("added {} of type {}", node.name, node.type));
 }
 
 bool Workbench::remove(const std::string& node) {
-    return edit([&](std::string_view text) { return without_node(text, node); }, fmt::format("removed {}", node));
+    return edit([&](std::string_view text) { return edit::without_node(text, node); }, fmt::format("removed {}", node));
 }
 
 bool Workbench::rename(const std::string& from, const std::string& to) {
-    return edit([&](std::string_view text) { return with_node_named(text, from, to); },
+    return edit([&](std::string_view text) { return edit::with_node_named(text, from, to); },
                 fmt::format("{} is now {}", from, to));
 }
 
 bool Workbench::connect(const std::string& from, const std::string& to, const std::string& mode) {
-    return edit([&](std::string_view text) { return with_wire(text, {from, to, mode}); },
+    return edit([&](std::string_view text) { return edit::with_wire(text, {from, to, mode}); },
                 fmt::format("{} -> {}{}{}", from, to, mode.empty() ? "" : " as ", mode));
 }
 
 bool Workbench::disconnect(const std::string& to) {
-    return edit([&](std::string_view text) { return without_wire(text, to); }, fmt::format("no wire to {}", to));
+    return edit([&](std::string_view text) { return edit::without_wire(text, to); }, fmt::format("no wire to {}", to));
 }
 
 bool Workbench::undo() {
@@ -169,9 +169,9 @@ bool Workbench::redo() {
 }
 
 void Workbench::check_saved() {
-    Problems problems;
-    const std::optional<Plan> saved =
-        plan_of(load_patch(editor_->file(), problems), choice_.overrides, choice_.seed, nullptr, problems);
+    patch::Problems problems;
+    const std::optional<compile::Plan> saved =
+        plan_of(patch::load_patch(editor_->file(), problems), choice_.overrides, choice_.seed, nullptr, problems);
     throw_problems(problems);
     const PatchChange change = plan_ && saved ? change_between(*plan_, *saved) : PatchChange{{}, true};
     if (change.needs_edit || !change.settings.empty())
@@ -189,21 +189,21 @@ std::string Workbench::free_name(const std::string& type) const {
 }
 
 void Workbench::begin_draft(const std::string& type, int group) {
-    const auto found = std::ranges::find(catalogue(), type, [](const NodeType* t) { return t->name; });
-    if (found == catalogue().end() || !plan_) return tell(fmt::format("no node type '{}'", type), true);
+    const auto found = std::ranges::find(nodes::catalogue(), type, [](const NodeType* t) { return t->name; });
+    if (found == nodes::catalogue().end() || !plan_) return tell(fmt::format("no node type '{}'", type), true);
     Draft draft;
     draft.node.name = free_name(type);
     draft.node.type = type;
-    const PlanGroup& lane = plan_->groups[static_cast<std::size_t>(group)];
-    const auto named = std::ranges::find(plan_->patch.groups, lane.name, &PatchGroup::name);
+    const compile::PlanGroup& lane = plan_->groups[static_cast<std::size_t>(group)];
+    const auto named = std::ranges::find(plan_->patch.groups, lane.name, &patch::PatchGroup::name);
     if (named != plan_->patch.groups.end()) draft.node.group = lane.name;
     else draft.node.rate = lane.name;
-    const NodeInstance fresh((*found)->create(), (*found)->destroy);
+    const compile::NodeInstance fresh((*found)->create(), (*found)->destroy);
     PortLister lister(draft);
     (*found)->visit(fresh.get(), lister);
     draft_ = std::move(draft);
     if (!draft_->is_complete()) return tell(fmt::format("{} needs wires to its inputs", draft_->node.name));
-    const NewNode node = draft_->node;
+    const edit::NewNode node = draft_->node;
     draft_.reset();
     add(node);
 }
@@ -212,11 +212,11 @@ void Workbench::connect_draft(const std::string& from, const std::string& input)
     if (!draft_) return;
     const auto port = std::ranges::find(draft_->inputs, input, &PicturePort::name);
     if (port == draft_->inputs.end()) return;
-    std::erase_if(draft_->node.wires, [&](const WireText& w) { return w.to.ends_with("." + input); });
+    std::erase_if(draft_->node.wires, [&](const edit::WireText& w) { return w.to.ends_with("." + input); });
     draft_->node.wires.push_back({from, draft_->node.name + "." + input, {}});
     port->is_connected = true;
     if (!draft_->is_complete()) return;
-    const NewNode node = draft_->node;
+    const edit::NewNode node = draft_->node;
     if (add(node)) draft_.reset();
     else {
         draft_->node.wires.pop_back();
@@ -225,10 +225,10 @@ void Workbench::connect_draft(const std::string& from, const std::string& input)
 }
 
 std::optional<std::string> Workbench::objection(const std::string& from, const std::string& to) const {
-    Problems problems;
+    patch::Problems problems;
     try {
-        const std::string text = with_wire(editor_->text(), {from, to, {}});
-        plan_of(read_patch(without_mark(text), editor_->file(), problems), choice_.overrides, choice_.seed, nullptr,
+        const std::string text = edit::with_wire(editor_->text(), {from, to, {}});
+        plan_of(patch::read_patch(without_mark(text), editor_->file(), problems), choice_.overrides, choice_.seed, nullptr,
                 problems);
     } catch (const Error& error) {
         return error.what();
@@ -240,7 +240,7 @@ std::optional<std::string> Workbench::objection(const std::string& from, const s
 void Workbench::run() {
     if (run_ && !run_->is_over()) return;
     run_.reset();
-    observer_ = std::make_shared<Observer>();
+    observer_ = std::make_shared<observe::Observer>();
     ++runs_;
     RunChoice choice = choice_;
     choice.patch = editor_->file().string();

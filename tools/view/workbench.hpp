@@ -2,11 +2,11 @@
 // What can be done with a patch and its run in the window, without the window: the panels and scripts both call this.
 #pragma once
 
-#include "engine/observer.hpp"
-#include "graph/load_assets.hpp"
-#include "graph/patch_edit.hpp"
-#include "graph/patch_editor.hpp"
-#include "graph/plan.hpp"
+#include "engine/observe/observer.hpp"
+#include "graph/compile/load_assets.hpp"
+#include "graph/edit/patch_edit.hpp"
+#include "graph/edit/patch_editor.hpp"
+#include "graph/compile/plan.hpp"
 #include "tools/session/run_choice.hpp"
 #include "tools/view/patch/patch_picture.hpp"
 #include "tools/view/viewed_run.hpp"
@@ -21,7 +21,7 @@ namespace tactus::view {
 
 /// A node that is to come, while its inputs still lack wires: only as a whole it can become an edit.
 struct Draft {
-    NewNode node;
+    edit::NewNode node;
     std::vector<PicturePort> inputs, outputs;
 
     bool is_complete() const;  ///< every input that needs a wire has one
@@ -37,9 +37,9 @@ public:
     /// Reads the patch; whether it compiles is told in `messages`. Throws Error when it cannot be read at all.
     explicit Workbench(const RunChoice& choice);
 
-    const PatchEditor& editor() const { return *editor_; }
+    const edit::PatchEditor& editor() const { return *editor_; }
     /// Of the text; null when it does not compile, which only a file saved elsewhere can do.
-    const Plan* plan() const { return plan_.get(); }
+    const compile::Plan* plan() const { return plan_.get(); }
     const PatchPicture& picture() const { return picture_; }
     /// Rises whenever plan and picture are new.
     std::int64_t plan_version() const { return plan_version_; }
@@ -50,7 +50,7 @@ public:
     // Edits. False: refused, and `messages` says why; the text is as it was.
     bool set(const std::string& node, const std::string& param, const std::string& value);
     bool reset(const std::string& node, const std::string& param);
-    bool add(const NewNode& node);
+    bool add(const edit::NewNode& node);
     bool remove(const std::string& node);
     bool rename(const std::string& from, const std::string& to);
     /// "node.port" to "node.port"; a wire that leads there gives way.
@@ -108,7 +108,7 @@ public:
     const std::filesystem::path& take() const { return last_take_; }
     ViewedRun* running() { return run_.get(); }
     std::shared_ptr<const RunStatus> status() const;
-    std::shared_ptr<Observer> observer() const { return observer_; }
+    std::shared_ptr<observe::Observer> observer() const { return observer_; }
     /// Rises with every run that begins: what was seen of the one before is over.
     int runs() const { return runs_; }
 
@@ -120,7 +120,7 @@ public:
     bool has_patch_behind = false;  ///< a take that was opened from the run of a patch
 
 private:
-    bool edit(const PatchEditor::Edit& how, std::string done);
+    bool edit(const edit::PatchEditor::Edit& how, std::string done);
     std::optional<std::string> check(std::string_view text);
     void adopt();
     void adopt_text();
@@ -131,16 +131,16 @@ private:
     bool has_same_parts();
 
     RunChoice choice_;
-    AssetCache assets_;
-    std::unique_ptr<PatchEditor> editor_;
-    std::unique_ptr<Plan> checked_;
-    std::shared_ptr<const Plan> plan_;
-    std::shared_ptr<const Plan> followed_;  // what the run was brought to last
+    compile::AssetCache assets_;
+    std::unique_ptr<edit::PatchEditor> editor_;
+    std::unique_ptr<compile::Plan> checked_;
+    std::shared_ptr<const compile::Plan> plan_;
+    std::shared_ptr<const compile::Plan> followed_;  // what the run was brought to last
     PatchPicture picture_;
     std::int64_t plan_version_ = 0;
     std::deque<Message> messages_;
     std::optional<Draft> draft_;
-    std::shared_ptr<Observer> observer_;
+    std::shared_ptr<observe::Observer> observer_;
     std::unique_ptr<ViewedRun> run_;
     std::filesystem::path last_take_;
     int runs_ = 0;

@@ -89,7 +89,7 @@ void Workbench::drop_restored() {
 fs::path Workbench::keep_text() const {
     // What was restored is in the text, or was taken back in it.
     if (!restored_.empty()) try {
-            write_durable_file(restored_, editor_->text());
+            file::write_durable_file(restored_, editor_->text());
             return restored_;
         } catch (const Error&) {
             // Elsewhere, as if it had not been there.
@@ -112,7 +112,7 @@ void Workbench::keep_edits() noexcept {
 void Workbench::find_kept_edits() {
     for (const fs::path& file : find_unsaved(editor_->file())) try {
             // Saved since, by whatever program.
-            if (read_whole_file(file) == editor_->text()) fs::remove(file);
+            if (file::read_whole_file(file) == editor_->text()) fs::remove(file);
             else offers_.push_back(file);
         } catch (const std::exception& error) {
             tell(error.what(), true);
@@ -128,7 +128,7 @@ bool Workbench::restore_edits() {
     if (offers_.empty()) return false;
     try {
         const fs::path file = offers_.back();
-        std::string text = read_whole_file(file);
+        std::string text = file::read_whole_file(file);
         offers_.pop_back();
         // One that was restored before stays where it is.
         restored_ = file;

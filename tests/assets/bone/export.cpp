@@ -7,7 +7,7 @@
 #include "assets/mesh/write_mesh.hpp"
 #include "assets/volume/write_volume.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/distance/surface_distance.hpp"
+#include "dsp/volume/surface_distance.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
 
 #include <teem/nrrd.h>
@@ -32,15 +32,15 @@ constexpr double mm = 1e-3;
 const Vec3 far_off(1.0, -0.9, 1.1);
 
 // A ball of 8 mm whose upper part a saw has taken away at z = 3 mm above its middle.
-Bone cut_ball() {
-    Grid hu{{44, 42, 40}, {}, Vec3(0.5 * mm, 0.5 * mm, 0.6 * mm), {}};
+bone::Bone cut_ball() {
+    volume::Grid hu{{44, 42, 40}, {}, Vec3(0.5 * mm, 0.5 * mm, 0.6 * mm), {}};
     hu.origin = far_off - 0.5 * Vec3(43, 41, 39) * hu.spacing;
     for (int k = 0; k < 40; ++k)
         for (int j = 0; j < 42; ++j)
             for (int i = 0; i < 44; ++i)
                 hu.values.push_back(static_cast<float>(std::clamp(
                     300.0 - 1.5e6 * (glm::length(hu.position(i, j, k) - far_off) - 8.0 * mm), -1000.0, 1300.0)));
-    Bone bone = bone_from_hu(hu, {300.0f, 1, true}).bone;
+    bone::Bone bone = bone::bone_from_hu(hu, {300.0f, 1, true}).bone;
     bone.name = "ball";
     for (int k = 0; k < bone.distance.size[2]; ++k)
         for (int j = 0; j < bone.distance.size[1]; ++j)
@@ -57,18 +57,18 @@ const double cut_volume = std::numbers::pi * (2.0 / 3.0 * 512.0 + 64.0 * 3.0 - 9
 
 TEST_CASE("an exported surface read by assimp is closed, in LPS mm, of the bone's volume, 1 m from the origin") {
     const TemporaryFolder folder;
-    const Bone bone = cut_ball();
-    const TriangleSurface surface = export_surface(bone.distance);
-    CHECK(topology_of(surface).is_watertight());
-    CHECK(volume_of(surface) * 1e9 == Approx(cut_volume).epsilon(0.01));
+    const bone::Bone bone = cut_ball();
+    const geometry::TriangleSurface surface = mesh::export_surface(bone.distance);
+    CHECK(mesh::topology_of(surface).is_watertight());
+    CHECK(mesh::volume_of(surface) * 1e9 == Approx(cut_volume).epsilon(0.01));
     for (const char* name : {"ball.stl", "ball.ply"}) {
-        write_mesh(std::vector<ColouredSurface>{{surface, Vec3(1, 0, 0)}}, folder / name);
-        const std::string bytes = read_whole_file(folder / name);
+        mesh::write_mesh(std::vector<mesh::ColouredSurface>{{surface, Vec3(1, 0, 0)}}, folder / name);
+        const std::string bytes = file::read_whole_file(folder / name);
         CHECK_THAT(bytes.substr(0, 300), Contains("SPACE=LPS"));
-        const Mesh back = load_mesh(folder / name, mm);
-        CHECK(topology_of(back).is_watertight());
+        const mesh::Mesh back = mesh::load_mesh(folder / name, mm);
+        CHECK(mesh::topology_of(back).is_watertight());
         CHECK(back.triangles.size() == surface.triangles.size());
-        CHECK(volume_of(back) == Approx(volume_of(surface)).epsilon(1e-4));
+        CHECK(mesh::volume_of(back) == Approx(mesh::volume_of(surface)).epsilon(1e-4));
         double worst = 0.0;
         for (const Vec3& v : back.vertices) {
             const double z = v.z - far_off.z;
@@ -82,29 +82,29 @@ TEST_CASE("an exported surface read by assimp is closed, in LPS mm, of the bone'
 
 TEST_CASE("several bones go into one mesh file, and what cannot be written is refused") {
     const TemporaryFolder folder;
-    const Bone bone = cut_ball();
-    const TriangleSurface surface = export_surface(bone.distance);
-    TriangleSurface moved = surface;
+    const bone::Bone bone = cut_ball();
+    const geometry::TriangleSurface surface = mesh::export_surface(bone.distance);
+    geometry::TriangleSurface moved = surface;
     for (Vec3& v : moved.vertices) v.x += 0.1;
-    write_mesh(std::vector<ColouredSurface>{{surface, {}}, {moved, {}}}, folder / "two.ply");
-    CHECK(topology_of(load_mesh(folder / "two.ply")).components == 2);
-    CHECK_THROWS_WITH(write_mesh(std::vector<ColouredSurface>{{surface, {}}}, folder / "ball.obj"),
+    mesh::write_mesh(std::vector<mesh::ColouredSurface>{{surface, {}}, {moved, {}}}, folder / "two.ply");
+    CHECK(mesh::topology_of(mesh::load_mesh(folder / "two.ply")).components == 2);
+    CHECK_THROWS_WITH(mesh::write_mesh(std::vector<mesh::ColouredSurface>{{surface, {}}}, folder / "ball.obj"),
                       Contains(".stl or .ply"));
-    CHECK_THROWS_WITH(write_mesh({}, folder / "none.stl"), Contains("no triangles"));
-    CHECK_THROWS_AS(write_mesh(std::vector<ColouredSurface>{{surface, {}}}, folder / "absent" / "ball.stl"), Error);
+    CHECK_THROWS_WITH(mesh::write_mesh({}, folder / "none.stl"), Contains("no triangles"));
+    CHECK_THROWS_AS(mesh::write_mesh(std::vector<mesh::ColouredSurface>{{surface, {}}}, folder / "absent" / "ball.stl"), Error);
     CHECK_FALSE(std::filesystem::exists(folder / "none.stl"));
 }
 
 TEST_CASE("an exported NRRD read by teem has the bone's place, and its threshold gives the cut bone again") {
     const TemporaryFolder folder;
-    const Bone bone = cut_ball();
-    const Grid hu = volume_of_bones({&bone, 1}, BoneQuantity::hu);
-    write_volume(hu, SampleType::int16, folder / "ball.nrrd");
+    const bone::Bone bone = cut_ball();
+    const volume::Grid hu = bone::volume_of_bones({&bone, 1}, bone::BoneQuantity::hu);
+    volume::write_volume(hu, volume::SampleType::int16, folder / "ball.nrrd");
     Nrrd* nrrd = nrrdNew();
     REQUIRE(nrrdLoad(nrrd, (folder / "ball.nrrd").c_str(), nullptr) == 0);
     CHECK(nrrd->type == nrrdTypeShort);
     CHECK(nrrd->space == nrrdSpaceLeftPosteriorSuperior);
-    Grid back = hu;
+    volume::Grid back = hu;
     for (unsigned axis = 0; axis < 3; ++axis) {
         CHECK(nrrd->axis[axis].size == static_cast<std::size_t>(hu.size[axis]));
         back.spacing[int(axis)] = nrrd->axis[axis].spaceDirection[axis] * mm;
@@ -114,10 +114,10 @@ TEST_CASE("an exported NRRD read by teem has the bone's place, and its threshold
     CHECK(glm::length(back.spacing - hu.spacing) < 1e-12);
     for (std::size_t n = 0; n < hu.count(); ++n) back.values[n] = nrrdFLookup[nrrd->type](nrrd->data, n);
     nrrdNuke(nrrd);
-    const Bone again = bone_from_hu(back, {300.0f, 1, true}).bone;
-    CHECK(volume_of(surface_of(again.distance)) * 1e9 == Approx(cut_volume).epsilon(0.02));
+    const bone::Bone again = bone::bone_from_hu(back, {300.0f, 1, true}).bone;
+    CHECK(mesh::volume_of(mesh::surface_of(again.distance)) * 1e9 == Approx(cut_volume).epsilon(0.02));
     std::vector<double> off;
-    for (const Vec3& v : surface_of(again.distance).vertices)
+    for (const Vec3& v : mesh::surface_of(again.distance).vertices)
         off.push_back(std::abs(std::max(glm::length(v - far_off) - 8.0 * mm, v.z - far_off.z - 3.0 * mm)));
     std::sort(off.begin(), off.end());
     CHECK(off[off.size() * 95 / 100] < 0.15 * 0.5 * mm);
@@ -125,11 +125,11 @@ TEST_CASE("an exported NRRD read by teem has the bone's place, and its threshold
 
 TEST_CASE("an exported NIfTI holds the same samples with the axes of RAS in its header") {
     const TemporaryFolder folder;
-    const Bone bone = cut_ball();
-    const Grid distance = volume_of_bones({&bone, 1}, BoneQuantity::distance);
-    write_volume(distance, SampleType::float32, folder / "ball.nii.gz");
-    write_volume(distance, SampleType::float32, folder / "ball.nii");
-    const std::string plain = read_whole_file(folder / "ball.nii");
+    const bone::Bone bone = cut_ball();
+    const volume::Grid distance = bone::volume_of_bones({&bone, 1}, bone::BoneQuantity::distance);
+    volume::write_volume(distance, volume::SampleType::float32, folder / "ball.nii.gz");
+    volume::write_volume(distance, volume::SampleType::float32, folder / "ball.nii");
+    const std::string plain = file::read_whole_file(folder / "ball.nii");
     // zlib itself is the independent reader of the compression.
     std::string bytes(plain.size() + 1, '\0');
     gzFile file = gzopen((folder / "ball.nii.gz").c_str(), "rb");
@@ -167,16 +167,16 @@ TEST_CASE("an exported NIfTI read by nibabel has the samples and their places") 
         return;
     }
     const TemporaryFolder folder;
-    const Bone bone = cut_ball();
-    const Grid distance = volume_of_bones({&bone, 1}, BoneQuantity::distance);
-    write_volume(distance, SampleType::float32, folder / "ball.nii.gz");
+    const bone::Bone bone = cut_ball();
+    const volume::Grid distance = bone::volume_of_bones({&bone, 1}, bone::BoneQuantity::distance);
+    volume::write_volume(distance, volume::SampleType::float32, folder / "ball.nii.gz");
     const std::string command =
         "/usr/bin/python3 -c 'import nibabel; v = nibabel.load(\"" + (folder / "ball.nii.gz").string() +
         "\"); d = v.get_fdata(); p = v.affine @ [3, 5, 7, 1]; print(*d.shape, *p[:3], d[3, 5, 7], d.sum())' >" +
         (folder / "said.txt").string();
     REQUIRE(std::system(command.c_str()) == 0);
     std::array<double, 8> said{};
-    std::istringstream text(read_whole_file(folder / "said.txt"));
+    std::istringstream text(file::read_whole_file(folder / "said.txt"));
     for (double& number : said) REQUIRE(text >> number);
     for (std::size_t a = 0; a < 3; ++a) CHECK(said[a] == distance.size[a]);
     const Vec3 at = distance.position(3, 5, 7) / mm;
@@ -190,17 +190,17 @@ TEST_CASE("an exported NIfTI read by nibabel has the samples and their places") 
 }
 
 TEST_CASE("bones on one lattice become one volume, others are asked for one by one") {
-    std::vector<Bone> bones(2, cut_ball());
+    std::vector<bone::Bone> bones(2, cut_ball());
     bones[1].distance.origin.x += 10.0 * bones[1].distance.spacing.x;
     bones[1].density.origin = bones[1].distance.origin;
-    const Grid both = volume_of_bones(bones, BoneQuantity::density);
+    const volume::Grid both = bone::volume_of_bones(bones, bone::BoneQuantity::density);
     CHECK(both.size[0] == bones[0].distance.size[0] + 10);
-    const Grid distance = volume_of_bones(bones, BoneQuantity::distance);
+    const volume::Grid distance = bone::volume_of_bones(bones, bone::BoneQuantity::distance);
     CHECK(*std::min_element(distance.values.begin(), distance.values.end()) > -9.0f);
     CHECK(*std::max_element(distance.values.begin(), distance.values.end()) <= 1000.0f);
     bones[1].distance.origin.x += 0.4 * bones[1].distance.spacing.x;
-    CHECK_THROWS_WITH(volume_of_bones(bones, BoneQuantity::hu), Contains("--bone"));
-    CHECK_THROWS_WITH(volume_of_bones({}, BoneQuantity::hu), Contains("no bone"));
+    CHECK_THROWS_WITH(bone::volume_of_bones(bones, bone::BoneQuantity::hu), Contains("--bone"));
+    CHECK_THROWS_WITH(bone::volume_of_bones({}, bone::BoneQuantity::hu), Contains("no bone"));
     const TemporaryFolder folder;
-    CHECK_THROWS_WITH(write_volume(both, SampleType::int16, folder / "ball.mha"), Contains(".nrrd"));
+    CHECK_THROWS_WITH(volume::write_volume(both, volume::SampleType::int16, folder / "ball.mha"), Contains(".nrrd"));
 }

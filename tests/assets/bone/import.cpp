@@ -67,21 +67,21 @@ std::string samples_of(const Ct& ct) {
 }
 
 struct Imported {
-    Bone bone;
-    ImportSummary summary;
+    bone::Bone bone;
+    bone::ImportSummary summary;
 };
 
-Imported import_of(const Ct& ct, ImportOptions options = {}) {
+Imported import_of(const Ct& ct, bone::ImportOptions options = {}) {
     const TemporaryFolder folder;
     options.input = folder / "ct.nrrd";
-    write_whole_file(options.input, header_of(ct) + "\n" + samples_of(ct));
+    file::write_whole_file(options.input, header_of(ct) + "\n" + samples_of(ct));
     Imported result;
-    result.bone = import_bone(options, {}, &result.summary);
+    result.bone = bone::import_bone(options, {}, &result.summary);
     return result;
 }
 
 // Where a bone's inside has its middle, m.
-Vec3 middle_of(const Bone& bone) {
+Vec3 middle_of(const bone::Bone& bone) {
     Vec3 sum(0.0);
     double count = 0.0;
     for (int k = 0; k < bone.distance.size[2]; ++k)
@@ -114,12 +114,12 @@ std::string cube_stl(double size = 20.0, int triangles = 12) {
     return text + "endsolid cube\n";
 }
 
-Imported import_mesh_text(const std::string& text, const std::string& name, ImportOptions options = {}) {
+Imported import_mesh_text(const std::string& text, const std::string& name, bone::ImportOptions options = {}) {
     const TemporaryFolder folder;
     options.input = folder / name;
-    write_whole_file(options.input, text);
+    file::write_whole_file(options.input, text);
     Imported result;
-    result.bone = import_bone(options, {}, &result.summary);
+    result.bone = bone::import_bone(options, {}, &result.summary);
     return result;
 }
 
@@ -140,13 +140,13 @@ TEST_CASE("a CT sphere becomes a bone of its volume, area and density") {
 }
 
 TEST_CASE("asked for, an import has points spread over its surface") {
-    ImportOptions options;
+    bone::ImportOptions options;
     options.pointshell = 0.5e-3;
     const Imported ball = import_of(Ct{}, options);
     CHECK(ball.summary.points == ball.bone.points.size());
     CHECK(static_cast<double>(ball.summary.points) == Approx(4.0 * std::numbers::pi * 36.0 / 0.25).epsilon(0.12));
     double area = 0.0;
-    for (const SurfacePoint& p : ball.bone.points) area += p.area;
+    for (const contact::SurfacePoint& p : ball.bone.points) area += p.area;
     CHECK(area * 1e6 == Approx(ball.summary.surface_area_mm2).epsilon(0.01));
     CHECK(import_of(Ct{}).bone.points.empty());
 }
@@ -201,7 +201,7 @@ TEST_CASE("numbers that are not HU are refused, rescaled ones and masked ones ac
     const auto hu = ct.hu;
     ct.hu = [hu](const Vec3& u) { return hu(u) + 1024.0; };
     CHECK_THROWS_WITH(import_of(ct), Contains("not HU"));
-    ImportOptions options;
+    bone::ImportOptions options;
     options.rescale = {1.0, -1024.0};
     const Imported rescaled = import_of(ct, options);
     CHECK(rescaled.summary.hu == "calibrated");
@@ -212,7 +212,7 @@ TEST_CASE("numbers that are not HU are refused, rescaled ones and masked ones ac
 }
 
 TEST_CASE("a crop box cuts in LPS mm and leaves a closed flat face") {
-    ImportOptions options;
+    bone::ImportOptions options;
     options.crop = "-10:0,-10:10,-10:10";
     const Imported half = import_of(Ct{}, options);
     const double whole = import_of(Ct{}).summary.bone_volume_mm3;
@@ -233,7 +233,7 @@ TEST_CASE("components are counted and the small ones left out") {
         const double small = 4.0 - glm::length(u - Vec3(33.0, 20.0, 20.0));
         return std::min(1500.0, std::max(-1000.0, 300.0 + 1300.0 * std::max(large, small)));
     };
-    ImportOptions options;
+    bone::ImportOptions options;
     const Imported one = import_of(ct, options);
     options.component = "all";
     const Imported all = import_of(ct, options);
@@ -249,7 +249,7 @@ TEST_CASE("how much air a scan holds around a bone does not change the bone, smo
         INFO("voxels of " << mm << " mm");
         const auto ball = [mm](int air) {
             const int n = 31 + 2 * air;
-            Grid hu{{n, n, n}, Vec3(-1e-3 * mm * (15 + air)), Vec3(1e-3 * mm), {}};
+            volume::Grid hu{{n, n, n}, Vec3(-1e-3 * mm * (15 + air)), Vec3(1e-3 * mm), {}};
             for (int k = 0; k < n; ++k)
                 for (int j = 0; j < n; ++j)
                     for (int i = 0; i < n; ++i) {
@@ -257,10 +257,10 @@ TEST_CASE("how much air a scan holds around a bone does not change the bone, smo
                         hu.values.push_back(
                             static_cast<float>(std::clamp(300.0 + 900.0 * (9.0 - away), -1000.0, 1500.0)));
                     }
-            return bone_from_hu(std::move(hu), {300.0f, 1, true}).bone;
+            return bone::bone_from_hu(std::move(hu), {300.0f, 1, true}).bone;
         };
         // 27 and 50 samples leave more air than a bone is given: the volume is cut to the same room.
-        const Bone some = ball(27), more = ball(50);
+        const bone::Bone some = ball(27), more = ball(50);
         REQUIRE(some.distance.size == more.distance.size);
         for (std::size_t n = 0; n < some.distance.values.size(); ++n) {
             REQUIRE(more.distance.values[n] == Approx(some.distance.values[n]).margin(1e-7));
@@ -281,26 +281,26 @@ TEST_CASE("a file that is shorter than its header says is refused before memory 
     const std::string whole = header_of(Ct{}) + "\n" + samples_of(Ct{});
     for (const std::size_t length :
          {whole.size() - 200, whole.size() / 2, std::size_t{150}, std::size_t{20}, std::size_t{0}}) {
-        write_whole_file(folder / "cut.nrrd", std::string_view(whole).substr(0, length));
-        CHECK_THROWS_AS(read_volume(folder / "cut.nrrd"), Error);
+        file::write_whole_file(folder / "cut.nrrd", std::string_view(whole).substr(0, length));
+        CHECK_THROWS_AS(volume::read_volume(folder / "cut.nrrd"), Error);
     }
     Ct huge;
     huge.size = {2000000, 2000000, 2000000};
     for (const std::string encoding : {"raw", "gzip"}) {
         std::string header = header_of(huge);
         header.replace(header.find("encoding: raw"), 13, "encoding: " + encoding);
-        write_whole_file(folder / "huge.nrrd", header + "\nfew bytes");
-        CHECK_THROWS_WITH(read_volume(folder / "huge.nrrd"), Contains("huge.nrrd"));
+        file::write_whole_file(folder / "huge.nrrd", header + "\nfew bytes");
+        CHECK_THROWS_WITH(volume::read_volume(folder / "huge.nrrd"), Contains("huge.nrrd"));
     }
 }
 
 TEST_CASE("a detached header reads the same volume") {
     const TemporaryFolder folder;
-    write_whole_file(folder / "ct.nhdr", header_of(Ct{}) + "data file: ct.raw\n");
-    CHECK_THROWS_AS(read_volume(folder / "ct.nhdr"), Error);
-    write_whole_file(folder / "ct.raw", samples_of(Ct{}));
-    write_whole_file(folder / "ct.nrrd", header_of(Ct{}) + "\n" + samples_of(Ct{}));
-    CHECK(read_volume(folder / "ct.nhdr").values == read_volume(folder / "ct.nrrd").values);
+    file::write_whole_file(folder / "ct.nhdr", header_of(Ct{}) + "data file: ct.raw\n");
+    CHECK_THROWS_AS(volume::read_volume(folder / "ct.nhdr"), Error);
+    file::write_whole_file(folder / "ct.raw", samples_of(Ct{}));
+    file::write_whole_file(folder / "ct.nrrd", header_of(Ct{}) + "\n" + samples_of(Ct{}));
+    CHECK(volume::read_volume(folder / "ct.nhdr").values == volume::read_volume(folder / "ct.nrrd").values);
 }
 
 TEST_CASE("a closed mesh becomes a bone with an exact distance and an assumed density") {
@@ -318,7 +318,7 @@ TEST_CASE("a closed mesh becomes a bone with an exact distance and an assumed de
 TEST_CASE("meshes that are open, damaged or of unlikely size are refused with what to do") {
     CHECK_THROWS_WITH(import_mesh_text(cube_stl(20.0, 11), "open.stl"), Contains("3 boundary edges"));
     CHECK_THROWS_WITH(import_mesh_text(cube_stl(0.02), "metres.stl"), Contains("--unit m would make it 20 mm"));
-    ImportOptions metres;
+    bone::ImportOptions metres;
     metres.unit = "cm";
     CHECK(import_mesh_text(cube_stl(2.0), "cm.stl", metres).summary.bone_volume_mm3 == Approx(8000.0).epsilon(0.01));
     metres.unit = "inch";

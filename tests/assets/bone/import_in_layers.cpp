@@ -56,7 +56,7 @@ RunJobs on_three_threads() {
     };
 }
 
-void check_same(const Bone& a, const Bone& b) {
+void check_same(const bone::Bone& a, const bone::Bone& b) {
     CHECK(a.distance.size == b.distance.size);
   // Not as vectors: a failure would print millions of numbers.
     const bool same_distance = a.distance.values == b.distance.values,
@@ -69,7 +69,7 @@ std::string packed(const std::string& bytes, const std::filesystem::path& throug
     const gzFile file = gzopen(through.c_str(), "wb");
     gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size()));
     gzclose(file);
-    return read_whole_file(through);
+    return file::read_whole_file(through);
 }
 
 } // namespace
@@ -80,22 +80,22 @@ TEST_CASE(
     const TemporaryFolder folder;
   // Smoothed three times, once, not at all; cropped, with other voxels.
     for (const Vec3 voxel : {Vec3(0.25), Vec3(0.45, 0.45, 0.5), Vec3(0.8, 0.8, 1.0)}) {
-        write_whole_file(folder / "ct.nrrd", nrrd_bytes(scan(voxel)));
+        file::write_whole_file(folder / "ct.nrrd", nrrd_bytes(scan(voxel)));
         for (const bool changed : {false, true}) {
-            ImportOptions options;
+            bone::ImportOptions options;
             options.input = folder / "ct.nrrd";
             if (changed) options.spacing = 0.7e-3 * voxel.z, options.crop = "-1000:1000,-1000:1000,-299:-200";
             if (changed) options.component = "all";
             options.layers_at_once = 10000;
-            ImportSummary all;
-            const Bone whole = import_bone(options, {}, &all);
+            bone::ImportSummary all;
+            const bone::Bone whole = bone::import_bone(options, {}, &all);
             CHECK(all.components == 2);
             for (const int layers : {1, 8, 40, 0}) {
                 CAPTURE(voxel.z, changed, layers);
                 options.layers_at_once = layers;
                 options.run = layers == 8 ? on_three_threads() : run_in_turn;
-                ImportSummary part;
-                check_same(import_bone(options, {}, &part), whole);
+                bone::ImportSummary part;
+                check_same(bone::import_bone(options, {}, &part), whole);
                 CHECK(part.bone_volume_mm3 == all.bone_volume_mm3);
                 CHECK(part.density.mean == all.density.mean);
             }
@@ -122,17 +122,17 @@ TEST_CASE(
         const std::size_t end = bytes.find("\n\n") + 2;
         std::string header = bytes.substr(0, end);
         header.replace(header.find("encoding: raw"), 13, "encoding: gzip");
-        write_whole_file(folder / "packed.nrrd", header + packed(bytes.substr(end), folder / "samples.gz"));
-        write_whole_file(folder / "plain.nrrd", bytes);
-        const Grid whole = lps_grid(read_volume(folder / "plain.nrrd"));
+        file::write_whole_file(folder / "packed.nrrd", header + packed(bytes.substr(end), folder / "samples.gz"));
+        file::write_whole_file(folder / "plain.nrrd", bytes);
+        const volume::Grid whole = volume::lps_grid(volume::read_volume(folder / "plain.nrrd"));
         for (const char* name : {"plain.nrrd", "packed.nrrd"}) {
-            const auto reader = open_volume(folder / name);
-            LpsLayers layers(*reader, on_three_threads());
+            const auto reader = volume::open_volume(folder / name);
+            volume::LpsLayers layers(*reader, on_three_threads());
             layers.settle();
             REQUIRE(layers.layout().size == whole.size);
             for (const int first : {0, 3, 20, 5, whole.size[2] - 4}) {
                 CAPTURE(name, first, v.step[2].z);
-                const Grid part = layers.layers(first, 4);
+                const volume::Grid part = layers.layers(first, 4);
                 const auto from = whole.values.begin() + static_cast<std::ptrdiff_t>(whole.index(0, 0, first));
                 CHECK(std::equal(part.values.begin(), part.values.end(), from));
             }
@@ -145,18 +145,18 @@ TEST_CASE(
     "a bone file that is written from a CT holds what is near the bone, "
     "and is read back as the import gives it") {
     const TemporaryFolder folder;
-    write_whole_file(folder / "ct.nrrd", nrrd_bytes(scan(Vec3(0.45, 0.45, 0.5))));
-    ImportOptions options;
+    file::write_whole_file(folder / "ct.nrrd", nrrd_bytes(scan(Vec3(0.45, 0.45, 0.5))));
+    bone::ImportOptions options;
     options.input = folder / "ct.nrrd";
     options.pointshell = 1e-3;
-    const ImportSummary summary = import_bone_file(options, folder / "bone.vdb");
-    const Bone bone = import_bone(options), read = load_bone(folder / "bone.vdb");
+    const bone::ImportSummary summary = bone::import_bone_file(options, folder / "bone.vdb");
+    const bone::Bone bone = bone::import_bone(options), read = bone::load_bone(folder / "bone.vdb");
     check_same(read, bone);
     CHECK(read.provenance == bone.provenance);
     CHECK(read.points.size() == summary.points);
     CHECK(read.name == "ct");
-    import_bone_file(options, folder / "again.vdb");
-    CHECK(read_whole_file(folder / "bone.vdb") == read_whole_file(folder / "again.vdb"));
+    bone::import_bone_file(options, folder / "again.vdb");
+    CHECK(file::read_whole_file(folder / "bone.vdb") == file::read_whole_file(folder / "again.vdb"));
   // Nothing is farther than 5 mm away; what is not stored is so far.
     CHECK(*std::max_element(bone.distance.values.begin(), bone.distance.values.end()) == 5e-3f);
 }
@@ -166,17 +166,17 @@ TEST_CASE(
     "refused before it begins") {
     const TemporaryFolder folder;
     const std::string bytes = nrrd_bytes(scan(Vec3(0.8)));
-    write_whole_file(folder / "ct.nrrd", bytes);
-    ImportOptions options;
+    file::write_whole_file(folder / "ct.nrrd", bytes);
+    bone::ImportOptions options;
     options.input = folder / "ct.nrrd";
     bool began = false;
-    const ImportProgress progress = [&began](double, std::string_view) { began = true; };
+    const bone::ImportProgress progress = [&began](double, std::string_view) { began = true; };
     using Catch::Matchers::Contains;
     std::filesystem::create_symlink(folder / "ct.nrrd", folder / "same.vdb");
     for (const char* out : {"ct.nrrd", "./ct.nrrd", "same.vdb"})
-        CHECK_THROWS_WITH(import_bone_file(options, folder / out, progress), Contains("would be overwritten"));
-    CHECK_THROWS_WITH(import_bone_file(options, folder / "none/bone.vdb", progress), Contains("there is no folder"));
-    CHECK_THROWS_WITH(import_bone_file(options, folder.path, progress), Contains("is a folder"));
+        CHECK_THROWS_WITH(bone::import_bone_file(options, folder / out, progress), Contains("would be overwritten"));
+    CHECK_THROWS_WITH(bone::import_bone_file(options, folder / "none/bone.vdb", progress), Contains("there is no folder"));
+    CHECK_THROWS_WITH(bone::import_bone_file(options, folder.path, progress), Contains("is a folder"));
     CHECK_FALSE(began);
-    CHECK(read_whole_file(folder / "ct.nrrd") == bytes);
+    CHECK(file::read_whole_file(folder / "ct.nrrd") == bytes);
 }

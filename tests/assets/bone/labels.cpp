@@ -29,11 +29,11 @@ namespace {
 constexpr double mm = 1e-3;
 using Shape = std::function<double(const Vec3&)>;  // signed distance, m
 
-Grid layout(const Vec3& spacing, const Vec3& middle, const std::array<int, 3>& size) {
+volume::Grid layout(const Vec3& spacing, const Vec3& middle, const std::array<int, 3>& size) {
     return {size, middle - 0.5 * Vec3(size[0] - 1, size[1] - 1, size[2] - 1) * spacing, spacing, {}};
 }
 
-Grid sampled(Grid grid, const std::function<double(const Vec3&)>& value) {
+volume::Grid sampled(volume::Grid grid, const std::function<double(const Vec3&)>& value) {
     for (int k = 0; k < grid.size[2]; ++k)
         for (int j = 0; j < grid.size[1]; ++j)
             for (int i = 0; i < grid.size[0]; ++i)
@@ -41,8 +41,8 @@ Grid sampled(Grid grid, const std::function<double(const Vec3&)>& value) {
     return grid;
 }
 
-double voxel_volume(const Grid& grid) { return grid.spacing.x * grid.spacing.y * grid.spacing.z; }
-double count_of(const Grid& labels, float label) {
+double voxel_volume(const volume::Grid& grid) { return grid.spacing.x * grid.spacing.y * grid.spacing.z; }
+double count_of(const volume::Grid& labels, float label) {
     return static_cast<double>(std::count(labels.values.begin(), labels.values.end(), label));
 }
 
@@ -51,9 +51,9 @@ struct Errors {
 };
 
 // How far the true surface lies from the bone's, in shares of the smallest spacing, at the bone's vertices.
-Errors errors_of(const Bone& bone, const Shape& truth) {
+Errors errors_of(const bone::Bone& bone, const Shape& truth) {
     std::vector<double> errors;
-    for (const Vec3& v : surface_of(bone.distance).vertices) errors.push_back(std::abs(truth(v)));
+    for (const Vec3& v : mesh::surface_of(bone.distance).vertices) errors.push_back(std::abs(truth(v)));
     std::sort(errors.begin(), errors.end());
     const double voxel = std::min({bone.distance.spacing.x, bone.distance.spacing.y, bone.distance.spacing.z});
     return {errors[errors.size() / 2] / voxel, errors[errors.size() * 95 / 100] / voxel};
@@ -79,12 +79,12 @@ Shape wall(double thick) {
     };
 }
 
-Grid labelled(const Shape& shape, const Vec3& spacing, int size = 48) {
+volume::Grid labelled(const Shape& shape, const Vec3& spacing, int size = 48) {
     return sampled(layout(spacing, far_off, {size, size, size}),
                    [&](const Vec3& p) { return shape(p) < 0.0 ? 1.0 : 0.0; });
 }
 
-std::string nrrd_of(const Grid& grid, const std::string& extra = "") {
+std::string nrrd_of(const volume::Grid& grid, const std::string& extra = "") {
     std::string text = fmt::format(
         "NRRD0005\ntype: uchar\ndimension: 3\nspace: left-posterior-superior\nsizes: {} {} {}\nspace directions: "
         "({},0,0) "
@@ -101,14 +101,14 @@ TEST_CASE("a label's surface has no staircase and its voxels' volume; 1 m from t
     const Vec3 spacing(0.5 * mm);
     for (const auto& [shape, limit] :
          {std::pair{ball(5.2 * mm), 0.17}, {ball(9.0 * mm), 0.15}, {ring(6.0 * mm, 2.5 * mm), 0.16}}) {
-        const Grid labels = labelled(shape, spacing);
-        const Bone bone = bone_of_label(labels, {1, "part", {}}, {});
+        const volume::Grid labels = labelled(shape, spacing);
+        const bone::Bone bone = bone::bone_of_label(labels, {1, "part", {}}, {});
         const Errors errors = errors_of(bone, shape);
         CAPTURE(errors.median, errors.p95);
         // The nearest samples are right to half a voxel; a staircase would show as 0.25 at the median.
         CHECK(errors.median < 0.08);
         CHECK(errors.p95 < limit);
-        CHECK(volume_of(surface_of(bone.distance)) ==
+        CHECK(mesh::volume_of(mesh::surface_of(bone.distance)) ==
               Approx(count_of(labels, 1.0f) * voxel_volume(labels)).epsilon(0.01));
         CHECK(bone.name == "part");
         CHECK(bone.provenance.at("label") == "1");
@@ -117,9 +117,9 @@ TEST_CASE("a label's surface has no staircase and its voxels' volume; 1 m from t
 
 TEST_CASE("a slanted wall little more than one voxel thick stays a wall without holes") {
     const Shape truth = wall(0.7 * mm);
-    const Grid labels = labelled(truth, Vec3(0.5 * mm));
-    const Bone bone = bone_of_label(labels, {}, {});
-    CHECK(volume_of(surface_of(bone.distance)) == Approx(count_of(labels, 1.0f) * voxel_volume(labels)).epsilon(0.1));
+    const volume::Grid labels = labelled(truth, Vec3(0.5 * mm));
+    const bone::Bone bone = bone::bone_of_label(labels, {}, {});
+    CHECK(mesh::volume_of(mesh::surface_of(bone.distance)) == Approx(count_of(labels, 1.0f) * voxel_volume(labels)).epsilon(0.1));
     // Along the middle of the wall everything is inside.
     const Vec3 n = glm::normalize(Vec3(1.0, 0.6, 0.4)), u = glm::normalize(glm::cross(n, Vec3(0, 0, 1))),
                v = glm::cross(n, u);
@@ -143,13 +143,13 @@ TEST_CASE("with a CT the surface goes to its grey values, also through noise and
     for (const Shape& shape : {ball(6.0 * mm), ring(5.0 * mm, 1.8 * mm)}) {
         std::uint64_t n = 0;
         // An edge of 0.4 mm standard deviation between 40 and 1240 HU.
-        const Grid hu = sampled(layout(spacing, far_off, {56, 56, 34}), [&](const Vec3& p) {
+        const volume::Grid hu = sampled(layout(spacing, far_off, {56, 56, 34}), [&](const Vec3& p) {
             return 640.0 - 600.0 * std::erf(shape(p) / (std::sqrt(2.0) * 0.4 * mm)) + 15.0 * random.normal(n++);
         });
-        Grid labels = hu;
+        volume::Grid labels = hu;
         for (float& value : labels.values) value = value >= 640.0f ? 3.0f : 0.0f;
-        const Bone plain = bone_of_label(labels, {3, "", {}}, {});
-        const Bone seen = bone_of_label(labels, {3, "", {}}, {{}, &hu, false});
+        const bone::Bone plain = bone::bone_of_label(labels, {3, "", {}}, {});
+        const bone::Bone seen = bone::bone_of_label(labels, {3, "", {}}, {{}, &hu, false});
         const Errors before = errors_of(plain, shape), after = errors_of(seen, shape);
         CAPTURE(before.p95, after.median, after.p95, seen.provenance.at("surface"));
         CHECK(after.p95 < 0.15);
@@ -158,8 +158,8 @@ TEST_CASE("with a CT the surface goes to its grey values, also through noise and
         CHECK_THAT(seen.provenance.at("calibration"), Contains("uncalibrated"));
         CHECK(seen.name == "label 3");
         // The same CT taken by its threshold.
-        const Bone direct = bone_from_hu(hu, {640.0f, 1, true}).bone;
-        CHECK(volume_of(surface_of(seen.distance)) == Approx(volume_of(surface_of(direct.distance))).epsilon(0.01));
+        const bone::Bone direct = bone::bone_from_hu(hu, {640.0f, 1, true}).bone;
+        CHECK(mesh::volume_of(mesh::surface_of(seen.distance)) == Approx(mesh::volume_of(mesh::surface_of(direct.distance))).epsilon(0.01));
     }
 }
 
@@ -167,17 +167,17 @@ TEST_CASE("between two labels grey values are not asked: each ends where the oth
     const Vec3 spacing(0.5 * mm);
     const Shape whole = ball(8.0 * mm);
     const auto half = [](const Vec3& p) { return p.x - far_off.x + 0.3 * (p.y - far_off.y); };
-    const Grid labels = sampled(layout(spacing, far_off, {44, 44, 44}), [&](const Vec3& p) {
+    const volume::Grid labels = sampled(layout(spacing, far_off, {44, 44, 44}), [&](const Vec3& p) {
         return whole(p) >= 0.0 ? 0.0 : half(p) < 0.0 ? 1.0 : 2.0;
     });
-    const Grid hu = sampled(layout(spacing, far_off, {44, 44, 44}),
+    const volume::Grid hu = sampled(layout(spacing, far_off, {44, 44, 44}),
                             [&](const Vec3& p) { return std::clamp(300.0 - 1e6 * whole(p), -1000.0, 1400.0); });
     double volume = 0.0;
     for (const int label : {1, 2}) {
-        const Bone bone = bone_of_label(labels, {label, "", {}}, {{}, &hu, false});
-        volume += volume_of(surface_of(bone.distance));
+        const bone::Bone bone = bone::bone_of_label(labels, {label, "", {}}, {{}, &hu, false});
+        volume += mesh::volume_of(mesh::surface_of(bone.distance));
         std::vector<double> face;
-        for (const Vec3& v : surface_of(bone.distance).vertices)
+        for (const Vec3& v : mesh::surface_of(bone.distance).vertices)
             if (whole(v) < -1.5 * mm) face.push_back(std::abs(half(v)) / std::hypot(1.0, 0.3) / spacing.x);
         std::sort(face.begin(), face.end());
         REQUIRE(face.size() > 100);
@@ -188,7 +188,7 @@ TEST_CASE("between two labels grey values are not asked: each ends where the oth
 
 TEST_CASE("a label at the border of its map, of one voxel, or in parts becomes a closed bone of its volume") {
     const Vec3 spacing(1.0 * mm, 1.0 * mm, 2.0 * mm);
-    Grid labels = sampled(layout(spacing, Vec3(0.0), {9, 8, 7}), [](const Vec3&) { return 0.0; });
+    volume::Grid labels = sampled(layout(spacing, Vec3(0.0), {9, 8, 7}), [](const Vec3&) { return 0.0; });
     labels.at(4, 4, 3) = 1.0f;
     for (int k = 0; k < 7; ++k)
         for (int j = 0; j < 8; ++j) labels.at(0, j, k) = labels.at(1, j, k) = 2.0f;
@@ -196,13 +196,13 @@ TEST_CASE("a label at the border of its map, of one voxel, or in parts becomes a
     labels.at(7, 1, 1) = 2.0f;  // touches the one before at a corner
     for (const int label : {1, 2}) {
         std::size_t voxels = 0;
-        const Bone bone = bone_of_label(labels, {label, "", {}}, {}, run_in_turn, &voxels);
+        const bone::Bone bone = bone::bone_of_label(labels, {label, "", {}}, {}, run_in_turn, &voxels);
         CHECK(double(voxels) == count_of(labels, static_cast<float>(label)));
-        const Mesh surface = surface_of(bone.distance);
-        CHECK(topology_of(surface).is_watertight());
-        CHECK(volume_of(surface) == Approx(double(voxels) * 2e-9).epsilon(label == 1 ? 0.3 : 0.05));
+        const mesh::Mesh surface = mesh::surface_of(bone.distance);
+        CHECK(mesh::topology_of(surface).is_watertight());
+        CHECK(mesh::volume_of(surface) == Approx(double(voxels) * 2e-9).epsilon(label == 1 ? 0.3 : 0.05));
     }
-    CHECK_THROWS_WITH(bone_of_label(labels, {7, "", {}}, {}), Contains("no voxel has label 7"));
+    CHECK_THROWS_WITH(bone::bone_of_label(labels, {7, "", {}}, {}), Contains("no voxel has label 7"));
 }
 
 TEST_CASE("a ragged label with stray voxels spans its voxels: no streak leads from a touching edge out of the bone") {
@@ -210,7 +210,7 @@ TEST_CASE("a ragged label with stray voxels spans its voxels: no streak leads fr
     const Random random{7};
     std::uint64_t n = 0;
     // A ball whose outer half is full of holes, so that its voxels touch at faces, edges and corners.
-    Grid labels = sampled(layout(spacing, far_off, {40, 40, 26}), [&](const Vec3& p) {
+    volume::Grid labels = sampled(layout(spacing, far_off, {40, 40, 26}), [&](const Vec3& p) {
         const double depth = -ball(7.0 * mm)(p);
         return depth > 0.0 && random.uniform(n++) < 0.4 + depth / (6.0 * mm) ? 1.0 : 0.0;
     });
@@ -221,10 +221,10 @@ TEST_CASE("a ragged label with stray voxels spans its voxels: no streak leads fr
             for (int i = 0; i < labels.size[0]; ++i)
                 if (labels.at(i, j, k) > 0.0f)
                     low = glm::min(low, labels.position(i, j, k)), high = glm::max(high, labels.position(i, j, k));
-    const Bone bone = bone_of_label(labels, {1, "", {}}, {});
-    const Mesh surface = surface_of(bone.distance);
-    CHECK(topology_of(surface).is_watertight());
-    CHECK(volume_of(surface) == Approx(count_of(labels, 1.0f) * voxel_volume(labels)).epsilon(0.03));
+    const bone::Bone bone = bone::bone_of_label(labels, {1, "", {}}, {});
+    const mesh::Mesh surface = mesh::surface_of(bone.distance);
+    CHECK(mesh::topology_of(surface).is_watertight());
+    CHECK(mesh::volume_of(surface) == Approx(count_of(labels, 1.0f) * voxel_volume(labels)).epsilon(0.03));
     Vec3 least(1e9), most(-1e9);
     for (const Vec3& v : surface.vertices) least = glm::min(least, v), most = glm::max(most, v);
     for (int a = 0; a < 3; ++a) {
@@ -235,29 +235,29 @@ TEST_CASE("a ragged label with stray voxels spans its voxels: no streak leads fr
 }
 
 TEST_CASE("what is no label map is refused in one sentence") {
-    Grid grid = layout(Vec3(1.0 * mm), Vec3(0.0), {40, 40, 1});
+    volume::Grid grid = layout(Vec3(1.0 * mm), Vec3(0.0), {40, 40, 1});
     for (int n = 0; n < 1600; ++n) grid.values.push_back(float(n));
-    CHECK_THROWS_WITH(labels_in(grid), Contains("1599 different values"));
+    CHECK_THROWS_WITH(bone::labels_in(grid), Contains("1599 different values"));
     grid.values[5] = 0.5f;
-    CHECK_THROWS_WITH(labels_in(grid), Contains("0.5 is no label"));
+    CHECK_THROWS_WITH(bone::labels_in(grid), Contains("0.5 is no label"));
     grid.values[5] = -1000.0f;
-    CHECK_THROWS_WITH(labels_in(grid), Contains("-1000 is no label"));
+    CHECK_THROWS_WITH(bone::labels_in(grid), Contains("-1000 is no label"));
     grid.values.assign(1600, 0.0f);
-    CHECK(labels_in(grid).empty());
+    CHECK(bone::labels_in(grid).empty());
 }
 
 TEST_CASE("a label map's file becomes one file of bones in its frame; labels are chosen by number") {
     const TemporaryFolder folder;
-    Grid labels = labelled(ball(3.0 * mm), Vec3(0.5 * mm), 24);
+    volume::Grid labels = labelled(ball(3.0 * mm), Vec3(0.5 * mm), 24);
     for (int k = 0; k < 24; ++k)
         for (int j = 0; j < 24; ++j)
             for (int i = 0; i < 24; ++i)
                 if (labels.at(i, j, k) > 0.0f && i > 12) labels.at(i, j, k) = 5.0f;
-    ImportOptions options;
+    bone::ImportOptions options;
     options.input = folder / "two.nrrd";
     options.label = "all";
-    write_whole_file(options.input, nrrd_of(labels));
-    const std::vector<ImportedBone> both = import_labels(options);
+    file::write_whole_file(options.input, nrrd_of(labels));
+    const std::vector<bone::ImportedBone> both = bone::import_labels(options);
     REQUIRE(both.size() == 2);
     CHECK(both[0].bone.name == "label 1");
     CHECK(both[1].bone.name == "label 5");
@@ -268,16 +268,16 @@ TEST_CASE("a label map's file becomes one file of bones in its frame; labels are
     CHECK(both[0].summary.components == 1);
     CHECK(both[1].summary.components == 1);
     options.label = "5";
-    CHECK(import_labels(options).front().bone.distance.values == both[1].bone.distance.values);
+    CHECK(bone::import_labels(options).front().bone.distance.values == both[1].bone.distance.values);
     options.label = "2";
-    CHECK_THROWS_WITH(import_labels(options), Contains("no label '2' but 1, 5"));
+    CHECK_THROWS_WITH(bone::import_labels(options), Contains("no label '2' but 1, 5"));
     for (int k = 0; k < 24; ++k)
         for (int j = 0; j < 24; ++j)
             for (int i = 9; i < 15; ++i) labels.at(i, j, k) = 0.0f;
     for (float& value : labels.values) value = value > 0.0f ? 1.0f : 0.0f;
-    write_whole_file(options.input, nrrd_of(labels));
+    file::write_whole_file(options.input, nrrd_of(labels));
     options.label = "1";
-    CHECK(import_labels(options).front().summary.components == 2);
+    CHECK(bone::import_labels(options).front().summary.components == 2);
     options.crop = "0:1,0:1,0:1";
-    CHECK_THROWS_WITH(import_labels(options), Contains("crop"));
+    CHECK_THROWS_WITH(bone::import_labels(options), Contains("crop"));
 }

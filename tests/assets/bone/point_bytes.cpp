@@ -14,15 +14,15 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-std::vector<SurfacePoint> some_points(int count) {
-    std::vector<SurfacePoint> points;
+std::vector<contact::SurfacePoint> some_points(int count) {
+    std::vector<contact::SurfacePoint> points;
     for (int i = 0; i < count; ++i)
         points.push_back({Vec3(i / 3.0, -1e-3 * i, 0.1), Vec3(0.6, std::sqrt(0.64), 0.0), 1e-7 / (i + 1),
                           static_cast<std::uint8_t>(i % 3)});
     return points;
 }
 
-bool same(const std::vector<SurfacePoint>& a, const std::vector<SurfacePoint>& b) {
+bool same(const std::vector<contact::SurfacePoint>& a, const std::vector<contact::SurfacePoint>& b) {
     if (a.size() != b.size()) return false;
     for (std::size_t i = 0; i < a.size(); ++i)
         if (a[i].position != b[i].position || a[i].normal != b[i].normal || a[i].area != b[i].area ||
@@ -35,36 +35,36 @@ bool same(const std::vector<SurfacePoint>& a, const std::vector<SurfacePoint>& b
 
 TEST_CASE("surface points are saved with their bone, and come back bit for bit") {
     const TemporaryFolder folder;
-    Bone bone;
+    bone::Bone bone;
     bone.name = "block";
     bone.distance = {{2, 3, 2}, Vec3(0.0), Vec3(1e-3), std::vector<float>(12, 1e-3f)};
     bone.density = bone.distance;
     bone.points = some_points(1000);
-    Bone other = bone;
+    bone::Bone other = bone;
     other.name = "bare";
     other.points.clear();
-    save_bones(std::vector{bone, other}, folder / "two.vdb");
-    const auto back = load_bones(folder / "two.vdb");
+    bone::save_bones(std::vector{bone, other}, folder / "two.vdb");
+    const auto back = bone::load_bones(folder / "two.vdb");
     REQUIRE(back.size() == 2);
     CHECK(same(back[0].points, bone.points));
     CHECK(back[1].points.empty());
 }
 
 TEST_CASE("surface points that are damaged, too few, too many or of another format are refused") {
-    const std::string whole = to_bytes(some_points(5));
-    CHECK(same(points_from(whole, "f"), some_points(5)));
-    CHECK(points_from(to_bytes({}), "f").empty());
+    const std::string whole = bone::to_bytes(some_points(5));
+    CHECK(same(bone::points_from(whole, "f"), some_points(5)));
+    CHECK(bone::points_from(bone::to_bytes({}), "f").empty());
     for (std::size_t length = 0; length < whole.size(); ++length)
-        CHECK_THROWS_AS(points_from(std::string_view(whole).substr(0, length), "f"), Error);
-    CHECK_THROWS_AS(points_from(whole + "x", "f"), Error);
+        CHECK_THROWS_AS(bone::points_from(std::string_view(whole).substr(0, length), "f"), Error);
+    CHECK_THROWS_AS(bone::points_from(whole + "x", "f"), Error);
     std::string later = whole;
     later[15] = '9';
-    CHECK_THROWS_WITH(points_from(later, "f.vdb"), Contains("f.vdb") && Contains("format"));
+    CHECK_THROWS_WITH(bone::points_from(later, "f.vdb"), Contains("f.vdb") && Contains("format"));
     // A count of 2⁶³ takes no memory.
     std::string many = whole;
     many[23] = static_cast<char>(0x80);
-    CHECK_THROWS_AS(points_from(many, "f"), Error);
+    CHECK_THROWS_AS(bone::points_from(many, "f"), Error);
     auto broken = some_points(3);
     broken[1].area = std::nan("");
-    CHECK_THROWS_AS(points_from(to_bytes(broken), "f"), Error);
+    CHECK_THROWS_AS(bone::points_from(bone::to_bytes(broken), "f"), Error);
 }

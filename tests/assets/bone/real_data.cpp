@@ -36,7 +36,7 @@ struct Scan {
     std::array<int, 3> size;
     Vec3 spacing_mm;
     float low, high;
-    HuKind hu;
+    volume::HuKind hu;
     std::vector<Threshold> thresholds;
 };
 
@@ -46,19 +46,19 @@ const std::vector<Scan> scans{
      {0.9766, 0.9766, 2.0},
      -1024,
      2970,
-     HuKind::calibrated,
+     volume::HuKind::calibrated,
      {{300, 349839}, {700, 125688}}},
-    {"ct/headsq_quarter.nrrd", {64, 64, 93}, {3.2, 3.2, 1.5}, 0, 3926, HuKind::scanner, {}},
+    {"ct/headsq_quarter.nrrd", {64, 64, 93}, {3.2, 3.2, 1.5}, 0, 3926, volume::HuKind::scanner, {}},
     {"ct/skull_sawn_calotte.nrrd",
      {160, 214, 136},
      {0.90234, 0.90234, 1.0},
      -1024,
      1022,
-     HuKind::calibrated,
+     volume::HuKind::calibrated,
      {{300, 476522}, {700, 334896}}},
-    {"ct/skull_saw_kerf_block.nrrd", {84, 240, 60}, {0.45117, 0.45117, 1.0}, -1024, 1024, HuKind::calibrated, {}},
-    {"fragments/hip003_ct.nrrd", {176, 156, 237}, {0.9707, 0.9707, 1.0}, -69, 1439, HuKind::masked, {}},
-    {"fragments/hip003_intact_side_ct.nrrd", {146, 169, 240}, {0.9707, 0.9707, 1.0}, -63, 1373, HuKind::masked, {}},
+    {"ct/skull_saw_kerf_block.nrrd", {84, 240, 60}, {0.45117, 0.45117, 1.0}, -1024, 1024, volume::HuKind::calibrated, {}},
+    {"fragments/hip003_ct.nrrd", {176, 156, 237}, {0.9707, 0.9707, 1.0}, -69, 1439, volume::HuKind::masked, {}},
+    {"fragments/hip003_intact_side_ct.nrrd", {146, 169, 240}, {0.9707, 0.9707, 1.0}, -63, 1373, volume::HuKind::masked, {}},
 };
 
 struct Surface {
@@ -80,7 +80,7 @@ const std::vector<Surface> surfaces{
     {"mesh/fibula_left_vhf.stl", {0, 0, 329.2}, 31700.0, 9461, 18918, 0, 1},
 };
 
-Vec3 extent_mm(const TriangleSurface& surface) {
+Vec3 extent_mm(const geometry::TriangleSurface& surface) {
     Vec3 low = surface.vertices.front(), high = low;
     for (const Vec3& v : surface.vertices) low = glm::min(low, v), high = glm::max(high, v);
     return (high - low) * 1e3;
@@ -99,7 +99,7 @@ TEST_CASE("published scans have the size, spacing, range and voxels of bone that
         const auto path = shared(scan.file);
         if (!path) continue;
         CAPTURE(scan.file);
-        const ScanVolume volume = read_volume(*path);
+        const volume::ScanVolume volume = volume::read_volume(*path);
         CHECK(volume.size == scan.size);
         for (int a = 0; a < 3; ++a) CHECK(volume.spacing()[a] * 1e3 == Approx(scan.spacing_mm[a]).epsilon(1e-4));
         const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
@@ -118,13 +118,13 @@ TEST_CASE("the sawn skull has the volume of its voxels at half height, and less 
     // Air and cast meet in less than a voxel: only half way between their values does the surface between two samples lie,
     // on the mean, where counting voxels puts it. At 300 of -1000 to 760 HU it lies farther in.
     const auto share = [&](double threshold) {
-        ImportOptions options;
+        bone::ImportOptions options;
         options.input = *path;
         options.component = "all";
         options.threshold = threshold;
-        ImportSummary summary;
-        import_bone(options, {}, &summary);
-        const ScanVolume volume = read_volume(*path);
+        bone::ImportSummary summary;
+        bone::import_bone(options, {}, &summary);
+        const volume::ScanVolume volume = volume::read_volume(*path);
         const auto voxels =
             std::count_if(volume.values.begin(), volume.values.end(), [&](float v) { return double(v) >= threshold; });
         const Vec3 h = volume.spacing() * 1e3;
@@ -137,18 +137,18 @@ TEST_CASE("the sawn skull has the volume of its voxels at half height, and less 
 TEST_CASE("the fragments of a fractured hip have the voxels and, as bones, the volumes that are stated") {
     const auto path = shared("fragments/hip003_labels.nrrd");
     if (!path) return;
-    const ScanVolume map = read_volume(*path);
-    CHECK(map.kind == VolumeKind::labels);
+    const volume::ScanVolume map = volume::read_volume(*path);
+    CHECK(map.kind == volume::VolumeKind::labels);
     CHECK(std::count(map.values.begin(), map.values.end(), 1.0f) == 338273);
     CHECK(std::count(map.values.begin(), map.values.end(), 2.0f) == 47694);
-    ImportOptions options;
+    bone::ImportOptions options;
     options.input = *path;
     options.label = "all";
-    const std::vector<ImportedBone> bones = import_labels(options);
+    const std::vector<bone::ImportedBone> bones = bone::import_labels(options);
     REQUIRE(bones.size() == 2);
     CHECK(bones[0].summary.bone_volume_mm3 == Approx(318700.0).epsilon(0.01));
     CHECK(bones[1].summary.bone_volume_mm3 == Approx(44900.0).epsilon(0.01));
-    check_extent(extent_mm(surface_of(bones[0].bone.distance)), {130, 143, 221});
+    check_extent(extent_mm(mesh::surface_of(bones[0].bone.distance)), {130, 143, 221});
 }
 
 TEST_CASE("published meshes become bones of the extent and volume that are stated with them") {
@@ -156,24 +156,24 @@ TEST_CASE("published meshes become bones of the extent and volume that are state
         const auto path = shared(stated.file);
         if (!path) continue;
         CAPTURE(stated.file);
-        const Mesh mesh = load_mesh(*path, 1e-3);
+        const mesh::Mesh mesh = mesh::load_mesh(*path, 1e-3);
         if (stated.points > 0) CHECK(mesh.vertices.size() == stated.points);
         CHECK(mesh.triangles.size() == stated.triangles);
-        const MeshTopology topology = topology_of(mesh);
+        const mesh::MeshTopology topology = mesh::topology_of(mesh);
         CHECK(topology.boundary_edges == stated.boundary_edges);
         CHECK(topology.components == stated.components);
         check_extent(extent_mm(mesh), stated.extent_mm);
-        ImportOptions options;
+        bone::ImportOptions options;
         options.input = *path;
         options.component = "all";
         options.spacing = 0.8e-3;
-        ImportSummary summary;
-        const Bone bone = import_bone(options, {}, &summary);
+        bone::ImportSummary summary;
+        const bone::Bone bone = bone::import_bone(options, {}, &summary);
         const double volume = stated.volume_mm3 > 0.0      ? stated.volume_mm3
-                              : stated.boundary_edges == 0 ? std::abs(volume_of(mesh)) * 1e9
+                              : stated.boundary_edges == 0 ? std::abs(mesh::volume_of(mesh)) * 1e9
                                                            : summary.bone_volume_mm3;
         CHECK(summary.bone_volume_mm3 == Approx(volume).epsilon(0.01));
-        check_extent(extent_mm(surface_of(bone.distance)), extent_mm(mesh));
+        check_extent(extent_mm(mesh::surface_of(bone.distance)), extent_mm(mesh));
     }
 }
 
@@ -183,14 +183,14 @@ TEST_CASE("the InVesalius example is a scan of the stated shape, low slices firs
         WARN("skipped: the Debian package invesalius-examples is not installed");
         return;
     }
-    const ScanVolume volume = read_volume(path);
+    const volume::ScanVolume volume = volume::read_volume(path);
     CHECK(volume.size == std::array<int, 3>{256, 256, 108});
     CHECK(volume.spacing().x * 1e3 == Approx(0.957031));
     CHECK(volume.spacing().z * 1e3 == Approx(1.5));
     const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
     CHECK(*low == -1024.0f);
     CHECK(*high == 2986.0f);
-    CHECK(volume.hu == HuKind::calibrated);
+    CHECK(volume.hu == volume::HuKind::calibrated);
     CHECK(volume.map.step[1].y < 0.0);
     CHECK(std::any_of(volume.notes.begin(), volume.notes.end(), [](const std::string& note) {
         return note.find("2 masks and 2 surfaces") != std::string::npos;

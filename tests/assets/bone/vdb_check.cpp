@@ -25,8 +25,8 @@ namespace {
 constexpr std::uint32_t packings[] = {0, 1, 2, 3, 4, 6};
 
 // Blocks that are full, cut, smooth (they pack well) and noisy (they do not).
-Bone small_bone() {
-    Bone bone;
+bone::Bone small_bone() {
+    bone::Bone bone;
     bone.name = "block";
     bone.distance.size = {17, 8, 8};
     bone.distance.spacing = Vec3(1e-3);
@@ -40,14 +40,14 @@ Bone small_bone() {
 }
 
 std::string bone_bytes(const TemporaryFolder& folder, std::uint32_t packing) {
-    save_bone(small_bone(), folder / "whole.vdb");
-    return repacked(read_sealed(folder / "whole.vdb"), packing);
+    bone::save_bone(small_bone(), folder / "whole.vdb");
+    return repacked(bone::read_sealed(folder / "whole.vdb"), packing);
 }
 
 std::string refusal(const TemporaryFolder& folder, const std::string& bytes) {
-    write_whole_file(folder / "mutant.vdb", sealed(bytes));
+    file::write_whole_file(folder / "mutant.vdb", sealed(bytes));
     try {
-        load_bones(folder / "mutant.vdb");
+        bone::load_bones(folder / "mutant.vdb");
     } catch (const Error& error) {
         return error.what();
     }
@@ -73,8 +73,8 @@ TEST_CASE("a bone file with its seal computed anew loads back, whatever its comp
     const TemporaryFolder folder;
     for (const std::uint32_t packing : packings) {
         CAPTURE(packing);
-        write_whole_file(folder / "a.vdb", sealed(bone_bytes(folder, packing)));
-        CHECK(load_bone(folder / "a.vdb").distance.values == small_bone().distance.values);
+        file::write_whole_file(folder / "a.vdb", sealed(bone_bytes(folder, packing)));
+        CHECK(bone::load_bone(folder / "a.vdb").distance.values == small_bone().distance.values);
     }
 }
 
@@ -143,10 +143,10 @@ TEST_CASE("bone files of another tree, format or compression are refused") {
 
 TEST_CASE("a bone that needs more memory than one file may take is told apart from a damaged one") {
     const TemporaryFolder folder;
-    save_bone(small_bone(), folder / "a.vdb");
-    const std::uint64_t before = memory_limit();
-    set_memory_limit(100'000);
-    CHECK_THROWS_AS(load_bone(folder / "a.vdb"), NoRoom);
-    set_memory_limit(before);
-    CHECK_NOTHROW(load_bone(folder / "a.vdb"));
+    bone::save_bone(small_bone(), folder / "a.vdb");
+    const std::uint64_t before = file::memory_limit();
+    file::set_memory_limit(100'000);
+    CHECK_THROWS_AS(bone::load_bone(folder / "a.vdb"), file::NoRoom);
+    file::set_memory_limit(before);
+    CHECK_NOTHROW(bone::load_bone(folder / "a.vdb"));
 }

@@ -33,7 +33,7 @@ high_left = "-260 mm, 0 mm, 590 mm"
 std::string refusal(const std::string& text) {
     const TextFile file(text);
     try {
-        load_rig_file(file.path);
+        display::load_rig_file(file.path);
     } catch (const Error& error) {
         return error.what();
     }
@@ -43,21 +43,21 @@ std::string refusal(const std::string& text) {
 }  // namespace
 
 TEST_CASE("assets: a display rig comes back from its file to the nanometre") {
-    RigFile rig;
+    display::RigFile rig;
     rig.title = "two \"projectors\"";
     rig.rig.between_eyes = 0.0625;
     rig.rig.visuo_haptic_offset = {0.3, 0.0, 0.01};
-    rig.rig.haptic_world = {{0.1, -0.2, 1.0 / 3.0}, rotation_xyz({0.3, -1.0, 2.0})};
+    rig.rig.haptic_world = {{0.1, -0.2, 1.0 / 3.0}, coupling::rotation_xyz({0.3, -1.0, 2.0})};
     rig.rig.haptic_stretch[1][0] = 0.01;
-    rig.rig.mirror = Plane{{0.0, 0.1, 0.2}, glm::normalize(Vec3(0.1, 0.2, 0.9))};
-    rig.eyes_in_head = {{0.0, -0.06, 0.02}, rotation_xyz({0.1, 0.0, 0.0})};
+    rig.rig.mirror = display::Plane{{0.0, 0.1, 0.2}, glm::normalize(Vec3(0.1, 0.2, 0.9))};
+    rig.eyes_in_head = {{0.0, -0.06, 0.02}, coupling::rotation_xyz({0.1, 0.0, 0.0})};
     rig.head_away = 0.55;
     rig.rig.screens = {{{-0.25, 0.1, 0.3}, {0.25, 0.1, 0.3}, {-0.25, -0.19, 0.3}},
                        {{0.25, 0.1, -0.3}, {0.25, -0.3, -0.3}, {0.25, 0.1, -0.1}, false}};
-    rig.screens = {{"above", ScreenEyes::left, {}, StereoMode::anaglyph, 2, {}},
-                   {"beside", ScreenEyes::both, Vec3(0.0, 0.1, 0.2), {}, 0, {10, -20, 640, 480}}};
-    const TextFile file(rig_text(rig, {"a comment"}));
-    const RigFile back = load_rig_file(file.path);
+    rig.screens = {{"above", display::ScreenEyes::left, {}, display::StereoMode::anaglyph, 2, {}},
+                   {"beside", display::ScreenEyes::both, Vec3(0.0, 0.1, 0.2), {}, 0, {10, -20, 640, 480}}};
+    const TextFile file(display::rig_text(rig, {"a comment"}));
+    const display::RigFile back = display::load_rig_file(file.path);
     CHECK(back.title == rig.title);
     CHECK(back.rig.between_eyes == Approx(0.0625));
     CHECK(glm::length(back.rig.visuo_haptic_offset - rig.rig.visuo_haptic_offset) < 1e-9);
@@ -68,8 +68,8 @@ TEST_CASE("assets: a display rig comes back from its file to the nanometre") {
     CHECK(glm::length(back.rig.mirror->normal - rig.rig.mirror->normal) < 1e-12);
     CHECK(back.head_away == Approx(0.55));
     REQUIRE(back.screens.size() == 2);
-    CHECK(back.screens[0].eyes == ScreenEyes::left);
-    CHECK(back.screens[0].stereo == StereoMode::anaglyph);
+    CHECK(back.screens[0].eyes == display::ScreenEyes::left);
+    CHECK(back.screens[0].stereo == display::StereoMode::anaglyph);
     CHECK(back.screens[0].monitor == 2);
     CHECK(back.screens[1].name == "beside");
     CHECK(back.screens[1].window == std::array<int, 4>{10, -20, 640, 480});
@@ -77,7 +77,7 @@ TEST_CASE("assets: a display rig comes back from its file to the nanometre") {
     CHECK(back.rig.screens[0].in_mirror);
     CHECK_FALSE(back.rig.screens[1].in_mirror);
     CHECK(glm::length(back.rig.screens[1].high_left - rig.rig.screens[1].high_left) < 1e-9);
-    CHECK(rig_text(back, {"a comment"}) == rig_text(rig, {"a comment"}));
+    CHECK(display::rig_text(back, {"a comment"}) == display::rig_text(rig, {"a comment"}));
 }
 
 TEST_CASE("assets: a display rig that cannot be is refused with its line") {
@@ -97,16 +97,16 @@ TEST_CASE("assets: a display rig that cannot be is refused with its line") {
 }
 
 TEST_CASE("assets: touches come back from their file, and a bad line is named") {
-    std::vector<RigTouch> touches{{RigTouch::Of::workspace, {}, {}, {0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}},
-                                  {RigTouch::Of::image, "monitor", {0.1, 0.9}, {-0.1, 0.0, 1.0 / 3.0}, {}},
-                                  {RigTouch::Of::mirror, {}, {}, {0.0, 0.0, 0.001}, {}}};
-    const TextFile file(touches_text(touches));
-    const auto back = load_touches(file.path);
+    std::vector<display::RigTouch> touches{{display::RigTouch::Of::workspace, {}, {}, {0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}},
+                                  {display::RigTouch::Of::image, "monitor", {0.1, 0.9}, {-0.1, 0.0, 1.0 / 3.0}, {}},
+                                  {display::RigTouch::Of::mirror, {}, {}, {0.0, 0.0, 0.001}, {}}};
+    const TextFile file(display::touches_text(touches));
+    const auto back = display::load_touches(file.path);
     REQUIRE(back.size() == 3);
     CHECK(glm::length(back[0].place - touches[0].place) < 1e-9);
     CHECK(back[1].screen == "monitor");
-    CHECK(back[1].of == RigTouch::Of::image);
+    CHECK(back[1].of == display::RigTouch::Of::image);
     CHECK(glm::length(back[1].reading - touches[1].reading) < 1e-9);
     const TextFile bad("of,x_mm,y_mm,z_mm\nmirror,1,2,3\nmirrow,1,2,3\n");
-    CHECK_THROWS_WITH(load_touches(bad.path), Catch::Contains(":3") && Catch::Contains("mirror"));
+    CHECK_THROWS_WITH(display::load_touches(bad.path), Catch::Contains(":3") && Catch::Contains("mirror"));
 }

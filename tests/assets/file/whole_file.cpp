@@ -24,8 +24,8 @@ TEST_CASE("what was written is read back, and no part of it is left beside") {
     TemporaryFolder folder;
     for (const std::size_t length : {0u, 1u, 4096u, 100'003u}) {
         const std::string bytes = bytes_of_length(length);
-        write_whole_file(folder / "a.bin", bytes);
-        CHECK(read_whole_file(folder / "a.bin") == bytes);
+        file::write_whole_file(folder / "a.bin", bytes);
+        CHECK(file::read_whole_file(folder / "a.bin") == bytes);
         CHECK_FALSE(std::filesystem::exists(folder / "a.bin.part"));
     }
 }
@@ -34,9 +34,9 @@ TEST_CASE("a hash of a file in blocks is the hash of its bytes at once") {
     TemporaryFolder folder;
     for (const std::size_t length : {0u, 3u, 65'535u, 65'536u, 65'537u, 200'001u}) {
         const std::string bytes = bytes_of_length(length);
-        write_whole_file(folder / "a.bin", bytes);
+        file::write_whole_file(folder / "a.bin", bytes);
         Hash of_file, of_bytes;
-        add_file(of_file, folder / "a.bin");
+        file::add_file(of_file, folder / "a.bin");
         of_bytes.add_bytes(bytes.data(), bytes.size());
         CHECK(of_file.value() == of_bytes.value());
     }
@@ -45,7 +45,7 @@ TEST_CASE("a hash of a file in blocks is the hash of its bytes at once") {
 TEST_CASE("a folder and a file that is not there are told") {
     TemporaryFolder folder;
     Hash hash;
-    CHECK_THROWS_WITH(read_whole_file(folder / "none"), Catch::Contains("none: no such file"));
-    CHECK_THROWS_WITH(add_file(hash, folder / "."), Catch::Contains("no such file"));
-    CHECK_THROWS_WITH(write_whole_file(folder / "none" / "a", "x"), Catch::Contains("cannot be written"));
+    CHECK_THROWS_WITH(file::read_whole_file(folder / "none"), Catch::Contains("none: no such file"));
+    CHECK_THROWS_WITH(file::add_file(hash, folder / "."), Catch::Contains("no such file"));
+    CHECK_THROWS_WITH(file::write_whole_file(folder / "none" / "a", "x"), Catch::Contains("cannot be written"));
 }

@@ -8,13 +8,13 @@
 using namespace tactus;
 
 TEST_CASE("the bundled mandible is one closed piece of plausible size with a dense shell and a light core") {
-    const Bone bone = make_mandible();
-    const Mesh surface = surface_of(bone.distance);
-    const MeshTopology topology = topology_of(surface);
+    const bone::Bone bone = library::make_mandible();
+    const mesh::Mesh surface = mesh::surface_of(bone.distance);
+    const mesh::MeshTopology topology = mesh::topology_of(surface);
     CHECK(topology.is_watertight());
     CHECK(topology.components == 1);
     // An egg of 12 mm by 28 mm has 264 mm²; times 55 mm.
-    CHECK(volume_of(surface) == Approx(264e-6 * 55e-3).epsilon(0.08));
+    CHECK(mesh::volume_of(surface) == Approx(264e-6 * 55e-3).epsilon(0.08));
     double shell = 0.0, core = 0.0, shell_count = 0.0, core_count = 0.0;
     for (int k = 0; k < bone.distance.size[2]; ++k)
         for (int j = 0; j < bone.distance.size[1]; ++j)
@@ -29,4 +29,4 @@ TEST_CASE("the bundled mandible is one closed piece of plausible size with a den
     CHECK(core / core_count == Approx(450.0).margin(120.0));
 }
 
-TEST_CASE("the bundled mandible is the same every time") { CHECK(mandible_hu().values == mandible_hu().values); }
+TEST_CASE("the bundled mandible is the same every time") { CHECK(library::mandible_hu().values == library::mandible_hu().values); }

@@ -2,9 +2,9 @@
 #include "assets/library/saw_recordings.hpp"
 
 #include "assets/file/whole_file.hpp"
-#include "assets/recording/recording_set.hpp"
+#include "assets/sound/recording_set.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/filter/biquad.hpp"
+#include "dsp/signal/filter/biquad.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
 
 #include <catch2/catch.hpp>
@@ -17,28 +17,28 @@ using namespace tactus;
 
 namespace {
 
-double rms(const Recording& r) {
+double rms(const sound::Recording& r) {
     double power = 0.0;
     for (const float x : r.samples) power += static_cast<double>(x) * x;
     return std::sqrt(power / static_cast<double>(r.samples.size())) * *r.full_scale;
 }
 
-const Recording& find(const RecordingSet& set, double rate, double load) {
+const sound::Recording& find(const sound::RecordingSet& set, double rate, double load) {
     return *std::find_if(set.recordings.begin(), set.recordings.end(),
-                         [&](const Recording& r) { return r.rate == rate && r.load == load; });
+                         [&](const sound::Recording& r) { return r.rate == rate && r.load == load; });
 }
 
 }  // namespace
 
 TEST_CASE("the bundled saw says that it is computed, and covers its rates and loads") {
     const TemporaryFolder folder;
-    make_saw_recordings(folder / "saw");
-    const RecordingSet set = load_recording_set(folder / "saw/reciprocating.toml");
+    library::make_saw_recordings(folder / "saw");
+    const sound::RecordingSet set = sound::load_recording_set(folder / "saw/reciprocating.toml");
     CHECK(set.synthesised);
     CHECK(set.calibrated());
     CHECK(set.recordings.size() == 12);
     std::map<double, int> rates, loads;
-    for (const Recording& r : set.recordings) {
+    for (const sound::Recording& r : set.recordings) {
         ++rates[r.rate];
         ++loads[r.load];
         CHECK(r.cutting == (r.load > 0.0));
@@ -54,8 +54,8 @@ TEST_CASE("the bundled saw says that it is computed, and covers its rates and lo
 
 TEST_CASE("the bundled saw shakes as hard as saws are known to, and its noise swells twice a cycle") {
     const TemporaryFolder folder;
-    make_saw_recordings(folder.path);
-    const RecordingSet set = load_recording_set(folder / "reciprocating.toml");
+    library::make_saw_recordings(folder.path);
+    const sound::RecordingSet set = sound::load_recording_set(folder / "reciprocating.toml");
     CHECK(rms(find(set, 233.0, 0.0)) == Approx(90.5).epsilon(0.01));
     CHECK(rms(find(set, 233.0, 12.0)) == Approx(182.0).epsilon(0.01));
     // A stroke of constant length: acceleration goes with the square of the rate.
@@ -63,8 +63,8 @@ TEST_CASE("the bundled saw shakes as hard as saws are known to, and its noise sw
     for (const double rate : {150.0, 190.0, 233.0}) CHECK(rms(find(set, rate, 3.0)) < rms(find(set, rate, 7.0)));
 
     // Power of the sound above 400 Hz by place in the cycle: great at mid-stroke, small at the ends.
-    const Recording& loud = find(set, 150.0, 12.0);
-    Biquad first{highpass(400.0, 48000.0)}, second{highpass(400.0, 48000.0)};
+    const sound::Recording& loud = find(set, 150.0, 12.0);
+    signal::Biquad first{signal::highpass(400.0, 48000.0)}, second{signal::highpass(400.0, 48000.0)};
     double middle = 0.0, ends = 0.0;
     for (std::size_t i = 0; i < loud.samples.size(); ++i) {
         const double y = second(first(loud.samples[i]));
@@ -76,11 +76,11 @@ TEST_CASE("the bundled saw shakes as hard as saws are known to, and its noise sw
 
 TEST_CASE("the bundled saw is the same bytes each time") {
     const TemporaryFolder folder;
-    make_saw_recordings(folder / "a");
-    make_saw_recordings(folder / "b");
+    library::make_saw_recordings(folder / "a");
+    library::make_saw_recordings(folder / "b");
     int files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder / "a")) {
-        CHECK(read_whole_file(entry.path()) == read_whole_file(folder / "b" / entry.path().filename()));
+        CHECK(file::read_whole_file(entry.path()) == file::read_whole_file(folder / "b" / entry.path().filename()));
         ++files;
     }
     CHECK(files == 13);
@@ -88,13 +88,13 @@ TEST_CASE("the bundled saw is the same bytes each time") {
 
 TEST_CASE("the bundled saw runs as a voice without a click") {
     const TemporaryFolder folder;
-    make_saw_recordings(folder.path);
-    const RecordingSet set = load_recording_set(folder / "reciprocating.toml");
-    SawVoice voice;
-    voice.prepare(48000.0, saw_recordings(set));
+    library::make_saw_recordings(folder.path);
+    const sound::RecordingSet set = sound::load_recording_set(folder / "reciprocating.toml");
+    vibration::SawVoice voice;
+    voice.prepare(48000.0, sound::saw_recordings(set));
     // Steps between samples, of the recordings at full speed and of the voice while trigger and load come and go.
     double known = 0.0, heard = 0.0;
-    for (const Recording& r : set.recordings)
+    for (const sound::Recording& r : set.recordings)
         for (std::size_t i = 1; i < r.samples.size(); ++i)
             known = std::max(known, std::abs(static_cast<double>(r.samples[i]) - r.samples[i - 1]) * *r.full_scale);
     double before = 0.0;

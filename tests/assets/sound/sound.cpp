@@ -25,8 +25,8 @@ std::vector<float> ramp_samples(std::size_t count) {
 }
 
 void write(const std::filesystem::path& path, const std::vector<float>& samples, int channels = 1,
-           SoundFormat format = SoundFormat::float_wav) {
-    SoundWriter writer(path, channels, 48000, format);
+           sound::SoundFormat format = sound::SoundFormat::float_wav) {
+    sound::SoundWriter writer(path, channels, 48000, format);
     writer.write(samples.data(), samples.size() / static_cast<std::size_t>(channels));
     writer.finish();
 }
@@ -38,7 +38,7 @@ TEST_CASE("a float WAV comes back bit for bit, also beyond full scale") {
     std::vector<float> samples = ramp_samples(9600);
     samples[17] = 3.5f;
     write(folder / "a.wav", samples, 2);
-    const Sound sound = load_sound(folder / "a.wav");
+    const sound::Sound sound = sound::load_sound(folder / "a.wav");
     CHECK(sound.rate == 48000);
     CHECK(sound.channels == 2);
     CHECK(sound.frames == 4800);
@@ -51,8 +51,8 @@ TEST_CASE("FLAC keeps 24 bits and cuts at full scale") {
     std::vector<float> samples = ramp_samples(9600);
     samples[17] = 3.5f;
     samples[18] = -3.5f;
-    write(folder / "a.flac", samples, 1, SoundFormat::flac);
-    const Sound sound = load_sound(folder / "a.flac");
+    write(folder / "a.flac", samples, 1, sound::SoundFormat::flac);
+    const sound::Sound sound = sound::load_sound(folder / "a.flac");
     REQUIRE(sound.samples.size() == samples.size());
     CHECK(sound.samples[17] == Approx(1.0f).margin(1e-6));
     CHECK(sound.samples[18] == Approx(-1.0f).margin(1e-6));
@@ -64,11 +64,11 @@ TEST_CASE("FLAC keeps 24 bits and cuts at full scale") {
 
 TEST_CASE("the same samples give the same bytes") {
     const TemporaryFolder folder;
-    for (const auto format : {SoundFormat::float_wav, SoundFormat::flac}) {
+    for (const auto format : {sound::SoundFormat::float_wav, sound::SoundFormat::flac}) {
         write(folder / "a", ramp_samples(5000), 1, format);
         write(folder / "b", ramp_samples(5000), 1, format);
-        const std::string bytes = read_whole_file(folder / "a");
-        CHECK(bytes == read_whole_file(folder / "b"));
+        const std::string bytes = file::read_whole_file(folder / "a");
+        CHECK(bytes == file::read_whole_file(folder / "b"));
         CHECK(bytes.find("PEAK") == std::string::npos);
     }
 }
@@ -77,57 +77,57 @@ TEST_CASE("an unfinished sound leaves no file, and until it is finished the old 
     const TemporaryFolder folder;
     write(folder / "a.wav", ramp_samples(100));
     {
-        SoundWriter writer(folder / "a.wav", 1, 48000);
+        sound::SoundWriter writer(folder / "a.wav", 1, 48000);
         writer.write(ramp_samples(5000).data(), 5000);
-        CHECK(load_sound(folder / "a.wav").frames == 100);
+        CHECK(sound::load_sound(folder / "a.wav").frames == 100);
     }
-    CHECK(load_sound(folder / "a.wav").frames == 100);
+    CHECK(sound::load_sound(folder / "a.wav").frames == 100);
     CHECK_FALSE(std::filesystem::exists(folder / "a.wav.part"));
 }
 
 TEST_CASE("a sound that lost its tail is refused, WAV or FLAC") {
     const TemporaryFolder folder;
     for (const auto& [name, format] :
-         {std::pair{"a.wav", SoundFormat::float_wav}, std::pair{"a.flac", SoundFormat::flac}}) {
+         {std::pair{"a.wav", sound::SoundFormat::float_wav}, std::pair{"a.flac", sound::SoundFormat::flac}}) {
         write(folder / name, ramp_samples(48000), 1, format);
         const auto size = std::filesystem::file_size(folder / name);
         for (const auto kept : {size - 1, size - 1000, size / 2, size / 10}) {
             write(folder / name, ramp_samples(48000), 1, format);
             std::filesystem::resize_file(folder / name, kept);
             INFO(name << " of " << size << " bytes cut to " << kept);
-            CHECK_THROWS_AS(load_sound(folder / name), Error);
+            CHECK_THROWS_AS(sound::load_sound(folder / name), Error);
         }
     }
 }
 
 TEST_CASE("what is no sound is refused with its name") {
     const TemporaryFolder folder;
-    CHECK_THROWS_WITH(load_sound(folder / "none.wav"), Contains("none.wav: no such sound file"));
-    CHECK_THROWS_WITH(load_sound(folder.path), Contains("is a folder"));
-    write_whole_file(folder / "text.wav", "this is no sound at all, only words");
-    CHECK_THROWS_WITH(load_sound(folder / "text.wav"), Contains("text.wav: cannot be read as sound"));
+    CHECK_THROWS_WITH(sound::load_sound(folder / "none.wav"), Contains("none.wav: no such sound file"));
+    CHECK_THROWS_WITH(sound::load_sound(folder.path), Contains("is a folder"));
+    file::write_whole_file(folder / "text.wav", "this is no sound at all, only words");
+    CHECK_THROWS_WITH(sound::load_sound(folder / "text.wav"), Contains("text.wav: cannot be read as sound"));
     write(folder / "empty.wav", {});
-    CHECK_THROWS_WITH(load_sound(folder / "empty.wav"), Contains("empty"));
+    CHECK_THROWS_WITH(sound::load_sound(folder / "empty.wav"), Contains("empty"));
     write(folder / "nan.wav", {0.0f, std::numeric_limits<float>::quiet_NaN()});
-    CHECK_THROWS_WITH(load_sound(folder / "nan.wav"), Contains("NaN"));
+    CHECK_THROWS_WITH(sound::load_sound(folder / "nan.wav"), Contains("NaN"));
 }
 
 TEST_CASE("a header that promises more than the file holds is refused without the memory it asks for") {
     const TemporaryFolder folder;
     write(folder / "a.wav", ramp_samples(1000));
-    std::string bytes = read_whole_file(folder / "a.wav");
+    std::string bytes = file::read_whole_file(folder / "a.wav");
     const std::size_t data = bytes.find("data");
     REQUIRE(data != std::string::npos);
     const std::uint32_t claim = 0x7ffffff0u;
     std::memcpy(bytes.data() + data + 4, &claim, 4);
     std::memcpy(bytes.data() + 4, &claim, 4);
-    write_whole_file(folder / "a.wav", bytes);
-    CHECK_THROWS_AS(load_sound(folder / "a.wav"), Error);
+    file::write_whole_file(folder / "a.wav", bytes);
+    CHECK_THROWS_AS(sound::load_sound(folder / "a.wav"), Error);
 }
 
 TEST_CASE("a full disk and a missing folder are errors, not lost sounds") {
     const TemporaryFolder folder;
-    CHECK_THROWS_WITH(SoundWriter(folder / "no/such/a.wav", 1, 48000), Contains("cannot write"));
+    CHECK_THROWS_WITH(sound::SoundWriter(folder / "no/such/a.wav", 1, 48000), Contains("cannot write"));
     if (!std::filesystem::exists("/dev/full")) return;
     std::filesystem::create_symlink("/dev/full", folder / "a.wav.part");
     CHECK_THROWS_AS(write(folder / "a.wav", ramp_samples(1 << 20)), Error);
@@ -135,29 +135,29 @@ TEST_CASE("a full disk and a missing folder are errors, not lost sounds") {
 }
 
 TEST_CASE("mono is the mean of the channels") {
-    Sound sound{48000, 2, 2, {1.0f, 0.0f, -0.5f, 0.25f}};
-    CHECK(mix_to_mono(sound) == std::vector<float>{0.5f, -0.125f});
+    sound::Sound sound{48000, 2, 2, {1.0f, 0.0f, -0.5f, 0.25f}};
+    CHECK(sound::mix_to_mono(sound) == std::vector<float>{0.5f, -0.125f});
 }
 
 TEST_CASE("a header with a rate, or a number of samples, that cannot be is refused") {
     const TemporaryFolder folder;
-    write(folder / "a.wav", ramp_samples(12000), 1, SoundFormat::float_wav);
+    write(folder / "a.wav", ramp_samples(12000), 1, sound::SoundFormat::float_wav);
     const auto with_rate = [&](std::uint32_t rate) {
         std::fstream file(folder / "a.wav", std::ios::in | std::ios::out | std::ios::binary);
         file.seekp(24);
         file.write(reinterpret_cast<const char*>(&rate), sizeof rate);
     };
     with_rate(10'000'000);
-    CHECK(load_sound(folder / "a.wav").frames == 12000);
+    CHECK(sound::load_sound(folder / "a.wav").frames == 12000);
     for (const std::uint32_t rate : {10'000'001u, 2'100'000'000u}) {
         with_rate(rate);
-        CHECK_THROWS_WITH(load_sound(folder / "a.wav"), Catch::Contains("samples per second"));
+        CHECK_THROWS_WITH(sound::load_sound(folder / "a.wav"), Catch::Contains("samples per second"));
     }
     // STREAMINFO of FLAC: 36 bits of samples, whose lowest 32 lie at byte 22.
-    write(folder / "a.flac", ramp_samples(12000), 1, SoundFormat::flac);
+    write(folder / "a.flac", ramp_samples(12000), 1, sound::SoundFormat::flac);
     std::fstream file(folder / "a.flac", std::ios::in | std::ios::out | std::ios::binary);
     file.seekp(22);
     file.write("\x7f\xff\xff\xff", 4);
     file.close();
-    CHECK_THROWS_WITH(load_sound(folder / "a.flac"), Catch::Contains("more than a file of its size can hold"));
+    CHECK_THROWS_WITH(sound::load_sound(folder / "a.flac"), Catch::Contains("more than a file of its size can hold"));
 }

@@ -43,7 +43,7 @@ void write(const fs::path &path, int format, int channels, int rate,
 }
 
 std::vector<double> read_all(const fs::path &path, std::size_t piece) {
-  SoundReader reader(path);
+  sound::SoundReader reader(path);
   std::vector<double> all, part(piece * reader.channels());
   while (const std::size_t count = reader.read(part.data(), piece))
     all.insert(all.end(), part.begin(),
@@ -74,7 +74,7 @@ TEST_CASE("sounds of every container, width, rate and number of channels are "
     for (std::size_t i = 0; i < samples.size(); ++i)
       samples[i] = 0.9 * std::sin(0.1 * static_cast<double>(i));
     write(file.path, format, channels, rate, samples);
-    const SoundReader reader(file.path);
+    const sound::SoundReader reader(file.path);
     CHECK(reader.rate() == rate);
     CHECK(reader.channels() == static_cast<std::size_t>(channels));
     const std::vector<double> got = read_all(file.path, 77);
@@ -102,7 +102,7 @@ TEST_CASE("sounds that are cut short, empty or no sound are refused") {
   write(file.path, SF_FORMAT_WAV | SF_FORMAT_PCM_16, 1, 1000,
         std::vector<double>(1000));
   fs::resize_file(file.path, 900);
-  CHECK_THROWS_WITH(SoundReader(file.path), Catch::Contains("cut short"));
+  CHECK_THROWS_WITH(sound::SoundReader(file.path), Catch::Contains("cut short"));
   const Temporary flac("short.flac");
   std::vector<double> noise(50000);
   for (std::size_t i = 0; i < noise.size(); ++i)
@@ -111,10 +111,10 @@ TEST_CASE("sounds that are cut short, empty or no sound are refused") {
   fs::resize_file(flac.path, fs::file_size(flac.path) / 2);
   CHECK_THROWS_AS(read_all(flac.path, 1000), Error);
   write(file.path, SF_FORMAT_WAV | SF_FORMAT_PCM_16, 1, 1000, {});
-  CHECK_THROWS_WITH(SoundReader(file.path), Catch::Contains("empty"));
+  CHECK_THROWS_WITH(sound::SoundReader(file.path), Catch::Contains("empty"));
   std::ofstream(file.path) << "this is no sound";
-  CHECK_THROWS_WITH(SoundReader(file.path),
+  CHECK_THROWS_WITH(sound::SoundReader(file.path),
                     Catch::Contains("cannot be read as sound"));
-  CHECK_THROWS_WITH(SoundReader("/nowhere.wav"),
+  CHECK_THROWS_WITH(sound::SoundReader("/nowhere.wav"),
                     Catch::Contains("no such sound file"));
 }

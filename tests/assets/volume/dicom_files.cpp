@@ -23,7 +23,7 @@ bool are_there() {
     return false;
 }
 
-std::vector<float> samples_of(const std::string& name) { return dicom_samples(dicom_images(folder / name)); }
+std::vector<float> samples_of(const std::string& name) { return volume::dicom_samples(volume::dicom_images(folder / name)); }
 
 double sum_of(const std::vector<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
@@ -58,9 +58,9 @@ TEST_CASE("every DICOM file of another program's tests gives as many samples as 
         if (!entry.is_regular_file() || entry.path().extension() != ".dcm") continue;
         CAPTURE(entry.path().filename().string());
         try {
-            const std::vector<DicomImage> images = dicom_images(entry.path());
+            const std::vector<volume::DicomImage> images = volume::dicom_images(entry.path());
             if (images.empty()) continue;
-            const std::vector<float> values = dicom_samples(images);
+            const std::vector<float> values = volume::dicom_samples(images);
             CHECK(values.size() == images.size() * static_cast<std::size_t>(images.front().rows) *
                                        static_cast<std::size_t>(images.front().columns));
             CHECK(std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }));
@@ -72,7 +72,7 @@ TEST_CASE("every DICOM file of another program's tests gives as many samples as 
             ++refused;
         }
         // No scan of a patient's volume is among them: alone each is one slice, or says nothing about places.
-        CHECK_THROWS_AS(read_volume(entry.path()), Error);
+        CHECK_THROWS_AS(volume::read_volume(entry.path()), Error);
     }
     CHECK(read >= 15);
     CHECK(refused >= 15);

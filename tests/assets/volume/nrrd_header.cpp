@@ -54,21 +54,21 @@ TEST_CASE("a long line of an NRRD header is refused, whichever field it is") {
                 CAPTURE(field, size, filling);
                 std::string line = fmt::format("{}: ", field);
                 while (line.size() < size) line += filling;
-                write_whole_file(folder / "a.nrrd", nrrd_with(line));
-                CHECK_THROWS_AS(read_volume(folder / "a.nrrd"), Error);
+                file::write_whole_file(folder / "a.nrrd", nrrd_with(line));
+                CHECK_THROWS_AS(volume::read_volume(folder / "a.nrrd"), Error);
             }
-    write_whole_file(folder / "a.nrrd", "NRRD0005" + std::string(5000, '1'));
-    CHECK_THROWS_AS(read_volume(folder / "a.nrrd"), Error);
+    file::write_whole_file(folder / "a.nrrd", "NRRD0005" + std::string(5000, '1'));
+    CHECK_THROWS_AS(volume::read_volume(folder / "a.nrrd"), Error);
     // Looks like a key with a value only behind its field.
-    write_whole_file(folder / "a.nrrd", nrrd_with("type: " + std::string(1100, 'a') + ":=b"));
-    CHECK_THROWS_WITH(read_volume(folder / "a.nrrd"), Contains("2:1: a field of"));
+    file::write_whole_file(folder / "a.nrrd", nrrd_with("type: " + std::string(1100, 'a') + ":=b"));
+    CHECK_THROWS_WITH(volume::read_volume(folder / "a.nrrd"), Contains("2:1: a field of"));
 }
 
 TEST_CASE("fields up to 700 bytes, long comments, key/value pairs and contents of an NRRD header are read") {
     const TemporaryFolder folder;
     const auto reads = [&](const std::string& line) {
-        write_whole_file(folder / "a.nrrd", nrrd_with(line));
-        CHECK(read_volume(folder / "a.nrrd").size == std::array<int, 3>{2, 2, 2});
+        file::write_whole_file(folder / "a.nrrd", nrrd_with(line));
+        CHECK(volume::read_volume(folder / "a.nrrd").size == std::array<int, 3>{2, 2, 2});
     };
     reads("# " + std::string(100000, 'c'));
     reads("key:=" + std::string(100000, 'v'));
@@ -80,24 +80,24 @@ TEST_CASE("an NRRD header of too many lines, or of another format, is refused") 
     const TemporaryFolder folder;
     std::string many = "# c";
     for (int n = 0; n < 10001; ++n) many += "\n# c";
-    write_whole_file(folder / "a.nrrd", nrrd_with(many));
-    CHECK_THROWS_WITH(read_volume(folder / "a.nrrd"), Contains("more than 10000 lines"));
-    write_whole_file(folder / "a.nrrd", "P5\n2 2\n255\nabcd");
-    CHECK_THROWS_WITH(read_volume(folder / "a.nrrd"), Contains("does not begin with 'NRRD000'"));
+    file::write_whole_file(folder / "a.nrrd", nrrd_with(many));
+    CHECK_THROWS_WITH(volume::read_volume(folder / "a.nrrd"), Contains("more than 10000 lines"));
+    file::write_whole_file(folder / "a.nrrd", "P5\n2 2\n255\nabcd");
+    CHECK_THROWS_WITH(volume::read_volume(folder / "a.nrrd"), Contains("does not begin with 'NRRD000'"));
 }
 
 TEST_CASE("samples as text are read; a number of thousands of letters among them is refused") {
     const TemporaryFolder folder;
     std::string text = nrrd_with("encoding: ascii");
     text.resize(text.find("\n\n") + 2);
-    write_whole_file(folder / "a.nrrd", text + "1 2 3 4 5 6 7 8\n");
-    CHECK(read_volume(folder / "a.nrrd").values == std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8});
+    file::write_whole_file(folder / "a.nrrd", text + "1 2 3 4 5 6 7 8\n");
+    CHECK(volume::read_volume(folder / "a.nrrd").values == std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8});
     for (const char letter : {'(', '1', 'a'}) {
-        write_whole_file(folder / "a.nrrd", text + "1 2 3 " + std::string(100000, letter) + " 5 6 7 8\n");
-        CHECK_THROWS_WITH(read_volume(folder / "a.nrrd"), Contains("a number of more than 500 letters"));
+        file::write_whole_file(folder / "a.nrrd", text + "1 2 3 " + std::string(100000, letter) + " 5 6 7 8\n");
+        CHECK_THROWS_WITH(volume::read_volume(folder / "a.nrrd"), Contains("a number of more than 500 letters"));
     }
     text.insert(text.size() - 1, "data file: a.txt\n");
-    write_whole_file(folder / "a.nhdr", text);
-    write_whole_file(folder / "a.txt", "1 2 3 " + std::string(100000, '7') + " 5 6 7 8\n");
-    CHECK_THROWS_WITH(read_volume(folder / "a.nhdr"), Contains("a number of more than 500 letters"));
+    file::write_whole_file(folder / "a.nhdr", text);
+    file::write_whole_file(folder / "a.txt", "1 2 3 " + std::string(100000, '7') + " 5 6 7 8\n");
+    CHECK_THROWS_WITH(volume::read_volume(folder / "a.nhdr"), Contains("a number of more than 500 letters"));
 }

@@ -50,7 +50,7 @@ WrittenVolume scan(double tilt_deg) {
 }
 
 struct Found {
-    Bone bone;
+    bone::Bone bone;
     double volume_mm3 = 0.0, p95_mm = 0.0;
 };
 
@@ -60,10 +60,10 @@ double exact_volume() {
            8.0 * wall_half.x * wall_half.y * wall_half.z;
 }
 
-Found measured(Bone bone, const ImportSummary& summary) {
+Found measured(bone::Bone bone, const bone::ImportSummary& summary) {
     Found found{std::move(bone), summary.bone_volume_mm3, 0.0};
     std::vector<double> errors;
-    for (const Vec3& vertex : surface_of(found.bone.distance).vertices)
+    for (const Vec3& vertex : mesh::surface_of(found.bone.distance).vertices)
         errors.push_back(std::abs(distance_mm(vertex * 1e3)));
     const auto at = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() * 95 / 100);
     std::nth_element(errors.begin(), at, errors.end());
@@ -72,12 +72,12 @@ Found measured(Bone bone, const ImportSummary& summary) {
 }
 
 Found import_of(const std::filesystem::path& path) {
-    ImportOptions options;
+    bone::ImportOptions options;
     options.input = path;
     options.threshold = 100.0;  // half way
     options.component = std::to_string(shapes);
-    ImportSummary summary;
-    Bone bone = import_bone(options, {}, &summary);
+    bone::ImportSummary summary;
+    bone::Bone bone = bone::import_bone(options, {}, &summary);
     return measured(std::move(bone), summary);
 }
 
@@ -88,14 +88,14 @@ TEST_CASE("a CT of known shapes comes back within 0.15 voxel and 1 % of volume, 
     for (const double tilt : {0.0, 15.0}) {
         const TemporaryFolder folder;
         const WrittenVolume v = scan(tilt);
-        write_whole_file(folder / "ct.nrrd", nrrd_bytes(v));
+        file::write_whole_file(folder / "ct.nrrd", nrrd_bytes(v));
         const Found nrrd = import_of(folder / "ct.nrrd");
         CAPTURE(tilt, nrrd.p95_mm, nrrd.volume_mm3, exact);
         CHECK(nrrd.p95_mm < 0.15 * 0.35);
         CHECK(nrrd.volume_mm3 == Approx(exact).epsilon(0.01));
 
         write_dicom_folder(v, folder / "series");
-        write_whole_file(folder / "ct.nii", nifti_bytes(v));
+        file::write_whole_file(folder / "ct.nii", nifti_bytes(v));
         for (const char* name : {"series", "ct.nii"}) {
             const Found other = import_of(folder / name);
             CAPTURE(name);
@@ -113,14 +113,14 @@ TEST_CASE(
     const WrittenVolume v = scan(0.0);
     WrittenVolume labels = v;
     labels.fill([](const Vec3& p) { return distance_mm(p) < 0.0 ? 1.0 : 0.0; });
-    write_whole_file(folder / "ct.nrrd", nrrd_bytes(v));
-    write_whole_file(folder / "labels.nrrd", nrrd_bytes(labels));
+    file::write_whole_file(folder / "ct.nrrd", nrrd_bytes(v));
+    file::write_whole_file(folder / "labels.nrrd", nrrd_bytes(labels));
     const auto found = [&](const std::filesystem::path& ct) {
-        ImportOptions options;
+        bone::ImportOptions options;
         options.input = folder / "labels.nrrd";
         options.label = "all";
         options.ct = ct;
-        ImportedBone made = std::move(import_labels(options).front());
+        bone::ImportedBone made = std::move(bone::import_labels(options).front());
         return measured(std::move(made.bone), made.summary);
     };
     const double exact = exact_volume();

@@ -32,8 +32,8 @@ WrittenVolume ramp() {
     return v;
 }
 
-void check_same(const ScanVolume& read, const WrittenVolume& v) {
-    const Grid grid = lps_grid(read);
+void check_same(const volume::ScanVolume& read, const WrittenVolume& v) {
+    const volume::Grid grid = volume::lps_grid(read);
     REQUIRE(grid.size == v.size);
     for (int k = 0; k < v.size[2]; ++k)
         for (int j = 0; j < v.size[1]; ++j)
@@ -45,7 +45,7 @@ void check_same(const ScanVolume& read, const WrittenVolume& v) {
 struct Place {
     TemporaryFolder folder;
     std::filesystem::path write(const std::string& name, const std::string& bytes) const {
-        write_whole_file(folder / name, bytes);
+        file::write_whole_file(folder / name, bytes);
         return folder / name;
     }
     std::filesystem::path pack(const std::string& name, const std::string& bytes) const {
@@ -61,24 +61,24 @@ struct Place {
 TEST_CASE("the same samples lie at the same places in NRRD, NIfTI and DICOM") {
     const Place place;
     const WrittenVolume v = ramp();
-    check_same(read_volume(place.write("v.nrrd", nrrd_bytes(v))), v);
+    check_same(volume::read_volume(place.write("v.nrrd", nrrd_bytes(v))), v);
     for (const bool second : {false, true})
         for (const bool swapped : {false, true})
             for (const bool quaternion : {false, true}) {
                 CAPTURE(second, swapped, quaternion);
-                const ScanVolume read =
-                    read_volume(place.pack("v.nii.gz", nifti_bytes(v, {second, swapped, quaternion})));
-                CHECK(read.file_frame == Frame::ras);
+                const volume::ScanVolume read =
+                    volume::read_volume(place.pack("v.nii.gz", nifti_bytes(v, {second, swapped, quaternion})));
+                CHECK(read.file_frame == volume::Frame::ras);
                 check_same(read, v);
             }
-    check_same(read_volume(place.write("v.nii", nifti_bytes(v))), v);
+    check_same(volume::read_volume(place.write("v.nii", nifti_bytes(v))), v);
     write_dicom_folder(v, place.folder / "series");
-    const ScanVolume dicom = read_volume(place.folder / "series");
-    CHECK(dicom.hu == HuKind::calibrated);
+    const volume::ScanVolume dicom = volume::read_volume(place.folder / "series");
+    CHECK(dicom.hu == volume::HuKind::calibrated);
     CHECK(dicom.uniform);
     check_same(dicom, v);
-    check_same(read_volume(place.folder / "series/000.dcm"), v);
-    check_same(read_volume(place.write("enhanced.dcm", enhanced_dicom_bytes(v))), v);
+    check_same(volume::read_volume(place.folder / "series/000.dcm"), v);
+    check_same(volume::read_volume(place.write("enhanced.dcm", enhanced_dicom_bytes(v))), v);
 }
 
 TEST_CASE(
@@ -90,11 +90,11 @@ TEST_CASE(
     const std::string samples = plain.substr(end + 1);
     std::string packed_header = plain.substr(0, end);
     packed_header.replace(packed_header.find("encoding: raw"), 13, "encoding: gzip");
-    const auto bytes_of = [](const std::filesystem::path& path) { return read_whole_file(path); };
+    const auto bytes_of = [](const std::filesystem::path& path) { return file::read_whole_file(path); };
     const std::string packed = bytes_of(place.pack("s.gz", samples)),
                       late = bytes_of(place.pack("l.gz", "abc" + samples));
     const std::string header = plain.substr(0, end);
-    const auto read = [&](const std::string& bytes) { return read_volume(place.write("v.nrrd", bytes)); };
+    const auto read = [&](const std::string& bytes) { return volume::read_volume(place.write("v.nrrd", bytes)); };
     check_same(read(header + "byte skip: 3\n\nabc" + samples), v);
     check_same(read(header + "byte skip: -1\n\njunk that nobody counted" + samples), v);
     check_same(read(header + "line skip: 2\nbyte skip: 1\n\none\ntwo\n." + samples), v);
@@ -122,10 +122,10 @@ TEST_CASE(
 TEST_CASE("an InVesalius project has rows from back to front") {
     const Place place;
     const WrittenVolume v = ramp();
-    const ScanVolume read = read_volume(place.pack("v.inv3", inv3_tar(v)));
+    const volume::ScanVolume read = volume::read_volume(place.pack("v.inv3", inv3_tar(v)));
     CHECK(read.values[7] == float(v.hu[7]));
     CHECK(read.map.step[1].y == Approx(-0.6e-3));
-    const Grid grid = lps_grid(read);
+    const volume::Grid grid = volume::lps_grid(read);
     CHECK(grid.at(0, 5, 0) == float(v.hu[0]));
 }
 
@@ -137,9 +137,9 @@ TEST_CASE("rescale counts per slice, and inverted display changes no value") {
         style.photometric = "MONOCHROME1";
         style.slope = k % 2 ? 2.0 : 1.0;
         style.intercept = -1000.0 - 2.0 * k;
-        write_whole_file(place.folder / fmt::format("{}.dcm", k), dicom_bytes(v, k, style));
+        file::write_whole_file(place.folder / fmt::format("{}.dcm", k), dicom_bytes(v, k, style));
     }
-    check_same(read_volume(place.folder.path), v);
+    check_same(volume::read_volume(place.folder.path), v);
 }
 
 TEST_CASE("a folder of several series asks which, and takes the one that is named") {
@@ -149,14 +149,14 @@ TEST_CASE("a folder of several series asks which, and takes the one that is name
     other.series = "9.8.7";
     write_dicom_folder(v, place.folder / "a");
     write_dicom_folder(v, place.folder / "b", other);
-    CHECK_THROWS_WITH(read_volume(place.folder.path), Contains("2 series") && Contains("--series") &&
+    CHECK_THROWS_WITH(volume::read_volume(place.folder.path), Contains("2 series") && Contains("--series") &&
                                                           Contains("9.8.7  5 images") && Contains("1.2.3.4"));
-    check_same(read_volume(place.folder.path, {"9.8.7"}), v);
-    CHECK_THROWS_WITH(read_volume(place.folder.path, {"5.5"}), Contains("names 0"));
+    check_same(volume::read_volume(place.folder.path, {"9.8.7"}), v);
+    CHECK_THROWS_WITH(volume::read_volume(place.folder.path, {"5.5"}), Contains("names 0"));
     other.image_type = "ORIGINAL\\PRIMARY\\LOCALIZER";
     std::filesystem::remove_all(place.folder / "b");
     write_dicom_folder(v, place.folder / "b", other);
-    check_same(read_volume(place.folder.path), v);
+    check_same(volume::read_volume(place.folder.path), v);
 }
 
 TEST_CASE("duplicate slices count once; a slice that is missing, strange or elsewhere is named") {
@@ -164,28 +164,28 @@ TEST_CASE("duplicate slices count once; a slice that is missing, strange or else
     const WrittenVolume v = ramp();
     const auto folder = place.folder.path;
     const auto put = [&](const std::string& name, const WrittenVolume& from, int k, const SliceStyle& style = {}) {
-        write_whole_file(folder / name, dicom_bytes(from, k, style));
+        file::write_whole_file(folder / name, dicom_bytes(from, k, style));
     };
     write_dicom_folder(v, folder);
     put("copy.dcm", v, 2);
-    const ScanVolume read = read_volume(folder);
+    const volume::ScanVolume read = volume::read_volume(folder);
     check_same(read, v);
     CHECK_THAT(read.notes.at(0), Contains("twice"));
     WrittenVolume changed = v;
     for (auto& value : changed.hu) value = static_cast<std::int16_t>(value + 10);
     put("copy.dcm", changed, 2);
-    CHECK_THROWS_WITH(read_volume(folder), Contains("one place"));
+    CHECK_THROWS_WITH(volume::read_volume(folder), Contains("one place"));
     std::filesystem::remove(folder / "copy.dcm");
     std::filesystem::remove(folder / "740.dcm");
-    CHECK_THROWS_WITH(read_volume(folder), Contains("missing in 1 place") && Contains("3.00 mm apart"));
+    CHECK_THROWS_WITH(volume::read_volume(folder), Contains("missing in 1 place") && Contains("3.00 mm apart"));
     WrittenVolume small = v;
     small.size[0] = 6;
     put("740.dcm", small, 2);
-    CHECK_THROWS_WITH(read_volume(folder), Contains("different size"));
+    CHECK_THROWS_WITH(volume::read_volume(folder), Contains("different size"));
     SliceStyle beside;
     beside.shift = {0.7, 0.0, 0.0};
     put("740.dcm", v, 2, beside);
-    CHECK_THROWS_WITH(read_volume(folder), Contains("0.70 mm beside"));
+    CHECK_THROWS_WITH(volume::read_volume(folder), Contains("0.70 mm beside"));
 }
 
 TEST_CASE("unevenly spaced slices are interpolated to even ones") {
@@ -199,12 +199,12 @@ TEST_CASE("unevenly spaced slices are interpolated to even ones") {
         WrittenVolume moved = v;
         moved.origin.z += z;
         moved.fill([](const Vec3& p) { return -1000.0 + 20.0 * (p.z + 100.0); });
-        write_whole_file(place.folder / fmt::format("{}.dcm", k), dicom_bytes(moved, k));
+        file::write_whole_file(place.folder / fmt::format("{}.dcm", k), dicom_bytes(moved, k));
     }
-    const ScanVolume read = read_volume(place.folder.path);
+    const volume::ScanVolume read = volume::read_volume(place.folder.path);
     CHECK_FALSE(read.uniform);
     CHECK_THAT(read.notes.at(0), Contains("interpolated"));
-    const Grid grid = lps_grid(read);
+    const volume::Grid grid = volume::lps_grid(read);
     for (int k = 0; k < grid.size[2]; ++k) {
         const double z = grid.position(0, 0, k).z * 1e3;
         CHECK(grid.at(1, 1, k) == Approx(-1000.0 + 20.0 * (z + 100.0)).margin(0.1));
@@ -218,15 +218,15 @@ TEST_CASE("numbers that a scanner did not turn to HU are told apart") {
     SliceStyle style;
     style.rescale_type = "US";
     write_dicom_folder(v, place.folder / "us", style);
-    CHECK(read_volume(place.folder / "us").hu == HuKind::scanner);
+    CHECK(volume::read_volume(place.folder / "us").hu == volume::HuKind::scanner);
     for (auto& value : v.hu) value = static_cast<std::int16_t>(value + 1000);
-    CHECK(read_volume(place.write("scanner.nrrd", nrrd_bytes(v))).hu == HuKind::scanner);
+    CHECK(volume::read_volume(place.write("scanner.nrrd", nrrd_bytes(v))).hu == volume::HuKind::scanner);
     std::fill(v.hu.begin(), v.hu.end(), std::int16_t{0});
     v.hu[100] = 3;
     v.hu[101] = 1;
-    const ScanVolume labels = read_volume(place.write("labels.nrrd", nrrd_bytes(v)));
-    CHECK(labels.kind == VolumeKind::labels);
-    CHECK(labels.hu == HuKind::none);
+    const volume::ScanVolume labels = volume::read_volume(place.write("labels.nrrd", nrrd_bytes(v)));
+    CHECK(labels.kind == volume::VolumeKind::labels);
+    CHECK(labels.hu == volume::HuKind::none);
 }
 
 TEST_CASE("a segmentation brings the names and colours of its segments, in one layer or several") {
@@ -240,8 +240,8 @@ TEST_CASE("a segmentation brings the names and colours of its segments, in one l
         "kinds: list domain domain domain\nspace directions: none (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n"
         "encoding: raw\n" +
         fields + "\n" + std::string("\1\0\1\1\0\1\0\0\0\0\0\0\0\0\0\0", 16);
-    const ScanVolume read = read_volume(place.write("s.seg.nrrd", bytes));
-    CHECK(read.kind == VolumeKind::labels);
+    const volume::ScanVolume read = volume::read_volume(place.write("s.seg.nrrd", bytes));
+    CHECK(read.kind == volume::VolumeKind::labels);
     REQUIRE(read.segments.size() == 2);
     CHECK(read.segments[0].name == "Mandible");
     CHECK(read.segments[0].colour->z == 1.0);
@@ -255,12 +255,12 @@ TEST_CASE("files cut anywhere, empty ones and headers that claim too much give o
     const WrittenVolume v = ramp();
     const auto refuses = [&](const std::string& name, const std::string& bytes) {
         CAPTURE(name, bytes.size());
-        CHECK_THROWS_AS(read_volume(place.write(name, bytes)), Error);
+        CHECK_THROWS_AS(volume::read_volume(place.write(name, bytes)), Error);
     };
     std::string packed;
     {
         place.pack("v.inv3", inv3_tar(v));
-        packed = read_whole_file(place.folder / "v.inv3");
+        packed = file::read_whole_file(place.folder / "v.inv3");
     }
     const std::pair<std::string, std::string> files[] = {
         {"c.nrrd", nrrd_bytes(v)}, {"c.nii", nifti_bytes(v)}, {"c.inv3", packed}, {"c.dcm", enhanced_dicom_bytes(v)}};
@@ -271,12 +271,12 @@ TEST_CASE("files cut anywhere, empty ones and headers that claim too much give o
     for (const std::size_t at : {42, 44, 46}) huge.replace(at, 2, "\xe8\x03");  // 1000 along each axis
     refuses("huge.nii", huge);
     place.pack("huge.nii.gz", huge);
-    CHECK_THROWS_WITH(read_volume(place.folder / "huge.nii.gz"), Contains("1000000000 voxels"));
+    CHECK_THROWS_WITH(volume::read_volume(place.folder / "huge.nii.gz"), Contains("1000000000 voxels"));
     std::string wide = dicom_bytes(v, 0);
     const std::string rows("\x28\0\x10\0US\2\0", 8);
     wide.replace(wide.find(rows) + 8, 2, "\xff\x7f");
     refuses("wide.dcm", wide);
-    CHECK_THROWS_WITH(read_volume(place.folder / "nothing.nii"), Contains("no such file"));
+    CHECK_THROWS_WITH(volume::read_volume(place.folder / "nothing.nii"), Contains("no such file"));
     refuses("text.txt", "some text");
 }
 
@@ -287,7 +287,7 @@ TEST_CASE("a DICOM element whose head reaches beyond its item asks for no memory
     const std::size_t at = bytes.find(std::string("\x28\0\x54\x10LO", 6));
     REQUIRE(at != std::string::npos);
     bytes.replace(at + 4, 2, "OL");
-    CHECK_THROWS_WITH(read_volume(place.write("v.dcm", bytes)), Contains("reaches beyond"));
+    CHECK_THROWS_WITH(volume::read_volume(place.write("v.dcm", bytes)), Contains("reaches beyond"));
 }
 
 TEST_CASE("raw samples that look like gzip, big-endian ones and those in a file apart are read as they are") {
@@ -295,7 +295,7 @@ TEST_CASE("raw samples that look like gzip, big-endian ones and those in a file 
     WrittenVolume v = ramp();
     v.hu[0] = static_cast<std::int16_t>(0x8b1f);
     std::string bytes = nrrd_bytes(v);
-    const Grid read = lps_grid(read_volume(place.write("v.nrrd", bytes)));
+    const volume::Grid read = volume::lps_grid(volume::read_volume(place.write("v.nrrd", bytes)));
     for (std::size_t n = 0; n < v.hu.size(); ++n) REQUIRE(read.values[n] == float(v.hu[n]));
 
     const std::size_t end = bytes.find("\n\n") + 1;
@@ -303,10 +303,10 @@ TEST_CASE("raw samples that look like gzip, big-endian ones and those in a file 
     for (std::size_t n = 0; n < samples.size(); n += 2) std::swap(samples[n], samples[n + 1]);
     header.replace(header.find("little"), 6, "big");
     place.write("samples.raw", samples);
-    const Grid apart = lps_grid(read_volume(place.write("v.nhdr", header + "data file: samples.raw\n")));
+    const volume::Grid apart = volume::lps_grid(volume::read_volume(place.write("v.nhdr", header + "data file: samples.raw\n")));
     CHECK(apart.values == read.values);
-    CHECK(lps_grid(read_volume(place.write("big.nrrd", header + "\n" + samples))).values == read.values);
-    CHECK_THROWS_WITH(read_volume(place.write("cut.nrrd", header + "\n" + samples.substr(2))), Contains("cut short"));
+    CHECK(volume::lps_grid(volume::read_volume(place.write("big.nrrd", header + "\n" + samples))).values == read.values);
+    CHECK_THROWS_WITH(volume::read_volume(place.write("cut.nrrd", header + "\n" + samples.substr(2))), Contains("cut short"));
 }
 
 TEST_CASE("a DICOM file of a kind with frames that does not count them is refused") {
@@ -315,5 +315,5 @@ TEST_CASE("a DICOM file of a kind with frames that does not count them is refuse
     const std::size_t at = bytes.find(std::string("\x28\0\x08\0IS", 6));
     REQUIRE(at != std::string::npos);
     bytes.erase(at, 8 + static_cast<std::size_t>(bytes[at + 6]));
-    CHECK_THROWS_WITH(read_volume(place.write("v.dcm", bytes)), Contains("does not say how many"));
+    CHECK_THROWS_WITH(volume::read_volume(place.write("v.dcm", bytes)), Contains("does not say how many"));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The other half of welch.py: reads doubles from a file, then computes their Welch spectrum each time a line with a
 // number of threads and the samples of a segment comes in; answers with seconds and the powers.
-#include "dsp/spectrum/welch.hpp"
+#include "dsp/signal/spectrum/welch.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -23,10 +23,10 @@ int main(int argc, char** argv) {
     std::vector<double> x;
     for (double v; file.read(reinterpret_cast<char*>(&v), sizeof v);) x.push_back(v);
     const std::vector<float> narrow(x.begin(), x.end());
-    tactus::WelchSettings settings;
+    tactus::signal::WelchSettings settings;
     for (int threads = 0; std::cin >> threads >> settings.segment;) {
         settings.overlap = settings.segment / 2;
-        const tactus::ForEach spread = [&](std::size_t count, const std::function<void(std::size_t)>& run) {
+        const tactus::signal::ForEach spread = [&](std::size_t count, const std::function<void(std::size_t)>& run) {
             std::atomic<std::size_t> next{0};
             const auto work = [&] {
                 for (std::size_t i; (i = next.fetch_add(1)) < count;) run(i);
@@ -36,8 +36,8 @@ int main(int argc, char** argv) {
             work();
         };
         const auto begin = std::chrono::steady_clock::now();
-        const tactus::Spectrum spectrum =
-            single ? tactus::welch<float>(narrow, settings, spread) : tactus::welch<double>(x, settings, spread);
+        const tactus::signal::Spectrum spectrum =
+            single ? tactus::signal::welch<float>(narrow, settings, spread) : tactus::signal::welch<double>(x, settings, spread);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         fmt::print("{} {}\n", seconds, fmt::join(spectrum.power, " "));
         std::fflush(stdout);

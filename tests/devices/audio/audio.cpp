@@ -18,7 +18,7 @@
 using namespace tactus;
 
 TEST_CASE("what is written is what the card gets, then silence that is counted") {
-    StreamState state(2, 8);
+    audio::StreamState state(2, 8);
     const std::array<float, 6> in{1, 2, 3, 4, 5, 6};
     CHECK(state.write(in.data(), 3) == 3);
     std::array<float, 10> out;
@@ -32,7 +32,7 @@ TEST_CASE("what is written is what the card gets, then silence that is counted")
 }
 
 TEST_CASE("silence before the first sound is no underflow") {
-    StreamState state(1, 8);
+    audio::StreamState state(1, 8);
     std::array<float, 4> out{1, 1, 1, 1};
     state.feed(out.data(), out.size(), 1);
     CHECK(out == std::array<float, 4>{});
@@ -40,7 +40,7 @@ TEST_CASE("silence before the first sound is no underflow") {
 }
 
 TEST_CASE("only whole frames are accepted, and refused ones are counted") {
-    StreamState state(3, 4);
+    audio::StreamState state(3, 4);
     const std::array<float, 60> in{};
     const std::size_t accepted = state.write(in.data(), 20);
     CHECK(accepted == 5);  // 12 samples round up to 16, which hold 5 frames
@@ -50,7 +50,7 @@ TEST_CASE("only whole frames are accepted, and refused ones are counted") {
 }
 
 TEST_CASE("frames and time of the card's progress belong together") {
-    StreamState state(1, 8);
+    audio::StreamState state(1, 8);
     std::thread card([&] {
         std::array<float, 1> out{};
         for (std::int64_t i = 1; i <= 100'000; ++i) state.feed(out.data(), 1, 3 * i);
@@ -66,7 +66,7 @@ TEST_CASE("frames and time of the card's progress belong together") {
 }
 
 TEST_CASE("a sink that is not open takes nothing and closes") {
-    const auto sink = make_portaudio_sink();
+    const auto sink = audio::make_portaudio_sink();
     const float sample = 0.0F;
     CHECK(sink->write(&sample, 1) == 0);
     CHECK(sink->writable() == 0);
@@ -79,7 +79,7 @@ TEST_CASE("an output that does not exist is refused with a reason, quietly, and 
     const int saved = ::dup(STDERR_FILENO);
     ::dup2(::fileno(capture), STDERR_FILENO);
     std::array<std::string, 2> said;
-    const auto sink = make_portaudio_sink("an output that nobody has");
+    const auto sink = audio::make_portaudio_sink("an output that nobody has");
     for (std::string& one : said) {
         try {
             sink->prepare(48000.0, 2);
@@ -113,7 +113,7 @@ TEST_CASE("an ALSA configuration without a default device is an error, not the e
 }
 
 TEST_CASE("run by the test of a broken ALSA configuration", "[.broken_alsa]") {
-    CHECK_THROWS_WITH(list_audio_outputs(), Catch::Contains("pcm.default"));
+    CHECK_THROWS_WITH(audio::list_audio_outputs(), Catch::Contains("pcm.default"));
 }
 
 TEST_CASE("an output opens, asks for sound and closes") {
@@ -125,7 +125,7 @@ TEST_CASE("an output opens, asks for sound and closes") {
 }
 
 TEST_CASE("run by the test of an output that opens", "[.null_card]") {
-    const auto sink = make_portaudio_sink("default");
+    const auto sink = audio::make_portaudio_sink("default");
     sink->prepare(48000.0, 1);
     const std::array<float, 64> sound{};
     CHECK(sink->write(sound.data(), sound.size()) == sound.size());

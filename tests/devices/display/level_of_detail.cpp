@@ -2,7 +2,7 @@
 // Pictures of something that moves: fewer triangles, the same outline.
 #include "devices/display/picture_maker.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/view/brick_surface.hpp"
+#include "dsp/geometry/brick_surface.hpp"
 #include "dsp/volume/bricks.hpp"
 
 #include <catch2/catch.hpp>
@@ -16,7 +16,7 @@ namespace {
 
 bool can_render() {
     try {
-        const SurfacelessContext context;
+        const display::SurfacelessContext context;
         return true;
     } catch (const Error& error) {
         WARN("skipped: " << error.what());
@@ -28,8 +28,8 @@ constexpr int width = 320, height = 240;
 constexpr double voxel = 0.25e-3;
 
 /// A bent shaft with flat ends, ripples, a kerf of 1 mm and a rod of 1 mm.
-Grid shaft() {
-    Grid grid{{84, 76, 148}, Vec3(-10e-3, -9e-3, -18.2e-3), Vec3(voxel), {}};
+volume::Grid shaft() {
+    volume::Grid grid{{84, 76, 148}, Vec3(-10e-3, -9e-3, -18.2e-3), Vec3(voxel), {}};
     for (int k = 0; k < grid.size[2]; ++k)
         for (int j = 0; j < grid.size[1]; ++j)
             for (int i = 0; i < grid.size[0]; ++i) {
@@ -45,26 +45,26 @@ Grid shaft() {
 }
 
 struct Scene {
-    PictureMaker maker{width, height};
-    Picture picture;
-    OrbitCamera camera;
+    display::PictureMaker maker{width, height};
+    display::Picture picture;
+    display::OrbitCamera camera;
 
     Scene() {
-        const Grid distance = shaft();
-        const BoneEditor editor(
+        const volume::Grid distance = shaft();
+        const volume::BoneEditor editor(
             distance,
             {distance.size, distance.origin, distance.spacing, std::vector<float>(distance.values.size(), 1800.0f)},
             {.band = 0.002, .max_dirty = 1, .max_versions = 1});
-        MeshPool& meshes = maker.renderer().meshes();
-        const MeshPool::Mesh mesh = meshes.make({distance.origin, distance.spacing, brick_cells});
+        display::MeshPool& meshes = maker.renderer().meshes();
+        const display::MeshPool::Mesh mesh = meshes.make({distance.origin, distance.spacing, volume::brick_cells});
         picture.meshes = {{mesh, {}, 1.0, true, true}};
         picture.sky = picture.ground = Vec3(0.0, 0.0, 1.0);
-        BrickSurface mesher;
-        SurfacePatch patch;
+        geometry::BrickSurface mesher;
+        geometry::SurfacePatch patch;
         for (std::uint32_t b = 0; b < static_cast<std::uint32_t>(editor.layout().brick_count()); ++b) {
             mesher.make(editor.current(), b, patch);
             meshes.set_part(mesh, b, patch);
-            picture.bounds.add(bounds_of(patch));
+            picture.bounds.add(display::bounds_of(patch));
             const auto first = static_cast<std::uint32_t>(whole.vertices.size());
             whole.vertices.insert(whole.vertices.end(), patch.vertices.begin(), patch.vertices.end());
             for (const std::uint32_t v : patch.triangles) whole.triangles.push_back(first + v);
@@ -72,23 +72,23 @@ struct Scene {
         camera.fit(picture.bounds, static_cast<double>(width) / height);
     }
 
-    Image draw(double grain) {
+    display::Image draw(double grain) {
         picture.grain = grain;
-        return maker.draw(picture, views_of(camera, picture.bounds, width, height, StereoMode::mono));
+        return maker.draw(picture, display::views_of(camera, picture.bounds, width, height, display::StereoMode::mono));
     }
     std::size_t drawn() { return maker.renderer().drawn_triangles(); }
 
-    SurfacePatch whole;  ///< all bricks as one
+    geometry::SurfacePatch whole;  ///< all bricks as one
 };
 
 /// Bone is white, green or dark; the background is blue.
-bool is_bone(const Image& image, int x, int y) {
+bool is_bone(const display::Image& image, int x, int y) {
     const std::uint8_t* const p = image.pixel(x, y);
     return p[2] < p[0] + p[1];
 }
 
 /// Whether one pixel around this one is as `wanted`.
-bool has_near(const Image& image, int x, int y, bool wanted) {
+bool has_near(const display::Image& image, int x, int y, bool wanted) {
     for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height - 1); ++v)
         for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); ++u)
             if (is_bone(image, u, v) == wanted) return true;
@@ -100,18 +100,18 @@ bool has_near(const Image& image, int x, int y, bool wanted) {
 TEST_CASE("a picture of what moves has far fewer triangles, its outline off by one pixel at most, and no cracks") {
     if (!can_render()) return;
     Scene scene;
-    for (const NamedView from : {NamedView::iso, NamedView::front, NamedView::left, NamedView::top})
+    for (const display::NamedView from : {display::NamedView::iso, display::NamedView::front, display::NamedView::left, display::NamedView::top})
         for (const double zoom : {0.25, 0.5, 1.0, 1.6}) {
             scene.camera.look_from(from);
             scene.camera.fit(scene.picture.bounds, static_cast<double>(width) / height);
             scene.camera.zoom(zoom);
-            const Image fine = scene.draw(0.0);
+            const display::Image fine = scene.draw(0.0);
             const std::size_t all = scene.drawn();
-            const Image coarse = scene.draw(grain_of_motion);
-            INFO(view_names[static_cast<std::size_t>(from)] << " at " << zoom);
+            const display::Image coarse = scene.draw(display::grain_of_motion);
+            INFO(display::view_names[static_cast<std::size_t>(from)] << " at " << zoom);
             // From above the shaft's end is near enough for all of them.
             if (zoom < 0.9) CHECK(scene.drawn() < all / 5);
-            else if (from == NamedView::top) CHECK(scene.drawn() == all);
+            else if (from == display::NamedView::top) CHECK(scene.drawn() == all);
             else CHECK(scene.drawn() < all / (zoom < 1.1 ? 5 : 2));
             int bone = 0, off = 0;
             for (int y = 0; y < height; ++y)
@@ -128,11 +128,11 @@ TEST_CASE("parts beside the picture are not drawn, and nobody sees the differenc
     if (!can_render()) return;
     Scene scene;
     scene.camera.zoom(6.0);
-    const Image by_parts = scene.draw(0.0);
+    const display::Image by_parts = scene.draw(0.0);
     const std::size_t drawn = scene.drawn();
-    MeshPool& meshes = scene.maker.renderer().meshes();
+    display::MeshPool& meshes = scene.maker.renderer().meshes();
     CHECK(drawn < meshes.triangles(scene.picture.meshes[0].mesh) / 3);
-    const MeshPool::Mesh one = meshes.make();
+    const display::MeshPool::Mesh one = meshes.make();
     meshes.set_part(one, 0, scene.whole);
     scene.picture.meshes[0].mesh = one;
     CHECK(scene.draw(0.0).rgb == by_parts.rgb);
@@ -143,6 +143,6 @@ TEST_CASE("near enough to see its triangles, something that moves has all of the
     if (!can_render()) return;
     Scene scene;
     scene.camera.zoom(12.0);
-    const Image still = scene.draw(0.0);
-    CHECK(scene.draw(grain_of_motion).rgb == still.rgb);
+    const display::Image still = scene.draw(0.0);
+    CHECK(scene.draw(display::grain_of_motion).rgb == still.rgb);
 }

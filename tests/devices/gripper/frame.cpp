@@ -13,14 +13,14 @@ using namespace tactus;
 
 namespace {
 
-std::vector<std::uint8_t> bytes_of(const Frame& frame) {
-    const FrameBytes all = encode(frame);
+std::vector<std::uint8_t> bytes_of(const gripper::Frame& frame) {
+    const gripper::FrameBytes all = gripper::encode(frame);
     return {all.bytes.begin(), all.bytes.begin() + static_cast<std::ptrdiff_t>(all.size)};
 }
 
-SampleFrame sample(std::uint64_t n) {
+gripper::SampleFrame sample(std::uint64_t n) {
     const Random random{n};
-    SampleFrame s;
+    gripper::SampleFrame s;
     s.slips = {(n & 1) != 0, (n & 2) != 0};
     s.limited = {(n & 4) != 0, (n & 8) != 0};
     s.holds = (n & 16) != 0;
@@ -31,7 +31,7 @@ SampleFrame sample(std::uint64_t n) {
     return s;
 }
 
-bool same(const SampleFrame& a, const SampleFrame& b) {
+bool same(const gripper::SampleFrame& a, const gripper::SampleFrame& b) {
     return a.slips == b.slips && a.limited == b.limited && a.holds == b.holds && a.fingers == b.fingers &&
            a.answers == b.answers && a.encoder == b.encoder && a.gauge == b.gauge;
 }
@@ -40,17 +40,17 @@ bool same(const SampleFrame& a, const SampleFrame& b) {
 
 TEST_CASE("the checksum is CRC-32") {
     const std::string_view check = "123456789";
-    CHECK(crc32({reinterpret_cast<const std::uint8_t*>(check.data()), check.size()}) == 0xCBF43926u);
+    CHECK(gripper::crc32({reinterpret_cast<const std::uint8_t*>(check.data()), check.size()}) == 0xCBF43926u);
 }
 
 TEST_CASE("frames come back as they were sent, one after the other") {
-    FrameReader reader;
+    gripper::FrameReader reader;
     std::uint64_t seen = 0;
     for (std::uint64_t n = 0; n < 200; ++n) {
-        for (const std::uint8_t byte : bytes_of(pack(sample(n), static_cast<std::uint16_t>(n)))) {
+        for (const std::uint8_t byte : bytes_of(gripper::pack(sample(n), static_cast<std::uint16_t>(n)))) {
             if (!reader.take(byte)) continue;
-            SampleFrame back;
-            REQUIRE(unpack(reader.frame(), back));
+            gripper::SampleFrame back;
+            REQUIRE(gripper::unpack(reader.frame(), back));
             CHECK(same(back, sample(n)));
             CHECK(reader.frame().sequence == n);
             ++seen;
@@ -59,30 +59,30 @@ TEST_CASE("frames come back as they were sent, one after the other") {
     CHECK(seen == 200);
     CHECK(reader.counts().good == 200);
     CHECK(reader.counts().skipped_bytes == 0);
-    const DriveFrame drive{true, true, {-70000, 12345}, -25000};
-    DriveFrame back;
-    REQUIRE(unpack(pack(drive, 7), back));
+    const gripper::DriveFrame drive{true, true, {-70000, 12345}, -25000};
+    gripper::DriveFrame back;
+    REQUIRE(gripper::unpack(gripper::pack(drive, 7), back));
     CHECK((back.run && back.free && back.speed_um_s == drive.speed_um_s && back.cord_um == -25000));
-    SampleFrame wrong;
-    CHECK_FALSE(unpack(pack(drive, 7), wrong));
+    gripper::SampleFrame wrong;
+    CHECK_FALSE(gripper::unpack(gripper::pack(drive, 7), wrong));
 }
 
 TEST_CASE("of 100 000 broken frames none gets through, and the good ones between them all do") {
     const Random random{11};
-    FrameReader reader;
+    gripper::FrameReader reader;
     std::uint64_t draw = 0, good_sent = 0, good_seen = 0, foreign = 0;
     const auto next = [&] { return random.bits(draw++); };
     const auto feed = [&](const std::vector<std::uint8_t>& bytes) {
         for (const std::uint8_t byte : bytes) {
             if (!reader.take(byte)) continue;
-            SampleFrame back;
+            gripper::SampleFrame back;
             const std::uint64_t n = reader.frame().sequence;
-            if (unpack(reader.frame(), back) && same(back, sample(n))) ++good_seen;
+            if (gripper::unpack(reader.frame(), back) && same(back, sample(n))) ++good_seen;
             else ++foreign;
         }
     };
     for (std::uint64_t n = 0; n < 100'000; ++n) {
-        std::vector<std::uint8_t> broken = bytes_of(pack(sample(n % 5000), static_cast<std::uint16_t>(n % 5000)));
+        std::vector<std::uint8_t> broken = bytes_of(gripper::pack(sample(n % 5000), static_cast<std::uint16_t>(n % 5000)));
         const std::vector<std::uint8_t> whole = broken;
         switch (next() % 5) {
             case 0:  // bits flip
@@ -109,8 +109,8 @@ TEST_CASE("of 100 000 broken frames none gets through, and the good ones between
         feed(broken);
         if (n % 10 != 9) continue;
         // Long enough a pause that what is left of a broken frame cannot swallow the good one.
-        feed(std::vector<std::uint8_t>(most_payload + frame_overhead, 0));
-        feed(bytes_of(pack(sample(n % 5000), static_cast<std::uint16_t>(n % 5000))));
+        feed(std::vector<std::uint8_t>(gripper::most_payload + gripper::frame_overhead, 0));
+        feed(bytes_of(gripper::pack(sample(n % 5000), static_cast<std::uint16_t>(n % 5000))));
         ++good_sent;
     }
     CHECK(foreign == 0);

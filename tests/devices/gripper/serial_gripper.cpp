@@ -15,8 +15,8 @@ using tactus::test::StandInController;
 
 namespace {
 
-SerialGripperSettings settings_for(const StandInController& controller) {
-    SerialGripperSettings s;
+gripper::SerialGripperSettings settings_for(const StandInController& controller) {
+    gripper::SerialGripperSettings s;
     s.port = controller.path;
     s.gauge[0] = {1.0 / 410.0, -100.0 / 410.0, 1.0, 0.0};
     return s;
@@ -24,7 +24,7 @@ SerialGripperSettings settings_for(const StandInController& controller) {
 
 /// Ticks at about 150 Hz until `until` or, as a way out for a broken program, 30 s.
 template <class Until>
-DeviceSample ticks(SerialGripper& gripper, const MotorDrive& drive, Until&& until) {
+DeviceSample ticks(gripper::SerialGripper& gripper, const MotorDrive& drive, Until&& until) {
     DeviceSample sample;
     auto before = std::chrono::steady_clock::now();
     for (int n = 0; n < 4500; ++n) {
@@ -49,7 +49,7 @@ MotorDrive speed(double v) {
 
 TEST_CASE("a gripper at a serial line moves as told and tells where it is and what it feels") {
     StandInController controller;
-    SerialGripper gripper(settings_for(controller));
+    gripper::SerialGripper gripper(settings_for(controller));
     gripper.prepare(1.0 / 150.0);
     ticks(gripper, speed(0.05), [](const DeviceSample& s) { return s.valid && s.fingers[0].position > 0.005; });
     const DeviceSample at = ticks(gripper, speed(0.0), [&](const DeviceSample& s) {
@@ -67,7 +67,7 @@ TEST_CASE("noise and losses on the line cost samples, never truth") {
     controller.trouble.corrupt_percent = 30;
     controller.trouble.drop_percent = 20;
     controller.trouble.delay_frames = 5;
-    SerialGripper gripper(settings_for(controller));
+    gripper::SerialGripper gripper(settings_for(controller));
     gripper.prepare(1.0 / 150.0);
     double worst = 0.0;
     ticks(gripper, speed(0.03), [&](const DeviceSample& s) {
@@ -79,7 +79,7 @@ TEST_CASE("noise and losses on the line cost samples, never truth") {
 
 TEST_CASE("a controller that falls silent, is not valid and holds; back again it goes on") {
     StandInController controller;
-    SerialGripper gripper(settings_for(controller));
+    gripper::SerialGripper gripper(settings_for(controller));
     gripper.prepare(1.0 / 150.0);
     const auto is_valid_sample = [](const DeviceSample& s) { return s.valid; };
     ticks(gripper, speed(0.01), is_valid_sample);
@@ -97,7 +97,7 @@ TEST_CASE("a controller that falls silent, is not valid and holds; back again it
 
 TEST_CASE("a line that is pulled makes samples invalid and drives no harm") {
     StandInController controller;
-    SerialGripper gripper(settings_for(controller));
+    gripper::SerialGripper gripper(settings_for(controller));
     gripper.prepare(1.0 / 150.0);
     ticks(gripper, speed(0.01), [](const DeviceSample& s) { return s.valid; });
     controller.disconnect();
@@ -112,7 +112,7 @@ TEST_CASE("a line that is pulled makes samples invalid and drives no harm") {
 TEST_CASE("a gripper that is let go is told to hold, and so is one whose speed is not a number") {
     StandInController controller;
     {
-        SerialGripper gripper(settings_for(controller));
+        gripper::SerialGripper gripper(settings_for(controller));
         gripper.prepare(1.0 / 150.0);
         ticks(gripper, speed(0.02), [&](const DeviceSample&) { return !controller.holds; });
         ticks(gripper, speed(NAN), [&](const DeviceSample&) { return controller.holds.load(); });
@@ -124,9 +124,9 @@ TEST_CASE("a gripper that is let go is told to hold, and so is one whose speed i
 }
 
 TEST_CASE("a port that is none is refused with its name") {
-    SerialGripperSettings s;
+    gripper::SerialGripperSettings s;
     s.port = "/dev/null";
-    CHECK_THROWS_WITH(SerialGripper(s), Catch::Contains("/dev/null") && Catch::Contains("no serial line"));
+    CHECK_THROWS_WITH(gripper::SerialGripper(s), Catch::Contains("/dev/null") && Catch::Contains("no serial line"));
     s.port = "/nowhere/tty";
-    CHECK_THROWS_WITH(SerialGripper(s), Catch::Contains("cannot open /nowhere/tty"));
+    CHECK_THROWS_WITH(gripper::SerialGripper(s), Catch::Contains("cannot open /nowhere/tty"));
 }

@@ -5,7 +5,7 @@
 
 #include "devices/gripper/frame.hpp"
 #include "dsp/core/random.hpp"
-#include "dsp/gripper/finger.hpp"
+#include "dsp/simulate/gripper/finger.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -44,7 +44,7 @@ public:
         ::tcgetattr(master_, &line);
         ::cfmakeraw(&line);
         ::tcsetattr(master_, TCSANOW, &line);
-        WalkingMotor motor;
+        simulate::WalkingMotor motor;
         finger_.motor = motor;
         finger_.delay = 0;
         thread_ = std::thread([this] { run(); });
@@ -69,8 +69,8 @@ private:
         std::uint64_t draw = 0;
         std::uint16_t sequence = 0, answers = 0;
         std::deque<std::vector<std::uint8_t>> line;
-        FrameReader reader;
-        DriveFrame drive;
+        gripper::FrameReader reader;
+        gripper::DriveFrame drive;
         int since_drive = 1000;
         while (!ending_) {
             if (cut_ && master_ >= 0) {
@@ -82,7 +82,7 @@ private:
             std::uint8_t bytes[256];
             for (ssize_t n; (n = ::read(master_, bytes, sizeof bytes)) > 0;)
                 for (ssize_t i = 0; i < n; ++i)
-                    if (reader.take(bytes[i]) && unpack(reader.frame(), drive)) {
+                    if (reader.take(bytes[i]) && gripper::unpack(reader.frame(), drive)) {
                         since_drive = 0;
                         answers = reader.frame().sequence;
                         ++drives;
@@ -94,13 +94,13 @@ private:
             position = finger_.position;
             told_speed = still ? 0.0 : drive.speed_um_s[0] * 1e-6;
             holds = still;
-            SampleFrame sample;
+            gripper::SampleFrame sample;
             sample.slips[0] = finger_.slipped;
             sample.holds = still;
             sample.answers = answers;
             sample.encoder[0] = static_cast<std::int32_t>(std::lround(finger_.position / (4.5e-3 / 16000.0)));
             sample.gauge[0] = static_cast<std::int32_t>(std::lround(finger_.force * 410.0 + 100.0));
-            const FrameBytes out = encode(pack(sample, ++sequence));
+            const gripper::FrameBytes out = gripper::encode(gripper::pack(sample, ++sequence));
             std::vector<std::uint8_t> frame(out.bytes.begin(),
                                             out.bytes.begin() + static_cast<std::ptrdiff_t>(out.size));
             if (static_cast<int>(random.bits(draw++) % 100) < trouble.corrupt_percent) {
@@ -117,7 +117,7 @@ private:
     }
 
     int master_ = -1;
-    Finger finger_;
+    simulate::Finger finger_;
     std::atomic<bool> ending_{false}, cut_{false};
     std::thread thread_;
 };

@@ -19,9 +19,9 @@ const SourceLocation somewhere{"saw.toml", 4, 10};
 
 std::unique_ptr<HapticDevice> open(
     std::string_view driver, std::vector<OptionText> given,
-    const PathResolver& resolve = [](const std::string& name) { return name; }) {
+    const haptic::PathResolver& resolve = [](const std::string& name) { return name; }) {
     Options options("device 'hand'", std::move(given), {"saw.toml", 3, 1});
-    return open_haptic_device(driver, somewhere, options, resolve);
+    return haptic::open_haptic_device(driver, somewhere, options, resolve);
 }
 
 /// A recording of a straight move of 20 mm along x in one second, 62.5 Hz.
@@ -42,7 +42,7 @@ struct Recording {
     Recording& operator=(const Recording&) = delete;
 };
 
-DeviceSample run(HapticDevice& device, double seconds, const Wrench& force = {}) {
+DeviceSample run_patch(HapticDevice& device, double seconds, const Wrench& force = {}) {
     DeviceSample sample;
     for (int i = 0; i < static_cast<int>(std::lround(seconds / period)); ++i) {
         device.commit(force);
@@ -76,9 +76,9 @@ TEST_CASE("the simulated hand presses 7 N into a wall and holds its trigger") {
 TEST_CASE("preparing a device again repeats it to the last bit") {
     const auto device = open("simulated", {{"tremor", "0.1 mm", {}}});
     device->prepare(period);
-    const DeviceSample first = run(*device, 2.0);
+    const DeviceSample first = run_patch(*device, 2.0);
     device->prepare(period);
-    const DeviceSample second = run(*device, 2.0);
+    const DeviceSample second = run_patch(*device, 2.0);
     CHECK(first.pose.position == second.pose.position);
     CHECK(first.twist.linear == second.twist.linear);
     CHECK(first.counter == second.counter);
@@ -89,7 +89,7 @@ TEST_CASE("options of the simulated hand change what it does") {
         "simulated",
         {{"feed_axis", "2 0 0", {}}, {"stroke_amplitude", "0 mm", {}}, {"tremor", "0 mm", {}}, {"turn", "90 deg", {}}});
     turned->prepare(period);
-    const DeviceSample sample = run(*turned, 1.0);
+    const DeviceSample sample = run_patch(*turned, 1.0);
     CHECK(sample.pose.position.x > 5e-3);
     CHECK(std::abs(sample.pose.position.z) < 1e-9);
     CHECK(sample.pose.orientation.z == Approx(std::sqrt(0.5)));
@@ -103,11 +103,11 @@ TEST_CASE("a replayed hand follows its recording and yields to force") {
     const auto device = open("replay", {{"file", recording.path.string(), {}}, {"place", "recorded", {}}});
     device->prepare(period);
     CHECK(device->acquire(0.0).pose.position.y == Approx(5e-3));
-    const DeviceSample middle = run(*device, 0.512);
+    const DeviceSample middle = run_patch(*device, 0.512);
     CHECK(middle.pose.position.x == Approx(10e-3).margin(0.5e-3));
     CHECK(middle.twist.linear.x == Approx(0.0293).margin(0.002));
     CHECK((middle.buttons & button_trigger) != 0);
-    const DeviceSample pushed = run(*device, 2.0, {{0.0, 0.0, 4.0}, {}});
+    const DeviceSample pushed = run_patch(*device, 2.0, {{0.0, 0.0, 4.0}, {}});
     CHECK(pushed.pose.position.x == Approx(20e-3).margin(1e-5));
     CHECK(pushed.pose.position.z == Approx(4.0 / 800.0).margin(1e-5));
     CHECK((pushed.buttons & button_trigger) == 0);
@@ -117,10 +117,10 @@ TEST_CASE("the trigger of a replayed hand can start late or never") {
     const Recording recording;
     const OptionText file{"file", recording.path.string(), {}};
     const auto late = open("replay", {file, {"trigger", "from", {}}, {"trigger_from", "0.5 s", {}}});
-    CHECK((run(*late, 0.4).buttons & button_trigger) == 0);
-    CHECK((run(*late, 0.2).buttons & button_trigger) != 0);
+    CHECK((run_patch(*late, 0.4).buttons & button_trigger) == 0);
+    CHECK((run_patch(*late, 0.2).buttons & button_trigger) != 0);
     const auto never = open("replay", {file, {"trigger", "never", {}}});
-    CHECK((run(*never, 0.6).buttons & button_trigger) == 0);
+    CHECK((run_patch(*never, 0.6).buttons & button_trigger) == 0);
     CHECK_THROWS_WITH(open("replay", {file, {"trigger_from", "1 s", {}}}), Contains("trigger = \"from\""));
 }
 
@@ -132,7 +132,7 @@ TEST_CASE("an unknown driver, a missing file name and a missing file are refused
 }
 
 TEST_CASE("every driver has a name and a summary") {
-    for (const HapticDriver& driver : haptic_drivers()) {
+    for (const haptic::HapticDriver& driver : haptic::haptic_drivers()) {
         CHECK_FALSE(driver.name.empty());
         CHECK_FALSE(driver.summary.empty());
     }

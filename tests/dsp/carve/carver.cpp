@@ -16,18 +16,18 @@ namespace {
 
 const Vec3 above{0, 0.0006, 0};
 
-std::unique_ptr<BoneEditor> bone(double density, int max_dirty = 512) {
+std::unique_ptr<volume::BoneEditor> bone_of(double density, int max_dirty = 512) {
     const DenseField field = block();
-    Grid rho = field.grid;
+    volume::Grid rho = field.grid;
     std::ranges::fill(rho.values, static_cast<float>(density));
-    return std::make_unique<BoneEditor>(field.grid, rho,
-                                        BoneEditorOptions{.band = 0.003, .max_dirty = max_dirty, .max_versions = 4});
+    return std::make_unique<volume::BoneEditor>(field.grid, rho,
+                                        volume::BoneEditorOptions{.band = 0.003, .max_dirty = max_dirty, .max_versions = 4});
 }
 
 /// Cuts and publishes after every call, as a node does; versions are given back at once.
-CarveResult saw_through(Carver& carver, BoneEditor& editor, std::span<const CarveSample> samples,
+carve::CarveResult saw_through(carve::Carver& carver, volume::BoneEditor& editor, std::span<const carve::CarveSample> samples,
                         std::size_t per_call) {
-    CarveResult sum;
+    carve::CarveResult sum;
     for (std::size_t n = 0; n < samples.size(); n += per_call) {
         const auto part = carver.update(editor, samples.subspan(n, std::min(per_call, samples.size() - n)));
         sum.removed_m3 += part.removed_m3;
@@ -42,16 +42,16 @@ CarveResult saw_through(Carver& carver, BoneEditor& editor, std::span<const Carv
 TEST_CASE("a saw cuts bricks as it cuts a dense grid") {
     const auto path = stroke(above, {0, -0.010, 0}, 1.0);
     DenseField field = block(Vec3(0.0), 600.0);
-    CarveCore dense({}, Vec3(voxel));
-    const double volume = carve(dense, field, path).removed_m3;
-    const auto editor = bone(600.0);
-    Carver carver;
+    carve::CarveCore dense({}, Vec3(voxel));
+    const double volume = carve_through(dense, field, path).removed_m3;
+    const auto editor = bone_of(600.0);
+    carve::Carver carver;
     carver.prepare(*editor, {});
-    const CarveResult result = saw_through(carver, *editor, path, 17);
+    const carve::CarveResult result = saw_through(carver, *editor, path, 17);
     CHECK(result.removed_m3 == Approx(volume).epsilon(1e-4));
     CHECK(carver.removed_m3() == Approx(result.removed_m3).epsilon(1e-12));
     CHECK_FALSE(result.budget_hit);
-    const Grid cut = to_grid(editor->current());
+    const volume::Grid cut = volume::to_grid(editor->current());
     double worst = 0.0;
     for (std::size_t n = 0; n < cut.values.size(); ++n) {
         if (field.grid.values[n] > 0.0025f) continue;  // near the band bricks may not be stored
@@ -66,8 +66,8 @@ TEST_CASE("the same path gives the same bits, and the same volume in other porti
     std::vector<std::uint64_t> hashes;
     std::vector<double> volumes;
     for (const std::size_t per_call : {17, 17, 8, 33, 1}) {
-        const auto editor = bone(400.0);
-        Carver carver;
+        const auto editor = bone_of(400.0);
+        carve::Carver carver;
         carver.prepare(*editor, {});
         volumes.push_back(saw_through(carver, *editor, path, per_call).removed_m3);
         hashes.push_back(editor->current().content_hash);
@@ -80,24 +80,24 @@ TEST_CASE("a cut that exceeds the budget of bricks is completed by the updates t
     auto path = stroke(above, {0, -0.010, 0}, 0.8);
     const auto rest = stroke(path.back().pose.position + Vec3(0, 0.0005, 0), Vec3(0.0), 0.2);
     path.insert(path.end(), rest.begin(), rest.end());
-    const auto wide = bone(400.0), narrow = bone(400.0, 30);
-    Carver a, b;
+    const auto wide = bone_of(400.0), narrow = bone_of(400.0, 30);
+    carve::Carver a, b;
     a.prepare(*wide, {});
     b.prepare(*narrow, {});
-    const CarveResult whole = saw_through(a, *wide, path, 17);
-    const CarveResult parts = saw_through(b, *narrow, path, 17);
+    const carve::CarveResult whole = saw_through(a, *wide, path, 17);
+    const carve::CarveResult parts = saw_through(b, *narrow, path, 17);
     CHECK_FALSE(whole.budget_hit);
     CHECK(parts.budget_hit);
     CHECK(parts.removed_m3 == Approx(whole.removed_m3).epsilon(0.01));
 }
 
 TEST_CASE("bricks away from the cut keep their bits") {
-    const auto editor = bone(600.0);
-    Carver carver;
+    const auto editor = bone_of(600.0);
+    carve::Carver carver;
     carver.prepare(*editor, {});
-    const Grid before = to_grid(editor->current());
+    const volume::Grid before = volume::to_grid(editor->current());
     saw_through(carver, *editor, stroke(above, {0, -0.010, 0}, 1.0), 17);
-    const Grid after = to_grid(editor->current());
+    const volume::Grid after = volume::to_grid(editor->current());
     std::size_t changed = 0, far = 0;
     for (int k = 0; k < after.size[2]; ++k) {
         for (int j = 0; j < after.size[1]; ++j) {
@@ -114,8 +114,8 @@ TEST_CASE("bricks away from the cut keep their bits") {
 }
 
 TEST_CASE("cutting allocates nothing and waits for nobody") {
-    const auto editor = bone(600.0);
-    Carver carver;
+    const auto editor = bone_of(600.0);
+    carve::Carver carver;
     carver.prepare(*editor, {});
     const auto path = stroke(above, {0, -0.010, 0}, 0.3);
     const auto violations = watch_scopes([&] {
@@ -130,25 +130,25 @@ TEST_CASE("cutting allocates nothing and waits for nobody") {
 }
 
 TEST_CASE("a kerf of less than three voxels is told") {
-    const auto editor = bone(600.0);
-    Carver carver;
+    const auto editor = bone_of(600.0);
+    carve::Carver carver;
     carver.prepare(*editor, {});
     CHECK(carver.kerf_voxels() == Approx(0.001 / voxel));
-    CarveSettings thin;
+    carve::CarveSettings thin;
     thin.kerf = 0.0008;
     carver.prepare(*editor, thin);
     CHECK(carver.kerf_voxels() < 3.0);
 }
 
 TEST_CASE("a new law of advance holds from the next update on") {
-    const auto editor = bone(1800.0);
-    Carver carver;
+    const auto editor = bone_of(1800.0);
+    carve::Carver carver;
     carver.prepare(*editor, {});
     const auto path = stroke({0, -0.0001, 0}, {0, -0.010, 0}, 1.0);
     const auto middle = [&] { return -carver.edge()[carver.edge().size() / 2].at.y; };
     saw_through(carver, *editor, path, 17);
     const double first = middle();
-    CarveSettings law;
+    carve::CarveSettings law;
     law.speed *= 2.0;
     carver.set_law(law);
     saw_through(carver, *editor, stroke({0, -0.0101, 0}, Vec3(0.0), 1.0), 17);
@@ -161,9 +161,9 @@ TEST_CASE("a new law of advance holds from the next update on") {
 }
 
 TEST_CASE("settings that make no saw are refused") {
-    const auto editor = bone(600.0);
-    Carver carver;
-    CarveSettings settings;
+    const auto editor = bone_of(600.0);
+    carve::Carver carver;
+    carve::CarveSettings settings;
     settings.stroke = 0.0005;
     CHECK_THROWS_WITH(carver.prepare(*editor, settings), Catch::Contains("tooth pitch"));
     settings = {};

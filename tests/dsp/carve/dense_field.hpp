@@ -15,9 +15,9 @@ inline double box_distance(const Vec3& p, const Vec3& low, const Vec3& high) {
     return glm::length(glm::max(q, Vec3(0.0))) + std::min(std::max({q.x, q.y, q.z}), 0.0);
 }
 
-inline Grid sampled(const Vec3& low, const Vec3& high, const Vec3& spacing,
+inline volume::Grid sampled(const Vec3& low, const Vec3& high, const Vec3& spacing,
                     const std::function<double(const Vec3&)>& of) {
-    Grid grid;
+    volume::Grid grid;
     grid.origin = low;
     grid.spacing = spacing;
     for (int axis = 0; axis < 3; ++axis) {
@@ -35,7 +35,7 @@ inline Grid sampled(const Vec3& low, const Vec3& high, const Vec3& spacing,
 }
 
 /// Trilinear value of a grid, clamped to its border.
-inline double trilinear(const Grid& grid, const Vec3& at) {
+inline double trilinear(const volume::Grid& grid, const Vec3& at) {
     const Vec3 top(grid.size[0] - 1.001, grid.size[1] - 1.001, grid.size[2] - 1.001);
     const Vec3 p = glm::clamp((at - grid.origin) / grid.spacing, Vec3(0.0), top);
     const int i = static_cast<int>(p.x), j = static_cast<int>(p.y), k = static_cast<int>(p.z);
@@ -48,7 +48,7 @@ inline double trilinear(const Grid& grid, const Vec3& at) {
 }
 
 struct DenseField {
-    Grid grid;
+    volume::Grid grid;
     std::function<double(const Vec3&)> bone_density = [](const Vec3&) { return 1800.0; };
 
     double value(const Vec3& p) const noexcept { return trilinear(grid, p); }

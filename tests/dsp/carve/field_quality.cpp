@@ -12,7 +12,7 @@ using namespace tactus::test;
 namespace {
 
 /// |∇d| of the trilinear interpolant at points that lie near the cut, ascending.
-std::vector<double> gradients(const Grid& grid, const Grid& exact, double deepest) {
+std::vector<double> gradients(const volume::Grid& grid, const volume::Grid& exact, double deepest) {
     std::vector<double> found;
     for (int k = 2; k < grid.size[2] - 2; ++k) {
         for (int j = 2; j < grid.size[1] - 2; ++j) {
@@ -40,7 +40,7 @@ double mean(const std::vector<double>& values) {
     return sum / static_cast<double>(values.size());
 }
 
-void compare(const DenseField& field, const Grid& exact, double deepest, double tolerance) {
+void compare(const DenseField& field, const volume::Grid& exact, double deepest, double tolerance) {
     const auto carved = gradients(field.grid, exact, deepest), right = gradients(exact, exact, deepest);
     REQUIRE(carved.size() > 1000);
     const std::size_t p95 = carved.size() * 95 / 100;
@@ -66,11 +66,11 @@ void compare(const DenseField& field, const Grid& exact, double deepest, double 
 TEST_CASE("a straight cut leaves the exact distance to its kerf") {
     for (const double density : {200.0, 600.0, 1800.0}) {
         DenseField field = block(Vec3(0.0), density);
-        CarveCore carver({}, Vec3(voxel));
-        carve(carver, field, stroke({0, 0.0006, 0}, {0, -0.010, 0}, density > 1000.0 ? 6.0 : 1.0));
+        carve::CarveCore carver({}, Vec3(voxel));
+        carve_through(carver, field, stroke({0, 0.0006, 0}, {0, -0.010, 0}, density > 1000.0 ? 6.0 : 1.0));
         const double deepest = depth(carver);
-        const Grid& g = field.grid;
-        const Grid exact = sampled(g.origin, g.position(g.size[0] - 1, g.size[1] - 1, g.size[2] - 1) - 0.1 * voxel,
+        const volume::Grid& g = field.grid;
+        const volume::Grid exact = sampled(g.origin, g.position(g.size[0] - 1, g.size[1] - 1, g.size[2] - 1) - 0.1 * voxel,
                                    g.spacing, [deepest](const Vec3& p) {
                                        const double kerf = 0.0005 - std::hypot(std::max(-deepest - p.y, 0.0), p.z);
                                        return std::max(box_distance(p, block_low, block_high), kerf);
@@ -81,9 +81,9 @@ TEST_CASE("a straight cut leaves the exact distance to its kerf") {
 
 TEST_CASE("a cut by an unsteady hand leaves the exact distance to the kerf it made") {
     DenseField field = block(Vec3(0.0), 600.0);
-    CarveCore carver({}, Vec3(voxel));
-    std::vector<std::vector<EdgeNode>> edges;
-    std::vector<CarveSample> samples;
+    carve::CarveCore carver({}, Vec3(voxel));
+    std::vector<std::vector<carve::EdgeNode>> edges;
+    std::vector<carve::CarveSample> samples;
     for (int update = 0; update < 60; ++update) {
         samples.clear();
         for (int n = 0; n < 17; ++n) {
@@ -115,8 +115,8 @@ TEST_CASE("a cut by an unsteady hand leaves the exact distance to the kerf it ma
         }
         return std::sqrt(nearest);
     };
-    const Grid& g = field.grid;
-    const Grid exact = sampled(g.origin, g.position(g.size[0] - 1, g.size[1] - 1, g.size[2] - 1) - 0.1 * voxel,
+    const volume::Grid& g = field.grid;
+    const volume::Grid exact = sampled(g.origin, g.position(g.size[0] - 1, g.size[1] - 1, g.size[2] - 1) - 0.1 * voxel,
                                g.spacing, [&](const Vec3& p) {
                                    const double uncut = box_distance(p, block_low, block_high);
                                    if (std::abs(p.x) > 0.004 || std::abs(p.z) > 0.003 || p.y < -0.006) return uncut;

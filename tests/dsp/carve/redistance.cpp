@@ -15,15 +15,15 @@ namespace {
 
 constexpr double radius = 0.006, reach = 0.0015;
 
-std::unique_ptr<BoneEditor> bone(const std::function<double(double)>& distorted) {
-    const Grid grid = sampled(Vec3(-0.009), Vec3(0.009), Vec3(voxel),
+std::unique_ptr<volume::BoneEditor> bone_of(const std::function<double(double)>& distorted) {
+    const volume::Grid grid = sampled(Vec3(-0.009), Vec3(0.009), Vec3(voxel),
                               [&](const Vec3& p) { return distorted(glm::length(p) - radius); });
-    return std::make_unique<BoneEditor>(grid, grid,
-                                        BoneEditorOptions{.band = 0.1, .max_dirty = 400, .max_versions = 3});
+    return std::make_unique<volume::BoneEditor>(grid, grid,
+                                        volume::BoneEditorOptions{.band = 0.1, .max_dirty = 400, .max_versions = 3});
 }
 
-int settle(BoneEditor& editor) {
-    Redistance redistance;
+int settle(volume::BoneEditor& editor) {
+    carve::Redistance redistance;
     redistance.prepare(editor, reach);
     std::vector<std::uint32_t> all(static_cast<std::size_t>(editor.layout().brick_count()));
     std::iota(all.begin(), all.end(), 0u);
@@ -40,17 +40,17 @@ int settle(BoneEditor& editor) {
 }  // namespace
 
 TEST_CASE("re-distancing leaves an exact distance as it is, to the last bit") {
-    const auto editor = bone([](double d) { return d; });
+    const auto editor = bone_of([](double d) { return d; });
     const auto before = editor->current().content_hash;
     settle(*editor);
     CHECK(editor->current().content_hash == before);
 }
 
 TEST_CASE("re-distancing makes a field three times too steep a distance, and keeps every sign") {
-    const auto editor = bone([](double d) { return 3.0 * d; });
-    const Grid before = to_grid(editor->current());
+    const auto editor = bone_of([](double d) { return 3.0 * d; });
+    const volume::Grid before = volume::to_grid(editor->current());
     CHECK(settle(*editor) < 2000);
-    const Grid once = to_grid(editor->current());
+    const volume::Grid once = volume::to_grid(editor->current());
     double sum = 0.0, worst = 0.0;
     int count = 0, flipped = 0;
     for (int k = 0; k < once.size[2]; ++k) {
@@ -71,7 +71,7 @@ TEST_CASE("re-distancing makes a field three times too steep a distance, and kee
     CHECK(worst < 0.00008);
 
     settle(*editor);
-    const Grid twice = to_grid(editor->current());
+    const volume::Grid twice = volume::to_grid(editor->current());
     double change = 0.0;
     for (std::size_t n = 0; n < once.values.size(); ++n) {
         change = std::max(change, std::abs(static_cast<double>(twice.values[n]) - static_cast<double>(once.values[n])));

@@ -22,9 +22,9 @@ inline DenseField block(const Vec3& shift = Vec3(0.0), double density = 1800.0, 
 }
 
 /// The centre of the blade's round front, half a kerf behind the teeth, held at `from`, then moved at `velocity` (m/s), a sample each millisecond.
-inline std::vector<CarveSample> stroke(const Vec3& from, const Vec3& velocity, double seconds,
+inline std::vector<carve::CarveSample> stroke(const Vec3& from, const Vec3& velocity, double seconds,
                                        const Quat& orientation = downwards, bool running = true) {
-    std::vector<CarveSample> samples;
+    std::vector<carve::CarveSample> samples;
     const Vec3 teeth = from + orientation * Vec3(0.0, 0.0005, 0.0);
     const int count = static_cast<int>(std::lround(seconds * 1000.0));
     for (int n = 0; n < count; ++n) {
@@ -35,10 +35,10 @@ inline std::vector<CarveSample> stroke(const Vec3& from, const Vec3& velocity, d
 
 /// Feeds the samples in calls of `per_call`; returns the sum.
 template <class Carving, class Field>
-CarveResult carve(Carving& carver, Field& field, std::span<const CarveSample> samples, std::size_t per_call = 17) {
-    CarveResult sum;
+carve::CarveResult carve_through(Carving& carver, Field& field, std::span<const carve::CarveSample> samples, std::size_t per_call = 17) {
+    carve::CarveResult sum;
     for (std::size_t n = 0; n < samples.size(); n += per_call) {
-        const CarveResult part = carver.update(field, samples.subspan(n, std::min(per_call, samples.size() - n)));
+        const carve::CarveResult part = carver.update(field, samples.subspan(n, std::min(per_call, samples.size() - n)));
         sum.removed_m3 += part.removed_m3;
         for (std::size_t c = 0; c < 4; ++c) sum.removed_by_density[c] += part.removed_by_density[c];
         sum.dirty_bricks = part.dirty_bricks;
@@ -48,7 +48,7 @@ CarveResult carve(Carving& carver, Field& field, std::span<const CarveSample> sa
 }
 
 /// How far the middle of the edge has come below the top of the block, m; its front is half a kerf further.
-inline double depth(const CarveCore& carver) {
+inline double depth(const carve::CarveCore& carver) {
     const auto nodes = carver.edge().nodes();
     return -nodes[nodes.size() / 2].at.y;
 }

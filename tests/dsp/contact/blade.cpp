@@ -16,24 +16,24 @@ using namespace tactus;
 
 namespace {
 
-std::unique_ptr<BoneEditor> bone_of(const std::function<double(const Vec3&)>& distance) {
-    Grid grid{{181, 121, 61}, Vec3(-0.03, -0.02, -0.01), Vec3(1.0 / 3000.0), {}};
+std::unique_ptr<volume::BoneEditor> bone_of(const std::function<double(const Vec3&)>& distance) {
+    volume::Grid grid{{181, 121, 61}, Vec3(-0.03, -0.02, -0.01), Vec3(1.0 / 3000.0), {}};
     grid.values.resize(grid.count());
     for (int k = 0; k < grid.size[2]; ++k)
         for (int j = 0; j < grid.size[1]; ++j)
             for (int i = 0; i < grid.size[0]; ++i)
                 grid.at(i, j, k) = static_cast<float>(distance(grid.position(i, j, k)));
-    Grid density = grid;
+    volume::Grid density = grid;
     std::ranges::fill(density.values, 1800.0f);
-    return std::make_unique<BoneEditor>(grid, density,
-                                        BoneEditorOptions{.band = 0.1, .max_dirty = 1, .max_versions = 1});
+    return std::make_unique<volume::BoneEditor>(grid, density,
+                                        volume::BoneEditorOptions{.band = 0.1, .max_dirty = 1, .max_versions = 1});
 }
 
 /// Bone for y > 0: the blade, whose y points at the bone, is pressed in by raising its y.
 double half_space(const Vec3& p) { return -p.y; }
 
 constexpr double stiffness = 3000.0;
-const BladePoints points;
+const contact::BladePoints points;
 
 }  // namespace
 
@@ -41,8 +41,8 @@ TEST_CASE("a whole edge pressed flat into a plane is pushed out along the normal
     const auto bone = bone_of(half_space);
     const double flat = stiffness / 4.0 * std::pow(44.0, 0.25);
     for (const double depth : {0.1e-3, 0.4e-3, 1.0e-3}) {
-        const BladeContact contact =
-            blade_contact(bone->current(), points, {Vec3(0.0, depth, 0.0), Quat(1, 0, 0, 0)}, Vec3(0.0), stiffness);
+        const contact::BladeContact contact =
+            contact::blade_contact(bone->current(), points, {Vec3(0.0, depth, 0.0), Quat(1, 0, 0, 0)}, Vec3(0.0), stiffness);
         CHECK(contact.count == 44);
         CHECK(contact.penetration == Approx(depth).epsilon(1e-4));
         CHECK(contact.wrench.force.y == Approx(-flat * depth).epsilon(1e-4));
@@ -50,7 +50,7 @@ TEST_CASE("a whole edge pressed flat into a plane is pushed out along the normal
         CHECK(contact.load == Approx(flat * depth).epsilon(1e-4));
         // Symmetric about the origin; about a point 10 mm to the side it has the lever of 10 mm.
         CHECK(glm::length(contact.wrench.torque) < 1e-6);
-        const BladeContact aside = blade_contact(bone->current(), points, {Vec3(0.0, depth, 0.0), Quat(1, 0, 0, 0)},
+        const contact::BladeContact aside = contact::blade_contact(bone->current(), points, {Vec3(0.0, depth, 0.0), Quat(1, 0, 0, 0)},
                                                  Vec3(0.01, 0.0, 0.0), stiffness);
         CHECK(aside.wrench.torque.z == Approx(-0.01 * aside.wrench.force.y).epsilon(1e-3));
     }
@@ -64,7 +64,7 @@ TEST_CASE("points in a sphere feel the analytic force") {
     const Vec3 tooth = points.local[21];
     const Vec3 target = centre + glm::normalize(Vec3(0.3, -1.0, 0.2)) * (radius - 0.5e-3);
     const Pose tool{target - tooth, Quat(1, 0, 0, 0)};
-    const BladeContact contact = blade_contact(bone->current(), points, tool, Vec3(0.0), stiffness);
+    const contact::BladeContact contact = contact::blade_contact(bone->current(), points, tool, Vec3(0.0), stiffness);
     Vec3 expected(0.0);
     double norm8 = 0.0;
     for (const Vec3& local : points.local) {
@@ -93,7 +93,7 @@ TEST_CASE("the force is the gradient of an energy and no motion feels more than 
         const auto force_at = [&](const Vec3& shift) {
             Pose moved = tool;
             moved.position += shift;
-            return blade_contact(bone->current(), points, moved, moved.position, stiffness).wrench.force;
+            return contact::blade_contact(bone->current(), points, moved, moved.position, stiffness).wrench.force;
         };
         const double h = 1e-7;
         for (int a = 0; a < 3; ++a) {
@@ -114,7 +114,7 @@ TEST_CASE("depth added to any point never lowers the total push of a flat contac
     double last = 0.0;
     for (double depth = 0.0; depth < 1e-3; depth += 1e-6) {
         const double load =
-            blade_contact(bone->current(), points, {Vec3(0.0, depth, 0.0), Quat(1, 0, 0, 0)}, Vec3(0.0), stiffness)
+            contact::blade_contact(bone->current(), points, {Vec3(0.0, depth, 0.0), Quat(1, 0, 0, 0)}, Vec3(0.0), stiffness)
                 .load;
         CHECK(load >= last - 1e-9);
         last = load;
@@ -133,13 +133,13 @@ TEST_CASE("in a kerf: centred no side force, shifted pushed back, tilted a right
     const auto at = [](double z, double tilt) {
         return Pose{Vec3(0.0, 0.0, z), glm::angleAxis(tilt, Vec3(1.0, 0.0, 0.0))};
     };
-    CHECK(glm::length(blade_contact(wide->current(), points, at(0.0, 0.0), Vec3(0.0), stiffness).wrench.force) == 0.0);
-    const BladeContact shifted = blade_contact(wide->current(), points, at(0.2e-3, 0.0), Vec3(0.0), stiffness);
+    CHECK(glm::length(contact::blade_contact(wide->current(), points, at(0.0, 0.0), Vec3(0.0), stiffness).wrench.force) == 0.0);
+    const contact::BladeContact shifted = contact::blade_contact(wide->current(), points, at(0.2e-3, 0.0), Vec3(0.0), stiffness);
     CHECK(shifted.wrench.force.z < -0.05);
-    const BladeContact tilted = blade_contact(wide->current(), points, at(0.0, 0.06), Vec3(0.0), stiffness);
+    const contact::BladeContact tilted = contact::blade_contact(wide->current(), points, at(0.0, 0.06), Vec3(0.0), stiffness);
     CHECK(tilted.wrench.torque.x < -1e-4);
     const auto narrow = kerf(0.35e-3);
-    const BladeContact pinched = blade_contact(narrow->current(), points, at(0.0, 0.0), Vec3(0.0), stiffness);
+    const contact::BladeContact pinched = contact::blade_contact(narrow->current(), points, at(0.0, 0.0), Vec3(0.0), stiffness);
     CHECK(pinched.count == 88);
     CHECK(std::abs(pinched.wrench.force.z) < 1e-6);
 }
@@ -152,7 +152,7 @@ TEST_CASE("a hand on the blade does not ring at the stated stiffness, however ma
         for (int tick = 0; tick < 2000; ++tick) {
             const Pose tool{Vec3(0.0, y, 0.0), glm::angleAxis(tilt, Vec3(0.0, 0.0, 1.0))};
             const double force =
-                blade_contact(bone->current(), points, tool, tool.position, stiffness).wrench.force.y + 2.0;
+                contact::blade_contact(bone->current(), points, tool, tool.position, stiffness).wrench.force.y + 2.0;
             for (int sub = 0; sub < 10; ++sub) {
                 v += (force - 5.0 * v) / 0.2 * 1e-4;
                 y += v * 1e-4;
@@ -168,7 +168,7 @@ TEST_CASE("a pinched blade feels no more than the stated stiffness, and rests") 
     for (const double half_width : {0.45e-3, 0.35e-3, 0.2e-3}) {
         const auto bone = bone_of([half_width](const Vec3& p) { return half_width - std::abs(p.z); });
         const auto side = [&](double z) {
-            return blade_contact(bone->current(), points, {Vec3(0.0, 0.0, z), Quat(1, 0, 0, 0)}, Vec3(0.0), stiffness)
+            return contact::blade_contact(bone->current(), points, {Vec3(0.0, 0.0, z), Quat(1, 0, 0, 0)}, Vec3(0.0), stiffness)
                 .wrench.force.z;
         };
         INFO("half width " << half_width);
@@ -191,7 +191,7 @@ TEST_CASE("a pose that is no pose, or far away, feels nothing") {
     const auto bone = bone_of(half_space);
     for (const Pose& pose : {Pose{Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0), Quat(1, 0, 0, 0)},
                              Pose{Vec3(0.0), Quat(0, 0, 0, 0)}, Pose{Vec3(5.0, 0, 0), Quat(1, 0, 0, 0)}}) {
-        const BladeContact contact = blade_contact(bone->current(), points, pose, Vec3(0.0), stiffness);
+        const contact::BladeContact contact = contact::blade_contact(bone->current(), points, pose, Vec3(0.0), stiffness);
         CHECK(contact.count == 0);
         CHECK(contact.wrench.force == Vec3(0.0));
     }

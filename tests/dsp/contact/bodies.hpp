@@ -18,24 +18,24 @@
 namespace tactus::bodies {
 
 /// Points on a square of the given side in the plane z = 0 that look towards −z: a flat foot that stands on things.
-inline std::vector<SurfacePoint> foot_points(int per_side, double side) {
-    std::vector<SurfacePoint> points;
+inline std::vector<contact::SurfacePoint> foot_points(int per_side, double side) {
+    std::vector<contact::SurfacePoint> points;
     const double step = side / per_side;
     for (int j = 0; j < per_side; ++j)
         for (int i = 0; i < per_side; ++i)
             points.push_back({Vec3((i + 0.5) * step - 0.5 * side, (j + 0.5) * step - 0.5 * side, 0.0),
-                              Vec3(0.0, 0.0, -1.0), step * step, surface_label::none});
+                              Vec3(0.0, 0.0, -1.0), step * step, contact::surface_label::none});
     return points;
 }
 
-inline Voxmap ball(int size, double spacing, double radius) {
-    return sample_voxmap(centred_layout(size, spacing),
-                         [ball = Ball{radius}](const Vec3& p) { return ball.distance(p); });
+inline contact::Voxmap ball(int size, double spacing, double radius) {
+    return contact::sample_voxmap(contact::centred_layout(size, spacing),
+                         [ball = contact::Ball{radius}](const Vec3& p) { return ball.distance(p); });
 }
 
 /// A ball with waves on it: gradients in every direction. |∇| stays near 1.
-inline Voxmap rough_ball(int size, double spacing, double radius) {
-    return sample_voxmap(centred_layout(size, spacing), [=](const Vec3& p) {
+inline contact::Voxmap rough_ball(int size, double spacing, double radius) {
+    return contact::sample_voxmap(contact::centred_layout(size, spacing), [=](const Vec3& p) {
         return glm::length(p) - radius +
                0.1 * radius * std::sin(4.0 * p.x / radius) * std::cos(3.0 * p.y / radius + p.z / radius);
     });

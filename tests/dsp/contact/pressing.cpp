@@ -21,14 +21,14 @@ double degrees(const Vec3& a, const Vec3& b) {
 
 TEST_CASE("sliding on a ball of 70 voxels and on a plane, direction is true to 0.5° and magnitude to 1 %") {
     const double radius = 70.0 * h, finger = 9.0 * h;
-    const Pointshell shell = make_pointshell(spread_over_ball(1000, finger));
-    const Voxmap ball = bodies::ball(176, h, radius);
+    const contact::Pointshell shell = contact::make_pointshell(contact::spread_over_ball(1000, finger));
+    const contact::Voxmap ball = bodies::ball(176, h, radius);
     const Vec3 up = glm::normalize(Vec3(0.2, -0.3, 1.0));
-    const Voxmap plane = sample_voxmap(centred_layout(96, h), [&](const Vec3& p) { return glm::dot(p, up); });
-    PointshellContact contact(shell.nodes.size());
-    for (const Interpolation interpolation : {Interpolation::trilinear, Interpolation::quadratic}) {
-        const ContactLaw law{.interpolation = interpolation};
-        const DepthLaw<double> exact_law(law);
+    const contact::Voxmap plane = contact::sample_voxmap(contact::centred_layout(96, h), [&](const Vec3& p) { return glm::dot(p, up); });
+    contact::PointshellContact contact(shell.nodes.size());
+    for (const contact::Interpolation interpolation : {contact::Interpolation::trilinear, contact::Interpolation::quadratic}) {
+        const contact::ContactLaw law{.interpolation = interpolation};
+        const contact::DepthLaw<double> exact_law(law);
         double worst_angle = 0.0, worst_share = 0.0;
         for (int step = 0; step < 400; ++step) {
             const bool on_ball = step % 2 == 0;
@@ -40,7 +40,7 @@ TEST_CASE("sliding on a ball of 70 voxels and on a plane, direction is true to 0
             const Vec3 centre =
                 on_ball ? (radius + finger - pressed) * out : (finger - pressed) * out + side * ((a - 0.8) * 10.0 * h);
             const Pose pose{centre, glm::angleAxis(3.0 * a, glm::normalize(Vec3(1, 2, 3)))};
-            const ContactPair pair{&shell, pose, on_ball ? &ball : &plane, {}, true};
+            const contact::ContactPair pair{&shell, pose, on_ball ? &ball : &plane, {}, true};
             const Vec3 force = contact({&pair, 1}, pose.position, law).wrench().force;
             Vec3 expected(0.0);
             for (const Vec3& p : shell.position) {
@@ -57,19 +57,19 @@ TEST_CASE("sliding on a ball of 70 voxels and on a plane, direction is true to 0
 }
 
 TEST_CASE("a wall of thickness t withstands k·(t/2 − h) on one point, wherever it stands in the grid of spacing h") {
-    const Pointshell tip = make_pointshell(std::vector<SurfacePoint>{{Vec3(0.0), Vec3(0, 0, -1), 1e-6}});
-    PointshellContact contact(tip.nodes.size());
+    const contact::Pointshell tip = contact::make_pointshell(std::vector<contact::SurfacePoint>{{Vec3(0.0), Vec3(0, 0, -1), 1e-6}});
+    contact::PointshellContact contact(tip.nodes.size());
     for (const double thickness : {2e-3, 1e-3, 0.7e-3, 0.35e-3}) {
         for (const double offset : {0.0, 0.25, 0.5, 0.8}) {
             const double fine = 0.1e-3;
-            const Voxmap wall = sample_voxmap(centred_layout(50, fine), [&](const Vec3& p) {
+            const contact::Voxmap wall = contact::sample_voxmap(contact::centred_layout(50, fine), [&](const Vec3& p) {
                 return std::abs(p.z - offset * fine) - 0.5 * thickness;
             });
-            const ContactLaw law{.stiffness = 1e4, .blend = 0.01e-3};
+            const contact::ContactLaw law{.stiffness = 1e4, .blend = 0.01e-3};
             double most = 0.0;
             for (int step = 0; step < 400; ++step) {
                 const double z = 2e-3 - step * 1e-5;
-                const ContactPair pair{&tip, {Vec3(0.0, 0.0, z), Quat(1, 0, 0, 0)}, &wall, {}, true};
+                const contact::ContactPair pair{&tip, {Vec3(0.0, 0.0, z), Quat(1, 0, 0, 0)}, &wall, {}, true};
                 most = std::max(most, contact({&pair, 1}, Vec3(0.0), law).wrench().force.z);
             }
             INFO(thickness << " m, offset " << offset);
@@ -80,14 +80,14 @@ TEST_CASE("a wall of thickness t withstands k·(t/2 − h) on one point, whereve
 }
 
 TEST_CASE("the force is continuous through the surface, at the blend and where it saturates") {
-    const Pointshell shell = make_pointshell(bodies::foot_points(8, 4e-3));
-    const Voxmap floor = sample_voxmap(centred_layout(40, 1e-3), [](const Vec3& p) { return p.z; });
-    PointshellContact contact(shell.nodes.size());
-    const ContactLaw law{.stiffness = 1e4, .saturation = 0.5e-3};
+    const contact::Pointshell shell = contact::make_pointshell(bodies::foot_points(8, 4e-3));
+    const contact::Voxmap floor = contact::sample_voxmap(contact::centred_layout(40, 1e-3), [](const Vec3& p) { return p.z; });
+    contact::PointshellContact contact(shell.nodes.size());
+    const contact::ContactLaw law{.stiffness = 1e4, .saturation = 0.5e-3};
     double last = 0.0;
     for (int step = 0; step < 2000; ++step) {
         const Pose pose{Vec3(0.0, 0.0, 0.1e-3 - step * 1e-6), Quat(1, 0, 0, 0)};
-        const ContactPair pair{&shell, pose, &floor, {}, true};
+        const contact::ContactPair pair{&shell, pose, &floor, {}, true};
         const double force = contact({&pair, 1}, pose.position, law).wrench().force.z;
         CHECK(force - last <= 64.0 * 1e4 * 1e-6 * 1.001);
         CHECK(force - last >= -1e-4);

@@ -19,11 +19,11 @@ constexpr double mm = 1e-3, period = 1e-3;
 /// seconds as a share of how far it swings at first.
 double swing_left(double stiffness, double damping, int late) {
     constexpr double mass = 0.1, press = 3.0;
-    static const Voxmap table = test::map_of(Box{{20.0 * mm, 20.0 * mm, 6.0 * mm}}, 0.5 * mm);
-    static const Pointshell foot = make_pointshell(bodies::foot_points(6, 8.0 * mm));
+    static const contact::Voxmap table = test::map_of(contact::Box{{20.0 * mm, 20.0 * mm, 6.0 * mm}}, 0.5 * mm);
+    static const contact::Pointshell foot = contact::make_pointshell(bodies::foot_points(6, 8.0 * mm));
     test::Held held(foot, {&table});
     held.law.stiffness = 100e3;
-    QuasiStaticCoupling coupling = test::coupling_for(held, {{0.0, 0.0, 3.0 * mm}, {1, 0, 0, 0}});
+    coupling::QuasiStaticCoupling coupling = test::coupling_for(held, {{0.0, 0.0, 3.0 * mm}, {1, 0, 0, 0}});
     coupling.settings.springs.linear.stiffness = stiffness;
     double z = 3.0 * mm - press / stiffness, v = 2.0 * mm, felt[3] = {press, press, press};
     const double decay = std::exp(-damping / mass * period);

@@ -2,7 +2,7 @@
 #include "dsp/coupling/passivity.hpp"
 
 #include "dsp/coupling/force_shape.hpp"
-#include "dsp/coupling/quantile.hpp"
+#include "dsp/core/quantile.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -14,7 +14,7 @@ namespace {
 
 /// A mass of 0.1 kg falls on a sampled wall of `stiffness`; returns the observer's least energy and the last speed.
 std::pair<double, double> on_a_wall(double stiffness, bool control) {
-    PassivityObserver observer;
+    coupling::PassivityObserver observer;
     double z = 1e-3, v = 0.0, least = 0.0, peak = 0.0;
     Wrench force;
     for (int n = 0; n < 3000; ++n) {
@@ -44,12 +44,12 @@ TEST_CASE("a wall too stiff for its device gives energy away, and the brake take
 }
 
 TEST_CASE("a soft limit passes small forces, never exceeds its end and has no corner") {
-    CHECK(soft_limit(3.0, 6.0, 10.0) == 3.0);
-    CHECK(soft_limit(1e6, 6.0, 10.0) <= 10.0);
-    CHECK(soft_limit(12.0, 6.0, 6.0) == 6.0);
+    CHECK(coupling::soft_limit(3.0, 6.0, 10.0) == 3.0);
+    CHECK(coupling::soft_limit(1e6, 6.0, 10.0) <= 10.0);
+    CHECK(coupling::soft_limit(12.0, 6.0, 6.0) == 6.0);
     const double h = 1e-6;
-    CHECK((soft_limit(6.0 + h, 6.0, 10.0) - 6.0) / h == Approx(1.0).epsilon(1e-3));
-    const Vec3 v = soft_limit(Vec3(30.0, 40.0, 0.0), 6.0, 10.0);
+    CHECK((coupling::soft_limit(6.0 + h, 6.0, 10.0) - 6.0) / h == Approx(1.0).epsilon(1e-3));
+    const Vec3 v = coupling::soft_limit(Vec3(30.0, 40.0, 0.0), 6.0, 10.0);
     CHECK(v.y / v.x == Approx(4.0 / 3.0));
 }
 

@@ -33,14 +33,14 @@ TEST_CASE("jumps of the hand up to 75 mm never take a proxy out of a hollow ball
     const HollowBall shape{8.0 * mm, 0.35 * mm};
     const Random random{3};
     for (const double voxel : {0.35 * mm, 0.2 * mm}) {
-        const Voxmap map = test::map_of(shape, voxel, 1.2 * mm);
-        const TriangleTree tree(iso_surface(map.grid, 0.0f, false));
+        const contact::Voxmap map = test::map_of(shape, voxel, 1.2 * mm);
+        const geometry::TriangleTree tree(geometry::iso_surface(map.grid, 0.0f, false));
         for (const bool by_triangles : {false, true})
             for (const double radius : {0.0, 0.5 * mm}) {
                 // Sampled every 0.35 mm such a wall has holes, but none that a ball of 1 mm fits through.
                 if (radius == 0.0 && voxel > 0.6 * shape.wall) continue;
-                const ProxySurface surface{by_triangles ? nullptr : &map, by_triangles ? &tree : nullptr, {}};
-                SurfaceProxy proxy;
+                const coupling::ProxySurface surface{by_triangles ? nullptr : &map, by_triangles ? &tree : nullptr, {}};
+                coupling::SurfaceProxy proxy;
                 proxy.settings.shape.radius = radius;
                 proxy.reset({0.0, 0.0, 0.0});
                 double farthest = 0.0;
@@ -58,12 +58,12 @@ TEST_CASE("jumps of the hand up to 75 mm never take a proxy out of a hollow ball
 
 TEST_CASE("a jump over a ball never dips into it, on its field and on its triangles") {
     const double size = 20.0 * mm;
-    const Voxmap map = test::map_of(Ball{size}, 0.35 * mm, 4.0 * mm);
-    const TriangleTree tree(iso_surface(map.grid, 0.0f, false));
+    const contact::Voxmap map = test::map_of(contact::Ball{size}, 0.35 * mm, 4.0 * mm);
+    const geometry::TriangleTree tree(geometry::iso_surface(map.grid, 0.0f, false));
     for (const bool by_triangles : {false, true})
         for (const double radius : {0.0, 0.5 * mm, 2.0 * mm}) {
-            const ProxySurface surface{by_triangles ? nullptr : &map, by_triangles ? &tree : nullptr, {}};
-            SurfaceProxy proxy;
+            const coupling::ProxySurface surface{by_triangles ? nullptr : &map, by_triangles ? &tree : nullptr, {}};
+            coupling::SurfaceProxy proxy;
             proxy.settings.shape.radius = radius;
             proxy.reset({0.0, 0.0, 30.0 * mm});
             double nearest = 1.0;
@@ -78,16 +78,16 @@ TEST_CASE("a jump over a ball never dips into it, on its field and on its triang
 }
 
 TEST_CASE("a plate that is moved through a resting hand takes the proxy with it") {
-    const Voxmap map = test::map_of(Box{{20.0 * mm, 20.0 * mm, 1.0 * mm}}, 0.25 * mm);
-    const TriangleTree tree(iso_surface(map.grid, 0.0f, false));
+    const contact::Voxmap map = test::map_of(contact::Box{{20.0 * mm, 20.0 * mm, 1.0 * mm}}, 0.25 * mm);
+    const geometry::TriangleTree tree(geometry::iso_surface(map.grid, 0.0f, false));
     for (const bool by_triangles : {false, true})
         for (const double speed : {0.1, 2.0}) {
-            SurfaceProxy proxy;
+            coupling::SurfaceProxy proxy;
             proxy.settings.shape.radius = 0.5 * mm;
             proxy.reset({0.0, 0.0, 0.0});
             for (int n = 0; n * speed < 8.0; ++n) {
                 const Pose at{{0.0, 0.0, -3.0 * mm + speed * 1e-3 * n}, {1.0, 0.0, 0.0, 0.0}};
-                const ProxySurface surface{by_triangles ? nullptr : &map, by_triangles ? &tree : nullptr, at};
+                const coupling::ProxySurface surface{by_triangles ? nullptr : &map, by_triangles ? &tree : nullptr, at};
                 proxy.update({0.0, 0.0, 0.0}, {&surface, 1});
                 REQUIRE(proxy.state().proxy.z > at.position.z + 0.99 * mm);
                 REQUIRE(proxy.state().force.z >= 0.0);
@@ -98,14 +98,14 @@ TEST_CASE("a plate that is moved through a resting hand takes the proxy with it"
 
 TEST_CASE("in a notch between triangles a proxy rests in the edge, touching both walls, and is silent") {
     // Two walls that meet at a right angle along y, open upwards; made of few large triangles.
-    TriangleSurface walls;
+    geometry::TriangleSurface walls;
     const double w = 10.0 * mm;
     walls.vertices = {{-w, -w, w}, {0, -w, 0}, {w, -w, w}, {-w, w, w}, {0, w, 0}, {w, w, w}};
     walls.triangles = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}};
-    const TriangleTree tree(walls);
-    const ProxySurface surface{nullptr, &tree, {}};
+    const geometry::TriangleTree tree(walls);
+    const coupling::ProxySurface surface{nullptr, &tree, {}};
     const double radius = 1.0 * mm;
-    SurfaceProxy proxy;
+    coupling::SurfaceProxy proxy;
     proxy.settings.shape.radius = radius;
     proxy.reset({1.0 * mm, 0.0, 5.0 * mm});
     const Vec3 goal(0.2 * mm, 0.3 * mm, -2.0 * mm);
@@ -117,15 +117,15 @@ TEST_CASE("in a notch between triangles a proxy rests in the edge, touching both
 }
 
 TEST_CASE("over the edge of a block of triangles a ball rolls as over a rounded one") {
-    TriangleSurface block;
+    geometry::TriangleSurface block;
     for (int n = 0; n < 8; ++n)
         block.vertices.push_back(5.0 * mm * Vec3(n & 1 ? 1 : -1, n & 2 ? 1 : -1, n & 4 ? 1 : -1));
     block.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                        {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-    const TriangleTree tree(block);
-    const ProxySurface surface{nullptr, &tree, {}};
+    const geometry::TriangleTree tree(block);
+    const coupling::ProxySurface surface{nullptr, &tree, {}};
     const double radius = 2.0 * mm;
-    SurfaceProxy proxy;
+    coupling::SurfaceProxy proxy;
     proxy.settings.shape.radius = radius;
     proxy.reset({0.0, 0.0, 9.0 * mm});
     const Vec3 edge(5.0 * mm, 0.0, 5.0 * mm);
@@ -133,7 +133,7 @@ TEST_CASE("over the edge of a block of triangles a ball rolls as over a rounded 
         // On a circle about the edge, 1.5 mm off it: half a millimetre inside of the ball's reach.
         const double a = 0.5 * 3.14159265358979 * n / 900.0;
         const Vec3 out(std::sin(a), 0.0, std::cos(a));
-        const ProxyState& now = proxy.update(edge + 1.5 * mm * out, {&surface, 1});
+        const coupling::ProxyState& now = proxy.update(edge + 1.5 * mm * out, {&surface, 1});
         REQUIRE(glm::length(now.proxy - edge) == Approx(radius).margin(1e-3 * mm));
         REQUIRE(glm::length(now.force / 1000.0 - 0.5 * mm * out) < 0.005 * mm);
     }

@@ -2,7 +2,7 @@
 // Pegs, thin plates and broken bones: the couplings where they are hard.
 #include "assets/library/fragments.hpp"
 #include "dsp/coupling/held_contact.hpp"
-#include "dsp/coupling/quantile.hpp"
+#include "dsp/core/quantile.hpp"
 #include "tests/dsp/coupling/held.hpp"
 
 #include <catch2/catch.hpp>
@@ -18,8 +18,8 @@ namespace {
 constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
 
 struct Part {
-    Pointshell shell;
-    Voxmap map;
+    contact::Pointshell shell;
+    contact::Voxmap map;
 };
 
 template <class Shape>
@@ -28,8 +28,8 @@ Part part_of(const Shape& shape, double spacing, double voxel) {
 }
 
 /// Place 0 stands, place 1 is held.
-Scene scene_of(const Part& still, const Part& held) {
-    Scene scene;
+coupling::Scene scene_of(const Part& still, const Part& held) {
+    coupling::Scene scene;
     scene.count = 2;
     scene.objects[0].body = {&still.shell, &still.map, nullptr, {}, 1, 1};
     scene.objects[1].body = {&held.shell, &held.map, nullptr, {}, 1, 2};
@@ -37,13 +37,13 @@ Scene scene_of(const Part& still, const Part& held) {
 }
 
 struct Rig {
-    Scene scene;
-    HeldContact contact{200000};
-    QuasiStaticCoupling coupling;
+    coupling::Scene scene;
+    coupling::HeldContact contact{200000};
+    coupling::QuasiStaticCoupling coupling;
     SizeCounts residuals;
     double balanced = 0.0, deepest = 0.0;
 
-    Rig(const Part& still, const Part& held, const Pose& grip, const ContactLaw& law, const Pose& start)
+    Rig(const Part& still, const Part& held, const Pose& grip, const contact::ContactLaw& law, const Pose& start)
         : scene(scene_of(still, held)) {
         contact.set(scene, 1, grip, law, false);
         coupling.settings.reach = contact.reach();
@@ -51,8 +51,8 @@ struct Rig {
         coupling.settings.springs = {{1000.0, 60.0}, {1.0, 5.0}};
         coupling.reset(start);
     }
-    const QuasiStaticState& update(const Pose& hand) {
-        const QuasiStaticState& now = coupling.update(hand, contact);
+    const coupling::QuasiStaticState& update(const Pose& hand) {
+        const coupling::QuasiStaticState& now = coupling.update(hand, contact);
         residuals.add(now.residual);
         balanced += now.balanced ? 1.0 : 0.0;
         deepest = std::max(deepest, now.contact.penetration);
@@ -61,10 +61,10 @@ struct Rig {
     double share() const { return balanced / static_cast<double>(residuals.total()); }
 };
 
-ContactLaw stiff() {
-    ContactLaw law;
+contact::ContactLaw stiff() {
+    contact::ContactLaw law;
     law.stiffness = 100e3;
-    law.interpolation = Interpolation::quadratic;
+    law.interpolation = contact::Interpolation::quadratic;
     law.blend = 0.01 * mm;
     return law;
 }
@@ -76,8 +76,8 @@ struct Insertion {
 /// A peg of 10 mm goes 20 mm down and comes up again under a hand that shakes by 0.8 mm and 2 degrees.
 Insertion insert(double clearance) {
     const Part hole =
-        part_of(make_bushing(10.0 * mm + clearance, 26.0 * mm, 30.0 * mm, 1.0 * mm), 0.42 * mm, 0.25 * mm);
-    const Part peg = part_of(make_cylinder(10.0 * mm, 30.0 * mm, 0.5 * mm), 0.42 * mm, 0.25 * mm);
+        part_of(contact::make_bushing(10.0 * mm + clearance, 26.0 * mm, 30.0 * mm, 1.0 * mm), 0.42 * mm, 0.25 * mm);
+    const Part peg = part_of(contact::make_cylinder(10.0 * mm, 30.0 * mm, 0.5 * mm), 0.42 * mm, 0.25 * mm);
     const Pose grip{{0.0, 0.0, -30.0 * mm}, {1, 0, 0, 0}};
     Rig rig(hole, peg, grip, stiff(), {{0.0, 0.0, 33.0 * mm}, {1, 0, 0, 0}});
     rig.coupling.settings.springs.linear.limit = 15.0;
@@ -87,7 +87,7 @@ Insertion insert(double clearance) {
         const double depth = n < 1500 ? -3.0 * mm + 24.0 * mm * t / 1.5 : 21.0 * mm - 24.0 * mm * (t - 1.5) / 1.5;
         const Vec3 shake = 0.8 * mm * Vec3(std::sin(w * t), std::sin(1.3 * w * t), 0.0);
         const Vec3 nod = 2.0 * degree * Vec3(std::sin(1.3 * w * t), std::sin(w * t), 0.0);
-        const QuasiStaticState& now = rig.update({Vec3(0.0, 0.0, 30.0 * mm - depth) + shake, rotation_by(nod)});
+        const coupling::QuasiStaticState& now = rig.update({Vec3(0.0, 0.0, 30.0 * mm - depth) + shake, rotation_by(nod)});
         REQUIRE(is_finite(now.wrench));
         const Vec3 tip = (now.proxy * grip).position;
         result.depth = std::max(result.depth, -tip.z);
@@ -115,13 +115,13 @@ TEST_CASE("a peg goes in and comes out at 0.3, 0.1 and 0.0 mm of clearance, and 
 }
 
 TEST_CASE("no corner pops through a thin plate below the documented force, no face at all") {
-    const Part block = part_of(Box{{6.0 * mm, 6.0 * mm, 6.0 * mm}}, 0.42 * mm, 0.35 * mm);
+    const Part block = part_of(contact::Box{{6.0 * mm, 6.0 * mm, 6.0 * mm}}, 0.42 * mm, 0.35 * mm);
     const Quat on_corner = rotation_by(Vec3(0.0, -std::acos(1.0 / std::sqrt(3.0)), 0.0)) *
                            rotation_by(Vec3(0.0, 0.0, -0.25 * std::numbers::pi));
     for (const double wall : {2.0 * mm, 1.0 * mm, 0.7 * mm})
         for (const bool corner : {false, true}) {
-            const Part plate = part_of(Box{{24.0 * mm, 24.0 * mm, wall}}, 1.0 * mm, 0.175 * mm);
-            ContactLaw law;
+            const Part plate = part_of(contact::Box{{24.0 * mm, 24.0 * mm, wall}}, 1.0 * mm, 0.175 * mm);
+            contact::ContactLaw law;
             law.blend = 0.0;
             const Quat turn = corner ? glm::conjugate(on_corner) : Quat(1, 0, 0, 0);
             Rig rig(plate, block, {}, law, {{0.1 * mm, 0.2 * mm, 12.0 * mm}, turn});
@@ -136,8 +136,8 @@ TEST_CASE("no corner pops through a thin plate below the documented force, no fa
 }
 
 TEST_CASE("a plate of 1 mm does not go through a plate of 1 mm at any speed up to 2 m/s") {
-    const Part still = part_of(Box{{24.0 * mm, 24.0 * mm, 1.0 * mm}}, 0.5 * mm, 0.25 * mm);
-    const Part held = part_of(Box{{12.0 * mm, 12.0 * mm, 1.0 * mm}}, 0.5 * mm, 0.25 * mm);
+    const Part still = part_of(contact::Box{{24.0 * mm, 24.0 * mm, 1.0 * mm}}, 0.5 * mm, 0.25 * mm);
+    const Part held = part_of(contact::Box{{12.0 * mm, 12.0 * mm, 1.0 * mm}}, 0.5 * mm, 0.25 * mm);
     for (const double speed : {0.2, 0.5, 1.0, 2.0}) {
         Rig rig(still, held, {}, stiff(), {{0.0, 0.0, 20.0 * mm}, {1, 0, 0, 0}});
         rig.coupling.settings.springs.linear.limit = 20.0;
@@ -157,17 +157,17 @@ struct Halves {
     Pose left_at, right_at;
 
     Halves() {
-        std::vector<Bone> bones = make_fragments();
+        std::vector<bone::Bone> bones = library::make_fragments();
         take(bones[0], left, left_at);
         take(bones[1], right, right_at);
     }
-    static void take(Bone& bone, Part& part, Pose& at) {
+    static void take(bone::Bone& bone, Part& part, Pose& at) {
         Vec3 middle(0.0);
-        for (const SurfacePoint& p : bone.points) middle += p.position;
+        for (const contact::SurfacePoint& p : bone.points) middle += p.position;
         middle /= static_cast<double>(bone.points.size());
-        for (SurfacePoint& p : bone.points) p.position -= middle;
+        for (contact::SurfacePoint& p : bone.points) p.position -= middle;
         bone.distance.origin -= middle;
-        part = {make_pointshell(bone.points), make_voxmap(std::move(bone.distance))};
+        part = {contact::make_pointshell(bone.points), contact::make_voxmap(std::move(bone.distance))};
         at.position = middle;
     }
 };
@@ -177,7 +177,7 @@ const Halves& halves() {
     return both;
 }
 
-Rig fragment_rig(const ContactLaw& law) {
+Rig fragment_rig(const contact::ContactLaw& law) {
     const Halves& h = halves();
     Rig rig(h.left, h.right, {}, law, {h.right_at.position + Vec3(3.0 * mm, 0, 0), {1, 0, 0, 0}});
     rig.scene.objects[0].pose = h.left_at;
@@ -200,7 +200,7 @@ TEST_CASE("a jump of 15 mm and 14 degrees leaves a fragment on its side") {
 TEST_CASE("fragments slide and walk on each other: balanced, not deep, and silent when held") {
     const Vec3 fit = halves().right_at.position;
     for (const bool is_stiff : {false, true}) {
-        const ContactLaw law = is_stiff ? stiff() : ContactLaw{};
+        const contact::ContactLaw law = is_stiff ? stiff() : contact::ContactLaw{};
         {
             Rig rig = fragment_rig(law);
             // 40 mm/s along the fracture at about 3.5 N.

@@ -2,7 +2,7 @@
 #include "dsp/coupling/surface_proxy.hpp"
 
 #include "dsp/core/random.hpp"
-#include "dsp/distance/closest_point.hpp"
+#include "dsp/geometry/closest_point.hpp"
 #include "tests/dsp/coupling/held.hpp"
 #include "tests/support/realtime_check.hpp"
 
@@ -18,32 +18,32 @@ namespace {
 
 constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
 
-const Voxmap& ball_map() {
-    static const Voxmap map = test::map_of(Ball{25.0 * mm}, 0.35 * mm);
+const contact::Voxmap& ball_map() {
+    static const contact::Voxmap map = test::map_of(contact::Ball{25.0 * mm}, 0.35 * mm);
     return map;
 }
-const TriangleTree& ball_triangles() {
-    static const TriangleTree tree(iso_surface(ball_map().grid, 0.0f, false));
+const geometry::TriangleTree& ball_triangles() {
+    static const geometry::TriangleTree tree(geometry::iso_surface(ball_map().grid, 0.0f, false));
     return tree;
 }
-const Voxmap& plate_map() {
-    static const Voxmap map = test::map_of(Box{{20.0 * mm, 20.0 * mm, 2.0 * mm}}, 0.25 * mm);
+const contact::Voxmap& plate_map() {
+    static const contact::Voxmap map = test::map_of(contact::Box{{20.0 * mm, 20.0 * mm, 2.0 * mm}}, 0.25 * mm);
     return map;
 }
-const TriangleTree& plate_triangles() {
-    static const TriangleTree tree(iso_surface(plate_map().grid, 0.0f, false));
+const geometry::TriangleTree& plate_triangles() {
+    static const geometry::TriangleTree tree(geometry::iso_surface(plate_map().grid, 0.0f, false));
     return tree;
 }
 
 /// Field and triangles of one body.
-std::array<ProxySurface, 2> both(const Voxmap& map, const TriangleTree& tree) {
-    return {ProxySurface{&map, nullptr, {}}, ProxySurface{nullptr, &tree, {}}};
+std::array<coupling::ProxySurface, 2> both(const contact::Voxmap& map, const geometry::TriangleTree& tree) {
+    return {coupling::ProxySurface{&map, nullptr, {}}, coupling::ProxySurface{nullptr, &tree, {}}};
 }
 
 }  // namespace
 
 TEST_CASE("a tree of triangles finds what looking at each of them finds") {
-    TriangleSurface surface;
+    geometry::TriangleSurface surface;
     const Random random{11};
     for (std::uint64_t t = 0; t < 300; ++t) {
         const Vec3 at(random.uniform(10 * t), random.uniform(10 * t + 1), random.uniform(10 * t + 2));
@@ -55,14 +55,14 @@ TEST_CASE("a tree of triangles finds what looking at each of them finds") {
         const int v = static_cast<int>(3 * t);
         surface.triangles.push_back({v, v + 1, v + 2});
     }
-    const TriangleTree tree(surface);
+    const geometry::TriangleTree tree(surface);
     for (std::uint64_t q = 0; q < 300; ++q) {
         const Vec3 p =
             1.4 * Vec3(random.uniform(90000 + 7 * q), random.uniform(90001 + 7 * q), random.uniform(90002 + 7 * q));
         double least = std::numeric_limits<double>::infinity();
         for (const auto& t : surface.triangles) {
             const Vec3* v = surface.vertices.data();
-            least = std::min(least, glm::length(p - closest_on_triangle(p, v[t[0]], v[t[1]], v[t[2]])));
+            least = std::min(least, glm::length(p - geometry::closest_on_triangle(p, v[t[0]], v[t[1]], v[t[2]])));
         }
         CHECK(tree.nearest(p).distance == Approx(least));
         CHECK(tree.nearest(p, 0.5 * least).distance == std::numeric_limits<double>::infinity());
@@ -74,22 +74,22 @@ TEST_CASE("a tree of triangles finds what looking at each of them finds") {
         CHECK(tree.nearest(p + share * way).distance == Approx(least < 1e-6 ? least : 1e-6));
     }
     CHECK(tree.sweep({2, 2, 2}, {1, 1, 1}, 1e-6) == 1.0);
-    CHECK(TriangleTree({}).nearest({0, 0, 0}).distance == std::numeric_limits<double>::infinity());
+    CHECK(geometry::TriangleTree({}).nearest({0, 0, 0}).distance == std::numeric_limits<double>::infinity());
 }
 
 TEST_CASE("the nearest place within half-spaces is on faces, in edges and in corners") {
-    const ProxyPlane x{{1, 0, 0}, 0.0}, y{{0, 1, 0}, 0.0}, z{{0, 0, 1}, 0.5};
+    const coupling::ProxyPlane x{{1, 0, 0}, 0.0}, y{{0, 1, 0}, 0.0}, z{{0, 0, 1}, 0.5};
     const std::array all{x, y, z};
-    CHECK(nearest_within({1, 1, 1}, {0, 0, 0}, all) == Vec3(1, 1, 1));
-    CHECK(glm::length(nearest_within({-1, 1, 1}, {0, 0, 0}, all) - Vec3(0, 1, 1)) < 1e-12);
-    CHECK(glm::length(nearest_within({-1, -2, 1}, {0, 0, 0}, all) - Vec3(0, 0, 1)) < 1e-12);
-    CHECK(glm::length(nearest_within({-1, -2, -3}, {0, 0, 0}, all) - Vec3(0, 0, -0.5)) < 1e-12);
+    CHECK(coupling::nearest_within({1, 1, 1}, {0, 0, 0}, all) == Vec3(1, 1, 1));
+    CHECK(glm::length(coupling::nearest_within({-1, 1, 1}, {0, 0, 0}, all) - Vec3(0, 1, 1)) < 1e-12);
+    CHECK(glm::length(coupling::nearest_within({-1, -2, 1}, {0, 0, 0}, all) - Vec3(0, 0, 1)) < 1e-12);
+    CHECK(glm::length(coupling::nearest_within({-1, -2, -3}, {0, 0, 0}, all) - Vec3(0, 0, -0.5)) < 1e-12);
 }
 
 TEST_CASE("sliding over a ball, field or triangles: the force is the spring's along the normal") {
-    for (const ProxySurface& surface : both(ball_map(), ball_triangles()))
+    for (const coupling::ProxySurface& surface : both(ball_map(), ball_triangles()))
         for (const double radius : {0.0, 2.0 * mm}) {
-            SurfaceProxy proxy;
+            coupling::SurfaceProxy proxy;
             proxy.settings.shape.radius = radius;
             const double out = 25.0 * mm + radius, depth = 2.0 * mm;
             proxy.reset({0.0, 0.0, out + mm});
@@ -97,7 +97,7 @@ TEST_CASE("sliding over a ball, field or triangles: the force is the spring's al
             for (int n = 0; n < 1200; ++n) {
                 const double a = 1e-3 * n, deep = std::min(depth, 0.01 * mm * n);
                 const Vec3 normal(std::sin(a) * std::cos(0.7), std::sin(a) * std::sin(0.7), std::cos(a));
-                const ProxyState& now = proxy.update(normal * (out - deep), {&surface, 1});
+                const coupling::ProxyState& now = proxy.update(normal * (out - deep), {&surface, 1});
                 if (n < 250) continue;
                 const double size = glm::length(now.force);
                 worst_angle = std::max(worst_angle, std::acos(std::min(1.0, glm::dot(now.force / size, normal))));
@@ -111,17 +111,17 @@ TEST_CASE("sliding over a ball, field or triangles: the force is the spring's al
 }
 
 TEST_CASE("pushed through a thin plate the proxy stays on top, and the force keeps its direction") {
-    for (const ProxySurface& surface : both(plate_map(), plate_triangles()))
+    for (const coupling::ProxySurface& surface : both(plate_map(), plate_triangles()))
         for (const double radius : {0.0, 0.5 * mm})
             for (const double speed : {0.002, 0.2, 2.0}) {
-                SurfaceProxy proxy;
+                coupling::SurfaceProxy proxy;
                 proxy.settings.shape.radius = radius;
                 proxy.settings.max_force = 1e3;
                 proxy.reset({2.1 * mm, 1.3 * mm, 5.0 * mm});
                 const int ticks = static_cast<int>(15.0 * mm / speed / 1e-3) + 2;
                 for (int n = 0; n < ticks; ++n) {
                     const double z = std::max(-10.0 * mm, 5.0 * mm - speed * 1e-3 * n);
-                    const ProxyState& now = proxy.update({2.1 * mm, 1.3 * mm, z}, {&surface, 1});
+                    const coupling::ProxyState& now = proxy.update({2.1 * mm, 1.3 * mm, z}, {&surface, 1});
                     REQUIRE(now.proxy.z > 1.0 * mm + radius - 0.01 * mm);
                     REQUIRE(now.force.z >= 0.0);
                 }
@@ -131,8 +131,8 @@ TEST_CASE("pushed through a thin plate the proxy stays on top, and the force kee
 }
 
 TEST_CASE("friction holds within its cone, slides outside of it with the dynamic force") {
-    const ProxySurface surface{&plate_map(), nullptr, {}};
-    SurfaceProxy proxy;
+    const coupling::ProxySurface surface{&plate_map(), nullptr, {}};
+    coupling::SurfaceProxy proxy;
     proxy.settings.static_friction = 0.6;
     proxy.settings.dynamic_friction = 0.4;
     proxy.reset({0.0, 0.0, 2.0 * mm});
@@ -142,13 +142,13 @@ TEST_CASE("friction holds within its cone, slides outside of it with the dynamic
     // Up to 0.6 of the depth it sticks.
     for (int n = 0; n < 50; ++n) {
         const double x = 0.55 * depth * n / 50.0;
-        const ProxyState& now = proxy.update({x, 0.0, 1.0 * mm - depth}, {&surface, 1});
+        const coupling::ProxyState& now = proxy.update({x, 0.0, 1.0 * mm - depth}, {&surface, 1});
         REQUIRE(now.sticks);
         REQUIRE(glm::length(now.proxy - anchor) < 0.01 * mm);
     }
     for (int n = 0; n < 300; ++n) {
         const double x = 0.55 * depth + 0.01 * mm * n;
-        const ProxyState& now = proxy.update({x, 0.0, 1.0 * mm - depth}, {&surface, 1});
+        const coupling::ProxyState& now = proxy.update({x, 0.0, 1.0 * mm - depth}, {&surface, 1});
         if (n < 100 || now.sticks) continue;
         REQUIRE(-now.force.x / now.force.z == Approx(0.4).epsilon(0.05));
     }
@@ -156,8 +156,8 @@ TEST_CASE("friction holds within its cone, slides outside of it with the dynamic
 }
 
 TEST_CASE("texture makes the force of an even slide wave by the length of its waves") {
-    const ProxySurface surface{&plate_map(), nullptr, {}};
-    SurfaceProxy proxy;
+    const coupling::ProxySurface surface{&plate_map(), nullptr, {}};
+    coupling::SurfaceProxy proxy;
     proxy.settings.shape.texture_height = 0.1 * mm;
     proxy.settings.shape.texture_length = 2.0 * mm;
     proxy.reset({-5.0 * mm, 0.0, 2.0 * mm});
@@ -165,7 +165,7 @@ TEST_CASE("texture makes the force of an even slide wave by the length of its wa
     for (int n = 0; n < 400; ++n) {
         const double x = -5.0 * mm + 0.02 * mm * std::max(0, n - 100);
         const double z = std::max(0.0, 2.0 - 0.02 * n) * mm;
-        const ProxyState& now = proxy.update({x, 0.0, z}, {&surface, 1});
+        const coupling::ProxyState& now = proxy.update({x, 0.0, z}, {&surface, 1});
         if (n < 150) continue;
         if (n == 200) first = now.force.z;
         if (n == 300) CHECK(now.force.z == Approx(first).margin(0.02));
@@ -177,8 +177,8 @@ TEST_CASE("texture makes the force of an even slide wave by the length of its wa
 }
 
 TEST_CASE("a proxy keeps its head: no surface, nowhere, inside of a body, far jumps") {
-    const ProxySurface surface{&ball_map(), nullptr, {}};
-    SurfaceProxy proxy;
+    const coupling::ProxySurface surface{&ball_map(), nullptr, {}};
+    coupling::SurfaceProxy proxy;
     CHECK(proxy.update({1.0, 2.0, 3.0}, {}).proxy == Vec3(1.0, 2.0, 3.0));
     proxy.reset({0.0, 0.0, 30.0 * mm});
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -200,7 +200,7 @@ TEST_CASE("a proxy keeps its head: no surface, nowhere, inside of a body, far ju
 
 TEST_CASE("a proxy allocates nothing") {
     const auto surfaces = both(plate_map(), plate_triangles());
-    SurfaceProxy proxy;
+    coupling::SurfaceProxy proxy;
     proxy.settings.static_friction = 0.3;
     const RealtimeViolations seen = watch([&] {
         for (int n = 0; n < 50; ++n) proxy.update({0.1 * mm * n, 0.0, (3.0 - 0.1 * n) * mm}, surfaces);

@@ -14,7 +14,7 @@ void check_equation(std::uint64_t seed) {
     const Random random{seed};
     for (std::size_t i = 0; i < N; ++i)
         for (std::size_t j = i; j < N; ++j) m[N * i + j] = m[N * j + i] = random.normal(N * i + j);
-    const SymmetricEigen<N> eigen = symmetric_eigen<N>(m);
+    const geometry::SymmetricEigen<N> eigen = geometry::symmetric_eigen<N>(m);
     for (std::size_t n = 0; n < N; ++n) {
         if (n > 0) CHECK(eigen.value[n] >= eigen.value[n - 1]);
         for (std::size_t i = 0; i < N; ++i) {
@@ -36,7 +36,7 @@ TEST_CASE("dsp: eigenvalues and eigenvectors of 3, 4 and 6 rows satisfy their eq
 }
 
 TEST_CASE("dsp: eigenvalues of a known matrix") {
-    const SymmetricEigen<3> eigen = symmetric_eigen<3>({2, -1, 0, -1, 2, -1, 0, -1, 2});
+    const geometry::SymmetricEigen<3> eigen = geometry::symmetric_eigen<3>({2, -1, 0, -1, 2, -1, 0, -1, 2});
     CHECK(eigen.value[0] == Approx(2.0 - std::sqrt(2.0)));
     CHECK(eigen.value[1] == Approx(2.0));
     CHECK(eigen.value[2] == Approx(2.0 + std::sqrt(2.0)));

@@ -2,8 +2,8 @@
 // The whole loop on a plant that is known: identify by a sweep, equalise, play saws that the sweep never was, at another
 // level, and compare what comes out with what was wanted.
 #include "dsp/core/error.hpp"
-#include "dsp/filter/fir.hpp"
-#include "dsp/spectrum/comparison.hpp"
+#include "dsp/signal/filter/fir.hpp"
+#include "dsp/signal/spectrum/comparison.hpp"
 #include "dsp/vibration/equaliser.hpp"
 #include "dsp/vibration/identify.hpp"
 #include "tests/dsp/vibration/plant.hpp"
@@ -19,36 +19,36 @@ namespace {
 
 constexpr double rate = 48000.0;
 
-FrequencyResponse measured(const test::Plant& plant) {
-    const SweepRun run{{20.0, 2000.0, 8.0, 0.02}, 0.3, 1.0, 1};
+vibration::FrequencyResponse measured(const test::Plant& plant) {
+    const vibration::SweepRun run{{20.0, 2000.0, 8.0, 0.02}, 0.3, 1.0, 1};
     std::vector<float> drive;
     for (std::size_t i = 0; i < 9 * 48000; ++i)
         drive.push_back(static_cast<float>(run.amplitude * run.sweep(static_cast<double>(i) / rate)));
     std::vector<float> heard = plant(drive);
     test::add_disturbance(heard, rate, -50.0, -80.0, 7);
-    return identify(run, heard, rate).response;
+    return vibration::identify(run, heard, rate).response;
 }
 
-const FrequencyResponse& response_of_the_plant() {
-    static const FrequencyResponse response = measured({});
+const vibration::FrequencyResponse& response_of_the_plant() {
+    static const vibration::FrequencyResponse response = measured({});
     return response;
 }
 
-std::vector<float> equalised(const std::vector<float>& wanted, EqualiserKind kind,
-                             const FrequencyResponse& response = response_of_the_plant()) {
-    Fir fir(design_equaliser(response, {.kind = kind}).taps);
+std::vector<float> equalised(const std::vector<float>& wanted, vibration::EqualiserKind kind,
+                             const vibration::FrequencyResponse& response = response_of_the_plant()) {
+    signal::Fir fir(vibration::design_equaliser(response, {.kind = kind}).taps);
     std::vector<float> out;
     for (const float x : wanted) out.push_back(fir(x));
     return out;
 }
 
 /// Plays on a plant of a noisy bench and compares with what was wanted.
-Comparison played(const std::vector<float>& wanted, const std::vector<float>& drive, const test::Plant& plant) {
+signal::Comparison played(const std::vector<float>& wanted, const std::vector<float>& drive, const test::Plant& plant) {
     std::vector<float> heard = plant(drive);
     test::add_disturbance(heard, rate, -50.0, -80.0, 11);
     // The saw is running already: how it starts is another matter.
     constexpr std::size_t settled = 24000;
-    return compare({std::span(wanted).subspan(settled), rate}, {std::span(heard).subspan(settled), rate});
+    return signal::compare({std::span(wanted).subspan(settled), rate}, {std::span(heard).subspan(settled), rate});
 }
 
 struct Saw {
@@ -61,7 +61,7 @@ struct Saw {
 const Saw saws[] = {
     {"idle at 233 Hz", 233.0, false}, {"cutting at 233 Hz", 233.0, true}, {"cutting at 150 Hz", 150.0, true}};
 
-void show(const std::string& name, const Comparison& c) {
+void show(const std::string& name, const signal::Comparison& c) {
     if (std::getenv("TACTUS_SHOW") == nullptr) return;
     WARN(name << ": LSD " << c.lsd_db << ", third octave " << c.third_octave_max_db << ", harmonic "
               << c.harmonic_error_db.value_or(-1.0) << ", cosine " << c.cosine_500 << ", ST-SIM "
@@ -73,14 +73,14 @@ void show(const std::string& name, const Comparison& c) {
 TEST_CASE("on the plant it was made for, an equaliser makes the saw's vibration out of the actuator's") {
     for (const Saw& saw : saws) {
         const std::vector<float> wanted = saw.take();
-        const Comparison before = played(wanted, wanted, {});
+        const signal::Comparison before = played(wanted, wanted, {});
         show(std::string(saw.name) + " before", before);
         CHECK(before.harmonic_error_db.value() > 2.0);
         CHECK(before.third_octave_max_db > 3.5);
-        for (const EqualiserKind kind : {EqualiserKind::minimum_phase, EqualiserKind::linear_phase}) {
-            const bool linear = kind == EqualiserKind::linear_phase;
+        for (const vibration::EqualiserKind kind : {vibration::EqualiserKind::minimum_phase, vibration::EqualiserKind::linear_phase}) {
+            const bool linear = kind == vibration::EqualiserKind::linear_phase;
             INFO(saw.name << (linear ? ", linear phase" : ", minimum phase"));
-            const Comparison after = played(wanted, equalised(wanted, kind), {});
+            const signal::Comparison after = played(wanted, equalised(wanted, kind), {});
             show(std::string(saw.name) + (linear ? " after, linear phase" : " after, minimum phase"), after);
             CHECK(after.lsd_db < (saw.cutting ? 0.25 * before.lsd_db : 0.2));
             CHECK(after.lsd_db < (saw.cutting ? 1.0 : 0.2));
@@ -107,8 +107,8 @@ TEST_CASE("on a plant that has drifted since, an equaliser still improves every 
         for (const Saw& saw : saws) {
             INFO(drift.name << ", " << saw.name);
             const std::vector<float> wanted = saw.take();
-            const Comparison before = played(wanted, wanted, plant);
-            const Comparison after = played(wanted, equalised(wanted, EqualiserKind::linear_phase), plant);
+            const signal::Comparison before = played(wanted, wanted, plant);
+            const signal::Comparison after = played(wanted, equalised(wanted, vibration::EqualiserKind::linear_phase), plant);
             show(std::string(drift.name) + ", " + saw.name + " before", before);
             show(std::string(drift.name) + ", " + saw.name + " after", after);
             CHECK(after.lsd_db < before.lsd_db);
@@ -144,11 +144,11 @@ TEST_CASE(
     for (const double d : change) worst = std::max(worst, std::abs(d - mean));
     CHECK(worst - 0.5 > 1.0);
 
-    const FrequencyResponse anew = measured(other);
+    const vibration::FrequencyResponse anew = measured(other);
     for (const Saw& saw : saws) {
         INFO(saw.name);
         const std::vector<float> wanted = saw.take();
-        const Comparison after = played(wanted, equalised(wanted, EqualiserKind::linear_phase, anew), other);
+        const signal::Comparison after = played(wanted, equalised(wanted, vibration::EqualiserKind::linear_phase, anew), other);
         show(std::string("other handle, measured anew, ") + saw.name, after);
         CHECK(after.lsd_db < (saw.cutting ? 1.0 : 0.2));
         CHECK(after.third_octave_max_db < 2.0);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double rate = 48000.0;
 
-std::vector<float> drive_of(const SweepRun& run) {
+std::vector<float> drive_of(const vibration::SweepRun& run) {
     const auto period = static_cast<std::size_t>((run.sweep.duration + run.pause) * rate);
     std::vector<float> samples;
     for (int r = 0; r < run.repeats; ++r)
@@ -35,7 +35,7 @@ std::vector<float> delayed(const std::vector<float>& samples, std::size_t count)
 double decibel(double ratio) { return 20.0 * std::log10(ratio); }
 
 /// Largest deviation of level from the plant's within the band, dB.
-double level_error(const FrequencyResponse& response, const std::function<double(double)>& truth, double lowest,
+double level_error(const vibration::FrequencyResponse& response, const std::function<double(double)>& truth, double lowest,
                    double highest) {
     double worst = 0.0;
     for (std::size_t i = 0; i < response.hz.size(); ++i)
@@ -47,7 +47,7 @@ double level_error(const FrequencyResponse& response, const std::function<double
 }  // namespace
 
 TEST_CASE("a sweep passes each octave in the same time and ends where it should") {
-    const ExponentialSweep sweep{20.0, 2000.0, 8.0, 0.02};
+    const vibration::ExponentialSweep sweep{20.0, 2000.0, 8.0, 0.02};
     // Between two upward zero crossings lies one period of the frequency in the middle.
     const auto frequency = [&](double t) {
         double before = t;
@@ -66,11 +66,11 @@ TEST_CASE("a sweep passes each octave in the same time and ends where it should"
 }
 
 TEST_CASE("a sweep identifies a plant within 0.25 dB from 40 to 1000 Hz through hum and noise") {
-    const SweepRun run{{20.0, 2000.0, 8.0, 0.02}, 1.0, 1.0, 1};
+    const vibration::SweepRun run{{20.0, 2000.0, 8.0, 0.02}, 1.0, 1.0, 1};
     const test::Plant plant;
     std::vector<float> heard = plant(drive_of(run));
     test::add_disturbance(heard, rate, -50.0, -80.0, 3);
-    const FrequencyResponse response = identify(run, heard, rate).response;
+    const vibration::FrequencyResponse response = vibration::identify(run, heard, rate).response;
     const auto truth = [&](double f) { return std::abs(plant.gain(f)); };
     CHECK(level_error(response, truth, 40.0, 1000.0) < 0.25);
     CHECK(response.latency == Approx(0.0).margin(5e-5));
@@ -84,18 +84,18 @@ TEST_CASE("a sweep identifies a plant within 0.25 dB from 40 to 1000 Hz through 
 }
 
 TEST_CASE("latency is the delay of the chain, not the phase of its resonance") {
-    const SweepRun run{{20.0, 2000.0, 4.0, 0.02}, 0.5, 0.5, 1};
+    const vibration::SweepRun run{{20.0, 2000.0, 4.0, 0.02}, 0.5, 0.5, 1};
     for (const std::size_t samples : {0u, 37u, 128u, 4800u}) {
-        const FrequencyResponse response = identify(run, delayed(test::Plant{}(drive_of(run)), samples), rate).response;
+        const vibration::FrequencyResponse response = vibration::identify(run, delayed(test::Plant{}(drive_of(run)), samples), rate).response;
         CHECK(response.latency == Approx(static_cast<double>(samples) / rate).margin(5e-5));
     }
 }
 
 TEST_CASE("distortion comes out by order: 1.0375, 0.05 and 0.0125 of x + 0.1 x² + 0.05 x³") {
-    const SweepRun run{{20.0, 2000.0, 8.0, 0.02}, 1.0, 1.0, 1};
+    const vibration::SweepRun run{{20.0, 2000.0, 8.0, 0.02}, 1.0, 1.0, 1};
     std::vector<float> heard = drive_of(run);
     for (float& x : heard) x = x + 0.1f * x * x + 0.05f * x * x * x;
-    const Identified found = identify(run, heard, rate, 4);
+    const vibration::Identified found = vibration::identify(run, heard, rate, 4);
     for (std::size_t i = 0; i < found.response.hz.size(); ++i) {
         const double f = found.response.hz[i];
         if (f < 40.0 || f > 490.0) continue;
@@ -108,12 +108,12 @@ TEST_CASE("distortion comes out by order: 1.0375, 0.05 and 0.0125 of x + 0.1 x²
 }
 
 TEST_CASE("noise that does not repeat lowers the coherence where it is, and only there") {
-    const SweepRun run{{20.0, 2000.0, 4.0, 0.02}, 1.0, 0.5, 2};
+    const vibration::SweepRun run{{20.0, 2000.0, 4.0, 0.02}, 1.0, 0.5, 2};
     std::vector<float> heard = test::Plant{}(drive_of(run));
     const Random random{9};
-    Biquad around{bandpass(300.0, rate, 3.0)};
+    signal::Biquad around{signal::bandpass(300.0, rate, 3.0)};
     for (std::size_t i = 0; i < heard.size(); ++i) heard[i] += static_cast<float>(around(30.0 * random.normal(i)));
-    const FrequencyResponse response = identify(run, heard, rate).response;
+    const vibration::FrequencyResponse response = vibration::identify(run, heard, rate).response;
     for (std::size_t i = 0; i < response.hz.size(); ++i) {
         if (std::abs(response.hz[i] - 300.0) < 20.0) CHECK(response.coherence[i] < 0.8);
         if (response.hz[i] > 60.0 && response.hz[i] < 90.0) CHECK(response.coherence[i] > 0.85);
@@ -121,39 +121,39 @@ TEST_CASE("noise that does not repeat lowers the coherence where it is, and only
 }
 
 TEST_CASE("the fitted resonance is the actuator's, whatever modes the handle adds and whatever the sensor measures") {
-    const SweepRun run{{20.0, 2000.0, 8.0, 0.02}, 1.0, 1.0, 1};
+    const vibration::SweepRun run{{20.0, 2000.0, 8.0, 0.02}, 1.0, 1.0, 1};
     const auto fit = [&](const std::vector<float>& heard) {
-        return fit_resonance(identify(run, heard, rate).response, 30.0, 400.0);
+        return vibration::fit_resonance(vibration::identify(run, heard, rate).response, 30.0, 400.0);
     };
-    const Resonance handle = fit(test::Plant{}(drive_of(run)));
+    const vibration::Resonance handle = fit(test::Plant{}(drive_of(run)));
     CHECK(handle.hz == Approx(75.0).epsilon(0.06));
     CHECK(handle.damping == Approx(0.25).epsilon(0.2));
     CHECK(handle.order == 2);
 
     std::vector<float> alone = drive_of(run), displacement = alone;
-    Biquad resonator{highpass(89.0, rate, 1.0 / 0.46)}, spring{lowpass(60.0, rate, 2.0)};
+    signal::Biquad resonator{signal::highpass(89.0, rate, 1.0 / 0.46)}, spring{signal::lowpass(60.0, rate, 2.0)};
     for (float& x : alone) x = static_cast<float>(resonator(static_cast<double>(x)));
     for (float& x : displacement) x = static_cast<float>(spring(static_cast<double>(x)));
-    const Resonance bare = fit(alone);
+    const vibration::Resonance bare = fit(alone);
     CHECK(bare.hz == Approx(89.0).epsilon(0.002));
     CHECK(bare.damping == Approx(0.23).epsilon(0.005));
     CHECK(bare.error_db < 0.05);
-    const Resonance moved = fit(displacement);
+    const vibration::Resonance moved = fit(displacement);
     CHECK(moved.order == 0);
     CHECK(moved.hz == Approx(60.0).epsilon(0.002));
     CHECK(moved.damping == Approx(0.25).epsilon(0.005));
 }
 
 TEST_CASE("a straight wire and a mere slope have no resonance") {
-    const SweepRun run{{20.0, 2000.0, 2.0, 0.02}, 1.0, 0.5, 1};
-    CHECK(fit_resonance(identify(run, drive_of(run), rate).response, 30.0, 400.0).hz == 0.0);
-    FrequencyResponse slope;
+    const vibration::SweepRun run{{20.0, 2000.0, 2.0, 0.02}, 1.0, 0.5, 1};
+    CHECK(vibration::fit_resonance(vibration::identify(run, drive_of(run), rate).response, 30.0, 400.0).hz == 0.0);
+    vibration::FrequencyResponse slope;
     for (double f = 20.0; f < 500.0; f *= 1.02) {
         slope.hz.push_back(f);
         slope.gain.push_back(f * f);
     }
-    CHECK(fit_resonance(slope, 30.0, 400.0).hz == 0.0);
-    CHECK_THROWS_WITH(fit_resonance(slope, 30.0, 31.0), Contains("8 frequencies"));
+    CHECK(vibration::fit_resonance(slope, 30.0, 400.0).hz == 0.0);
+    CHECK_THROWS_WITH(vibration::fit_resonance(slope, 30.0, 31.0), Contains("8 frequencies"));
 }
 
 TEST_CASE("minimum phase follows from the level alone") {
@@ -163,7 +163,7 @@ TEST_CASE("minimum phase follows from the level alone") {
         hz.push_back(f);
         magnitude.push_back(std::abs(plant.gain(f)));
     }
-    const std::vector<double> phase = minimum_phase(hz, magnitude);
+    const std::vector<double> phase = vibration::minimum_phase(hz, magnitude);
     for (std::size_t i = 0; i < hz.size(); ++i)
         if (hz[i] > 30.0 && hz[i] < 1000.0)
             CHECK(std::remainder(phase[i] - std::arg(plant.gain(hz[i])), 2.0 * std::numbers::pi) ==
@@ -171,8 +171,8 @@ TEST_CASE("minimum phase follows from the level alone") {
 }
 
 TEST_CASE("a record without the sweep is refused") {
-    const SweepRun run{{20.0, 2000.0, 1.0, 0.02}, 1.0, 0.5, 1};
-    CHECK_THROWS_WITH(identify(run, std::vector<float>(1000), rate), Contains("0.0208 s long; 1.5 s were played"));
-    CHECK_THROWS_WITH(identify(run, std::vector<float>(72000), rate), Contains("silent"));
-    CHECK_THROWS_AS(identify({{20.0, 30.0, 1.0}, 1.0, 0.5, 1}, std::vector<float>(72000), rate), Error);
+    const vibration::SweepRun run{{20.0, 2000.0, 1.0, 0.02}, 1.0, 0.5, 1};
+    CHECK_THROWS_WITH(vibration::identify(run, std::vector<float>(1000), rate), Contains("0.0208 s long; 1.5 s were played"));
+    CHECK_THROWS_WITH(vibration::identify(run, std::vector<float>(72000), rate), Contains("silent"));
+    CHECK_THROWS_AS(vibration::identify({{20.0, 30.0, 1.0}, 1.0, 0.5, 1}, std::vector<float>(72000), rate), Error);
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "dsp/core/random.hpp"
-#include "dsp/filter/biquad.hpp"
+#include "dsp/signal/filter/biquad.hpp"
 
 #include <array>
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace tactus::test {
 
 /// A resonant peak (or, below 0 dB, a dip) of that gain at `frequency` and 1 far from it.
-inline BiquadCoefficients bell(double frequency, double rate, double gain_db, double q) {
+inline signal::BiquadCoefficients bell(double frequency, double rate, double gain_db, double q) {
     const double a = std::pow(10.0, gain_db / 40.0);
     const double w = 2.0 * std::numbers::pi * frequency / rate, alpha = std::sin(w) / (2.0 * q), c = std::cos(w);
     const double a0 = 1.0 + alpha / a;
@@ -26,24 +26,24 @@ inline BiquadCoefficients bell(double frequency, double rate, double gain_db, do
 struct Plant {
     double rate = 48000.0, resonance = 75.0, damping = 0.25, mode = 180.0;
 
-    std::array<BiquadCoefficients, 5> sections() const {
-        return {highpass(resonance, rate, 1.0 / (2.0 * damping)), bell(mode, rate, 9.0, 4.0),
-                bell(420.0, rate, -8.0, 6.0), bell(640.0, rate, 7.0, 5.0), lowpass(1400.0, rate)};
+    std::array<signal::BiquadCoefficients, 5> sections() const {
+        return {signal::highpass(resonance, rate, 1.0 / (2.0 * damping)), bell(mode, rate, 9.0, 4.0),
+                bell(420.0, rate, -8.0, 6.0), bell(640.0, rate, 7.0, 5.0), signal::lowpass(1400.0, rate)};
     }
     std::complex<double> gain(double frequency) const {
         std::complex<double> product = 1.0;
-        for (const BiquadCoefficients& section : sections()) product *= section.response(frequency, rate);
+        for (const signal::BiquadCoefficients& section : sections()) product *= section.response(frequency, rate);
         return product;
     }
     std::vector<float> operator()(const std::vector<float>& drive) const {
-        std::array<Biquad, 5> filters;
+        std::array<signal::Biquad, 5> filters;
         const auto all = sections();
         for (std::size_t i = 0; i < all.size(); ++i) filters[i].coefficients = all[i];
         std::vector<float> out;
         out.reserve(drive.size());
         for (const float x : drive) {
             double y = static_cast<double>(x);
-            for (Biquad& filter : filters) y = filter(y);
+            for (signal::Biquad& filter : filters) y = filter(y);
             out.push_back(static_cast<float>(y));
         }
         return out;
@@ -65,7 +65,7 @@ inline void add_disturbance(std::vector<float>& samples, double rate, double hum
 inline std::vector<float> saw(double strokes, bool cutting, double duration, double rate, std::uint64_t seed) {
     constexpr std::array<double, 10> levels{1.0, 0.5, 0.35, 0.25, 0.2, 0.15, 0.1, 0.08, 0.05, 0.04};
     const Random phases{seed}, random{seed + 1000};
-    Biquad above{highpass(300.0, rate)}, below{lowpass(1500.0, rate)};
+    signal::Biquad above{signal::highpass(300.0, rate)}, below{signal::lowpass(1500.0, rate)};
     std::vector<float> out(static_cast<std::size_t>(duration * rate));
     for (std::size_t i = 0; i < out.size(); ++i) {
         const double cycles = strokes * static_cast<double>(i) / rate;

@@ -2,7 +2,7 @@
 #include "dsp/vibration/refine_rate.hpp"
 
 #include "dsp/core/random.hpp"
-#include "dsp/spectrum/comb.hpp"
+#include "dsp/signal/spectrum/comb.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -33,9 +33,9 @@ TEST_CASE("the rate of a buzz is heard to 0.05 Hz, whatever the sample rate, in 
         for (const double frequency : {75.0, 150.3, 233.0, 333.3})
             for (const double noise : {0.0, 0.1}) {
                 INFO(sample_rate << " Hz, " << frequency << " Hz, noise " << noise);
-                const Comb heard = fit_comb(buzz(frequency, noise, sample_rate), sample_rate, 60.0, 400.0);
+                const signal::Comb heard = signal::fit_comb(buzz(frequency, noise, sample_rate), sample_rate, 60.0, 400.0);
                 CHECK(heard.best.frequency == Approx(frequency).margin(0.05));
-                CHECK(heard.confidence > sure_of_comb);
+                CHECK(heard.confidence > signal::sure_of_comb);
             }
 }
 
@@ -43,17 +43,17 @@ TEST_CASE("noise, silence and a constant have no rate worth the name") {
     std::vector<float> noise(48000);
     for (std::uint64_t seed = 1; seed <= 50; ++seed) {
         for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = static_cast<float>(Random{seed}.normal(i));
-        CHECK(fit_comb(noise, 48000.0, 60.0, 400.0).confidence < sure_of_comb);
+        CHECK(signal::fit_comb(noise, 48000.0, 60.0, 400.0).confidence < signal::sure_of_comb);
     }
     for (const std::vector<float>& quiet : {std::vector<float>(48000), std::vector<float>(48000, 0.5f),
                                             std::vector<float>(50, 0.5f), std::vector<float>()})
-        CHECK(fit_comb(quiet, 48000.0, 60.0, 400.0).confidence == 0.0);
+        CHECK(signal::fit_comb(quiet, 48000.0, 60.0, 400.0).confidence == 0.0);
 }
 
 TEST_CASE("a rate stated 2 % off is corrected from the sound to 0.02 Hz") {
     const std::vector<float> sound = buzz(190.4, 0.05, 48000.0, 2.0);
     for (const double stated : {187.0, 190.0, 194.0})
-        CHECK(refine_rate(sound, 48000.0, stated, 0.02) == Approx(190.4).margin(0.02));
+        CHECK(vibration::refine_rate(sound, 48000.0, stated, 0.02) == Approx(190.4).margin(0.02));
     // Too short to say anything: what was stated stays.
-    CHECK(refine_rate(std::span(sound).first(500), 48000.0, 187.0, 0.02) == 187.0);
+    CHECK(vibration::refine_rate(std::span(sound).first(500), 48000.0, 187.0, 0.02) == 187.0);
 }

@@ -44,22 +44,22 @@ double goertzel(const std::vector<float>& samples, double frequency, double rate
 
 TEST_CASE("the line of a saw lies within 0.1 Hz of the commanded rate") {
     const auto free_air = tone(233.0, 0.3), cutting = tone(190.0, 2.0);
-    const SawRecording recordings[] = {{free_air, 48000.0, 233.0}, {cutting, 48000.0, 190.0, 7.0, true}};
+    const vibration::SawRecording recordings[] = {{free_air, 48000.0, 233.0}, {cutting, 48000.0, 190.0, 7.0, true}};
     for (double rate : {160.0, 200.5, 233.0, 250.0}) {
-        SawVoice voice;
+        vibration::SawVoice voice;
         voice.prepare(48000.0, recordings);
         for (int i = 0; i < 96000; ++i) voice.tick(0.0, true, rate);
         std::vector<float> out(96000);
         for (float& y : out) y = voice.tick(0.0, true, rate);
-        CHECK(refine_rate(out, 48000.0, rate, 0.01) == Approx(rate).margin(0.1));
-        CHECK(voice.state() == SawState::idle);
+        CHECK(vibration::refine_rate(out, 48000.0, rate, 0.01) == Approx(rate).margin(0.1));
+        CHECK(voice.state() == vibration::SawState::idle);
     }
 }
 
 TEST_CASE("the envelope of a tone ripples by less than 1 dB while the load comes and goes") {
     const auto free_air = tone(233.0, 0.3), cutting = tone(233.0, 2.5);
-    const SawRecording recordings[] = {{free_air, 48000.0, 233.0}, {cutting, 48000.0, 233.0, 7.0, true}};
-    SawVoice voice;
+    const vibration::SawRecording recordings[] = {{free_air, 48000.0, 233.0}, {cutting, 48000.0, 233.0, 7.0, true}};
+    vibration::SawVoice voice;
     voice.prepare(48000.0, recordings);
     for (int i = 0; i < 96000; ++i) voice.tick(0.0, true, 233.0);
     // A quarter cycle apart: y(t)² + y(t + T/4)² is the squared envelope.
@@ -77,9 +77,9 @@ TEST_CASE("the envelope of a tone ripples by less than 1 dB while the load comes
 
 TEST_CASE("the strongest line of the voice is the commanded rate, whatever recording it is played from") {
     const auto slow = tone(150.0, 1.0), fast = tone(233.0, 0.3);
-    const SawRecording recordings[] = {{slow, 48000.0, 150.0}, {fast, 48000.0, 233.0}};
+    const vibration::SawRecording recordings[] = {{slow, 48000.0, 150.0}, {fast, 48000.0, 233.0}};
     for (const double rate : {140.0, 165.0, 185.0, 210.0, 240.0}) {
-        SawVoice voice;
+        vibration::SawVoice voice;
         voice.prepare(48000.0, recordings);
         for (int i = 0; i < 96000; ++i) voice.tick(0.0, true, rate);
         std::vector<float> out(48000);
@@ -97,8 +97,8 @@ TEST_CASE("the seam of a loop makes no step greater than those of the sound itse
     // 1.003 s at 233.3 Hz, with noise: no whole number of cycles, and ends that do not meet.
     std::vector<float> sound = tone(233.3, 0.4, 1.003);
     for (std::size_t i = 0; i < sound.size(); ++i) sound[i] += static_cast<float>(0.02 * Random{2}.normal(i));
-    const SawRecording recordings[] = {{sound, 48000.0, 233.3}};
-    SawVoice voice;
+    const vibration::SawRecording recordings[] = {{sound, 48000.0, 233.3}};
+    vibration::SawVoice voice;
     voice.prepare(48000.0, recordings);
     for (int i = 0; i < 96000; ++i) voice.tick(0.0, true, 233.3);
     double known = 0.0, heard = 0.0, before = voice.tick(0.0, true, 233.3);
@@ -114,29 +114,29 @@ TEST_CASE("the seam of a loop makes no step greater than those of the sound itse
 
 TEST_CASE("cutting begins above the upper load and ends below the lower one") {
     const auto free_air = tone(233.0, 0.3), cutting = tone(233.0, 2.5);
-    const SawRecording recordings[] = {{free_air, 48000.0, 233.0}, {cutting, 48000.0, 233.0, 7.0, true}};
-    SawVoice voice;
+    const vibration::SawRecording recordings[] = {{free_air, 48000.0, 233.0}, {cutting, 48000.0, 233.0, 7.0, true}};
+    vibration::SawVoice voice;
     voice.prepare(48000.0, recordings);
     const auto state_at = [&](double load) {
         for (int i = 0; i < 9600; ++i) voice.tick(load, true, 233.0);
         return voice.state();
     };
     for (int i = 0; i < 48000; ++i) voice.tick(0.0, true, 233.0);
-    CHECK(state_at(0.0) == SawState::idle);
-    CHECK(state_at(0.4) == SawState::idle);
+    CHECK(state_at(0.0) == vibration::SawState::idle);
+    CHECK(state_at(0.4) == vibration::SawState::idle);
     CHECK(voice.loudest_recording() == 0);
-    CHECK(state_at(0.6) == SawState::cutting);
+    CHECK(state_at(0.6) == vibration::SawState::cutting);
     CHECK(voice.loudest_recording() == 1);
-    CHECK(state_at(0.4) == SawState::cutting);
-    CHECK(state_at(0.2) == SawState::idle);
+    CHECK(state_at(0.4) == vibration::SawState::cutting);
+    CHECK(state_at(0.2) == vibration::SawState::idle);
     CHECK(voice.loudest_recording() == 0);
 }
 
 TEST_CASE("a recording is not played more than 15 % off its rate while a nearer one is there, and changes only once") {
     const auto slow = tone(150.0, 1.0), middle = tone(190.0, 0.0), fast = tone(233.0, 0.3);
-    const SawRecording recordings[] = {{slow, 48000.0, 150.0}, {middle, 48000.0, 190.0}, {fast, 48000.0, 233.0}};
+    const vibration::SawRecording recordings[] = {{slow, 48000.0, 150.0}, {middle, 48000.0, 190.0}, {fast, 48000.0, 233.0}};
     const double recorded[] = {150.0, 190.0, 233.0};
-    SawVoice voice;
+    vibration::SawVoice voice;
     voice.prepare(48000.0, recordings, {.spin_up_time = 0.0, .spin_down_time = 0.0});
     int changes = 0, before = 0;
     for (double rate = 140.0; rate < 250.0; rate += 0.01) {
@@ -159,13 +159,13 @@ TEST_CASE("a recording is not played more than 15 % off its rate while a nearer 
 
 TEST_CASE("the voice is the same bits for the same input, and a load that is not a number counts as none") {
     const auto free_air = tone(233.0, 0.3), light = tone(190.0, 2.5), heavy = tone(190.0, 1.5);
-    const SawRecording recordings[] = {
+    const vibration::SawRecording recordings[] = {
         {free_air, 48000.0, 233.0}, {light, 48000.0, 190.0, 3.0, true}, {heavy, 48000.0, 190.0, 12.0, true}};
-    SawVoice one, two;
+    vibration::SawVoice one, two;
     one.prepare(48000.0, recordings);
     two.prepare(48000.0, recordings);
     const double not_numbers[] = {std::nan(""), HUGE_VAL, -HUGE_VAL};
-    SawVoice copy = one;
+    vibration::SawVoice copy = one;
     for (int i = 0; i < 96000; ++i) {
         const bool trigger = i < 72000;
         const double load = (i / 7000) % 3 == 1 ? 1e-4 * i : 0.0;
@@ -180,12 +180,12 @@ TEST_CASE("the voice is the same bits for the same input, and a load that is not
 
 TEST_CASE("a saw and its actuator do nothing in a tick that could wait") {
     const auto free_air = tone(233.0, 0.3), light = tone(190.0, 2.5), heavy = tone(150.0, 1.5);
-    const SawRecording recordings[] = {
+    const vibration::SawRecording recordings[] = {
         {free_air, 48000.0, 233.0}, {light, 48000.0, 190.0, 3.0, true}, {heavy, 48000.0, 150.0, 12.0, true}};
-    SawVoice voice;
+    vibration::SawVoice voice;
     voice.prepare(48000.0, recordings);
-    SawVoice copy = voice;
-    Actuator actuator(find_actuator("haptuator_small"), 0.1, 48000.0);
+    vibration::SawVoice copy = voice;
+    vibration::Actuator actuator(vibration::find_actuator("haptuator_small"), 0.1, 48000.0);
     double power = 0.0;
     const RealtimeViolations found = watch_scopes([&] {
         const RealtimeScope scope;
@@ -202,40 +202,40 @@ TEST_CASE("a saw and its actuator do nothing in a tick that could wait") {
 
 TEST_CASE("a saw that is off is silent, and no command makes it faster than its greatest rate") {
     const auto free_air = tone(233.0, 0.3);
-    const SawRecording recordings[] = {{free_air, 48000.0, 233.0}};
-    SawVoice voice;
+    const vibration::SawRecording recordings[] = {{free_air, 48000.0, 233.0}};
+    vibration::SawVoice voice;
     voice.prepare(48000.0, recordings);
     for (int i = 0; i < 1000; ++i) CHECK(voice.tick(7.0, false, 233.0) == 0.0f);
     CHECK_FALSE(voice.running());
     for (const double command : {1e9, HUGE_VAL})
         for (int i = 0; i < 48000; ++i) REQUIRE(std::isfinite(voice.tick(0.0, true, command)));
-    CHECK(voice.reciprocation_rate() <= SawVoice::greatest_rate);
-    CHECK(voice.reciprocation_rate() > 0.99 * SawVoice::greatest_rate);
+    CHECK(voice.reciprocation_rate() <= vibration::SawVoice::greatest_rate);
+    CHECK(voice.reciprocation_rate() > 0.99 * vibration::SawVoice::greatest_rate);
     for (int i = 0; i < 3 * 48000; ++i) REQUIRE(std::isfinite(voice.tick(0.0, true, std::nan(""))));
     CHECK_FALSE(voice.running());
 }
 
 TEST_CASE("a saw without usable recordings is refused") {
-    SawVoice voice;
+    vibration::SawVoice voice;
     CHECK_THROWS_AS(voice.prepare(48000.0, {}), Error);
     const auto brief = tone(233.0, 0.0, 0.03);
-    const SawRecording short_one[] = {{brief, 48000.0, 233.0}};
+    const vibration::SawRecording short_one[] = {{brief, 48000.0, 233.0}};
     CHECK_THROWS_AS(voice.prepare(48000.0, short_one), Error);
     const auto good = tone(233.0, 0.0);
-    const SawRecording no_rate[] = {{good, 48000.0, 0.0}}, backwards[] = {{good, 48000.0, 233.0, 0, false, 1, 9, 4}};
+    const vibration::SawRecording no_rate[] = {{good, 48000.0, 0.0}}, backwards[] = {{good, 48000.0, 233.0, 0, false, 1, 9, 4}};
     CHECK_THROWS_AS(voice.prepare(48000.0, no_rate), Error);
     CHECK_THROWS_AS(voice.prepare(48000.0, backwards), Error);
-    const SawRecording fine[] = {{good, 48000.0, 233.0}};
+    const vibration::SawRecording fine[] = {{good, 48000.0, 233.0}};
     CHECK_THROWS_AS(voice.prepare(0.0, fine), Error);
 }
 
 TEST_CASE("an actuator shows its data sheet's acceleration and bounds voltage and current") {
-    const ActuatorModel& model = find_actuator("haptuator_small");
-    CHECK(Actuator(model, 0.020, 48000.0).gain(150.0) == Approx(24.5).epsilon(0.01));
-    CHECK(3.0 * Actuator(model, 0.300, 48000.0).gain(150.0) == Approx(4.9).epsilon(0.01));
-    Actuator actuator(model, 0.3, 48000.0);
+    const vibration::ActuatorModel& model = vibration::find_actuator("haptuator_small");
+    CHECK(vibration::Actuator(model, 0.020, 48000.0).gain(150.0) == Approx(24.5).epsilon(0.01));
+    CHECK(3.0 * vibration::Actuator(model, 0.300, 48000.0).gain(150.0) == Approx(4.9).epsilon(0.01));
+    vibration::Actuator actuator(model, 0.3, 48000.0);
     for (int i = 0; i < 1000; ++i) {
-        const ActuatorOutput out = actuator(i % 2 ? 1e6 : -1e6);
+        const vibration::ActuatorOutput out = actuator(i % 2 ? 1e6 : -1e6);
         CHECK(std::abs(out.voltage) <= model.voltage_limit);
         CHECK(std::abs(out.current) <= model.current_limit);
     }

@@ -13,8 +13,8 @@ using namespace tactus;
 
 namespace {
 
-Grid sphere_grid(std::array<int, 3> size, const Vec3& spacing, double radius) {
-    Grid grid{size, Vec3(-0.5) * spacing * Vec3(size[0] - 1, size[1] - 1, size[2] - 1), spacing, {}};
+volume::Grid sphere_grid(std::array<int, 3> size, const Vec3& spacing, double radius) {
+    volume::Grid grid{size, Vec3(-0.5) * spacing * Vec3(size[0] - 1, size[1] - 1, size[2] - 1), spacing, {}};
     grid.values.resize(grid.count());
     for (int k = 0; k < size[2]; ++k)
         for (int j = 0; j < size[1]; ++j)
@@ -23,14 +23,14 @@ Grid sphere_grid(std::array<int, 3> size, const Vec3& spacing, double radius) {
     return grid;
 }
 
-Grid constant_like(const Grid& like, float value) {
-    Grid grid = like;
+volume::Grid constant_like(const volume::Grid& like, float value) {
+    volume::Grid grid = like;
     std::ranges::fill(grid.values, value);
     return grid;
 }
 
 /// The same interpolation on the dense grid.
-double dense_value(const Grid& grid, const Vec3& p) {
+double dense_value(const volume::Grid& grid, const Vec3& p) {
     const Vec3 at = (p - grid.origin) / grid.spacing;
     const int i = std::min(static_cast<int>(at.x), grid.size[0] - 2),
               j = std::min(static_cast<int>(at.y), grid.size[1] - 2),
@@ -51,13 +51,13 @@ Vec3 random_point(const Random& random, std::uint64_t i, double half) {
 }  // namespace
 
 TEST_CASE("bricks interpolate as the dense grid does, and the gradient is that of the interpolant") {
-    const Grid grid = sphere_grid({37, 41, 25}, Vec3(0.35e-3, 0.35e-3, 0.6e-3), 0.004);
-    const BoneEditor editor(grid, constant_like(grid, 1800.0f), {.band = 1.0, .max_dirty = 8, .max_versions = 2});
-    const BoneSnapshot bone = editor.current();
+    const volume::Grid grid = sphere_grid({37, 41, 25}, Vec3(0.35e-3, 0.35e-3, 0.6e-3), 0.004);
+    const volume::BoneEditor editor(grid, constant_like(grid, 1800.0f), {.band = 1.0, .max_dirty = 8, .max_versions = 2});
+    const volume::BoneSnapshot bone = editor.current();
     const Random random{3};
     for (std::uint64_t i = 0; i < 5000; ++i) {
         const Vec3 p = random_point(random, i, 0.0062);
-        const Sample s = bone.sample(p);
+        const volume::Sample s = bone.sample(p);
         REQUIRE(s.inside);
         CHECK(s.value == Approx(dense_value(grid, p)).margin(1e-12));
         CHECK(s.value == Approx(bone.value(p)).margin(1e-15));
@@ -74,12 +74,12 @@ TEST_CASE("bricks interpolate as the dense grid does, and the gradient is that o
 }
 
 TEST_CASE("outside of the grid, far from the bone and at no number everything is far") {
-    const Grid grid = sphere_grid({65, 65, 65}, Vec3(0.5e-3), 0.004);
-    const BoneEditor editor(grid, constant_like(grid, 1.0f), {.band = 0.002, .max_dirty = 8, .max_versions = 2});
+    const volume::Grid grid = sphere_grid({65, 65, 65}, Vec3(0.5e-3), 0.004);
+    const volume::BoneEditor editor(grid, constant_like(grid, 1.0f), {.band = 0.002, .max_dirty = 8, .max_versions = 2});
     for (const Vec3& p :
          {Vec3(1.0, 0.0, 0.0), Vec3(0.0159, 0.0159, 0.0159), Vec3(std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0),
           Vec3(0.0, -std::numeric_limits<double>::infinity(), 0.0)}) {
-        const Sample s = editor.current().sample(p);
+        const volume::Sample s = editor.current().sample(p);
         CHECK_FALSE(s.inside);
         CHECK(s.value == 0.002);
         CHECK(s.gradient == Vec3(0.0));
@@ -88,8 +88,8 @@ TEST_CASE("outside of the grid, far from the bone and at no number everything is
 }
 
 TEST_CASE("after random edits every brick agrees with a dense copy, borders included") {
-    Grid grid = sphere_grid({30, 33, 26}, Vec3(0.4e-3), 0.004);
-    BoneEditor editor(grid, constant_like(grid, 1.0f), {.band = 1.0, .max_dirty = 80, .max_versions = 3});
+    volume::Grid grid = sphere_grid({30, 33, 26}, Vec3(0.4e-3), 0.004);
+    volume::BoneEditor editor(grid, constant_like(grid, 1.0f), {.band = 1.0, .max_dirty = 80, .max_versions = 3});
     const Random random{11};
     for (std::uint64_t n = 0; n < 3000; ++n) {
         const int i = static_cast<int>(random.bits(4 * n) % 30), j = static_cast<int>(random.bits(4 * n + 1) % 33),
@@ -103,7 +103,7 @@ TEST_CASE("after random edits every brick agrees with a dense copy, borders incl
         }
     }
     editor.publish();
-    CHECK(to_grid(editor.current()).values == grid.values);
+    CHECK(volume::to_grid(editor.current()).values == grid.values);
     for (std::uint64_t n = 0; n < 4000; ++n) {
         const Vec3 p = random_point(random, 50000 + n, 0.005);
         CHECK(editor.current().value(p) == Approx(dense_value(grid, p)).margin(1e-9));
@@ -111,8 +111,8 @@ TEST_CASE("after random edits every brick agrees with a dense copy, borders incl
 }
 
 TEST_CASE("a version that is held never changes while others come and go, and the pool does not shrink") {
-    const Grid grid = sphere_grid({40, 40, 40}, Vec3(0.4e-3), 0.005);
-    BoneEditor editor(grid, constant_like(grid, 1.0f), {.band = 1.0, .max_dirty = 20, .max_versions = 4});
+    const volume::Grid grid = sphere_grid({40, 40, 40}, Vec3(0.4e-3), 0.005);
+    volume::BoneEditor editor(grid, constant_like(grid, 1.0f), {.band = 1.0, .max_dirty = 20, .max_versions = 4});
     const std::size_t free_at_first = editor.free_bricks();
     const auto edit = [&editor](std::uint64_t n) {
         const Random random{5};
@@ -121,12 +121,12 @@ TEST_CASE("a version that is held never changes while others come and go, and th
                        static_cast<int>(random.bits(9 * n + i + 6) % 40), static_cast<float>(n));
     };
     edit(1);
-    const BoneSnapshot held = editor.publish();
-    const Grid before = to_grid(held);
+    const volume::BoneSnapshot held = editor.publish();
+    const volume::Grid before = volume::to_grid(held);
     std::uint64_t last_hash = held.content_hash;
     for (std::uint64_t n = 2; n < 10000; ++n) {
         edit(n);
-        const BoneSnapshot next = editor.publish();
+        const volume::BoneSnapshot next = editor.publish();
         REQUIRE(next.version == held.version + static_cast<std::int64_t>(n) - 1);
         CHECK(next.content_hash != last_hash);
         last_hash = next.content_hash;
@@ -134,15 +134,15 @@ TEST_CASE("a version that is held never changes while others come and go, and th
         if (n > 2) editor.forget(next.version - 1);
         editor.reclaim(held.version);
     }
-    CHECK(to_grid(held).values == before.values);
+    CHECK(volume::to_grid(held).values == before.values);
     editor.reclaim(editor.current().version);
     CHECK(editor.free_bricks() == free_at_first);
 }
 
 TEST_CASE("the content hash depends on the edits, not on who reads when") {
-    const Grid grid = sphere_grid({40, 40, 40}, Vec3(0.4e-3), 0.005);
+    const volume::Grid grid = sphere_grid({40, 40, 40}, Vec3(0.4e-3), 0.005);
     const auto hash_with = [&grid](bool reclaims) {
-        BoneEditor editor(grid, constant_like(grid, 1.0f), {.band = 1.0, .max_dirty = 20, .max_versions = 40});
+        volume::BoneEditor editor(grid, constant_like(grid, 1.0f), {.band = 1.0, .max_dirty = 20, .max_versions = 40});
         for (int n = 0; n < 30; ++n) {
             editor.set(n, 39 - n, 20, static_cast<float>(n));
             editor.publish();
@@ -154,8 +154,8 @@ TEST_CASE("the content hash depends on the edits, not on who reads when") {
 }
 
 TEST_CASE("an edit beyond the budget of dirty bricks is refused whole") {
-    const Grid grid = sphere_grid({40, 40, 40}, Vec3(0.4e-3), 0.005);
-    BoneEditor editor(grid, constant_like(grid, 1.0f), {.band = 1.0, .max_dirty = 7, .max_versions = 4});
+    const volume::Grid grid = sphere_grid({40, 40, 40}, Vec3(0.4e-3), 0.005);
+    volume::BoneEditor editor(grid, constant_like(grid, 1.0f), {.band = 1.0, .max_dirty = 7, .max_versions = 4});
     CHECK_FALSE(editor.set(16, 16, 16, 1.0f));  // a corner shared by eight bricks
     CHECK(editor.dirty() == 0);
     CHECK(editor.get(16, 16, 16) == grid.at(16, 16, 16));

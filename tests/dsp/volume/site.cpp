@@ -11,14 +11,14 @@ using namespace tactus;
 namespace {
 
 struct Made {
-    Grid distance, density;
+    volume::Grid distance, density;
 };
 
 /// A bone of one density from its distance function, in a box of half widths `half` at 1 mm.
 template <class Distance>
 Made make(const Vec3& half, Distance&& distance, double spacing = 1e-3) {
     Made made;
-    Grid& grid = made.distance;
+    volume::Grid& grid = made.distance;
     grid.spacing = Vec3(spacing);
     grid.origin = -half;
     for (std::size_t a = 0; a < 3; ++a)
@@ -40,7 +40,7 @@ double box(const Vec3& p, const Vec3& half) {
     return glm::length(glm::max(q, Vec3(0.0))) + std::min(0.0, std::max({q.x, q.y, q.z}));
 }
 
-std::optional<SawSite> find(const Made& made) { return find_saw_site(made.distance, made.density); }
+std::optional<volume::SawSite> find(const Made& made) { return volume::find_saw_site(made.distance, made.density); }
 
 }  // namespace
 

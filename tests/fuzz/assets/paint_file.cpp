@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // paint_from_text: any text paints points within its strokes or is refused with one message.
-#include "assets/fracture/paint_file.hpp"
+#include "assets/cases/paint_file.hpp"
 #include "dsp/core/error.hpp"
 
 #include <cstddef>

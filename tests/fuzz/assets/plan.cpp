@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // read_plan_text: any text is a plan or is refused with one message; a plan comes back from its own text as it was.
-#include "assets/plan/plan_file.hpp"
+#include "assets/cases/plan_file.hpp"
 #include "dsp/core/error.hpp"
 
 #include <cstddef>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // read_sample_log and even_out: any text is an even record of finite numbers or
 // one Error.
-#include "assets/log/sample_log.hpp"
+#include "assets/table/sample_log.hpp"
 
 #include "dsp/core/error.hpp"
-#include "dsp/filter/even_out.hpp"
+#include "dsp/signal/filter/even_out.hpp"
 
 #include <cmath>
 #include <cstddef>

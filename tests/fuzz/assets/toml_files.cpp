@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // All that is written in TOML beside patches: any text is read as each of them or refused with one message.
 #include "assets/display/rig_file.hpp"
-#include "assets/equaliser/equaliser_file.hpp"
-#include "assets/recording/recording_set.hpp"
-#include "assets/rig/rig_matrix.hpp"
-#include "assets/thresholds/thresholds.hpp"
+#include "assets/sound/equaliser_file.hpp"
+#include "assets/sound/recording_set.hpp"
+#include "tools/study/rig_matrix.hpp"
+#include "assets/table/thresholds.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/fuzz/memory_file.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Take::load: whatever stands in the texts of a take, it is read or refused with one message.
 #include "dsp/core/error.hpp"
-#include "engine/take_reader.hpp"
+#include "engine/take/take_reader.hpp"
 
 #include <unistd.h>
 

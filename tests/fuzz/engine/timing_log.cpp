@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // TimingLog::load: any bytes are a log, whole or cut off, or are refused with one message.
-#include "engine/timing_log.hpp"
+#include "engine/take/timing_log.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/fuzz/memory_file.hpp"
 

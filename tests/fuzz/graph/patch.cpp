@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // read_patch and flatten: any text is a patch or a list of problems, and each problem has a place in it.
-#include "graph/sub_patch.hpp"
+#include "graph/patch/sub_patch.hpp"
 
 #include <algorithm>
 #include <cstddef>

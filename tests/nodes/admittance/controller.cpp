@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/core/error.hpp"
-#include "dsp/safety/force_limiter.hpp"
+#include "dsp/control/force_limiter.hpp"
 #include "tests/support/node_harness.hpp"
 
 #include <catch2/catch.hpp>
@@ -118,13 +118,13 @@ TEST_CASE("feed-forward takes away the lag behind a steadily moving object") {
 }
 
 TEST_CASE("a force that is not a number, or a sensor that is gone, stops the motor for its reason until asked") {
-    for (const Fault why : {Fault::not_finite, Fault::invalid_input, Fault::stale_input}) {
+    for (const control::Fault why : {control::Fault::not_finite, control::Fault::invalid_input, control::Fault::stale_input}) {
         Held held;
         held.node.prepare();
         held.tick();
         held.force = 2.0;
         held.ticks(3);
-        if (why == Fault::not_finite) held.force = NAN;
+        if (why == control::Fault::not_finite) held.force = NAN;
         else held.fault = static_cast<double>(why);
         CHECK(held.tick() == 0.0);
         CHECK(held.node.last<bool>("holds"));
@@ -142,7 +142,7 @@ TEST_CASE("a force that is not a number, or a sensor that is gone, stops the mot
         CHECK(held.position == Approx(2e-3).epsilon(1e-3));
         const Report report = held.node.report();
         CHECK(std::get<double>(report.sections.at("node").at("faults")) == 1.0);
-        CHECK(std::get<std::string>(report.sections.at("node").at("fault")) == describe(why));
+        CHECK(std::get<std::string>(report.sections.at("node").at("fault")) == control::describe(why));
     }
 }
 
@@ -166,7 +166,7 @@ TEST_CASE("an encoder that stands still while the motor runs is found within 15 
     int ran = 0;
     while (ran < 100 && held.tick() != 0.0) ++ran;
     CHECK(ran * 0.07 / 150.0 < 0.015);
-    CHECK(held.node.last<double>("reason") == static_cast<double>(Fault::stuck_encoder));
+    CHECK(held.node.last<double>("reason") == static_cast<double>(control::Fault::stuck_encoder));
     Held stalled;
     stalled.node.prepare();
     stalled.tick();
@@ -189,7 +189,7 @@ TEST_CASE("a motor that a hand holds still is stalled, and its encoder is not ca
     // The hand lets go, and still nothing moves.
     held.force = -1.0;
     held.ticks(60);
-    CHECK(held.node.last<double>("reason") == static_cast<double>(Fault::stuck_encoder));
+    CHECK(held.node.last<double>("reason") == static_cast<double>(control::Fault::stuck_encoder));
 }
 
 TEST_CASE("a gripper's output refuses what its motor may not, and goes on when asked") {
@@ -207,12 +207,12 @@ TEST_CASE("a gripper's output refuses what its motor may not, and goes on when a
         speed = bad;
         CHECK(given() == 0.0);
         CHECK(node.outside.devices.begin()->second->fault ==
-              (std::isnan(bad) ? Fault::not_finite : Fault::beyond_drive_limit));
+              (std::isnan(bad) ? control::Fault::not_finite : control::Fault::beyond_drive_limit));
         speed = 0.02;
         CHECK(given() == 0.0);
         node.set("recover", std::isnan(bad) ? "3" : bad > 0.0 ? "1" : "2");
         CHECK(given() == 0.02);
-        CHECK(node.outside.devices.begin()->second->fault == Fault::none);
+        CHECK(node.outside.devices.begin()->second->fault == control::Fault::none);
     }
     node.outside.devices.begin()->second->hold_off = true;
     CHECK(given() == 0.0);
@@ -236,16 +236,16 @@ TEST_CASE("a gripper's input tells what is wrong and keeps the last good positio
     CHECK(node.last<double>("fault") == 0.0);
     counts = false;
     node.run(10);
-    CHECK(node.last<double>("fault") == static_cast<double>(Fault::stale_input));
+    CHECK(node.last<double>("fault") == static_cast<double>(control::Fault::stale_input));
     counts = true;
     sample.fingers[0].force = NAN;
     node.run(1);
-    CHECK(node.last<double>("fault") == static_cast<double>(Fault::not_finite));
+    CHECK(node.last<double>("fault") == static_cast<double>(control::Fault::not_finite));
     CHECK(node.last<double>("finger_position") == 0.01);
     CHECK(node.last<double>("finger_force") == 0.0);
     sample.valid = false;
     node.run(1);
-    CHECK(node.last<double>("fault") == static_cast<double>(Fault::invalid_input));
+    CHECK(node.last<double>("fault") == static_cast<double>(control::Fault::invalid_input));
 }
 
 TEST_CASE("the rig swings 50 mm at its rate; a sweep gets faster without a jump") {

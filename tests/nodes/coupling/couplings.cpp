@@ -2,7 +2,7 @@
 #include "dsp/contact/shape.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
-#include "dsp/coupling/triangle_tree.hpp"
+#include "dsp/geometry/triangle_tree.hpp"
 #include "tests/support/node_harness.hpp"
 
 #include <catch2/catch.hpp>
@@ -19,25 +19,25 @@ constexpr double mm = 1e-3;
 constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
 
 /// Place 0: a table of 40 × 40 × 10 mm, top at z = 0. Place 1: a box of 10 mm that floats 1 mm above it.
-const Scene& table_and_box() {
-    const auto part = [](const Box& box, double spacing, double voxel) {
-        Grid grid{{0, 0, 0}, box.low() - Vec3(3.0 * mm), Vec3(voxel), {}};
+const coupling::Scene& table_and_box() {
+    const auto part = [](const contact::Box& box, double spacing, double voxel) {
+        volume::Grid grid{{0, 0, 0}, box.low() - Vec3(3.0 * mm), Vec3(voxel), {}};
         for (int axis = 0; axis < 3; ++axis)
             grid.size[static_cast<std::size_t>(axis)] =
                 static_cast<int>(std::ceil((box.size[axis] + 6.0 * mm) / voxel)) + 1;
-        return std::pair(make_pointshell(box.points(spacing)),
-                         sample_voxmap(grid, [&](const Vec3& p) { return box.distance(p); }));
+        return std::pair(contact::make_pointshell(box.points(spacing)),
+                         contact::sample_voxmap(grid, [&](const Vec3& p) { return box.distance(p); }));
     };
     static const auto table = part({Vec3(40.0, 40.0, 10.0) * mm}, 2.0 * mm, 0.5 * mm);
     static const auto box = part({Vec3(10.0 * mm)}, 1.0 * mm, 0.5 * mm);
-    static const TriangleTree top(iso_surface(table.second.grid, 0.0f, false));
-    static const Scene scene = [] {
-        Scene made;
+    static const geometry::TriangleTree top(geometry::iso_surface(table.second.grid, 0.0f, false));
+    static const coupling::Scene scene = [] {
+        coupling::Scene made;
         made.count = 2;
         made.objects[0] = {{&table.first, &table.second, &top, {}, 1, 1}, {{0.0, 0.0, -5.0 * mm}, {1, 0, 0, 0}}};
         made.objects[1] = {{&box.first, &box.second, nullptr, {}, 1, 2}, {{0.0, 0.0, 6.0 * mm}, {1, 0, 0, 0}}};
         made.version = 1;
-        made.content_hash = hash_of(made);
+        made.content_hash = coupling::hash_of(made);
         return made;
     }();
     return scene;
@@ -120,7 +120,7 @@ TEST_CASE("a body is taken and let go at any point without a jump in force") {
 
 TEST_CASE("a scene keeps a body where a hand has put it") {
     NodeHarness node("scene", servo);
-    const Scene& sample = table_and_box();
+    const coupling::Scene& sample = table_and_box();
     node.feed("a", sample.objects[0].body);
     node.feed("b", sample.objects[1].body);
     node.disconnect("c").disconnect("d").disconnect("a_pose").disconnect("b_pose").disconnect("c_pose");
@@ -130,7 +130,7 @@ TEST_CASE("a scene keeps a body where a hand has put it") {
     node.feed("moved", Pose{{0.01, 0.02, 0.03}, {1, 0, 0, 0}});
     node.prepare();
     node.run(30);
-    const auto scenes = node.values<Scene>("scene");
+    const auto scenes = node.values<coupling::Scene>("scene");
     CHECK(scenes[5].count == 2);
     CHECK(scenes[5].objects[1].pose.position == Vec3(0.0, 0.0, 6.0 * mm));
     CHECK(scenes[29].objects[1].pose.position == Vec3(0.01, 0.02, 0.03));
@@ -160,7 +160,7 @@ TEST_CASE("a proxy node stops at the table, on its field and on its triangles") 
         for (const char* surface : {"field", "triangles"}) {
             NodeHarness node(type, servo);
             node.set("surface", surface);
-            Scene only = table_and_box();
+            coupling::Scene only = table_and_box();
             only.count = 1;
             node.feed("scene", only);
             node.feed<Pose>("device", [](std::int64_t k) {

@@ -2,7 +2,7 @@
 #include "assets/library/fragments.hpp"
 #include "dsp/contact/pointshell.hpp"
 #include "dsp/coupling/scene.hpp"
-#include "dsp/operator/hand.hpp"
+#include "dsp/simulate/hand.hpp"
 #include "tests/support/node_harness.hpp"
 
 #include <catch2/catch.hpp>
@@ -22,24 +22,24 @@ constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
 
 /// The bundled fracture, coarse: where both halves stand fitted, as bodies and as bones.
 struct Fracture {
-    std::shared_ptr<const Bone> left, right;
-    Pointshell shells[2];
-    Voxmap maps[2];
-    Scene scene;
+    std::shared_ptr<const bone::Bone> left, right;
+    contact::Pointshell shells[2];
+    contact::Voxmap maps[2];
+    coupling::Scene scene;
 
     Fracture() {
-        std::vector<Bone> bones = make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
-        left = std::make_shared<const Bone>(std::move(bones[0]));
-        right = std::make_shared<const Bone>(std::move(bones[1]));
+        std::vector<bone::Bone> bones = library::make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
+        left = std::make_shared<const bone::Bone>(std::move(bones[0]));
+        right = std::make_shared<const bone::Bone>(std::move(bones[1]));
         scene.count = 2;
         for (std::size_t n = 0; n < 2; ++n) {
-            const Bone& bone = n == 0 ? *left : *right;
-            shells[n] = make_pointshell(bone.points);
-            maps[n] = make_voxmap(bone.distance);
+            const bone::Bone& bone = n == 0 ? *left : *right;
+            shells[n] = contact::make_pointshell(bone.points);
+            maps[n] = contact::make_voxmap(bone.distance);
             scene.objects[n] = {{&shells[n], &maps[n], nullptr, {}, 1, n + 1}, {}};
         }
         scene.version = 1;
-        scene.content_hash = hash_of(scene);
+        scene.content_hash = coupling::hash_of(scene);
     }
 };
 

@@ -35,13 +35,13 @@ double largest_step(const std::vector<Wrench>& felt, std::size_t first) {
 }  // namespace
 
 TEST_CASE("bone that is carved away at the break while a fragment snaps to it changes the force without a jump") {
-    const std::vector<Bone> bones = make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
-    const Pointshell shells[] = {make_pointshell(bones[0].points), make_pointshell(bones[1].points)};
-    const Voxmap right = make_voxmap(bones[1].distance);
+    const std::vector<bone::Bone> bones = library::make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
+    const contact::Pointshell shells[] = {contact::make_pointshell(bones[0].points), contact::make_pointshell(bones[1].points)};
+    const contact::Voxmap right = contact::make_voxmap(bones[1].distance);
     // Sixty versions a second of the left half, a ball that grows at the rim of the break.
-    std::vector<Voxmap> carved;
+    std::vector<contact::Voxmap> carved;
     for (int n = 0; n <= 30; ++n) {
-        Grid field = bones[0].distance;
+        volume::Grid field = bones[0].distance;
         const double radius = 0.15 * mm * n;
         std::size_t at = 0;
         for (int k = 0; k < field.size[2]; ++k)
@@ -50,11 +50,11 @@ TEST_CASE("bone that is carved away at the break while a fragment snaps to it ch
                     const double inside = radius - glm::length(field.position(i, j, k) - Vec3(0.0, 6.0, 0.0) * mm);
                     field.values[at] = std::max(field.values[at], static_cast<float>(n > 0 ? inside : -1.0));
                 }
-        carved.push_back(make_voxmap(std::move(field)));
+        carved.push_back(contact::make_voxmap(std::move(field)));
     }
     const auto scene_at = [&](std::int64_t tick) {
         const auto version = std::clamp<std::int64_t>((tick - 300) / 17, 0, 30);
-        Scene scene;
+        coupling::Scene scene;
         scene.count = 2;
         scene.objects[0] = {{&shells[0],
                              &carved[static_cast<std::size_t>(version)],
@@ -65,13 +65,13 @@ TEST_CASE("bone that is carved away at the break while a fragment snaps to it ch
                             {}};
         scene.objects[1] = {{&shells[1], &right, nullptr, {}, 1, 2}, {}};
         scene.version = version + 1;
-        scene.content_hash = hash_of(scene);
+        scene.content_hash = coupling::hash_of(scene);
         return scene;
     };
     NodeHarness node("snap_to_fit", servo);
-    node.asset("moving", std::make_shared<const Bone>(bones[1])).asset("fixed", std::make_shared<const Bone>(bones[0]));
+    node.asset("moving", std::make_shared<const bone::Bone>(bones[1])).asset("fixed", std::make_shared<const bone::Bone>(bones[0]));
     node.set("held", "1").set("target", "0");
-    node.feed<Scene>("scene", scene_at);
+    node.feed<coupling::Scene>("scene", scene_at);
     const Pose grip{Vec3(-20.0 * mm, 0.0, 0.0), {1.0, 0.0, 0.0, 0.0}};
     const Pose beside = Pose{Vec3(1.2, 0.6, -0.7) * mm, rotation_by({0.05, 0.03, -0.04})} * grip.inverse();
     node.feed<Pose>("device", beside).feed("grip", grip);
@@ -92,22 +92,22 @@ TEST_CASE("bone that is carved away at the break while a fragment snaps to it ch
 }
 
 TEST_CASE("a target behind a thin plate pulls nothing through it, neither does a hand, and both let go again") {
-    const auto part = [](const Box& box, double spacing) {
-        Grid grid{{0, 0, 0}, box.low() - Vec3(3.0 * mm), Vec3(0.5 * mm), {}};
+    const auto part = [](const contact::Box& box, double spacing) {
+        volume::Grid grid{{0, 0, 0}, box.low() - Vec3(3.0 * mm), Vec3(0.5 * mm), {}};
         for (int axis = 0; axis < 3; ++axis)
             grid.size[static_cast<std::size_t>(axis)] =
                 static_cast<int>(std::ceil((box.size[axis] + 6.0 * mm) / (0.5 * mm))) + 1;
-        return std::pair(make_pointshell(box.points(spacing)),
-                         sample_voxmap(grid, [&](const Vec3& p) { return box.distance(p); }));
+        return std::pair(contact::make_pointshell(box.points(spacing)),
+                         contact::sample_voxmap(grid, [&](const Vec3& p) { return box.distance(p); }));
     };
     // Two voxels of bone.
     const auto plate = part({Vec3(40.0, 40.0, 1.0) * mm}, 2.0 * mm), box = part({Vec3(10.0 * mm)}, 1.0 * mm);
-    Scene scene;
+    coupling::Scene scene;
     scene.count = 2;
     scene.objects[0] = {{&plate.first, &plate.second, nullptr, {}, 1, 1}, {{0.0, 0.0, 0.0}, {1, 0, 0, 0}}};
     scene.objects[1] = {{&box.first, &box.second, nullptr, {}, 1, 2}, {{0.0, 0.0, 10.0 * mm}, {1, 0, 0, 0}}};
     scene.version = 1;
-    scene.content_hash = hash_of(scene);
+    scene.content_hash = coupling::hash_of(scene);
     NodeHarness node("quasi_static_coupling", servo);
     node.set("held", "1");
     for (const char* open : {"grip", "holding", "strength", "has_target", "target_of"}) node.disconnect(open);
@@ -129,14 +129,14 @@ TEST_CASE("a target behind a thin plate pulls nothing through it, neither does a
 }
 
 TEST_CASE("a fragment that is taken deep inside of another and led comes out without harm, and to its place") {
-    const std::vector<Bone> bones = make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
-    const Pointshell shells[] = {make_pointshell(bones[0].points), make_pointshell(bones[1].points)};
-    const Voxmap maps[] = {make_voxmap(bones[0].distance), make_voxmap(bones[1].distance)};
-    Scene scene;
+    const std::vector<bone::Bone> bones = library::make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
+    const contact::Pointshell shells[] = {contact::make_pointshell(bones[0].points), contact::make_pointshell(bones[1].points)};
+    const contact::Voxmap maps[] = {contact::make_voxmap(bones[0].distance), contact::make_voxmap(bones[1].distance)};
+    coupling::Scene scene;
     scene.count = 2;
     for (std::size_t n = 0; n < 2; ++n) scene.objects[n] = {{&shells[n], &maps[n], nullptr, {}, 1, n + 1}, {}};
     scene.version = 1;
-    scene.content_hash = hash_of(scene);
+    scene.content_hash = coupling::hash_of(scene);
     const Pose grip{Vec3(-20.0 * mm, 0.0, 0.0), {1.0, 0.0, 0.0, 0.0}};
     for (const double depth : {3.0 * mm, 5.0 * mm}) {
         CAPTURE(depth);

@@ -26,25 +26,25 @@ constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
 
 /// A break with teeth, coarse, and where a hand stops 5 mm and 10 degrees beside its place.
 struct Broken {
-    std::shared_ptr<const Bone> left, right;
-    Pointshell shells[2];
-    Voxmap maps[2];
-    Scene scene;
+    std::shared_ptr<const bone::Bone> left, right;
+    contact::Pointshell shells[2];
+    contact::Voxmap maps[2];
+    coupling::Scene scene;
     Pose beside;  ///< of the right half
 
     explicit Broken(std::uint64_t seed) {
-        auto bones = make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 1.0 * mm, .seed = seed});
-        left = std::make_shared<const Bone>(std::move(bones[0]));
-        right = std::make_shared<const Bone>(std::move(bones[1]));
+        auto bones = library::make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 1.0 * mm, .seed = seed});
+        left = std::make_shared<const bone::Bone>(std::move(bones[0]));
+        right = std::make_shared<const bone::Bone>(std::move(bones[1]));
         scene.count = 2;
         for (std::size_t n = 0; n < 2; ++n) {
-            const Bone& bone = n == 0 ? *left : *right;
-            shells[n] = make_pointshell(bone.points);
-            maps[n] = make_voxmap(bone.distance);
+            const bone::Bone& bone = n == 0 ? *left : *right;
+            shells[n] = contact::make_pointshell(bone.points);
+            maps[n] = contact::make_voxmap(bone.distance);
             scene.objects[n] = {{&shells[n], &maps[n], nullptr, {}, 1, n + 1}, {}};
         }
         scene.version = 1;
-        scene.content_hash = hash_of(scene);
+        scene.content_hash = coupling::hash_of(scene);
         const Random random{seed};
         const auto direction = [&](std::uint64_t n) {
             return glm::normalize(Vec3(random.normal(n), random.normal(n + 1), random.normal(n + 2)));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The nodes of a planning session: scene of a case, matcher, brush, and the coupling that is led.
 #include "assets/library/fragments.hpp"
-#include "assets/plan/step_row.hpp"
+#include "assets/cases/step_row.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
-#include "graph/assets.hpp"
+#include "graph/node/assets.hpp"
 #include "tests/support/node_harness.hpp"
 
 #include <catch2/catch.hpp>
@@ -25,20 +25,20 @@ constexpr double mm = 1e-3;
 constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
 
 /// The bundled fracture, coarse, its left half locked; a third one, a copy of the left, lies far away.
-std::shared_ptr<const CaseBones> broken() {
-    static const std::shared_ptr<const CaseBones> made = [] {
-        auto c = std::make_shared<CaseBones>();
-        c->bones = make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
+std::shared_ptr<const cases::CaseBones> broken() {
+    static const std::shared_ptr<const cases::CaseBones> made = [] {
+        auto c = std::make_shared<cases::CaseBones>();
+        c->bones = library::make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
         c->bones.push_back(c->bones[0]);
         for (const char* name : {"left", "right", "copy"}) c->plan.fragments.push_back({name, name, 0, Vec3(1.0)});
-        PlanStep lock;
-        lock.kind = StepKind::lock;
+        cases::PlanStep lock;
+        lock.kind = cases::StepKind::lock;
         lock.fragments = {0};
-        add_step(c->plan, lock);
-        PlanStep away;
+        cases::add_step(c->plan, lock);
+        cases::PlanStep away;
         away.fragments = {2};
         away.poses = {{Vec3(0.0, 0.2, 0.0), {1.0, 0.0, 0.0, 0.0}}};
-        add_step(c->plan, away);
+        cases::add_step(c->plan, away);
         return c;
     }();
     return made;
@@ -47,7 +47,7 @@ std::shared_ptr<const CaseBones> broken() {
 Pose home_of(int fragment) {
     Vec3 middle(0.0);
     const auto& points = broken()->bones[static_cast<std::size_t>(fragment)].points;
-    for (const SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
+    for (const contact::SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
     return {middle, {1.0, 0.0, 0.0, 0.0}};
 }
 
@@ -85,17 +85,17 @@ struct Session {
         node.prepare();
         node.run(ticks);
     }
-    Scene scene() const { return node.last<Scene>("scene"); }
+    coupling::Scene scene() const { return node.last<coupling::Scene>("scene"); }
     Pose file_pose(int n) const {
-        const Scene now = scene();
-        const SceneObject& o = now.objects[static_cast<std::size_t>(n)];
+        const coupling::Scene now = scene();
+        const coupling::SceneObject& o = now.objects[static_cast<std::size_t>(n)];
         return o.pose * o.body.home.inverse();
     }
     /// What the rows come to that left the node.
-    CasePlan plan() const {
-        RunSteps steps(broken()->plan);
+    cases::CasePlan plan() const {
+        cases::RunSteps steps(broken()->plan);
         const auto& stream = *node.outside.records[0];
-        for (const StepRow& row : stream.values<StepRow>()) steps.add(row, 0.0);
+        for (const cases::StepRow& row : stream.values<cases::StepRow>()) steps.add(row, 0.0);
         return steps.plan();
     }
 };
@@ -122,10 +122,10 @@ TEST_CASE("a settled fragment stands where it fits when it is let go, and the st
     session.run(400);
     CHECK(off(session.file_pose(1), session.fit) < 1e-12);
     CHECK(session.node.last<double>("steps") == 3.0);
-    const CasePlan plan = session.plan();
+    const cases::CasePlan plan = session.plan();
     REQUIRE(plan.steps.size() == 3);
     CHECK(plan.steps[2].by == "settle");
-    const PlanFit& fit = *plan.steps[2].fit;
+    const cases::PlanFit& fit = *plan.steps[2].fit;
     CHECK(fit.partner == "left");
     CHECK(std::array{fit.score, fit.margin, fit.rms, fit.gap, fit.penetration, fit.overlap} ==
           std::array{0.1, 0.2, 0.4, 0.8, 1.6, 3.2});
@@ -151,10 +151,10 @@ TEST_CASE("what a run did is undone and redone, and undoing is part of its plan"
     session.run(310);
     CHECK(off(session.file_pose(1)) < 1e-12);
     CHECK(session.node.last<double>("steps") == 2.0);
-    CasePlan plan = session.plan();
+    cases::CasePlan plan = session.plan();
     CHECK(plan.steps.size() == 3);
     CHECK(plan.place().head == 1);
-    CHECK(redone(plan.before(), plan.place()).head == 2);
+    CHECK(fit::redone(plan.before(), plan.place()).head == 2);
     Session again;
     again.settle = 100;
     again.release = 200;
@@ -190,12 +190,12 @@ TEST_CASE("joined fragments are one unit of the scene until they are split") {
     both.run(300);
     CHECK(both.scene().objects[1].unit == -1);
     // Where it was joined is a step before the join.
-    const std::vector<PlanStep> steps = both.plan().steps;
+    const std::vector<cases::PlanStep> steps = both.plan().steps;
     REQUIRE(steps.size() == 5);
-    const auto joined = std::ranges::find(steps, StepKind::group, &PlanStep::kind);
+    const auto joined = std::ranges::find(steps, cases::StepKind::group, &cases::PlanStep::kind);
     REQUIRE(joined != steps.end());
     REQUIRE(joined != steps.begin());
-    CHECK((joined - 1)->kind == StepKind::place);
+    CHECK((joined - 1)->kind == cases::StepKind::place);
 }
 
 TEST_CASE("a run undoes and redoes the steps that its plan had before, and goes on from there") {
@@ -224,10 +224,10 @@ TEST_CASE("what is hidden leaves the scene until all is shown again, and both ar
     CHECK(session.scene().objects[0].body.shell != nullptr);
     session.node.run(100);
     CHECK(session.scene().objects[1].body.shell != nullptr);
-    const std::vector<PlanStep> steps = session.plan().steps;
+    const std::vector<cases::PlanStep> steps = session.plan().steps;
     REQUIRE(steps.size() == 5);
-    CHECK(steps[3].kind == StepKind::hide);
-    CHECK(steps[4].kind == StepKind::show);
+    CHECK(steps[3].kind == cases::StepKind::hide);
+    CHECK(steps[4].kind == cases::StepKind::show);
     CHECK(steps[4].fragments == std::vector<int>{1});
 }
 
@@ -235,19 +235,19 @@ TEST_CASE("a scene that nothing moves keeps its version, and one that the hand m
     Session session;
     session.release = 100;
     session.run(300);
-    const auto scenes = session.node.values<Scene>("scene");
+    const auto scenes = session.node.values<coupling::Scene>("scene");
     CHECK(scenes[90].version > scenes[50].version);
     CHECK(scenes[299].version == scenes[200].version);
-    CHECK(scenes[299].content_hash == hash_of(scenes[299]));
+    CHECK(scenes[299].content_hash == coupling::hash_of(scenes[299]));
 }
 
 TEST_CASE("a row of a run that is no step of its plan is refused, and the steps around it are kept") {
-    RunSteps steps(broken()->plan);
+    cases::RunSteps steps(broken()->plan);
     const auto lock = [](double step, double after, double fragment) {
-        StepRow row;
+        cases::StepRow row;
         row.step = step;
         row.after = after;
-        row.kind = static_cast<double>(StepKind::lock);
+        row.kind = static_cast<double>(cases::StepKind::lock);
         row.fragment = fragment;
         return row;
     };
@@ -259,13 +259,13 @@ TEST_CASE("a row of a run that is no step of its plan is refused, and the steps 
     // It follows the one that was left out, so it follows the one before that; number 6 never came.
     steps.add(lock(7.0, 3.0, 2.0), 0.3);
     // The first of two rows, and then no second one.
-    StepRow half;
+    cases::StepRow half;
     half.step = 8.0;
     half.after = 7.0;
     half.left = 1.0;
     steps.add(half, 0.4);
     steps.add(lock(9.0, 7.0, 0.0), 0.5);
-    const CasePlan& plan = steps.plan();
+    const cases::CasePlan& plan = steps.plan();
     REQUIRE(plan.steps.size() == 5);
     CHECK(plan.steps[3].before == 2);
     CHECK(plan.steps[3].fragments == std::vector<int>{2});
@@ -273,27 +273,27 @@ TEST_CASE("a row of a run that is no step of its plan is refused, and the steps 
 }
 
 /// The same fracture, its right half scanned `far` from its place.
-std::shared_ptr<const CaseBones> scanned(const Vec3& far) {
-    auto c = std::make_shared<CaseBones>(*broken());
+std::shared_ptr<const cases::CaseBones> scanned(const Vec3& far) {
+    auto c = std::make_shared<cases::CaseBones>(*broken());
     c->bones[1].distance.origin += far;
     c->bones[1].density.origin += far;
-    for (SurfacePoint& p : c->bones[1].points) p.position += far;
+    for (contact::SurfacePoint& p : c->bones[1].points) p.position += far;
     return c;
 }
 
-Scene scene_of(const std::shared_ptr<const CaseBones>& plan) {
+coupling::Scene scene_of(const std::shared_ptr<const cases::CaseBones>& plan) {
     NodeHarness scene("case_scene", servo);
     scene.asset("plan", plan);
     scene.disconnect_optional();
     scene.prepare();
     scene.run(1);
-    return scene.last<Scene>("scene");
+    return scene.last<coupling::Scene>("scene");
 }
 
 TEST_CASE("the matcher finds where a fragment fits from beside it, and says that a copy of its partner does not") {
     const Vec3 far = Vec3(6.0, 2.0, -3.0) * mm;
     const auto displaced = scanned(far);
-    Scene now = scene_of(displaced);
+    coupling::Scene now = scene_of(displaced);
     const Pose there{-far, {1.0, 0.0, 0.0, 0.0}};
     now.objects[1].pose = beside * there * now.objects[1].body.home;
     NodeHarness matcher("fragment_matcher", {.period = flicks_per_second / 4});
@@ -327,7 +327,7 @@ TEST_CASE(
     "the matcher does not lead to a fit that only repeats the scan, wherever both were brought, near or anywhere") {
     for (const char* reach : {"near", "anywhere"}) {
         CAPTURE(reach);
-        Scene now = scene_of(broken());
+        coupling::Scene now = scene_of(broken());
         const Pose brought{Vec3(20.0, -30.0, 10.0) * mm, rotation_by({0.4, 0.2, -0.3})};
         now.objects[0].pose = brought * now.objects[0].body.home;
         now.objects[1].pose = brought * beside * now.objects[1].body.home;
@@ -344,7 +344,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a brush paints what it meets, erases it again, and nothing else") {
-    const auto bone = std::make_shared<const Bone>(broken()->bones[0]);
+    const auto bone = std::make_shared<const bone::Bone>(broken()->bones[0]);
     NodeHarness node("brush", servo);
     node.asset("bone", bone).set("start_clean", "true").set("radius", "2 mm");
     const Vec3 at = bone->points[100].position;
@@ -355,14 +355,14 @@ TEST_CASE("a brush paints what it meets, erases it again, and nothing else") {
     node.prepare();
     node.run(20);
     std::size_t within = 0;
-    for (const SurfacePoint& p : bone->points) within += glm::length(p.position - at) <= 2.0 * mm;
+    for (const contact::SurfacePoint& p : bone->points) within += glm::length(p.position - at) <= 2.0 * mm;
     REQUIRE(within > 5);
     CHECK(node.values<double>("painted")[5] == 0.0);
     CHECK(node.last<double>("painted") == static_cast<double>(within));
     CHECK(node.last<double>("area") > 5e-6);
     CHECK(node.last<double>("distance") < 1e-9);
-    const auto painted = *std::any_cast<std::shared_ptr<const Bone>>(node.report().results.begin()->second);
-    CHECK(painted.points[100].label == surface_label::fracture);
+    const auto painted = *std::any_cast<std::shared_ptr<const bone::Bone>>(node.report().results.begin()->second);
+    CHECK(painted.points[100].label == contact::surface_label::fracture);
     node.run(20);
     CHECK(node.last<double>("painted") == 0.0);
 }
@@ -374,7 +374,7 @@ TEST_CASE(
     scene.disconnect_optional();
     scene.prepare();
     scene.run(1);
-    Scene now = scene.last<Scene>("scene");
+    coupling::Scene now = scene.last<coupling::Scene>("scene");
     // The right half alone in free space, 6 mm from its target.
     now.count = 2;
     now.objects[0].pose.position += Vec3(0.0, 0.0, 0.3);

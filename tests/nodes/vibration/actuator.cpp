@@ -31,12 +31,12 @@ double peak(NodeHarness& node, const std::string& output, double frequency, doub
 }  // namespace
 
 TEST_CASE("an actuator node shakes as its data sheet says, in inverse proportion to the mass above resonance") {
-    const ActuatorModel& model = find_actuator("haptuator_large");
+    const vibration::ActuatorModel& model = vibration::find_actuator("haptuator_large");
     NodeHarness light("actuator"), heavy("actuator");
     for (NodeHarness* node : {&light, &heavy}) node->set("preset", "haptuator_large").set("gain", "2 V");
     light.set("mass", "20 g");
     heavy.set("mass", "40 g");
-    const double expected = Actuator(model, 0.02, 48000.0).gain(150.0);
+    const double expected = vibration::Actuator(model, 0.02, 48000.0).gain(150.0);
     const double measured = peak(light, "signal", 150.0, 0.5);
     CHECK(measured == Approx(expected).epsilon(0.02));
     CHECK(peak(heavy, "signal", 150.0, 0.5) == Approx(measured / 2.0).epsilon(0.02));

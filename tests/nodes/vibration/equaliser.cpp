@@ -14,12 +14,12 @@ using test::NodeHarness;
 
 namespace {
 
-std::shared_ptr<const Equaliser> filter_of(std::vector<float> taps, double delay = 0.0, double rate = 48000.0) {
-    Equaliser equaliser;
+std::shared_ptr<const vibration::Equaliser> filter_of(std::vector<float> taps, double delay = 0.0, double rate = 48000.0) {
+    vibration::Equaliser equaliser;
     equaliser.taps = std::move(taps);
     equaliser.delay = delay;
     equaliser.rate = rate;
-    return std::make_shared<const Equaliser>(std::move(equaliser));
+    return std::make_shared<const vibration::Equaliser>(std::move(equaliser));
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ TEST_CASE("a sweep node plays the sweep that identification expects, as often as
     node.prepare();
     node.run(24000);
     const auto out = node.values<float>("signal");
-    const ExponentialSweep sweep{50.0, 500.0, 0.1, 0.01};
+    const vibration::ExponentialSweep sweep{50.0, 500.0, 0.1, 0.01};
     for (std::size_t i = 0; i < 7200; ++i) {
         CHECK(static_cast<double>(out[i]) == Approx(3.0 * sweep(static_cast<double>(i) / 48000.0)).margin(1e-6));
         CHECK(out[i + 7200] == out[i]);

@@ -17,7 +17,7 @@ namespace {
 
 bool can_render() {
     try {
-        const SurfacelessContext context;
+        const display::SurfacelessContext context;
         return true;
     } catch (const Error& error) {
         WARN("skipped: " << error.what());
@@ -32,8 +32,8 @@ const std::byte* bytes_of(const T& value) {
     return reinterpret_cast<const std::byte*>(&value);
 }
 
-Grid ball(double radius) {
-    Grid grid{{49, 49, 49}, Vec3(-0.012), Vec3(0.0005), {}};
+volume::Grid ball(double radius) {
+    volume::Grid grid{{49, 49, 49}, Vec3(-0.012), Vec3(0.0005), {}};
     for (int k = 0; k < 49; ++k)
         for (int j = 0; j < 49; ++j)
             for (int i = 0; i < 49; ++i)
@@ -45,13 +45,13 @@ Grid ball(double radius) {
 
 TEST_CASE("a cut is in the next picture, and only its bricks were meshed") {
     if (!can_render()) return;
-    Grid density = ball(0.01);
+    volume::Grid density = ball(0.01);
     std::ranges::fill(density.values, 1800.0f);
-    BoneEditor editor(ball(0.01), density, {.band = 0.002});
-    Observer observer;
-    const BoneSnapshot initial = editor.current();
-    const auto port = observer.open({"carve.bone", at_60_hz, 1}, value::snapshot<BoneSnapshot>, bytes_of(initial));
-    PictureMaker maker(64, 64);
+    volume::BoneEditor editor(ball(0.01), density, {.band = 0.002});
+    observe::Observer observer;
+    const volume::BoneSnapshot initial = editor.current();
+    const auto port = observer.open({"carve.bone", at_60_hz, 1}, value::snapshot<volume::BoneSnapshot>, bytes_of(initial));
+    display::PictureMaker maker(64, 64);
     SceneOutline outline;
     outline.bones = {{"carve.bone"}};
     SceneModel model(outline, observer, maker.renderer());
@@ -69,7 +69,7 @@ TEST_CASE("a cut is in the next picture, and only its bricks were meshed") {
     for (int k = 44; k < 49; ++k)
         for (int j = 20; j < 28; ++j)
             for (int i = 20; i < 28; ++i) editor.set(i, j, k, 0.001f);
-    const BoneSnapshot cut = editor.publish();
+    const volume::BoneSnapshot cut = editor.publish();
     port->see(1, bytes_of(cut), 1, 0);
     observer.advance();
     model.update();
@@ -80,12 +80,12 @@ TEST_CASE("a cut is in the next picture, and only its bricks were meshed") {
 
 TEST_CASE("a pose or a force that is not a number is told, and not drawn") {
     if (!can_render()) return;
-    Observer observer;
+    observe::Observer observer;
     const Pose good;
     const Wrench none;
     const auto pose = observer.open({"hand.pose", at_60_hz, 1}, value::pose, bytes_of(good));
     const auto wrench = observer.open({"tip.wrench", at_60_hz, 1}, value::wrench, bytes_of(none));
-    PictureMaker maker(64, 64);
+    display::PictureMaker maker(64, 64);
     SceneOutline outline;
     outline.balls = {{"hand.pose", "", "tip.wrench", 0.005}};
     SceneModel model(outline, observer, maker.renderer());
@@ -113,11 +113,11 @@ TEST_CASE("a pose or a force that is not a number is told, and not drawn") {
 
 TEST_CASE("what an edit took away leaves the picture, and what it brings comes in") {
     if (!can_render()) return;
-    Observer observer;
+    observe::Observer observer;
     const Pose here;
     const auto a = observer.open({"a.pose", at_60_hz, 1}, value::pose, bytes_of(here));
     const auto b = observer.open({"b.pose", at_60_hz, 1}, value::pose, bytes_of(here));
-    PictureMaker maker(64, 64);
+    display::PictureMaker maker(64, 64);
     SceneOutline first, second;
     first.balls = {{"a.pose", "", "", 0.005}};
     second.blades = {{"saw", "b.pose", "", {0.04, 0.01, 0.001}}};
@@ -127,8 +127,8 @@ TEST_CASE("what an edit took away leaves the picture, and what it brings comes i
     model.follow(second);
     model.update();
     CHECK(model.triangles() != ball_triangles);
-    CHECK(a->watched() == Watch::nothing);
-    CHECK(b->watched() == Watch::latest);
+    CHECK(a->watched() == observe::Watch::nothing);
+    CHECK(b->watched() == observe::Watch::latest);
     model.follow(first);
     model.update();
     CHECK(model.triangles() == ball_triangles);

@@ -17,7 +17,7 @@ using namespace tactus::session;
 namespace {
 
 SceneOutline outline_in_library(const std::string& patch) {
-    Problems problems;
+    patch::Problems problems;
     PatchChoice choice;
     choice.patch = tactus::test::source_folder().string() + "/assets/library/patches/" + patch + ".toml";
     const auto plan = read_plan(choice, problems);

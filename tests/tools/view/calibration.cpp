@@ -16,9 +16,9 @@ using namespace tactus::test;
 namespace {
 
 /// How a rig really stands: a monitor above a half-transparent mirror, seen as `image`, and a device beneath.
-const Pose device{{0.03, -0.24, -0.28}, rotation_xyz({0.2, -0.1, 0.4})};
-const Plane mirror{{0.0, 0.0, 0.0}, glm::normalize(Vec3(0.0, -0.25, 0.97))};
-const Screen image{{0.26, -0.14, -0.2}, {-0.26, -0.14, -0.2}, {0.26, 0.14, -0.12}};
+const Pose device{{0.03, -0.24, -0.28}, coupling::rotation_xyz({0.2, -0.1, 0.4})};
+const display::Plane mirror{{0.0, 0.0, 0.0}, glm::normalize(Vec3(0.0, -0.25, 0.97))};
+const display::Screen image{{0.26, -0.14, -0.2}, {-0.26, -0.14, -0.2}, {0.26, 0.14, -0.12}};
 
 /// A hand that goes from touch to touch, a little beside each, and presses its button there.
 class Hand {
@@ -111,7 +111,7 @@ close
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
     REQUIRE(fs::exists(folder.path / "rig.toml"));
-    const RigFile rig = load_rig_file(folder.path / "rig.toml");
+    const display::RigFile rig = display::load_rig_file(folder.path / "rig.toml");
     double worst = 0.0;
     for (int corner = 0; corner < 8; ++corner) {
         const Vec3 felt = work + 0.1 * Vec3((corner & 1) * 2 - 1, (corner & 2) - 1, (corner >> 2) * 2 - 1);
@@ -123,7 +123,7 @@ close
     REQUIRE(rig.rig.mirror);
     REQUIRE(rig.screens.size() == 1);
     CHECK(rig.screens[0].name == "monitor");
-    const Screen& screen = rig.rig.screens[0];
+    const display::Screen& screen = rig.rig.screens[0];
     CHECK(glm::length(rig.rig.mirror->reflected(screen.low_left) - image.low_left) < 1e-3);
     CHECK(glm::length(rig.rig.mirror->reflected(screen.low_right) - image.low_right) < 1e-3);
     CHECK(glm::length(rig.rig.mirror->reflected(screen.high_left) - image.high_left) < 1e-3);

@@ -21,9 +21,9 @@ using tactus::test::touch;
 
 namespace {
 
-Plan plan_of_text(const std::string& text) {
-    Problems problems;
-    std::optional<Plan> plan = compile(read_patch(text, "p.toml", problems), catalogue(), problems);
+compile::Plan plan_of_text(const std::string& text) {
+    patch::Problems problems;
+    std::optional<compile::Plan> plan = compile::compile(patch::read_patch(text, "p.toml", problems), nodes::catalogue(), problems);
     for (const Error& error : problems.list) FAIL(error.what());
     return std::move(*plan);
 }
@@ -171,7 +171,7 @@ TEST_CASE("what is wider than a slider resolves is dragged, by shares of its val
 }
 
 TEST_CASE("a form shows every parameter with range, unit and default, and says which can be turned") {
-    const Plan plan = plan_of_text(touch);
+    const compile::Plan plan = plan_of_text(touch);
     const auto fields = parameters_of(plan, 1);
     const auto stiffness = std::ranges::find(fields, "stiffness", &ParameterField::name);
     REQUIRE(stiffness != fields.end());
@@ -190,7 +190,7 @@ TEST_CASE("a form shows every parameter with range, unit and default, and says w
 }
 
 TEST_CASE("a parameter that can be turned needs no new plan, all else does") {
-    const Plan before = plan_of_text(touch);
+    const compile::Plan before = plan_of_text(touch);
     const auto change = [&](const std::string& text) { return change_between(before, plan_of_text(text)); };
     CHECK_FALSE(change(touch).needs_edit);
     CHECK(change(touch).settings.empty());
@@ -214,8 +214,8 @@ TEST_CASE("a tone is a line of its frequency in a scope's spectrum, and a refere
         trace.times.push_back(i / 48000.0);
         trace.columns[0].push_back(std::sin(2.0 * std::numbers::pi * 440.0 * i / 48000.0));
     }
-    WelchSettings settings;
-    Spectrum louder = welch<double>(trace.columns[0], settings);
+    signal::WelchSettings settings;
+    signal::Spectrum louder = signal::welch<double>(trace.columns[0], settings);
     for (double& power : louder.power) power *= 100.0;
     const Plot plot = spectrum_plot(trace, {1.0, "V", 1}, 48000.0, 1.0, 1.0, louder);
     REQUIRE(plot.curves.size() == 2);

@@ -27,24 +27,24 @@ TEST_CASE("where all is drawn at once anyway, what stands still is drawn once") 
 }
 
 TEST_CASE("a scene looks otherwise when anything in it moves, changes, is cut, or is explained or seen otherwise") {
-    Picture picture;
+    display::Picture picture;
     picture.meshes.resize(2);
-    std::vector<DrawnView> views(1);
-    Legend legend;
+    std::vector<display::DrawnView> views(1);
+    display::Legend legend;
     legend.entries.resize(1);
     const std::uint64_t before = looks_of(picture, 1, views, legend);
     CHECK(looks_of(picture, 1, views, legend) == before);
     CHECK(looks_of(picture, 2, views, legend) != before);
-    Picture moved = picture;
+    display::Picture moved = picture;
     moved.meshes[1].pose.position.z += 1e-9;
     CHECK(looks_of(moved, 1, views, legend) != before);
     moved = picture;
-    moved.clip = Plane{};
+    moved.clip = display::Plane{};
     CHECK(looks_of(moved, 1, views, legend) != before);
     moved = picture;
     moved.points.resize(1);
     CHECK(looks_of(moved, 1, views, legend) != before);
-    Legend other = legend;
+    display::Legend other = legend;
     other.warnings.push_back("no valid pose: the head stays");
     CHECK(looks_of(picture, 1, views, other) != before);
     other = legend;

@@ -38,11 +38,11 @@ void wait_for_scene(TakeBench& bench) {
 }
 
 /// Version and samples, bit by bit.
-bool same(const SeenBone& a, const SeenBone& b) {
+bool same(const observe::SeenBone& a, const observe::SeenBone& b) {
     if (a.version != b.version || a.root.distance.size() != b.root.distance.size()) return false;
     for (std::size_t i = 0; i < a.root.distance.size(); ++i) {
         const float *x = a.root.distance[i], *y = b.root.distance[i];
-        if (!x != !y || (x && !std::equal(x, x + brick_samples, y))) return false;
+        if (!x != !y || (x && !std::equal(x, x + volume::brick_samples, y))) return false;
     }
     return true;
 }
@@ -54,14 +54,14 @@ TEST_CASE("the bone at an instant of a take is that of a run to there, whatever 
     TakeBench bench(rendered(folder, "saw-training", "3"));
     bench.go_to(bench.length());
     wait_for_scene(bench);
-    AssetCache assets;
+    compile::AssetCache assets;
     std::int64_t last_version = -1;
     std::size_t changed = 0;
     for (const double t : {2.0041, 0.3456, 2.9876, 1.2345, 2.0041}) {
         bench.go_to(t);
-        Observer observer(Observer::Pace::lossless);
-        for (const char* port : {"carve.bone", "place.pose"}) observer.watch(port, Watch::latest);
-        EngineOptions options;
+        observe::Observer observer(observe::Observer::Pace::lossless);
+        for (const char* port : {"carve.bone", "place.pose"}) observer.watch(port, observe::Watch::latest);
+        run::EngineOptions options;
         options.observer = &observer;
         options.seconds = t;
         ReplayedTake run(bench.take(), options, assets);
@@ -83,7 +83,7 @@ TEST_CASE("the bone at an instant of a take is that of a run to there, whatever 
 TEST_CASE("a take that is played gives the values that a jump to the same instant gives") {
     Folder folder;
     const std::string patch = folder.write("voice.toml", voice).string();
-    const Take take = Take::load(rendered(folder, patch, "2"));
+    const take::Take take = take::Take::load(rendered(folder, patch, "2"));
     TakeFeed played(take);
     const std::set<std::string> ports{"tone.signal", "level.value"};
     played.traced_s = 0.3;

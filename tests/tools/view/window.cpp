@@ -84,7 +84,7 @@ TEST_CASE("a run with a window on it is recorded, replays to the bit, and its ta
     check_picture(folder.path / "late.png", 1600, 1000);
     CHECK(slurp(folder.path / "late.png") != slurp(folder.path / "early.png"));
     CHECK(slurp(folder.path / "take/patch-0.toml") ==
-          tactus::read_whole_file(tactus::test::library_folder() / "patches/touch-sphere.toml"));
+          tactus::file::read_whole_file(tactus::test::library_folder() / "patches/touch-sphere.toml"));
 }
 
 TEST_CASE("a window changes no bit of what a patch computes") {

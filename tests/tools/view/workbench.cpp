@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/workbench.hpp"
-#include "engine/take_reader.hpp"
+#include "engine/take/take_reader.hpp"
 #include "tests/tools/patches.hpp"
 #include "tests/tools/run_command.hpp"
 #include "tools/session/load_plan.hpp"
@@ -89,12 +89,12 @@ TEST_CASE("a patch saved at the bench compiles to the plan that was shown") {
     CHECK(text == bench.editor().text());
     CHECK(text.find("# the way of the sound") != std::string::npos);
     CHECK(text.find("\"220 Hz\"   # a") != std::string::npos);
-    Problems problems;
-    const std::optional<Plan> plan = read_plan(choice, problems);
+    patch::Problems problems;
+    const std::optional<compile::Plan> plan = read_plan(choice, problems);
     REQUIRE(plan);
     REQUIRE(plan->nodes.size() == bench.plan()->nodes.size());
     for (std::size_t n = 0; n < plan->nodes.size(); ++n) {
-        const PlanNode &a = plan->nodes[n], &b = bench.plan()->nodes[n];
+        const compile::PlanNode &a = plan->nodes[n], &b = bench.plan()->nodes[n];
         CHECK(a.name == b.name);
         CHECK(a.type == b.type);
         CHECK(a.group == b.group);
@@ -102,7 +102,7 @@ TEST_CASE("a patch saved at the bench compiles to the plan that was shown") {
     }
     REQUIRE(plan->wires.size() == bench.plan()->wires.size());
     for (std::size_t w = 0; w < plan->wires.size(); ++w) {
-        const PlanWire &a = plan->wires[w], &b = bench.plan()->wires[w];
+        const compile::PlanWire &a = plan->wires[w], &b = bench.plan()->wires[w];
         CHECK((a.from_node == b.from_node && a.from_output == b.from_output && a.to_node == b.to_node &&
                a.to_input == b.to_input && a.mode == b.mode));
     }
@@ -154,8 +154,8 @@ TEST_CASE(
     // the same as the file does now.
     REQUIRE(bench.set("level", "number", "0.9"));
     const auto loudness = [&] {
-        bench.observer()->watch("level.value", Watch::latest);
-        return bench.observer()->latest<double>("level.value").value_or(Seen<double>{}).value;
+        bench.observer()->watch("level.value", observe::Watch::latest);
+        return bench.observer()->latest<double>("level.value").value_or(observe::Seen<double>{}).value;
     };
     REQUIRE(come_about([&] { return status(), loudness() == 0.9; }));
     folder.write("voice.toml", voice + "# from elsewhere\n");
@@ -219,7 +219,7 @@ TEST_CASE("record pressed while a patch runs leaves the run alone and makes a ta
     REQUIRE(come_about([&] { return bench.running()->is_over(); }));
     CHECK(bench.status()->failure.empty());
     CHECK(bench.take() == folder.path / "voice-take-1");
-    const Take take = Take::load(bench.take());
+    const take::Take take = take::Take::load(bench.take());
     CHECK(take.streams.size() == 3);
     const TakeFeed feed(take);
     REQUIRE(feed.recorded().size() == 1);
@@ -243,9 +243,9 @@ TEST_CASE("an output that two look at stays looked at when one of them turns awa
     Workbench bench(choice_in(folder));
     bench.run();
     REQUIRE(come_about([&] { return bench.tend(), bench.status()->time > 0.1; }));
-    Observer& observer = *bench.observer();
+    observe::Observer& observer = *bench.observer();
     const int other = 0;
-    observer.watch("level.value", Watch::latest, &other);
+    observer.watch("level.value", observe::Watch::latest, &other);
     {
         LiveFeed feed(bench.observer());
         feed.follow({"level.value"}, {});

@@ -23,35 +23,35 @@ struct ExportChoice {
     bool json = false;
 };
 
-std::vector<Bone> chosen_bones(const ExportChoice& choice) {
-    if (choice.bone.empty() && file_of_bone(choice.input) == choice.input) return load_bones(choice.input);
-    std::vector<Bone> one;
+std::vector<bone::Bone> chosen_bones(const ExportChoice& choice) {
+    if (choice.bone.empty() && bone::file_of_bone(choice.input) == choice.input) return bone::load_bones(choice.input);
+    std::vector<bone::Bone> one;
     const std::string path = choice.input.string();
-    one.push_back(load_bone(choice.bone.empty() ? path : path + "#" + choice.bone));
+    one.push_back(bone::load_bone(choice.bone.empty() ? path : path + "#" + choice.bone));
     return one;
 }
 
-BoneQuantity quantity_of(const std::string& text) {
-    return text == "density" ? BoneQuantity::density : text == "distance" ? BoneQuantity::distance : BoneQuantity::hu;
+bone::BoneQuantity quantity_of(const std::string& text) {
+    return text == "density" ? bone::BoneQuantity::density : text == "distance" ? bone::BoneQuantity::distance : bone::BoneQuantity::hu;
 }
 
-nlohmann::ordered_json export_mesh(const std::vector<Bone>& bones, const std::filesystem::path& out) {
-    std::vector<ColouredSurface> surfaces;
+nlohmann::ordered_json export_mesh(const std::vector<bone::Bone>& bones, const std::filesystem::path& out) {
+    std::vector<mesh::ColouredSurface> surfaces;
     double volume = 0.0;
     std::size_t triangles = 0;
-    for (const Bone& bone : bones) {
-        surfaces.push_back({export_surface(bone.distance), bone.colour});
-        volume += volume_of(surfaces.back().surface);
+    for (const bone::Bone& bone : bones) {
+        surfaces.push_back({mesh::export_surface(bone.distance), bone.colour});
+        volume += mesh::volume_of(surfaces.back().surface);
         triangles += surfaces.back().surface.triangles.size();
     }
-    write_mesh(surfaces, out);
+    mesh::write_mesh(surfaces, out);
     return {{"triangles", triangles}, {"volume_mm3", volume * 1e9}};
 }
 
-nlohmann::ordered_json export_volume(const std::vector<Bone>& bones, const ExportChoice& choice) {
-    const BoneQuantity quantity = quantity_of(choice.quantity);
-    const Grid volume = volume_of_bones(bones, quantity);
-    write_volume(volume, quantity == BoneQuantity::hu ? SampleType::int16 : SampleType::float32, choice.out);
+nlohmann::ordered_json export_volume(const std::vector<bone::Bone>& bones, const ExportChoice& choice) {
+    const bone::BoneQuantity quantity = quantity_of(choice.quantity);
+    const volume::Grid volume = bone::volume_of_bones(bones, quantity);
+    volume::write_volume(volume, quantity == bone::BoneQuantity::hu ? volume::SampleType::int16 : volume::SampleType::float32, choice.out);
     const Vec3 h = volume.spacing * 1e3;
     return {{"quantity", choice.quantity}, {"size", volume.size}, {"spacing_mm", {h.x, h.y, h.z}}};
 }
@@ -62,10 +62,10 @@ int export_bone(const ExportChoice& choice) {
     if (!is_mesh && kind != ".nrrd" && kind != ".nii" && !choice.out.string().ends_with(".nii.gz"))
         throw Error(fmt::format("{}: export writes .stl and .ply (the surface), .nrrd, .nii and .nii.gz (a volume)",
                                 choice.out.string()));
-    const std::vector<Bone> bones = chosen_bones(choice);
+    const std::vector<bone::Bone> bones = chosen_bones(choice);
     nlohmann::ordered_json json = is_mesh ? export_mesh(bones, choice.out) : export_volume(bones, choice);
     std::vector<std::string> names;
-    for (const Bone& bone : bones) names.push_back(bone.name);
+    for (const bone::Bone& bone : bones) names.push_back(bone.name);
     json["bones"] = names;
     json["file"] = choice.out.string();
     if (choice.json) fmt::print("{}\n", json.dump(2));

@@ -50,7 +50,7 @@ study::FractureSettings settings_of(const FractureChoice& choice) {
 int fracture(const FractureChoice& choice) {
     const study::FractureSettings settings = settings_of(choice);
     if (settings.missing > settings.pieces - 2) throw Error("at least two pieces must be left; lower --missing");
-    const Bone bone = study::bone_of_file(choice.bone);
+    const bone::Bone bone = study::bone_of_file(choice.bone);
     Json truth{{"bone", bone.name},
                {"seed", settings.seed},
                {"unit", "mm"},
@@ -66,16 +66,16 @@ int fracture(const FractureChoice& choice) {
         if (number == 1) session::make_output_folder(choice.out);
         const std::string name = fmt::format("fragment_{:02}", number);
         fragment.bone.name = name;
-        save_bone(fragment.bone, choice.out / (name + ".vdb"));
-        const ColouredSurface surface{export_surface(fragment.bone.distance), fragment.bone.colour};
-        write_mesh({&surface, 1}, choice.out / (name + ".stl"));
+        bone::save_bone(fragment.bone, choice.out / (name + ".vdb"));
+        const mesh::ColouredSurface surface{mesh::export_surface(fragment.bone.distance), fragment.bone.colour};
+        mesh::write_mesh({&surface, 1}, choice.out / (name + ".stl"));
         truth["fragments"].push_back({{"fragment", name},
                                       {"pose", pose_json<Json>(fragment.place)},
                                       {"volume_mm3", fragment.volume * 1e9},
                                       {"files", {name + ".vdb", name + ".stl"}}});
         if (!choice.json) fmt::print("{}: {:.0f} mm³\n", name, fragment.volume * 1e9);
     });
-    write_whole_file(choice.out / "truth.json", truth.dump(2) + "\n");
+    file::write_whole_file(choice.out / "truth.json", truth.dump(2) + "\n");
     if (choice.json) fmt::print("{}\n", truth.dump(2));
     return done;
 }

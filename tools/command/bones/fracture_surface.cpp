@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Proposes where a fragment is broken, and takes corrections by hand.
 #include "tools/study/bones/fracture_surface.hpp"
-#include "assets/fracture/paint_file.hpp"
+#include "assets/cases/paint_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
@@ -25,16 +25,16 @@ struct FractureSurfaceChoice {
     bool json = false;
 };
 
-Json residual_json(const Registration& r) { return {{"median_mm", r.median * 1e3}, {"p90_mm", r.p90 * 1e3}}; }
+Json residual_json(const fit::Registration& r) { return {{"median_mm", r.median * 1e3}, {"p90_mm", r.p90 * 1e3}}; }
 
 Json json_of(const FractureSurfaceChoice& choice, const study::FractureSurface& found,
-             const std::vector<PaintedFace>& faces) {
+             const std::vector<cases::PaintedFace>& faces) {
     Json json{{"file", choice.out.string()}, {"faces", Json::array()}};
     if (found.intact) {
         json["intact"] = {{"file", choice.settings.intact.string()}, {"on_main", residual_json(found.intact->on_main)}};
         if (found.intact->on_bone) json["intact"]["on_bone"] = residual_json(*found.intact->on_bone);
     }
-    for (const PaintedFace& f : faces) {
+    for (const cases::PaintedFace& f : faces) {
         const Vec3 p = f.middle * 1e3;
         json["faces"].push_back({{"area_mm2", f.area * 1e6},
                                  {"points", f.points},
@@ -44,15 +44,15 @@ Json json_of(const FractureSurfaceChoice& choice, const study::FractureSurface& 
     return json;
 }
 
-void print_laid(const char* where, const Registration& r) {
+void print_laid(const char* where, const fit::Registration& r) {
     fmt::print("the unbroken bone lies {}: median {:.2f} mm, 90 % within {:.2f} mm\n", where, r.median * 1e3,
                r.p90 * 1e3);
 }
 
-void print(const study::FractureSurface& found, const std::vector<PaintedFace>& faces) {
+void print(const study::FractureSurface& found, const std::vector<cases::PaintedFace>& faces) {
     if (found.intact) print_laid("on the main fragment", found.intact->on_main);
     if (found.intact && found.intact->on_bone) print_laid("on this one, by itself", *found.intact->on_bone);
-    for (const PaintedFace& f : faces) {
+    for (const cases::PaintedFace& f : faces) {
         const Vec3 p = f.middle * 1e3;
         fmt::print("{:.0f} mm² about {:.1f} {:.1f} {:.1f} mm, looking along {:.2f} {:.2f} {:.2f}\n", f.area * 1e6, p.x,
                    p.y, p.z, f.normal.x, f.normal.y, f.normal.z);
@@ -68,11 +68,11 @@ int fracture_surface(const FractureSurfaceChoice& choice) {
     settings.reach = choice.reach * 1e-3;
     if (choice.least_area) settings.least_area = *choice.least_area * 1e-6;
     const study::FractureSurface found = study::propose_fracture_surface(settings);
-    std::vector<PaintedFace> faces;
-    if (extension == ".json") faces = write_paint_file(found.bone.points, settings.bone.string(), choice.out);
+    std::vector<cases::PaintedFace> faces;
+    if (extension == ".json") faces = cases::write_paint_file(found.bone.points, settings.bone.string(), choice.out);
     else {
-        faces = painted_faces(found.bone.points);
-        save_bone(found.bone, choice.out);
+        faces = cases::painted_faces(found.bone.points);
+        bone::save_bone(found.bone, choice.out);
     }
     if (choice.json) fmt::print("{}\n", json_of(choice, found, faces).dump(2));
     else print(found, faces);

@@ -18,12 +18,12 @@ namespace tactus::command {
 
 namespace {
 
-struct ImportChoice : ImportOptions {
+struct ImportChoice : bone::ImportOptions {
     std::filesystem::path out;
     bool json = false;
 };
 
-nlohmann::ordered_json json_of(const ImportSummary& s) {
+nlohmann::ordered_json json_of(const bone::ImportSummary& s) {
     return {{"frame", s.frame},
             {"hu", s.hu},
             {"voxel_mm", s.voxel_mm},
@@ -36,7 +36,7 @@ nlohmann::ordered_json json_of(const ImportSummary& s) {
             {"notes", s.notes}};
 }
 
-std::string text_of(const ImportSummary& s) {
+std::string text_of(const bone::ImportSummary& s) {
     std::string text = fmt::format(
         "{} x {} x {} voxels of {:.3g} x {:.3g} x {:.3g} mm\n  {:.0f} mm³ of bone, {:.0f} mm² of surface, {} "
         "component{} "
@@ -48,14 +48,14 @@ std::string text_of(const ImportSummary& s) {
     return text;
 }
 
-int import_label_map(const ImportChoice& choice, const ImportOptions& options, const ImportProgress& progress,
+int import_label_map(const ImportChoice& choice, const bone::ImportOptions& options, const bone::ImportProgress& progress,
                      LiveLine& line) {
-    check_output(options, choice.out);
-    std::vector<ImportedBone> made = import_labels(options, progress);
+    bone::check_output(options, choice.out);
+    std::vector<bone::ImportedBone> made = bone::import_labels(options, progress);
     line.clear();
-    std::vector<Bone> bones;
-    for (ImportedBone& each : made) bones.push_back(std::move(each.bone));
-    save_bones(bones, choice.out);
+    std::vector<bone::Bone> bones;
+    for (bone::ImportedBone& each : made) bones.push_back(std::move(each.bone));
+    bone::save_bones(bones, choice.out);
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     std::string text = choice.out.string() + "\n";
     for (std::size_t n = 0; n < bones.size(); ++n) {
@@ -72,14 +72,14 @@ int import_label_map(const ImportChoice& choice, const ImportOptions& options, c
 
 int import_bone(const ImportChoice& choice) {
     LiveLine line;
-    const ImportProgress progress = [&line](double part, std::string_view doing) {
+    const bone::ImportProgress progress = [&line](double part, std::string_view doing) {
         line.show(fmt::format("{:3.0f} %  {}", 100.0 * part, doing));
     };
-    ImportOptions options = choice;
+    bone::ImportOptions options = choice;
     options.run = study::on_threads();
     if (!choice.label.empty()) return import_label_map(choice, options, progress, line);
     if (!choice.ct.empty()) throw Error("--ct goes with a label map: say which label with --label N or --label all");
-    const ImportSummary summary = import_bone_file(options, choice.out, progress);
+    const bone::ImportSummary summary = bone::import_bone_file(options, choice.out, progress);
     line.clear();
     nlohmann::ordered_json json = json_of(summary);
     json["file"] = choice.out.string();

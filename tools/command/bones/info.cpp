@@ -45,7 +45,7 @@ nlohmann::ordered_json json_of(const Inspection& found) {
 }
 
 // Bars by the logarithm of the count: a CT is mostly air.
-std::string bars(const Histogram& histogram) {
+std::string bars(const volume::Histogram& histogram) {
     std::uint64_t most = 1;
     for (const std::uint64_t count : histogram.counts) most = std::max(most, count);
     std::string text;

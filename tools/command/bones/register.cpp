@@ -22,7 +22,7 @@ struct RegisterChoice {
     bool json = false;
 };
 
-Json json_of(const Registration& r, const Pose& pose) {
+Json json_of(const fit::Registration& r, const Pose& pose) {
     return {{"pose", pose_json<Json>(pose)},
             {"median_before_mm", r.before * 1e3},
             {"median_mm", r.median * 1e3},
@@ -70,7 +70,7 @@ int register_surfaces(const RegisterChoice& choice) {
         fmt::print("{}\n", json_of(found, settings.region).dump(2));
         return done;
     }
-    const Registration& r = found.registration;
+    const fit::Registration& r = found.registration;
     fmt::print("median distance {:.2f} mm (before {:.2f} mm), 90 % within {:.2f} mm\n", r.median * 1e3, r.before * 1e3,
                r.p90 * 1e3);
     if (found.region) print_region(*found.region);

@@ -42,14 +42,14 @@ study::FragmentPaint strokes_of(const Json& strokes, const char* side, const std
 study::SnapSettings settings_of(const SnapChoice& choice) {
     study::SnapSettings settings = choice.settings;
     if (!choice.start.empty()) settings.start = pose_of_text(choice.start, "--start");
-    settings.mode = choice.mode == "thesis"   ? FitMode::thesis
-                    : choice.mode == "global" ? FitMode::global
-                                              : FitMode::extended;
+    settings.mode = choice.mode == "thesis"   ? fit::FitMode::thesis
+                    : choice.mode == "global" ? fit::FitMode::global
+                                              : fit::FitMode::extended;
     if (const auto comma = choice.paint.find(','); comma != std::string::npos) {
         settings.moving_paint.file = choice.paint.substr(0, comma);
         settings.fixed_paint.file = choice.paint.substr(comma + 1);
     } else if (choice.paint != "auto") {
-        const Json strokes = Json::parse(read_whole_file(choice.paint), nullptr, false);
+        const Json strokes = Json::parse(file::read_whole_file(choice.paint), nullptr, false);
         settings.moving_paint = strokes_of(strokes, "moving", choice.paint);
         settings.fixed_paint = strokes_of(strokes, "fixed", choice.paint);
     }
@@ -62,9 +62,9 @@ Json painted_mm2(const study::SnappedSide& side) {
     return areas;
 }
 
-Json json_of(const Fit& fit) {
+Json json_of(const fit::Fit& fit) {
     Json free = Json::array();
-    for (const FreeDirection& f : fit.free)
+    for (const fit::FreeDirection& f : fit.free)
         free.push_back({{"type", f.is_turn ? "rotation" : "translation"}, {"axis", {f.axis.x, f.axis.y, f.axis.z}}});
     return {{"pose", pose_json<Json>(fit.pose)},
             {"score", fit.quality.score},
@@ -75,7 +75,7 @@ Json json_of(const Fit& fit) {
             {"penetration_mm", fit.quality.penetration * 1e3},
             {"outline_step_mm", fit.quality.outline * 1e3},
             {"free_directions", free},
-            {"verdict", name_of(fit.verdict)}};
+            {"verdict", fit::name_of(fit.verdict)}};
 }
 
 Json json_of(const study::Snapped& found) {
@@ -90,15 +90,15 @@ Json json_of(const study::Snapped& found) {
 }
 
 void print(const study::Snapped& found) {
-    const Fit& fit = found.fit;
+    const fit::Fit& fit = found.fit;
     const Vec3 p = fit.pose.position * 1e3;
     const Quat q = fit.pose.orientation;
     fmt::print("{}: score {:.2f}, margin {:.2f}, {:.0f} mm² on each other, {:.3f} mm rms, {:.0f} ms\n",
-               name_of(fit.verdict), fit.quality.score, fit.margin, fit.quality.overlap * 1e6, fit.quality.rms * 1e3,
+               fit::name_of(fit.verdict), fit.quality.score, fit.margin, fit.quality.overlap * 1e6, fit.quality.rms * 1e3,
                1e3 * found.seconds);
     fmt::print("p_fixed = R p_moving + t: t = {:.3f} {:.3f} {:.3f} mm, q = {:.5f} {:.5f} {:.5f} {:.5f}\n", p.x, p.y,
                p.z, q.w, q.x, q.y, q.z);
-    for (const FreeDirection& f : fit.free)
+    for (const fit::FreeDirection& f : fit.free)
         fmt::print("free to {} {:.2f} {:.2f} {:.2f}\n", f.is_turn ? "turn about" : "slide along", f.axis.x, f.axis.y,
                    f.axis.z);
     if (found.as_scanned) fmt::print("{}\n", as_scanned_note);
@@ -108,7 +108,7 @@ int snap(const SnapChoice& choice) {
     const study::Snapped found = study::snap_files(settings_of(choice));
     if (choice.json) fmt::print("{}\n", json_of(found).dump(2));
     else print(found);
-    return found.fit.verdict == FitVerdict::fit ? done : answer_is_no;
+    return found.fit.verdict == fit::FitVerdict::fit ? done : answer_is_no;
 }
 
 Action add(VerbOptions& verb) {

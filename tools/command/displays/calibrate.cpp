@@ -43,27 +43,27 @@ std::unique_ptr<HapticDevice> open(const std::string& driver, const std::vector<
     }
     tactus::Options all(fmt::format("device '{}'", driver), std::move(options));
     auto device =
-        open_haptic_device(driver, {}, all, [](const std::string& name) { return std::filesystem::path(name); });
+        haptic::open_haptic_device(driver, {}, all, [](const std::string& name) { return std::filesystem::path(name); });
     all.finish();
     return device;
 }
 
 /// The touches of a device, or those of a file.
-std::vector<RigTouch> touches_of(const CalibrateChoice& choice, const RigFile& base, const RigFitOptions& options) {
-    if (!choice.touches.empty()) return load_touches(choice.touches);
-    std::vector<RigTouch> steps = study::calibration_steps(choice.settings);
+std::vector<display::RigTouch> touches_of(const CalibrateChoice& choice, const display::RigFile& base, const display::RigFitOptions& options) {
+    if (!choice.touches.empty()) return display::load_touches(choice.touches);
+    std::vector<display::RigTouch> steps = study::calibration_steps(choice.settings);
     study::check_screens(choice.settings, base);
     study::TouchLead lead(std::move(steps), !choice.settings.tracker.empty(),
-                          [&](std::span<const RigTouch> done) { fit_rig(done, options); });
+                          [&](std::span<const display::RigTouch> done) { display::fit_rig(done, options); });
     study::TipReader tip(
-        open(choice.device, choice.device_options), is_real_driver(choice.device),
-        parse_vector(choice.settings.tip, "mm"),
+        open(choice.device, choice.device_options), haptic::is_real_driver(choice.device),
+        display::parse_vector(choice.settings.tip, "mm"),
         choice.settings.tracker.empty() ? nullptr : open(choice.settings.tracker, choice.tracker_options));
     std::optional<picture::MarkWindow> window;
     if (choice.show > 0) window.emplace(choice.show);
     const bool can_ask = ::isatty(STDIN_FILENO) != 0;
     study::TouchSession session;
-    session.show = [&](const RigTouch& step, std::size_t number, std::size_t of) {
+    session.show = [&](const display::RigTouch& step, std::size_t number, std::size_t of) {
         if (!choice.json)
             fmt::print(stderr, "{:2} of {}: {}; press {}\n", number + 1, of, study::prompt_of(step),
                        can_ask ? "the button, or Enter" : "the button");
@@ -83,20 +83,20 @@ std::vector<RigTouch> touches_of(const CalibrateChoice& choice, const RigFile& b
 }
 
 int calibrate(const CalibrateChoice& choice) {
-    const RigFile base = choice.base.empty() ? RigFile{} : load_rig_file(choice.base);
-    const RigFitOptions options = study::fit_options(choice.settings, base);
-    const std::vector<RigTouch> touches = touches_of(choice, base, options);
+    const display::RigFile base = choice.base.empty() ? display::RigFile{} : display::load_rig_file(choice.base);
+    const display::RigFitOptions options = study::fit_options(choice.settings, base);
+    const std::vector<display::RigTouch> touches = touches_of(choice, base, options);
     // Touches are worth keeping also when nothing comes of them.
-    if (!choice.keep.empty()) write_whole_file(choice.keep, touches_text(touches));
-    const RigFit fit = fit_rig(touches, options);
+    if (!choice.keep.empty()) file::write_whole_file(choice.keep, display::touches_text(touches));
+    const display::RigFit fit = display::fit_rig(touches, options);
     const study::TouchesOff all = study::touches_off(fit);
     nlohmann::ordered_json parts = nlohmann::ordered_json::array();
     std::string text;
-    for (const TouchedPart& part : fit.parts) {
+    for (const display::TouchedPart& part : fit.parts) {
         nlohmann::ordered_json off = nlohmann::ordered_json::array();
         text += study::part_text(part) + "\n";
         for (std::size_t i = 0; i < part.touches.size(); ++i) {
-            const RigTouch& touch = touches[part.touches[i]];
+            const display::RigTouch& touch = touches[part.touches[i]];
             text += fmt::format("  touch {:2}  {:6.2f} mm  {}\n", part.touches[i] + 1, part.off[i] * 1e3, touch.name());
             off.push_back({{"touch", part.touches[i] + 1}, {"off_mm", part.off[i] * 1e3}, {"of", touch.name()}});
         }

@@ -30,10 +30,10 @@ struct RigChoice {
     bool json = false;
 };
 
-study::RigReport simulate(const RigChoice& choice, const RigMatrix& matrix) {
+study::RigReport simulate(const RigChoice& choice, const study::RigMatrix& matrix) {
     LiveLine line;
     std::string series;
-    const auto keep = [&](const study::RigCell& cell, const RigSeries& measured) {
+    const auto keep = [&](const study::RigCell& cell, const control::RigSeries& measured) {
         if (choice.keep_series) series += study::rig_series_csv(cell, measured, series.empty());
     };
     const auto progress = [&](int done_cells, int of) {
@@ -41,7 +41,7 @@ study::RigReport simulate(const RigChoice& choice, const RigMatrix& matrix) {
     };
     study::RigReport report = study::study_rig(choice.patch, matrix, study::on_threads(choice.threads), progress, keep);
     line.clear();
-    if (choice.keep_series) write_whole_file(choice.out / "series.csv", series);
+    if (choice.keep_series) file::write_whole_file(choice.out / "series.csv", series);
     report.title = "Test rig: " + choice.patch.patch;
     report.source =
         fmt::format("{} motors, {} objects, {} rates and {} amplitudes on simulated grippers.", matrix.motors.size(),
@@ -61,19 +61,19 @@ study::RigReport recorded(const RigChoice& choice) {
 int rig(const RigChoice& choice) {
     const bool is_record = choice.patch.patch.ends_with(".csv");
     if (is_record && !choice.matrix.empty()) throw Error("a record says itself what was tried; leave --matrix out");
-    RigMatrix matrix;
-    if (!choice.matrix.empty()) matrix = load_rig_matrix(choice.matrix);
+    study::RigMatrix matrix;
+    if (!choice.matrix.empty()) matrix = study::load_rig_matrix(choice.matrix);
     session::make_output_folder(choice.out);
     study::RigReport report;
     if (is_record) report = recorded(choice);
     else report = simulate(choice, matrix);
     const std::string json = rig_json(report);
-    write_whole_file(choice.out / "rig.json", json);
-    write_whole_file(choice.out / "rig.csv", rig_csv(report));
-    write_whole_file(choice.out / "report.html", picture::rig_html(report));
-    write_png(picture::draw_rig_errors(report).image(), (choice.out / "errors.png").string());
+    file::write_whole_file(choice.out / "rig.json", json);
+    file::write_whole_file(choice.out / "rig.csv", rig_csv(report));
+    file::write_whole_file(choice.out / "report.html", picture::rig_html(report));
+    display::write_png(picture::draw_rig_errors(report).image(), (choice.out / "errors.png").string());
     if (!report.crossover.empty())
-        write_png(picture::draw_rig_crossover(report).image(), (choice.out / "crossover.png").string());
+        display::write_png(picture::draw_rig_crossover(report).image(), (choice.out / "crossover.png").string());
     fmt::print("{}", choice.json ? json : rig_text(report));
     return done;
 }

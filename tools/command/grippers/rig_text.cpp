@@ -25,7 +25,7 @@ Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(); 
 Json finite(const std::optional<double>& value) { return value ? finite(*value) : Json(); }
 
 Json cell_json(const RigCell& cell) {
-    const bool wall = cell.object.kind == ObjectKind::wall;
+    const bool wall = cell.object.kind == control::ObjectKind::wall;
     return {{"motor", cell.motor},
             {"object", cell.object.name},
             {"stiffness_N_per_mm", wall ? Json() : Json(cell.object.stiffness * 1e-3)},
@@ -35,7 +35,7 @@ Json cell_json(const RigCell& cell) {
 }
 
 Json row_json(const RigRow& row) {
-    const Fidelity& f = row.fidelity;
+    const control::Fidelity& f = row.fidelity;
     const bool good = row.failure.empty();
     const auto number = [good](double v) { return good ? finite(v) : Json(); };
     Json json = cell_json(row.cell);
@@ -48,7 +48,7 @@ Json row_json(const RigRow& row) {
                  {"saturated", f.saturated_share > 0.0},
                  {"slip_share", number(f.slip_share)},
                  {"saturated_share", number(f.saturated_share)},
-                 {"penetration_mm", row.cell.object.kind == ObjectKind::wall ? number(f.penetration * 1e3) : Json()},
+                 {"penetration_mm", row.cell.object.kind == control::ObjectKind::wall ? number(f.penetration * 1e3) : Json()},
                  {"position_error_rms_mm", number(f.position_rms_error * 1e3)},
                  {"limit_cycle_rms_mm", number(f.limit_cycle_rms * 1e3)},
                  {"force_N", number(std::abs(f.force))},
@@ -93,7 +93,7 @@ std::string rig_json(const RigReport& report) {
         facts["feed_forward"].push_back(std::move(entry));
     }
     facts["assumed"] = Json::array();
-    for (const RigAssumption& a : report.assumptions)
+    for (const study::RigAssumption& a : report.assumptions)
         facts["assumed"].push_back({{"motor", a.motor}, {"option", a.option}, {"low", a.low}, {"high", a.high}});
     json["notes"] = report.notes;
     return json.dump(2) + "\n";
@@ -127,7 +127,7 @@ std::string rig_text(const RigReport& report) {
         return v ? fmt::format(fmt::runtime(format), *v * scale) : std::string("-");
     };
     for (const RigRow& row : report.rows) {
-        const Fidelity& f = row.fidelity;
+        const control::Fidelity& f = row.fidelity;
         if (!row.failure.empty()) {
             out += fmt::format("  {:<6} {:<36} {:>7g} {:>6g} {}\n", row.cell.motor, row.cell.object.name, row.cell.rate,
                                row.cell.amplitude * 1e3, row.failure);
@@ -137,7 +137,7 @@ std::string rig_text(const RigReport& report) {
             "  {:<6} {:<36} {:>7g} {:>6g} {:>9} {:>8} {:>8} {:>12}{}{}\n", row.cell.motor, row.cell.object.name,
             row.cell.rate, row.cell.amplitude * 1e3, show(f.gain_error_db, 1.0, "{:.2f}"),
             show(f.phase_error_deg, 1.0, "{:.1f}"), show(f.nrmse, 100.0, "{:.1f}"),
-            row.cell.object.kind == ObjectKind::wall ? fmt::format("gave {:.3g} mm", f.penetration * 1e3)
+            row.cell.object.kind == control::ObjectKind::wall ? fmt::format("gave {:.3g} mm", f.penetration * 1e3)
                                                      : fmt::format("{:.4g}", f.rendered_stiffness * 1e-3),
             f.slip_share > 0.0 ? "  slips" : "", f.saturated_share > 0.0 ? "  saturated" : "");
     }

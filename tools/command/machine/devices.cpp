@@ -17,11 +17,11 @@ namespace {
 int devices(bool json) {
     nlohmann::ordered_json list{{"haptic", nlohmann::ordered_json::array()},
                                 {"audio", nlohmann::ordered_json::array()}};
-    for (const HapticDriver& driver : haptic_drivers())
+    for (const haptic::HapticDriver& driver : haptic::haptic_drivers())
         list["haptic"].push_back({{"driver", driver.name}, {"about", driver.summary}});
     std::string no_sound = "none";
     try {
-        for (const AudioOutput& output : list_audio_outputs())
+        for (const audio::AudioOutput& output : audio::list_audio_outputs())
             list["audio"].push_back({{"name", output.name},
                                      {"channels", output.channels},
                                      {"rate_hz", output.rate},

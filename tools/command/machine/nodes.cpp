@@ -67,7 +67,7 @@ public:
 };
 
 Json describe(const NodeType& type) {
-    const NodeInstance node(type.create(), type.destroy);
+    const compile::NodeInstance node(type.create(), type.destroy);
     Describer describer;
     type.visit(node.get(), describer);
     return {{"type", type.name},
@@ -101,7 +101,7 @@ void print_whole(const Json& node) {
 int nodes(const std::string& wanted, bool json) {
     Json list = Json::array();
     std::vector<std::string> names;
-    for (const NodeType* type : catalogue()) {
+    for (const NodeType* type : nodes::catalogue()) {
         names.push_back(type->name);
         if (wanted.empty() || type->name == wanted) list.push_back(describe(*type));
     }

@@ -9,13 +9,13 @@ namespace tactus::command {
 
 /// In a JSON type.
 template <class Json>
-Json match_json(const CasePlan& plan, const study::PlanMatch& found) {
-    const FragmentMatch& match = found.match;
+Json match_json(const cases::CasePlan& plan, const study::PlanMatch& found) {
+    const fit::FragmentMatch& match = found.match;
     const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
     return {{"fragment", name(match.moving)},
-            {"partner", match.partner == Arrangement::none ? Json(nullptr) : Json(name(match.partner))},
-            {"verdict", name_of(match.verdict)},
-            {"placed", match.verdict == FitVerdict::fit},
+            {"partner", match.partner == fit::Arrangement::none ? Json(nullptr) : Json(name(match.partner))},
+            {"verdict", fit::name_of(match.verdict)},
+            {"placed", match.verdict == fit::FitVerdict::fit},
             {"as_scanned", found.as_scanned},
             {"faces", match.faces},
             {"score", match.quality.score},
@@ -30,6 +30,6 @@ Json match_json(const CasePlan& plan, const study::PlanMatch& found) {
 }
 
 /// One line for people, on standard output.
-void print_match(const CasePlan& plan, const study::PlanMatch& found);
+void print_match(const cases::CasePlan& plan, const study::PlanMatch& found);
 
 }  // namespace tactus::command

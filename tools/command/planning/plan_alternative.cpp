@@ -19,19 +19,19 @@ struct AlternativeChoice : PlanChoice {
 
 int list_alternatives(const PlanChoice& choice) {
     if (choice.json) return show_plan(choice);
-    const CasePlan plan = load_case_plan(choice.plan);
-    for (const PlanAlternative& a : plan.alternatives)
+    const cases::CasePlan plan = cases::load_case_plan(choice.plan);
+    for (const cases::PlanAlternative& a : plan.alternatives)
         fmt::print("{} {}: {} steps\n", &a == &plan.alternatives[static_cast<std::size_t>(plan.current)] ? '*' : ' ',
-                   a.name, steps_to(plan.before(), a.place.head).size());
+                   a.name, fit::steps_to(plan.before(), a.place.head).size());
     return done;
 }
 
 int go_to_alternative(const AlternativeChoice& choice) {
     if (choice.alternative.empty()) return list_alternatives(choice);
     study::OpenPlan open(choice.plan);
-    CasePlan& plan = open.plan;
+    cases::CasePlan& plan = open.plan;
     const auto find = [&plan](const std::string& name) {
-        return std::ranges::find(plan.alternatives, name, &PlanAlternative::name);
+        return std::ranges::find(plan.alternatives, name, &cases::PlanAlternative::name);
     };
     auto found = find(choice.alternative);
     if (choice.remove) {
@@ -44,13 +44,13 @@ int go_to_alternative(const AlternativeChoice& choice) {
         const auto from = choice.from.empty() ? plan.alternatives.begin() + plan.current : find(choice.from);
         if (from == plan.alternatives.end())
             throw Error(fmt::format("there is no alternative '{}' to begin from", choice.from));
-        plan.alternatives.push_back({choice.alternative, after_step(from->place.head)});
+        plan.alternatives.push_back({choice.alternative, fit::after_step(from->place.head)});
         plan.current = static_cast<int>(plan.alternatives.size()) - 1;
     } else if (!choice.from.empty()) {
         throw Error(
             fmt::format("there is an alternative '{}' already; leave --from out to go there", choice.alternative));
     } else plan.current = static_cast<int>(found - plan.alternatives.begin());
-    save_case_plan(plan, choice.plan);
+    cases::save_case_plan(plan, choice.plan);
     return show_change(choice);
 }
 

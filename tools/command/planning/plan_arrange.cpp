@@ -13,26 +13,26 @@ struct ArrangeChoice : PlanChoice {
     std::string group;
 };
 
-std::vector<int> numbers_of_fragments(const CasePlan& plan, const std::vector<std::string>& names) {
+std::vector<int> numbers_of_fragments(const cases::CasePlan& plan, const std::vector<std::string>& names) {
     std::vector<int> numbers;
-    for (const std::string& name : names) numbers.push_back(find_fragment(plan, name));
+    for (const std::string& name : names) numbers.push_back(cases::find_fragment(plan, name));
     return numbers;
 }
 
-StepKind kind_of(const std::string& verb) {
-    for (int n = 0; n <= static_cast<int>(StepKind::mirror); ++n)
-        if (name_of(static_cast<StepKind>(n)) == verb) return static_cast<StepKind>(n);
-    return StepKind::show;  // "unhide"
+cases::StepKind kind_of(const std::string& verb) {
+    for (int n = 0; n <= static_cast<int>(cases::StepKind::mirror); ++n)
+        if (cases::name_of(static_cast<cases::StepKind>(n)) == verb) return static_cast<cases::StepKind>(n);
+    return cases::StepKind::show;  // "unhide"
 }
 
 int arrange(const ArrangeChoice& choice) {
     study::OpenPlan open(choice.plan);
-    CasePlan& plan = open.plan;
-    PlanStep step;
+    cases::CasePlan& plan = open.plan;
+    cases::PlanStep step;
     step.kind = kind_of(choice.kind);
     step.by = "command";
     step.fragments = numbers_of_fragments(plan, choice.names);
-    step.group = step.kind == StepKind::group && choice.group.empty() ? free_group_name(state_of(plan)) : choice.group;
+    step.group = step.kind == cases::StepKind::group && choice.group.empty() ? cases::free_group_name(cases::state_of(plan)) : choice.group;
     study::do_step(plan, std::move(step), choice.plan);
     return show_change(choice);
 }

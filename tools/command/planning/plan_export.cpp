@@ -44,15 +44,15 @@ struct Landmark {
 };
 
 /// The middle of a surface, and the points of it that lie farthest out along six directions.
-std::vector<Landmark> landmarks_of(const std::vector<SurfacePoint>& points) {
+std::vector<Landmark> landmarks_of(const std::vector<contact::SurfacePoint>& points) {
     Vec3 middle(0.0);
-    for (const SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
+    for (const contact::SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
     std::vector<Landmark> marks{{"middle", middle}};
     constexpr const char* names[] = {"left", "right", "posterior", "anterior", "superior", "inferior"};
     for (int axis = 0; axis < 3; ++axis)
         for (const double sign : {1.0, -1.0}) {
             const auto farthest =
-                std::ranges::max_element(points, {}, [&](const SurfacePoint& p) { return sign * p.position[axis]; });
+                std::ranges::max_element(points, {}, [&](const contact::SurfacePoint& p) { return sign * p.position[axis]; });
             marks.push_back({names[2 * axis + (sign < 0.0 ? 1 : 0)], farthest->position});
         }
     return marks;
@@ -101,12 +101,12 @@ std::string file_name_of(const std::string& fragment) {
 }
 
 int export_plan(const ExportChoice& choice) {
-    const CasePlan plan = load_case_plan(choice.plan);
+    const cases::CasePlan plan = cases::load_case_plan(choice.plan);
     const std::filesystem::path folder = choice.plan.parent_path();
     const std::vector<study::CaseFragment> loaded = study::load_fragments(plan, folder);
-    const PlanState state = state_of(plan);
+    const cases::PlanState state = cases::state_of(plan);
     std::vector<std::string> names;
-    for (const PlanFragment& fragment : plan.fragments) {
+    for (const cases::PlanFragment& fragment : plan.fragments) {
         names.push_back(file_name_of(fragment.name));
         if (std::ranges::count(names, names.back()) > 1)
             throw Error(
@@ -115,17 +115,17 @@ int export_plan(const ExportChoice& choice) {
     session::make_output_folder(choice.out);
     Json written = Json::array();
     for (std::size_t n = 0; n < loaded.size(); ++n) {
-        const PlanFragment& fragment = plan.fragments[n];
+        const cases::PlanFragment& fragment = plan.fragments[n];
         const Pose& pose = state.arrangement.pose(static_cast<int>(n));
-        ColouredSurface surface{study::surface_of_file(file_of(fragment.file, folder), loaded[n].bone),
+        mesh::ColouredSurface surface{study::surface_of_file(cases::file_of(fragment.file, folder), loaded[n].bone),
                                 fragment.colour};
         for (Vec3& v : surface.surface.vertices) v = pose.apply(v);
         const std::string mesh = names[n] + "." + choice.format;
-        write_mesh({&surface, 1}, choice.out / mesh);
-        write_whole_file(choice.out / (names[n] + ".tfm"), tfm_of(pose));
+        mesh::write_mesh({&surface, 1}, choice.out / mesh);
+        file::write_whole_file(choice.out / (names[n] + ".tfm"), tfm_of(pose));
         const auto marks = landmarks_of(loaded[n].bone.points);
-        write_whole_file(choice.out / (names[n] + ".scan.mrk.json"), markup_of(fragment.name, marks, {}));
-        write_whole_file(choice.out / (names[n] + ".plan.mrk.json"), markup_of(fragment.name, marks, pose));
+        file::write_whole_file(choice.out / (names[n] + ".scan.mrk.json"), markup_of(fragment.name, marks, {}));
+        file::write_whole_file(choice.out / (names[n] + ".plan.mrk.json"), markup_of(fragment.name, marks, pose));
         written.push_back(
             {{"fragment", fragment.name},
              {"files", {mesh, names[n] + ".tfm", names[n] + ".scan.mrk.json", names[n] + ".plan.mrk.json"}},

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json json_of(const CasePlan& plan, const std::vector<study::PlanGap>& gaps) {
+Json json_of(const cases::CasePlan& plan, const std::vector<study::PlanGap>& gaps) {
     const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
     Json pairs = Json::array();
     for (const study::PlanGap& g : gaps)
@@ -27,7 +27,7 @@ Json json_of(const CasePlan& plan, const std::vector<study::PlanGap>& gaps) {
     return pairs;
 }
 
-void print(const CasePlan& plan, const std::vector<study::PlanGap>& gaps) {
+void print(const cases::CasePlan& plan, const std::vector<study::PlanGap>& gaps) {
     const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
     for (const study::PlanGap& g : gaps)
         fmt::print(
@@ -38,11 +38,11 @@ void print(const CasePlan& plan, const std::vector<study::PlanGap>& gaps) {
 }
 
 int gap(const PlanChoice& choice) {
-    const CasePlan plan = load_case_plan(choice.plan);
+    const cases::CasePlan plan = cases::load_case_plan(choice.plan);
     if (!choice.names.empty() && choice.names.size() != 2) throw Error("'plan gap' takes two fragments, or none");
     const std::filesystem::path folder = choice.plan.parent_path();
     std::optional<std::pair<int, int>> pair;
-    if (!choice.names.empty()) pair = {find_fragment(plan, choice.names[0]), find_fragment(plan, choice.names[1])};
+    if (!choice.names.empty()) pair = {cases::find_fragment(plan, choice.names[0]), cases::find_fragment(plan, choice.names[1])};
     const std::vector<study::PlanGap> gaps = study::plan_gaps(plan, folder, pair);
     if (choice.json) fmt::print("{}\n", json_of(plan, gaps).dump(2));
     else print(plan, gaps);

@@ -13,22 +13,22 @@ struct HistoryChoice : PlanChoice {
     int steps = 1;
 };
 
-int go(const HistoryChoice& choice, HistoryPlace (*way)(std::span<const int>, HistoryPlace), const char* end) {
+int go(const HistoryChoice& choice, fit::HistoryPlace (*way)(std::span<const int>, fit::HistoryPlace), const char* end) {
     study::OpenPlan open(choice.plan);
-    CasePlan& plan = open.plan;
+    cases::CasePlan& plan = open.plan;
     const auto before = plan.before();
     int moved = 0;
     for (; moved < choice.steps; ++moved) {
-        const HistoryPlace next = way(before, plan.place());
+        const fit::HistoryPlace next = way(before, plan.place());
         if (next.head == plan.place().head) break;
         plan.place() = next;
     }
-    if (moved > 0) save_case_plan(plan, choice.plan);
+    if (moved > 0) cases::save_case_plan(plan, choice.plan);
     if (!choice.json) {
         if (moved == 0) fmt::print("{}\n", end);
         else
-            fmt::print("{} steps; {} of {} are done\n", moved, steps_to(before, plan.place().head).size(),
-                       steps_to(before, plan.place().tip).size());
+            fmt::print("{} steps; {} of {} are done\n", moved, fit::steps_to(before, plan.place().head).size(),
+                       fit::steps_to(before, plan.place().tip).size());
     }
     show_change(choice);
     return moved > 0 ? done : answer_is_no;
@@ -45,13 +45,13 @@ std::shared_ptr<HistoryChoice> choice_of(VerbOptions& verb) {
 
 Verb plan_undo_verb() {
     return {"undo", "steps back; none is lost", [](VerbOptions& verb) -> Action {
-                return [choice = choice_of(verb)] { return go(*choice, undone, "nothing is left to undo"); };
+                return [choice = choice_of(verb)] { return go(*choice, fit::undone, "nothing is left to undo"); };
             }};
 }
 
 Verb plan_redo_verb() {
     return {"redo", "steps on again", [](VerbOptions& verb) -> Action {
-                return [choice = choice_of(verb)] { return go(*choice, redone, "nothing is left to redo"); };
+                return [choice = choice_of(verb)] { return go(*choice, fit::redone, "nothing is left to redo"); };
             }};
 }
 

@@ -51,7 +51,7 @@ void print_comparison(const std::string& fragment, const std::string& main, cons
     print_faces(fragment, "there", main, c.after);
 }
 
-Json json_of(const std::string& main, const MirrorFit& fit, const Json& others) {
+Json json_of(const std::string& main, const fit::MirrorFit& fit, const Json& others) {
     return {{"on", main},
             {"residual_mm", fit.registration.median * 1e3},
             {"residual_p90_mm", fit.registration.p90 * 1e3},
@@ -63,28 +63,28 @@ Json json_of(const std::string& main, const MirrorFit& fit, const Json& others) 
 
 int mirror(const MirrorChoice& choice) {
     study::OpenPlan open(choice.plan);
-    CasePlan& plan = open.plan;
+    cases::CasePlan& plan = open.plan;
     const std::filesystem::path folder = choice.plan.parent_path();
     std::vector<int> numbers;
-    for (const std::string& name : choice.names) numbers.push_back(find_fragment(plan, name));
+    for (const std::string& name : choice.names) numbers.push_back(cases::find_fragment(plan, name));
     const std::vector<study::CaseFragment> loaded = study::load_fragments(plan, folder);
     const study::LaidMirror laid = study::lay_mirror(plan, folder, loaded, numbers[0], choice.healthy);
-    PlanStep step;
-    step.kind = StepKind::mirror;
+    cases::PlanStep step;
+    step.kind = cases::StepKind::mirror;
     step.by = "command";
     step.mirror = laid.target;
     study::do_step(plan, std::move(step), choice.plan);
     // The others against the mirrored side as it lies now.
-    const RegistrationTarget target(laid.surface);
+    const fit::RegistrationTarget target(laid.surface);
     Json others = Json::array();
     for (std::size_t n = 1; n < numbers.size(); ++n) {
         const int other = numbers[n];
         const study::MirrorComparison found =
             study::compare_with_mirror(target, loaded[static_cast<std::size_t>(numbers[0])], laid.stands,
-                                       loaded[static_cast<std::size_t>(other)], state_of(plan).arrangement.pose(other));
+                                       loaded[static_cast<std::size_t>(other)], cases::state_of(plan).arrangement.pose(other));
         others.push_back(comparison_json(choice.names[n], found));
         if (!choice.json) print_comparison(choice.names[n], choice.names[0], found);
-        if (choice.settle) study::do_step(plan, placing(plan, other, found.registration.pose, "mirror"), choice.plan);
+        if (choice.settle) study::do_step(plan, cases::placing(plan, other, found.registration.pose, "mirror"), choice.plan);
     }
     if (choice.json) fmt::print("{}\n", json_of(choice.names[0], laid.fit, others).dump(2));
     else

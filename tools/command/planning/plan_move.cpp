@@ -14,9 +14,9 @@ struct MoveChoice : PlanChoice {
 
 int move_fragment(const MoveChoice& choice) {
     study::OpenPlan open(choice.plan);
-    CasePlan& plan = open.plan;
-    const int fragment = find_fragment(plan, choice.names.front());
-    study::do_step(plan, placing(plan, fragment, pose_of_text(choice.pose, "--pose"), "command"), choice.plan);
+    cases::CasePlan& plan = open.plan;
+    const int fragment = cases::find_fragment(plan, choice.names.front());
+    study::do_step(plan, cases::placing(plan, fragment, pose_of_text(choice.pose, "--pose"), "command"), choice.plan);
     return show_change(choice);
 }
 

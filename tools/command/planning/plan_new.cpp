@@ -18,29 +18,29 @@ struct NewChoice : PlanChoice {
 };
 
 /// "NAME=FILE" or "FILE", whose stem, or the bone's name in it, is the fragment's.
-void add_file_of(CasePlan& plan, const std::string& text, const fs::path& folder) {
+void add_file_of(cases::CasePlan& plan, const std::string& text, const fs::path& folder) {
     const auto equals = text.find('=');
     const bool is_named = equals != std::string::npos && !fs::exists(text);
     const std::string name = is_named ? text.substr(0, equals) : "";
     const fs::path file = is_named ? text.substr(equals + 1) : text;
     std::vector<std::pair<std::string, fs::path>> found;
-    if (file_of_bone(file) == file && file.extension() == ".vdb") {
-        const auto bones = load_bones(file);
+    if (bone::file_of_bone(file) == file && file.extension() == ".vdb") {
+        const auto bones = bone::load_bones(file);
         if (bones.size() > 1 && is_named)
             throw Error(fmt::format("{}: holds {} bones; name one of them, as in {}={}#{}", file.string(), bones.size(),
                                     name, file.string(), bones.front().name));
-        for (const Bone& bone : bones)
+        for (const bone::Bone& bone : bones)
             found.emplace_back(bones.size() > 1 ? bone.name : file.stem().string(),
                                bones.size() > 1 ? fs::path(file.string() + "#" + bone.name) : file);
     } else {
         const std::string whole = file.string();
         const auto mark = whole.rfind('#');
-        const bool is_one_of = file_of_bone(file) != file && mark != std::string::npos;
+        const bool is_one_of = bone::file_of_bone(file) != file && mark != std::string::npos;
         found.emplace_back(is_one_of ? whole.substr(mark + 1) : file.stem().string(), file);
     }
     for (auto& [own, path] : found) {
-        add_fragment(plan, is_named ? name : own, path, folder,
-                     label_colour(static_cast<int>(plan.fragments.size()) + 1));
+        cases::add_fragment(plan, is_named ? name : own, path, folder,
+                     bone::label_colour(static_cast<int>(plan.fragments.size()) + 1));
         // Metres, open surfaces and broken files come out now, not in the middle of a session.
         study::load_fragment(plan.fragments.back(), folder);
     }
@@ -49,11 +49,11 @@ void add_file_of(CasePlan& plan, const std::string& text, const fs::path& folder
 int make_plan(const NewChoice& choice) {
     if (fs::exists(choice.plan))
         throw Error(fmt::format("{}: is there already; a plan is never written over", choice.plan.string()));
-    const PlanLock lock(choice.plan);
-    CasePlan plan;
+    const cases::PlanLock lock(choice.plan);
+    cases::CasePlan plan;
     plan.title = choice.title.empty() ? choice.plan.stem().stem().string() : choice.title;
     for (const std::string& text : choice.names) add_file_of(plan, text, choice.plan.parent_path());
-    save_case_plan(plan, choice.plan);
+    cases::save_case_plan(plan, choice.plan);
     if (!choice.json) fmt::print("{}: {} fragments\n", choice.plan.string(), plan.fragments.size());
     return show_change(choice);
 }

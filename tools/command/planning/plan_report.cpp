@@ -24,9 +24,9 @@ std::filesystem::path page_of(const std::filesystem::path& plan) {
 }
 
 int report(const ReportChoice& choice) {
-    const CasePlan plan = load_case_plan(choice.plan);
+    const cases::CasePlan plan = cases::load_case_plan(choice.plan);
     const std::filesystem::path out = choice.out.empty() ? page_of(choice.plan) : choice.out;
-    write_whole_file(out, picture::plan_page(plan, study::load_fragments(plan, choice.plan.parent_path())));
+    file::write_whole_file(out, picture::plan_page(plan, study::load_fragments(plan, choice.plan.parent_path())));
     if (choice.json) fmt::print("{}\n", nlohmann::ordered_json{{"report", out.string()}}.dump(2));
     else fmt::print("{}\n", out.string());
     return done;

@@ -16,11 +16,11 @@ struct SettleChoice : PlanChoice {
 };
 
 /// Those that are named, or all that were fitted and may move.
-std::vector<int> settled_fragments(const CasePlan& plan, const std::vector<std::string>& names) {
+std::vector<int> settled_fragments(const cases::CasePlan& plan, const std::vector<std::string>& names) {
     std::vector<int> numbers;
-    for (const std::string& name : names) numbers.push_back(find_fragment(plan, name));
+    for (const std::string& name : names) numbers.push_back(cases::find_fragment(plan, name));
     if (numbers.empty()) {
-        const PlanState state = state_of(plan);
+        const cases::PlanState state = cases::state_of(plan);
         for (int n = 0; n < static_cast<int>(plan.fragments.size()); ++n)
             if (state.fits[static_cast<std::size_t>(n)] && state.arrangement.can_move(n)) numbers.push_back(n);
     }
@@ -30,15 +30,15 @@ std::vector<int> settled_fragments(const CasePlan& plan, const std::vector<std::
 
 int settle(const SettleChoice& choice) {
     study::OpenPlan open(choice.plan);
-    CasePlan& plan = open.plan;
+    cases::CasePlan& plan = open.plan;
     const std::vector<int> numbers = settled_fragments(plan, choice.names);
     study::PlanMatching matching(plan, choice.plan.parent_path());
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     bool all_fit = true;
     for (int pass = 0; pass < choice.passes; ++pass)
         for (const int n : numbers) {
-            const study::PlanMatch found = matching.near(state_of(plan).arrangement, n);
-            const bool fits = found.match.verdict == FitVerdict::fit;
+            const study::PlanMatch found = matching.near(cases::state_of(plan).arrangement, n);
+            const bool fits = found.match.verdict == fit::FitVerdict::fit;
             if (fits) study::do_step(plan, study::step_of(plan, found.match, "settle"), choice.plan);
             all_fit = all_fit && fits;
             rows.push_back(match_json<nlohmann::ordered_json>(plan, found));

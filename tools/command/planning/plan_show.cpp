@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a plan holds, for people and programs.
-#include "assets/plan/plan_file.hpp"
+#include "assets/cases/plan_file.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/command/pose_text.hpp"
 #include "tools/study/planning/plan_case.hpp"
@@ -16,14 +16,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The groups that hold a fragment, innermost first.
-std::vector<std::string> groups_of(const PlanState& state, int fragment) {
+std::vector<std::string> groups_of(const cases::PlanState& state, int fragment) {
     std::vector<std::string> names;
-    for (int g = state.arrangement.group_of(fragment); g != Arrangement::none; g = state.arrangement.parent_of(g))
+    for (int g = state.arrangement.group_of(fragment); g != fit::Arrangement::none; g = state.arrangement.parent_of(g))
         names.push_back(state.group_names[static_cast<std::size_t>(g)]);
     return names;
 }
 
-Json fit_json(const PlanFit& fit) {
+Json fit_json(const cases::PlanFit& fit) {
     return {{"partner", fit.partner},
             {"verdict", fit.verdict},
             {"score", fit.score},
@@ -34,21 +34,21 @@ Json fit_json(const PlanFit& fit) {
             {"overlap_mm2", fit.overlap * 1e6}};
 }
 
-Json json_of(const CasePlan& plan, const std::vector<std::string>& problems) {
-    const PlanState state = state_of(plan);
+Json json_of(const cases::CasePlan& plan, const std::vector<std::string>& problems) {
+    const cases::PlanState state = cases::state_of(plan);
     const auto before = plan.before();
     Json json{{"title", plan.title},
               {"fragments", Json::array()},
               {"groups", Json::array()},
               {"alternatives", Json::array()},
               {"current", plan.alternatives[static_cast<std::size_t>(plan.current)].name},
-              {"steps_done", steps_to(before, plan.place().head).size()},
-              {"steps_to_redo", steps_to(before, plan.place().tip).size() - steps_to(before, plan.place().head).size()},
+              {"steps_done", fit::steps_to(before, plan.place().head).size()},
+              {"steps_to_redo", fit::steps_to(before, plan.place().tip).size() - fit::steps_to(before, plan.place().head).size()},
               {"steps_in_all", plan.steps.size()},
               {"mirror", nullptr},
               {"problems", problems}};
     for (int n = 0; n < static_cast<int>(plan.fragments.size()); ++n) {
-        const PlanFragment& f = plan.fragments[static_cast<std::size_t>(n)];
+        const cases::PlanFragment& f = plan.fragments[static_cast<std::size_t>(n)];
         Json fragment{{"name", f.name},
                       {"file", f.file},
                       {"pose", pose_json<Json>(state.arrangement.pose(n))},
@@ -64,11 +64,11 @@ Json json_of(const CasePlan& plan, const std::vector<std::string>& problems) {
         const int parent = state.arrangement.parent_of(g);
         json["groups"].push_back(
             {{"name", state.group_names[static_cast<std::size_t>(g)]},
-             {"in", parent == Arrangement::none ? Json(nullptr)
+             {"in", parent == fit::Arrangement::none ? Json(nullptr)
                                                 : Json(state.group_names[static_cast<std::size_t>(parent)])}});
     }
-    for (const PlanAlternative& a : plan.alternatives)
-        json["alternatives"].push_back({{"name", a.name}, {"steps", steps_to(before, a.place.head).size()}});
+    for (const cases::PlanAlternative& a : plan.alternatives)
+        json["alternatives"].push_back({{"name", a.name}, {"steps", fit::steps_to(before, a.place.head).size()}});
     if (state.mirror)
         json["mirror"] = {{"file", state.mirror->file},
                           {"plane_normal",
@@ -81,20 +81,20 @@ Json json_of(const CasePlan& plan, const std::vector<std::string>& problems) {
 }  // namespace
 
 int show_plan(const PlanChoice& choice) {
-    const CasePlan plan = load_case_plan(choice.plan);
-    const auto problems = changed_files(plan, choice.plan.parent_path());
+    const cases::CasePlan plan = cases::load_case_plan(choice.plan);
+    const auto problems = cases::changed_files(plan, choice.plan.parent_path());
     if (choice.json) {
         fmt::print("{}\n", json_of(plan, problems).dump(2));
         return done;
     }
-    const PlanState state = state_of(plan);
+    const cases::PlanState state = cases::state_of(plan);
     const auto before = plan.before();
     fmt::print("{}: alternative '{}' of {}, {} steps done, {} to redo\n", plan.title,
                plan.alternatives[static_cast<std::size_t>(plan.current)].name, plan.alternatives.size(),
-               steps_to(before, plan.place().head).size(),
-               steps_to(before, plan.place().tip).size() - steps_to(before, plan.place().head).size());
+               fit::steps_to(before, plan.place().head).size(),
+               fit::steps_to(before, plan.place().tip).size() - fit::steps_to(before, plan.place().head).size());
     for (int n = 0; n < static_cast<int>(plan.fragments.size()); ++n) {
-        const PlanFragment& f = plan.fragments[static_cast<std::size_t>(n)];
+        const cases::PlanFragment& f = plan.fragments[static_cast<std::size_t>(n)];
         const Pose& pose = state.arrangement.pose(n);
         std::string marks = state.arrangement.is_locked(n) ? ", locked" : "";
         if (state.arrangement.is_hidden(n)) marks += ", hidden";

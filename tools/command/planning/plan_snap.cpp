@@ -17,13 +17,13 @@ struct SnapChoice : PlanChoice {
 
 int snap_fragment(const SnapChoice& choice) {
     study::OpenPlan open(choice.plan);
-    CasePlan& plan = open.plan;
+    cases::CasePlan& plan = open.plan;
     const std::filesystem::path folder = choice.plan.parent_path();
-    const int moving = find_fragment(plan, choice.names[0]);
-    const int only = choice.names.size() > 1 ? find_fragment(plan, choice.names[1]) : Arrangement::none;
-    const PlanState state = state_of(plan);
-    const Arrangement& a = state.arrangement;
-    if (only != Arrangement::none && a.move_together(moving, only))
+    const int moving = cases::find_fragment(plan, choice.names[0]);
+    const int only = choice.names.size() > 1 ? cases::find_fragment(plan, choice.names[1]) : fit::Arrangement::none;
+    const cases::PlanState state = cases::state_of(plan);
+    const fit::Arrangement& a = state.arrangement;
+    if (only != fit::Arrangement::none && a.move_together(moving, only))
         throw Error(fmt::format("'{}' and '{}' move together", choice.names[0], choice.names[1]));
     if (!a.can_move(moving)) throw Error(fmt::format("'{}', or one grouped with it, is locked", choice.names[0]));
     study::PlanMatching matching(plan, folder);
@@ -32,7 +32,7 @@ int snap_fragment(const SnapChoice& choice) {
             fmt::format("fragment '{}' has no painted fracture; see 'tactus fracture-surface'", choice.names[0]));
     const study::PlanMatch found =
         choice.mode == "global" ? matching.anywhere(a, moving, only) : matching.near(a, moving, only);
-    const bool fits = found.match.verdict == FitVerdict::fit;
+    const bool fits = found.match.verdict == fit::FitVerdict::fit;
     // What may fail comes before the plan is changed.
     const auto target = study::target_distances(state, folder, matching.fragment(moving), found.from, found.match.pose);
     if (fits) study::do_step(plan, study::step_of(plan, found.match, "snap"), choice.plan);

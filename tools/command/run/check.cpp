@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "graph/latency.hpp"
-#include "graph/stiffness.hpp"
+#include "graph/analyse/latency.hpp"
+#include "graph/analyse/stiffness.hpp"
 #include "tools/command/patch_options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/session/load_plan.hpp"
 
-#include "engine/engine.hpp"
+#include "engine/run/engine.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -28,15 +28,15 @@ struct CheckChoice {
 };
 
 /// One row per path; a loop through a hand has its stiffness too.
-Json paths_json(const Plan& plan, const std::vector<ForceLoop>& loops) {
-    std::map<std::pair<std::string_view, std::string_view>, const ForceLoop*> by_ends;
-    for (const ForceLoop& loop : loops)
+Json paths_json(const compile::Plan& plan, const std::vector<analyse::ForceLoop>& loops) {
+    std::map<std::pair<std::string_view, std::string_view>, const analyse::ForceLoop*> by_ends;
+    for (const analyse::ForceLoop& loop : loops)
         by_ends.emplace(std::pair<std::string_view, std::string_view>(loop.from, loop.to), &loop);
     Json paths = Json::array();
-    for (const PathLatency& path : path_latencies(plan)) {
+    for (const analyse::PathLatency& path : analyse::path_latencies(plan)) {
         Json row{{"from", path.from}, {"to", path.to}, {"latency_ms", path.latency_ms}, {"via", path.via}};
         if (const auto found = by_ends.find({path.from, path.to}); found != by_ends.end()) {
-            const ForceLoop& loop = *found->second;
+            const analyse::ForceLoop& loop = *found->second;
             row["latency_ms"] = loop.latency_s * 1e3;
             row["damping_N_s_per_m"] = loop.damping;
             row["stiffness_limit_N_per_mm"] = loop.limit * 1e-3;
@@ -49,7 +49,7 @@ Json paths_json(const Plan& plan, const std::vector<ForceLoop>& loops) {
     return paths;
 }
 
-Json check_json(const std::optional<Plan>& plan, const Problems& problems) {
+Json check_json(const std::optional<compile::Plan>& plan, const patch::Problems& problems) {
     Json json{{"ok", problems.empty()}, {"errors", Json::array()}, {"groups", Json::array()}, {"paths", Json::array()}};
     for (const Error& error : problems.list)
         json["errors"].push_back({{"file", error.where().file},
@@ -57,7 +57,7 @@ Json check_json(const std::optional<Plan>& plan, const Problems& problems) {
                                   {"column", error.where().column},
                                   {"message", error.message()}});
     if (!plan) return json;
-    for (const PlanGroup& group : plan->groups) {
+    for (const compile::PlanGroup& group : plan->groups) {
         Json nodes = Json::array();
         for (const int node : group.order) nodes.push_back(plan->nodes[static_cast<std::size_t>(node)].name);
         json["groups"].push_back({{"name", group.name},
@@ -70,7 +70,7 @@ Json check_json(const std::optional<Plan>& plan, const Problems& problems) {
 }
 
 /// The position loops of admittance controllers: their gain, and from which on they would be unstable.
-Json loops_json(const std::vector<std::shared_ptr<LiveNode>>& nodes) {
+Json loops_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes) {
     Json loops = Json::array();
     for (const auto& node : nodes) {
         if (node->type->name != "admittance_controller") continue;
@@ -87,7 +87,7 @@ Json loops_json(const std::vector<std::shared_ptr<LiveNode>>& nodes) {
 }
 
 /// Damping of a device by its name in the patch, N·s/m; "" is the only one.
-std::function<double(const std::string&)> damping_of(const EngineOutside& outside) {
+std::function<double(const std::string&)> damping_of(const io::EngineOutside& outside) {
     return [&outside](const std::string& name) {
         for (const auto& slot : outside.devices)
             if (name.empty() || slot->name == name) return slot->port.info.damping;
@@ -126,9 +126,9 @@ void print_check(const Json& json) {
 }
 
 int check(const CheckChoice& choice) {
-    Problems problems;
-    AssetCache assets;
-    std::optional<Plan> plan;
+    patch::Problems problems;
+    compile::AssetCache assets;
+    std::optional<compile::Plan> plan;
     Json json;
     try {
         plan = session::read_plan(choice.patch, problems);
@@ -136,8 +136,8 @@ int check(const CheckChoice& choice) {
         json = check_json(plan, problems);
         // What only `prepare` can find: devices, file names, sizes.
         if (problems.empty()) {
-            const Engine engine(std::move(*plan), EngineOptions{});
-            json["paths"] = paths_json(engine.plan(), force_loops(engine.plan(), damping_of(engine.outside())));
+            const run::Engine engine(std::move(*plan), run::EngineOptions{});
+            json["paths"] = paths_json(engine.plan(), analyse::force_loops(engine.plan(), damping_of(engine.outside())));
             json["admittance_loops"] = loops_json(engine.nodes());
             json["warnings"] = engine.outside().notices;
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "graph/draw.hpp"
+#include "graph/analyse/draw.hpp"
 #include "assets/file/whole_file.hpp"
 #include "tools/command/patch_options.hpp"
 #include "tools/exit_code.hpp"
@@ -20,12 +20,12 @@ struct DrawChoice {
 };
 
 int draw(const session::PatchChoice& choice, const std::filesystem::path& out) {
-    Problems problems;
-    const std::optional<Plan> plan = session::read_plan(choice, problems);
+    patch::Problems problems;
+    const std::optional<compile::Plan> plan = session::read_plan(choice, problems);
     session::throw_problems(problems);
-    const std::string svg = draw_svg(*plan);
+    const std::string svg = analyse::draw_svg(*plan);
     if (out.empty()) fmt::print("{}", svg);
-    else write_whole_file(out, svg);
+    else file::write_whole_file(out, svg);
     return done;
 }
 

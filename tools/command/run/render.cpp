@@ -43,23 +43,23 @@ int parse_block(const std::string& text) {
 }
 
 int render(const RenderChoice& choice) {
-    EngineOptions options;
+    run::EngineOptions options;
     options.seconds = choice.seconds;
     options.random_blocks = choice.block == "random";
     if (options.random_blocks) options.block = 480;
     else if (!choice.block.empty()) options.block = parse_block(choice.block);
-    std::optional<TimingLog> log;
+    std::optional<take::TimingLog> log;
     if (!choice.log.empty()) {
-        log = TimingLog::load(choice.log);
+        log = take::TimingLog::load(choice.log);
         options.replay = &*log;
         options.seconds = log->seconds;
     }
-    AssetCache assets;
-    Plan plan = load_plan(choice, assets);
+    compile::AssetCache assets;
+    compile::Plan plan = load_plan(choice, assets);
     OutputFolder folder({choice.out, choice.overwrite});
     options.folder = folder.path();
     const std::atomic<bool>& interrupted = stop_on_signals();
-    std::unique_ptr<TakeWriter> take;
+    std::unique_ptr<take::TakeWriter> take;
     if (!choice.record.empty()) {
         take = make_take(choice, choice.record, options.seconds, false);
         options.take = take.get();
@@ -69,7 +69,7 @@ int render(const RenderChoice& choice) {
         frames = std::make_unique<FrameWriter>(choice.frames, outline_of(plan), options.seconds, folder.path());
         options.observer = &frames->observer();
     }
-    Engine engine(std::move(plan), options);
+    run::Engine engine(std::move(plan), options);
     const int threads =
         choice.threads > 0 ? choice.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/core/error.hpp"
-#include "engine/engine.hpp"
-#include "engine/take_compare.hpp"
+#include "engine/run/engine.hpp"
+#include "engine/take/take_compare.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/session/load_plan.hpp"
@@ -36,7 +36,7 @@ struct ReplayChoice {
 };
 
 /// Outputs whose hashes differ although no value did: values that the streams do not hold.
-std::vector<std::string> differing_hashes(const Take& take, const Engine& engine) {
+std::vector<std::string> differing_hashes(const take::Take& take, const run::Engine& engine) {
     std::vector<std::string> ports;
     if (take.result.empty()) return ports;
     for (const auto& [port, hash] : engine.port_hashes()) {
@@ -46,15 +46,15 @@ std::vector<std::string> differing_hashes(const Take& take, const Engine& engine
     return ports;
 }
 
-Json difference_json(const TakeDifference& d) {
+Json difference_json(const take::TakeDifference& d) {
     return {{"port", d.port},         {"tick", d.tick},         {"time_s", d.time},
             {"channels", d.channels}, {"expected", d.expected}, {"got", d.got}};
 }
 
 struct Verdict {
-    std::vector<TakeDamage> damages;
+    std::vector<take::TakeDamage> damages;
     std::vector<std::string> hashes;  ///< outputs whose hash differs
-    std::optional<TakeDifference> first;
+    std::optional<take::TakeDifference> first;
     std::uint64_t compared = 0;
     bool is_complete = false;
 
@@ -64,7 +64,7 @@ struct Verdict {
 };
 
 void print(const Verdict& verdict, std::size_t outputs, double seconds) {
-    for (const TakeDamage& d : verdict.damages)
+    for (const take::TakeDamage& d : verdict.damages)
         fmt::print("differs: {} holds {} {}, the run wrote {}\n", d.file, d.holds, d.unit, d.written);
     if (const auto& first = verdict.first)
         fmt::print("differs: {} at tick {} ({:.6f} s): expected {}, got {}\n", first->port, first->tick, first->time,
@@ -81,7 +81,7 @@ void print(const Verdict& verdict, std::size_t outputs, double seconds) {
 }
 
 int replay(const ReplayChoice& choice) {
-    Take take = Take::load(choice.take);
+    take::Take take = take::Take::load(choice.take);
     const std::vector<std::string> differences = take.differences(), changed = take.changed_assets();
     for (const std::string& difference : differences)
         fmt::print(stderr, "tactus: {}; the bits may differ\n", difference);
@@ -89,22 +89,22 @@ int replay(const ReplayChoice& choice) {
     if (!changed.empty() && !choice.anyway)
         throw Error("the take cannot be repeated with other assets; --anyway tries");
 
-    const std::vector<TakeDamage> damages = take.damages();
+    const std::vector<take::TakeDamage> damages = take.damages();
     take.drop_unreadable_streams();
-    AssetCache assets;
-    TakeComparison comparison(take);
-    EngineOptions options;
+    compile::AssetCache assets;
+    take::TakeComparison comparison(take);
+    run::EngineOptions options;
     options.seconds = take.about.seconds;
     std::optional<OutputFolder> folder;
     if (!choice.out.empty()) {
         folder.emplace(OutputChoice{choice.out, choice.overwrite});
         options.folder = choice.out;
     }
-    options.tap = [&comparison](const std::string& port, const ValueType& type, const GroupRuntime& group) {
+    options.tap = [&comparison](const std::string& port, const ValueType& type, const run::GroupRuntime& group) {
         return comparison.tap(port, type, group);
     };
     ReplayedTake repeated(take, options, assets);
-    Engine& engine = repeated.engine();
+    run::Engine& engine = repeated.engine();
     LiveLine line;
     const int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     engine.render(threads, [&](double done) { line.show(fmt::format("{:3.0f} %", 100.0 * done)); });
@@ -139,7 +139,7 @@ int replay(const ReplayChoice& choice) {
                   {"whole", take.log.is_whole},
                   {"edits", engine.edits()},
                   {"notices", differences}};
-        for (const TakeDamage& d : verdict.damages)
+        for (const take::TakeDamage& d : verdict.damages)
             json["damaged_files"].push_back(
                 {{"file", d.file}, {"holds", d.holds}, {"written", d.written}, {"unit", d.unit}});
         fmt::print("{}\n", json.dump(2));

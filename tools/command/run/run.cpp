@@ -22,7 +22,7 @@ namespace {
 int run(const view::ViewedRunChoice& choice) {
     const std::atomic<bool>& interrupted = stop_on_signals();
     if (choice.view.wanted) return view::view_run(choice, interrupted);
-    AssetCache assets;
+    compile::AssetCache assets;
     RunSession session(choice, assets);
     LiveLine line;
     auto next_table = std::chrono::steady_clock::now();

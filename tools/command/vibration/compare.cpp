@@ -38,11 +38,11 @@ struct CompareChoice {
 };
 
 /// Column names are for both files, or the first for the reference and the second for the output.
-LogSelection selection_for(const CompareChoice& choice, std::size_t file) {
+table::LogSelection selection_for(const CompareChoice& choice, std::size_t file) {
     const auto pick = [file](const std::vector<std::string>& names) {
         return names.empty() ? std::string() : names[std::min(file, names.size() - 1)];
     };
-    LogSelection selection;
+    table::LogSelection selection;
     selection.time_column = pick(choice.time_columns);
     if (!choice.columns.empty()) selection.columns = {pick(choice.columns)};
     selection.time_unit = choice.time_unit;
@@ -54,8 +54,8 @@ int compare_one(const CompareChoice& choice, const study::CompareSettings& setti
         throw Error(choice.plot + ": a figure is written as .svg or .png");
     const ComparedPair pair = study::compare_files(settings);
     if (!choice.plot.empty()) picture::write_figure(picture::draw_comparison(pair), choice.plot);
-    if (!choice.report.empty()) write_whole_file(choice.report, picture::comparison_page(pair));
-    if (!choice.table.empty()) write_whole_file(choice.table, comparison_table(std::span(&pair, 1), {}));
+    if (!choice.report.empty()) file::write_whole_file(choice.report, picture::comparison_page(pair));
+    if (!choice.table.empty()) file::write_whole_file(choice.table, comparison_table(std::span(&pair, 1), {}));
     if (choice.json) fmt::print("{}", comparison_json(pair));
     else print(pair);
     return pair.verdict.passed() ? done : answer_is_no;
@@ -123,8 +123,8 @@ int compare_many(const CompareChoice& choice, const study::CompareSettings& sett
     count.bad = tell_failures(failures);
     for (std::size_t i = 0; i < pairs.size(); ++i) count.passed += failures[i].empty() && pairs[i].verdict.passed();
     count.failed = pairs.size() - count.passed - count.bad;
-    if (!choice.table.empty()) write_whole_file(choice.table, comparison_table(pairs, failures));
-    if (!choice.report.empty()) write_whole_file(choice.report, page_of(pairs, failures, count.passed));
+    if (!choice.table.empty()) file::write_whole_file(choice.table, comparison_table(pairs, failures));
+    if (!choice.report.empty()) file::write_whole_file(choice.report, page_of(pairs, failures, count.passed));
     if (choice.json) fmt::print("{}\n", json_of(pairs, failures, count));
     else fmt::print("{}{} of {} pass\n", comparison_rows(pairs, failures), count.passed, pairs.size());
     return count.bad > 0 ? bad_input : count.failed > 0 ? answer_is_no : done;
@@ -132,7 +132,7 @@ int compare_many(const CompareChoice& choice, const study::CompareSettings& sett
 
 int compare(const CompareChoice& choice) {
     study::CompareSettings settings = choice.settings;
-    if (!choice.thresholds.empty()) settings.thresholds = load_thresholds(choice.thresholds);
+    if (!choice.thresholds.empty()) settings.thresholds = table::load_thresholds(choice.thresholds);
     settings.touch = touch_of(choice.touch);
     settings.logs = {selection_for(choice, 0), selection_for(choice, 1)};
     settings.pictures = !choice.plot.empty() || !choice.report.empty();

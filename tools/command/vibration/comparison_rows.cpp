@@ -21,10 +21,10 @@ const std::string& failure_of(const std::vector<std::string>& failures, std::siz
 
 }  // namespace
 
-ThresholdUnit touch_of(const std::string& name) {
-    return name == "none"           ? ThresholdUnit::none
-           : name == "acceleration" ? ThresholdUnit::acceleration
-                                    : ThresholdUnit::displacement;
+signal::ThresholdUnit touch_of(const std::string& name) {
+    return name == "none"           ? signal::ThresholdUnit::none
+           : name == "acceleration" ? signal::ThresholdUnit::acceleration
+                                    : signal::ThresholdUnit::displacement;
 }
 
 std::string comparison_rows(std::span<const ComparedPair> pairs, const std::vector<std::string>& failures) {
@@ -39,7 +39,7 @@ std::string comparison_rows(std::span<const ComparedPair> pairs, const std::vect
             out += fmt::format("{:<{}}  unread\n", pair_name(pair, pairs), width);
             continue;
         }
-        const Comparison& c = pair.comparison;
+        const signal::Comparison& c = pair.comparison;
         // A dash takes three bytes and one place.
         const std::string orders = c.harmonic_error_db ? fmt::format("{:>6.2f}", *c.harmonic_error_db) : "     –";
         out += fmt::format("{:<{}}  {:<7}  {:>6.2f}  {:>7.4f}  {}  {:>7.2f}  {:>+7.1f}  {:>5}  {:>5}  {}\n",
@@ -65,7 +65,7 @@ std::string comparison_table(std::span<const ComparedPair> pairs, const std::vec
             out += std::string(20, ',') + csv_field(failure) + "\n";
             continue;
         }
-        const Comparison& c = pair.comparison;
+        const signal::Comparison& c = pair.comparison;
         const bool aligned = c.alignment.significant;
         out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},\n",
                            pair.verdict.passed() ? "pass" : "fail", fmt::join(pair.verdict.failed(), " "),

@@ -22,10 +22,10 @@ Json or_null(const std::optional<T>& value) {
     return value ? Json(*value) : Json();
 }
 
-Json lines_json(const std::vector<SpectralLine>& lines, double fundamental) {
+Json lines_json(const std::vector<signal::SpectralLine>& lines, double fundamental) {
     Json list = Json::array();
-    for (const SpectralLine& line : lines) {
-        Json entry{{"hz", line.frequency}, {"db", level_db(line)}, {"snr_db", line.snr_db}};
+    for (const signal::SpectralLine& line : lines) {
+        Json entry{{"hz", line.frequency}, {"db", signal::level_db(line)}, {"snr_db", line.snr_db}};
         if (const std::string name = name_of_line(line.frequency, fundamental); !name.empty()) entry["name"] = name;
         list.push_back(std::move(entry));
     }
@@ -34,7 +34,7 @@ Json lines_json(const std::vector<SpectralLine>& lines, double fundamental) {
 
 Json to_json(const ComparedPair& o) {
     const bool actuator_known = o.actuator_known;
-    const Comparison& c = o.comparison;
+    const signal::Comparison& c = o.comparison;
     const bool aligned = c.alignment.significant;
     const double order_base = c.output_hz > 0.0 ? c.output_hz : c.reference_hz;
     Json json{{"alignment", aligned ? "correlation" : "none"},
@@ -69,15 +69,15 @@ Json to_json(const ComparedPair& o) {
                {{"threshold_of", touch_unit(o.touch)}, {"cosine_40_1000", c.touch_cosine}, {"gap_db", c.touch_gap_db}}},
               {"band_hz", {c.lowest, c.highest}},
               {"notes", o.notes}};
-    for (const BandError& band : c.third_octaves)
+    for (const signal::BandError& band : c.third_octaves)
         json["third_octave"].push_back({{"hz", band.hz}, {"error_db", band.error_db}});
     return json;
 }
 
-void print_lines(const char* what, const std::vector<SpectralLine>& lines, double fundamental) {
+void print_lines(const char* what, const std::vector<signal::SpectralLine>& lines, double fundamental) {
     if (lines.empty()) return;
     std::vector<std::string> names;
-    for (const SpectralLine& line : lines) {
+    for (const signal::SpectralLine& line : lines) {
         const std::string name = name_of_line(line.frequency, fundamental);
         names.push_back(fmt::format("{:.1f} Hz{}", line.frequency, name.empty() ? "" : " (" + name + ")"));
         if (names.size() == 8 && lines.size() > 8) {
@@ -92,7 +92,7 @@ void print_lines(const char* what, const std::vector<SpectralLine>& lines, doubl
 
 void print(const ComparedPair& o) {
     const bool actuator_known = o.actuator_known;
-    const Comparison& c = o.comparison;
+    const signal::Comparison& c = o.comparison;
     fmt::print("{}: {} {} the vibration of {}{}\n", o.verdict.passed() ? "PASS" : "FAIL", o.output.string(),
                o.verdict.passed() ? "has" : "does not have", o.reference.string(),
                std::abs(c.gain_db) < 0.5

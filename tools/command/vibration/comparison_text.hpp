@@ -15,7 +15,7 @@ std::string comparison_json(const study::ComparedPair& pair);
 void print(const study::ComparedPair& pair);
 
 /// What the threshold of touch is a threshold of, by its name.
-ThresholdUnit touch_of(const std::string& name);
+signal::ThresholdUnit touch_of(const std::string& name);
 
 // A row for each of many. `failures`: what went wrong with each pair, empty where nothing did; none at all when nothing
 // did anywhere. A pair that failed has its two names only.

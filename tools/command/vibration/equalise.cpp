@@ -26,33 +26,33 @@ struct EqualiseChoice {
     bool json = false;
 };
 
-Json headroom_json(const Headroom& h) {
+Json headroom_json(const vibration::Headroom& h) {
     Json json{{"peak_v", h.peak}, {"headroom_db", h.headroom_db}, {"limited_fraction", h.limited_fraction}};
     json["lost"] = Json::array();
-    for (const BandLoss& loss : h.losses) json["lost"].push_back({{"hz", loss.hz}, {"db", loss.lost_db}});
+    for (const vibration::BandLoss& loss : h.losses) json["lost"].push_back({{"hz", loss.hz}, {"db", loss.lost_db}});
     return json;
 }
 
-void print_headroom(const char* name, const Headroom& h, double limit) {
+void print_headroom(const char* name, const vibration::Headroom& h, double limit) {
     fmt::print("  {}  peak {:.3f} V, {}\n", name, h.peak,
                h.headroom_db >= 0.0
                    ? fmt::format("{:.1f} dB below the limit of {:g} V", h.headroom_db, limit)
                    : fmt::format("{:.1f} dB above the limit of {:g} V: {:.2g} % of the samples are cut; play it "
                                  "{:.1f} dB softer",
                                  -h.headroom_db, limit, 100.0 * h.limited_fraction, -h.headroom_db));
-    for (const BandLoss& loss : h.losses)
+    for (const vibration::BandLoss& loss : h.losses)
         fmt::print("                 the band at {:.0f} Hz loses {:.1f} dB\n", loss.hz, loss.lost_db);
 }
 
 int equalise(const EqualiseChoice& choice) {
     study::EqualiseSettings settings = choice.settings;
-    settings.design.kind = choice.kind == "linear" ? EqualiserKind::linear_phase : EqualiserKind::minimum_phase;
+    settings.design.kind = choice.kind == "linear" ? vibration::EqualiserKind::linear_phase : vibration::EqualiserKind::minimum_phase;
     settings.design.greatest_gain = std::pow(10.0, choice.greatest_boost_db / 20.0);
     const study::Equalisation made = study::equalise(settings);
-    save_equaliser(made.equaliser, made.title.empty() ? settings.response.stem().string() : made.title, choice.out);
-    const Equaliser& equaliser = made.equaliser;
+    sound::save_equaliser(made.equaliser, made.title.empty() ? settings.response.stem().string() : made.title, choice.out);
+    const vibration::Equaliser& equaliser = made.equaliser;
     const study::Flatness& flat = made.flat;
-    const ActuatorModel& actuator = *made.actuator;
+    const vibration::ActuatorModel& actuator = *made.actuator;
     if (choice.json) {
         Json json{{"equaliser", choice.out.string()},
                   {"kind", choice.kind},
@@ -100,7 +100,7 @@ int equalise(const EqualiseChoice& choice) {
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<EqualiseChoice>();
     study::EqualiseSettings& settings = choice->settings;
-    EqualiserDesign& design = settings.design;
+    vibration::EqualiserDesign& design = settings.design;
     verb.add("response", settings.response, "file of 'tactus measure', or a table of Hz, dB and degrees").required();
     verb.add("-o,--out", choice->out, "the filter, TOML").required();
     verb.add("--kind", choice->kind, "minimum: adds at most 2 ms; linear: undoes the phase, adds half its length")

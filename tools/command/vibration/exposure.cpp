@@ -44,23 +44,23 @@ double parse_duration(const std::string& text) {
 }
 
 Json minutes_json(double value, double acceleration) {
-    const double minutes = time_to_reach(value, acceleration) / 60.0;
+    const double minutes = signal::time_to_reach(value, acceleration) / 60.0;
     return std::isfinite(minutes) ? Json(minutes) : Json(nullptr);
 }
 
 std::string reached(double value, double acceleration) {
-    const double minutes = time_to_reach(value, acceleration) / 60.0;
+    const double minutes = signal::time_to_reach(value, acceleration) / 60.0;
     return minutes <= 1440.0 ? fmt::format("after {:.0f} min", minutes) : "not within a day";
 }
 
 Json operation_json(const Operation& one) {
     return {{"a_hw", one.weighted},
             {"a_hv", one.three_axes ? Json(one.total()) : Json(nullptr)},
-            {"a8", daily_exposure(std::array{HandArmOperation{one.total(), one.duration}})},
-            {"minutes_to_action", minutes_json(action_value, one.total())},
-            {"minutes_to_limit", minutes_json(limit_value, one.total())},
+            {"a8", signal::daily_exposure(std::array{signal::HandArmOperation{one.total(), one.duration}})},
+            {"minutes_to_action", minutes_json(signal::action_value, one.total())},
+            {"minutes_to_limit", minutes_json(signal::limit_value, one.total())},
             {"calibrated", one.calibrated},
-            {"band_hz", {hand_arm_lowest, one.band_high}},
+            {"band_hz", {signal::hand_arm_lowest, one.band_high}},
             {"lower_bound", one.is_lower_bound()},
             {"a_hw_filter", one.filtered},
             {"axes", one.axes},
@@ -75,13 +75,13 @@ std::string table_row(const Operation& one) {
         axes += i < one.weighted.size() ? fmt::format("{},", one.weighted[i]) : std::string(",");
     for (const std::string& note : one.notes) notes += (notes.empty() ? "" : "; ") + note;
     const auto minutes = [&](double value) {
-        const double found = time_to_reach(value, one.total()) / 60.0;
+        const double found = signal::time_to_reach(value, one.total()) / 60.0;
         return std::isfinite(found) ? fmt::format("{}", found) : std::string();
     };
     return fmt::format("{},{}{},{},{},{},{},{},{},{},{},\n", csv_field(one.file), axes,
                        one.three_axes ? fmt::format("{}", one.total()) : std::string(),
-                       daily_exposure(std::array{HandArmOperation{one.total(), one.duration}}), one.duration,
-                       minutes(action_value), minutes(limit_value), one.calibrated, hand_arm_lowest, one.band_high,
+                       signal::daily_exposure(std::array{signal::HandArmOperation{one.total(), one.duration}}), one.duration,
+                       minutes(signal::action_value), minutes(signal::limit_value), one.calibrated, signal::hand_arm_lowest, one.band_high,
                        csv_field(notes));
 }
 
@@ -94,7 +94,7 @@ void write_table(const ExposureChoice& choice, const std::vector<Operation>& ope
         table += failures[i].empty()
                      ? table_row(operations[i])
                      : fmt::format("{},,,,,,,,,,,,,{}\n", csv_field(files[i].string()), csv_field(failures[i]));
-    write_whole_file(choice.table, table);
+    file::write_whole_file(choice.table, table);
 }
 
 void print_operation(const Operation& one) {
@@ -102,8 +102,8 @@ void print_operation(const Operation& one) {
     for (std::size_t i = 0; i < one.axes.size(); ++i)
         fmt::print("  axis {}: a_hw {:.3g} m/s^2 (by filter {:.3g})\n", one.axes[i], one.weighted[i], one.filtered[i]);
     if (one.three_axes) fmt::print("  a_hv {:.3g} m/s^2\n", one.total());
-    fmt::print("  action value {}, limit value {}\n", reached(action_value, one.total()),
-               reached(limit_value, one.total()));
+    fmt::print("  action value {}, limit value {}\n", reached(signal::action_value, one.total()),
+               reached(signal::limit_value, one.total()));
     for (const std::string& note : one.notes) fmt::print("  {}\n", note);
 }
 
@@ -116,8 +116,8 @@ void print_table(const std::vector<Operation>& operations) {
     for (const Operation& one : operations)
         if (!one.file.empty())
             fmt::print("{:<{}}  {:>9.3g}  {:>9.3g}  {:>8.0f}  {:>18}  {}{}\n", one.file, width, one.total(),
-                       daily_exposure(std::array{HandArmOperation{one.total(), one.duration}}), one.duration / 60.0,
-                       reached(action_value, one.total()), reached(limit_value, one.total()),
+                       signal::daily_exposure(std::array{signal::HandArmOperation{one.total(), one.duration}}), one.duration / 60.0,
+                       reached(signal::action_value, one.total()), reached(signal::limit_value, one.total()),
                        one.band_high < 1250.0 || !one.three_axes || !one.calibrated ? "  (see --table)" : "");
 }
 
@@ -128,7 +128,7 @@ int exposure(const ExposureChoice& choice) {
                                 choice.durations.size(), files.size()));
     std::vector<double> durations;
     for (const std::string& text : choice.durations) durations.push_back(parse_duration(text));
-    if (durations.empty()) durations.push_back(reference_day);
+    if (durations.empty()) durations.push_back(signal::reference_day);
     const study::ExposureSettings settings{choice.record, choice.uncalibrated};
     std::vector<Operation> operations(files.size());
     const std::vector<std::string> failures =
@@ -154,7 +154,7 @@ int exposure(const ExposureChoice& choice) {
                                                  ? operation_json(operations[i])
                                                  : Json{{"file", files[i].string()}, {"error", failures[i]}});
         }
-        json["years_to_white_fingers"] = day > 0.0 ? Json(years_to_white_fingers(day)) : Json(nullptr);
+        json["years_to_white_fingers"] = day > 0.0 ? Json(signal::years_to_white_fingers(day)) : Json(nullptr);
         fmt::print("{}\n", json.dump(2));
         return bad ? bad_input : done;
     }
@@ -164,8 +164,8 @@ int exposure(const ExposureChoice& choice) {
             if (!one.file.empty()) print_operation(one);
     if (a8)
         fmt::print("A(8) {:.3g} m/s^2: {}\n", day,
-                   day > limit_value    ? "above the limit value, 5"
-                   : day > action_value ? "above the action value, 2.5"
+                   day > signal::limit_value    ? "above the limit value, 5"
+                   : day > signal::action_value ? "above the action value, 2.5"
                                         : "below the action value, 2.5");
     else
         fmt::print(

@@ -73,7 +73,7 @@ int measure(const MeasureChoice& choice) {
     const study::Measurement found = study::measure(
         choice.settings, [&](double share) { line.show(fmt::format("{:3.0f} % of the sweep", 100.0 * share)); });
     line.clear();
-    save_response(found.response, choice.csv);
+    sound::save_response(found.response, choice.csv);
     if (choice.json) fmt::print("{}", json_of(found, choice));
     else print(found, choice);
     return done;

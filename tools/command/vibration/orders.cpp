@@ -40,7 +40,7 @@ std::string json_of(const std::string& file, const study::Orders& found) {
                      {"turns", one.spectrum.turns},
                      {"segments", one.spectrum.segments},
                      {"orders", Json::array()}};
-        for (const OrderLevel& level : one.spectrum.orders)
+        for (const signal::OrderLevel& level : one.spectrum.orders)
             channel["orders"].push_back({{"order", level.order},
                                          {"amplitude", level.amplitude},
                                          {"db", 20.0 * std::log10(std::max(level.amplitude / std::sqrt(2.0), 1e-15))},
@@ -55,7 +55,7 @@ std::string text_of(const std::string& file, const study::Orders& found) {
         fmt::format("{}: {} from {:.2f} to {:.2f} Hz\n", file, found.source, found.rate.low, found.rate.high);
     for (const study::OrdersOfChannel& one : found.channels) {
         text += fmt::format("  channel {}, {:.0f} turns\n", one.name, one.spectrum.turns);
-        for (const OrderLevel& level : one.spectrum.orders)
+        for (const signal::OrderLevel& level : one.spectrum.orders)
             text += fmt::format("    order {:3g}  {:.5g} {}  SNR {:.0f} dB\n", level.order, level.amplitude,
                                 found.calibration.unit, level.snr_db);
     }
@@ -67,7 +67,7 @@ std::string csv_of(const study::Orders& found) {
     std::string csv = "order";
     for (const study::OrdersOfChannel& one : found.channels) csv += "," + one.name;
     csv += '\n';
-    const OrderSpectrum& first = found.channels.front().spectrum;
+    const signal::OrderSpectrum& first = found.channels.front().spectrum;
     for (std::size_t k = 0; k < first.amplitude.size(); ++k) {
         csv += fmt::format("{}", static_cast<double>(k) * first.step);
         for (const study::OrdersOfChannel& one : found.channels) csv += fmt::format(",{}", one.spectrum.amplitude[k]);
@@ -94,7 +94,7 @@ int orders(const OrdersChoice& choice) {
     if (settings.tacho == 0 && !settings.fixed)
         about_file(file, [&] { settings.range = parse_band(choice.range, "--range"); });
     const study::Orders found = study::analyse_orders(file, settings);
-    if (!choice.csv.empty()) about_file(file, [&] { write_whole_file(choice.csv, csv_of(found)); });
+    if (!choice.csv.empty()) about_file(file, [&] { file::write_whole_file(choice.csv, csv_of(found)); });
     fmt::print("{}", choice.json ? json_of(file.string(), found) : text_of(file.string(), found));
     return done;
 }

@@ -39,22 +39,22 @@ struct Outcome {
 };
 
 study::SpectrumSettings settings_of(const SpectrumChoice& choice) {
-    constexpr std::pair<const char*, WindowKind> windows[] = {
-        {"hann", WindowKind::hann},         {"hamming", WindowKind::hamming},
-        {"blackman", WindowKind::blackman}, {"blackmanharris", WindowKind::blackman_harris},
-        {"flattop", WindowKind::flat_top},  {"boxcar", WindowKind::rectangular}};
+    constexpr std::pair<const char*, signal::WindowKind> windows[] = {
+        {"hann", signal::WindowKind::hann},         {"hamming", signal::WindowKind::hamming},
+        {"blackman", signal::WindowKind::blackman}, {"blackmanharris", signal::WindowKind::blackman_harris},
+        {"flattop", signal::WindowKind::flat_top},  {"boxcar", signal::WindowKind::rectangular}};
     const SpectrumWords& words = choice.words;
     study::SpectrumSettings settings;
     settings.record = choice.record;
     for (const auto& [name, kind] : windows)
         if (words.window == name) settings.window = kind;
-    settings.detrend = words.detrend == "none"     ? Detrend::none
-                       : words.detrend == "linear" ? Detrend::linear
-                                                   : Detrend::constant;
-    settings.averaging = words.average == "median" ? Averaging::median
-                         : words.average == "max"  ? Averaging::maximum
-                         : words.average == "min"  ? Averaging::minimum
-                                                   : Averaging::mean;
+    settings.detrend = words.detrend == "none"     ? signal::Detrend::none
+                       : words.detrend == "linear" ? signal::Detrend::linear
+                                                   : signal::Detrend::constant;
+    settings.averaging = words.average == "median" ? signal::Averaging::median
+                         : words.average == "max"  ? signal::Averaging::maximum
+                         : words.average == "min"  ? signal::Averaging::minimum
+                                                   : signal::Averaging::mean;
     settings.is_density = words.scaling != "spectrum";
     settings.segment = choice.segment;
     settings.overlap = choice.overlap.value_or(0.5);
@@ -76,7 +76,7 @@ Outcome analyse(const fs::path& path, const SpectrumChoice& choice, bool many,
     const auto output = [&](const fs::path& wanted, const char* ending) {
         return many ? wanted / (path.filename().string() + ending) : wanted;
     };
-    if (!choice.csv.empty()) write_whole_file(output(choice.csv, ".csv"), analysis_csv(file));
+    if (!choice.csv.empty()) file::write_whole_file(output(choice.csv, ".csv"), analysis_csv(file));
     if (!choice.plot.empty()) picture::write_figure(picture::draw_spectrum(file), output(choice.plot, ".svg"));
     return {choice.json ? analysis_json(file, choice.words) : analysis_text(file), analysis_rows(file),
             choice.report.empty() ? std::string() : picture::analysis_section(file, method_of(choice))};
@@ -113,14 +113,14 @@ int spectrum(const SpectrumChoice& choice) {
             table += failures[i].empty()
                          ? outcomes[i].table
                          : fmt::format("{},,,,,,,,,,,{}\n", csv_field(files[i].string()), csv_field(failures[i]));
-        write_whole_file(choice.table, table);
+        file::write_whole_file(choice.table, table);
     }
     if (!choice.report.empty()) {
         std::string body;
         for (std::size_t i = 0; i < files.size(); ++i)
             body += failures[i].empty() ? outcomes[i].section
                                         : fmt::format("<p class=\"fail\">{}</p>\n", html::escaped(failures[i]));
-        write_whole_file(choice.report, html::page(many ? "Vibration of " + std::to_string(files.size()) + " records"
+        file::write_whole_file(choice.report, html::page(many ? "Vibration of " + std::to_string(files.size()) + " records"
                                                         : files.front().filename().string(),
                                                    body + picture::analysis_method(method_of(choice))));
     }

@@ -27,7 +27,7 @@ std::string power_unit(const AnalysedFile& file, bool density) {
 Json number_or_null(double value) { return value > 0.0 ? Json(value) : Json(nullptr); }
 
 Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
-    const VibrationReport& r = channel.report;
+    const signal::VibrationReport& r = channel.report;
     Json json{{"name", channel.name},
               {"rms", r.level.rms()},
               {"crest", r.level.crest()},
@@ -48,13 +48,13 @@ Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
               {"bands", Json::array()},
               {"envelope", Json::array()},
               {"warnings", channel.warnings}};
-    for (const CombFit& rival : r.fundamental.rivals)
+    for (const signal::CombFit& rival : r.fundamental.rivals)
         json["fundamental"]["rivals"].push_back({{"hz", rival.frequency}, {"score", rival.score()}});
-    const auto line = [](const SpectralLine& l) {
+    const auto line = [](const signal::SpectralLine& l) {
         return Json{{"hz", l.frequency}, {"db", decibels(l.power)}, {"snr_db", l.snr_db}};
     };
     const double first = r.harmonics.empty() ? 0.0 : decibels(r.harmonics.front().power);
-    for (const Harmonic& h : r.harmonics) {
+    for (const signal::Harmonic& h : r.harmonics) {
         Json row{{"order", h.order}};
         row.update(line(h));
         row["db_re_first"] = decibels(h.power) - first;
@@ -62,17 +62,17 @@ Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
         row["present"] = h.present;
         json["harmonics"].push_back(row);
     }
-    for (const SpectralLine& l : r.peaks) json["peaks"].push_back(line(l));
-    for (const HumLine& l : r.hum) {
+    for (const signal::SpectralLine& l : r.peaks) json["peaks"].push_back(line(l));
+    for (const signal::HumLine& l : r.hum) {
         Json row = line(l);
         row["mains_hz"] = l.mains;
         row["order"] = l.order;
         json["hum"].push_back(row);
     }
-    for (const Band& b : r.bands)
+    for (const signal::Band& b : r.bands)
         json["bands"].push_back(
             {{"hz", b.centre}, {"db", decibels(b.power)}, {"deviation_db", band_deviation(b, r.lines)}});
-    for (const SpectralLine& l : r.envelope) json["envelope"].push_back(line(l));
+    for (const signal::SpectralLine& l : r.envelope) json["envelope"].push_back(line(l));
     return json;
 }
 
@@ -91,7 +91,7 @@ std::string analysis_json(const AnalysedFile& file, const SpectrumWords& words) 
     json["channels"] = Json::array();
     for (const AnalysedChannel& channel : file.channels) json["channels"].push_back(channel_json(channel, file));
     if (!file.channels.empty()) {
-        const Spectrum& psd = file.channels.front().report.psd;
+        const signal::Spectrum& psd = file.channels.front().report.psd;
         json["psd"] = {{"df_hz", psd.df},
                        {"units", power_unit(file, words.scaling == "density")},
                        {"enbw_hz", psd.noise_bandwidth},
@@ -118,11 +118,11 @@ std::string analysis_text(const AnalysedFile& file) {
                        file.log->rows, 1e3 * file.log->shortest_step, 1e3 * file.log->longest_step, 0.5 * file.rate,
                        file.log->usable);
     for (const AnalysedChannel& channel : file.channels) {
-        const VibrationReport& r = channel.report;
-        const auto list = [&](const char* name, const std::vector<SpectralLine>& lines) {
+        const signal::VibrationReport& r = channel.report;
+        const auto list = [&](const char* name, const std::vector<signal::SpectralLine>& lines) {
             if (lines.empty()) return;
             fmt::format_to(out, "    {}:", name);
-            for (const SpectralLine& l : lines)
+            for (const signal::SpectralLine& l : lines)
                 fmt::format_to(out, " {:.2f} ({:.1f} dB)", l.frequency, decibels(l.power));
             text += '\n';
         };
@@ -131,7 +131,7 @@ std::string analysis_text(const AnalysedFile& file) {
         if (r.fundamental.frequency > 0.0) {
             fmt::format_to(out, "    fundamental {:.3f} Hz, confidence {:.2f}", r.fundamental.frequency,
                            r.fundamental.confidence);
-            for (const CombFit& rival : r.fundamental.rivals)
+            for (const signal::CombFit& rival : r.fundamental.rivals)
                 fmt::format_to(out, "{} {:.1f}", &rival == r.fundamental.rivals.data() ? "; or" : ",", rival.frequency);
             text += '\n';
         } else {
@@ -139,12 +139,12 @@ std::string analysis_text(const AnalysedFile& file) {
         }
         if (!r.harmonics.empty()) {
             text += "    orders:";
-            for (const Harmonic& h : r.harmonics)
+            for (const signal::Harmonic& h : r.harmonics)
                 fmt::format_to(out, " {}{}", h.order, h.present ? fmt::format(" {:.1f} dB", decibels(h.power)) : " –");
             text += '\n';
         }
         list("lines", r.peaks);
-        for (const HumLine& h : r.hum)
+        for (const signal::HumLine& h : r.hum)
             fmt::format_to(out, "    hum of {} Hz mains at {:.2f} Hz, {:.1f} dB, SNR {:.0f} dB\n", h.mains, h.frequency,
                            decibels(h.power), h.snr_db);
         list("envelope", r.envelope);
@@ -170,9 +170,9 @@ std::string analysis_csv(const AnalysedFile& file) {
 std::string analysis_rows(const AnalysedFile& file) {
     std::string rows;
     for (const AnalysedChannel& c : file.channels) {
-        const VibrationReport& r = c.report;
+        const signal::VibrationReport& r = c.report;
         std::string hum, warnings;
-        for (const HumLine& h : r.hum) hum += fmt::format("{}{:.2f}", hum.empty() ? "" : " ", h.frequency);
+        for (const signal::HumLine& h : r.hum) hum += fmt::format("{}{:.2f}", hum.empty() ? "" : " ", h.frequency);
         for (const std::string& warning : c.warnings) warnings += (warnings.empty() ? "" : "; ") + warning;
         rows += fmt::format("{},{},{},{},{},{},{},{},{},{},{},\n", csv_field(file.file.string()), csv_field(c.name),
                             file.rate, file.duration, r.level.rms(), csv_field(file.calibration.unit), r.level.crest(),

@@ -73,7 +73,7 @@ void print(const Validation& validation, const Count& count) {
 
 int validate(const ValidateChoice& choice) {
     study::ValidateSettings settings = choice.settings;
-    if (!choice.thresholds.empty()) settings.thresholds = load_thresholds(choice.thresholds);
+    if (!choice.thresholds.empty()) settings.thresholds = table::load_thresholds(choice.thresholds);
     settings.touch = touch_of(choice.touch);
     Validation validation = study::plan_validation(settings);
     const bool pictures = !choice.report.empty() || !choice.plot.empty();
@@ -95,8 +95,8 @@ int validate(const ValidateChoice& choice) {
             picture::write_figure(picture::draw_comparison(run.pair),
                                   (choice.plot / (run.file_name() + ".svg")).string());
     }
-    if (!choice.table.empty()) write_whole_file(choice.table, validation_csv(validation));
-    if (!choice.report.empty()) write_whole_file(choice.report, picture::validation_page(validation));
+    if (!choice.table.empty()) file::write_whole_file(choice.table, validation_csv(validation));
+    if (!choice.report.empty()) file::write_whole_file(choice.report, picture::validation_page(validation));
     if (choice.json) fmt::print("{}", json_text(validation, count));
     else print(validation, count);
     return count.bad > 0 ? bad_input : count.failed > 0 ? answer_is_no : done;

@@ -31,7 +31,7 @@ std::string validation_rows(const Validation& validation) {
             out += "not compared\n";
             continue;
         }
-        const Comparison& c = run.pair.comparison;
+        const signal::Comparison& c = run.pair.comparison;
         out += fmt::format("{:<7}  {:>6.2f}  {:>7.4f}  {:>6}  {:>7.2f}  {:>9.1f}  {}\n",
                            run.pair.verdict.passed() ? "pass" : "FAIL", c.lsd_db, c.cosine_500,
                            shown(c.harmonic_error_db, "{:.2f}"), c.third_octave_max_db, c.gain_db,
@@ -46,14 +46,14 @@ std::string validation_csv(const Validation& validation) {
         "cosine_40_1000,harmonic_error_db,third_octave_max_db,spectrogram_similarity,st_sim,spqi,coherence_mean,"
         "gain_db,lines_added,lines_missing,error\n";
     for (const ValidationRun& run : validation.runs) {
-        const Recording& r = *run.recording;
+        const sound::Recording& r = *run.recording;
         out += fmt::format("{},{},{},{},{},{},{},", csv_field(r.file.string()), r.cutting ? "cutting" : "free_air",
                            r.rate, r.load, run.level_db, shown(run.drive_rms, "{}"), shown(run.drive_peak, "{}"));
         if (!run.failure.empty()) {
             out += std::string(14, ',') + csv_field(run.failure) + "\n";
             continue;
         }
-        const Comparison& c = run.pair.comparison;
+        const signal::Comparison& c = run.pair.comparison;
         out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},\n", run.pair.verdict.passed() ? "pass" : "fail",
                            fmt::join(run.pair.verdict.failed(), " "), c.lsd_db, c.cosine_500, c.cosine_1000,
                            shown(c.harmonic_error_db, "{}"), c.third_octave_max_db, c.spectrogram_similarity,

@@ -17,7 +17,7 @@ namespace tactus::picture {
 namespace {
 
 // Told apart in grey and by eyes that mix red and green.
-constexpr Colour reference_colour{0x1F, 0x4E, 0x9E}, output_colour{0xE0, 0x7B, 0x10}, added_colour{0xB8, 0x1D, 0x24},
+constexpr display::Colour reference_colour{0x1F, 0x4E, 0x9E}, output_colour{0xE0, 0x7B, 0x10}, added_colour{0xB8, 0x1D, 0x24},
     pass_colour{0x1B, 0x7A, 0x3D}, ink{0x22, 0x26, 0x2E}, soft{0x6B, 0x72, 0x80}, limit_colour{0x8A, 0x8F, 0x99},
     band_colour{0x9A, 0xA3, 0xB2};
 
@@ -47,7 +47,7 @@ double level_at(const std::vector<double>& level, double step, double hz) {
     return best;
 }
 
-void mark(Figure& figure, double x, double y, Colour colour, bool upwards) {
+void mark(display::Figure& figure, double x, double y, display::Colour colour, bool upwards) {
     const double s = upwards ? 1.0 : -1.0;
     figure.fill({{x, y}, {x - 4.5, y - 8.0 * s}, {x + 4.5, y - 8.0 * s}}, colour);
 }
@@ -63,7 +63,7 @@ std::string with_name(const std::string& text, double hz, double fundamental) {
     return name.empty() ? text : text + " (" + name + ")";
 }
 
-void draw_spectra(Figure& figure, const Comparison& c, double y, double height) {
+void draw_spectra(display::Figure& figure, const signal::Comparison& c, double y, double height) {
     const double top = greatest_in(c.reference_density, c.step, c.lowest, c.highest);
     const std::vector<double> r = levels(c.reference_density, top), d = levels(c.output_density, top);
     const PlotPanel panel(figure, left, y, panel_width, height, {c.lowest, c.highest}, {-60.0, 10.0});
@@ -76,36 +76,36 @@ void draw_spectra(Figure& figure, const Comparison& c, double y, double height) 
     panel.curve(r, c.step, reference_colour, 3.2);
     panel.curve(d, c.step, output_colour, 1.3);
     double taken = -1e9;
-    for (const SpectralLine& line : c.lines.in_both) {
+    for (const signal::SpectralLine& line : c.lines.in_both) {
         const double x = panel.x_of(line.frequency), level = level_at(r, c.step, line.frequency);
         if (level < -45.0 || x < taken + 26.0 || x > left + panel_width - 12.0) continue;
         const double at = panel.y_of(std::max(level, level_at(d, c.step, line.frequency))) - 5.0;
-        figure.text({x, at}, fmt::format("{:.0f}", line.frequency), 10.0, ink, TextAnchor::middle);
+        figure.text({x, at}, fmt::format("{:.0f}", line.frequency), 10.0, ink, display::TextAnchor::middle);
         if (const std::string name = short_name(line.frequency, c.reference_hz); !name.empty())
-            figure.text({x, at - 11.0}, name, 10.0, soft, TextAnchor::middle);
+            figure.text({x, at - 11.0}, name, 10.0, soft, display::TextAnchor::middle);
         taken = x;
     }
-    for (const SpectralLine& line : c.lines.only_in_reference) {
+    for (const signal::SpectralLine& line : c.lines.only_in_reference) {
         const double x = panel.x_of(line.frequency), at = panel.y_of(level_at(r, c.step, line.frequency)) - 3.0;
         mark(figure, x, at, reference_colour, true);
         figure.text({x, at - 11.0},
                     with_name(fmt::format("{:.0f} missing", line.frequency), line.frequency, c.reference_hz), 10.0,
-                    reference_colour, TextAnchor::middle);
+                    reference_colour, display::TextAnchor::middle);
     }
     const double base = c.output_hz > 0.0 ? c.output_hz : c.reference_hz;
-    for (const SpectralLine& line : c.lines.only_in_output) {
+    for (const signal::SpectralLine& line : c.lines.only_in_output) {
         const double hz = line.frequency * (1.0 / c.speed_ratio), x = std::max(panel.x_of(hz), left + 4.0);
         const double at = panel.y_of(level_at(d, c.step, hz)) - 3.0;
         mark(figure, x, at, added_colour, true);
         figure.text({x, at - 11.0}, with_name(fmt::format("{:.0f} added", line.frequency), line.frequency, base), 10.0,
-                    added_colour, x < left + 30.0 ? TextAnchor::start : TextAnchor::middle);
+                    added_colour, x < left + 30.0 ? display::TextAnchor::start : display::TextAnchor::middle);
     }
 }
 
-void draw_bands(Figure& figure, const Comparison& c, const Thresholds& thresholds, double y, double height, bool last) {
+void draw_bands(display::Figure& figure, const signal::Comparison& c, const table::Thresholds& thresholds, double y, double height, bool last) {
     const double limit = thresholds.third_octave_max_db.value_or(0.0);
     double reach = 6.0;
-    for (const BandError& band : c.third_octaves) reach = std::max(reach, std::abs(band.error_db));
+    for (const signal::BandError& band : c.third_octaves) reach = std::max(reach, std::abs(band.error_db));
     reach = std::ceil(std::min(reach, 30.0) / 3.0) * 3.0;
     const PlotPanel panel(figure, left, y, panel_width, height, {c.lowest, c.highest}, {-reach, reach});
     if (limit > 0.0)
@@ -113,7 +113,7 @@ void draw_bands(Figure& figure, const Comparison& c, const Thresholds& threshold
                          {0xD8, 0xEF, 0xDF, 0.7});
     panel.axes(reach > 9.0 ? 6.0 : 3.0, "band error, dB", last);
     figure.clip(left, y, panel_width, height);
-    for (const BandError& band : c.third_octaves) {
+    for (const signal::BandError& band : c.third_octaves) {
         const double a = std::max(left, panel.x_of(band.hz * std::pow(10.0, -0.045)));
         const double b = std::min(left + panel_width, panel.x_of(band.hz * std::pow(10.0, 0.045)));
         const double zero = panel.y_of(0.0), end = panel.y_of(band.error_db);
@@ -125,7 +125,7 @@ void draw_bands(Figure& figure, const Comparison& c, const Thresholds& threshold
     panel.level(0.0, soft, 0.0);
 }
 
-void draw_coherence(Figure& figure, const Comparison& c, double y, double height) {
+void draw_coherence(display::Figure& figure, const signal::Comparison& c, double y, double height) {
     const PlotPanel panel(figure, left, y, panel_width, height, {c.lowest, c.highest}, {0.0, 1.08});
     panel.axes(0.5, "coherence", true);
     panel.curve(c.coherence, c.coherence_step, soft, 1.4);
@@ -136,11 +136,11 @@ std::string number(double value) {
     return fmt::format("{:.{}f}", value, std::abs(value) < 10.0 ? 3 : 1);
 }
 
-void draw_table(Figure& figure, const Comparison& c, const study::Verdict& verdict, double x, double y) {
-    const auto row = [&](const std::string& name, const std::string& value, const std::string& limit, Colour colour) {
+void draw_table(display::Figure& figure, const signal::Comparison& c, const study::Verdict& verdict, double x, double y) {
+    const auto row = [&](const std::string& name, const std::string& value, const std::string& limit, display::Colour colour) {
         figure.text({x, y}, name, 11.0, colour);
-        figure.text({x + 190.0, y}, value, 11.0, colour, TextAnchor::end);
-        figure.text({x + 262.0, y}, limit, 11.0, soft, TextAnchor::end);
+        figure.text({x + 190.0, y}, value, 11.0, colour, display::TextAnchor::end);
+        figure.text({x + 262.0, y}, limit, 11.0, soft, display::TextAnchor::end);
         y += 18.0;
     };
     row("score", "value", "threshold", soft);
@@ -164,7 +164,7 @@ void draw_table(Figure& figure, const Comparison& c, const study::Verdict& verdi
 }
 
 /// Both takes over time, each from its own beginning and to 60 dB below its strongest.
-void draw_pictures(Figure& figure, const study::ComparedPair& pair, double y) {
+void draw_pictures(display::Figure& figure, const study::ComparedPair& pair, double y) {
     const std::string names[] = {pair.reference.filename().string(), pair.output.filename().string()};
     for (std::size_t i = 0; i < 2; ++i) {
         const double x = left + static_cast<double>(i) * (picture_width + 66.0);
@@ -181,8 +181,8 @@ void draw_pictures(Figure& figure, const study::ComparedPair& pair, double y) {
 
 }  // namespace
 
-Figure draw_comparison(const study::ComparedPair& pair) {
-    const Comparison& c = pair.comparison;
+display::Figure draw_comparison(const study::ComparedPair& pair) {
+    const signal::Comparison& c = pair.comparison;
     const study::Verdict& verdict = pair.verdict;
     const std::string reference_name = pair.reference.filename().string(),
                       output_name = pair.output.filename().string();
@@ -190,9 +190,9 @@ Figure draw_comparison(const study::ComparedPair& pair) {
     const double top = 62.0, spectra = 250.0, bands = 110.0, coherence = coherent ? 70.0 + gap * 0.6 : 0.0;
     const double curves = std::max(top + spectra + gap * 0.6 + bands + coherence + 46.0, 470.0);
     const bool pictures = pair.spectrograms.size() == 2;
-    Figure figure(left + panel_width + right, curves + (pictures ? picture_height + 76.0 : 0.0));
+    display::Figure figure(left + panel_width + right, curves + (pictures ? picture_height + 76.0 : 0.0));
     figure.text({left, 24.0}, verdict.passed() ? "The same vibration" : "Not the same vibration", 16.0,
-                verdict.passed() ? pass_colour : added_colour, TextAnchor::start, true);
+                verdict.passed() ? pass_colour : added_colour, display::TextAnchor::start, true);
     figure.line({{left, 42.0}, {left + 24.0, 42.0}}, reference_colour, 2.5);
     figure.text({left + 30.0, 46.0}, reference_name, 12.0, ink);
     figure.line({{left + 290.0, 42.0}, {left + 314.0, 42.0}}, output_colour, 2.5);
@@ -207,15 +207,15 @@ Figure draw_comparison(const study::ComparedPair& pair) {
         draw_coherence(figure, c, y, 70.0);
         y += 70.0;
     }
-    figure.text({left + 0.5 * panel_width, y + 32.0}, "frequency, Hz", 11.0, ink, TextAnchor::middle);
+    figure.text({left + 0.5 * panel_width, y + 32.0}, "frequency, Hz", 11.0, ink, display::TextAnchor::middle);
     draw_table(figure, c, verdict, left + panel_width + 24.0, top + 10.0);
     if (pictures) draw_pictures(figure, pair, curves + 24.0);
     return figure;
 }
 
-void write_figure(const Figure& figure, const std::string& path) {
-    if (path.ends_with(".svg")) write_whole_file(path, figure.svg());
-    else if (path.ends_with(".png")) write_png(figure.image(), path);
+void write_figure(const display::Figure& figure, const std::string& path) {
+    if (path.ends_with(".svg")) file::write_whole_file(path, figure.svg());
+    else if (path.ends_with(".png")) display::write_png(figure.image(), path);
     else throw Error(path + ": a figure is written as .svg or .png");
 }
 

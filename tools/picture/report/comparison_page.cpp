@@ -19,7 +19,7 @@ std::string score_row(const std::string& name, const std::string& value, const s
 }
 
 std::string scores_table(const study::ComparedPair& pair) {
-    const Comparison& c = pair.comparison;
+    const signal::Comparison& c = pair.comparison;
     std::string out =
         "<table><tr><th>score</th><th class=\"n\">value</th><th class=\"n\">threshold</th><th>verdict</th><th>what it "
         "says</th></tr>\n";
@@ -47,17 +47,17 @@ std::string scores_table(const study::ComparedPair& pair) {
     return out + "</table>\n";
 }
 
-std::string lines_table(const Comparison& c) {
+std::string lines_table(const signal::Comparison& c) {
     std::string out =
         "<table><tr><th>line</th><th class=\"n\">Hz</th><th class=\"n\">level, dB</th><th class=\"n\">SNR, dB</th>"
         "<th>where</th></tr>\n";
-    const auto rows = [&](const std::vector<SpectralLine>& lines, double fundamental, const char* where) {
-        for (const SpectralLine& line : lines) {
+    const auto rows = [&](const std::vector<signal::SpectralLine>& lines, double fundamental, const char* where) {
+        for (const signal::SpectralLine& line : lines) {
             const std::string name = study::name_of_line(line.frequency, fundamental);
             out += fmt::format(
                 "<tr><td>{}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.1f}</td><td class=\"n\">"
                 "{:.1f}</td><td>{}</td></tr>\n",
-                name.empty() ? "–" : name, line.frequency, level_db(line), line.snr_db, where);
+                name.empty() ? "–" : name, line.frequency, signal::level_db(line), line.snr_db, where);
         }
     };
     rows(c.lines.in_both, c.reference_hz, "both");
@@ -66,9 +66,9 @@ std::string lines_table(const Comparison& c) {
     return out + "</table>\n";
 }
 
-std::string bands_table(const Comparison& c) {
+std::string bands_table(const signal::Comparison& c) {
     std::string centres, errors;
-    for (const BandError& band : c.third_octaves) {
+    for (const signal::BandError& band : c.third_octaves) {
         centres += fmt::format("<th class=\"n\">{:.0f}</th>", band.hz);
         errors += fmt::format("<td class=\"n\">{:+.1f}</td>", band.error_db);
     }
@@ -78,7 +78,7 @@ std::string bands_table(const Comparison& c) {
 }  // namespace
 
 std::string comparison_section(const study::ComparedPair& pair, const std::string& mark) {
-    const Comparison& c = pair.comparison;
+    const signal::Comparison& c = pair.comparison;
     std::string out = html::drawing(draw_comparison(pair), mark);
     if (c.alignment.significant)
         out += fmt::format(
@@ -102,7 +102,7 @@ std::string comparison_section(const study::ComparedPair& pair, const std::strin
 }
 
 std::string comparison_method(const study::ComparedPair& pair) {
-    const Comparison& c = pair.comparison;
+    const signal::Comparison& c = pair.comparison;
     return fmt::format(
         "<h2>How it was computed</h2><ul>"
         "<li>Band {:g} to {:g} Hz; both takes brought to 8 kHz. The output is scaled to the reference's power in the "

@@ -31,7 +31,7 @@ const std::string score_heading =
 
 std::string score_cells(const study::ComparedPair& pair, const std::string& failure) {
     if (!failure.empty()) return fmt::format("<td class=\"fail\" colspan=\"7\">{}</td>", html::escaped(failure));
-    const Comparison& c = pair.comparison;
+    const signal::Comparison& c = pair.comparison;
     return fmt::format(
         "<td class=\"{0}\">{0}</td><td class=\"n\">{1:.2f}</td><td class=\"n\">{2:.4f}</td><td class=\"n\">{3}</td>"
         "<td class=\"n\">{4:.2f}</td><td class=\"n\">{5:.1f}</td><td>{6}</td>",

@@ -34,7 +34,7 @@ std::string escaped(std::string_view text) {
     return out;
 }
 
-std::string drawing(const Figure& figure, std::string_view mark) {
+std::string drawing(const display::Figure& figure, std::string_view mark) {
     std::string svg = figure.svg();
     svg.erase(0, svg.find("<svg"));
     // Clips are named c0, c1, … in every drawing.

@@ -13,7 +13,7 @@ namespace tactus::picture::html {
 std::string escaped(std::string_view text);
 
 /// A drawing within a page. `mark` keeps apart the names inside of several drawings of one page: letters.
-std::string drawing(const Figure& figure, std::string_view mark);
+std::string drawing(const display::Figure& figure, std::string_view mark);
 
 /// A complete page with a heading. `title` is text, `body` is HTML.
 std::string page(std::string_view title, const std::string& body);

@@ -31,7 +31,7 @@ std::array<int, 7> dots_of(char letter) {
 }
 
 struct Canvas {
-    Image image;
+    display::Image image;
 
     void set(int x, int y, const Vec3& colour) {
         if (x < 0 || y < 0 || x >= image.width || y >= image.height) return;
@@ -49,7 +49,7 @@ struct Canvas {
                 if (rows[static_cast<std::size_t>(v / size)] >> (4 - u / size) & 1)
                     set(x + u, y + v, Vec3(1.0, 0.85, 0.3));
     }
-    void paste(const Image& from, int x, int y) {
+    void paste(const display::Image& from, int x, int y) {
         for (int v = 0; v < from.height; ++v)
             for (int u = 0; u < from.width; ++u) {
                 const std::uint8_t* p = from.pixel(u, v);
@@ -67,7 +67,7 @@ struct Slice {
 constexpr std::array<Slice, 3> slices{{{2, 0, 1, false, "RLAP"}, {1, 0, 2, true, "RLSI"}, {0, 1, 2, true, "APSI"}}};
 
 Vec3 colour_at(const study::Inspection& found, const std::array<double, 3>& u) {
-    const Grid& grid = found.grey;
+    const volume::Grid& grid = found.grey;
     std::array<int, 3> low{}, nearest{};
     Vec3 share;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -77,7 +77,7 @@ Vec3 colour_at(const study::Inspection& found, const std::array<double, 3>& u) {
     }
     if (found.is_labels) {
         const int label = static_cast<int>(grid.at(nearest[0], nearest[1], nearest[2]));
-        return label == 0 ? Vec3(0.05) : label_colour(label);
+        return label == 0 ? Vec3(0.05) : bone::label_colour(label);
     }
     double sum = 0.0;
     for (int c = 0; c < 8; ++c) {
@@ -97,7 +97,7 @@ Vec3 colour_at(const study::Inspection& found, const std::array<double, 3>& u) {
 
 void draw_slice(Canvas& canvas, const study::Inspection& found, const Slice& slice, const Vec3& centre_mm, int left,
                 int top) {
-    const Grid& grid = found.grey;
+    const volume::Grid& grid = found.grey;
     const auto extent = [&](int a) { return grid.size[static_cast<std::size_t>(a)] * grid.spacing[a]; };
     const double pixel = std::max(extent(slice.across), extent(slice.down)) / (panel - 2 * margin);  // m
     const int width = std::max(1, static_cast<int>(extent(slice.across) / pixel));
@@ -119,9 +119,9 @@ void draw_slice(Canvas& canvas, const study::Inspection& found, const Slice& sli
     canvas.letter(left + panel / 2 - 5, top + panel - 20, slice.letters[3]);
 }
 
-PictureMesh picture_mesh(const ColouredSurface& from, const Vec3& origin) {
+display::PictureMesh picture_mesh(const mesh::ColouredSurface& from, const Vec3& origin) {
     std::vector<Vec3> normals(from.surface.vertices.size(), Vec3(0.0));
-    PictureMesh mesh;
+    display::PictureMesh mesh;
     for (const auto& t : from.surface.triangles) {
         const auto at = [&](std::size_t n) { return from.surface.vertices[static_cast<std::size_t>(t[n])]; };
         const Vec3 normal = glm::cross(at(1) - at(0), at(2) - at(0));
@@ -150,15 +150,15 @@ void write_picture(const study::Inspection& found, const std::filesystem::path& 
     for (const auto& each : found.surfaces)
         for (const Vec3& v : each.surface.vertices) low = glm::min(low, v), high = glm::max(high, v);
     const Vec3 middle = low.x <= high.x ? 0.5 * (low + high) : found.grey.origin;
-    std::vector<PictureMesh> meshes;
+    std::vector<display::PictureMesh> meshes;
     for (const auto& each : found.surfaces)
         if (!each.surface.triangles.empty()) meshes.push_back(picture_mesh(each, middle));
     const auto view = [&](const Vec3& direction, const Vec3& up, int left, int top) {
         if (meshes.empty()) return;
-        View from = fit_view(low - middle, high - middle, direction, up);
+        display::View from = display::fit_view(low - middle, high - middle, direction, up);
         // The sphere around the box is larger than what is in it.
         from.eye = from.target + (from.eye - from.target) * 0.85;
-        canvas.paste(render_picture(meshes, from, panel, panel), left, top);
+        canvas.paste(display::render_picture(meshes, from, panel, panel), left, top);
     };
     const std::array<std::array<int, 2>, 3> places{{{0, 0}, {panel + gap, 0}, {0, panel + gap}}};
     if (found.grey.values.empty()) {
@@ -179,7 +179,7 @@ void write_picture(const study::Inspection& found, const std::filesystem::path& 
         for (std::size_t n = 0; n < 3; ++n) draw_slice(canvas, found, slices[n], centre, places[n][0], places[n][1]);
     }
     view(Vec3(-0.55, 0.8, -0.25), Vec3(0, 0, 1), panel + gap, panel + gap);
-    write_png(canvas.image, path.string());
+    display::write_png(canvas.image, path.string());
 }
 
 }  // namespace tactus::picture

@@ -4,9 +4,9 @@
 #include "assets/mesh/mesh.hpp"
 #include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/distance/iso_surface.hpp"
-#include "dsp/planning/gap.hpp"
-#include "dsp/planning/registration.hpp"
+#include "dsp/geometry/iso_surface.hpp"
+#include "dsp/fit/gap.hpp"
+#include "dsp/fit/registration.hpp"
 #include "tools/picture/report/html_report.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 #include "tools/study/bones/surface_file.hpp"
@@ -38,8 +38,8 @@ std::string base64(const std::string& bytes) {
     return text;
 }
 
-PictureMesh placed(const Mesh& mesh, const Pose& pose, const Vec3& colour) {
-    PictureMesh picture;
+display::PictureMesh placed(const mesh::Mesh& mesh, const Pose& pose, const Vec3& colour) {
+    display::PictureMesh picture;
     for (std::size_t n = 0; n < mesh.vertices.size(); ++n) {
         const Vec3 v = pose.apply(mesh.vertices[n]), d = pose.rotate(mesh.normals[n]);
         for (int axis = 0; axis < 3; ++axis) {
@@ -56,7 +56,7 @@ PictureMesh placed(const Mesh& mesh, const Pose& pose, const Vec3& colour) {
 struct Box {
     Vec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
 
-    void take(const PictureMesh& mesh) {
+    void take(const display::PictureMesh& mesh) {
         for (std::size_t n = 0; n + 2 < mesh.positions.size(); n += 3) {
             const Vec3 p(mesh.positions[n], mesh.positions[n + 1], mesh.positions[n + 2]);
             low = glm::min(low, p);
@@ -65,16 +65,16 @@ struct Box {
     }
 };
 
-std::string picture_of(const std::vector<PictureMesh>& meshes, const Vec3& direction, const std::string& caption) {
+std::string picture_of(const std::vector<display::PictureMesh>& meshes, const Vec3& direction, const std::string& caption) {
     Box box;
-    for (const PictureMesh& mesh : meshes) box.take(mesh);
+    for (const display::PictureMesh& mesh : meshes) box.take(mesh);
     if (!(box.low.x <= box.high.x)) return "<p>Nothing is shown.</p>\n";
-    View view = fit_view(box.low, box.high, direction, Vec3(0.0, 0.0, 1.0), static_cast<double>(width) / height);
+    display::View view = display::fit_view(box.low, box.high, direction, Vec3(0.0, 0.0, 1.0), static_cast<double>(width) / height);
     view.eye = view.target + (view.eye - view.target) * 0.85;
     return fmt::format(
         "<figure><img alt=\"{0}\" width=\"{1}\" src=\"data:image/png;base64,{2}\"><figcaption "
         "class=\"small\">{0}</figcaption></figure>\n",
-        html::escaped(caption), width, base64(png_bytes(render_picture(meshes, view, width, height))));
+        html::escaped(caption), width, base64(display::png_bytes(display::render_picture(meshes, view, width, height))));
 }
 
 /// Blue where bones lie in each other, white where they touch, red where a millimetre gapes, grey where nothing is
@@ -87,18 +87,18 @@ Vec3 gap_colour(double distance) {
 }
 
 struct Case {
-    CasePlan plan;
-    PlanState state{Arrangement(0), {}, {}, std::nullopt};
+    cases::CasePlan plan;
+    cases::PlanState state{fit::Arrangement(0), {}, {}, std::nullopt};
     std::vector<study::CaseFragment> fragments;
-    std::vector<Mesh> meshes;
+    std::vector<mesh::Mesh> meshes;
 
     const std::string& name(std::size_t n) const { return plan.fragments[n].name; }
     Pose pose(std::size_t n) const { return state.arrangement.pose(static_cast<int>(n)); }
     bool is_shown(std::size_t n) const { return !state.arrangement.is_hidden(static_cast<int>(n)); }
 };
 
-std::vector<PictureMesh> scene_of(const Case& c, const PlanState& state) {
-    std::vector<PictureMesh> meshes;
+std::vector<display::PictureMesh> scene_of(const Case& c, const cases::PlanState& state) {
+    std::vector<display::PictureMesh> meshes;
     for (std::size_t n = 0; n < c.meshes.size(); ++n)
         if (c.is_shown(n))
             meshes.push_back(
@@ -107,7 +107,7 @@ std::vector<PictureMesh> scene_of(const Case& c, const PlanState& state) {
 }
 
 std::string pictures(const Case& c) {
-    const std::vector<PictureMesh> scanned = scene_of(c, state_of(c.plan, -1)), planned = scene_of(c, c.state);
+    const std::vector<display::PictureMesh> scanned = scene_of(c, cases::state_of(c.plan, -1)), planned = scene_of(c, c.state);
     return "<h2>Pictures</h2>\n<div class=\"two\">\n" +
            picture_of(scanned, Vec3(0.25, 1.0, -0.35), "As scanned, from the front") +
            picture_of(planned, Vec3(0.25, 1.0, -0.35), "As planned, from the front") +
@@ -150,7 +150,7 @@ std::string fragments_table(const Case& c) {
     for (std::size_t n = 0; n < c.fragments.size(); ++n) {
         Vec3 middle(0.0);
         const auto& points = c.fragments[n].bone.points;
-        for (const SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
+        for (const contact::SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
         const Vec3& colour = c.plan.fragments[n].colour;
         out += fmt::format(
             "<tr><td><span style=\"background:rgb({:.0f},{:.0f},{:.0f})\">&emsp;</span> {}</td><td class=\"n\">{:.2f}"
@@ -168,7 +168,7 @@ std::string fragments_table(const Case& c) {
         else out += "<td>–</td><td>–</td><td></td><td></td><td></td><td></td>";
         const int number = static_cast<int>(n);
         std::string marks;
-        for (int g = c.state.arrangement.group_of(number); g != Arrangement::none; g = c.state.arrangement.parent_of(g))
+        for (int g = c.state.arrangement.group_of(number); g != fit::Arrangement::none; g = c.state.arrangement.parent_of(g))
             marks += (marks.empty() ? "in " : ", in ") + c.state.group_names[static_cast<std::size_t>(g)];
         if (c.state.arrangement.is_locked(number)) marks += " locked";
         if (c.state.arrangement.is_hidden(number)) marks += " hidden";
@@ -178,10 +178,10 @@ std::string fragments_table(const Case& c) {
 }
 
 /// A fragment that shows how far the other one is from every point of it, seen from the other.
-std::string gap_map(const Case& c, std::size_t i, std::size_t j, const SurfaceGap& gap) {
+std::string gap_map(const Case& c, std::size_t i, std::size_t j, const fit::SurfaceGap& gap) {
     const auto& points = c.fragments[i].bone.points;
-    const RegistrationTarget nearest(points);
-    PictureMesh mesh = placed(c.meshes[i], c.pose(i), Vec3(0.0));
+    const fit::RegistrationTarget nearest(points);
+    display::PictureMesh mesh = placed(c.meshes[i], c.pose(i), Vec3(0.0));
     for (std::size_t v = 0; v < c.meshes[i].vertices.size(); ++v) {
         const Vec3 colour = gap_colour(static_cast<double>(gap.distance[nearest.nearest(c.meshes[i].vertices[v])]));
         for (int axis = 0; axis < 3; ++axis)
@@ -201,7 +201,7 @@ std::string gaps(const Case& c) {
     for (std::size_t i = 0; i < c.fragments.size(); ++i)
         for (std::size_t j = i + 1; j < c.fragments.size(); ++j) {
             if (!c.is_shown(i) || !c.is_shown(j)) continue;
-            const SurfaceGap gap = gap_between(c.fragments[i].bone.points, c.pose(i), c.fragments[j].map, c.pose(j));
+            const fit::SurfaceGap gap = fit::gap_between(c.fragments[i].bone.points, c.pose(i), c.fragments[j].map, c.pose(j));
             if (!(gap.facing_area > 5e-6)) continue;
             rows += fmt::format(
                 "<tr><td>{}</td><td>{}</td><td class=\"n\">{:.0f}</td><td class=\"n\">{:.0f}</td><td "
@@ -209,7 +209,7 @@ std::string gaps(const Case& c) {
                 "</td></tr>\n",
                 html::escaped(c.name(i)), html::escaped(c.name(j)), gap.facing_area * 1e6, gap.contact_area * 1e6,
                 study::shown_mm(gap.median * 1e3), study::shown_mm(gap.p95 * 1e3), gap.deepest * 1e3,
-                overlap_volume(c.fragments[i].bone.distance, c.pose(i), c.fragments[j].map, c.pose(j)) * 1e9);
+                fit::overlap_volume(c.fragments[i].bone.distance, c.pose(i), c.fragments[j].map, c.pose(j)) * 1e9);
             if (gap.facing_area > 20e-6) maps += gap_map(c, i, j, gap);
         }
     if (rows.empty()) return "<h2>Gaps and overlaps</h2>\n<p>No two fragments face each other within 3 mm.</p>\n";
@@ -223,9 +223,9 @@ std::string steps(const Case& c) {
     std::string out =
         "<h2>Order of steps</h2>\n<table><tr><th class=\"n\">step</th><th>time</th><th>by</th><th>what</th></tr>\n";
     std::size_t count = 0;
-    for (const int n : steps_to(c.plan.before(), c.plan.place().head)) {
-        const PlanStep& step = c.plan.steps[static_cast<std::size_t>(n)];
-        std::string what(name_of(step.kind));
+    for (const int n : fit::steps_to(c.plan.before(), c.plan.place().head)) {
+        const cases::PlanStep& step = c.plan.steps[static_cast<std::size_t>(n)];
+        std::string what(cases::name_of(step.kind));
         for (const int f : step.fragments) what += " " + c.name(static_cast<std::size_t>(f));
         if (!step.group.empty()) what += fmt::format(" as '{}'", step.group);
         if (step.fit)
@@ -239,11 +239,11 @@ std::string steps(const Case& c) {
     return count == 0 ? "<h2>Order of steps</h2>\n<p>Nothing was done yet.</p>\n" : out + "</table>\n";
 }
 
-std::string alternatives(const CasePlan& plan) {
+std::string alternatives(const cases::CasePlan& plan) {
     std::string out = "<h2>Alternatives</h2>\n<ul>\n";
-    for (const PlanAlternative& a : plan.alternatives)
+    for (const cases::PlanAlternative& a : plan.alternatives)
         out +=
-            fmt::format("<li>{}: {} steps</li>\n", html::escaped(a.name), steps_to(plan.before(), a.place.head).size());
+            fmt::format("<li>{}: {} steps</li>\n", html::escaped(a.name), fit::steps_to(plan.before(), a.place.head).size());
     return out + "</ul>\n";
 }
 
@@ -257,12 +257,12 @@ std::string mirror(const Case& c) {
 
 }  // namespace
 
-std::string plan_page(const CasePlan& plan, std::vector<study::CaseFragment> fragments) {
+std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments) {
     Case c;
     c.plan = plan;
-    c.state = state_of(c.plan);
+    c.state = cases::state_of(c.plan);
     c.fragments = std::move(fragments);
-    for (const study::CaseFragment& fragment : c.fragments) c.meshes.push_back(surface_of(fragment.bone.distance));
+    for (const study::CaseFragment& fragment : c.fragments) c.meshes.push_back(mesh::surface_of(fragment.bone.distance));
     std::string pages;
     try {
         pages = pictures(c) + gaps(c);

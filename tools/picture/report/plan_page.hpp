@@ -10,6 +10,6 @@
 namespace tactus::picture {
 
 /// `fragments`: those of the plan, in its order. Throws Error when no pictures can be made.
-std::string plan_page(const CasePlan& plan, std::vector<study::CaseFragment> fragments);
+std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragment> fragments);
 
 }  // namespace tactus::picture

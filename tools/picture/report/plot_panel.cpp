@@ -10,7 +10,7 @@ namespace tactus::picture {
 
 namespace {
 
-constexpr Colour grid{0xE3, 0xE6, 0xEA}, frame{0x55, 0x5B, 0x66}, ink{0x22, 0x26, 0x2E};
+constexpr display::Colour grid{0xE3, 0xE6, 0xEA}, frame{0x55, 0x5B, 0x66}, ink{0x22, 0x26, 0x2E};
 
 }  // namespace
 
@@ -32,20 +32,20 @@ void PlotPanel::axes(double value_step, const std::string& unit, bool name_frequ
             figure_.line({{x_of(hz), y_}, {x_of(hz), bottom}}, grid, 0.8);
             const bool named = i == 1 || i == 2 || i == 3 || i == 5 || (i == 4 && decade < 50.0);
             if (name_frequencies && named)
-                figure_.text({x_of(hz), bottom + 14.0}, fmt::format("{:g}", hz), 11.0, ink, TextAnchor::middle);
+                figure_.text({x_of(hz), bottom + 14.0}, fmt::format("{:g}", hz), 11.0, ink, display::TextAnchor::middle);
         }
     const double first = std::ceil(value_.lowest / value_step - 1e-9) * value_step;
     for (double value = first; value <= value_.highest + 1e-9; value += value_step) {
         figure_.line({{x_, y_of(value)}, {right, y_of(value)}}, grid, 0.8);
         figure_.text({x_ - 6.0, y_of(value) + 4.0}, fmt::format("{:g}", std::abs(value) < 1e-9 ? 0.0 : value), 11.0,
-                     ink, TextAnchor::end);
+                     ink, display::TextAnchor::end);
     }
     figure_.line({{x_, y_}, {right, y_}, {right, bottom}, {x_, bottom}, {x_, y_}}, frame, 1.0);
-    figure_.text({x_ - 38.0, y_ + 0.5 * height_}, unit, 11.0, ink, TextAnchor::middle, false, true);
+    figure_.text({x_ - 38.0, y_ + 0.5 * height_}, unit, 11.0, ink, display::TextAnchor::middle, false, true);
 }
 
-void PlotPanel::curve(const std::vector<double>& values, double step, Colour colour, double width) const {
-    std::vector<FigurePoint> points;
+void PlotPanel::curve(const std::vector<double>& values, double step, display::Colour colour, double width) const {
+    std::vector<display::FigurePoint> points;
     for (std::size_t k = 1; k < values.size(); ++k) {
         const double hz = static_cast<double>(k) * step;
         if (hz < hz_.lowest * 0.98 || hz > hz_.highest * 1.02) continue;
@@ -56,11 +56,11 @@ void PlotPanel::curve(const std::vector<double>& values, double step, Colour col
     figure_.unclip();
 }
 
-void PlotPanel::upright(double hz, Colour colour, double dash) const {
+void PlotPanel::upright(double hz, display::Colour colour, double dash) const {
     figure_.line({{x_of(hz), y_}, {x_of(hz), y_ + height_}}, colour, 1.2, dash);
 }
 
-void PlotPanel::level(double value, Colour colour, double dash) const {
+void PlotPanel::level(double value, display::Colour colour, double dash) const {
     figure_.line({{x_, y_of(value)}, {x_ + width_, y_of(value)}}, colour, 1.2, dash);
 }
 

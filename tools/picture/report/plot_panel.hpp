@@ -17,7 +17,7 @@ public:
     };
 
     /// The inner rectangle, in units of the figure.
-    PlotPanel(Figure& figure, double x, double y, double width, double height, Range hz, Range value)
+    PlotPanel(display::Figure& figure, double x, double y, double width, double height, Range hz, Range value)
         : figure_(figure), x_(x), y_(y), width_(width), height_(height), hz_(hz), value_(value) {}
 
     double x_of(double hz) const;
@@ -25,12 +25,12 @@ public:
 
     /// Grid, ticks and their numbers; `unit` beside the axis.
     void axes(double value_step, const std::string& unit, bool name_frequencies) const;
-    void curve(const std::vector<double>& values, double step, Colour colour, double width) const;
-    void upright(double hz, Colour colour, double dash) const;
-    void level(double value, Colour colour, double dash) const;
+    void curve(const std::vector<double>& values, double step, display::Colour colour, double width) const;
+    void upright(double hz, display::Colour colour, double dash) const;
+    void level(double value, display::Colour colour, double dash) const;
 
 private:
-    Figure& figure_;
+    display::Figure& figure_;
     double x_, y_, width_, height_;
     Range hz_, value_;
 };

@@ -12,9 +12,9 @@ namespace tactus::picture {
 
 namespace {
 
-constexpr std::array<Colour, 4> colours{
+constexpr std::array<display::Colour, 4> colours{
     {{0x1F, 0x4E, 0x9E}, {0xB8, 0x1D, 0x24}, {0x1B, 0x7A, 0x3D}, {0x8A, 0x5A, 0x00}}};
-constexpr Colour grid{0xE3, 0xE6, 0xEA}, frame{0x55, 0x5B, 0x66}, ink{0x22, 0x26, 0x2E}, soft{0x6B, 0x72, 0x80};
+constexpr display::Colour grid{0xE3, 0xE6, 0xEA}, frame{0x55, 0x5B, 0x66}, ink{0x22, 0x26, 0x2E}, soft{0x6B, 0x72, 0x80};
 
 struct Scale {
     double low, high;
@@ -45,33 +45,33 @@ struct Scale {
 };
 
 struct Axes {
-    Figure& figure;
+    display::Figure& figure;
     double x, y, width, height;
     Scale across, up;
 
-    FigurePoint at(double a, double b) const { return {x + width * across.share(a), y + height * (1.0 - up.share(b))}; }
+    display::FigurePoint at(double a, double b) const { return {x + width * across.share(a), y + height * (1.0 - up.share(b))}; }
 
     void draw(const std::string& title, const std::string& unit_across, const std::string& unit_up) const {
         for (const double v : across.ticks()) {
             figure.line({{at(v, up.low).x, y}, {at(v, up.low).x, y + height}}, grid, 0.8);
-            figure.text({at(v, up.low).x, y + height + 13.0}, fmt::format("{:g}", v), 10.0, ink, TextAnchor::middle);
+            figure.text({at(v, up.low).x, y + height + 13.0}, fmt::format("{:g}", v), 10.0, ink, display::TextAnchor::middle);
         }
         for (const double v : up.ticks()) {
             figure.line({{x, at(across.low, v).y}, {x + width, at(across.low, v).y}}, grid, 0.8);
-            figure.text({x - 5.0, at(across.low, v).y + 3.5}, fmt::format("{:g}", v), 10.0, ink, TextAnchor::end);
+            figure.text({x - 5.0, at(across.low, v).y + 3.5}, fmt::format("{:g}", v), 10.0, ink, display::TextAnchor::end);
         }
         figure.line({{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}, {x, y}}, frame, 1.0);
-        figure.text({x, y - 6.0}, title, 11.0, ink, TextAnchor::start, true);
-        figure.text({x + width, y + height + 26.0}, unit_across, 10.0, soft, TextAnchor::end);
-        figure.text({x - 36.0, y + 0.5 * height}, unit_up, 10.0, soft, TextAnchor::middle, false, true);
+        figure.text({x, y - 6.0}, title, 11.0, ink, display::TextAnchor::start, true);
+        figure.text({x + width, y + height + 26.0}, unit_across, 10.0, soft, display::TextAnchor::end);
+        figure.text({x - 36.0, y + 0.5 * height}, unit_up, 10.0, soft, display::TextAnchor::middle, false, true);
     }
-    void curve(const std::vector<FigurePoint>& values, Colour colour, double dash, bool dots) const {
-        std::vector<FigurePoint> points;
-        for (const FigurePoint& v : values) points.push_back(at(v.x, v.y));
+    void curve(const std::vector<display::FigurePoint>& values, display::Colour colour, double dash, bool dots) const {
+        std::vector<display::FigurePoint> points;
+        for (const display::FigurePoint& v : values) points.push_back(at(v.x, v.y));
         figure.clip(x - 3.0, y - 3.0, width + 6.0, height + 6.0);
         if (points.size() > 1) figure.line(points, colour, 1.5, dash);
         if (dots)
-            for (const FigurePoint& p : points) figure.rectangle(p.x - 2.0, p.y - 2.0, 4.0, 4.0, colour);
+            for (const display::FigurePoint& p : points) figure.rectangle(p.x - 2.0, p.y - 2.0, 4.0, 4.0, colour);
         figure.unclip();
     }
 };
@@ -109,13 +109,13 @@ Scale rates_of(const study::RigReport& report) {
     return scale;
 }
 
-Colour colour_of(const std::vector<std::string>& motors, const std::string& motor) {
+display::Colour colour_of(const std::vector<std::string>& motors, const std::string& motor) {
     const auto at = static_cast<std::size_t>(std::ranges::find(motors, motor) - motors.begin());
     return colours[at % colours.size()];
 }
 
 /// Motors by colour and amplitudes by dash, along the top.
-void legend(Figure& figure, const study::RigReport& report, bool with_amplitudes) {
+void legend(display::Figure& figure, const study::RigReport& report, bool with_amplitudes) {
     const std::vector<std::string> motors = motors_of(report);
     double x = 60.0;
     for (const std::string& motor : motors) {
@@ -135,13 +135,13 @@ void legend(Figure& figure, const study::RigReport& report, bool with_amplitudes
 
 constexpr double panel_width = 230.0, panel_height = 150.0, left = 60.0, gap_across = 70.0, gap_down = 62.0, top = 54.0;
 
-Figure sheet(std::size_t panels, std::size_t columns, std::size_t rows_per_panel = 1) {
+display::Figure sheet(std::size_t panels, std::size_t columns, std::size_t rows_per_panel = 1) {
     const auto rows = static_cast<double>((panels + columns - 1) / columns * rows_per_panel);
     return {left + static_cast<double>(columns) * (panel_width + gap_across) - 30.0,
             top + rows * (panel_height + gap_down) - 14.0};
 }
 
-Axes panel(Figure& figure, std::size_t column, std::size_t row, Scale across, Scale up) {
+Axes panel(display::Figure& figure, std::size_t column, std::size_t row, Scale across, Scale up) {
     return {figure,
             left + static_cast<double>(column) * (panel_width + gap_across),
             top + static_cast<double>(row) * (panel_height + gap_down),
@@ -157,7 +157,7 @@ void curves(const Axes& axes, const study::RigReport& report, const std::string&
     for (const std::string& motor : motors) {
         double dash = 0.0;
         for (const double amplitude : amplitudes_of(report)) {
-            std::vector<FigurePoint> points;
+            std::vector<display::FigurePoint> points;
             for (const study::RigRow& row : report.rows)
                 if (row.cell.motor == motor && row.cell.object.name == object && row.cell.amplitude == amplitude)
                     if (const std::optional<double> v = value(row)) points.push_back({row.cell.rate, *v});
@@ -169,9 +169,9 @@ void curves(const Axes& axes, const study::RigReport& report, const std::string&
 
 }  // namespace
 
-Figure draw_rig_errors(const study::RigReport& report) {
+display::Figure draw_rig_errors(const study::RigReport& report) {
     const std::vector<std::string> objects = objects_of(report, false);
-    Figure figure = sheet(objects.size(), 3);
+    display::Figure figure = sheet(objects.size(), 3);
     legend(figure, report, true);
     const Scale rates = rates_of(report);
     for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -189,10 +189,10 @@ Figure draw_rig_errors(const study::RigReport& report) {
     return figure;
 }
 
-Figure draw_rig_response(const study::RigReport& report) {
+display::Figure draw_rig_response(const study::RigReport& report) {
     std::vector<std::string> objects = objects_of(report, true);
     objects.resize(std::min<std::size_t>(objects.size(), 3));
-    Figure figure = sheet(objects.size(), 3, 2);
+    display::Figure figure = sheet(objects.size(), 3, 2);
     legend(figure, report, true);
     const Scale rates = rates_of(report);
     for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -206,8 +206,8 @@ Figure draw_rig_response(const study::RigReport& report) {
     return figure;
 }
 
-Figure draw_rig_crossover(const study::RigReport& report) {
-    Figure figure = sheet(report.crossover.size(), 3);
+display::Figure draw_rig_crossover(const study::RigReport& report) {
+    display::Figure figure = sheet(report.crossover.size(), 3);
     legend(figure, report, false);
     for (std::size_t i = 0; i < report.crossover.size(); ++i) {
         const study::RigCrossover& c = report.crossover[i];
@@ -215,15 +215,15 @@ Figure draw_rig_crossover(const study::RigReport& report) {
             panel(figure, i % 3, i / 3, {c.rates.front() * 0.9, c.rates.back() * 1.1, true}, {0.3, 300.0, true});
         axes.draw(fmt::format("{:g} N/mm, cord ±{:.3g} mm", c.stiffness * 1e-3, c.amplitude * 1e3),
                   "rate of the rig, Hz", "NRMSE, %");
-        const auto band = [&](const std::vector<std::pair<double, double>>& ends, Colour colour) {
-            std::vector<FigurePoint> outline, low, high;
+        const auto band = [&](const std::vector<std::pair<double, double>>& ends, display::Colour colour) {
+            std::vector<display::FigurePoint> outline, low, high;
             for (std::size_t n = 0; n < ends.size(); ++n) {
                 low.push_back({c.rates[n], ends[n].first * 100.0});
                 high.push_back({c.rates[n], ends[n].second * 100.0});
                 outline.push_back(axes.at(low.back().x, low.back().y));
             }
             for (std::size_t n = ends.size(); n-- > 0;) outline.push_back(axes.at(high[n].x, high[n].y));
-            Colour pale = colour;
+            display::Colour pale = colour;
             pale.opacity = 0.18;
             figure.fill(outline, pale);
             axes.curve(low, colour, 0.0, false);
@@ -237,18 +237,18 @@ Figure draw_rig_crossover(const study::RigReport& report) {
         const bool is_left = c.low.value() < std::sqrt(c.rates.front() * c.rates.back());
         figure.text({axes.at(*c.low, 1.0).x + (is_left ? 4.0 : -4.0), axes.y + 14.0},
                     fmt::format("{:.2g}–{:.2g} Hz", *c.low, c.high.value_or(*c.low)), 10.0, ink,
-                    is_left ? TextAnchor::start : TextAnchor::end);
+                    is_left ? display::TextAnchor::start : display::TextAnchor::end);
     }
     return figure;
 }
 
-Figure draw_rig_leads(const study::RigReport& report) {
+display::Figure draw_rig_leads(const study::RigReport& report) {
     std::vector<std::string> objects;
     for (const study::RigLead& lead : report.leads)
         if (std::ranges::find(objects, lead.cell.object.name) == objects.end())
             objects.push_back(lead.cell.object.name);
     objects.resize(std::min<std::size_t>(objects.size(), 6));
-    Figure figure = sheet(objects.size(), 3);
+    display::Figure figure = sheet(objects.size(), 3);
     legend(figure, report, false);
     const std::vector<std::string> motors = motors_of(report);
     for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -256,7 +256,7 @@ Figure draw_rig_leads(const study::RigReport& report) {
         axes.draw(objects[i], "rate of the rig, Hz", "error without / with");
         axes.curve({{axes.across.low, 1.0}, {axes.across.high, 1.0}}, soft, 4.0, false);
         for (const std::string& motor : motors) {
-            std::vector<FigurePoint> points;
+            std::vector<display::FigurePoint> points;
             for (const study::RigLead& lead : report.leads)
                 if (lead.cell.motor == motor && lead.cell.object.name == objects[i])
                     points.push_back({lead.cell.rate, lead.ratio()});
@@ -266,8 +266,8 @@ Figure draw_rig_leads(const study::RigReport& report) {
     return figure;
 }
 
-Figure draw_rig_examples(const study::RigReport& report) {
-    Figure figure = sheet(report.examples.size(), 3);
+display::Figure draw_rig_examples(const study::RigReport& report) {
+    display::Figure figure = sheet(report.examples.size(), 3);
     legend(figure, report, false);
     const std::vector<std::string> motors = motors_of(report);
     for (std::size_t i = 0; i < report.examples.size(); ++i) {
@@ -275,13 +275,13 @@ Figure draw_rig_examples(const study::RigReport& report) {
         const auto count = static_cast<std::size_t>(std::lround(1.0 / (e.cell.rate * e.series.period)));
         const std::size_t from = e.series.force.size() - std::min(count, e.series.force.size());
         double force = 0.1, position = 1e-4;
-        std::vector<FigurePoint> loop, ideal;
+        std::vector<display::FigurePoint> loop, ideal;
         for (std::size_t n = from; n < e.series.force.size(); ++n) {
             force = std::max(force, std::abs(e.series.force[n]));
             position = std::max(position, std::abs(e.series.position[n]));
             loop.push_back({e.series.force[n], e.series.position[n] * 1e3});
         }
-        const std::vector<double> object = ideal_response(e.series, study::object_of(e.cell.object));
+        const std::vector<double> object = control::ideal_response(e.series, study::object_of(e.cell.object));
         for (std::size_t n = from; n < e.series.force.size(); ++n) {
             position = std::max(position, std::abs(object[n]));
             ideal.push_back({e.series.force[n], object[n] * 1e3});

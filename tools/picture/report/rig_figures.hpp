@@ -8,14 +8,14 @@
 namespace tactus::picture {
 
 /// NRMSE over rate, one panel per object, a colour per motor, dashes per amplitude.
-Figure draw_rig_errors(const study::RigReport& report);
+display::Figure draw_rig_errors(const study::RigReport& report);
 /// Gain and phase error over rate for springs.
-Figure draw_rig_response(const study::RigReport& report);
+display::Figure draw_rig_response(const study::RigReport& report);
 /// Both motors over all that is assumed of them, as bands, and where they cross.
-Figure draw_rig_crossover(const study::RigReport& report);
+display::Figure draw_rig_crossover(const study::RigReport& report);
 /// Error of the loop of the thesis over that with feed-forward.
-Figure draw_rig_leads(const study::RigReport& report);
+display::Figure draw_rig_leads(const study::RigReport& report);
 /// Position over force of single cells.
-Figure draw_rig_examples(const study::RigReport& report);
+display::Figure draw_rig_examples(const study::RigReport& report);
 
 }  // namespace tactus::picture

@@ -62,7 +62,7 @@ std::string rows_table(const study::RigReport& report) {
         "class=\"n\">slips, "
         "%</th><th class=\"n\">saturated, %</th><th class=\"n\">hunting, µm</th></tr>\n";
     for (const study::RigRow& row : report.rows) {
-        const Fidelity& f = row.fidelity;
+        const control::Fidelity& f = row.fidelity;
         out += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"n\">{:g}</td><td class=\"n\">{:g}</td>",
                            html::escaped(row.cell.motor), html::escaped(row.cell.object.name), row.cell.rate,
                            row.cell.amplitude * 1e3);
@@ -137,7 +137,7 @@ std::string rig_html(const study::RigReport& report) {
         out += "<h2>What is known and what is assumed</h2><p>Facts of the thesis (Olsson 2015):</p>" + table(facts);
         out += "<p>Assumptions of the simulated grippers, unless the patch says otherwise:</p>" + table(models);
         out += "<p>Ranges over which the findings above were tried:</p><table>";
-        for (const RigAssumption& a : report.assumptions)
+        for (const study::RigAssumption& a : report.assumptions)
             out += fmt::format("<tr><td>{}</td><td>{}</td><td>{} to {}</td></tr>", html::escaped(a.motor),
                                html::escaped(a.option), html::escaped(a.low), html::escaped(a.high));
         out += "</table>\n";

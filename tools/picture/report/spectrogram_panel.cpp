@@ -12,12 +12,12 @@ namespace tactus::picture {
 
 namespace {
 
-constexpr Colour ink{0x22, 0x26, 0x2E};
+constexpr display::Colour ink{0x22, 0x26, 0x2E};
 
 double decibels(double power) { return 10.0 * std::log10(std::max(power, 1e-30)); }
 
 /// From dark violet over green to yellow, lightness rising evenly: also right in grey.
-Colour heat(double share) {
+display::Colour heat(double share) {
     constexpr std::array<std::array<double, 3>, 6> stops{
         {{68, 1, 84}, {65, 68, 135}, {42, 120, 142}, {34, 168, 132}, {122, 209, 81}, {253, 231, 37}}};
     const double at = std::clamp(share, 0.0, 1.0) * (stops.size() - 1);
@@ -31,7 +31,7 @@ Colour heat(double share) {
 
 }  // namespace
 
-void draw_spectrogram(Figure& figure, const Spectrogram& s, const SpectrogramPlace& place,
+void draw_spectrogram(display::Figure& figure, const signal::Spectrogram& s, const SpectrogramPlace& place,
                       const SpectrogramStyle& style) {
     const double left = place.x, y = place.y, width = place.width, picture_height = place.height;
     const double lowest = style.lowest, highest = style.highest;
@@ -80,18 +80,18 @@ void draw_spectrogram(Figure& figure, const Spectrogram& s, const SpectrogramPla
         if (hz < lowest || hz > highest) continue;
         const double at = bottom - picture_height * std::log(hz / lowest) / std::log(highest / lowest);
         figure.line({{left - 4.0, at}, {left, at}}, ink, 1.0);
-        figure.text({left - 6.0, at + 4.0}, fmt::format("{:g}", hz), 11.0, ink, TextAnchor::end);
+        figure.text({left - 6.0, at + 4.0}, fmt::format("{:g}", hz), 11.0, ink, display::TextAnchor::end);
     }
     const double step = std::pow(10.0, std::floor(std::log10(duration / 2.0)));
     const double tick = duration / step > 10.0 ? 5.0 * step : duration / step > 5.0 ? 2.0 * step : step;
     for (double t = 0.0; t <= duration * 1.0001; t += tick) {
         const double x = left + width * t / duration;
         figure.line({{x, bottom}, {x, bottom + 4.0}}, ink, 1.0);
-        figure.text({x, bottom + 16.0}, fmt::format("{:g}", t), 11.0, ink, TextAnchor::middle);
+        figure.text({x, bottom + 16.0}, fmt::format("{:g}", t), 11.0, ink, display::TextAnchor::middle);
     }
     figure.line({{left, y}, {left + width, y}, {left + width, bottom}, {left, bottom}, {left, y}}, ink, 1.0);
-    figure.text({left - 46.0, y + 0.5 * picture_height}, "Hz", 11.0, ink, TextAnchor::middle, false, true);
-    figure.text({left + width, bottom + 28.0}, "time, s", 11.0, ink, TextAnchor::end);
+    figure.text({left - 46.0, y + 0.5 * picture_height}, "Hz", 11.0, ink, display::TextAnchor::middle, false, true);
+    figure.text({left + width, bottom + 28.0}, "time, s", 11.0, ink, display::TextAnchor::end);
     if (!style.legend) return;
     for (int i = 0; i < shades; ++i)
         figure.rectangle(left + width + 14.0, bottom - picture_height * (i + 1) / shades, 12.0,

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "devices/display/figure.hpp"
-#include "dsp/spectrum/spectrogram.hpp"
+#include "dsp/signal/spectrum/spectrogram.hpp"
 
 namespace tactus::picture {
 
@@ -20,7 +20,7 @@ struct SpectrogramStyle {
 };
 
 /// From the strongest cell to 60 dB below it, time from left to right.
-void draw_spectrogram(Figure& figure, const Spectrogram& spectrogram, const SpectrogramPlace& place,
+void draw_spectrogram(display::Figure& figure, const signal::Spectrogram& spectrogram, const SpectrogramPlace& place,
                       const SpectrogramStyle& style);
 
 }  // namespace tactus::picture

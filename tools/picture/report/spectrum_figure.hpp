@@ -9,6 +9,6 @@ namespace tactus::picture {
 
 /// Per channel (at most four): the spectrum with its lines named and the limit of touch, and the spectrogram below it
 /// when it was made.
-Figure draw_spectrum(const study::AnalysedFile& file);
+display::Figure draw_spectrum(const study::AnalysedFile& file);
 
 }  // namespace tactus::picture

@@ -13,38 +13,38 @@ namespace tactus::picture {
 
 namespace {
 
-std::string row(const std::string& name, const SpectralLine& line) {
+std::string row(const std::string& name, const signal::SpectralLine& line) {
     return fmt::format(
         "<tr><td>{}</td><td class=\"n\">{:.3f}</td><td class=\"n\">{:.1f}</td><td class=\"n\">{:.1f}</td></tr>\n", name,
         line.frequency, study::decibels(line.power), line.snr_db);
 }
 
-std::string lines_table(const VibrationReport& r) {
+std::string lines_table(const signal::VibrationReport& r) {
     std::string out =
         "<table><tr><th>line</th><th class=\"n\">Hz</th><th class=\"n\">level, dB</th><th class=\"n\">SNR, dB</th>"
         "</tr>\n";
-    for (const Harmonic& h : r.harmonics)
+    for (const signal::Harmonic& h : r.harmonics)
         if (h.present) out += row(fmt::format("order {}", h.order), h);
-    for (const HumLine& h : r.hum) out += row(fmt::format("hum, {} × {} Hz", h.order, h.mains), h);
-    const auto is_named = [&](const SpectralLine& line) {
-        const auto near = [&](const SpectralLine& other) {
+    for (const signal::HumLine& h : r.hum) out += row(fmt::format("hum, {} × {} Hz", h.order, h.mains), h);
+    const auto is_named = [&](const signal::SpectralLine& line) {
+        const auto near = [&](const signal::SpectralLine& other) {
             return std::abs(line.frequency - other.frequency) < r.lines.df;
         };
-        for (const Harmonic& h : r.harmonics)
+        for (const signal::Harmonic& h : r.harmonics)
             if (h.present && near(h)) return true;
         return std::ranges::any_of(r.hum, near);
     };
-    for (const SpectralLine& line : r.peaks)
+    for (const signal::SpectralLine& line : r.peaks)
         if (!is_named(line)) out += row("–", line);
-    for (const SpectralLine& line : r.envelope) out += row("of the envelope", line);
+    for (const signal::SpectralLine& line : r.envelope) out += row("of the envelope", line);
     return out + "</table>\n";
 }
 
-std::string bands_table(const VibrationReport& r) {
+std::string bands_table(const signal::VibrationReport& r) {
     std::string out =
         "<table><tr><th class=\"n\">third octave, Hz</th><th class=\"n\">level, dB</th><th class=\"n\">± "
         "dB</th></tr>\n";
-    for (const Band& band : r.bands)
+    for (const signal::Band& band : r.bands)
         out +=
             fmt::format("<tr><td class=\"n\">{:.4g}</td><td class=\"n\">{:.1f}</td><td class=\"n\">{:.2f}</td></tr>\n",
                         band.centre, study::decibels(band.power), study::band_deviation(band, r.lines));
@@ -52,7 +52,7 @@ std::string bands_table(const VibrationReport& r) {
 }
 
 std::string channel_section(const study::AnalysedChannel& channel, const study::AnalysedFile& file) {
-    const VibrationReport& r = channel.report;
+    const signal::VibrationReport& r = channel.report;
     const std::string unit = html::escaped(file.calibration.unit);
     std::string out = fmt::format("<h3>Channel {}</h3>\n<p>Root mean square {:.4g} {}{}, crest factor {:.3g}. ",
                                   html::escaped(channel.name), r.level.rms(), unit,
@@ -60,7 +60,7 @@ std::string channel_section(const study::AnalysedChannel& channel, const study::
     if (r.fundamental.frequency > 0.0) {
         out +=
             fmt::format("Fundamental {:.3f} Hz, confidence {:.2f}", r.fundamental.frequency, r.fundamental.confidence);
-        for (const CombFit& rival : r.fundamental.rivals)
+        for (const signal::CombFit& rival : r.fundamental.rivals)
             out += fmt::format("{} {:.1f} Hz", &rival == r.fundamental.rivals.data() ? "; or" : ",", rival.frequency);
         out += ".</p>\n";
     } else {

@@ -21,7 +21,7 @@ std::string validation_table(const study::Validation& validation) {
         "<th class=\"n\">drive, V rms</th><th class=\"n\">peak, V</th>" +
         score_heading + "</tr>\n";
     for (const study::ValidationRun& run : validation.runs) {
-        const Recording& r = *run.recording;
+        const sound::Recording& r = *run.recording;
         out += fmt::format(
             "<tr><td>{}</td><td class=\"n\">{:.4g}</td><td class=\"n\">{}</td><td class=\"n\">{:+g}</td>"
             "<td class=\"n\">{}</td><td class=\"n\">{}</td>",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/picture/scene/body_surface.hpp"
 
-#include "dsp/distance/surface_net.hpp"
+#include "dsp/geometry/surface_net.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -18,9 +18,9 @@ constexpr double painted_within = 0.9e-3;  // m from a painted point
 /// Painted points by cells of a grid.
 class Paint {
 public:
-    explicit Paint(const SeenBody& body) {
+    explicit Paint(const observe::SeenBody& body) {
         for (std::size_t i = 0; i < body.points.size() && i < body.labels.size(); ++i)
-            if (body.labels[i] == surface_label::fracture) cells_[cell_of(body.points[i])].push_back(body.points[i]);
+            if (body.labels[i] == contact::surface_label::fracture) cells_[cell_of(body.points[i])].push_back(body.points[i]);
     }
     bool empty() const { return cells_.empty(); }
     bool covers(const Vec3& at) const {
@@ -45,19 +45,19 @@ private:
 
 }  // namespace
 
-BodySurface make_body_surface(const SeenBody& body, const Voxmap& field, const Vec3& colour, const Vec3& paint_colour) {
+BodySurface make_body_surface(const observe::SeenBody& body, const contact::Voxmap& field, const Vec3& colour, const Vec3& paint_colour) {
     const Paint paint(body);
-    const SurfaceNet net = surface_net(field.grid, 0.0f, false);
+    const geometry::SurfaceNet net = geometry::surface_net(field.grid, 0.0f, false);
     BodySurface surface;
     surface.has_paint = !paint.empty();
-    SurfacePatch& patch = surface.patch;
+    geometry::SurfacePatch& patch = surface.patch;
     for (const Vec3& vertex : net.vertices) {
-        const Sample rough = field.sample(vertex);
+        const volume::Sample rough = field.sample(vertex);
         const double steep = glm::dot(rough.gradient, rough.gradient);
         const Vec3 at = steep > 0.25 ? vertex - rough.gradient * (rough.value / steep) : vertex;
         patch.vertices.push_back({{static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)},
-                                  packed_normal(field.smooth_sample(at).gradient),
-                                  packed_colour(paint.covers(at) ? paint_colour : colour)});
+                                  geometry::packed_normal(field.smooth_sample(at).gradient),
+                                  geometry::packed_colour(paint.covers(at) ? paint_colour : colour)});
         surface.bounds.add(at);
     }
     for (const auto& triangle : net.triangles)

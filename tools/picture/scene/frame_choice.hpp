@@ -11,7 +11,7 @@ namespace tactus::picture {
 /// As the command line gives it.
 struct FrameChoice {
     int frames = 0;                ///< how many, 0: none
-    std::string view_from = "iso";  ///< a name or number of dsp/view/camera.hpp
+    std::string view_from = "iso";  ///< a name or number of dsp/display/camera.hpp
     std::string size = "1280x800";
     std::string clip;              ///< "x", "-y", "z=12 mm": what is above along that axis is taken away
     SightChoice sight;

@@ -31,10 +31,10 @@ std::pair<int, int> parse_size(const std::string& text) {
     return {width, height};
 }
 
-NamedView parse_view(const std::string& text) {
-    if (const auto named = view_of_name(text)) return *named;
-    if (text.size() == 1 && text[0] >= '1' && text[0] <= '7') return *view_of_number(text[0] - '0');
-    const std::vector<std::string> names(view_names.begin(), view_names.end());
+display::NamedView parse_view(const std::string& text) {
+    if (const auto named = display::view_of_name(text)) return *named;
+    if (text.size() == 1 && text[0] >= '1' && text[0] <= '7') return *display::view_of_number(text[0] - '0');
+    const std::vector<std::string> names(display::view_names.begin(), display::view_names.end());
     throw Error(fmt::format("--view-from takes front, back, left, right, top, bottom, iso or 1 to 7, not '{}'{}", text,
                             did_you_mean(text, names)));
 }
@@ -55,7 +55,7 @@ struct Clip {
         normal[letter[0] - 'x'] = is_turned ? -1.0 : 1.0;
         if (equals != std::string::npos) at = parse_as(text.substr(equals + 1), "m") * (is_turned ? -1.0 : 1.0);
     }
-    Plane plane(const Bounds& bounds) const {
+    display::Plane plane(const display::Bounds& bounds) const {
         return {at ? *at * normal : bounds.empty() ? Vec3(0.0) : bounds.middle(), normal};
     }
 };
@@ -71,13 +71,13 @@ struct FrameWriter::State {
     FrameChoice choice;
     double seconds;
     std::filesystem::path folder;
-    NamedView view;
+    display::NamedView view;
     Sight sight;
     std::optional<Clip> clip;
-    Observer observer{Observer::Pace::lossless};
-    PictureMaker maker;
+    observe::Observer observer{observe::Observer::Pace::lossless};
+    display::PictureMaker maker;
     SceneModel model;
-    OrbitCamera camera;
+    display::OrbitCamera camera;
     bool is_aimed = false;
     int next = 1;
     std::vector<std::string> files, losses;
@@ -92,16 +92,16 @@ struct FrameWriter::State {
           model(std::move(outline), observer, maker.renderer()) {
         if (!wanted.clip.empty()) clip.emplace(wanted.clip);
         for (std::size_t i = 0; i < sight.screens(); ++i)
-            if (sight.mode_of(i) == StereoMode::quad_buffer)
+            if (sight.mode_of(i) == display::StereoMode::quad_buffer)
                 throw Error("a picture file has no buffer for each eye: --stereo side-by-side or anaglyph");
         sight.follow(model.outline());
-        for (const std::string& port : sight.ports()) observer.watch(port, Watch::latest);
+        for (const std::string& port : sight.ports()) observer.watch(port, observe::Watch::latest);
     }
 
     double time_of(int frame) const { return seconds * frame / choice.frames; }
 
     double aspect() const {
-        const int width = sight.mode_of(0) == StereoMode::side_by_side ? maker.width() / 2 : maker.width();
+        const int width = sight.mode_of(0) == display::StereoMode::side_by_side ? maker.width() / 2 : maker.width();
         return static_cast<double>(width) / maker.height();
     }
 
@@ -109,7 +109,7 @@ struct FrameWriter::State {
     void check_head() const {
         if (sight.head.empty() || observer.latest<Pose>(sight.head)) return;
         std::vector<std::string> poses;
-        for (const Observer::Port& port : observer.ports())
+        for (const observe::Observer::Port& port : observer.ports())
             if (port.type == &value::pose) poses.push_back(port.name);
         throw Error(fmt::format("--head: there is no pose output '{}'{}; there are {}", sight.head,
                                 did_you_mean(sight.head, poses), fmt::join(poses, ", ")));
@@ -117,10 +117,10 @@ struct FrameWriter::State {
 
     void draw(int frame) {
         observer.advance(static_cast<Flicks>(std::llround(time_of(frame) * static_cast<double>(flicks_per_second))));
-        Picture& picture = model.update();
+        display::Picture& picture = model.update();
         if (!is_aimed) {
             camera.look_from(view);
-            if (view == NamedView::iso && model.tool()) camera.look_from_side_of(*model.tool(), model.bounds());
+            if (view == display::NamedView::iso && model.tool()) camera.look_from_side_of(*model.tool(), model.bounds());
             camera.fit(model.bounds(), aspect(), 1.12);
             is_aimed = !model.bounds().empty();
         }
@@ -129,18 +129,18 @@ struct FrameWriter::State {
         sight.update(observer);
         for (std::size_t screen = 0; screen < sight.screens(); ++screen) {
             const auto views = sight.views(screen, camera, picture.bounds, maker.width(), maker.height());
-            Image image = maker.draw(picture, views);
-            Legend legend = model.legend();
+            display::Image image = maker.draw(picture, views);
+            display::Legend legend = model.legend();
             legend.title = fmt::format("{}, {:.2f} s", legend.title, time_of(frame));
             legend.warnings.insert(legend.warnings.end(), sight.warnings().begin(), sight.warnings().end());
             add_legend(image, legend, views, sight.text_of(screen));
-            if (!sight.is_off_axis() && sight.mode_of(0) == StereoMode::mono)
-                add_scale_bar(image, camera.metres_per_pixel(image.height));
+            if (!sight.is_off_axis() && sight.mode_of(0) == display::StereoMode::mono)
+                display::add_scale_bar(image, camera.metres_per_pixel(image.height));
             std::string name = fmt::format("frame_{:04}", frame);
             if (sight.screens() > 1) name += "_" + file_part(sight.rig()->screens[screen].name);
             name += ".png";
             try {
-                write_png(image, (folder / name).string());
+                display::write_png(image, (folder / name).string());
                 files.push_back(name);
             } catch (const Error& error) {
                 losses.emplace_back(error.what());
@@ -158,7 +158,7 @@ FrameWriter::FrameWriter(const FrameChoice& choice, SceneOutline outline, double
 
 FrameWriter::~FrameWriter() = default;
 
-Observer& FrameWriter::observer() { return state_->observer; }
+observe::Observer& FrameWriter::observer() { return state_->observer; }
 
 void FrameWriter::advance(double seconds) {
     for (; state_->next <= state_->choice.frames && state_->time_of(state_->next) <= seconds + 1e-9; ++state_->next)

@@ -2,7 +2,7 @@
 // Pictures of a scene at even steps of time while a patch is rendered: frame_0001.png, frame_0002.png, …
 #pragma once
 
-#include "engine/observer.hpp"
+#include "engine/observe/observer.hpp"
 #include "tools/picture/scene/frame_choice.hpp"
 #include "tools/picture/scene/scene_outline.hpp"
 
@@ -23,7 +23,7 @@ public:
     FrameWriter& operator=(const FrameWriter&) = delete;
 
     /// For EngineOptions: sees everything.
-    Observer& observer();
+    observe::Observer& observer();
     /// Draws the frames up to this logical time, s: all groups have come so far. Always on one thread.
     void advance(double seconds);
     /// Names of what was written.

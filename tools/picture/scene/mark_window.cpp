@@ -24,11 +24,11 @@ void fill(int x, int y, int width, int height, float grey) {
 
 }  // namespace
 
-void draw_mark(const RigTouch& touch, int width, int height) {
+void draw_mark(const display::RigTouch& touch, int width, int height) {
     glViewport(0, 0, width, height);
     glEnable(GL_SCISSOR_TEST);
     fill(0, 0, width, height, 0.06f);
-    if (touch.of == RigTouch::Of::screen || touch.of == RigTouch::Of::image) {
+    if (touch.of == display::RigTouch::Of::screen || touch.of == display::RigTouch::Of::image) {
         // Thin where they cross, so that the place is exact.
         const int x = static_cast<int>(std::lround(touch.shown.x * width)),
                   y = static_cast<int>(std::lround(touch.shown.y * height)), reach = height / 20;
@@ -42,7 +42,7 @@ void draw_mark(const RigTouch& touch, int width, int height) {
 
 struct MarkWindow::State {
     GLFWwindow* window = nullptr;
-    RigTouch touch;
+    display::RigTouch touch;
 
     ~State() {
         if (window) glfwDestroyWindow(window);
@@ -70,7 +70,7 @@ MarkWindow::MarkWindow(int number) {
 
 MarkWindow::~MarkWindow() = default;
 
-void MarkWindow::show(const RigTouch& touch, const std::string& words) {
+void MarkWindow::show(const display::RigTouch& touch, const std::string& words) {
     state_->touch = touch;
     glfwSetWindowTitle(state_->window, words.c_str());
 }

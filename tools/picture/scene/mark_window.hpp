@@ -2,7 +2,7 @@
 // A full screen that shows a mark to be touched.
 #pragma once
 
-#include "dsp/view/rig_touches.hpp"
+#include "dsp/display/rig_touches.hpp"
 
 #include <memory>
 #include <string>
@@ -11,7 +11,7 @@ namespace tactus::picture {
 
 /// A cross at the mark of a screen on black, into what is bound; for other touches nothing but black. Needs a current
 /// context.
-void draw_mark(const RigTouch& touch, int width, int height);
+void draw_mark(const display::RigTouch& touch, int width, int height);
 
 class MarkWindow {
 public:
@@ -22,7 +22,7 @@ public:
     MarkWindow& operator=(const MarkWindow&) = delete;
 
     /// A cross at the mark of a screen; for other touches the words alone.
-    void show(const RigTouch& touch, const std::string& words);
+    void show(const display::RigTouch& touch, const std::string& words);
     /// Some times a second. False: it was closed, or Escape was pressed.
     bool draw();
 

@@ -21,11 +21,11 @@ namespace {
 
 std::string node_of(const std::string& port) { return port.substr(0, port.find('.')); }
 
-SurfaceGrid grid_of(const BrickLayout& layout) { return {layout.origin, layout.spacing, brick_cells}; }
+geometry::SurfaceGrid grid_of(const volume::BrickLayout& layout) { return {layout.origin, layout.spacing, volume::brick_cells}; }
 
 }  // namespace
 
-SceneModel::SceneModel(SceneOutline outline, Observer& observer, SceneRenderer& renderer)
+SceneModel::SceneModel(SceneOutline outline, observe::Observer& observer, display::SceneRenderer& renderer)
     : observer_(observer), renderer_(renderer), notes_mesh_(renderer.meshes().make()) {
     follow(std::move(outline));
 }
@@ -44,9 +44,9 @@ void SceneModel::follow(SceneOutline outline) {
     outline_ = std::move(outline);
     // What goes on is watched all the time: a bone that was not would have to be sent as a whole.
     for (const std::string& port : before)
-        if (!std::ranges::binary_search(now, port)) observer_.watch(port, Watch::nothing);
-    for (const std::string& port : now) observer_.watch(port, Watch::latest);
-    MeshPool& meshes = renderer_.meshes();
+        if (!std::ranges::binary_search(now, port)) observer_.watch(port, observe::Watch::nothing);
+    for (const std::string& port : now) observer_.watch(port, observe::Watch::latest);
+    display::MeshPool& meshes = renderer_.meshes();
     std::erase_if(bones_, [&](const auto& bone) {
         const bool gone =
             std::ranges::none_of(outline_.bones, [&](const auto& kept) { return kept.port == bone.first; });
@@ -71,15 +71,15 @@ void SceneModel::follow(SceneOutline outline) {
 
 std::size_t SceneModel::triangles() const {
     std::size_t count = 0;
-    for (const DrawnMesh& drawn : picture_.meshes) count += renderer_.meshes().triangles(drawn.mesh);
+    for (const display::DrawnMesh& drawn : picture_.meshes) count += renderer_.meshes().triangles(drawn.mesh);
     return count;
 }
 
 /// A mesh that never changes, made when it is first asked for.
-MeshPool::Mesh SceneModel::shape_mesh(const std::string& name, const SurfacePatch& patch) {
+display::MeshPool::Mesh SceneModel::shape_mesh(const std::string& name, const geometry::SurfacePatch& patch) {
     const auto known = shapes_.find(name);
     if (known != shapes_.end()) return known->second;
-    const MeshPool::Mesh mesh = renderer_.meshes().make();
+    const display::MeshPool::Mesh mesh = renderer_.meshes().make();
     renderer_.meshes().set_part(mesh, 0, patch);
     return shapes_[name] = mesh;
 }
@@ -98,7 +98,7 @@ double SceneModel::number_of(const std::string& port, double otherwise) const {
     return seen && std::isfinite(seen->value) ? seen->value : otherwise;
 }
 
-void SceneModel::show(MeshPool::Mesh mesh, const Pose& pose, const Bounds& local, double opacity, bool is_clipped,
+void SceneModel::show(display::MeshPool::Mesh mesh, const Pose& pose, const display::Bounds& local, double opacity, bool is_clipped,
                       bool is_fitted) {
     picture_.meshes.push_back({mesh, pose, opacity, is_clipped, is_clipped && opacity >= 1.0});
     if (local.empty()) return;
@@ -108,7 +108,7 @@ void SceneModel::show(MeshPool::Mesh mesh, const Pose& pose, const Bounds& local
     }
 }
 
-Picture& SceneModel::update() {
+display::Picture& SceneModel::update() {
     picture_.meshes.clear();
     picture_.points.clear();
     picture_.bounds = {};
@@ -126,10 +126,10 @@ Picture& SceneModel::update() {
     show_balls();
     show_gripper();
     for (const auto& handle : outline_.handles)
-        if (const auto pose = pose_of(handle.pose)) add_axes(notes_, *pose, 0.02);
+        if (const auto pose = pose_of(handle.pose)) display::add_axes(notes_, *pose, 0.02);
     // Most of the time they are as they were.
     if (notes_ != shown_notes_) renderer_.meshes().set_part(notes_mesh_, 0, shown_notes_ = notes_);
-    show(notes_mesh_, {}, bounds_of(notes_), 1.0, false, !outline_.handles.empty());
+    show(notes_mesh_, {}, display::bounds_of(notes_), 1.0, false, !outline_.handles.empty());
     picture_.meshes.back().shines_through = true;
     is_fitting_ = is_fitting_ && bounds_.empty();
     if (deepest_ > 0.0)
@@ -150,12 +150,12 @@ void SceneModel::show_bones() {
         for (const std::uint32_t brick : seen->changed_since(bone.update)) {
             mesher_.make(seen->snapshot(), brick, patch_);
             renderer_.meshes().set_part(bone.mesh, brick, patch_);
-            if (is_new) bone.bounds.add(bounds_of(patch_));
+            if (is_new) bone.bounds.add(display::bounds_of(patch_));
             ++remeshed_;
         }
         bone.update = seen->update;
         show(bone.mesh, {}, bone.bounds);
-        if (legend_.scales.empty()) legend_.scales.push_back(density_scale(mesher_.colours));
+        if (legend_.scales.empty()) legend_.scales.push_back(display::density_scale(mesher_.colours));
     }
 }
 
@@ -165,15 +165,15 @@ void SceneModel::show_still_bones() {
         if (known == still_bones_.end()) {
             StillMesh& bone = (known = still_bones_.emplace(path, StillMesh{}).first)->second;
             try {
-                const Bone loaded = load_bone(path);
-                const BoneEditor editor(loaded.distance, loaded.density,
+                const bone::Bone loaded = bone::load_bone(path);
+                const volume::BoneEditor editor(loaded.distance, loaded.density,
                                         {.band = 0.003, .max_dirty = 1, .max_versions = 1});
                 bone.mesh = renderer_.meshes().make(grid_of(editor.layout()));
                 for (std::uint32_t brick = 0; brick < static_cast<std::uint32_t>(editor.layout().brick_count());
                      ++brick) {
                     mesher_.make(editor.current(), brick, patch_);
                     renderer_.meshes().set_part(bone.mesh, brick, patch_);
-                    bone.bounds.add(bounds_of(patch_));
+                    bone.bounds.add(display::bounds_of(patch_));
                 }
             } catch (const Error& error) {
                 bone.problem = fmt::format("{} is not drawn: {}", name, error.message());
@@ -184,7 +184,7 @@ void SceneModel::show_still_bones() {
             continue;
         }
         show(known->second.mesh, {}, known->second.bounds);
-        if (legend_.scales.empty()) legend_.scales.push_back(density_scale(mesher_.colours));
+        if (legend_.scales.empty()) legend_.scales.push_back(display::density_scale(mesher_.colours));
     }
 }
 
@@ -194,7 +194,7 @@ SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, std::size_t pla
         if (body->content_hash != content || body->distance.values.empty()) continue;
         BodyMesh& mesh = bodies_[content];
         mesh.body = body;
-        mesh.field = make_voxmap(body->distance);
+        mesh.field = contact::make_voxmap(body->distance);
         BodySurface surface =
             make_body_surface(*body, mesh.field, group_colours[place % group_colours.size()], paint_colour);
         mesh.has_paint = surface.has_paint;
@@ -214,7 +214,7 @@ void SceneModel::show_bodies() {
     for (const auto& scene : outline_.scenes) scenes.push_back(&scene);
     std::ranges::stable_sort(scenes, std::greater{}, [](const auto* scene) { return scene->bodies.size(); });
     for (const SceneOutline::Bodies* scene : scenes) {
-        const auto seen = observer_.latest<SeenScene>(scene->port);
+        const auto seen = observer_.latest<observe::SeenScene>(scene->port);
         if (!seen) continue;
         for (std::size_t i = 0; i < seen->value.count; ++i) {
             const auto& object = seen->value.objects[i];
@@ -260,7 +260,7 @@ void SceneModel::show_bodies() {
 }
 
 /// Points of the held body that lie within another.
-void SceneModel::show_penetration(const BodyMesh& held, const Pose& pose, std::size_t place, const SeenScene& scene) {
+void SceneModel::show_penetration(const BodyMesh& held, const Pose& pose, std::size_t place, const observe::SeenScene& scene) {
     constexpr double worst = 0.5e-3;
     for (std::size_t i = 0; i < scene.count; ++i) {
         const auto other = bodies_.find(scene.objects[i].body);
@@ -274,7 +274,7 @@ void SceneModel::show_penetration(const BodyMesh& held, const Pose& pose, std::s
             const Vec3 colour = glm::mix(Vec3(1.0, 0.80, 0.10), Vec3(0.85, 0.05, 0.05), std::min(depth / worst, 1.0));
             picture_.points.push_back({{static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)},
                                        {},
-                                       packed_colour(colour)});
+                                       geometry::packed_colour(colour)});
         }
     }
 }
@@ -290,7 +290,7 @@ void SceneModel::show_force(const std::string& port, const Vec3& at) {
     const double size = glm::length(force), reach = std::max(bounds_.radius(), 5e-3);
     legend_.entries.push_back({fmt::format("{}: {:.1f} N", port, size), force_colour});
     // 10 N are half as long as the scene.
-    if (size > 0.02) add_arrow(notes_, at, at + force * (0.1 * reach), 0.014 * reach, force_colour);
+    if (size > 0.02) display::add_arrow(notes_, at, at + force * (0.1 * reach), 0.014 * reach, force_colour);
 }
 
 }  // namespace tactus::picture

@@ -4,7 +4,7 @@
 
 #include "devices/display/legend.hpp"
 #include "devices/display/scene_renderer.hpp"
-#include "engine/observer.hpp"
+#include "engine/observe/observer.hpp"
 #include "tools/picture/scene/scene_outline.hpp"
 
 #include <map>
@@ -20,7 +20,7 @@ namespace tactus::picture {
 class SceneModel {
 public:
     /// Begins to watch what the outline names. Both must outlive the model.
-    SceneModel(SceneOutline outline, Observer& observer, SceneRenderer& renderer);
+    SceneModel(SceneOutline outline, observe::Observer& observer, display::SceneRenderer& renderer);
     ~SceneModel();
     SceneModel(const SceneModel&) = delete;
     SceneModel& operator=(const SceneModel&) = delete;
@@ -30,14 +30,14 @@ public:
 
     /// Takes over what the observer saw up to its last `advance`: remeshes the bricks that changed and moves everything
     /// to where it is. What it returns stays valid until the next call; a clip plane set in it stays.
-    Picture& update();
+    display::Picture& update();
 
     const SceneOutline& outline() const { return outline_; }
 
     /// The colours of the picture, the forces and depths of this moment, and what could not be drawn.
-    const Legend& legend() const { return legend_; }
+    const display::Legend& legend() const { return legend_; }
     /// Of what stands still and of where tools began: what a camera is fitted to.
-    const Bounds& bounds() const { return bounds_; }
+    const display::Bounds& bounds() const { return bounds_; }
     /// From where a blade came in the last picture.
     const std::optional<Vec3>& tool() const { return tool_; }
     /// Bricks that the last `update` made anew, and triangles of everything.
@@ -46,23 +46,23 @@ public:
 
 private:
     struct BoneMesh {
-        MeshPool::Mesh mesh = -1;
-        std::weak_ptr<const SeenBone> of;
+        display::MeshPool::Mesh mesh = -1;
+        std::weak_ptr<const observe::SeenBone> of;
         std::uint64_t update = 0;
-        Bounds bounds;
+        display::Bounds bounds;
     };
     struct BodyMesh {
-        MeshPool::Mesh mesh = -1;
-        Bounds bounds;
-        std::shared_ptr<const SeenBody> body;
-        Voxmap field;
+        display::MeshPool::Mesh mesh = -1;
+        display::Bounds bounds;
+        std::shared_ptr<const observe::SeenBody> body;
+        contact::Voxmap field;
         bool has_paint = false;
     };
 
-    MeshPool::Mesh shape_mesh(const std::string& name, const SurfacePatch& patch);
+    display::MeshPool::Mesh shape_mesh(const std::string& name, const geometry::SurfacePatch& patch);
     std::optional<Pose> pose_of(const std::string& port);
     double number_of(const std::string& port, double otherwise) const;
-    void show(MeshPool::Mesh mesh, const Pose& pose, const Bounds& local, double opacity = 1.0, bool is_clipped = true,
+    void show(display::MeshPool::Mesh mesh, const Pose& pose, const display::Bounds& local, double opacity = 1.0, bool is_clipped = true,
               bool is_fitted = true);
     void show_bones();
     void show_still_bones();
@@ -71,28 +71,28 @@ private:
     void show_balls();
     void show_gripper();
     void show_force(const std::string& wrench, const Vec3& at);
-    void show_penetration(const BodyMesh& held, const Pose& pose, std::size_t place, const SeenScene& scene);
+    void show_penetration(const BodyMesh& held, const Pose& pose, std::size_t place, const observe::SeenScene& scene);
     BodyMesh* mesh_of(std::uint64_t content, std::size_t place);
 
     SceneOutline outline_;
-    Observer& observer_;
-    SceneRenderer& renderer_;
-    BrickSurface mesher_;
-    SurfacePatch patch_, notes_, shown_notes_;
+    observe::Observer& observer_;
+    display::SceneRenderer& renderer_;
+    geometry::BrickSurface mesher_;
+    geometry::SurfacePatch patch_, notes_, shown_notes_;
     std::map<std::string, BoneMesh> bones_;
     struct StillMesh {
-        MeshPool::Mesh mesh = -1;
-        Bounds bounds;
+        display::MeshPool::Mesh mesh = -1;
+        display::Bounds bounds;
         std::string problem;  ///< why it is not there
     };
     std::map<std::string, StillMesh> still_bones_;  // by path
     std::map<std::uint64_t, BodyMesh> bodies_;
-    std::map<std::string, MeshPool::Mesh> shapes_;
+    std::map<std::string, display::MeshPool::Mesh> shapes_;
     std::unordered_set<std::uint64_t> shown_;  // content of the bodies in the last picture
-    MeshPool::Mesh notes_mesh_;
-    Picture picture_;
-    Legend legend_;
-    Bounds bounds_;
+    display::MeshPool::Mesh notes_mesh_;
+    display::Picture picture_;
+    display::Legend legend_;
+    display::Bounds bounds_;
     double deepest_ = 0.0;
     std::optional<Vec3> tool_;
     std::size_t remeshed_ = 0;

@@ -2,7 +2,7 @@
 #include "tools/picture/scene/scene_outline.hpp"
 
 #include "dsp/coupling/scene.hpp"
-#include "graph/assets.hpp"
+#include "graph/node/assets.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -20,35 +20,35 @@ struct VectorList : MemberVisitor {
 
 /// One node of the plan as its patch has it.
 struct NodeView {
-    const Plan& plan;
+    const compile::Plan& plan;
     int index;
-    const PlanNode& node;
+    const compile::PlanNode& node;
     VectorList list;
 
-    NodeView(const Plan& of, int at) : plan(of), index(at), node(of.nodes[static_cast<std::size_t>(at)]) {
+    NodeView(const compile::Plan& of, int at) : plan(of), index(at), node(of.nodes[static_cast<std::size_t>(at)]) {
         node.type->visit(node.instance.get(), list);
     }
 
     bool has_input(std::string_view name, const ValueType& type) const {
         return std::ranges::any_of(node.inputs,
-                                   [&](const PlanInput& in) { return in.name == name && in.port->type == &type; });
+                                   [&](const compile::PlanInput& in) { return in.name == name && in.port->type == &type; });
     }
     /// The name of an output, when there is one of that type.
     std::string output(std::string_view name, const ValueType& type) const {
-        for (const PlanOutput& out : node.outputs)
+        for (const compile::PlanOutput& out : node.outputs)
             if (out.name == name && out.port->type == &type) return node.name + "." + out.name;
         return {};
     }
     /// The output that an input or a parameter is wired to.
     std::string source(std::string_view name) const {
-        for (const PlanWire& wire : plan.wires) {
+        for (const compile::PlanWire& wire : plan.wires) {
             if (wire.to_node != index || wire.from_node < 0) continue;
             const auto param = node.params.find(std::string(name));
             const bool is_input =
                 wire.to_input >= 0 && node.inputs[static_cast<std::size_t>(wire.to_input)].name == name;
             const bool is_param = wire.to_input < 0 && param != node.params.end() && param->second == wire.param;
             if (!is_input && !is_param) continue;
-            const PlanNode& from = plan.nodes[static_cast<std::size_t>(wire.from_node)];
+            const compile::PlanNode& from = plan.nodes[static_cast<std::size_t>(wire.from_node)];
             return from.name + "." + from.outputs[static_cast<std::size_t>(wire.from_output)].name;
         }
         return {};
@@ -63,13 +63,13 @@ struct NodeView {
     }
 };
 
-const ValueType& bone_type = value::snapshot<BoneSnapshot>;
-const ValueType& scene_type = value::snapshot<Scene>;
-const ValueType& body_type = value::snapshot<Body>;
+const ValueType& bone_type = value::snapshot<volume::BoneSnapshot>;
+const ValueType& scene_type = value::snapshot<coupling::Scene>;
+const ValueType& body_type = value::snapshot<coupling::Body>;
 
 void add_scene(const NodeView& view, const std::string& port, SceneOutline& outline) {
     SceneOutline::Bodies bodies{port, {}};
-    for (const PlanInput& input : view.node.inputs)
+    for (const compile::PlanInput& input : view.node.inputs)
         if (input.port->type == &body_type) bodies.bodies.push_back(view.source(input.name));
     while (!bodies.bodies.empty() && bodies.bodies.back().empty()) bodies.bodies.pop_back();
     outline.scenes.push_back(std::move(bodies));
@@ -90,7 +90,7 @@ void add_held(const NodeView& view, SceneOutline& outline) {
 }
 
 void look_at(const NodeView& view, SceneOutline& outline) {
-    for (const PlanOutput& out : view.node.outputs) {
+    for (const compile::PlanOutput& out : view.node.outputs) {
         const std::string port = view.node.name + "." + out.name;
         if (out.port->type == &bone_type) outline.bones.push_back({port});
         if (out.port->type == &scene_type) add_scene(view, port, outline);
@@ -123,26 +123,26 @@ void look_at(const NodeView& view, SceneOutline& outline) {
 }
 
 /// Bones that come straight from a file: wired to a node, or named by one that makes nothing to see of them.
-void add_still_bones(const Plan& plan, SceneOutline& outline) {
+void add_still_bones(const compile::Plan& plan, SceneOutline& outline) {
     const auto path_of = [&](const std::string& asset) -> std::string {
-        const auto found = std::ranges::find(plan.patch.assets, asset, &PatchAsset::name);
+        const auto found = std::ranges::find(plan.patch.assets, asset, &patch::PatchAsset::name);
         return found == plan.patch.assets.end() ? std::string() : found->path.string();
     };
     std::map<std::string, std::string> wired, named;  // path to name
     std::set<std::string> seen;
-    for (const PlanWire& wire : plan.wires) {
+    for (const compile::PlanWire& wire : plan.wires) {
         if (wire.from_node >= 0 || wire.to_input < 0) continue;
-        const PlanNode& to = plan.nodes[static_cast<std::size_t>(wire.to_node)];
+        const compile::PlanNode& to = plan.nodes[static_cast<std::size_t>(wire.to_node)];
         if (to.inputs[static_cast<std::size_t>(wire.to_input)].port->type == &bone_type)
             wired.emplace(path_of(wire.asset), wire.asset);
     }
-    for (const PlanNode& node : plan.nodes) {
-        const bool shows = std::ranges::any_of(node.outputs, [](const PlanOutput& out) {
+    for (const compile::PlanNode& node : plan.nodes) {
+        const bool shows = std::ranges::any_of(node.outputs, [](const compile::PlanOutput& out) {
             const ValueType* type = out.port->type;
             return type == &bone_type || type == &body_type || type == &scene_type;
         });
         for (const AssetParam* asset : node.assets) {
-            if (asset->name.empty() || asset->type_name != AssetLoader<Bone>::name) continue;
+            if (asset->name.empty() || asset->type_name != AssetLoader<bone::Bone>::name) continue;
             if (shows) seen.insert(path_of(asset->name));
             else named.emplace(path_of(asset->name), asset->name);
         }
@@ -171,7 +171,7 @@ std::vector<std::string> SceneOutline::ports() const {
     return {all.begin(), all.end()};
 }
 
-SceneOutline outline_of(const Plan& plan) {
+SceneOutline outline_of(const compile::Plan& plan) {
     SceneOutline outline;
     outline.title = plan.patch.title;
     for (std::size_t i = 0; i < plan.nodes.size(); ++i) look_at(NodeView(plan, static_cast<int>(i)), outline);
@@ -180,8 +180,8 @@ SceneOutline outline_of(const Plan& plan) {
     for (auto& fingers : outline.fingers)
         if (!outline.weights.empty()) fingers.hand = outline.weights.front().hand;
     if (outline.empty())
-        for (const PlanNode& node : plan.nodes)
-            for (const PlanOutput& out : node.outputs)
+        for (const compile::PlanNode& node : plan.nodes)
+            for (const compile::PlanOutput& out : node.outputs)
                 if (out.port->type == &value::pose) outline.handles.push_back({node.name + "." + out.name});
     return outline;
 }

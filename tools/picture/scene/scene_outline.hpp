@@ -5,7 +5,7 @@
 
 #include "dsp/contact/blade.hpp"
 #include "dsp/core/types.hpp"
-#include "graph/plan.hpp"
+#include "graph/compile/plan.hpp"
 
 #include <optional>
 #include <string>
@@ -42,7 +42,7 @@ struct SceneOutline {
     /// A saw blade: a node with a pose, a bone, and the size of a blade.
     struct Blade {
         std::string node, pose, wrench;
-        BladeShape shape;
+        contact::BladeShape shape;
     };
     /// A ball that stands for the hand: on top, where it really is, and where it would be within.
     struct Ball {
@@ -89,6 +89,6 @@ struct SceneOutline {
 };
 
 /// Of a plan that was just compiled; it need not have its assets.
-SceneOutline outline_of(const Plan& plan);
+SceneOutline outline_of(const compile::Plan& plan);
 
 }  // namespace tactus::picture

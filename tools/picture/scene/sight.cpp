@@ -18,17 +18,17 @@ constexpr double plain_screen_height = 0.3;  // m, where no rig says more
 
 }  // namespace
 
-StereoMode parse_stereo(const std::string& text) {
-    if (const auto mode = stereo_of_name(text)) return *mode;
-    throw Error(fmt::format("stereo takes {}, not '{}'{}", fmt::join(stereo_names, ", "), text,
-                            did_you_mean(text, std::vector<std::string>(stereo_names.begin(), stereo_names.end()))));
+display::StereoMode parse_stereo(const std::string& text) {
+    if (const auto mode = display::stereo_of_name(text)) return *mode;
+    throw Error(fmt::format("stereo takes {}, not '{}'{}", fmt::join(display::stereo_names, ", "), text,
+                            did_you_mean(text, std::vector<std::string>(display::stereo_names.begin(), display::stereo_names.end()))));
 }
 
 Vec3 parse_offset(const std::string& text) {
     if (text == "none") return Vec3(0.0);
     if (text == "study") return {0.30, 0.0, 0.0};
     try {
-        return parse_vector(text, "mm");
+        return display::parse_vector(text, "mm");
     } catch (const Error& error) {
         throw Error(fmt::format("an offset is none, study or \"0 mm, 0 mm, 0 mm\": {}", error.message()));
     }
@@ -44,7 +44,7 @@ Sight::Sight(const SightChoice& choice) : stereo(parse_stereo(choice.stereo)), h
 
 void Sight::use_rig(const std::filesystem::path& path) {
     if (path.empty()) rig_.reset();
-    else rig_ = load_rig_file(session::find_rig(path.string()));
+    else rig_ = display::load_rig_file(session::find_rig(path.string()));
     last_.clear();
 }
 
@@ -68,7 +68,7 @@ std::vector<std::string> Sight::ports() const {
     return ports;
 }
 
-void Sight::update(const Observer& observer) {
+void Sight::update(const observe::Observer& observer) {
     warnings_.clear();
     if (!head.empty()) {
         const auto seen = observer.latest<Pose>(head);
@@ -86,29 +86,29 @@ void Sight::update(const Observer& observer) {
     shift_to_device_ = hand->value.position - to_device_ * frame->value.position;
 }
 
-StereoMode Sight::mode_of(std::size_t screen) const {
+display::StereoMode Sight::mode_of(std::size_t screen) const {
     if (!rig_) return stereo;
-    const RigScreen& way = rig_->screens[screen];
-    if (way.eye || way.eyes != ScreenEyes::both) return StereoMode::mono;
+    const display::RigScreen& way = rig_->screens[screen];
+    if (way.eye || way.eyes != display::ScreenEyes::both) return display::StereoMode::mono;
     return way.stereo.value_or(stereo);
 }
 
 std::optional<double> Sight::aspect_of(std::size_t screen) const {
     if (!rig_) return std::nullopt;
-    const Screen& seen = rig_->rig.screens[screen];
+    const display::Screen& seen = rig_->rig.screens[screen];
     return glm::length(seen.right()) / glm::length(seen.up());
 }
 
-Turned Sight::text_of(std::size_t screen) const {
-    if (!rig_ || !rig_->rig.is_mirrored(screen)) return Turned::none;
+display::Turned Sight::text_of(std::size_t screen) const {
+    if (!rig_ || !rig_->rig.is_mirrored(screen)) return display::Turned::none;
     const Vec3 up = rig_->rig.screens[screen].up(), normal = rig_->rig.mirror->normal;
     const Pose head_now = head_pose_.value_or(rig_->rig.place_before(screen, rig_->head_away));
     const double along = glm::dot(up - 2.0 * glm::dot(up, normal) * normal, head_now.rotate({0.0, 1.0, 0.0}));
-    return along < 0.0 ? Turned::upside_down : Turned::left_right;
+    return along < 0.0 ? display::Turned::upside_down : display::Turned::left_right;
 }
 
-DisplayRig Sight::rig_now() const {
-    DisplayRig rig = rig_->rig;
+display::DisplayRig Sight::rig_now() const {
+    display::DisplayRig rig = rig_->rig;
     if (offset_) rig.visuo_haptic_offset = *offset_;
     const Mat3 device = Mat3(glm::mat3_cast(rig.haptic_world.orientation)) * rig.haptic_stretch;
     rig.haptic_world = {rig.haptic_world.position + device * shift_to_device_, {1.0, 0.0, 0.0, 0.0}};
@@ -116,56 +116,56 @@ DisplayRig Sight::rig_now() const {
     return rig;
 }
 
-std::vector<Vec3> Sight::eyes_for(std::size_t screen, const DisplayRig& rig) const {
-    const RigScreen& way = rig_->screens[screen];
+std::vector<Vec3> Sight::eyes_for(std::size_t screen, const display::DisplayRig& rig) const {
+    const display::RigScreen& way = rig_->screens[screen];
     if (way.eye) return {*way.eye};
     const Pose at = head_pose_.value_or(rig.place_before(0, rig_->head_away));
-    const Eyes eyes = eyes_of(at, rig.between_eyes);
+    const display::Eyes eyes = display::eyes_of(at, rig.between_eyes);
     switch (way.eyes) {
-        case ScreenEyes::left: return {eyes.left};
-        case ScreenEyes::right: return {eyes.right};
-        case ScreenEyes::middle: return {at.position};
-        case ScreenEyes::both: break;
+        case display::ScreenEyes::left: return {eyes.left};
+        case display::ScreenEyes::right: return {eyes.right};
+        case display::ScreenEyes::middle: return {at.position};
+        case display::ScreenEyes::both: break;
     }
-    if (mode_of(screen) == StereoMode::mono) return {at.position};
+    if (mode_of(screen) == display::StereoMode::mono) return {at.position};
     return {eyes.left, eyes.right};
 }
 
-std::vector<DrawnView> Sight::views(std::size_t screen, const OrbitCamera& camera, const Bounds& scene, int width,
+std::vector<display::DrawnView> Sight::views(std::size_t screen, const display::OrbitCamera& camera, const display::Bounds& scene, int width,
                                     int height) {
-    const StereoMode mode = mode_of(screen);
-    if (!rig_ && (head.empty() || !head_pose_)) return views_of(camera, scene, width, height, mode);
+    const display::StereoMode mode = mode_of(screen);
+    if (!rig_ && (head.empty() || !head_pose_)) return display::views_of(camera, scene, width, height, mode);
     last_.resize(screens());
-    std::vector<RigView> seen;
+    std::vector<display::RigView> seen;
     try {
         if (rig_) {
-            const DisplayRig rig = rig_now();
+            const display::DisplayRig rig = rig_now();
             for (const Vec3& eye : eyes_for(screen, rig)) seen.push_back(rig.view(screen, eye, scene));
         } else {
             // The scene in its true size, its middle in the screen, turned as the camera has it.
-            const double halves = mode == StereoMode::side_by_side ? 0.5 : 1.0;
+            const double halves = mode == display::StereoMode::side_by_side ? 0.5 : 1.0;
             const double high = 0.5 * plain_screen_height, wide = high * halves * width / height;
-            DisplayRig rig;
+            display::DisplayRig rig;
             rig.screens = {{{-wide, -high, 0.0}, {wide, -high, 0.0}, {-wide, high, 0.0}}};
             const Quat turned = glm::conjugate(camera.orientation);
             rig.haptic_world = {-(turned * camera.target), turned};
-            seen = rig.views(*head_pose_, mode != StereoMode::mono, scene);
+            seen = rig.views(*head_pose_, mode != display::StereoMode::mono, scene);
         }
         last_[screen] = seen;
     } catch (const Error& error) {
         const std::string name = rig_ ? rig_->screens[screen].name : "the screen";
         warnings_.push_back(fmt::format("{}: {}; its picture stays", name, error.message()));
-        if (last_[screen].empty()) return views_of(camera, scene, width, height, mode);
+        if (last_[screen].empty()) return display::views_of(camera, scene, width, height, mode);
     }
-    return views_of(last_[screen], width, height, mode, text_of(screen));
+    return display::views_of(last_[screen], width, height, mode, text_of(screen));
 }
 
-void add_legend(Image& image, const Legend& legend, std::span<const DrawnView> views, Turned turned) {
+void add_legend(display::Image& image, const display::Legend& legend, std::span<const display::DrawnView> views, display::Turned turned) {
     // Eyes that share the whole picture share the legend.
     for (std::size_t i = 0; i < views.size(); ++i) {
-        const DrawnView& view = views[i];
-        const bool is_drawn = std::ranges::any_of(views.first(i), [&](const DrawnView& v) { return v.x == view.x; });
-        if (!is_drawn) add_legend(image, legend, view.x, view.width, turned);
+        const display::DrawnView& view = views[i];
+        const bool is_drawn = std::ranges::any_of(views.first(i), [&](const display::DrawnView& v) { return v.x == view.x; });
+        if (!is_drawn) display::add_legend(image, legend, view.x, view.width, turned);
     }
 }
 

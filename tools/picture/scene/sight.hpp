@@ -5,7 +5,7 @@
 #include "assets/display/rig_file.hpp"
 #include "devices/display/legend.hpp"
 #include "devices/display/scene_renderer.hpp"
-#include "engine/observer.hpp"
+#include "engine/observe/observer.hpp"
 #include "tools/picture/scene/scene_outline.hpp"
 #include "tools/picture/scene/sight_choice.hpp"
 
@@ -16,7 +16,7 @@
 namespace tactus::picture {
 
 /// Throws Error listing the names there are.
-StereoMode parse_stereo(const std::string& text);
+display::StereoMode parse_stereo(const std::string& text);
 /// "none", "study": the thesis's 0.3 m, here to the viewer's right, or three lengths. Throws Error.
 Vec3 parse_offset(const std::string& text);
 
@@ -25,12 +25,12 @@ public:
     /// Reads the rig. Throws Error.
     explicit Sight(const SightChoice& choice);
 
-    StereoMode stereo = StereoMode::mono;
+    display::StereoMode stereo = display::StereoMode::mono;
     std::string head;  ///< output that is the head; empty: none
 
     /// Reads another rig, or none for an empty path. Throws Error, and all stays as it was.
     void use_rig(const std::filesystem::path& path);
-    const std::optional<RigFile>& rig() const { return rig_; }
+    const std::optional<display::RigFile>& rig() const { return rig_; }
     /// Moves what is seen against what is felt, m, viewer's axes; of a rig only.
     void set_offset(const Vec3& offset);
 
@@ -39,11 +39,11 @@ public:
     /// Outputs that it needs to see.
     std::vector<std::string> ports() const;
     /// Where head and device are now. What does not come as a whole, or is no pose, stays as it was.
-    void update(const Observer& observer);
+    void update(const observe::Observer& observer);
 
     /// Without a rig: one.
     std::size_t screens() const { return rig_ ? rig_->screens.size() : 1; }
-    StereoMode mode_of(std::size_t screen) const;
+    display::StereoMode mode_of(std::size_t screen) const;
     /// Width over height of what one eye sees on it; none without a rig.
     std::optional<double> aspect_of(std::size_t screen) const;
     /// A head or a rig decides what is seen, not the camera alone.
@@ -51,31 +51,31 @@ public:
 
     /// What is to be drawn into a picture that fills the screen. While the head is where it cannot see a screen, the
     /// picture before stays, and `warnings` says so.
-    std::vector<DrawnView> views(std::size_t screen, const OrbitCamera& camera, const Bounds& scene, int width,
+    std::vector<display::DrawnView> views(std::size_t screen, const display::OrbitCamera& camera, const display::Bounds& scene, int width,
                                  int height);
     const std::vector<std::string>& warnings() const { return warnings_; }
     /// The head of the last `update`, in the world of the viewer; none: nothing tells where it is.
     const std::optional<Pose>& head_pose() const { return head_pose_; }
 
     /// How a picture's text has to lie for who sees it in a mirror.
-    Turned text_of(std::size_t screen) const;
+    display::Turned text_of(std::size_t screen) const;
 
 private:
     /// With the device where it is now.
-    DisplayRig rig_now() const;
-    std::vector<Vec3> eyes_for(std::size_t screen, const DisplayRig& rig) const;
+    display::DisplayRig rig_now() const;
+    std::vector<Vec3> eyes_for(std::size_t screen, const display::DisplayRig& rig) const;
 
-    std::optional<RigFile> rig_;
+    std::optional<display::RigFile> rig_;
     std::optional<Vec3> offset_;
     std::optional<SceneOutline::Place> place_;
     std::optional<Pose> head_pose_;
     Mat3 to_device_{1.0};  // from the scene to the device's frame
     Vec3 shift_to_device_{0.0};
-    std::vector<std::vector<RigView>> last_;
+    std::vector<std::vector<display::RigView>> last_;
     std::vector<std::string> warnings_;
 };
 
 /// The legend in every view of a picture, at one place for both eyes: on the screen itself.
-void add_legend(Image& image, const Legend& legend, std::span<const DrawnView> views, Turned turned);
+void add_legend(display::Image& image, const display::Legend& legend, std::span<const display::DrawnView> views, display::Turned turned);
 
 }  // namespace tactus::picture

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/bones/fracture.hpp"
 
-#include "assets/fracture/break_bone.hpp"
-#include "assets/fracture/paint.hpp"
+#include "assets/cases/break_bone.hpp"
+#include "assets/cases/paint.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
@@ -16,18 +16,18 @@ namespace tactus::study {
 
 namespace {
 
-double volume_of_solid(const Grid& solid) {
+double volume_of_solid(const volume::Grid& solid) {
     const auto inside = std::ranges::count_if(solid.values, [](float d) { return d < 0.0f; });
     return static_cast<double>(inside) * solid.spacing.x * solid.spacing.y * solid.spacing.z;
 }
 
-Vec3 middle_of(const Grid& solid) {
+Vec3 middle_of(const volume::Grid& solid) {
     return solid.origin + 0.5 * Vec3(solid.size[0] - 1, solid.size[1] - 1, solid.size[2] - 1) * solid.spacing;
 }
 
 /// Where a fragment lies in its file, as a motion of the unbroken bone: away from `centre` and a little to the side, and
 /// turned about its own middle.
-Pose displaced(const Grid& solid, const Vec3& centre, const FractureSettings& settings, std::uint64_t seed) {
+Pose displaced(const volume::Grid& solid, const Vec3& centre, const FractureSettings& settings, std::uint64_t seed) {
     const Random random{seed};
     const auto direction = [&](std::uint64_t n) {
         return glm::normalize(Vec3(random.normal(n), random.normal(n + 1), random.normal(n + 2)));
@@ -40,30 +40,30 @@ Pose displaced(const Grid& solid, const Vec3& centre, const FractureSettings& se
 }
 
 /// The density of the unbroken bone where the fragment has bone.
-Grid density_of(const Bone& bone, const Grid& distance, const Pose& into_bone) {
-    const Voxmap map = make_voxmap(bone.density);
-    Grid density = distance;
+volume::Grid density_of(const bone::Bone& bone, const volume::Grid& distance, const Pose& into_bone) {
+    const contact::Voxmap map = contact::make_voxmap(bone.density);
+    volume::Grid density = distance;
     for (int k = 0; k < density.size[2]; ++k)
         for (int j = 0; j < density.size[1]; ++j)
             for (int i = 0; i < density.size[0]; ++i) {
-                const Sample here = map.sample(into_bone.apply(density.position(i, j, k)));
+                const volume::Sample here = map.sample(into_bone.apply(density.position(i, j, k)));
                 density.at(i, j, k) = density.at(i, j, k) < 0.0f && here.inside ? static_cast<float>(here.value) : 0.0f;
             }
     return density;
 }
 
-Bone scan_fragment(const Bone& bone, const Voxmap& map, const Grid& solid, const Pose& placement,
+bone::Bone scan_fragment(const bone::Bone& bone, const contact::Voxmap& map, const volume::Grid& solid, const Pose& placement,
                    const FractureSettings& settings, std::uint64_t seed) {
-    ScanOptions scan;
+    cases::ScanOptions scan;
     scan.voxel = Vec3(settings.voxel);
     scan.blur = settings.blur;
     scan.noise = settings.noise;
     scan.seed = seed;
-    Bone fragment;
-    fragment.distance = scan_solid(solid, placement, scan);
+    bone::Bone fragment;
+    fragment.distance = cases::scan_solid(solid, placement, scan);
     fragment.density = density_of(bone, fragment.distance, placement.inverse());
-    fragment.points = sample_surface(fragment.distance, {.spacing = settings.spacing});
-    paint_fracture(fragment.points, map, placement.inverse());
+    fragment.points = contact::sample_surface(fragment.distance, {.spacing = settings.spacing});
+    cases::paint_fracture(fragment.points, map, placement.inverse());
     fragment.provenance = {{"source", fmt::format("simulated scan of a fragment of {}", bone.name)},
                            {"frame", "LPS"},
                            {"hu", "simulated"}};
@@ -72,17 +72,17 @@ Bone scan_fragment(const Bone& bone, const Voxmap& map, const Grid& solid, const
 
 }  // namespace
 
-void break_and_scan(const Bone& bone, const FractureSettings& settings,
+void break_and_scan(const bone::Bone& bone, const FractureSettings& settings,
                     const std::function<void(ScannedFragment fragment)>& take) {
-    BreakOptions options;
+    cases::BreakOptions options;
     options.pieces = settings.pieces;
     options.seed = settings.seed;
     options.roughness = settings.roughness;
     options.chips = settings.chips;
     options.kerf = settings.kerf;
-    std::vector<Grid> solids = break_bone(bone.distance, options);
+    std::vector<volume::Grid> solids = cases::break_bone(bone.distance, options);
     std::ranges::stable_sort(solids, std::ranges::greater{}, volume_of_solid);
-    const Voxmap map = make_voxmap(bone.distance);
+    const contact::Voxmap map = contact::make_voxmap(bone.distance);
     const Vec3 centre = middle_of(bone.distance);
     const std::size_t left = solids.size() - static_cast<std::size_t>(settings.missing);
     for (std::size_t n = 0; n < left; ++n) {

@@ -22,13 +22,13 @@ struct FractureSettings {
 };
 
 struct ScannedFragment {
-    Bone bone;            ///< without a name
+    bone::Bone bone;            ///< without a name
     Pose place;           ///< p_bone = R p_fragment + t
     double volume = 0.0;  ///< m³, before it was scanned
 };
 
 /// Hands over the fragments one by one, the largest first, which has not moved. Throws Error.
-void break_and_scan(const Bone& bone, const FractureSettings& settings,
+void break_and_scan(const bone::Bone& bone, const FractureSettings& settings,
                     const std::function<void(ScannedFragment fragment)>& take);
 
 }  // namespace tactus::study

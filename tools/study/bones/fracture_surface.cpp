@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/bones/fracture_surface.hpp"
 
-#include "assets/fracture/paint_file.hpp"
-#include "assets/fracture/propose_paint.hpp"
+#include "assets/cases/paint_file.hpp"
+#include "assets/cases/propose_paint.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/study/bones/fragment_file.hpp"
@@ -16,48 +16,48 @@ namespace tactus::study {
 
 namespace {
 
-std::vector<SurfacePoint> points_of_fragment(const std::filesystem::path& path) {
-    const Bone bone = bone_of_file(path);
-    return bone.points.empty() ? sample_surface(bone.distance, {}) : bone.points;
+std::vector<contact::SurfacePoint> points_of_fragment(const std::filesystem::path& path) {
+    const bone::Bone bone = bone_of_file(path);
+    return bone.points.empty() ? contact::sample_surface(bone.distance, {}) : bone.points;
 }
 
 /// What lies inside of the unbroken bone; returns how well that could be laid on the fragments.
-LaidIntact propose_by_intact(std::vector<SurfacePoint>& points, const FractureSurfaceSettings& settings) {
-    const std::vector<SurfacePoint> main = settings.main.empty() ? points : points_of_fragment(settings.main);
+LaidIntact propose_by_intact(std::vector<contact::SurfacePoint>& points, const FractureSurfaceSettings& settings) {
+    const std::vector<contact::SurfacePoint> main = settings.main.empty() ? points : points_of_fragment(settings.main);
     const IntactSide intact = lay_intact_side(settings.intact, settings.mirror, main);
-    const RegistrationTarget target(intact.points);
+    const fit::RegistrationTarget target(intact.points);
     LaidIntact laid{intact.registration, std::nullopt};
     Pose place;
     if (!settings.main.empty()) {
-        RegistrationSettings nearby;
+        fit::RegistrationSettings nearby;
         nearby.widest = 10e-3;
-        laid.on_bone = register_surface(points, target, {}, nearby);
+        laid.on_bone = fit::register_surface(points, target, {}, nearby);
         place = laid.on_bone->pose;
     }
-    IntactOptions options;
+    cases::IntactOptions options;
     if (settings.least_area) options.least_area = *settings.least_area;
-    propose_inside(points, target, place, options);
+    cases::propose_inside(points, target, place, options);
     return laid;
 }
 
 /// Labels what is proposed by the ways that are chosen.
-std::optional<LaidIntact> propose(std::vector<SurfacePoint>& points, const FractureSurfaceSettings& settings) {
+std::optional<LaidIntact> propose(std::vector<contact::SurfacePoint>& points, const FractureSurfaceSettings& settings) {
     if (!settings.intact.empty()) {
         const LaidIntact laid = propose_by_intact(points, settings);
-        if (!settings.facing.empty()) keep_patches_near(points, points_of_fragment(settings.facing), settings.reach);
+        if (!settings.facing.empty()) cases::keep_patches_near(points, points_of_fragment(settings.facing), settings.reach);
         return laid;
     }
     if (!settings.facing.empty()) {
-        FacingOptions options;
+        cases::FacingOptions options;
         options.reach = settings.reach;
         if (settings.least_area) options.least_area = *settings.least_area;
-        propose_facing(points, points_of_fragment(settings.facing), options);
+        cases::propose_facing(points, points_of_fragment(settings.facing), options);
         return std::nullopt;
     }
-    ProposalOptions options;
+    cases::ProposalOptions options;
     options.roughness = settings.roughness;
     if (settings.least_area) options.least_area = *settings.least_area;
-    propose_fracture(points, options);
+    cases::propose_fracture(points, options);
     return std::nullopt;
 }
 
@@ -65,17 +65,17 @@ std::optional<LaidIntact> propose(std::vector<SurfacePoint>& points, const Fract
 
 FractureSurface propose_fracture_surface(const FractureSurfaceSettings& settings) {
     FractureSurface out{bone_of_file(settings.bone), std::nullopt};
-    std::vector<SurfacePoint>& points = out.bone.points;
-    if (points.empty()) points = sample_surface(out.bone.distance, {});
+    std::vector<contact::SurfacePoint>& points = out.bone.points;
+    if (points.empty()) points = contact::sample_surface(out.bone.distance, {});
     const bool has_paint =
-        std::ranges::any_of(points, [](const SurfacePoint& p) { return p.label == surface_label::fracture; });
+        std::ranges::any_of(points, [](const contact::SurfacePoint& p) { return p.label == contact::surface_label::fracture; });
     if (settings.keep && has_paint && !(settings.facing.empty() && settings.intact.empty()))
         throw Error(
             fmt::format("{}: has paint already, which --keep starts from, so --facing and --intact would change "
                         "nothing; leave --keep out to propose anew",
                         settings.bone.string()));
     if (!settings.keep || !has_paint) out.intact = propose(points, settings);
-    if (!settings.paint.empty()) paint_from_file(points, settings.paint, settings.correct);
+    if (!settings.paint.empty()) cases::paint_from_file(points, settings.paint, settings.correct);
     return out;
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "assets/bone/bone.hpp"
-#include "dsp/planning/registration.hpp"
+#include "dsp/fit/registration.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -26,12 +26,12 @@ struct FractureSurfaceSettings {
 
 /// How the unbroken bone could be laid.
 struct LaidIntact {
-    Registration on_main;
-    std::optional<Registration> on_bone;  ///< by itself, when that is another fragment
+    fit::Registration on_main;
+    std::optional<fit::Registration> on_bone;  ///< by itself, when that is another fragment
 };
 
 struct FractureSurface {
-    Bone bone;  ///< its points are labelled
+    bone::Bone bone;  ///< its points are labelled
     std::optional<LaidIntact> intact;
 };
 

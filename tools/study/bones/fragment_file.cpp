@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/bones/fragment_file.hpp"
 
-#include "assets/plan/case_bones.hpp"
+#include "assets/cases/case_bones.hpp"
 #include "tools/study/workers.hpp"
 
 namespace tactus::study {
 
-Bone bone_of_file(const std::filesystem::path& path) { return bone_from_file(path, on_threads()); }
+bone::Bone bone_of_file(const std::filesystem::path& path) { return cases::bone_from_file(path, on_threads()); }
 
 PoseNumbers numbers_of(const Pose& pose) {
     const Vec3 p = pose.position * 1e3;

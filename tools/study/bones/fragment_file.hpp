@@ -10,7 +10,7 @@
 namespace tactus::study {
 
 /// A bone file ("FILE.vdb#NAME" for one of several), or what import makes of a mesh or a CT.
-Bone bone_of_file(const std::filesystem::path& path);
+bone::Bone bone_of_file(const std::filesystem::path& path);
 
 /// A pose as files and programs are told it; w not negative.
 struct PoseNumbers {

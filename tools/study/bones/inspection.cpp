@@ -4,9 +4,9 @@
 #include "assets/bone/labels.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/volume/lps_layers.hpp"
-#include "dsp/distance/components.hpp"
-#include "dsp/distance/resample.hpp"
-#include "dsp/distance/surface_net.hpp"
+#include "dsp/volume/components.hpp"
+#include "dsp/volume/resample.hpp"
+#include "dsp/geometry/surface_net.hpp"
 #include "tools/study/workers.hpp"
 
 #include <glm/common.hpp>
@@ -26,7 +26,7 @@ constexpr int finest_view = 220;  // samples along the longest side of what is d
 
 std::array<double, 3> in_mm(const Vec3& v) { return {v.x * 1e3, v.y * 1e3, v.z * 1e3}; }
 
-std::array<std::array<double, 2>, 3> bounds_of(const TriangleSurface& surface) {
+std::array<std::array<double, 2>, 3> bounds_of(const geometry::TriangleSurface& surface) {
     Vec3 low(surface.vertices.front()), high(low);
     for (const Vec3& v : surface.vertices) low = glm::min(low, v), high = glm::max(high, v);
     low *= 1e3, high *= 1e3;
@@ -34,7 +34,7 @@ std::array<std::array<double, 2>, 3> bounds_of(const TriangleSurface& surface) {
 }
 
 // To the outer sides of the voxels at the ends.
-std::array<std::array<double, 2>, 3> bounds_of(const Components::Box& box, const Grid& grid) {
+std::array<std::array<double, 2>, 3> bounds_of(const volume::Components::Box& box, const volume::Grid& grid) {
     std::array<std::array<double, 2>, 3> bounds{};
     for (std::size_t a = 0; a < 3; ++a) {
         const int axis = static_cast<int>(a);
@@ -44,32 +44,32 @@ std::array<std::array<double, 2>, 3> bounds_of(const Components::Box& box, const
     return bounds;
 }
 
-double voxel_mm3(const Grid& grid) { return grid.spacing.x * grid.spacing.y * grid.spacing.z * 1e9; }
+double voxel_mm3(const volume::Grid& grid) { return grid.spacing.x * grid.spacing.y * grid.spacing.z * 1e9; }
 
 // A frame of `outside` around the samples closes the surface of what reaches the border.
-TriangleSurface view_surface(const Grid& grid, float iso, float outside) {
-    Grid layout = grid;
+geometry::TriangleSurface view_surface(const volume::Grid& grid, float iso, float outside) {
+    volume::Grid layout = grid;
     double step = 1.0;
     for (const int n : grid.size) step = std::max(step, n / double(finest_view));
     for (std::size_t a = 0; a < 3; ++a) {
         layout.spacing[static_cast<int>(a)] *= step;
         layout.size[a] = std::max(2, static_cast<int>((grid.size[a] - 1) / step) + 1);
     }
-    Grid coarse = step > 1.0 ? resampled(grid, layout) : grid;
+    volume::Grid coarse = step > 1.0 ? volume::resampled(grid, layout) : grid;
     for (int k = 0; k < coarse.size[2]; ++k)
         for (int j = 0; j < coarse.size[1]; ++j)
             for (int i = 0; i < coarse.size[0]; ++i)
                 if (i == 0 || j == 0 || k == 0 || i == coarse.size[0] - 1 || j == coarse.size[1] - 1 ||
                     k == coarse.size[2] - 1)
                     coarse.at(i, j, k) = outside;
-    return surface_net(coarse, iso, true);
+    return geometry::surface_net(coarse, iso, true);
 }
 
 void inspect_ct(Inspection& found) {
-    const Grid& grid = found.grey;
-    found.threshold = suggested_threshold(grid.values, found.hu == "masked");
+    const volume::Grid& grid = found.grey;
+    found.threshold = volume::suggested_threshold(grid.values, found.hu == "masked");
     const auto iso = static_cast<float>(*found.threshold);
-    const Components components = components_above(grid, iso);
+    const volume::Components components = volume::components_above(grid, iso);
     found.parts_in_all = components.voxels.size();
     for (std::size_t n = 0; n < std::min(components.voxels.size(), most_parts); ++n) {
         if (components.voxels[n] * 1000 < components.voxels[0]) break;
@@ -84,11 +84,11 @@ void inspect_ct(Inspection& found) {
                     std::max(*found.threshold * 3.0, *found.threshold + 200.0)};
 }
 
-void inspect_labels(Inspection& found, const ScanVolume& volume) {
-    const Grid& grid = found.grey;
+void inspect_labels(Inspection& found, const volume::ScanVolume& volume) {
+    const volume::Grid& grid = found.grey;
     struct Seen {
         std::size_t voxels = 0;
-        Components::Box box{};
+        volume::Components::Box box{};
     };
     std::map<int, Seen> seen;
     for (int k = 0; k < grid.size[2]; ++k)
@@ -104,14 +104,14 @@ void inspect_labels(Inspection& found, const ScanVolume& volume) {
             }
     for (const auto& [label, s] : seen) {
         std::string name = fmt::format("label {}", label);
-        Vec3 colour = label_colour(label);
-        for (const Segment& segment : volume.segments)
+        Vec3 colour = bone::label_colour(label);
+        for (const volume::Segment& segment : volume.segments)
             if (segment.label == label) {
                 if (!segment.name.empty()) name += ": " + segment.name;
                 colour = segment.colour.value_or(colour);
             }
         found.parts.push_back({name, static_cast<double>(s.voxels) * voxel_mm3(grid), bounds_of(s.box, grid)});
-        Grid mask = grid;
+        volume::Grid mask = grid;
         for (float& value : mask.values) value = value == static_cast<float>(label) ? 1.0f : 0.0f;
         if (found.surfaces.size() < most_parts) found.surfaces.push_back({view_surface(mask, 0.5f, 0.0f), colour});
     }
@@ -120,40 +120,40 @@ void inspect_labels(Inspection& found, const ScanVolume& volume) {
 }
 
 Inspection inspect_volume(const std::filesystem::path& path, const std::string& series) {
-    const std::unique_ptr<SliceReader> reader = open_volume(path, {series});
-    LpsLayers layers(*reader, on_threads());
+    const std::unique_ptr<volume::SliceReader> reader = volume::open_volume(path, {series});
+    volume::LpsLayers layers(*reader, on_threads());
     if (layers.is_turned()) layers.settle();
     Inspection found;
-    found.grey = whole_of(layers);
+    found.grey = volume::whole_of(layers);
     layers.settle();
-    const ScanVolume& about = reader->about;
-    found.kind = name_of(about.kind);
-    found.frame = name_of(about.file_frame);
-    found.hu = name_of(about.hu);
+    const volume::ScanVolume& about = reader->about;
+    found.kind = volume::name_of(about.kind);
+    found.frame = volume::name_of(about.file_frame);
+    found.hu = volume::name_of(about.hu);
     found.size = about.size;
     found.spacing_mm = in_mm(about.spacing());
     found.uniform = about.uniform;
     found.tilt_deg = about.tilt_deg();
     found.notes = about.notes;
-    found.histogram = histogram_of(found.grey.values, 24);
+    found.histogram = volume::histogram_of(found.grey.values, 24);
     found.range = {layers.tally().low, layers.tally().high};
-    if (about.kind == VolumeKind::labels) inspect_labels(found, about);
+    if (about.kind == volume::VolumeKind::labels) inspect_labels(found, about);
     else inspect_ct(found);
     return found;
 }
 
 Inspection inspect_mesh(const std::filesystem::path& path) {
-    MeshOrigin origin;
-    const Mesh mesh = load_mesh(path, 1.0, &origin);
-    const MeshTopology topology = topology_of(mesh);
+    mesh::MeshOrigin origin;
+    const mesh::Mesh mesh = mesh::load_mesh(path, 1.0, &origin);
+    const mesh::MeshTopology topology = mesh::topology_of(mesh);
     Inspection found;
     found.kind = "mesh";
-    found.frame = name_of(origin.frame);
+    found.frame = volume::name_of(origin.frame);
     found.hu = "none";
-    std::vector<TriangleSurface> parts(topology.components);
+    std::vector<geometry::TriangleSurface> parts(topology.components);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
         parts[static_cast<std::size_t>(topology.component_of[t])].triangles.push_back(mesh.triangles[t]);
-    for (TriangleSurface& part : parts) {
+    for (geometry::TriangleSurface& part : parts) {
         // Only its own points, in mm as they are in the file.
         std::map<int, int> renamed;
         for (auto& t : part.triangles)
@@ -162,7 +162,7 @@ Inspection inspect_mesh(const std::filesystem::path& path) {
                 if (fresh) part.vertices.push_back(mesh.vertices[static_cast<std::size_t>(corner)] * 1e-3);
                 corner = at->second;
             }
-        found.parts.push_back({"", std::abs(volume_of(part)) * 1e9, bounds_of(part)});
+        found.parts.push_back({"", std::abs(mesh::volume_of(part)) * 1e9, bounds_of(part)});
         found.surfaces.push_back({std::move(part), Vec3(0.90, 0.86, 0.76)});
     }
     std::stable_sort(found.parts.begin(), found.parts.end(),
@@ -180,30 +180,30 @@ Inspection inspect_mesh(const std::filesystem::path& path) {
 }
 
 Inspection inspect_bones(const std::filesystem::path& path) {
-    std::vector<Bone> bones;
-    if (file_of_bone(path) == path) bones = load_bones(path);
-    else bones.push_back(load_bone(path));
+    std::vector<bone::Bone> bones;
+    if (bone::file_of_bone(path) == path) bones = bone::load_bones(path);
+    else bones.push_back(bone::load_bone(path));
     Inspection found;
     found.kind = "bone";
     found.frame = "LPS";
-    const Bone& first = bones.front();
+    const bone::Bone& first = bones.front();
     const auto hu = first.provenance.find("hu");
     found.hu = hu == first.provenance.end() ? "none" : hu->second;
     found.size = first.distance.size;
     found.spacing_mm = in_mm(first.distance.spacing);
     found.range = {1e30, -1e30};
-    for (const Bone& bone : bones) {
+    for (const bone::Bone& bone : bones) {
         for (std::size_t n = 0; n < bone.density.values.size(); ++n)
             if (bone.distance.values[n] < 0.0f) {
                 found.range[0] = std::min(found.range[0], double(bone.density.values[n]));
                 found.range[1] = std::max(found.range[1], double(bone.density.values[n]));
             }
-        TriangleSurface surface = export_surface(bone.distance);
+        geometry::TriangleSurface surface = mesh::export_surface(bone.distance);
         if (surface.vertices.empty()) {
             found.notes.push_back(fmt::format("'{}' has no surface", bone.name));
             continue;
         }
-        found.parts.push_back({bone.name, volume_of(surface) * 1e9, bounds_of(surface)});
+        found.parts.push_back({bone.name, mesh::volume_of(surface) * 1e9, bounds_of(surface)});
         found.surfaces.push_back({std::move(surface), bone.colour});
     }
     if (found.range[0] > found.range[1]) found.range = {0.0, 0.0};
@@ -211,7 +211,7 @@ Inspection inspect_bones(const std::filesystem::path& path) {
     found.grey = first.density;
     for (std::size_t n = 0; n < found.grey.values.size(); ++n)
         if (first.distance.values[n] >= 0.0f) found.grey.values[n] *= 0.3f;
-    found.histogram = histogram_of(first.density.values, 24);
+    found.histogram = volume::histogram_of(first.density.values, 24);
     found.window = {0.0, std::max(found.range[1], 1.0)};
     for (const auto& [key, value] : first.provenance) found.notes.push_back(key + ": " + value);
     return found;
@@ -221,7 +221,7 @@ Inspection inspect_bones(const std::filesystem::path& path) {
 
 Inspection inspect(const std::filesystem::path& path, const std::string& series) {
     const std::string kind = path.extension().string();
-    if (file_of_bone(path).extension() == ".vdb") return inspect_bones(path);
+    if (bone::file_of_bone(path).extension() == ".vdb") return inspect_bones(path);
     if (kind == ".stl" || kind == ".ply" || kind == ".obj") return inspect_mesh(path);
     return inspect_volume(path, series);
 }

@@ -32,13 +32,13 @@ struct Inspection {
     std::optional<double> threshold;   ///< for a CT
     std::vector<InspectedPart> parts;  ///< largest first; labels and bones in their own order
     std::size_t parts_in_all = 0;      ///< small parts of a CT are counted, not listed
-    Histogram histogram;               ///< 24 bins, for people
+    volume::Histogram histogram;               ///< 24 bins, for people
     std::vector<std::string> notes;    ///< what was set right while reading, or is wrong with it
 
-    Grid grey;                              ///< for slices: values on LPS axes; empty for a mesh
+    volume::Grid grey;                              ///< for slices: values on LPS axes; empty for a mesh
     std::array<double, 2> window{};         ///< black and white of the slices
     bool is_labels = false;                 ///< slices are coloured by label
-    std::vector<ColouredSurface> surfaces;  ///< for the view
+    std::vector<mesh::ColouredSurface> surfaces;  ///< for the view
 };
 
 /// Reads a volume, mesh or bone file and measures it. Throws Error for what cannot be read.

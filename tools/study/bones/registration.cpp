@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/bones/registration.hpp"
 
-#include "dsp/planning/point_registration.hpp"
+#include "dsp/fit/point_registration.hpp"
 
 namespace tactus::study {
 
 namespace {
 
 struct Part {
-    std::vector<SurfacePoint> points;
+    std::vector<contact::SurfacePoint> points;
     Vec3 middle{0.0};
     double area = 0.0;
 };
 
-Part part_of(const std::vector<SurfacePoint>& moving, const std::vector<std::size_t>& region) {
+Part part_of(const std::vector<contact::SurfacePoint>& moving, const std::vector<std::size_t>& region) {
     Part part;
     for (const std::size_t n : region) {
         part.points.push_back(moving[n]);
@@ -24,26 +24,26 @@ Part part_of(const std::vector<SurfacePoint>& moving, const std::vector<std::siz
     return part;
 }
 
-std::optional<RegisteredRegion> register_region(const std::vector<SurfacePoint>& moving, const Registration& bulk,
-                                                const RegistrationTarget& target, const RegisterSettings& settings) {
-    auto region = displaced_region(moving, bulk.pose, target, settings.away, settings.gap, settings.margin);
+std::optional<RegisteredRegion> register_region(const std::vector<contact::SurfacePoint>& moving, const fit::Registration& bulk,
+                                                const fit::RegistrationTarget& target, const RegisterSettings& settings) {
+    auto region = fit::displaced_region(moving, bulk.pose, target, settings.away, settings.gap, settings.margin);
     if (region.empty()) return std::nullopt;
     RegisteredRegion found;
     Part part = part_of(moving, region);
-    const PointRegistration plain = register_points(part.points, target, bulk.pose);
+    const fit::PointRegistration plain = fit::register_points(part.points, target, bulk.pose);
     found.plain_away = motion_between(bulk.pose, plain.pose, part.middle);
     found.plain_to_points = plain.to_points;
     found.plain_median = plain.to_surface;
-    found.registration = register_surface(part.points, target, bulk.pose, {.widest = 8e-3, .finest = 0.8e-3});
+    found.registration = fit::register_surface(part.points, target, bulk.pose, {.widest = 8e-3, .finest = 0.8e-3});
     // What slid along the surface is not far from it: now that the part's motion is known, all that moved with it counts.
     for (int round = 0; round < 2; ++round) {
-        auto all = region_nearer(moving, bulk.pose, found.registration.pose, target, 0.2 * settings.away, settings.away,
+        auto all = fit::region_nearer(moving, bulk.pose, found.registration.pose, target, 0.2 * settings.away, settings.away,
                                  settings.gap);
         if (all.size() < region.size() / 2) break;
         region = std::move(all);
         part = part_of(moving, region);
         found.registration =
-            register_surface(part.points, target, found.registration.pose, {.widest = 0.8e-3, .finest = 0.4e-3});
+            fit::register_surface(part.points, target, found.registration.pose, {.widest = 0.8e-3, .finest = 0.4e-3});
     }
     found.points = region.size();
     found.area = part.area;
@@ -54,20 +54,20 @@ std::optional<RegisteredRegion> register_region(const std::vector<SurfacePoint>&
 }  // namespace
 
 RegisteredSurface register_files(const RegisterSettings& settings) {
-    const std::vector<SurfacePoint> fixed = points_of_file(settings.fixed);
-    const std::vector<SurfacePoint> moving = points_of_file(settings.moving);
-    const RegistrationTarget target(fixed);
+    const std::vector<contact::SurfacePoint> fixed = points_of_file(settings.fixed);
+    const std::vector<contact::SurfacePoint> moving = points_of_file(settings.moving);
+    const fit::RegistrationTarget target(fixed);
     RegisteredSurface found;
     if (settings.mirror) {
-        const MirrorFit fit = fit_mirror(moving, fixed);
+        const fit::MirrorFit fit = fit::fit_mirror(moving, fixed);
         found.registration = fit.registration;
         found.pose = fit.pose;
         found.plane = fit.plane;
         return found;
     }
-    const RegistrationSettings whole{.by_parts = settings.region};
-    found.registration = settings.anywhere ? register_from_anywhere(moving, fixed, target, whole)
-                                           : register_surface(moving, target, {}, whole);
+    const fit::RegistrationSettings whole{.by_parts = settings.region};
+    found.registration = settings.anywhere ? fit::register_from_anywhere(moving, fixed, target, whole)
+                                           : fit::register_surface(moving, target, {}, whole);
     found.pose = found.registration.pose;
     if (settings.region) found.region = register_region(moving, found.registration, target, settings);
     return found;

@@ -2,7 +2,7 @@
 // Lays one surface on another of the same shape, whole or the part of it that is elsewhere.
 #pragma once
 
-#include "dsp/planning/mirror.hpp"
+#include "dsp/fit/mirror.hpp"
 #include "tools/study/bones/surface_file.hpp"
 
 #include <cstddef>
@@ -21,7 +21,7 @@ struct RegisterSettings {
 
 /// The part that is not where the rest has it, laid on its place by itself, and what plain ICP of points says about it.
 struct RegisteredRegion {
-    Registration registration;
+    fit::Registration registration;
     std::size_t points = 0;
     double area = 0.0;  ///< m²
     Motion away;  ///< of its middle, from where the rest has it
@@ -30,9 +30,9 @@ struct RegisteredRegion {
 };
 
 struct RegisteredSurface {
-    Registration registration;
+    fit::Registration registration;
     Pose pose;
-    std::optional<MirrorPlane> plane;  ///< with `mirror`
+    std::optional<fit::MirrorPlane> plane;  ///< with `mirror`
     std::optional<RegisteredRegion> region;
 };
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/bones/snapping.hpp"
 
-#include "assets/fracture/paint_file.hpp"
-#include "assets/fracture/propose_paint.hpp"
+#include "assets/cases/paint_file.hpp"
+#include "assets/cases/propose_paint.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/planning/as_scanned.hpp"
+#include "dsp/fit/as_scanned.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 
 #include <fmt/format.h>
@@ -19,46 +19,46 @@ namespace tactus::study {
 namespace {
 
 struct Fragment {
-    Bone bone;
+    bone::Bone bone;
     std::string paint;  ///< where it comes from
 };
 
 /// Paints what lies within the strokes' radius.
-void brush(std::vector<SurfacePoint>& points, const std::vector<Vec3>& strokes, double radius) {
-    for (SurfacePoint& p : points) p.label = surface_label::none;
+void brush(std::vector<contact::SurfacePoint>& points, const std::vector<Vec3>& strokes, double radius) {
+    for (contact::SurfacePoint& p : points) p.label = contact::surface_label::none;
     for (const Vec3& centre : strokes)
-        for (SurfacePoint& p : points)
-            if (glm::length(p.position - centre) <= radius) p.label = surface_label::fracture;
+        for (contact::SurfacePoint& p : points)
+            if (glm::length(p.position - centre) <= radius) p.label = contact::surface_label::fracture;
 }
 
 Fragment painted_fragment(const std::filesystem::path& path, const FragmentPaint& paint) {
     Fragment fragment{bone_of_file(path), "file"};
-    if (fragment.bone.points.empty()) fragment.bone.points = sample_surface(fragment.bone.distance, {});
-    const auto is_painted = [](const SurfacePoint& p) { return p.label == surface_label::fracture; };
+    if (fragment.bone.points.empty()) fragment.bone.points = contact::sample_surface(fragment.bone.distance, {});
+    const auto is_painted = [](const contact::SurfacePoint& p) { return p.label == contact::surface_label::fracture; };
     if (paint.file) {
         fragment.paint = paint.file->string();
-        paint_from_file(fragment.bone.points, fragment.paint);
+        cases::paint_from_file(fragment.bone.points, fragment.paint);
     } else if (paint.radius) {
         brush(fragment.bone.points, paint.strokes, *paint.radius);
         fragment.paint = paint.name;
     } else if (std::ranges::none_of(fragment.bone.points, is_painted)) {
-        propose_fracture(fragment.bone.points);
+        cases::propose_fracture(fragment.bone.points);
         fragment.paint = "proposed";
     }
     return fragment;
 }
 
-std::vector<FitSurface> faces_of(const Fragment& fragment, const std::filesystem::path& path) {
+std::vector<fit::FitSurface> faces_of(const Fragment& fragment, const std::filesystem::path& path) {
     try {
-        return make_fit_faces(fragment.bone.points, fragment.bone.distance);
+        return fit::make_fit_faces(fragment.bone.points, fragment.bone.distance);
     } catch (const Error& error) {
         throw Error(fmt::format("{}: {}", path.string(), error.message()));
     }
 }
 
-SnappedSide side_of(const Fragment& fragment, const std::vector<FitSurface>& faces) {
+SnappedSide side_of(const Fragment& fragment, const std::vector<fit::FitSurface>& faces) {
     SnappedSide side{fragment.paint, {}};
-    for (const FitSurface& face : faces) side.areas.push_back(face.area);
+    for (const fit::FitSurface& face : faces) side.areas.push_back(face.area);
     return side;
 }
 
@@ -67,15 +67,15 @@ SnappedSide side_of(const Fragment& fragment, const std::vector<FitSurface>& fac
 Snapped snap_files(const SnapSettings& settings) {
     const Fragment moving = painted_fragment(settings.moving, settings.moving_paint);
     const Fragment fixed = painted_fragment(settings.fixed, settings.fixed_paint);
-    const std::vector<FitSurface> moving_faces = faces_of(moving, settings.moving);
-    const std::vector<FitSurface> fixed_faces = faces_of(fixed, settings.fixed);
+    const std::vector<fit::FitSurface> moving_faces = faces_of(moving, settings.moving);
+    const std::vector<fit::FitSurface> fixed_faces = faces_of(fixed, settings.fixed);
     Snapped out;
     const auto begin = std::chrono::steady_clock::now();
-    out.fit = find_fit(moving_faces, fixed_faces, settings.start, settings.mode);
+    out.fit = fit::find_fit(moving_faces, fixed_faces, settings.start, settings.mode);
     out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    out.as_scanned = out.fit.verdict == FitVerdict::fit &&
-                     is_as_scanned(moving.bone.points, out.fit.pose, make_voxmap(fixed.bone.distance));
-    if (out.as_scanned) out.fit.verdict = FitVerdict::ambiguous;
+    out.as_scanned = out.fit.verdict == fit::FitVerdict::fit &&
+                     fit::is_as_scanned(moving.bone.points, out.fit.pose, contact::make_voxmap(fixed.bone.distance));
+    if (out.as_scanned) out.fit.verdict = fit::FitVerdict::ambiguous;
     out.moved = motion_between(settings.start, out.fit.pose, middle_of(moving.bone.points));
     out.moving = side_of(moving, moving_faces);
     out.fixed = side_of(fixed, fixed_faces);

@@ -2,7 +2,7 @@
 // One fit of two fragments, with its verdict.
 #pragma once
 
-#include "dsp/snap/fit.hpp"
+#include "dsp/fit/fit.hpp"
 #include "tools/study/bones/surface_file.hpp"
 
 #include <filesystem>
@@ -24,7 +24,7 @@ struct SnapSettings {
     std::filesystem::path moving, fixed;  ///< bone files or closed meshes
     FragmentPaint moving_paint, fixed_paint;
     Pose start;  ///< of the moving one
-    FitMode mode = FitMode::extended;
+    fit::FitMode mode = fit::FitMode::extended;
 };
 
 /// The painted faces of a fragment.
@@ -34,7 +34,7 @@ struct SnappedSide {
 };
 
 struct Snapped {
-    Fit fit;
+    fit::Fit fit;
     bool as_scanned = false;  ///< the fit only repeats the scan; its verdict is ambiguous
     Motion moved;  ///< of the moving one's middle, from the start
     double seconds = 0.0;  ///< that the fit took

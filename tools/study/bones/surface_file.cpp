@@ -18,18 +18,18 @@ bool is_mesh(const std::filesystem::path& path) {
     return extension == ".stl" || extension == ".ply" || extension == ".obj";
 }
 
-TriangleSurface surface_of_file(const std::filesystem::path& path, const Bone& bone) {
-    if (is_mesh(path)) return load_mesh(path, 1e-3);
-    return export_surface(bone.distance);
+geometry::TriangleSurface surface_of_file(const std::filesystem::path& path, const bone::Bone& bone) {
+    if (is_mesh(path)) return mesh::load_mesh(path, 1e-3);
+    return mesh::export_surface(bone.distance);
 }
 
-std::vector<SurfacePoint> points_of_file(const std::filesystem::path& path) {
+std::vector<contact::SurfacePoint> points_of_file(const std::filesystem::path& path) {
     if (!is_mesh(path)) {
-        const Bone bone = bone_of_file(path);
-        return bone.points.empty() ? sample_surface(bone.distance, {}) : bone.points;
+        const bone::Bone bone = bone_of_file(path);
+        return bone.points.empty() ? contact::sample_surface(bone.distance, {}) : bone.points;
     }
-    const Mesh mesh = load_mesh(path, 1e-3);
-    std::vector<SurfacePoint> points(mesh.vertices.size());
+    const mesh::Mesh mesh = mesh::load_mesh(path, 1e-3);
+    std::vector<contact::SurfacePoint> points(mesh.vertices.size());
     for (std::size_t n = 0; n < points.size(); ++n) points[n] = {mesh.vertices[n], Vec3(0.0), 0.0, 0};
     for (const auto& t : mesh.triangles) {
         const auto corner = [&](std::size_t c) { return static_cast<std::size_t>(t[c]); };
@@ -40,8 +40,8 @@ std::vector<SurfacePoint> points_of_file(const std::filesystem::path& path) {
             points[corner(c)].area += glm::length(across) / 6.0;
         }
     }
-    std::erase_if(points, [](const SurfacePoint& p) { return !(glm::length(p.normal) > 0.0); });
-    for (SurfacePoint& p : points) p.normal = glm::normalize(p.normal);
+    std::erase_if(points, [](const contact::SurfacePoint& p) { return !(glm::length(p.normal) > 0.0); });
+    for (contact::SurfacePoint& p : points) p.normal = glm::normalize(p.normal);
     return points;
 }
 
@@ -49,9 +49,9 @@ double angle_deg(const Pose& pose) {
     return glm::length(rotation_between({1.0, 0.0, 0.0, 0.0}, pose.orientation)) * 180.0 / std::numbers::pi;
 }
 
-Vec3 middle_of(std::span<const SurfacePoint> points) {
+Vec3 middle_of(std::span<const contact::SurfacePoint> points) {
     Vec3 middle(0.0);
-    for (const SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
+    for (const contact::SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
     return middle;
 }
 

@@ -4,7 +4,7 @@
 
 #include "assets/bone/bone.hpp"
 #include "dsp/contact/voxmap.hpp"
-#include "dsp/distance/iso_surface.hpp"
+#include "dsp/geometry/iso_surface.hpp"
 
 #include <filesystem>
 #include <span>
@@ -15,14 +15,14 @@ namespace tactus::study {
 /// Whether a file is read as triangles.
 bool is_mesh(const std::filesystem::path& path);
 /// The surface in the frame of its file, m: a mesh's own triangles, or that of a bone's distance.
-TriangleSurface surface_of_file(const std::filesystem::path& path, const Bone& bone);
+geometry::TriangleSurface surface_of_file(const std::filesystem::path& path, const bone::Bone& bone);
 /// The points of a mesh's corners, or of a bone. Meshes need not be closed. Throws Error.
-std::vector<SurfacePoint> points_of_file(const std::filesystem::path& path);
+std::vector<contact::SurfacePoint> points_of_file(const std::filesystem::path& path);
 
 /// Angle of a pose from none, degrees.
 double angle_deg(const Pose& pose);
 /// Middle of the points, m.
-Vec3 middle_of(std::span<const SurfacePoint> points);
+Vec3 middle_of(std::span<const contact::SurfacePoint> points);
 
 /// How far a point moves, m, and how far its body turns, degrees.
 struct Motion {

@@ -18,11 +18,11 @@ constexpr auto no_screen = "no screen is touched, and none is known from a rig b
 
 }  // namespace
 
-std::vector<RigTouch> calibration_steps(const CalibrationSettings& settings) {
-    std::vector<RigTouch> steps;
-    using Of = RigTouch::Of;
+std::vector<display::RigTouch> calibration_steps(const CalibrationSettings& settings) {
+    std::vector<display::RigTouch> steps;
+    using Of = display::RigTouch::Of;
     if (!settings.places.empty())
-        for (const Vec3& place : load_places(settings.places)) steps.push_back({Of::workspace, {}, {}, {}, place});
+        for (const Vec3& place : display::load_places(settings.places)) steps.push_back({Of::workspace, {}, {}, {}, place});
     else if (!settings.tracker.empty())
         for (int n = 0; n < settings.points; ++n) steps.push_back({Of::workspace, {}, {}, {}, {}});
     if (settings.mirror)
@@ -41,30 +41,30 @@ std::vector<RigTouch> calibration_steps(const CalibrationSettings& settings) {
     return steps;
 }
 
-void check_screens(const CalibrationSettings& settings, const RigFile& base) {
+void check_screens(const CalibrationSettings& settings, const display::RigFile& base) {
     if (settings.screens.empty() && settings.images.empty() && base.screens.empty()) throw Error(no_screen);
 }
 
-std::string prompt_of(const RigTouch& step) {
+std::string prompt_of(const display::RigTouch& step) {
     const int u = static_cast<int>(step.shown.x * 100.0 + 0.5), v = static_cast<int>(step.shown.y * 100.0 + 0.5);
     switch (step.of) {
-        case RigTouch::Of::workspace:
+        case display::RigTouch::Of::workspace:
             if (step.place == Vec3(0.0)) return "hold the tracked marker to the tip, somewhere new in the workspace";
             return "touch the " + step.name();
-        case RigTouch::Of::mirror: return "touch the mirror with the tip, somewhere new, far from the touches before";
-        case RigTouch::Of::image:
+        case display::RigTouch::Of::mirror: return "touch the mirror with the tip, somewhere new, far from the touches before";
+        case display::RigTouch::Of::image:
             return fmt::format(
                 "bring the tip to where the mirror shows the mark of screen '{}' at {} % of its width and "
                 "{} % of its height",
                 step.screen, u, v);
-        case RigTouch::Of::screen: break;
+        case display::RigTouch::Of::screen: break;
     }
     return fmt::format("touch screen '{}' at {} % of its width from the left and {} % of its height from below",
                        step.screen, u, v);
 }
 
-RigFitOptions fit_options(const CalibrationSettings& settings, const RigFile& base) {
-    RigFitOptions options;
+display::RigFitOptions fit_options(const CalibrationSettings& settings, const display::RigFile& base) {
+    display::RigFitOptions options;
     options.is_affine = settings.affine;
     options.tolerance = parse_as(settings.tolerance, "mm");
     if (!(options.tolerance > 0.0)) throw Error("the tolerance must be above 0 mm");
@@ -74,10 +74,10 @@ RigFitOptions fit_options(const CalibrationSettings& settings, const RigFile& ba
     return options;
 }
 
-TouchesOff touches_off(const RigFit& fit) {
+TouchesOff touches_off(const display::RigFit& fit) {
     TouchesOff all;
     double sum = 0.0;
-    for (const TouchedPart& part : fit.parts)
+    for (const display::TouchedPart& part : fit.parts)
         for (std::size_t i = 0; i < part.off.size(); ++i) {
             sum += part.off[i] * part.off[i];
             ++all.count;
@@ -89,36 +89,36 @@ TouchesOff touches_off(const RigFit& fit) {
     return all;
 }
 
-std::string part_text(const TouchedPart& part) {
+std::string part_text(const display::TouchedPart& part) {
     return fmt::format("{}: {:.2f} mm rms, {:.2f} mm worst", part.what, part.residual.rms * 1e3,
                        part.residual.worst * 1e3);
 }
 
-RigFile calibrated_rig(RigFile file, const RigFit& fit) {
+display::RigFile calibrated_rig(display::RigFile file, const display::RigFit& fit) {
     file.rig.haptic_world = fit.device;
     file.rig.haptic_stretch = fit.stretch;
     file.rig.mirror = fit.mirror;
     for (const auto& [name, screen] : fit.screens) {
-        const auto known = std::ranges::find(file.screens, name, &RigScreen::name);
+        const auto known = std::ranges::find(file.screens, name, &display::RigScreen::name);
         if (known != file.screens.end()) {
             file.rig.screens[static_cast<std::size_t>(known - file.screens.begin())] = screen;
             continue;
         }
         file.rig.screens.push_back(screen);
-        file.screens.push_back({name, ScreenEyes::both, {}, {}, 0, {}});
+        file.screens.push_back({name, display::ScreenEyes::both, {}, {}, 0, {}});
     }
     if (file.screens.empty()) throw Error(no_screen);
     return file;
 }
 
-void write_calibrated(const std::filesystem::path& file, const RigFile& rig, const RigFit& fit) {
+void write_calibrated(const std::filesystem::path& file, const display::RigFile& rig, const display::RigFit& fit) {
     std::vector<std::string> about{"Calibrated: how far the touches are off, root mean square and worst"};
-    for (const TouchedPart& part : fit.parts)
+    for (const display::TouchedPart& part : fit.parts)
         about.push_back(fmt::format("  {}: {:.2f} mm, {:.2f} mm of {} touches", part.what, part.residual.rms * 1e3,
                                     part.residual.worst * 1e3, part.touches.size()));
-    write_whole_file(file, rig_text(rig, about));
+    file::write_whole_file(file, display::rig_text(rig, about));
     // What is written can be read.
-    load_rig_file(file);
+    display::load_rig_file(file);
 }
 
 }  // namespace tactus::study

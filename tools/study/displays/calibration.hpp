@@ -3,7 +3,7 @@
 #pragma once
 
 #include "assets/display/rig_file.hpp"
-#include "dsp/view/rig_touches.hpp"
+#include "dsp/display/rig_touches.hpp"
 #include "tools/study/displays/calibration_settings.hpp"
 
 #include <filesystem>
@@ -15,16 +15,16 @@ namespace tactus::study {
 
 /// What is to be touched, in order: the device's place first, since the rest counts from it. Throws Error when that is
 /// nothing.
-std::vector<RigTouch> calibration_steps(const CalibrationSettings& settings);
+std::vector<display::RigTouch> calibration_steps(const CalibrationSettings& settings);
 
 /// Throws Error when no screen is to be touched and none is known: a rig needs one. Better said before the touches.
-void check_screens(const CalibrationSettings& settings, const RigFile& base);
+void check_screens(const CalibrationSettings& settings, const display::RigFile& base);
 
 /// "touch screen 'left' at 10 % of its width from the left and 90 % of its height from below"
-std::string prompt_of(const RigTouch& step);
+std::string prompt_of(const display::RigTouch& step);
 
 /// How touches are fitted, with what is known of the rig before. Throws Error.
-RigFitOptions fit_options(const CalibrationSettings& settings, const RigFile& base);
+display::RigFitOptions fit_options(const CalibrationSettings& settings, const display::RigFile& base);
 
 /// How far touches are off what was fitted, m.
 struct TouchesOff {
@@ -32,15 +32,15 @@ struct TouchesOff {
     std::size_t count = 0;
     std::size_t worst_touch = 0;  ///< index among all touches, from 0, of the one that is farthest off
 };
-TouchesOff touches_off(const RigFit& fit);
+TouchesOff touches_off(const display::RigFit& fit);
 
 /// "mirror: 0.41 mm rms, 0.82 mm worst"
-std::string part_text(const TouchedPart& part);
+std::string part_text(const display::TouchedPart& part);
 
 /// The rig with what was fitted in place of what was known, its screens by name. Throws Error when it has no screen.
-RigFile calibrated_rig(RigFile base, const RigFit& fit);
+display::RigFile calibrated_rig(display::RigFile base, const display::RigFit& fit);
 
 /// Writes the rig with the residuals of its fit as a comment, and reads it again. Throws Error.
-void write_calibrated(const std::filesystem::path& file, const RigFile& rig, const RigFit& fit);
+void write_calibrated(const std::filesystem::path& file, const display::RigFile& rig, const display::RigFit& fit);
 
 }  // namespace tactus::study

@@ -29,14 +29,14 @@ Touched touch_of(std::span<const Vec3> tips, std::span<const Vec3> tracked) {
     return touched;
 }
 
-TouchLead::TouchLead(std::vector<RigTouch> steps, bool has_tracker, Check check)
+TouchLead::TouchLead(std::vector<display::RigTouch> steps, bool has_tracker, Check check)
     : steps_(std::move(steps)), tries_(steps_.size(), 0), has_tracker_(has_tracker), check_(std::move(check)) {
     if (steps_.empty()) throw Error("there is nothing to touch");
 }
 
 bool TouchLead::is_part_done() const {
     if (reached_ == steps_.size()) return true;
-    const RigTouch &last = steps_[reached_ - 1], &next = steps_[reached_];
+    const display::RigTouch &last = steps_[reached_ - 1], &next = steps_[reached_];
     return last.of != next.of || last.screen != next.screen;
 }
 
@@ -61,7 +61,7 @@ std::string TouchLead::take(const Touched& touched) {
         if (++tries_[due_] >= most_tries) throw Error(fault);
         return fault;
     }
-    RigTouch& step = steps_[due_];
+    display::RigTouch& step = steps_[due_];
     step.reading = touched.tip;
     if (is_tracked(step)) step.place = touched.tracked;
     if (due_ == reached_) ++reached_;
@@ -69,7 +69,7 @@ std::string TouchLead::take(const Touched& touched) {
     if (!is_part_done()) return {};
     try {
         check_(std::span(steps_).first(reached_));
-    } catch (const BadTouch& bad) {
+    } catch (const display::BadTouch& bad) {
         if (++tries_[bad.touch] >= most_tries) throw;
         due_ = bad.touch;
         return bad.message();

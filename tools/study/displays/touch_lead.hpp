@@ -2,7 +2,7 @@
 // Which place is to be touched next, and what becomes of each touch. Whoever reads the device waits, or does not.
 #pragma once
 
-#include "dsp/view/rig_touches.hpp"
+#include "dsp/display/rig_touches.hpp"
 
 #include <functional>
 #include <span>
@@ -26,28 +26,28 @@ Touched touch_of(std::span<const Vec3> tips, std::span<const Vec3> tracked);
 /// place was not tracked where it has to be, and one that `check`, called after the last of a part, throws as BadTouch.
 class TouchLead {
 public:
-    using Check = std::function<void(std::span<const RigTouch> done)>;
+    using Check = std::function<void(std::span<const display::RigTouch> done)>;
 
     /// `has_tracker`: workspace touches get their place from what was tracked. Throws Error without steps.
-    TouchLead(std::vector<RigTouch> steps, bool has_tracker, Check check);
+    TouchLead(std::vector<display::RigTouch> steps, bool has_tracker, Check check);
 
     bool is_done() const { return due_ == steps_.size(); }
     /// The step that is due, from 0.
     std::size_t due() const { return due_; }
-    const std::vector<RigTouch>& steps() const { return steps_; }
+    const std::vector<display::RigTouch>& steps() const { return steps_; }
     /// Takes the touch of the step that is due. Returns why one has to be made again, this or one before; empty: none.
     /// Throws Error for a place that does not come out right the third time, and what `check` throws else.
     std::string take(const Touched& touched);
 
 private:
     /// Its place comes from the tracker.
-    bool is_tracked(const RigTouch& step) const { return has_tracker_ && step.of == RigTouch::Of::workspace; }
+    bool is_tracked(const display::RigTouch& step) const { return has_tracker_ && step.of == display::RigTouch::Of::workspace; }
     /// What is wrong with a touch of the step that is due, whatever the others are; empty: nothing.
     std::string fault_of(const Touched& touched) const;
     /// The touches so far complete a part: a device, the mirror, or one screen.
     bool is_part_done() const;
 
-    std::vector<RigTouch> steps_;
+    std::vector<display::RigTouch> steps_;
     std::vector<int> tries_;
     std::size_t due_ = 0, reached_ = 0;  // touches before `reached_` are filled
     bool has_tracker_;

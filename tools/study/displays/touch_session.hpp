@@ -2,7 +2,7 @@
 // Leads a person through touching places with the tip of a device, one after another.
 #pragma once
 
-#include "graph/device.hpp"
+#include "graph/node/device.hpp"
 #include "tools/study/displays/touch_lead.hpp"
 
 #include <functional>
@@ -38,7 +38,7 @@ private:
 
 /// Leads through all steps, see TouchLead: `show` tells what is to be touched now, and `say` what was wrong with a touch.
 struct TouchSession {
-    std::function<void(const RigTouch& step, std::size_t number, std::size_t of)> show;
+    std::function<void(const display::RigTouch& step, std::size_t number, std::size_t of)> show;
     std::function<void(const std::string& said)> say;
     std::function<bool()> is_asked;
     std::function<void()> tend;

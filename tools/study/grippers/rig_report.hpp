@@ -35,7 +35,7 @@ struct RigLead {
 
 struct RigExample {
     std::string title;
-    RigSeries series;
+    control::RigSeries series;
     RigCell cell;
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/grippers/rig_run.hpp"
 
-#include "engine/engine.hpp"
-#include "graph/sub_patch.hpp"
+#include "engine/run/engine.hpp"
+#include "graph/patch/sub_patch.hpp"
 #include "tools/session/load_plan.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace tactus::study {
 namespace {
 
 /// Keeps the values of one output as numbers.
-class KeptValues : public StreamEnd {
+class KeptValues : public io::StreamEnd {
 public:
     KeptValues(const ValueType& type, std::vector<double>& into) : type_(type), into_(into) {}
     void take(std::int64_t, const std::byte* values, std::size_t count) override {
@@ -40,15 +40,15 @@ std::vector<std::uint8_t> flags(const std::vector<double>& numbers) {
 }
 
 /// A controller of the thumb part, which a rig does not pull at.
-bool moves_another_part(const Patch& patch, const PatchNode& node) {
-    for (const PatchWire& wire : patch.wires)
+bool moves_another_part(const patch::Patch& patch, const patch::PatchNode& node) {
+    for (const patch::PatchWire& wire : patch.wires)
         if (wire.from_node == node.name && wire.to_port == "thumb_speed") return true;
     return false;
 }
 
-std::string only_node(const Patch& patch, const std::string& type) {
+std::string only_node(const patch::Patch& patch, const std::string& type) {
     std::string found;
-    for (const PatchNode& node : patch.nodes) {
+    for (const patch::PatchNode& node : patch.nodes) {
         if (node.type != type || moves_another_part(patch, node)) continue;
         if (!found.empty())
             throw Error(node.where, fmt::format("a rig judges one finger: '{}' and '{}' are both of type {}", found,
@@ -67,16 +67,16 @@ std::string only_node(const Patch& patch, const std::string& type) {
 }  // namespace
 
 RigNodes find_rig_nodes(const session::PatchChoice& choice) {
-    Problems problems;
-    Patch patch = load_patch(session::find_patch(choice.patch), problems);
-    flatten(patch, problems);
+    patch::Problems problems;
+    patch::Patch patch = patch::load_patch(session::find_patch(choice.patch), problems);
+    patch::flatten(patch, problems);
     session::throw_problems(problems);
     return {only_node(patch, "gripper_input"), only_node(patch, "admittance_controller"),
             only_node(patch, "gripper_output"), only_node(patch, "test_rig")};
 }
 
-ObjectSettings object_of(const RigObject& object) {
-    ObjectSettings settings;
+control::ObjectSettings object_of(const RigObject& object) {
+    control::ObjectSettings settings;
     settings.kind = object.kind;
     settings.stiffness = object.stiffness;
     settings.damping = object.damping;
@@ -84,7 +84,7 @@ ObjectSettings object_of(const RigObject& object) {
 }
 
 RigRun run_rig_cell(const session::PatchChoice& given, const RigNodes& nodes, const RigCell& cell, int cycles,
-                    AssetCache& assets) {
+                    compile::AssetCache& assets) {
     session::PatchChoice choice = given;
     auto& set = choice.overrides.settings;
     const auto put = [&set](const std::string& node, const char* param, const std::string& value) {
@@ -92,7 +92,7 @@ RigRun run_rig_cell(const session::PatchChoice& given, const RigNodes& nodes, co
     };
     put(nodes.input, "device", cell.motor);
     put(nodes.output, "device", cell.motor);
-    put(nodes.controller, "object", cell.object.kind == ObjectKind::wall ? "wall" : "elastic");
+    put(nodes.controller, "object", cell.object.kind == control::ObjectKind::wall ? "wall" : "elastic");
     put(nodes.controller, "sides", "both");
     put(nodes.controller, "rest", "0 mm");
     put(nodes.controller, "mass", "0 kg");
@@ -109,22 +109,22 @@ RigRun run_rig_cell(const session::PatchChoice& given, const RigNodes& nodes, co
                                     nodes.input + ".slips", nodes.controller + ".saturated", nodes.input + ".max_speed",
                                     nodes.output + ".holds", nodes.controller + ".holds"})
         kept[port];
-    EngineOptions options;
+    run::EngineOptions options;
     options.seconds = rig_settle_s + (cycles + 0.05) / cell.rate;
     options.hash = false;
     options.time_nodes = false;
     double period = 0.0;
     options.tap = [&](const std::string& port, const ValueType& type,
-                      const GroupRuntime& group) -> std::unique_ptr<Stream> {
+                      const run::GroupRuntime& group) -> std::unique_ptr<io::Stream> {
         const auto wanted = kept.find(port);
         if (wanted == kept.end()) return nullptr;
         period = seconds(group.plan->period);
         StreamFormat format;
         format.type = &type;
         format.period = group.plan->period;
-        return std::make_unique<Stream>(format, std::make_unique<KeptValues>(type, wanted->second));
+        return std::make_unique<io::Stream>(format, std::make_unique<KeptValues>(type, wanted->second));
     };
-    Engine engine(session::load_plan(choice, assets), options);
+    run::Engine engine(session::load_plan(choice, assets), options);
     engine.render(1);
     engine.finish();
     for (const std::string& port : {nodes.output + ".holds", nodes.controller + ".holds"})
@@ -138,10 +138,10 @@ RigRun run_rig_cell(const session::PatchChoice& given, const RigNodes& nodes, co
             speeds.empty() ? 0.0 : speeds.back()};
 }
 
-RigRow judge_rig_cell(const RigCell& cell, const RigSeries& series) {
+RigRow judge_rig_cell(const RigCell& cell, const control::RigSeries& series) {
     RigRow row{cell, {}, {}};
     try {
-        row.fidelity = judge_fidelity(series, object_of(cell.object), cell.rate, rig_settle_s);
+        row.fidelity = control::judge_fidelity(series, object_of(cell.object), cell.rate, rig_settle_s);
     } catch (const Error& error) {
         row.failure = error.message();
     }

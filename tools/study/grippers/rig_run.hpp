@@ -2,9 +2,9 @@
 // One cell of a rig's matrix: a patch with a gripper, an object and a rig, run on a virtual clock and judged.
 #pragma once
 
-#include "assets/rig/rig_matrix.hpp"
-#include "dsp/admittance/fidelity.hpp"
-#include "graph/load_assets.hpp"
+#include "tools/study/rig_matrix.hpp"
+#include "dsp/control/fidelity.hpp"
+#include "graph/compile/load_assets.hpp"
 #include "tools/session/patch_choice.hpp"
 
 #include <optional>
@@ -24,7 +24,7 @@ struct RigCell {
 
 struct RigRow {
     RigCell cell;
-    Fidelity fidelity;
+    control::Fidelity fidelity;
     std::string failure;  ///< why there is no result; empty when there is one
 };
 
@@ -40,16 +40,16 @@ RigNodes find_rig_nodes(const session::PatchChoice& choice);
 inline constexpr double rig_settle_s = 2.0;
 
 struct RigRun {
-    RigSeries series;
+    control::RigSeries series;
     double max_speed = 0.0;  ///< m/s, of the motor
 };
 
 /// Throws Error.
 RigRun run_rig_cell(const session::PatchChoice& choice, const RigNodes& nodes, const RigCell& cell, int cycles,
-                    AssetCache& assets);
+                    compile::AssetCache& assets);
 
-RigRow judge_rig_cell(const RigCell& cell, const RigSeries& series);
+RigRow judge_rig_cell(const RigCell& cell, const control::RigSeries& series);
 
-ObjectSettings object_of(const RigObject& object);
+control::ObjectSettings object_of(const RigObject& object);
 
 }  // namespace tactus::study

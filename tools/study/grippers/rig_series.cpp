@@ -15,7 +15,7 @@ namespace tactus::study {
 namespace {
 
 /// Onto a grid of the mean period, by straight lines; flags by the nearest sample before.
-RigSeries evened(const std::vector<double>& times, RigSeries s, const SourceLocation& where) {
+control::RigSeries evened(const std::vector<double>& times, control::RigSeries s, const SourceLocation& where) {
     const std::size_t count = times.size();
     if (count < 16) throw Error(where, "a record of less than 16 samples says nothing");
     s.period = (times.back() - times.front()) / static_cast<double>(count - 1);
@@ -25,7 +25,7 @@ RigSeries evened(const std::vector<double>& times, RigSeries s, const SourceLoca
         worst = std::max(worst, std::abs(times[i] - times[0] - static_cast<double>(i) * s.period));
     }
     if (worst < 0.01 * s.period) return s;
-    RigSeries even = s;
+    control::RigSeries even = s;
     std::size_t at = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const double time = times[0] + static_cast<double>(i) * s.period;
@@ -52,9 +52,9 @@ double number_or(const std::string& text, double standard, const SourceLocation&
 
 }  // namespace
 
-std::vector<std::pair<RigCell, RigSeries>> load_rig_series(const std::filesystem::path& path,
+std::vector<std::pair<RigCell, control::RigSeries>> load_rig_series(const std::filesystem::path& path,
                                                            std::vector<std::string>& notes) {
-    const NumberTable table = load_number_table(path);
+    const table::NumberTable table = table::load_number_table(path);
     const auto &motors = table.text("motor"), &objects = table.text("object"), &ks = table.text("stiffness_N_per_mm"),
                &bs = table.text("damping_Ns_per_mm"), &rates = table.text("rate_hz"),
                &amplitudes = table.text("amplitude_mm");
@@ -65,7 +65,7 @@ std::vector<std::pair<RigCell, RigSeries>> load_rig_series(const std::filesystem
                               saturated = has_saturated ? table.numbers("saturated") : std::vector<double>{};
     if (table.rows() == 0) throw Error({path.string(), 1, 1}, "there are no samples");
     if (!has_slip) notes.push_back("the record does not say where the motor slipped: all samples count");
-    std::vector<std::pair<RigCell, RigSeries>> all;
+    std::vector<std::pair<RigCell, control::RigSeries>> all;
     for (std::size_t begin = 0, end = 0; begin < table.rows(); begin = end) {
         const auto same = [&](std::size_t i) {
             return motors[i] == motors[begin] && objects[i] == objects[begin] && ks[i] == ks[begin] &&
@@ -79,11 +79,11 @@ std::vector<std::pair<RigCell, RigSeries>> load_rig_series(const std::filesystem
         cell.object.stiffness = 1e3 * number_or(ks[begin], 0.0, where, "stiffness_N_per_mm");
         cell.object.damping = 1e3 * number_or(bs[begin], 0.0, where, "damping_Ns_per_mm");
         const bool is_wall = objects[begin] == "wall" || (cell.object.stiffness == 0.0 && cell.object.damping == 0.0);
-        cell.object.kind = is_wall ? ObjectKind::wall : ObjectKind::elastic;
+        cell.object.kind = is_wall ? control::ObjectKind::wall : control::ObjectKind::elastic;
         cell.rate = number_or(rates[begin], 0.0, where, "rate_hz");
         cell.amplitude = 1e-3 * number_or(amplitudes[begin], 0.0, where, "amplitude_mm");
         if (!(cell.rate > 0.0)) throw Error(where, "the rate of the rig must be above 0");
-        RigSeries series;
+        control::RigSeries series;
         for (std::size_t i = begin; i < end; ++i) {
             series.force.push_back(forces[i]);
             series.position.push_back(positions[i] * 1e-3);
@@ -97,14 +97,14 @@ std::vector<std::pair<RigCell, RigSeries>> load_rig_series(const std::filesystem
     return all;
 }
 
-std::string rig_series_csv(const RigCell& cell, const RigSeries& series, bool first) {
+std::string rig_series_csv(const RigCell& cell, const control::RigSeries& series, bool first) {
     std::string out =
         first ? "motor,object,stiffness_N_per_mm,damping_Ns_per_mm,rate_hz,amplitude_mm,time_s,force_N,position_mm,"
                 "slip,saturated\n"
               : "";
     const std::string head =
         fmt::format("{},{},{:.9g},{:.9g},{:.9g},{:.9g}", cell.motor,
-                    cell.object.kind == ObjectKind::wall ? std::string("wall") : cell.object.name,
+                    cell.object.kind == control::ObjectKind::wall ? std::string("wall") : cell.object.name,
                     cell.object.stiffness * 1e-3, cell.object.damping * 1e-3, cell.rate, cell.amplitude * 1e3);
     for (std::size_t i = 0; i < series.force.size(); ++i)
         fmt::format_to(std::back_inserter(out), "{},{:.6f},{:.7g},{:.8g},{},{}\n", head,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/grippers/rig_study.hpp"
 
-#include "dsp/gripper/rig.hpp"
+#include "dsp/simulate/gripper/rig.hpp"
 #include "tools/session/load_plan.hpp"
 
 #include <fmt/format.h>
@@ -36,7 +36,7 @@ std::vector<std::vector<std::string>> corners(const RigMatrix& matrix, const std
 std::optional<RigObject> spring_of(const RigMatrix& matrix, bool stiffest) {
     std::optional<RigObject> found;
     for (const RigObject& o : matrix.objects)
-        if (o.kind == ObjectKind::elastic && o.stiffness > 0.0 && o.damping == 0.0 &&
+        if (o.kind == control::ObjectKind::elastic && o.stiffness > 0.0 && o.damping == 0.0 &&
             (!found || (stiffest ? o.stiffness > found->stiffness : o.stiffness < found->stiffness)))
             found = o;
     return found;
@@ -64,7 +64,7 @@ std::optional<double> crossing(const std::vector<double>& rates, const std::vect
 
 /// How far the cord may swing to each side so that a spring of `stiffness` bears at most `force`.
 double swing_for(double force, double stiffness, double widest) {
-    const double rig = RigSprings{}.at_finger();
+    const double rig = simulate::RigSprings{}.at_finger();
     return std::min(widest, force * (rig + stiffness) / (rig * stiffness));
 }
 
@@ -72,8 +72,8 @@ double swing_for(double force, double stiffness, double widest) {
 std::optional<RigObject> freest(const RigMatrix& matrix, double rate) {
     std::optional<RigObject> found;
     for (const RigObject& o : matrix.objects)
-        if (o.kind == ObjectKind::elastic && (!found || std::abs(ideal_admittance(object_of(o), rate)) >
-                                                            std::abs(ideal_admittance(object_of(*found), rate))))
+        if (o.kind == control::ObjectKind::elastic && (!found || std::abs(control::ideal_admittance(object_of(o), rate)) >
+                                                            std::abs(control::ideal_admittance(object_of(*found), rate))))
             found = o;
     return found;
 }
@@ -162,7 +162,7 @@ double largest_amplitude(const std::vector<RigRow>& rows) {
 
 RigReport study_rig(const session::PatchChoice& choice, const RigMatrix& matrix, const RunJobs& run,
                     const std::function<void(int, int)>& progress,
-                    const std::function<void(const RigCell&, const RigSeries&)>& keep) {
+                    const std::function<void(const RigCell&, const control::RigSeries&)>& keep) {
     const RigNodes nodes = find_rig_nodes(choice);
     Cells cells;
     for (const std::string& motor : matrix.motors)
@@ -180,7 +180,7 @@ RigReport study_rig(const session::PatchChoice& choice, const RigMatrix& matrix,
     for (const std::string& motor : matrix.motors)
         for (const RigObject& object : matrix.objects)
             for (const double rate : matrix.rates)
-                if (object.kind == ObjectKind::elastic)
+                if (object.kind == control::ObjectKind::elastic)
                     leads.push_back({cells.add({motor, object, rate, gentle, 0.0, {}}),
                                      cells.add({motor, object, rate, gentle, 1.0, {}})});
 
@@ -188,7 +188,7 @@ RigReport study_rig(const session::PatchChoice& choice, const RigMatrix& matrix,
     std::vector<std::pair<Sweep, Sweep>> sweeps;
     if (two)
         for (const double k : matrix.crossover_stiffness) {
-            const RigObject spring{fmt::format("spring {:g} N/mm", k * 1e-3), ObjectKind::elastic, k, 0.0};
+            const RigObject spring{fmt::format("spring {:g} N/mm", k * 1e-3), control::ObjectKind::elastic, k, 0.0};
             sweeps.emplace_back(add_sweep(cells, matrix, matrix.motors[0], spring,
                                           swing_for(matrix.crossover_force, k, wide), matrix.crossover_rates),
                                 add_sweep(cells, matrix, matrix.motors[1], spring,
@@ -205,14 +205,14 @@ RigReport study_rig(const session::PatchChoice& choice, const RigMatrix& matrix,
 
     const int total = static_cast<int>(cells.all().size());
     std::vector<RigRow> rows(cells.all().size());
-    std::vector<RigSeries> series(main_cells);
+    std::vector<control::RigSeries> series(main_cells);
     std::vector<double> max_speeds(main_cells);
     std::mutex telling;
     int done = 0;
     run(total, [&](int n) {
         const auto i = static_cast<std::size_t>(n);
         const RigCell& cell = cells.all()[i];
-        AssetCache assets;
+        compile::AssetCache assets;
         RigRun measured = run_rig_cell(choice, nodes, cell, matrix.cycles, assets);
         rows[i] = judge_rig_cell(cell, measured.series);
         if (i < main_cells) {
@@ -225,7 +225,7 @@ RigReport study_rig(const session::PatchChoice& choice, const RigMatrix& matrix,
 
     RigReport report;
     report.rows.assign(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(main_cells));
-    report.peak_cord_speed = peak_cord_speed(2.0 * wide, 1.0);
+    report.peak_cord_speed = simulate::peak_cord_speed(2.0 * wide, 1.0);
     report.assumptions = matrix.assumptions;
     for (std::size_t i = 0; i < main_cells; ++i) keep(rows[i].cell, series[i]);
     for (std::size_t i = 0; i < sweeps.size(); ++i)
@@ -250,7 +250,7 @@ RigReport study_rig(const session::PatchChoice& choice, const RigMatrix& matrix,
         const RigCell& c = rows[i].cell;
         const bool is_stiff = stiff && c.object.name == stiff->name && c.rate == slowest && c.amplitude == gentle;
         const bool is_soft = soft && c.object.name == soft->name && c.rate == fast && c.amplitude == wide;
-        const bool is_wall = c.object.kind == ObjectKind::wall && c.rate == slowest && c.amplitude == wide;
+        const bool is_wall = c.object.kind == control::ObjectKind::wall && c.rate == slowest && c.amplitude == wide;
         if (is_stiff || is_soft || is_wall)
             report.examples.push_back(
                 {fmt::format("{}: {}, {:g} Hz, ±{:g} mm", c.motor, c.object.name, c.rate, c.amplitude * 1e3), series[i],
@@ -260,13 +260,13 @@ RigReport study_rig(const session::PatchChoice& choice, const RigMatrix& matrix,
     // Free motion: as weak a damper as keeps the loop well stable.
     const auto slow_cell = static_cast<std::size_t>(std::ranges::min_element(max_speeds) - max_speeds.begin());
     if (const double speed = max_speeds[slow_cell]; speed > 0.0) {
-        const double expected = saturation_rate(speed, wide, RigSprings{}.at_finger(), 0.0);
+        const double expected = simulate::saturation_rate(speed, wide, simulate::RigSprings{}.at_finger(), 0.0);
         RigCell cell{
-            rows[slow_cell].cell.motor, {"free motion", ObjectKind::elastic, 0.0, 20.0}, expected, wide, {}, {}};
+            rows[slow_cell].cell.motor, {"free motion", control::ObjectKind::elastic, 0.0, 20.0}, expected, wide, {}, {}};
         double low = 0.5 * expected, high = 2.0 * expected;
         for (int halving = 0; halving < 12; ++halving) {
             cell.rate = 0.5 * (low + high);
-            AssetCache assets;
+            compile::AssetCache assets;
             const RigRow row = judge_rig_cell(cell, run_rig_cell(choice, nodes, cell, matrix.cycles, assets).series);
             (row.fidelity.saturated_share > 0.0 ? high : low) = cell.rate;
         }
@@ -276,7 +276,7 @@ RigReport study_rig(const session::PatchChoice& choice, const RigMatrix& matrix,
     return report;
 }
 
-RigReport study_rig_series(const std::vector<std::pair<RigCell, RigSeries>>& records) {
+RigReport study_rig_series(const std::vector<std::pair<RigCell, control::RigSeries>>& records) {
     RigReport report;
     for (const auto& [cell, series] : records) {
         report.rows.push_back(judge_rig_cell(cell, series));
@@ -285,7 +285,7 @@ RigReport study_rig_series(const std::vector<std::pair<RigCell, RigSeries>>& rec
                                                    cell.amplitude * 1e3),
                                        series, cell});
     }
-    report.peak_cord_speed = peak_cord_speed(2.0 * largest_amplitude(report.rows), 1.0);
+    report.peak_cord_speed = simulate::peak_cord_speed(2.0 * largest_amplitude(report.rows), 1.0);
     // With two motors on the same springs it can be said where they cross.
     std::vector<std::string> motors;
     for (const RigRow& row : report.rows)
@@ -294,7 +294,7 @@ RigReport study_rig_series(const std::vector<std::pair<RigCell, RigSeries>>& rec
     std::vector<std::pair<double, double>> tried;  // stiffness, amplitude
     for (const RigRow& row : report.rows) {
         const std::pair key{row.cell.object.stiffness, row.cell.amplitude};
-        const bool spring = row.cell.object.kind == ObjectKind::elastic && row.cell.object.damping == 0.0;
+        const bool spring = row.cell.object.kind == control::ObjectKind::elastic && row.cell.object.damping == 0.0;
         if (spring && std::ranges::find(tried, key) == tried.end()) tried.push_back(key);
     }
     for (const auto& [stiffness, amplitude] : tried) {

@@ -14,9 +14,9 @@ namespace tactus::study {
 /// given the series of each row, in order. Throws Error.
 RigReport study_rig(const session::PatchChoice& choice, const RigMatrix& matrix, const RunJobs& run,
                     const std::function<void(int done, int of)>& progress,
-                    const std::function<void(const RigCell&, const RigSeries&)>& keep);
+                    const std::function<void(const RigCell&, const control::RigSeries&)>& keep);
 
 /// The same from what was recorded.
-RigReport study_rig_series(const std::vector<std::pair<RigCell, RigSeries>>& records);
+RigReport study_rig_series(const std::vector<std::pair<RigCell, control::RigSeries>>& records);
 
 }  // namespace tactus::study

@@ -7,25 +7,25 @@
 
 namespace tactus::study {
 
-CaseFragment load_fragment(const PlanFragment& fragment, const std::filesystem::path& folder, Paint paint) {
-    CaseFragment loaded{fragment_bone(fragment, folder, paint, on_threads()), {}};
-    loaded.map = make_voxmap(loaded.bone.distance);
+CaseFragment load_fragment(const cases::PlanFragment& fragment, const std::filesystem::path& folder, cases::Paint paint) {
+    CaseFragment loaded{cases::fragment_bone(fragment, folder, paint, on_threads()), {}};
+    loaded.map = contact::make_voxmap(loaded.bone.distance);
     return loaded;
 }
 
-std::vector<CaseFragment> load_fragments(const CasePlan& plan, const std::filesystem::path& folder, Paint paint) {
-    check_files(plan, folder);
+std::vector<CaseFragment> load_fragments(const cases::CasePlan& plan, const std::filesystem::path& folder, cases::Paint paint) {
+    cases::check_files(plan, folder);
     std::vector<CaseFragment> all;
-    for (const PlanFragment& fragment : plan.fragments) all.push_back(load_fragment(fragment, folder, paint));
+    for (const cases::PlanFragment& fragment : plan.fragments) all.push_back(load_fragment(fragment, folder, paint));
     return all;
 }
 
 double shown_mm(double millimetres) { return std::round(millimetres * 100.0) / 100.0 + 0.0; }
 
-void do_step(CasePlan& plan, PlanStep step, const std::filesystem::path& path) {
-    step.time = time_of_day();
-    add_step(plan, std::move(step));
-    save_case_plan(plan, path);
+void do_step(cases::CasePlan& plan, cases::PlanStep step, const std::filesystem::path& path) {
+    step.time = cases::time_of_day();
+    cases::add_step(plan, std::move(step));
+    cases::save_case_plan(plan, path);
 }
 
 }  // namespace tactus::study

@@ -1,94 +1,94 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/planning/plan_matching.hpp"
 
-#include "dsp/planning/as_scanned.hpp"
+#include "dsp/fit/as_scanned.hpp"
 #include "tools/study/bones/intact_side.hpp"
 
 namespace tactus::study {
 
 namespace {
 
-PlanFit record_of(const FragmentMatch& match, const std::string& partner) {
-    const FitQuality& q = match.quality;
-    return {partner,  std::string(name_of(match.verdict)), q.score, match.margin, q.rms, q.gap, q.penetration,
+cases::PlanFit record_of(const fit::FragmentMatch& match, const std::string& partner) {
+    const fit::FitQuality& q = match.quality;
+    return {partner,  std::string(fit::name_of(match.verdict)), q.score, match.margin, q.rms, q.gap, q.penetration,
             q.overlap};
 }
 
-std::vector<Pose> poses_of(const Arrangement& a) {
+std::vector<Pose> poses_of(const fit::Arrangement& a) {
     std::vector<Pose> poses;
     for (int n = 0; n < static_cast<int>(a.size()); ++n) poses.push_back(a.pose(n));
     return poses;
 }
 
 /// All that is shown and does not move along; or one of them alone.
-std::vector<char> partners_of(const Arrangement& a, int moving, int only) {
+std::vector<char> partners_of(const fit::Arrangement& a, int moving, int only) {
     std::vector<char> stands;
     for (int n = 0; n < static_cast<int>(a.size()); ++n)
-        stands.push_back(!a.move_together(moving, n) && (only == Arrangement::none ? !a.is_hidden(n) : n == only));
+        stands.push_back(!a.move_together(moving, n) && (only == fit::Arrangement::none ? !a.is_hidden(n) : n == only));
     return stands;
 }
 
 }  // namespace
 
-PlanMatching::PlanMatching(const CasePlan& plan, const std::filesystem::path& folder)
-    : loaded_(load_fragments(plan, folder, Paint::or_proposed)) {
+PlanMatching::PlanMatching(const cases::CasePlan& plan, const std::filesystem::path& folder)
+    : loaded_(load_fragments(plan, folder, cases::Paint::or_proposed)) {
     for (const CaseFragment& f : loaded_) surfaces_.push_back({f.bone.points, &f.bone.distance});
-    MatcherSettings settings;
+    fit::MatcherSettings settings;
     settings.most_points = 2000;
-    matcher_ = std::make_unique<FragmentMatcher>(surfaces_, settings);
+    matcher_ = std::make_unique<fit::FragmentMatcher>(surfaces_, settings);
 }
 
-PlanMatch PlanMatching::judged(const FragmentMatch& made, const Arrangement& arrangement) const {
+PlanMatch PlanMatching::judged(const fit::FragmentMatch& made, const fit::Arrangement& arrangement) const {
     PlanMatch found{made, false, arrangement.pose(made.moving), {}, fragment(made.moving).was_painted};
-    const std::vector<SurfacePoint>& points = fragment(made.moving).bone.points;
+    const std::vector<contact::SurfacePoint>& points = fragment(made.moving).bone.points;
     // A fit that only repeats the scan says nothing of where the fragment belongs.
     found.as_scanned =
-        made.verdict == FitVerdict::fit &&
-        is_as_scanned(points, arrangement.pose(made.partner).inverse() * made.pose, fragment(made.partner).map);
-    if (found.as_scanned) found.match.verdict = FitVerdict::ambiguous;
+        made.verdict == fit::FitVerdict::fit &&
+        fit::is_as_scanned(points, arrangement.pose(made.partner).inverse() * made.pose, fragment(made.partner).map);
+    if (found.as_scanned) found.match.verdict = fit::FitVerdict::ambiguous;
     found.moved = motion_between(found.from, made.pose, middle_of(points));
     return found;
 }
 
-PlanMatch PlanMatching::near(const Arrangement& arrangement, int moving, int only) {
+PlanMatch PlanMatching::near(const fit::Arrangement& arrangement, int moving, int only) {
     return judged(matcher_->near(moving, poses_of(arrangement), partners_of(arrangement, moving, only)), arrangement);
 }
 
-PlanMatch PlanMatching::anywhere(const Arrangement& arrangement, int moving, int only) {
+PlanMatch PlanMatching::anywhere(const fit::Arrangement& arrangement, int moving, int only) {
     const auto poses = poses_of(arrangement);
     const auto stands = partners_of(arrangement, moving, only);
-    FragmentMatch match = matcher_->near(moving, poses, stands);
+    fit::FragmentMatch match = matcher_->near(moving, poses, stands);
     matcher_->begin_search();
     do match = matcher_->search(moving, poses, stands);
     while (matcher_->left() > 0);
     return judged(match, arrangement);
 }
 
-PlanStep step_of(const CasePlan& plan, const FragmentMatch& match, const char* by) {
-    PlanStep step = placing(plan, match.moving, match.pose, by);
+cases::PlanStep step_of(const cases::CasePlan& plan, const fit::FragmentMatch& match, const char* by) {
+    cases::PlanStep step = cases::placing(plan, match.moving, match.pose, by);
     step.fit = record_of(match, plan.fragments[static_cast<std::size_t>(match.partner)].name);
     return step;
 }
 
-std::optional<TargetDistances> target_distances(const PlanState& state, const std::filesystem::path& folder,
+std::optional<TargetDistances> target_distances(const cases::PlanState& state, const std::filesystem::path& folder,
                                                 const CaseFragment& fragment, const Pose& from, const Pose& there) {
     if (!state.mirror) return std::nullopt;
-    const RegistrationTarget target(laid_target(*state.mirror, folder));
-    return TargetDistances{median_distance(fragment.bone.points, target, from),
-                           median_distance(fragment.bone.points, target, there)};
+    const fit::RegistrationTarget target(laid_target(*state.mirror, folder));
+    return TargetDistances{fit::median_distance(fragment.bone.points, target, from),
+                           fit::median_distance(fragment.bone.points, target, there)};
 }
 
-std::vector<PlanGap> plan_gaps(const CasePlan& plan, const std::filesystem::path& folder,
+std::vector<PlanGap> plan_gaps(const cases::CasePlan& plan, const std::filesystem::path& folder,
                                const std::optional<std::pair<int, int>>& pair) {
     const std::vector<CaseFragment> loaded = load_fragments(plan, folder);
-    const PlanState state = state_of(plan);
+    const cases::PlanState state = cases::state_of(plan);
     std::vector<PlanGap> found;
     const auto look = [&](int i, int j) {
         const CaseFragment &a = loaded[static_cast<std::size_t>(i)], &b = loaded[static_cast<std::size_t>(j)];
         const Pose &at = state.arrangement.pose(i), &bt = state.arrangement.pose(j);
-        SurfaceGap gap = gap_between(a.bone.points, at, b.map, bt);
+        fit::SurfaceGap gap = fit::gap_between(a.bone.points, at, b.map, bt);
         if (!pair && !(gap.facing_area > 5e-6)) return;
-        found.push_back({i, j, std::move(gap), overlap_volume(a.bone.distance, at, b.map, bt)});
+        found.push_back({i, j, std::move(gap), fit::overlap_volume(a.bone.distance, at, b.map, bt)});
     };
     if (pair) look(pair->first, pair->second);
     else

@@ -17,10 +17,10 @@ namespace {
 
 /// How much of the level stays missing, dB: of the reference's spectrum, what the actuator at its limit cannot reach;
 /// without an actuator, what was missing as it was played.
-double level_gap(const CompareSettings& settings, const Comparison& c, double peak) {
+double level_gap(const CompareSettings& settings, const signal::Comparison& c, double peak) {
     if (settings.actuator.empty()) return c.gain_db;
-    const ActuatorModel& model = find_actuator(settings.actuator);
-    const Actuator actuator(model, settings.mass, 48000.0);
+    const vibration::ActuatorModel& model = vibration::find_actuator(settings.actuator);
+    const vibration::Actuator actuator(model, settings.mass, 48000.0);
     double square = 0.0;
     for (std::size_t k = 0; k < c.reference_density.size(); ++k) {
         const double f = static_cast<double>(k) * c.step;
@@ -29,33 +29,33 @@ double level_gap(const CompareSettings& settings, const Comparison& c, double pe
     }
     // As peaked as the reference itself.
     const double needed = std::sqrt(square) * peak / c.reference_rms;
-    const double limit = voltage_within(model.voltage_limit, model.current_limit, model.resistance);
+    const double limit = vibration::voltage_within(model.voltage_limit, model.current_limit, model.resistance);
     return std::max(0.0, 20.0 * std::log10(needed / limit));
 }
 
 /// Hann segments of about 60 ms: lines 25 Hz apart are told apart, and so are strokes of a hand.
-Spectrogram spectrogram_of(const Take& take) {
+signal::Spectrogram spectrogram_of(const signal::Take& take) {
     const auto segment = static_cast<std::size_t>(std::llround(0.06 * take.rate / 2.0)) * 2;
-    Spectrogram spectrogram(std::max<std::size_t>(segment, 16), take.rate);
-    const Take::Blocks blocks = take.open();
+    signal::Spectrogram spectrogram(std::max<std::size_t>(segment, 16), take.rate);
+    const signal::Take::Blocks blocks = take.open();
     for (std::span<const double> block = blocks(); !block.empty(); block = blocks()) spectrogram.push(block);
     return spectrogram;
 }
 
 }  // namespace
 
-const char* touch_unit(ThresholdUnit unit) {
-    return unit == ThresholdUnit::displacement   ? "displacement"
-           : unit == ThresholdUnit::acceleration ? "acceleration"
+const char* touch_unit(signal::ThresholdUnit unit) {
+    return unit == signal::ThresholdUnit::displacement   ? "displacement"
+           : unit == signal::ThresholdUnit::acceleration ? "acceleration"
                                                  : "none";
 }
 
-void compare_takes(ComparedPair& pair, const Take& reference, const Take& output, const ComparisonOptions& options,
+void compare_takes(ComparedPair& pair, const signal::Take& reference, const signal::Take& output, const signal::ComparisonOptions& options,
                    bool pictures) {
     pair.touch = options.touch;
-    pair.comparison = compare(reference, output, options);
+    pair.comparison = signal::compare(reference, output, options);
     if (pictures)
-        for (const Take* take : {&reference, &output}) pair.spectrograms.push_back(spectrogram_of(*take));
+        for (const signal::Take* take : {&reference, &output}) pair.spectrograms.push_back(spectrogram_of(*take));
 }
 
 ComparedPair compare_files(const CompareSettings& settings) {

@@ -2,7 +2,7 @@
 // From a measured response to a filter that undoes it, and what the actuator's limits say to it.
 #pragma once
 
-#include "assets/equaliser/equaliser_file.hpp"
+#include "assets/sound/equaliser_file.hpp"
 #include "dsp/vibration/actuator.hpp"
 #include "dsp/vibration/headroom.hpp"
 
@@ -16,7 +16,7 @@ namespace tactus::study {
 struct EqualiseSettings {
     std::filesystem::path response;              ///< a measured response
     std::filesystem::path signal;                ///< a recording that will be played; empty: none
-    EqualiserDesign design;
+    vibration::EqualiserDesign design;
     std::string actuator = "haptuator_large";    ///< whose limits count
     double volts = 1.0;                          ///< per unit of the response's input
     double scale = 1.0;                          ///< units of the response's input per unit of the signal file
@@ -34,13 +34,13 @@ struct Flatness {
 
 /// What the limits do to a recording, without and with the equaliser.
 struct Programme {
-    Headroom plain, equalised;
+    vibration::Headroom plain, equalised;
 };
 
 struct Equalisation {
-    Equaliser equaliser;
+    vibration::Equaliser equaliser;
     std::string title, unit;               ///< of the response
-    const ActuatorModel* actuator = nullptr;
+    const vibration::ActuatorModel* actuator = nullptr;
     double limit = 0.0;                    ///< V, of the drive
     Flatness flat;
     std::optional<Programme> programme;    ///< when there is a signal

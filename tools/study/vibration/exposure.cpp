@@ -2,8 +2,8 @@
 #include "tools/study/vibration/exposure.hpp"
 
 #include "dsp/core/error.hpp"
-#include "dsp/spectrum/level.hpp"
-#include "dsp/spectrum/vibration_analysis.hpp"
+#include "dsp/signal/spectrum/level.hpp"
+#include "dsp/signal/spectrum/vibration_analysis.hpp"
 
 #include <fmt/format.h>
 
@@ -14,8 +14,8 @@ namespace tactus::study {
 
 ExposureOperation analyse_exposure(const std::filesystem::path& file, const ExposureSettings& settings, double duration,
                                    const std::function<void(double)>& progress) {
-    RecordReader reader = open_record(file, settings.record);
-    const Calibration& calibration = reader.calibration();
+    sound::RecordReader reader = open_record(file, settings.record);
+    const sound::Calibration& calibration = reader.calibration();
     if (!calibration.known && !settings.uncalibrated)
         throw Error(fmt::format(
             "{}: the record is not calibrated; say what full scale is worth with --full-scale \"49 m/s^2\", "
@@ -33,18 +33,18 @@ ExposureOperation analyse_exposure(const std::filesystem::path& file, const Expo
     out.calibrated = calibration.known;
     out.three_axes = chosen.size() == 3;
     const double nyquist = reader.log() ? std::min(0.5 * out.rate, reader.log()->usable) : 0.5 * out.rate;
-    out.band_high = std::min(hand_arm_highest, nyquist);
+    out.band_high = std::min(signal::hand_arm_highest, nyquist);
 
-    WelchSettings welch;
+    signal::WelchSettings welch;
     welch.rate = out.rate;
-    welch.segment = suggested_segment(out.rate, reader.frames());
+    welch.segment = signal::suggested_segment(out.rate, reader.frames());
     welch.overlap = welch.segment / 2;
-    std::vector<WelchStream<double>> spectra(chosen.size(), WelchStream<double>(welch));
-    std::vector<HandArmFilter> filters(chosen.size(), HandArmFilter(out.rate));
+    std::vector<signal::WelchStream<double>> spectra(chosen.size(), signal::WelchStream<double>(welch));
+    std::vector<signal::HandArmFilter> filters(chosen.size(), signal::HandArmFilter(out.rate));
     std::vector<double> squares(chosen.size()), offsets(chosen.size()), scaled;
-    std::vector<Level> levels(chosen.size());
+    std::vector<signal::Level> levels(chosen.size());
     std::size_t count = 0;
-    RecordBlock block;
+    sound::RecordBlock block;
     while (reader.next(block)) {
         for (std::size_t i = 0; i < chosen.size(); ++i) {
             scaled = block.channels[chosen[i]];
@@ -64,7 +64,7 @@ ExposureOperation analyse_exposure(const std::filesystem::path& file, const Expo
     }
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         out.axes.push_back(reader.channels()[chosen[i]]);
-        out.weighted.push_back(weighted_acceleration(spectra[i].spectrum()));
+        out.weighted.push_back(signal::weighted_acceleration(spectra[i].spectrum()));
         out.filtered.push_back(std::sqrt(squares[i] / static_cast<double>(std::max<std::size_t>(1, count))));
         if (levels[i].clipped() > 0)
             out.notes.push_back(fmt::format("axis {} is clipped in {} samples: the value is too low", out.axes.back(),
@@ -87,14 +87,14 @@ ExposureOperation analyse_exposure(const std::filesystem::path& file, const Expo
 }
 
 std::optional<double> exposure_of_day(std::span<const ExposureOperation> operations) {
-    std::vector<HandArmOperation> day;
+    std::vector<signal::HandArmOperation> day;
     double seconds = 0.0;
     for (const ExposureOperation& one : operations) {
         day.push_back({one.total(), one.duration});
         seconds += one.duration;
     }
     if (seconds > 24.0 * 3600.0) return std::nullopt;
-    return daily_exposure(day);
+    return signal::daily_exposure(day);
 }
 
 }  // namespace tactus::study

@@ -2,7 +2,7 @@
 // Vibration exposure of the hand from records (ISO 5349-1).
 #pragma once
 
-#include "dsp/exposure/hand_arm.hpp"
+#include "dsp/signal/exposure/hand_arm.hpp"
 #include "tools/study/vibration/record.hpp"
 
 #include <filesystem>
@@ -26,10 +26,10 @@ struct ExposureOperation {
     std::vector<double> weighted, filtered;  ///< m/s², from the spectrum and from the filter, per axis
     double rate = 0.0, duration = 0.0;       ///< Hz; s per day
     bool calibrated = false, three_axes = false;
-    double band_high = hand_arm_highest;     ///< Hz
+    double band_high = signal::hand_arm_highest;     ///< Hz
     std::vector<std::string> notes;
 
-    double total() const { return vibration_total(weighted); }
+    double total() const { return signal::vibration_total(weighted); }
     /// Values are lower bounds: axes or a part of the band are missing.
     bool is_lower_bound() const { return band_high < 1250.0 || !three_axes; }
 };

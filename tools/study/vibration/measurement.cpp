@@ -3,9 +3,9 @@
 
 #include "assets/sound/sound.hpp"
 #include "dsp/core/error.hpp"
-#include "engine/engine.hpp"
-#include "graph/patch_measure.hpp"
-#include "graph/sub_patch.hpp"
+#include "engine/run/engine.hpp"
+#include "tools/study/patch_measure.hpp"
+#include "graph/patch/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/session/scratch_folder.hpp"
@@ -24,11 +24,11 @@ struct Answer {
     std::vector<float> samples;
     double rate = 48000.0;
     std::string title, unit;
-    std::optional<Captured> card;
+    std::optional<audio::Captured> card;
 };
 
-SweepRun sweep_of(const MeasureSettings& settings) {
-    SweepRun run;
+vibration::SweepRun sweep_of(const MeasureSettings& settings) {
+    vibration::SweepRun run;
     run.sweep = {settings.first, settings.last, settings.duration, std::min(0.02, 0.1 * settings.duration)};
     run.amplitude = settings.amplitude;
     run.pause = settings.pause;
@@ -41,10 +41,10 @@ Answer through_patch(const MeasureSettings& settings, const Progress& progress) 
         throw Error(
             "say what to measure: --in NODE.PORT --out NODE.PORT, as in --in actuator.drive "
             "--out actuator.signal");
-    Problems problems;
-    Patch patch = load_patch(session::find_patch(settings.patch.patch), problems);
-    apply_overrides(patch, settings.patch.overrides, problems);
-    flatten(patch, problems);
+    patch::Problems problems;
+    patch::Patch patch = patch::load_patch(session::find_patch(settings.patch.patch), problems);
+    patch::apply_overrides(patch, settings.patch.overrides, problems);
+    patch::flatten(patch, problems);
     session::throw_problems(problems);
     if (settings.patch.seed) patch.seed = *settings.patch.seed;
     const auto setting = [](const char* name, double value, const char* unit) {
@@ -55,21 +55,21 @@ Answer through_patch(const MeasureSettings& settings, const Progress& progress) 
                             {setting("first", settings.first, "Hz"), setting("last", settings.last, "Hz"),
                              setting("duration", settings.duration, "s"), setting("pause", settings.pause, "s"),
                              setting("repeats", settings.repeats, ""), setting("amplitude", settings.amplitude, "")}};
-    const MeasuredPatch measured = measured_patch(patch, path, catalogue());
-    std::optional<Plan> plan = compile(measured.patch, catalogue(), problems);
+    const MeasuredPatch measured = measured_patch(patch, path, nodes::catalogue());
+    std::optional<compile::Plan> plan = compile::compile(measured.patch, nodes::catalogue(), problems);
     session::throw_problems(problems);
-    AssetCache assets;
+    compile::AssetCache assets;
     assets.load(*plan, problems);
     session::throw_problems(problems);
 
     const session::ScratchFolder folder;
-    EngineOptions options;
+    run::EngineOptions options;
     options.seconds = settings.repeats * (settings.duration + settings.pause);
     options.folder = folder.path();
-    Engine engine(std::move(*plan), options);
+    run::Engine engine(std::move(*plan), options);
     engine.render(1, progress);
     engine.finish();
-    const Sound sound = load_sound(folder.path() / measured.file);
+    const sound::Sound sound = sound::load_sound(folder.path() / measured.file);
     std::string unit = measured.out_unit;
     if (!unit.empty() && !measured.in_unit.empty()) unit += " per " + measured.in_unit;
     return {sound.samples, static_cast<double>(sound.rate),
@@ -78,7 +78,7 @@ Answer through_patch(const MeasureSettings& settings, const Progress& progress) 
             unit, std::nullopt};
 }
 
-Answer through_card(const MeasureSettings& settings, const SweepRun& run, const Progress& progress) {
+Answer through_card(const MeasureSettings& settings, const vibration::SweepRun& run, const Progress& progress) {
     if (!(std::abs(run.amplitude) <= 1.0))
         throw Error("the amplitude of a sweep through a sound card must lie within full scale, 1");
     const auto period = static_cast<std::size_t>(std::llround((run.sweep.duration + run.pause) * settings.rate));
@@ -88,7 +88,7 @@ Answer through_card(const MeasureSettings& settings, const SweepRun& run, const 
     for (std::size_t i = lead; i < samples.size(); ++i)
         samples[i] =
             static_cast<float>(run.amplitude * run.sweep(static_cast<double>((i - lead) % period) / settings.rate));
-    Captured captured = play_and_capture({settings.device == "default" ? "" : settings.device, settings.rate,
+    audio::Captured captured = audio::play_and_capture({settings.device == "default" ? "" : settings.device, settings.rate,
                                           settings.output_channel - 1, settings.input_channel - 1},
                                          samples, progress);
     Answer answer{{captured.samples.begin() + static_cast<std::ptrdiff_t>(lead), captured.samples.end()},
@@ -100,9 +100,9 @@ Answer through_card(const MeasureSettings& settings, const SweepRun& run, const 
     return answer;
 }
 
-std::vector<DistortionOrder> summarise(const Identified& identified, double lowest, double highest) {
+std::vector<DistortionOrder> summarise(const vibration::Identified& identified, double lowest, double highest) {
     std::vector<DistortionOrder> summaries;
-    for (const Distortion& distortion : identified.distortions) {
+    for (const vibration::Distortion& distortion : identified.distortions) {
         DistortionOrder summary{distortion.order};
         double count = 0.0, square = 0.0;
         for (std::size_t i = 0; i < distortion.ratio.size(); ++i) {
@@ -118,7 +118,7 @@ std::vector<DistortionOrder> summarise(const Identified& identified, double lowe
     return summaries;
 }
 
-double mean_coherence(const FrequencyResponse& response, double lowest, double highest) {
+double mean_coherence(const vibration::FrequencyResponse& response, double lowest, double highest) {
     double sum = 0.0, count = 0.0;
     for (std::size_t i = 0; i < response.hz.size(); ++i)
         if (response.hz[i] >= lowest && response.hz[i] <= highest) sum += response.coherence[i], count += 1.0;
@@ -130,16 +130,16 @@ double mean_coherence(const FrequencyResponse& response, double lowest, double h
 Measurement measure(const MeasureSettings& settings, const Progress& progress) {
     if (settings.patch.patch.empty() == settings.device.empty())
         throw Error("measure takes a patch with --in and --out, or --device for a sound card");
-    const SweepRun run = sweep_of(settings);
+    const vibration::SweepRun run = sweep_of(settings);
     Answer answer = settings.device.empty() ? through_patch(settings, progress) : through_card(settings, run, progress);
     Measurement found;
-    found.response = {answer.title, answer.unit, identify(run, answer.samples, answer.rate)};
+    found.response = {answer.title, answer.unit, vibration::identify(run, answer.samples, answer.rate)};
     found.card = std::move(answer.card);
-    const FrequencyResponse& response = found.response.identified.response;
+    const vibration::FrequencyResponse& response = found.response.identified.response;
     found.lowest = std::max(2.0 * settings.first, response.hz.front());
     found.highest = std::min(0.5 * settings.last, response.hz.back());
     found.fit_highest = std::min(settings.fit_highest, response.hz.back());
-    found.resonance = fit_resonance(response, std::max(settings.fit_lowest, response.hz.front()), found.fit_highest);
+    found.resonance = vibration::fit_resonance(response, std::max(settings.fit_lowest, response.hz.front()), found.fit_highest);
     found.orders = summarise(found.response.identified, found.lowest, found.highest);
     found.coherence = mean_coherence(response, found.lowest, found.highest);
     return found;

@@ -2,7 +2,7 @@
 // A sweep through a patch or a sound card, and what it tells of what it went through.
 #pragma once
 
-#include "assets/response/response_file.hpp"
+#include "assets/sound/response_file.hpp"
 #include "devices/audio/duplex.hpp"
 #include "tools/session/patch_choice.hpp"
 
@@ -33,9 +33,9 @@ struct DistortionOrder {
 };
 
 struct Measurement {
-    ResponseFile response;
-    std::optional<Captured> card;         ///< when it went through one
-    Resonance resonance;                  ///< 0 Hz: none was found
+    sound::ResponseFile response;
+    std::optional<audio::Captured> card;         ///< when it went through one
+    vibration::Resonance resonance;                  ///< 0 Hz: none was found
     double lowest = 0.0, highest = 0.0;   ///< Hz: where coherence and distortion are stated
     double fit_highest = 0.0;             ///< Hz, up to where the resonance was looked for
     double coherence = 0.0;               ///< mean

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double least_prominence_db = 6.0;  // noise alone comes to 5
 
-RateRange rates_of(const Rotation& rotation) {
+RateRange rates_of(const signal::Rotation& rotation) {
     const double turns = rotation.last() - rotation.first();
     RateRange rates{1e300, 0.0, turns / (rotation(rotation.last()).value - rotation(rotation.first()).value)};
     for (int i = 0; i <= 1000; ++i) {
@@ -38,22 +38,22 @@ std::vector<std::size_t> wanted_channels(const WholeRecord& record, const Orders
 }
 
 /// The rotation, and into `out` where it comes from.
-Rotation rotation_of(const WholeRecord& record, const OrdersSettings& settings, Orders& out) {
+signal::Rotation rotation_of(const WholeRecord& record, const OrdersSettings& settings, Orders& out) {
     if (settings.tacho > 0) {
         out.source = "tachometer";
         if (static_cast<std::size_t>(settings.tacho) > record.channels.size())
             throw Error(fmt::format("there is no channel {} with a tachometer", settings.tacho));
-        return rotation_from_tacho(record.channels[static_cast<std::size_t>(settings.tacho - 1)], record.rate,
+        return signal::rotation_from_tacho(record.channels[static_cast<std::size_t>(settings.tacho - 1)], record.rate,
                                    settings.pulses);
     }
     if (settings.fixed) {
         out.source = "fixed";
-        return rotation_at(*settings.fixed, out.duration);
+        return signal::rotation_at(*settings.fixed, out.duration);
     }
     out.source = "ridge";
-    RidgeSettings ridge_settings;
+    signal::RidgeSettings ridge_settings;
     std::tie(ridge_settings.lowest, ridge_settings.highest) = settings.range;
-    const Ridge ridge = track_ridge(record.channels.front(), record.rate, ridge_settings);
+    const signal::Ridge ridge = signal::track_ridge(record.channels.front(), record.rate, ridge_settings);
     out.prominence_db = ridge.prominence_db;
     if (ridge.prominence_db < least_prominence_db)
         throw Error("no rate can be followed in the record; state it with --rate, or give a --tacho channel");
@@ -72,12 +72,12 @@ Orders analyse_orders(const std::filesystem::path& file, const OrdersSettings& s
     out.calibration = record.calibration;
     const std::vector<std::size_t> wanted = wanted_channels(record, settings);
     try {
-        const Rotation rotation = rotation_of(record, settings, out);
+        const signal::Rotation rotation = rotation_of(record, settings, out);
         if (wanted.empty()) throw Error("there is no channel beside the tachometer");
         out.rate = rates_of(rotation);
         for (const std::size_t i : wanted)
             out.channels.push_back(
-                {record.names[i], order_spectrum(record.channels[i], record.rate, rotation, settings.highest)});
+                {record.names[i], signal::order_spectrum(record.channels[i], record.rate, rotation, settings.highest)});
     } catch (const Error& error) {
         throw Error(fmt::format("{}: {}", file.string(), error.message()));
     }

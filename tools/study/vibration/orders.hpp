@@ -2,7 +2,7 @@
 // Levels of the orders of a machine whose rate changes.
 #pragma once
 
-#include "dsp/order/order_spectrum.hpp"
+#include "dsp/signal/order/order_spectrum.hpp"
 #include "tools/study/vibration/record.hpp"
 
 #include <filesystem>
@@ -29,12 +29,12 @@ struct RateRange {
 
 struct OrdersOfChannel {
     std::string name;
-    OrderSpectrum spectrum;
+    signal::OrderSpectrum spectrum;
 };
 
 struct Orders {
     double sample_rate = 0.0, duration = 0.0;  ///< Hz, s
-    Calibration calibration;
+    sound::Calibration calibration;
     std::string source;                        ///< "tachometer", "fixed" or "ridge"
     double prominence_db = 0.0;                ///< of the ridge
     RateRange rate;

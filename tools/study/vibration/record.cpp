@@ -11,13 +11,13 @@
 
 namespace tactus::study {
 
-RecordReader open_record(const std::filesystem::path& file, const RecordSettings& settings) {
-    std::optional<Calibration> calibration;
-    if (!settings.calibration.empty()) calibration = parse_calibration(settings.calibration);
+sound::RecordReader open_record(const std::filesystem::path& file, const RecordSettings& settings) {
+    std::optional<sound::Calibration> calibration;
+    if (!settings.calibration.empty()) calibration = sound::parse_calibration(settings.calibration);
     return {file, settings.log, calibration};
 }
 
-std::vector<std::size_t> chosen_channels(const RecordReader& reader, const std::filesystem::path& file,
+std::vector<std::size_t> chosen_channels(const sound::RecordReader& reader, const std::filesystem::path& file,
                                          const RecordSettings& settings) {
     std::vector<std::size_t> chosen;
     for (const int channel : settings.channels) {
@@ -54,13 +54,13 @@ std::vector<std::filesystem::path> expand_folders(const std::vector<std::filesys
 }
 
 WholeRecord read_whole(const std::filesystem::path& file, const RecordSettings& settings) {
-    RecordReader reader = open_record(file, settings);
+    sound::RecordReader reader = open_record(file, settings);
     const std::vector<std::size_t> chosen = chosen_channels(reader, file, settings);
     if (reader.frames() > (std::size_t{1} << 28) / chosen.size())
         throw Error(fmt::format("{}: longer than 2^28 values; cut it first", file.string()));
     WholeRecord whole{reader.rate(), {}, std::vector<std::vector<double>>(chosen.size()), reader.calibration()};
     for (const std::size_t channel : chosen) whole.names.push_back(reader.channels()[channel]);
-    RecordBlock block;
+    sound::RecordBlock block;
     while (reader.next(block)) {
         if (block.after_gap)
             throw Error(

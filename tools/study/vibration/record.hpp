@@ -2,7 +2,7 @@
 // Records as they are analysed.
 #pragma once
 
-#include "assets/recording/record_reader.hpp"
+#include "assets/sound/record_reader.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -13,16 +13,16 @@ namespace tactus::study {
 
 /// How a record is read, and what its values are worth.
 struct RecordSettings {
-    LogSelection log;
+    table::LogSelection log;
     std::string calibration;  ///< "9.81 m/s^2": worth of a value of 1, for sound of full scale; empty: as the file says
     std::vector<int> channels;  ///< from 1; empty: all
 };
 
 /// Opens a record. Throws Error.
-RecordReader open_record(const std::filesystem::path& file, const RecordSettings& settings);
+sound::RecordReader open_record(const std::filesystem::path& file, const RecordSettings& settings);
 
 /// Indices of the wanted channels. Throws Error naming the file when one is missing.
-std::vector<std::size_t> chosen_channels(const RecordReader& reader, const std::filesystem::path& file,
+std::vector<std::size_t> chosen_channels(const sound::RecordReader& reader, const std::filesystem::path& file,
                                          const RecordSettings& settings);
 
 /// Folders give the records that lie in them, in order of name; files give themselves.
@@ -33,7 +33,7 @@ struct WholeRecord {
     double rate = 0.0;  ///< Hz
     std::vector<std::string> names;
     std::vector<std::vector<double>> channels;
-    Calibration calibration;
+    sound::Calibration calibration;
 };
 WholeRecord read_whole(const std::filesystem::path& file, const RecordSettings& settings);
 

@@ -12,11 +12,11 @@ namespace tactus::study {
 
 namespace {
 
-WelchSettings psd_settings(const SpectrumSettings& settings, double rate, std::size_t frames) {
-    WelchSettings welch;
+signal::WelchSettings psd_settings(const SpectrumSettings& settings, double rate, std::size_t frames) {
+    signal::WelchSettings welch;
     welch.rate = rate;
     welch.segment =
-        std::min(settings.segment.value_or(suggested_segment(rate, frames)), std::max<std::size_t>(1, frames));
+        std::min(settings.segment.value_or(signal::suggested_segment(rate, frames)), std::max<std::size_t>(1, frames));
     welch.overlap =
         std::min(welch.segment - 1, static_cast<std::size_t>(settings.overlap * static_cast<double>(welch.segment)));
     welch.window = settings.window;
@@ -25,9 +25,9 @@ WelchSettings psd_settings(const SpectrumSettings& settings, double rate, std::s
     return welch;
 }
 
-std::vector<std::string> warnings_of(const VibrationReport& report, const AnalysedFile& file) {
+std::vector<std::string> warnings_of(const signal::VibrationReport& report, const AnalysedFile& file) {
     std::vector<std::string> warnings;
-    const Level& level = report.level;
+    const signal::Level& level = report.level;
     if (level.largest() == 0.0) warnings.push_back("the channel is silent");
     else if (level.rms() <= 1e-12 * level.largest()) warnings.push_back("the channel is constant: nothing vibrates");
     if (level.clipped() > 0)
@@ -48,7 +48,7 @@ std::vector<std::string> warnings_of(const VibrationReport& report, const Analys
 
 }  // namespace
 
-double band_deviation(const Band& band, const Spectrum& spectrum) {
+double band_deviation(const signal::Band& band, const signal::Spectrum& spectrum) {
     const double bins = std::max(1.0, (band.high - band.low) / spectrum.noise_bandwidth);
     return 10.0 / std::log(10.0) * spectrum.relative_deviation() / std::sqrt(bins);
 }
@@ -57,22 +57,22 @@ double decibels(double power) { return 10.0 * std::log10(std::max(power, 1e-30))
 
 AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSettings& wanted,
                           const std::function<void(double)>& progress) {
-    RecordReader reader = open_record(file, wanted.record);
+    sound::RecordReader reader = open_record(file, wanted.record);
     const std::vector<std::size_t> chosen = chosen_channels(reader, file, wanted.record);
     AnalysedFile out{file, reader.rate(), 0.0, reader.calibration(), reader.log(), {}, {}};
-    AnalysisSettings settings;
+    signal::AnalysisSettings settings;
     settings.psd = out.psd = psd_settings(wanted, reader.rate(), reader.frames());
     std::tie(settings.lowest, settings.highest) = wanted.fundamental;
     if (wanted.envelope) settings.envelope = *wanted.envelope;
     settings.orders = wanted.orders;
     settings.spectrogram = wanted.spectrogram;
-    std::vector<VibrationAnalysis> analyses;
+    std::vector<signal::VibrationAnalysis> analyses;
     try {
         for (std::size_t i = 0; i < chosen.size(); ++i) analyses.emplace_back(settings, reader.frames());
     } catch (const Error& error) {
         throw Error(fmt::format("{}: {}", file.string(), error.message()));
     }
-    RecordBlock block;
+    sound::RecordBlock block;
     std::size_t done = 0;
     while (reader.next(block)) {
         for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -86,7 +86,7 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSetti
     out.duration = static_cast<double>(done) / out.rate;
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         out.channels.push_back({reader.channels()[chosen[i]], analyses[i].report(), {}});
-        Spectrum& psd = out.channels.back().report.psd;
+        signal::Spectrum& psd = out.channels.back().report.psd;
         if (!wanted.is_density)
             for (double& power : psd.power) power *= psd.noise_bandwidth;
         out.channels.back().warnings = warnings_of(out.channels.back().report, out);

@@ -2,7 +2,7 @@
 // What vibrates in one record.
 #pragma once
 
-#include "dsp/spectrum/vibration_analysis.hpp"
+#include "dsp/signal/spectrum/vibration_analysis.hpp"
 #include "tools/study/vibration/record.hpp"
 
 #include <filesystem>
@@ -16,9 +16,9 @@ namespace tactus::study {
 
 struct SpectrumSettings {
     RecordSettings record;
-    WindowKind window = WindowKind::hann;
-    Detrend detrend = Detrend::constant;
-    Averaging averaging = Averaging::mean;
+    signal::WindowKind window = signal::WindowKind::hann;
+    signal::Detrend detrend = signal::Detrend::constant;
+    signal::Averaging averaging = signal::Averaging::mean;
     bool is_density = true;                            ///< unit²/Hz; otherwise unit²
     std::optional<std::size_t> segment;                ///< samples; none: about 0.75 s
     double overlap = 0.5;                              ///< share of a segment
@@ -30,16 +30,16 @@ struct SpectrumSettings {
 
 struct AnalysedChannel {
     std::string name;
-    VibrationReport report;
+    signal::VibrationReport report;
     std::vector<std::string> warnings;
 };
 
 struct AnalysedFile {
     std::filesystem::path file;
     double rate = 0.0, duration = 0.0;  ///< Hz, s
-    Calibration calibration;
-    std::optional<LogFacts> log;
-    WelchSettings psd;
+    sound::Calibration calibration;
+    std::optional<sound::LogFacts> log;
+    signal::WelchSettings psd;
     std::vector<AnalysedChannel> channels;
 };
 
@@ -50,6 +50,6 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSetti
 /// 10 log10, not below −300 dB.
 double decibels(double power);
 /// How far a band's level scatters, dB: its bins are averaged over too.
-double band_deviation(const Band& band, const Spectrum& spectrum);
+double band_deviation(const signal::Band& band, const signal::Spectrum& spectrum);
 
 }  // namespace tactus::study

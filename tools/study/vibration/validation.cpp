@@ -2,8 +2,8 @@
 #include "tools/study/vibration/validation.hpp"
 
 #include "assets/sound/sound.hpp"
-#include "engine/engine.hpp"
-#include "graph/sub_patch.hpp"
+#include "engine/run/engine.hpp"
+#include "graph/patch/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/session/scratch_folder.hpp"
@@ -21,15 +21,15 @@ constexpr double settling = 1.0;  // s: the saw's run-up and the delay of an equ
 
 /// Samples of a sound from `from` seconds on.
 std::vector<float> after(const std::filesystem::path& file, double from, double& rate) {
-    const Sound sound = load_sound(file);
+    const sound::Sound sound = sound::load_sound(file);
     rate = sound.rate;
     const auto first = std::min(sound.samples.size(), static_cast<std::size_t>(std::llround(from * rate)));
     return {sound.samples.begin() + static_cast<std::ptrdiff_t>(first), sound.samples.end()};
 }
 
 /// The part of a recording that is played, in m/s² when that is known.
-std::vector<float> reference_of(const Recording& recording) {
-    const SawRecording part = saw_recordings({{}, {}, {}, {}, false, {recording}}).front();
+std::vector<float> reference_of(const sound::Recording& recording) {
+    const vibration::SawRecording part = sound::saw_recordings({{}, {}, {}, {}, false, {recording}}).front();
     const std::size_t end = part.loop_end == 0 ? recording.samples.size() : part.loop_end;
     std::vector<float> samples(recording.samples.begin() + static_cast<std::ptrdiff_t>(part.loop_begin),
                                recording.samples.begin() + static_cast<std::ptrdiff_t>(end));
@@ -54,15 +54,15 @@ Validation plan_validation(const ValidateSettings& settings) {
     const session::PatchChoice& choice = settings.patch;
     validation.patch = choice.patch;
     validation.thresholds = settings.thresholds;
-    Problems problems;
-    validation.source = load_patch(session::find_patch(choice.patch), problems);
-    apply_overrides(validation.source, choice.overrides, problems);
-    flatten(validation.source, problems);
+    patch::Problems problems;
+    validation.source = patch::load_patch(session::find_patch(choice.patch), problems);
+    patch::apply_overrides(validation.source, choice.overrides, problems);
+    patch::flatten(validation.source, problems);
     session::throw_problems(problems);
     if (choice.seed) validation.source.seed = *choice.seed;
-    validation.path = find_saw_path(validation.source, settings.saw, settings.out_port, catalogue());
-    validation.set = std::make_shared<const RecordingSet>(load_recording_set(settings.set));
-    for (const Recording& recording : validation.set->recordings)
+    validation.path = find_saw_path(validation.source, settings.saw, settings.out_port, nodes::catalogue());
+    validation.set = std::make_shared<const sound::RecordingSet>(sound::load_recording_set(settings.set));
+    for (const sound::Recording& recording : validation.set->recordings)
         for (const double level : settings.levels) {
             ValidationRun& run = validation.runs.emplace_back();
             run.recording = &recording;
@@ -73,21 +73,21 @@ Validation plan_validation(const ValidateSettings& settings) {
 
 void validate(Validation& validation, std::size_t index, const ValidateSettings& settings, bool pictures) {
     ValidationRun& run = validation.runs[index];
-    const Recording& recording = *run.recording;
+    const sound::Recording& recording = *run.recording;
     const SteadyPatch steady = steady_patch(
         validation.source, validation.path,
-        {validation.set->path, recording.rate, recording.load, std::pow(10.0, run.level_db / 20.0)}, catalogue());
-    Problems problems;
-    AssetCache assets;
-    std::optional<Plan> plan = session::plan_of(steady.patch, {}, std::nullopt, &assets, problems);
+        {validation.set->path, recording.rate, recording.load, std::pow(10.0, run.level_db / 20.0)}, nodes::catalogue());
+    patch::Problems problems;
+    compile::AssetCache assets;
+    std::optional<compile::Plan> plan = session::plan_of(steady.patch, {}, std::nullopt, &assets, problems);
     if (!problems.empty()) throw problems.list.front();
     const session::ScratchFolder folder;
-    EngineOptions options;
+    run::EngineOptions options;
     options.seconds = settling + settings.seconds;
     options.folder = folder.path();
     options.hash = false;
     options.time_nodes = false;
-    Engine engine(std::move(*plan), options);
+    run::Engine engine(std::move(*plan), options);
     engine.render(1);
     engine.finish();
 
@@ -111,8 +111,8 @@ void validate(Validation& validation, std::size_t index, const ValidateSettings&
     if (!recording.full_scale) pair.notes.push_back("the recording is not calibrated: its level says nothing");
     if (recording.rate_estimated) pair.notes.push_back("the rate of the saw was estimated from the recording");
     try {
-        compare_takes(pair, Take(std::span<const float>(reference), recording.sample_rate),
-                      Take(std::span<const float>(output), rate), {.touch = settings.touch}, pictures);
+        compare_takes(pair, signal::Take(std::span<const float>(reference), recording.sample_rate),
+                      signal::Take(std::span<const float>(output), rate), {.touch = settings.touch}, pictures);
     } catch (const Error& error) {
         throw Error(fmt::format("{}: {}", run.name(), error.message()));
     }

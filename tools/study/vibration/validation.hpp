@@ -2,8 +2,8 @@
 // Runs of a patch beside the recordings that its saw plays.
 #pragma once
 
-#include "assets/recording/recording_set.hpp"
-#include "graph/patch_steady.hpp"
+#include "assets/sound/recording_set.hpp"
+#include "tools/study/patch_steady.hpp"
 #include "tools/session/patch_choice.hpp"
 #include "tools/study/vibration/comparison.hpp"
 
@@ -16,7 +16,7 @@ namespace tactus::study {
 
 /// One recording at one level, and what the handle made of it.
 struct ValidationRun {
-    const Recording* recording = nullptr;  ///< of the set
+    const sound::Recording* recording = nullptr;  ///< of the set
     double level_db = 0.0;                 ///< of the saw, on top of the patch's
     ComparedPair pair;                     ///< the recording and the handle
     std::optional<double> drive_rms, drive_peak;  ///< of the actuator's voltage, V
@@ -32,16 +32,16 @@ struct ValidateSettings {
     std::string saw, out_port;             ///< node, NODE.PORT; empty: found in the patch
     std::vector<double> levels{0.0, -6.0}; ///< dB on top of the patch's
     double seconds = 4.0;                  ///< that are compared of each run
-    Thresholds thresholds;
-    ThresholdUnit touch = ThresholdUnit::displacement;
+    table::Thresholds thresholds;
+    signal::ThresholdUnit touch = signal::ThresholdUnit::displacement;
 };
 
 struct Validation {
     std::string patch;
-    Patch source;
+    patch::Patch source;
     SawPath path;
-    std::shared_ptr<const RecordingSet> set;
-    Thresholds thresholds;
+    std::shared_ptr<const sound::RecordingSet> set;
+    table::Thresholds thresholds;
     std::vector<ValidationRun> runs;
 };
 

@@ -10,10 +10,10 @@ namespace tactus::study {
 
 namespace {
 
-std::vector<SpectralLine> stronger_than(const std::vector<SpectralLine>& lines, double least_db) {
-    std::vector<SpectralLine> out;
-    for (const SpectralLine& line : lines)
-        if (level_db(line) >= least_db) out.push_back(line);
+std::vector<signal::SpectralLine> stronger_than(const std::vector<signal::SpectralLine>& lines, double least_db) {
+    std::vector<signal::SpectralLine> out;
+    for (const signal::SpectralLine& line : lines)
+        if (signal::level_db(line) >= least_db) out.push_back(line);
     return out;
 }
 
@@ -28,7 +28,7 @@ std::vector<std::string> Verdict::failed() const {
     return names;
 }
 
-Verdict judge(const Comparison& c, double level_gap_db, const Thresholds& limits) {
+Verdict judge(const signal::Comparison& c, double level_gap_db, const table::Thresholds& limits) {
     Verdict verdict;
     const auto add = [&](const char* name, std::optional<double> value, const std::optional<double>& limit,
                          bool at_least, const char* about) {
@@ -53,7 +53,7 @@ Verdict judge(const Comparison& c, double level_gap_db, const Thresholds& limits
 
     double strongest = -1e9;
     for (const auto* lines : {&c.lines.in_both, &c.lines.only_in_reference})
-        for (const SpectralLine& line : *lines) strongest = std::max(strongest, level_db(line));
+        for (const signal::SpectralLine& line : *lines) strongest = std::max(strongest, signal::level_db(line));
     // Without a line in the reference, its whole power stands for the strongest.
     if (strongest < -1e8) strongest = 20.0 * std::log10(std::sqrt(2.0) * c.reference_rms);
     if (limits.added_line_db) {

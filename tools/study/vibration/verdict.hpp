@@ -2,8 +2,8 @@
 // Whether the scores of a comparison reach the thresholds, and what they say to a person.
 #pragma once
 
-#include "assets/thresholds/thresholds.hpp"
-#include "dsp/spectrum/comparison.hpp"
+#include "assets/table/thresholds.hpp"
+#include "dsp/signal/spectrum/comparison.hpp"
 
 #include <string>
 #include <vector>
@@ -20,13 +20,13 @@ struct Judged {
 struct Verdict {
     std::vector<Judged> scores;                 ///< those that have a threshold and a value
     std::vector<std::string> not_judged;        ///< those with a threshold but no value
-    std::vector<SpectralLine> added, missing;           ///< lines that count against it
+    std::vector<signal::SpectralLine> added, missing;           ///< lines that count against it
 
     bool passed() const;
     std::vector<std::string> failed() const;
 };
 
-Verdict judge(const Comparison& comparison, double level_gap_db, const Thresholds& thresholds);
+Verdict judge(const signal::Comparison& comparison, double level_gap_db, const table::Thresholds& thresholds);
 
 /// "hum of the mains (50 Hz × 3)", "order 2" of that fundamental, or nothing.
 std::string name_of_line(double hz, double fundamental_hz);

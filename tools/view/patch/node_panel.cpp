@@ -162,7 +162,7 @@ void NodePanel::field(const ParameterField& field, const std::string& node) {
 }
 
 void NodePanel::draw_parameters(std::string& selected, const Fonts& fonts) {
-    const Plan* plan = bench_.plan();
+    const compile::Plan* plan = bench_.plan();
     const int index = bench_.picture().find(selected);
     if (!plan || index < 0) return dim("Click a node of the patch: its parameters stand here.");
     if (version_ != bench_.plan_version() || shown_ != selected) {
@@ -172,7 +172,7 @@ void NodePanel::draw_parameters(std::string& selected, const Fonts& fonts) {
         shown_ = renaming_ = selected;
     }
     const PictureNode node = bench_.picture().nodes[static_cast<std::size_t>(index)];
-    const auto type = std::ranges::find(catalogue(), node.type, [](const NodeType* t) { return t->name; });
+    const auto type = std::ranges::find(nodes::catalogue(), node.type, [](const NodeType* t) { return t->name; });
     ImGui::PushFont(fonts.bold);
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.55f);
     ImGui::InputText("##name", &renaming_, is_read_only ? ImGuiInputTextFlags_ReadOnly : 0);
@@ -182,7 +182,7 @@ void NodePanel::draw_parameters(std::string& selected, const Fonts& fonts) {
     ImGui::SameLine();
     ImGui::TextDisabled("%s, %s", node.type.c_str(),
                         bench_.picture().lanes[static_cast<std::size_t>(node.group)].name.c_str());
-    if (type != catalogue().end()) dim(std::string((*type)->about));
+    if (type != nodes::catalogue().end()) dim(std::string((*type)->about));
     const auto status = bench_.status();
     const auto time = std::ranges::find(status->nodes, selected, &NodeStatus::name);
     if (time != status->nodes.end() && time->mean_us > 0.0)
@@ -225,7 +225,7 @@ void NodePanel::draw_draft(const Fonts& fonts, std::string& selected) {
     std::string from, to;
     for (const PicturePort& input : draft.inputs) {
         if (input.is_optional) continue;
-        const auto wire = std::ranges::find(draft.node.wires, name + "." + input.name, &WireText::to);
+        const auto wire = std::ranges::find(draft.node.wires, name + "." + input.name, &edit::WireText::to);
         const std::string shown = wire == draft.node.wires.end() ? "choose an output" : wire->from;
         if (!ImGui::BeginCombo(input.name.c_str(), shown.c_str())) continue;
         for (const PictureNode& node : bench_.picture().nodes)
@@ -261,7 +261,7 @@ void NodePanel::draw_catalogue(std::string& selected, const Fonts& fonts) {
     std::ranges::transform(wanted, wanted.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     ImGui::BeginChild("types");
     std::string chosen;
-    for (const NodeType* type : catalogue()) {
+    for (const NodeType* type : nodes::catalogue()) {
         std::string all = type->name + " " + std::string(type->about);
         std::ranges::transform(all, all.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
         if (all.find(wanted) == std::string::npos) continue;

@@ -61,12 +61,12 @@ std::vector<ParameterField> fields_of(const NodeType& type, void* node) {
 
 }  // namespace
 
-std::vector<ParameterField> parameters_of(const Plan& plan, int index) {
-    const PlanNode& node = plan.nodes[static_cast<std::size_t>(index)];
+std::vector<ParameterField> parameters_of(const compile::Plan& plan, int index) {
+    const compile::PlanNode& node = plan.nodes[static_cast<std::size_t>(index)];
     std::vector<ParameterField> fields = fields_of(*node.type, node.instance.get());
-    const NodeInstance fresh(node.type->create(), node.type->destroy);
+    const compile::NodeInstance fresh(node.type->create(), node.type->destroy);
     const std::vector<ParameterField> standards = fields_of(*node.type, fresh.get());
-    const auto patched = std::ranges::find(plan.patch.nodes, node.name, &PatchNode::name);
+    const auto patched = std::ranges::find(plan.patch.nodes, node.name, &patch::PatchNode::name);
     for (std::size_t i = 0; i < fields.size(); ++i) {
         ParameterField& field = fields[i];
         field.standard = standards[i].text;
@@ -74,11 +74,11 @@ std::vector<ParameterField> parameters_of(const Plan& plan, int index) {
         field.is_set = patched != plan.patch.nodes.end() &&
                        std::ranges::find(patched->settings, field.name, &OptionText::name) != patched->settings.end();
         if (field.kind == Kind::asset)
-            for (const PatchAsset& asset : plan.patch.assets) field.options.push_back(asset.name);
+            for (const patch::PatchAsset& asset : plan.patch.assets) field.options.push_back(asset.name);
         if (field.kind != Kind::quantity) continue;
         const Param* param = node.params.at(field.name);
         field.is_driven =
-            std::ranges::any_of(plan.wires, [&](const PlanWire& w) { return w.to_input < 0 && w.param == param; });
+            std::ranges::any_of(plan.wires, [&](const compile::PlanWire& w) { return w.to_input < 0 && w.param == param; });
     }
     return fields;
 }

@@ -2,7 +2,7 @@
 // The parameters of a node as a form shows them.
 #pragma once
 
-#include "graph/plan.hpp"
+#include "graph/compile/plan.hpp"
 
 #include <optional>
 #include <string>
@@ -26,7 +26,7 @@ struct ParameterField {
 };
 
 /// Of one node of a plan, in the order of its declaration.
-std::vector<ParameterField> parameters_of(const Plan& plan, int node);
+std::vector<ParameterField> parameters_of(const compile::Plan& plan, int node);
 
 /// Of a quantity whose range is so wide that no slider finds what is common: by how much a pixel of dragging turns it, in
 /// its unit. Relative to its value, and at least as for a value of 1. None: a slider does.

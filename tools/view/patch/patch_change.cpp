@@ -15,13 +15,13 @@ bool same(const std::vector<OptionText>& a, const std::vector<OptionText>& b) {
         a, b, [](const OptionText& x, const OptionText& y) { return x.name == y.name && x.text == y.text; });
 }
 
-bool same_wire(const PatchWire& a, const PatchWire& b) {
+bool same_wire(const patch::PatchWire& a, const patch::PatchWire& b) {
     return a.from_node == b.from_node && a.from_port == b.from_port && a.to_node == b.to_node &&
            a.to_port == b.to_port && a.mode == b.mode && a.mode_given == b.mode_given && a.delay == b.delay;
 }
 
 /// All that is said outside of the nodes.
-bool same_around(const Patch& a, const Patch& b) {
+bool same_around(const patch::Patch& a, const patch::Patch& b) {
     return a.quantum == b.quantum && a.seed == b.seed && a.title == b.title &&
            std::ranges::equal(a.wires, b.wires, same_wire) &&
            std::ranges::equal(a.assets, b.assets,
@@ -37,7 +37,7 @@ bool same_around(const Patch& a, const Patch& b) {
 }
 
 /// The settings of a node that are no quantities to be turned while it runs.
-std::vector<OptionText> fixed_settings(const PatchNode& patched, const PlanNode& node) {
+std::vector<OptionText> fixed_settings(const patch::PatchNode& patched, const compile::PlanNode& node) {
     std::vector<OptionText> fixed;
     for (const OptionText& setting : patched.settings) {
         const auto param = node.params.find(setting.name);
@@ -48,20 +48,20 @@ std::vector<OptionText> fixed_settings(const PatchNode& patched, const PlanNode&
 
 }  // namespace
 
-PatchChange change_between(const Plan& before, const Plan& after) {
+PatchChange change_between(const compile::Plan& before, const compile::Plan& after) {
     PatchChange change;
     change.needs_edit = !same_around(before.patch, after.patch) || before.nodes.size() != after.nodes.size();
     std::map<std::string_view, std::size_t> earlier;
     for (std::size_t n = 0; n < before.nodes.size(); ++n) earlier[before.nodes[n].name] = n;
     for (std::size_t n = 0; n < after.nodes.size(); ++n) {
-        const PlanNode& node = after.nodes[n];
+        const compile::PlanNode& node = after.nodes[n];
         const auto found = earlier.find(node.name);
         if (found == earlier.end() || before.nodes[found->second].type != node.type) {
             change.needs_edit = true;
             continue;
         }
-        const PlanNode& old = before.nodes[found->second];
-        const PatchNode &a = before.patch.nodes[found->second], &b = after.patch.nodes[n];
+        const compile::PlanNode& old = before.nodes[found->second];
+        const patch::PatchNode &a = before.patch.nodes[found->second], &b = after.patch.nodes[n];
         change.needs_edit = change.needs_edit || a.rate != b.rate || a.group != b.group ||
                             !same(fixed_settings(a, old), fixed_settings(b, node));
         for (const auto& [name, param] : node.params)

@@ -2,7 +2,7 @@
 // How a run gets from one text of its patch to another: by single parameters where that is enough.
 #pragma once
 
-#include "graph/plan.hpp"
+#include "graph/compile/plan.hpp"
 
 #include <string>
 #include <vector>
@@ -18,6 +18,6 @@ struct PatchChange {
     bool needs_edit = false;        ///< something else differs, too
 };
 
-PatchChange change_between(const Plan& before, const Plan& after);
+PatchChange change_between(const compile::Plan& before, const compile::Plan& after);
 
 }  // namespace tactus::view

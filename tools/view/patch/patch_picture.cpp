@@ -15,11 +15,11 @@ namespace {
 
 constexpr double value_room = 60, row_gap = 18, lane_head = 30, lane_padding = 14, lane_gap = 14, left_edge = 40;
 
-void fill_node(const PlanNode& node, PictureNode& made) {
+void fill_node(const compile::PlanNode& node, PictureNode& made) {
     made.name = node.name;
     made.type = node.type ? node.type->name : "";
     made.group = node.group;
-    for (const PlanInput& input : node.inputs)
+    for (const compile::PlanInput& input : node.inputs)
         made.inputs.push_back({input.name,
                                std::string(input.port->about),
                                std::string(input.port->unit),
@@ -28,7 +28,7 @@ void fill_node(const PlanNode& node, PictureNode& made) {
                                false,
                                false,
                                {}});
-    for (const PlanOutput& output : node.outputs)
+    for (const compile::PlanOutput& output : node.outputs)
         made.outputs.push_back({output.name,
                                 std::string(output.port->about),
                                 std::string(output.port->unit),
@@ -40,7 +40,7 @@ void fill_node(const PlanNode& node, PictureNode& made) {
 }
 
 /// The input that a wire leads to; a parameter that is driven becomes one.
-int input_of(const PlanWire& wire, const PlanNode& node, PictureNode& made) {
+int input_of(const compile::PlanWire& wire, const compile::PlanNode& node, PictureNode& made) {
     if (wire.to_input >= 0) return wire.to_input;
     for (const auto& [name, param] : node.params) {
         if (param != wire.param) continue;
@@ -54,15 +54,15 @@ int input_of(const PlanWire& wire, const PlanNode& node, PictureNode& made) {
 }
 
 /// Longest way from a source over wires within a lane; a delay leads back.
-std::vector<int> columns_of(const Plan& plan) {
+std::vector<int> columns_of(const compile::Plan& plan) {
     std::vector<int> columns(plan.nodes.size(), 0);
     std::vector<std::vector<int>> next(plan.nodes.size());
-    for (const PlanWire& wire : plan.wires) {
-        if (wire.from_node < 0 || wire.mode == WireMode::delay) continue;
+    for (const compile::PlanWire& wire : plan.wires) {
+        if (wire.from_node < 0 || wire.mode == patch::WireMode::delay) continue;
         const auto from = static_cast<std::size_t>(wire.from_node), to = static_cast<std::size_t>(wire.to_node);
         if (plan.nodes[from].group == plan.nodes[to].group) next[from].push_back(wire.to_node);
     }
-    for (const PlanGroup& group : plan.groups)
+    for (const compile::PlanGroup& group : plan.groups)
         for (const int from : group.order)
             for (const int to : next[static_cast<std::size_t>(from)]) {
                 int& column = columns[static_cast<std::size_t>(to)];
@@ -84,12 +84,12 @@ int most_rows(std::size_t nodes_of_lane) {
 
 class Arrangement {
 public:
-    Arrangement(const Plan& plan, PatchPicture& picture)
+    Arrangement(const compile::Plan& plan, PatchPicture& picture)
         : plan_(plan), picture_(picture), columns_(columns_of(plan)), depth_(plan.nodes.size()) {}
 
     void arrange() {
         double top = 0.0;
-        for (const PlanGroup& group : plan_.groups) {
+        for (const compile::PlanGroup& group : plan_.groups) {
             const std::string rate =
                 format_quantity(rate_of(group.period), rate_of(group.period) >= 1000.0 ? "kHz" : "Hz");
             PictureLane lane{
@@ -104,7 +104,7 @@ public:
     }
 
 private:
-    double arrange_lane(const PlanGroup& group, double top) {
+    double arrange_lane(const compile::PlanGroup& group, double top) {
         std::map<int, std::vector<int>> by_column;
         for (const int node : group.order) by_column[columns_[static_cast<std::size_t>(node)]].push_back(node);
         double x = left_edge, bottom = top + title_height;
@@ -141,7 +141,7 @@ private:
             double sum = 0.0;
             int count = 0;
             for (const std::size_t w : feeding(node)) {
-                const PlanWire& wire = plan_.wires[w];
+                const compile::PlanWire& wire = plan_.wires[w];
                 const PictureNode& from = picture_.nodes[static_cast<std::size_t>(wire.from_node)];
                 if (from.box.width() == 0.0) continue;
                 sum += depth_[static_cast<std::size_t>(wire.from_node)] + title_height + wire.from_output * port_height;
@@ -162,7 +162,7 @@ private:
         return feeding_[static_cast<std::size_t>(node)];
     }
 
-    const Plan& plan_;
+    const compile::Plan& plan_;
     PatchPicture& picture_;
     std::vector<int> columns_;
     std::vector<double> depth_;  ///< how far down each node were if no column went on beside itself
@@ -222,17 +222,17 @@ int PatchPicture::find(std::string_view node) const {
 
 Point middle_of(const PictureWire& wire) { return on_curve(wire.way[wire.way.size() / 2], 0.5); }
 
-PatchPicture picture_of(const Plan& plan) {
+PatchPicture picture_of(const compile::Plan& plan) {
     PatchPicture picture;
     picture.nodes.resize(plan.nodes.size());
     for (std::size_t n = 0; n < plan.nodes.size(); ++n) fill_node(plan.nodes[n], picture.nodes[n]);
-    for (const PlanWire& wire : plan.wires) {
+    for (const compile::PlanWire& wire : plan.wires) {
         const auto to = static_cast<std::size_t>(wire.to_node);
         const int input = input_of(wire, plan.nodes[to], picture.nodes[to]);
         picture.nodes[to].inputs[static_cast<std::size_t>(input)].is_connected = true;
         if (wire.from_node < 0) continue;
-        const PlanNode& from = plan.nodes[static_cast<std::size_t>(wire.from_node)];
-        const PlanGroup& group = plan.groups[static_cast<std::size_t>(from.group)];
+        const compile::PlanNode& from = plan.nodes[static_cast<std::size_t>(wire.from_node)];
+        const compile::PlanGroup& group = plan.groups[static_cast<std::size_t>(from.group)];
         const bool crosses = from.group != plan.nodes[to].group;
         picture.nodes[static_cast<std::size_t>(wire.from_node)]
             .outputs[static_cast<std::size_t>(wire.from_output)]
@@ -242,7 +242,7 @@ PatchPicture picture_of(const Plan& plan) {
                                  wire.to_node,
                                  input,
                                  wire.mode,
-                                 crosses ? wire_latency(group, wire) : wire.delay * group.period,
+                                 crosses ? compile::wire_latency(group, wire) : wire.delay * group.period,
                                  crosses,
                                  {},
                                  {}});

@@ -3,7 +3,7 @@
 // curves between them. Plain geometry; units are pixels at a zoom of one.
 #pragma once
 
-#include "graph/plan.hpp"
+#include "graph/compile/plan.hpp"
 #include "tools/view/canvas.hpp"
 #include "tools/view/patch/wire_route.hpp"
 
@@ -30,7 +30,7 @@ struct PictureNode {
 
 struct PictureWire {
     int from = 0, output = 0, to = 0, input = 0;
-    WireMode mode = WireMode::hold;
+    patch::WireMode mode = patch::WireMode::hold;
     Flicks latency = 0;
     bool crosses = false;  ///< from one group to another
     std::vector<BezierCurve> way;  ///< pieces that follow each other
@@ -54,7 +54,7 @@ struct PatchPicture {
 
 inline constexpr double title_height = 38.0, port_height = 17.0, node_width = 158.0, column_gap = 100.0;
 
-PatchPicture picture_of(const Plan& plan);
+PatchPicture picture_of(const compile::Plan& plan);
 
 /// What is under a point of the picture. Ports lie above nodes, nodes above wires.
 struct Hit {

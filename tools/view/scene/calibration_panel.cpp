@@ -142,14 +142,14 @@ void CalibrationPanel::begin() {
         choice_.images.clear();
         if (!screen_.empty()) choice_.screens.push_back(screen_);
         if (!image_.empty()) choice_.images.push_back(image_);
-        base_ = scene_.rig().value_or(RigFile{});
+        base_ = scene_.rig().value_or(display::RigFile{});
         check_screens(choice_, base_);
         options_ = fit_options(choice_, base_);
         TouchSource source = source_;
-        source.tip = parse_vector(choice_.tip, "mm");
+        source.tip = display::parse_vector(choice_.tip, "mm");
         source.tracker = choice_.tracker;
         lead_.emplace(calibration_steps(choice_), !choice_.tracker.empty(),
-                      [this](std::span<const RigTouch> done) { fit_ = fit_rig(done, options_); });
+                      [this](std::span<const display::RigTouch> done) { fit_ = display::fit_rig(done, options_); });
         watch_.emplace(std::move(source));
         if (marks_on_ >= 0) marks_ = std::make_unique<MarkScreen>(marks_on_);
     } catch (const Error& error) {
@@ -173,7 +173,7 @@ void CalibrationPanel::lead_on(const Feed& feed) {
         marks_.reset();
         return;
     }
-    const RigTouch& step = lead_->steps()[lead_->due()];
+    const display::RigTouch& step = lead_->steps()[lead_->due()];
     words(tone::text, fmt::format("{} of {}: {}", lead_->due() + 1, lead_->steps().size(), prompt_of(step)));
     ImGui::ProgressBar(static_cast<float>(lead_->due()) / static_cast<float>(lead_->steps().size()),
                        ImVec2(-1.0f, 0.4f * ImGui::GetFontSize()), "");
@@ -193,11 +193,11 @@ void CalibrationPanel::lead_on(const Feed& feed) {
 }
 
 void CalibrationPanel::finish() {
-    const std::vector<RigTouch> touches = lead_->steps();
+    const std::vector<display::RigTouch> touches = lead_->steps();
     lead_.reset();
     watch_.reset();
     marks_.reset();
-    fit_ = fit_rig(touches, options_);
+    fit_ = display::fit_rig(touches, options_);
     write();
 }
 
@@ -241,7 +241,7 @@ void CalibrationPanel::show_mark() {
 /// Of the parts that are complete.
 void CalibrationPanel::show_fit() const {
     ImGui::Separator();
-    for (const TouchedPart& part : fit_->parts) words(tone::text, part_text(part));
+    for (const display::TouchedPart& part : fit_->parts) words(tone::text, part_text(part));
     const TouchesOff off = touches_off(*fit_);
     words(tone::dim, fmt::format("all {} touches: {:.2f} mm rms; touch {} is farthest off, {:.2f} mm", off.count,
                                  off.rms * 1e3, off.worst_touch + 1, off.worst * 1e3));

@@ -49,11 +49,11 @@ private:
     std::string file_ = "rig.toml", screen_, image_, places_;
     TouchSource source_;
     int marks_on_ = -1;  ///< monitor from 1, 0: a window, −1: nowhere
-    RigFile base_;
-    RigFitOptions options_;
+    display::RigFile base_;
+    display::RigFitOptions options_;
     std::optional<TouchLead> lead_;
     std::optional<TouchWatch> watch_;
-    std::optional<RigFit> fit_;  ///< of the parts so far
+    std::optional<display::RigFit> fit_;  ///< of the parts so far
     bool is_unwritten_ = false;  ///< all is touched, and the file could not be written
     std::unique_ptr<MarkScreen> marks_;
     std::string said_, problem_;  ///< of the last touch; why it ended

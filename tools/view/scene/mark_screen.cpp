@@ -9,7 +9,7 @@ namespace tactus::view {
 
 using picture::draw_mark;
 
-void MarkScreen::show(const RigTouch& touch) {
+void MarkScreen::show(const display::RigTouch& touch) {
     // The window knows its size once it showed something.
     const int width = std::max(window_.width(), 64), height = std::max(window_.height(), 64);
     target_.begin(width, height, 1);

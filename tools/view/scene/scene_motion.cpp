@@ -10,15 +10,15 @@ namespace tactus::view {
 namespace {
 
 void add(Hash& hash, const Vec3& v) { hash.add_bytes(glm::value_ptr(v), sizeof v); }
-void add(Hash& hash, const Mat4& m) { hash.add_bytes(glm::value_ptr(m), sizeof m); }
-void add(Hash& hash, const Legend& legend) {
+void add(Hash& hash, const display::Mat4& m) { hash.add_bytes(glm::value_ptr(m), sizeof m); }
+void add(Hash& hash, const display::Legend& legend) {
     hash.add_text(legend.title);
     for (const auto& [title, low_text, high_text, low, high] : legend.scales) {
         for (const std::string& text : {title, low_text, high_text}) hash.add_text(text);
         add(hash, low);
         add(hash, high);
     }
-    for (const Legend::Entry& entry : legend.entries) {
+    for (const display::Legend::Entry& entry : legend.entries) {
         hash.add_text(entry.text);
         add(hash, entry.colour);
     }
@@ -27,22 +27,22 @@ void add(Hash& hash, const Legend& legend) {
 
 }  // namespace
 
-std::uint64_t looks_of(const Picture& picture, std::uint64_t mesh_changes, std::span<const DrawnView> views,
-                       const Legend& legend) {
+std::uint64_t looks_of(const display::Picture& picture, std::uint64_t mesh_changes, std::span<const display::DrawnView> views,
+                       const display::Legend& legend) {
     Hash hash;
     hash.add_word(mesh_changes);
-    for (const DrawnMesh& drawn : picture.meshes) {
+    for (const display::DrawnMesh& drawn : picture.meshes) {
         hash.add_word(static_cast<std::uint64_t>(drawn.mesh));
         add(hash, drawn.pose.position);
         hash.add_bytes(glm::value_ptr(drawn.pose.orientation), sizeof drawn.pose.orientation);
         hash.add_bytes(&drawn.opacity, sizeof drawn.opacity);
     }
-    for (const SurfaceVertex& point : picture.points) hash.add_bytes(&point, sizeof point);
+    for (const geometry::SurfaceVertex& point : picture.points) hash.add_bytes(&point, sizeof point);
     if (picture.clip) {
         add(hash, picture.clip->point);
         add(hash, picture.clip->normal);
     }
-    for (const DrawnView& view : views) {
+    for (const display::DrawnView& view : views) {
         add(hash, view.projection.to_eye);
         add(hash, view.projection.to_clip);
         for (const int n :

@@ -37,13 +37,13 @@ void ScenePanel::attempt(const std::function<void()>& what) {
     }
 }
 
-void ScenePanel::look_from(NamedView view) {
+void ScenePanel::look_from(display::NamedView view) {
     camera.look_from(view);
     is_aimed_ = false;
 }
 
 void ScenePanel::reset() {
-    look_from(NamedView::iso);
+    look_from(display::NamedView::iso);
     clip(-1, 0.5);
     is_measuring = false;
     marks_.clear();
@@ -67,9 +67,9 @@ void ScenePanel::use(const SightChoice& choice) {
 
 void ScenePanel::use_stereo(const std::string& mode) {
     const bool is_number = mode.size() == 1 && mode[0] >= '0' && mode[0] <= '3';
-    sight_.stereo = is_number ? static_cast<StereoMode>(mode[0] - '0') : parse_stereo(mode);
+    sight_.stereo = is_number ? static_cast<display::StereoMode>(mode[0] - '0') : parse_stereo(mode);
     // Which windows have a buffer for each eye is decided when they are opened.
-    if (screens_.are_open() || sight_.stereo == StereoMode::quad_buffer)
+    if (screens_.are_open() || sight_.stereo == display::StereoMode::quad_buffer)
         windows_ = screens_.are_open() ? Windows::all : Windows::where_rig_says;
     needs_picture_ = true;
 }
@@ -110,7 +110,7 @@ void ScenePanel::tend_screens() {
         screens_.open(sight_, wanted == Windows::all);
     } catch (const Error& error) {
         bench_.tell(note_ = error.what(), true);
-        if (sight_.stereo == StereoMode::quad_buffer) sight_.stereo = StereoMode::side_by_side;
+        if (sight_.stereo == display::StereoMode::quad_buffer) sight_.stereo = display::StereoMode::side_by_side;
     }
 }
 
@@ -118,7 +118,7 @@ void ScenePanel::steer(int width, int height) {
     if (!ImGui::IsItemHovered() && !ImGui::IsItemActive()) return;
     const ImGuiIO& io = ImGui::GetIO();
     const Point by = point(io.MouseDelta);
-    const OrbitCamera before = camera;
+    const display::OrbitCamera before = camera;
     if (ImGui::IsMouseDragging(ImGuiMouseButton_Left, 2.0f) && !io.KeyShift)
         camera.orbit(-by.x * 2.0 * std::numbers::pi / width, by.y * std::numbers::pi / height);
     else if (ImGui::IsMouseDragging(ImGuiMouseButton_Right, 2.0f) ||
@@ -128,7 +128,7 @@ void ScenePanel::steer(int width, int height) {
     if (io.MouseWheel != 0.0f) camera.zoom(std::pow(1.15, static_cast<double>(io.MouseWheel)));
     if (!io.WantTextInput)
         for (int key = 1; key <= 7; ++key)
-            if (ImGui::IsKeyPressed('0' + key, false)) look_from(*view_of_number(key));
+            if (ImGui::IsKeyPressed('0' + key, false)) look_from(*display::view_of_number(key));
     if (!io.WantTextInput && ImGui::IsKeyPressed('F', false)) fit();
     if (!io.WantTextInput && ImGui::IsKeyPressed('R', false)) reset();
     needs_picture_ = needs_picture_ || before.eye() != camera.eye() || before.target != camera.target;
@@ -145,30 +145,30 @@ void ScenePanel::render(int width, int height) {
     needs_picture_ = false;
     width_ = width;
     height_ = height;
-    Picture& picture = model_->update();
+    display::Picture& picture = model_->update();
     sight_.update(*observer_);
     screens_.lay_out(sight_, width, height);
     const double aspect =
-        static_cast<double>(width) / height * (sight_.mode_of(0) == StereoMode::side_by_side ? 0.5 : 1.0);
+        static_cast<double>(width) / height * (sight_.mode_of(0) == display::StereoMode::side_by_side ? 0.5 : 1.0);
     if (!is_aimed_ && !model_->bounds().empty()) {
         camera.fit(model_->bounds(), aspect);
         is_aimed_ = true;
     }
     picture.clip.reset();
     if (clip_axis_ >= 0 && !model_->bounds().empty()) {
-        const Bounds& box = model_->bounds();
+        const display::Bounds& box = model_->bounds();
         Vec3 normal(0.0);
         normal[clip_axis_] = 1.0;
-        picture.clip = Plane{box.low + clip_share_ * (box.high - box.low), normal};
+        picture.clip = display::Plane{box.low + clip_share_ * (box.high - box.low), normal};
     }
     const auto views = screens_.aim(sight_, camera, picture.bounds);
     const bool has_coarse = renderer_->is_software() && model_->triangles() > many_triangles;
     // In the panel it lies on top of the picture, in windows of their own it is a part of it.
-    const Legend drawn_legend = screens_.are_open() ? legend() : Legend{};
+    const display::Legend drawn_legend = screens_.are_open() ? legend() : display::Legend{};
     const auto next = motion_.next(looks_of(picture, renderer_->meshes().changes(), views, drawn_legend), has_coarse,
                                    ImGui::IsItemActive(), now);
     if (next == SceneMotion::Next::nothing) return screens_.show();
-    picture.grain = next == SceneMotion::Next::coarse ? grain_of_motion : 0.0;
+    picture.grain = next == SceneMotion::Next::coarse ? display::grain_of_motion : 0.0;
     // One fine picture of what stands still does not make those of what moves rarer.
     was_drawn_ = next == SceneMotion::Next::coarse || !has_coarse;
     screens_.samples = renderer_->is_software() && model_->triangles() > very_many_triangles ? 1 : 4;
@@ -180,8 +180,8 @@ void ScenePanel::render(int width, int height) {
 void ScenePanel::watch_sight() {
     const std::vector<std::string> wanted = sight_.ports();
     if (wanted == watched_) return;
-    for (const std::string& port : watched_) observer_->watch(port, Watch::nothing, this);
-    for (const std::string& port : wanted) observer_->watch(port, Watch::latest, this);
+    for (const std::string& port : watched_) observer_->watch(port, observe::Watch::nothing, this);
+    for (const std::string& port : wanted) observer_->watch(port, observe::Watch::latest, this);
     watched_ = wanted;
 }
 
@@ -197,7 +197,7 @@ void ScenePanel::rest() {
     if (!observer_) return;
     if (screens_.are_open()) windows_ = Windows::all;
     screens_.close();
-    for (const std::string& port : watched_) observer_->watch(port, Watch::nothing, this);
+    for (const std::string& port : watched_) observer_->watch(port, observe::Watch::nothing, this);
     watched_.clear();
     model_.reset();
     observer_.reset();
@@ -205,10 +205,10 @@ void ScenePanel::rest() {
     plan_version_ = -1;
 }
 
-void ScenePanel::draw(const std::shared_ptr<Observer>& observer, const Fonts& fonts) {
+void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const Fonts& fonts) {
     if (!observer || !bench_.plan()) return ImGui::TextDisabled("no run");
     try {
-        if (!renderer_) renderer_ = std::make_unique<SceneRenderer>();
+        if (!renderer_) renderer_ = std::make_unique<display::SceneRenderer>();
         if (observer != observer_) {
             model_.reset();
             observer_ = observer;

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "devices/display/scene_renderer.hpp"
-#include "engine/observer.hpp"
+#include "engine/observe/observer.hpp"
 #include "tools/picture/scene/scene_model.hpp"
 #include "tools/picture/scene/sight.hpp"
 #include "tools/view/painter.hpp"
@@ -27,7 +27,7 @@ public:
     explicit ScenePanel(Workbench& bench) : bench_(bench) {}
 
     /// `observer` may be null; another one is another run.
-    void draw(const std::shared_ptr<Observer>& observer, const Fonts& fonts);
+    void draw(const std::shared_ptr<observe::Observer>& observer, const Fonts& fonts);
 
     /// In place of `draw` while the patch is empty: windows close until something is there again, and the run is let go.
     void rest();
@@ -35,8 +35,8 @@ public:
     /// The patch has nothing in space: no bone, body, tool or pose.
     bool is_empty();
 
-    OrbitCamera camera;
-    void look_from(NamedView view);
+    display::OrbitCamera camera;
+    void look_from(display::NamedView view);
     void fit() { is_aimed_ = false; }
     /// As it was in the beginning: from iso, all of it, nothing cut away, nothing measured.
     void reset();
@@ -51,7 +51,7 @@ public:
     void use_stereo(const std::string& mode);
     void use_head(const std::string& port);
     void use_rig(const std::string& file);
-    const std::optional<RigFile>& rig() const { return sight_.rig(); }
+    const std::optional<display::RigFile>& rig() const { return sight_.rig(); }
     void use_offset(const std::string& offset);
     /// Windows of their own for the screens.
     void show_screens(bool wanted);
@@ -63,15 +63,15 @@ private:
     void render(int width, int height);
     void tend_screens();
     void watch_sight();
-    Legend legend() const;
+    display::Legend legend() const;
     void measure(Point pixel);
     void draw_marks(const Painter& paint, Point corner, double pixel);
     void draw_legend(const Painter& paint, Point corner, int height, double scale);
     void attempt(const std::function<void()>& what);
 
     Workbench& bench_;
-    std::shared_ptr<Observer> observer_;
-    std::unique_ptr<SceneRenderer> renderer_;
+    std::shared_ptr<observe::Observer> observer_;
+    std::unique_ptr<display::SceneRenderer> renderer_;
     std::unique_ptr<SceneModel> model_;
     Sight sight_{SightChoice{}};
     SceneScreens screens_;

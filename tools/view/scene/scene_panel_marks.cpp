@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What lies on top of the scene's picture: measured points, and what the colours mean.
-#include "dsp/view/ruler.hpp"
+#include "dsp/display/ruler.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 #include "tools/view/theme.hpp"
 
@@ -26,7 +26,7 @@ void ScenePanel::measure(Point pixel) {
         if (tile.views.empty() || tile.width < 1 || tile.height < 1) continue;
         const double x = (pixel.x - tile.x) * tile.picture_width / tile.width;
         const double y = (tile.height - 1 - (pixel.y - tile.y)) * tile.picture_height / tile.height;
-        const auto view = std::ranges::find_if(tile.views, [&](const DrawnView& v) {
+        const auto view = std::ranges::find_if(tile.views, [&](const display::DrawnView& v) {
             return x >= v.x && x < v.x + v.width && y >= v.y && y < v.y + v.height;
         });
         if (view == tile.views.end()) continue;
@@ -40,15 +40,15 @@ void ScenePanel::measure(Point pixel) {
 void ScenePanel::draw_marks(const Painter& paint, Point corner, double pixel) {
     if (marks_.empty()) return;
     std::string text;
-    if (marks_.size() >= 2) text = fmt::format("{:.2f} mm", 1e3 * path_length(std::span(marks_).first(2)));
+    if (marks_.size() >= 2) text = fmt::format("{:.2f} mm", 1e3 * display::path_length(std::span(marks_).first(2)));
     if (marks_.size() == 3) {
-        text += fmt::format(", {:.2f} mm", 1e3 * path_length(std::span(marks_).last(2)));
-        if (const auto angle = angle_at(marks_[1], marks_[0], marks_[2]))
+        text += fmt::format(", {:.2f} mm", 1e3 * display::path_length(std::span(marks_).last(2)));
+        if (const auto angle = display::angle_at(marks_[1], marks_[0], marks_[2]))
             text += fmt::format(", {:.1f}°", *angle * 180.0 / std::numbers::pi);
     }
     const double size = static_cast<double>(ImGui::GetFontSize());
     for (const SceneScreens::Tile& tile : screens_.tiles())
-        for (const DrawnView& view : tile.views) {
+        for (const display::DrawnView& view : tile.views) {
             // Every eye sees them where they are.
             const double across = pixel * tile.width / std::max(tile.picture_width, 1),
                          down = pixel * tile.height / std::max(tile.picture_height, 1);
@@ -70,15 +70,15 @@ void ScenePanel::draw_marks(const Painter& paint, Point corner, double pixel) {
         }
 }
 
-Legend ScenePanel::legend() const {
-    Legend legend = model_->legend();
+display::Legend ScenePanel::legend() const {
+    display::Legend legend = model_->legend();
     legend.warnings.insert(legend.warnings.end(), sight_.warnings().begin(), sight_.warnings().end());
     if (!note_.empty()) legend.warnings.push_back(note_);
     return legend;
 }
 
 void ScenePanel::draw_legend(const Painter& paint, Point corner, int height, double scale) {
-    const Legend legend = this->legend();
+    const display::Legend legend = this->legend();
     if (legend.empty()) return;
     const double line = 15.0 * scale, size = 11.0 * scale;
     const std::size_t lines = legend.entries.size() + legend.scales.size() + legend.warnings.size();

@@ -17,9 +17,9 @@ static bool next_button(const char* label) {
 }
 
 void ScenePanel::tools() {
-    for (std::size_t i = 0; i < view_names.size(); ++i) {
-        const std::string name(view_names[i]);
-        if (i == 0 ? ImGui::SmallButton(name.c_str()) : next_button(name.c_str())) look_from(static_cast<NamedView>(i));
+    for (std::size_t i = 0; i < display::view_names.size(); ++i) {
+        const std::string name(display::view_names[i]);
+        if (i == 0 ? ImGui::SmallButton(name.c_str()) : next_button(name.c_str())) look_from(static_cast<display::NamedView>(i));
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("key %d", static_cast<int>(i) + 1);
     }
     if (next_button("fit")) fit();
@@ -51,10 +51,10 @@ void ScenePanel::sight_tools() {
     const float unit = ImGui::GetFontSize();
     const auto chosen = static_cast<std::size_t>(sight_.stereo);
     ImGui::SetNextItemWidth(7.5f * unit);
-    if (ImGui::BeginCombo("##stereo", std::string(stereo_names[chosen]).c_str())) {
-        for (std::size_t i = 0; i < stereo_names.size(); ++i)
-            if (ImGui::Selectable(std::string(stereo_names[i]).c_str(), i == chosen))
-                use_stereo(std::string(stereo_names[i]));
+    if (ImGui::BeginCombo("##stereo", std::string(display::stereo_names[chosen]).c_str())) {
+        for (std::size_t i = 0; i < display::stereo_names.size(); ++i)
+            if (ImGui::Selectable(std::string(display::stereo_names[i]).c_str(), i == chosen))
+                use_stereo(std::string(display::stereo_names[i]));
         ImGui::EndCombo();
     }
     ImGui::SameLine();
@@ -62,7 +62,7 @@ void ScenePanel::sight_tools() {
     if (ImGui::BeginCombo("##head", sight_.head.empty() ? "no head" : sight_.head.c_str())) {
         if (ImGui::Selectable("no head", sight_.head.empty())) use_head("");
         if (observer_)
-            for (const Observer::Port& port : observer_->ports())
+            for (const observe::Observer::Port& port : observer_->ports())
                 if (port.type == &value::pose && ImGui::Selectable(port.name.c_str(), port.name == sight_.head))
                     use_head(port.name);
         ImGui::EndCombo();

@@ -13,7 +13,7 @@ namespace tactus::view {
 namespace {
 
 /// What a legend says, to tell whether it has to be drawn anew.
-std::string words_of(const Legend& legend) {
+std::string words_of(const display::Legend& legend) {
     std::string all = legend.title;
     for (const auto& s : legend.scales) all += s.title + s.low_text + s.high_text;
     for (const auto& e : legend.entries) all += e.text + "\n";
@@ -33,7 +33,7 @@ void SceneScreens::lay_out(const Sight& sight, int width, int height) {
         return;
     }
     const auto aspect_of = [&](std::size_t screen) {
-        return *sight.aspect_of(screen) * (sight.mode_of(screen) == StereoMode::side_by_side ? 2.0 : 1.0);
+        return *sight.aspect_of(screen) * (sight.mode_of(screen) == display::StereoMode::side_by_side ? 2.0 : 1.0);
     };
     // So many columns that the smallest tile is largest.
     int columns = 1;
@@ -66,11 +66,11 @@ void SceneScreens::open(const Sight& sight, bool all) {
     windows_.clear();
     try {
         for (std::size_t i = 0; i < sight.screens(); ++i) {
-            const bool two = sight.mode_of(i) == StereoMode::quad_buffer;
+            const bool two = sight.mode_of(i) == display::StereoMode::quad_buffer;
             ScreenWindow::Place place{0, {}, two};
             std::string title = "Tactus: scene";
             if (sight.rig()) {
-                const RigScreen& screen = sight.rig()->screens[i];
+                const display::RigScreen& screen = sight.rig()->screens[i];
                 place = {screen.monitor, screen.window, two};
                 title = fmt::format("screen '{}'", screen.name);
             }
@@ -94,30 +94,30 @@ ScreenWindow* SceneScreens::window_of(std::size_t screen) const {
 }
 
 /// At the same place for both eyes, and so that it can be read in a mirror.
-void SceneScreens::draw_legend(std::size_t screen, TextureTarget& target, const Sight& sight, const Legend& legend,
-                               std::span<const DrawnView> views) {
+void SceneScreens::draw_legend(std::size_t screen, TextureTarget& target, const Sight& sight, const display::Legend& legend,
+                               std::span<const display::DrawnView> views) {
     const double scale = std::clamp(std::min(views[0].width, views[0].height) / 600.0, 0.55, 4.0);
     const std::string words = words_of(legend);
     if (words.empty()) return;
     if (words != legend_text_ || scale != legend_scale_) {
-        legend_image_ = legend_image(legend, scale);
+        legend_image_ = display::legend_image(legend, scale);
         legend_text_ = words;
         legend_scale_ = scale;
     }
     const int gap = static_cast<int>(10.0 * scale);
     int last = -1;
-    for (const DrawnView& view : views) {
+    for (const display::DrawnView& view : views) {
         if (view.x == last) continue;
         last = view.x;
-        const Turned turned = sight.text_of(screen);
+        const display::Turned turned = sight.text_of(screen);
         target.lay(legend_image_,
-                   turned == Turned::left_right ? view.x + view.width - gap - legend_image_.width : view.x + gap,
-                   turned == Turned::upside_down ? view.height - gap - legend_image_.height : gap, turned);
+                   turned == display::Turned::left_right ? view.x + view.width - gap - legend_image_.width : view.x + gap,
+                   turned == display::Turned::upside_down ? view.height - gap - legend_image_.height : gap, turned);
     }
 }
 
-std::vector<DrawnView> SceneScreens::aim(Sight& sight, const OrbitCamera& camera, const Bounds& scene) {
-    std::vector<DrawnView> all;
+std::vector<display::DrawnView> SceneScreens::aim(Sight& sight, const display::OrbitCamera& camera, const display::Bounds& scene) {
+    std::vector<display::DrawnView> all;
     for (std::size_t i = 0; i < tiles_.size(); ++i) {
         Tile& tile = tiles_[i];
         const ScreenWindow* const window = window_of(i);
@@ -130,14 +130,14 @@ std::vector<DrawnView> SceneScreens::aim(Sight& sight, const OrbitCamera& camera
     return all;
 }
 
-void SceneScreens::draw(SceneRenderer& renderer, const Picture& picture, const Sight& sight, const Legend& legend) {
+void SceneScreens::draw(display::SceneRenderer& renderer, const display::Picture& picture, const Sight& sight, const display::Legend& legend) {
     for (std::size_t i = 0; i < tiles_.size(); ++i) {
         Tile& tile = tiles_[i];
         Target& target = *targets_[i];
         const int width = tile.picture_width, height = tile.picture_height;
-        target.has_two = tile.views.front().channel == Channel::back_left;
+        target.has_two = tile.views.front().channel == display::Channel::back_left;
         if (target.has_two) {
-            for (DrawnView& view : tile.views) view.channel = Channel::all;
+            for (display::DrawnView& view : tile.views) view.channel = display::Channel::all;
             target.right.begin(width, height, samples);
             renderer.draw(picture, std::span(tile.views).subspan(1));
             target.right.end();

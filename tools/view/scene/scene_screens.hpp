@@ -22,7 +22,7 @@ public:
     struct Tile {
         int x = 0, y = 0, width = 0, height = 0;
         std::uint32_t texture = 0;
-        std::vector<DrawnView> views;  ///< in pixels of the picture
+        std::vector<display::DrawnView> views;  ///< in pixels of the picture
         int picture_width = 0, picture_height = 0;
     };
 
@@ -38,11 +38,11 @@ public:
     void tend();
 
     /// Where each is seen from. Returns all views, of all screens.
-    std::vector<DrawnView> aim(Sight& sight, const OrbitCamera& camera, const Bounds& scene);
+    std::vector<display::DrawnView> aim(Sight& sight, const display::OrbitCamera& camera, const display::Bounds& scene);
     /// Per pixel. Many small triangles are costly to sample more than once where there is no graphics card.
     int samples = 4;
     /// Draws the scene as it was aimed at, for all screens.
-    void draw(SceneRenderer& renderer, const Picture& picture, const Sight& sight, const Legend& legend);
+    void draw(display::SceneRenderer& renderer, const display::Picture& picture, const Sight& sight, const display::Legend& legend);
     /// What was drawn last, in their windows: what uncovers or resizes one of those has wiped it.
     void show();
 
@@ -57,14 +57,14 @@ private:
     };
 
     ScreenWindow* window_of(std::size_t screen) const;
-    void draw_legend(std::size_t screen, TextureTarget& target, const Sight& sight, const Legend& legend,
-                     std::span<const DrawnView> views);
+    void draw_legend(std::size_t screen, TextureTarget& target, const Sight& sight, const display::Legend& legend,
+                     std::span<const display::DrawnView> views);
 
     std::vector<Tile> tiles_;
     std::vector<std::unique_ptr<Target>> targets_;
     std::vector<Opened> windows_;
     std::string legend_text_;
-    Image legend_image_;
+    display::Image legend_image_;
     double legend_scale_ = 0.0;
 };
 

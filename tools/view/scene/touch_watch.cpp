@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/scene/touch_watch.hpp"
 
-#include "graph/value.hpp"
+#include "graph/node/value.hpp"
 
 #include <algorithm>
 #include <utility>

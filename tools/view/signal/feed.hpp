@@ -2,9 +2,9 @@
 // Where the window gets values from: a run that goes on, or a take at some instant.
 #pragma once
 
-#include "engine/observer.hpp"
-#include "engine/take_reader.hpp"
-#include "graph/plan.hpp"
+#include "engine/observe/observer.hpp"
+#include "engine/take/take_reader.hpp"
+#include "graph/compile/plan.hpp"
 #include "tools/view/signal/axis.hpp"
 
 #include <array>
@@ -56,7 +56,7 @@ public:
 /// Of a live run.
 class LiveFeed : public Feed {
 public:
-    explicit LiveFeed(std::shared_ptr<Observer> observer) : observer_(std::move(observer)) {}
+    explicit LiveFeed(std::shared_ptr<observe::Observer> observer) : observer_(std::move(observer)) {}
 
     std::vector<Port> ports() const override;
     std::int64_t ports_version() const override { return observer_->ports_version(); }
@@ -69,7 +69,7 @@ public:
     static constexpr double kept_s = 20.0;  ///< of every trace
 
 private:
-    std::shared_ptr<Observer> observer_;
+    std::shared_ptr<observe::Observer> observer_;
     double now_ = 0.0;
     std::set<std::string> watched_;
     std::map<std::string, Trace> traces_;
@@ -81,7 +81,7 @@ private:
 class TakeFeed : public Feed {
 public:
     /// `take` must outlive it. Throws Error.
-    explicit TakeFeed(const Take& take);
+    explicit TakeFeed(const take::Take& take);
 
     std::vector<Port> ports() const override;
     double now() const override { return now_; }
@@ -104,10 +104,10 @@ private:
     void read(const std::string& port, double begin, double end, Trace& into) const;
     void extend(const std::string& port, Cut& cut, double begin) const;
 
-    const Take& take_;
+    const take::Take& take_;
     double now_ = 0.0, length_ = 0.0;
     std::vector<Range> recorded_;
-    std::map<std::string, std::vector<const TakeStreamInfo*>>
+    std::map<std::string, std::vector<const take::TakeStreamInfo*>>
         streams_;  // an edit or a pause in recording begins another
     std::map<std::string, Latest> latest_;
     std::map<std::string, Cut> cuts_;

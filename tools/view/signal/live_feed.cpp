@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/take_stream.hpp"
+#include "engine/take/take_stream.hpp"
 #include "tools/view/signal/feed.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace tactus::view {
 namespace {
 
 template <class T>
-Feed::Latest as_columns(const std::optional<Seen<T>>& seen, const ValueType& type) {
+Feed::Latest as_columns(const std::optional<observe::Seen<T>>& seen, const ValueType& type) {
     Feed::Latest latest;
     if (!seen || type.columns.size() > Feed::most_columns) return latest;
     type.to_columns(&seen->value, latest.columns.data());
@@ -28,7 +28,7 @@ void forget(Trace& trace, double before) {
 
 std::vector<Feed::Port> LiveFeed::ports() const {
     std::vector<Port> ports;
-    for (const Observer::Port& port : observer_->ports())
+    for (const observe::Observer::Port& port : observer_->ports())
         if (!port.type->columns.empty() && port.type->to_columns)
             ports.push_back({port.name, port.type, rate_of(port.period)});
     return ports;
@@ -36,16 +36,16 @@ std::vector<Feed::Port> LiveFeed::ports() const {
 
 void LiveFeed::follow(const std::set<std::string>& looked_at, const std::set<std::string>& traced) {
     for (const std::string& port : watched_)
-        if (!looked_at.contains(port) && !traced.contains(port)) observer_->watch(port, Watch::nothing, this);
+        if (!looked_at.contains(port) && !traced.contains(port)) observer_->watch(port, observe::Watch::nothing, this);
     std::set<std::string> watched = traced;
     for (const std::string& port : looked_at) {
         if (traced.contains(port)) continue;
-        if (!watched_.contains(port) || traces_.contains(port)) observer_->watch(port, Watch::latest, this);
+        if (!watched_.contains(port) || traces_.contains(port)) observer_->watch(port, observe::Watch::latest, this);
         watched.insert(port);
     }
     for (const std::string& port : traced)
         if (!traces_.contains(port)) {
-            observer_->watch(port, Watch::every, this);
+            observer_->watch(port, observe::Watch::every, this);
             traces_[port];
         }
     std::erase_if(traces_, [&](const auto& item) { return !traced.contains(item.first); });
@@ -54,16 +54,16 @@ void LiveFeed::follow(const std::set<std::string>& looked_at, const std::set<std
     if (listed_ != observer_->ports_version()) {
         listed_ = observer_->ports_version();
         types_.clear();
-        for (const Observer::Port& port : observer_->ports()) types_.emplace(port.name, port.type);
+        for (const observe::Observer::Port& port : observer_->ports()) types_.emplace(port.name, port.type);
     }
     for (auto& [port, trace] : traces_) {
-        SeenValues values;
+        observe::SeenValues values;
         if (!observer_->fetch(port, values)) continue;
         const std::size_t wide = values.per_value;
         if (trace.columns.size() != wide) {
             trace = {};
             trace.columns.resize(wide);
-            if (const auto type = types_.find(port); type != types_.end()) trace.names = channels_of(*type->second);
+            if (const auto type = types_.find(port); type != types_.end()) trace.names = take::channels_of(*type->second);
         }
         for (std::size_t i = 0; i < values.when.size(); ++i) {
             trace.times.push_back(seconds(values.when[i]));

@@ -2,7 +2,7 @@
 #include "tools/view/signal/plot.hpp"
 
 #include "assets/file/whole_file.hpp"
-#include "assets/recording/record_reader.hpp"
+#include "assets/sound/record_reader.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/view/theme.hpp"
 
@@ -24,7 +24,7 @@ std::size_t index_at(const Trace& trace, double time) {
     return static_cast<std::size_t>(std::ranges::lower_bound(trace.times, time) - trace.times.begin());
 }
 
-Curve curve_of(const Spectrum& spectrum, const std::string& name, std::uint32_t ink, Range hz, double shift_db) {
+Curve curve_of(const signal::Spectrum& spectrum, const std::string& name, std::uint32_t ink, Range hz, double shift_db) {
     Curve curve{name, ink, {}, false};
     // Where bins lie closer than a pixel, the largest of each of 600 equal steps of frequency.
     constexpr double steps = 600.0;
@@ -41,14 +41,14 @@ Curve curve_of(const Spectrum& spectrum, const std::string& name, std::uint32_t 
     return curve;
 }
 
-double power_between(const Spectrum& spectrum, Range hz) {
+double power_between(const signal::Spectrum& spectrum, Range hz) {
     double sum = 0.0;
     for (std::size_t k = 1; k < spectrum.power.size(); ++k)
         if (spectrum.frequency(k) >= hz.low && spectrum.frequency(k) <= hz.high) sum += spectrum.power[k] * spectrum.df;
     return sum;
 }
 
-Colour figure_colour(std::uint32_t ink) {
+display::Colour figure_colour(std::uint32_t ink) {
     // The window's colours are made for a dark ground.
     const auto part = [&](int shift) { return static_cast<std::uint8_t>((ink >> shift & 0xFF) * 7 / 10); };
     return {part(0), part(8), part(16), 1.0};
@@ -108,7 +108,7 @@ Plot time_plot(const Trace& trace, const Display& display, double now, double sp
 }
 
 Plot spectrum_plot(const Trace& trace, const Display& display, double rate, double now, double span,
-                   const Spectrum& reference) {
+                   const signal::Spectrum& reference) {
     Plot plot;
     plot.is_logarithmic = true;
     plot.x = {std::max(10.0, 2.0 / span), 0.5 * rate};
@@ -116,16 +116,16 @@ Plot spectrum_plot(const Trace& trace, const Display& display, double rate, doub
     plot.x_unit = "Hz";
     plot.y_unit = display.unit.empty() ? "dB/Hz" : fmt::format("dB re ({})²/Hz", display.unit);
     const std::size_t first = index_at(trace, now - span);
-    Spectrum spectrum;
+    signal::Spectrum spectrum;
     if (!trace.columns.empty() && trace.times.size() > first + 64) {
         std::vector<double> record(trace.columns[0].begin() + static_cast<std::ptrdiff_t>(first),
                                    trace.columns[0].end());
         for (double& x : record) x *= display.factor;
-        WelchSettings settings;
+        signal::WelchSettings settings;
         settings.rate = rate;
-        settings.segment = suggested_segment(rate, record.size());
+        settings.segment = signal::suggested_segment(rate, record.size());
         settings.overlap = settings.segment / 2;
-        spectrum = welch<double>(record, settings);
+        spectrum = signal::welch<double>(record, settings);
     }
     if (!reference.power.empty()) {
         const Range both{plot.x.low, std::min(plot.x.high, reference.frequency(reference.power.size() - 1))};
@@ -144,25 +144,25 @@ Plot spectrum_plot(const Trace& trace, const Display& display, double rate, doub
     return plot;
 }
 
-Spectrum spectrum_of_file(const std::filesystem::path& path) {
-    RecordReader reader(path, {}, std::nullopt);
-    WelchSettings settings;
+signal::Spectrum spectrum_of_file(const std::filesystem::path& path) {
+    sound::RecordReader reader(path, {}, std::nullopt);
+    signal::WelchSettings settings;
     settings.rate = reader.rate();
-    settings.segment = suggested_segment(reader.rate(), reader.frames());
+    settings.segment = signal::suggested_segment(reader.rate(), reader.frames());
     settings.overlap = settings.segment / 2;
-    WelchStream<double> stream(settings);
-    for (RecordBlock block; reader.next(block);) {
+    signal::WelchStream<double> stream(settings);
+    for (sound::RecordBlock block; reader.next(block);) {
         if (block.after_gap) stream.forget_waiting();
         stream.push(block.channels.front());
     }
     return stream.spectrum();
 }
 
-Figure figure_of(const Plot& plot, double width, double height) {
+display::Figure figure_of(const Plot& plot, double width, double height) {
     const double left = 64, right = width - 16, top = 34, bottom = height - 40;
-    Figure figure(width, height);
-    figure.text({left, 20}, plot.title, 13, {15, 23, 42}, TextAnchor::start, true);
-    const Colour grid{226, 232, 240}, ink{71, 85, 105};
+    display::Figure figure(width, height);
+    figure.text({left, 20}, plot.title, 13, {15, 23, 42}, display::TextAnchor::start, true);
+    const display::Colour grid{226, 232, 240}, ink{71, 85, 105};
     const auto x_of = [&](double v) { return left + plot.across(v) * (right - left); };
     const auto y_of = [&](double v) { return bottom - plot.up(v) * (bottom - top); };
     const std::vector<double> across = plot.x_ticks(9), up = linear_ticks(plot.y, 6);
@@ -170,24 +170,24 @@ Figure figure_of(const Plot& plot, double width, double height) {
     for (const double v : across) {
         figure.line({{x_of(v), top}, {x_of(v), bottom}}, grid, 1);
         figure.text({x_of(v), bottom + 15}, plot.is_logarithmic ? fmt::format("{:g}", v) : tick_label(v, x_step), 10,
-                    ink, TextAnchor::middle);
+                    ink, display::TextAnchor::middle);
     }
     for (const double v : up) {
         figure.line({{left, y_of(v)}, {right, y_of(v)}}, grid, 1);
-        figure.text({left - 6, y_of(v) + 3.5}, tick_label(v, y_step), 10, ink, TextAnchor::end);
+        figure.text({left - 6, y_of(v) + 3.5}, tick_label(v, y_step), 10, ink, display::TextAnchor::end);
     }
-    figure.text({0.5 * (left + right), height - 8}, plot.x_unit, 10, ink, TextAnchor::middle);
-    figure.text({14, 0.5 * (top + bottom)}, plot.y_unit, 10, ink, TextAnchor::middle, false, true);
+    figure.text({0.5 * (left + right), height - 8}, plot.x_unit, 10, ink, display::TextAnchor::middle);
+    figure.text({14, 0.5 * (top + bottom)}, plot.y_unit, 10, ink, display::TextAnchor::middle, false, true);
     figure.clip(left, top, right - left, bottom - top);
     for (const Curve& curve : plot.curves) {
-        std::vector<FigurePoint> line;
+        std::vector<display::FigurePoint> line;
         for (const Point& p : curve.points) line.push_back({x_of(p.x), y_of(p.y)});
         figure.line(std::move(line), figure_colour(curve.ink), 1.2);
     }
     figure.unclip();
     double at = right;
     for (auto curve = plot.curves.rbegin(); curve != plot.curves.rend(); ++curve) {
-        figure.text({at, 20}, curve->name, 10, figure_colour(curve->ink), TextAnchor::end);
+        figure.text({at, 20}, curve->name, 10, figure_colour(curve->ink), display::TextAnchor::end);
         at -= 12.0 + 6.2 * static_cast<double>(curve->name.size());
     }
     return figure;
@@ -202,7 +202,7 @@ void write_csv(const Trace& trace, Range time, const std::filesystem::path& path
         for (const auto& column : trace.columns) text += fmt::format(",{:.9g}", column[i]);
         text += "\n";
     }
-    write_whole_file(path, text);
+    file::write_whole_file(path, text);
 }
 
 }  // namespace tactus::view

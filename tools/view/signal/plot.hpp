@@ -3,7 +3,7 @@
 #pragma once
 
 #include "devices/display/figure.hpp"
-#include "dsp/spectrum/welch.hpp"
+#include "dsp/signal/spectrum/welch.hpp"
 #include "tools/view/canvas.hpp"
 #include "tools/view/signal/axis.hpp"
 #include "tools/view/signal/feed.hpp"
@@ -52,13 +52,13 @@ Plot time_plot(const Trace& trace, const Display& display, double now, double sp
 /// Power density of one column of the last `span` seconds, dB re (unit)²/Hz. `reference` (may be empty) is shifted to
 /// the same power over the frequencies that both have.
 Plot spectrum_plot(const Trace& trace, const Display& display, double rate, double now, double span,
-                   const Spectrum& reference);
+                   const signal::Spectrum& reference);
 
 /// Spectrum of a sound file. Throws Error.
-Spectrum spectrum_of_file(const std::filesystem::path& path);
+signal::Spectrum spectrum_of_file(const std::filesystem::path& path);
 
 /// As a picture on white, with axes and names.
-Figure figure_of(const Plot& plot, double width = 720, double height = 320);
+display::Figure figure_of(const Plot& plot, double width = 720, double height = 320);
 /// The rows of a trace within a range of time, "time s,px,…". Throws Error when the file cannot be written.
 void write_csv(const Trace& trace, Range time, const std::filesystem::path& path);
 

@@ -26,7 +26,7 @@ void Scopes::freeze(bool wanted) {
 }
 
 void Scopes::set_reference(const std::filesystem::path& path) {
-    reference_ = path.empty() ? Spectrum{} : spectrum_of_file(path);
+    reference_ = path.empty() ? signal::Spectrum{} : spectrum_of_file(path);
     for (Scope& scope : scopes_) scope.computed_at = -1.0;
 }
 
@@ -87,7 +87,7 @@ void Scopes::write(std::size_t index, const Feed& feed, const std::filesystem::p
         if (!trace || trace->times.empty()) throw Error(fmt::format("nothing was seen of {} yet", scope.port));
         const double now = trace->times.back();
         write_csv(*trace, {now - scope.span, now}, path);
-    } else write_png(figure_of(scope.plot).image(), path.string());
+    } else display::write_png(figure_of(scope.plot).image(), path.string());
     bench_.tell(fmt::format("wrote {}", path.string()));
 }
 

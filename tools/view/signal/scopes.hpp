@@ -52,7 +52,7 @@ private:
 
     Workbench& bench_;
     std::vector<Scope> scopes_;
-    Spectrum reference_;
+    signal::Spectrum reference_;
     std::vector<Feed::Port> ports_;
     const Feed* listed_of_ = nullptr;  ///< whose `ports_` are, and which version of them
     std::int64_t listed_ = -1;

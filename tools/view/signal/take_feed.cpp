@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/core/error.hpp"
-#include "engine/take_stream.hpp"
+#include "engine/take/take_stream.hpp"
 #include "tools/view/signal/feed.hpp"
 
 #include <algorithm>
@@ -30,11 +30,11 @@ std::vector<Range> joined(std::vector<Range> stretches) {
 
 }  // namespace
 
-TakeFeed::TakeFeed(const Take& take) : take_(take) {
-    for (const TakeStreamInfo& info : take.streams) {
+TakeFeed::TakeFeed(const take::Take& take) : take_(take) {
+    for (const take::TakeStreamInfo& info : take.streams) {
         if (!type_named(info.type)) continue;  // of what is large only a hash is kept
         streams_[info.port].push_back(&info);
-        const TakeStreamReader reader(take.folder / info.file, info);
+        const take::TakeStreamReader reader(take.folder / info.file, info);
         const double begin = seconds(info.start * info.period);
         recorded_.push_back({begin, seconds((info.start + reader.frames()) * info.period)});
     }
@@ -57,15 +57,15 @@ std::vector<Feed::Port> TakeFeed::ports() const {
 void TakeFeed::read(const std::string& port, double begin, double end, Trace& into) const {
     const auto found = streams_.find(port);
     if (found == streams_.end()) return;
-    for (const TakeStreamInfo* info : found->second) {
-        TakeStreamReader reader(take_.folder / info->file, *info);
+    for (const take::TakeStreamInfo* info : found->second) {
+        take::TakeStreamReader reader(take_.folder / info->file, *info);
         const double period = seconds(info->period);
         const auto first =
             std::max<std::int64_t>(info->start, static_cast<std::int64_t>(std::ceil(begin / period - 1e-9)));
         const auto wide = static_cast<std::size_t>(reader.channels());
         if (into.columns.empty()) {
             into.columns.resize(wide);
-            into.names = channels_of(*type_named(info->type));
+            into.names = take::channels_of(*type_named(info->type));
         }
         if (into.columns.size() != wide) continue;
         reader.seek(first);

@@ -11,10 +11,10 @@ using namespace tactus::study;
 
 namespace {
 
-std::vector<RigTouch> steps() {
-    std::vector<RigTouch> all(5);
-    for (std::size_t i = 0; i < 3; ++i) all[i].of = RigTouch::Of::mirror;
-    for (std::size_t i = 3; i < 5; ++i) all[i] = {RigTouch::Of::screen, "left", {}, {}, {}};
+std::vector<display::RigTouch> steps() {
+    std::vector<display::RigTouch> all(5);
+    for (std::size_t i = 0; i < 3; ++i) all[i].of = display::RigTouch::Of::mirror;
+    for (std::size_t i = 3; i < 5; ++i) all[i] = {display::RigTouch::Of::screen, "left", {}, {}, {}};
     return all;
 }
 
@@ -24,7 +24,7 @@ Touched at(double x) { return {Vec3(x, 0.0, 0.0), Vec3(0.0), 0.0, 200, 0}; }
 
 TEST_CASE("a lead goes from step to step, and checks each part when it is complete") {
     std::vector<std::size_t> checked;
-    TouchLead lead(steps(), false, [&](std::span<const RigTouch> done) { checked.push_back(done.size()); });
+    TouchLead lead(steps(), false, [&](std::span<const display::RigTouch> done) { checked.push_back(done.size()); });
     for (std::size_t i = 0; i < 5; ++i) {
         CHECK(lead.due() == i);
         CHECK_FALSE(lead.is_done());
@@ -37,9 +37,9 @@ TEST_CASE("a lead goes from step to step, and checks each part when it is comple
 }
 
 TEST_CASE("a touch that moved, or that the others contradict, is asked for again, and a third time ends it") {
-    const auto check = [](std::span<const RigTouch> done) {
+    const auto check = [](std::span<const display::RigTouch> done) {
         for (std::size_t i = 0; i < done.size(); ++i)
-            if (done[i].reading.x < 0.0) throw BadTouch(i, "that one is off");
+            if (done[i].reading.x < 0.0) throw display::BadTouch(i, "that one is off");
     };
     TouchLead lead(steps(), false, check);
     CHECK(lead.take({Vec3(0.0), Vec3(0.0), 2e-3, 200, 0}).find("2.0 mm") != std::string::npos);
@@ -58,7 +58,7 @@ TEST_CASE("a touch that moved, or that the others contradict, is asked for again
         lead.take(at(0.5));
         CHECK(lead.is_done());
     }
-    SECTION("wrong again, it ends") { CHECK_THROWS_AS(lead.take(at(-0.1)), BadTouch); }
+    SECTION("wrong again, it ends") { CHECK_THROWS_AS(lead.take(at(-0.1)), display::BadTouch); }
 }
 
 TEST_CASE("a touch is the mean of where the tip was; few samples are asked for again, and a third time end it") {
@@ -68,7 +68,7 @@ TEST_CASE("a touch is the mean of where the tip was; few samples are asked for a
     CHECK(touched.tip.y == Approx(1e-3));
     CHECK(touched.moved == Approx(19e-3));
     tips.resize(5);
-    TouchLead lead(steps(), false, [](std::span<const RigTouch>) {});
+    TouchLead lead(steps(), false, [](std::span<const display::RigTouch>) {});
     CHECK(lead.take(touch_of(tips, {})).find("5 valid samples") != std::string::npos);
     CHECK(lead.take(touch_of({}, {})).find("no valid samples") != std::string::npos);
     CHECK(lead.due() == 0);
@@ -76,9 +76,9 @@ TEST_CASE("a touch is the mean of where the tip was; few samples are asked for a
 }
 
 TEST_CASE("where the tracker says the place, a touch that it did not see is asked for again") {
-    std::vector<RigTouch> all = steps();
-    all[0].of = RigTouch::Of::workspace;
-    TouchLead lead(all, true, [](std::span<const RigTouch>) {});
+    std::vector<display::RigTouch> all = steps();
+    all[0].of = display::RigTouch::Of::workspace;
+    TouchLead lead(all, true, [](std::span<const display::RigTouch>) {});
     const std::vector<Vec3> tips(20, Vec3(1e-3, 0.0, 0.0)), tracked(3, Vec3(0.0, 0.2, 0.0));
     CHECK(lead.take(touch_of(tips, {})).find("tracker") != std::string::npos);
     CHECK(lead.due() == 0);

@@ -54,7 +54,7 @@ TEST_CASE("a program finds the orders of a machine of known rate without the com
     CHECK(found.rate.mean == Approx(40.0));
     REQUIRE(found.channels.size() == 1);
     const auto& orders = found.channels[0].spectrum.orders;
-    const auto second = std::ranges::find(orders, 2.0, &OrderLevel::order);
+    const auto second = std::ranges::find(orders, 2.0, &signal::OrderLevel::order);
     REQUIRE(second != orders.end());
     CHECK(second->amplitude == Approx(5.0).epsilon(0.01));
 }

@@ -11,10 +11,10 @@ using namespace tactus::study;
 namespace {
 
 /// Of that amplitude in dB.
-SpectralLine line(double hz, double db) { return {hz, 0.5 * std::pow(10.0, db / 10.0), 20.0}; }
+signal::SpectralLine line(double hz, double db) { return {hz, 0.5 * std::pow(10.0, db / 10.0), 20.0}; }
 
-Comparison good() {
-    Comparison c;
+signal::Comparison good() {
+    signal::Comparison c;
     c.cosine_500 = c.cosine_1000 = 1.0;
     c.reference_rms = c.output_rms = 1.0;
     c.harmonic_error_db = 0.1;
@@ -26,20 +26,20 @@ Comparison good() {
 
 TEST_CASE("a comparison passes when every score reaches its threshold and fails by the names of those that do not") {
     CHECK(judge(good(), 30.0, {}).passed());
-    Comparison c = good();
+    signal::Comparison c = good();
     c.lsd_db = 2.1;
     c.cosine_1000 = 0.9;
     CHECK(judge(c, 0.0, {}).failed() == std::vector<std::string>{"lsd_db", "cosine_40_1000"});
-    Thresholds levelled;
+    table::Thresholds levelled;
     levelled.level_gap_db = 10.0;
     CHECK(judge(good(), 10.0, levelled).passed());
     CHECK(judge(good(), 10.1, levelled).failed() == std::vector<std::string>{"level_gap_db"});
 }
 
 TEST_CASE("a score that does not exist is not judged, and said to be so") {
-    Comparison c = good();
+    signal::Comparison c = good();
     c.harmonic_error_db.reset();
-    Thresholds strict;
+    table::Thresholds strict;
     strict.st_sim = 0.9;
     const Verdict verdict = judge(c, 0.0, strict);
     CHECK(verdict.passed());
@@ -47,7 +47,7 @@ TEST_CASE("a score that does not exist is not judged, and said to be so") {
 }
 
 TEST_CASE("a line that only one has counts by its level beside the reference's strongest, at equal power") {
-    Comparison c = good();
+    signal::Comparison c = good();
     c.gain_db = 20.0;
     c.lines.only_in_output = {line(50.0, -49.0)};  // −29 dB with the gain
     CHECK(judge(c, 0.0, {}).failed() == std::vector<std::string>{"only_in_output"});

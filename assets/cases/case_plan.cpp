@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/cases/case_plan.hpp"
+
+#include "assets/bone/bone.hpp"
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+
+namespace tactus::cases {
+
+namespace {
+
+constexpr std::string_view kinds[] = {"place", "group",  "add",  "remove", "ungroup",
+                                      "lock",  "unlock", "hide", "show",   "mirror"};
+
+[[noreturn]] void refuse(const PlanStep& step, const std::string& why) {
+    throw Error(fmt::format("step '{}': {}", name_of(step.kind), why));
+}
+
+void check_fragments(const CasePlan& plan, const PlanStep& step) {
+    if (step.fragments.empty() && step.kind != StepKind::ungroup && step.kind != StepKind::mirror)
+        refuse(step, "names no fragment");
+    for (std::size_t n = 0; n < step.fragments.size(); ++n) {
+        const int fragment = step.fragments[n];
+        if (fragment < 0 || static_cast<std::size_t>(fragment) >= plan.fragments.size())
+            refuse(step, fmt::format("there is no fragment number {}", fragment));
+        if (std::count(step.fragments.begin(), step.fragments.end(), fragment) > 1)
+            refuse(step, fmt::format("names '{}' twice", plan.fragments[static_cast<std::size_t>(fragment)].name));
+    }
+}
+
+int group_meant(const PlanStep& step, const PlanState& state) {
+    const int group = state.find_group(step.group);
+    if (group != fit::Arrangement::none) return group;
+    std::vector<std::string> names;
+    std::ranges::copy_if(state.group_names, std::back_inserter(names), [](const auto& n) { return !n.empty(); });
+    refuse(step, fmt::format("there is no group '{}'{}", step.group, did_you_mean(step.group, names)));
+}
+
+void place(const CasePlan& plan, const PlanStep& step, PlanState& state) {
+    if (step.poses.size() != step.fragments.size()) refuse(step, "has not one pose for each fragment");
+    for (std::size_t n = 0; n < step.poses.size(); ++n) {
+        const std::string& name = plan.fragments[static_cast<std::size_t>(step.fragments[n])].name;
+        if (!is_valid(step.poses[n])) refuse(step, fmt::format("the pose of '{}' is none", name));
+        if (state.arrangement.is_locked(step.fragments[n])) refuse(step, fmt::format("'{}' is locked", name));
+    }
+    fit::Arrangement& a = state.arrangement;
+    const auto fit_of = [&state](int fragment) -> auto& { return state.fits[static_cast<std::size_t>(fragment)]; };
+    for (std::size_t n = 0; n < step.poses.size(); ++n) a.place(step.fragments[n], step.poses[n]);
+    // What was fitted to one that stays behind fits no more.
+    for (const int fragment : step.fragments)
+        if (std::ranges::find(step.fragments, a.fitted_to(fragment)) == step.fragments.end()) {
+            a.fit(fragment, fit::Arrangement::none);
+            fit_of(fragment).reset();
+        }
+    if (!step.fit) return;
+    const auto partner = std::ranges::find(plan.fragments, step.fit->partner, &PlanFragment::name);
+    a.fit(step.fragments[0],
+          partner == plan.fragments.end() ? fit::Arrangement::none : static_cast<int>(partner - plan.fragments.begin()));
+    fit_of(step.fragments[0]) = step.fit;
+}
+
+void forget_groups_that_are_gone(PlanState& state) {
+    for (std::size_t n = 0; n < state.group_names.size(); ++n)
+        if (!state.arrangement.exists(static_cast<int>(n))) state.group_names[n].clear();
+}
+
+}  // namespace
+
+std::string_view name_of(StepKind kind) { return kinds[static_cast<std::size_t>(kind)]; }
+
+std::vector<int> CasePlan::before() const {
+    std::vector<int> all;
+    all.reserve(steps.size());
+    for (const PlanStep& step : steps) all.push_back(step.before);
+    return all;
+}
+
+int PlanState::find_group(std::string_view name) const {
+    if (name.empty()) return fit::Arrangement::none;
+    const auto found = std::ranges::find(group_names, name);
+    return found == group_names.end() ? fit::Arrangement::none : static_cast<int>(found - group_names.begin());
+}
+
+void apply(const CasePlan& plan, const PlanStep& step, PlanState& state) {
+    check_fragments(plan, step);
+    fit::Arrangement& a = state.arrangement;
+    switch (step.kind) {
+        case StepKind::place: place(plan, step, state); break;
+        case StepKind::group: {
+            if (step.group.empty()) refuse(step, "the group has no name");
+            if (state.find_group(step.group) != fit::Arrangement::none)
+                refuse(step, fmt::format("there is a group '{}' already", step.group));
+            const int made = a.join(step.fragments);
+            if (made == fit::Arrangement::none) refuse(step, "these move together already");
+            state.group_names[static_cast<std::size_t>(made)] = step.group;
+            break;
+        }
+        case StepKind::add: {
+            const int group = group_meant(step, state);
+            for (const int fragment : step.fragments)
+                if (!a.add(group, fragment))
+                    refuse(step, fmt::format("'{}' is part of '{}' already",
+                                             plan.fragments[static_cast<std::size_t>(fragment)].name, step.group));
+            break;
+        }
+        case StepKind::remove:
+            for (const int fragment : step.fragments)
+                if (!a.remove(fragment))
+                    refuse(step,
+                           fmt::format("'{}' is in no group", plan.fragments[static_cast<std::size_t>(fragment)].name));
+            break;
+        case StepKind::ungroup: a.dissolve(group_meant(step, state)); break;
+        case StepKind::lock:
+        case StepKind::unlock:
+            for (const int fragment : step.fragments) a.lock(fragment, step.kind == StepKind::lock);
+            break;
+        case StepKind::hide:
+        case StepKind::show:
+            for (const int fragment : step.fragments) a.hide(fragment, step.kind == StepKind::hide);
+            break;
+        case StepKind::mirror:
+            if (!step.mirror) refuse(step, "has no target");
+            state.mirror = step.mirror;
+            break;
+    }
+    forget_groups_that_are_gone(state);
+}
+
+namespace {
+
+PlanState as_scanned(const CasePlan& plan) {
+    const fit::Arrangement arrangement(plan.fragments.size());
+    return {arrangement, std::vector<std::string>(arrangement.most_groups()),
+            std::vector<std::optional<PlanFit>>(plan.fragments.size()), std::nullopt};
+}
+
+}  // namespace
+
+void visit_steps(const CasePlan& plan, const std::function<void(int, const PlanState&, const PlanState&)>& visit) {
+    const std::vector<int> before = plan.before();
+    // Of each step, and of the start, which is number 0 here: what follows it at once, and how much does in all.
+    std::vector<std::vector<int>> next(before.size() + 1);
+    std::vector<std::size_t> following(before.size() + 1, 0);
+    const auto slot = [](int step) { return static_cast<std::size_t>(step + 1); };
+    for (std::size_t n = before.size(); n-- > 0;) following[slot(before[n])] += following[n + 1] + 1;
+    for (std::size_t n = 0; n < before.size(); ++n) next[slot(before[n])].push_back(static_cast<int>(n));
+    struct Open {
+        std::shared_ptr<const PlanState> from;
+        int step;
+    };
+    std::vector<Open> open;
+    // The longest way is gone last, so that few states wait at any time, whatever the tree.
+    const auto reach = [&](const std::shared_ptr<const PlanState>& state, int at) {
+        auto& steps = next[slot(at)];
+        std::ranges::stable_sort(steps, std::ranges::greater{}, [&](int n) { return following[slot(n)]; });
+        for (const int n : steps) open.push_back({state, n});
+    };
+    reach(std::make_shared<PlanState>(as_scanned(plan)), -1);
+    while (!open.empty()) {
+        const Open now = std::move(open.back());
+        open.pop_back();
+        auto to = std::make_shared<PlanState>(*now.from);
+        try {
+            apply(plan, plan.steps[static_cast<std::size_t>(now.step)], *to);
+        } catch (const Error& error) {
+            throw Error(fmt::format("cannot be followed to step {}: {}", now.step, error.message()));
+        }
+        visit(now.step, *now.from, *to);
+        reach(to, now.step);
+    }
+}
+
+PlanState state_of(const CasePlan& plan, int head) {
+    PlanState state = as_scanned(plan);
+    for (const int n : fit::steps_to(plan.before(), head)) apply(plan, plan.steps[static_cast<std::size_t>(n)], state);
+    return state;
+}
+
+PlanState state_of(const CasePlan& plan) { return state_of(plan, plan.place().head); }
+
+void add_step(CasePlan& plan, PlanStep step) {
+    PlanState state = state_of(plan);
+    add_step(plan, state, std::move(step));
+}
+
+void add_step(CasePlan& plan, PlanState& state, PlanStep step) {
+    PlanState next = state;
+    apply(plan, step, next);
+    state = std::move(next);
+    step.before = plan.place().head;
+    plan.steps.push_back(std::move(step));
+    plan.place() = fit::after_step(static_cast<int>(plan.steps.size()) - 1);
+}
+
+std::string free_group_name(const PlanState& state) {
+    for (int n = 1;; ++n)
+        if (std::string name = fmt::format("group {}", n); state.find_group(name) == fit::Arrangement::none) return name;
+}
+
+int find_fragment(const CasePlan& plan, std::string_view name) {
+    const auto found = std::ranges::find(plan.fragments, name, &PlanFragment::name);
+    if (found != plan.fragments.end()) return static_cast<int>(found - plan.fragments.begin());
+    std::vector<std::string> names;
+    for (const PlanFragment& fragment : plan.fragments) names.push_back(fragment.name);
+    throw Error(fmt::format("the plan has no fragment '{}'{}", name, did_you_mean(name, names)));
+}
+
+PlanStep placing(const CasePlan& plan, int fragment, const Pose& pose, std::string_view by) {
+    fit::Arrangement arrangement = state_of(plan).arrangement;
+    const std::string& name = plan.fragments[static_cast<std::size_t>(fragment)].name;
+    if (!is_valid(pose)) throw Error(fmt::format("'{}' cannot be placed there: the pose is none", name));
+    if (!arrangement.move(fragment, pose))
+        throw Error(fmt::format("'{}' cannot be moved: it, or one that is grouped with it, is locked", name));
+    PlanStep step;
+    step.by = by;
+    step.fragments.push_back(fragment);
+    step.poses.push_back(arrangement.pose(fragment));
+    for (int other = 0; other < static_cast<int>(arrangement.size()); ++other) {
+        if (other == fragment || !arrangement.move_together(fragment, other)) continue;
+        step.fragments.push_back(other);
+        step.poses.push_back(arrangement.pose(other));
+    }
+    return step;
+}
+
+std::filesystem::path file_of(const std::string& file, const std::filesystem::path& folder) {
+    const std::filesystem::path path = file;
+    return path.is_absolute() ? path : folder / path;
+}
+
+void add_fragment(CasePlan& plan, const std::string& name, const std::filesystem::path& file,
+                  const std::filesystem::path& folder, const Vec3& colour) {
+    if (name.empty()) throw Error(fmt::format("{}: the fragment has no name", file.string()));
+    if (std::ranges::find(plan.fragments, name, &PlanFragment::name) != plan.fragments.end())
+        throw Error(fmt::format("{}: there is a fragment '{}' already; give this one another name, as in NAME={}",
+                                file.string(), name, file.string()));
+    Hash hash;
+    file::add_file(hash, bone::file_of_bone(file));
+    std::error_code failure;
+    const auto absolute = std::filesystem::weakly_canonical(file, failure),
+               home = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, failure);
+    const auto relative = absolute.lexically_relative(home);
+    const bool is_below = !relative.empty() && *relative.begin() != "..";
+    plan.fragments.push_back({name, is_below ? relative.string() : absolute.string(), hash.value(), colour});
+}
+
+std::vector<std::string> changed_files(const CasePlan& plan, const std::filesystem::path& folder) {
+    std::vector<std::string> problems;
+    const auto look = [&](const std::string& what, const std::string& file, std::uint64_t hash) {
+        Hash now;
+        try {
+            file::add_file(now, bone::file_of_bone(file_of(file, folder)));
+        } catch (const Error&) {
+            problems.push_back(fmt::format("{}: its file {} is missing", what, file_of(file, folder).string()));
+            return;
+        }
+        if (now.value() != hash)
+            problems.push_back(fmt::format("{}: its file {} is not the one that the plan was made with", what,
+                                           file_of(file, folder).string()));
+    };
+    for (const PlanFragment& fragment : plan.fragments)
+        look("fragment '" + fragment.name + "'", fragment.file, fragment.hash);
+    if (const auto mirror = state_of(plan).mirror) look("mirror target", mirror->file, mirror->hash);
+    return problems;
+}
+
+}  // namespace tactus::cases

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/cases/plan_keeper.hpp"
+
+#include "assets/file/whole_file.hpp"
+#include "assets/cases/plan_file.hpp"
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <system_error>
+
+namespace tactus::cases {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Whether `text` is a plan all of whose steps `plan` has too.
+bool is_continued(const std::string& text, const CasePlan& plan) {
+    try {
+        CasePlan old = read_plan_text(text, "old");
+        if (old.steps.size() > plan.steps.size()) return false;
+        CasePlan begun = plan;
+        begun.steps.resize(old.steps.size());
+        // Only steps and fragments matter: files may be named from another folder, and heads stand where they like.
+        const auto bare = [](CasePlan& p) {
+            p.title.clear();
+            p.alternatives = {{"main", {}}};
+            p.current = 0;
+            for (PlanFragment& f : p.fragments) f.file.clear();
+        };
+        bare(old);
+        bare(begun);
+        return plan_text(old) == plan_text(begun);
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+}  // namespace
+
+PlanKeeper::PlanKeeper(CasePlan plan, fs::path file)
+    : file_(std::move(file)), lock_(file_, std::chrono::milliseconds(500)), steps_(std::move(plan)) {
+    move_old_aside();
+    save();
+}
+
+void PlanKeeper::move_old_aside() {
+    std::error_code failure;
+    if (!fs::exists(file_, failure) || is_continued(file::read_whole_file(file_), steps_.plan())) return;
+    for (int n = 1;; ++n) {
+        const fs::path aside = fmt::format("{}.{}", file_.string(), n);
+        if (fs::exists(aside, failure)) continue;
+        fs::rename(file_, aside, failure);
+        if (failure)
+            throw Error(
+                fmt::format("{}: the plan that is there cannot be moved aside: {}", file_.string(), failure.message()));
+        return;
+    }
+}
+
+void PlanKeeper::add(const StepRow& row, double second) {
+    try {
+        is_saved_ = false;
+        steps_.add(row, second);
+    } catch (const Error& error) {
+        if (trouble_.empty()) trouble_ = error.message();
+    }
+}
+
+void PlanKeeper::save() {
+    if (is_saved_) return;
+    save_case_plan(steps_.plan(), file_);
+    is_saved_ = true;
+}
+
+void PlanKeeper::finish() {
+    try {
+        save();
+    } catch (const Error& error) {
+        const fs::path spare = fs::temp_directory_path() / fmt::format("{}.{}", ::getpid(), file_.filename().string());
+        try {
+            save_case_plan(steps_.plan(), spare);
+        } catch (const Error& another) {
+            throw Error(fmt::format("{}; {}", error.message(), another.message()));
+        }
+        throw Error(fmt::format("{}; the plan with all of its steps is in {}", error.message(), spare.string()));
+    }
+}
+
+}  // namespace tactus::cases

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/cases/plan_lock.hpp"
+
+#include "dsp/core/error.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+
+namespace tactus::cases {
+
+namespace {
+
+constexpr useconds_t pause_us = 20'000;
+
+/// Whoever held the lock before may have taken its file away.
+bool is_still_there(int handle, const std::filesystem::path& file) {
+    struct stat held{}, named{};
+    return ::fstat(handle, &held) == 0 && ::stat(file.c_str(), &named) == 0 && held.st_dev == named.st_dev &&
+           held.st_ino == named.st_ino;
+}
+
+}  // namespace
+
+PlanLock::PlanLock(const std::filesystem::path& plan, std::chrono::milliseconds patience)
+    : file_(plan.parent_path() / ("." + plan.filename().string() + ".lock")) {
+    const auto until = std::chrono::steady_clock::now() + patience;
+    for (;;) {
+        handle_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        if (handle_ < 0) throw Error(fmt::format("{}: cannot be changed: {}", plan.string(), std::strerror(errno)));
+        if (::flock(handle_, LOCK_EX | LOCK_NB) == 0) {
+            if (is_still_there(handle_, file_)) return;
+        } else if (errno != EWOULDBLOCK && errno != EINTR) return;  // a file system without locks
+        ::close(handle_);
+        if (std::chrono::steady_clock::now() > until)
+            throw Error(
+                fmt::format("{}: another program is changing this plan, a run or another 'tactus plan'; nothing was "
+                            "changed, try again when it has ended",
+                            plan.string()));
+        ::usleep(pause_us);
+    }
+}
+
+PlanLock::~PlanLock() {
+    ::unlink(file_.c_str());
+    ::close(handle_);
+}
+
+}  // namespace tactus::cases

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/sound/recording_set.hpp"
+
+#include "assets/file/toml_file.hpp"
+#include "assets/file/whole_file.hpp"
+#include "assets/sound/sound.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/units.hpp"
+#include "dsp/signal/spectrum/comb.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tactus::sound {
+
+namespace {
+
+constexpr double lowest_rate = 5.0, highest_rate = 1000.0;  // Hz
+constexpr double lowest_heard = 60.0, highest_heard = 400.0; // Hz: where a rate that nobody stated is looked for
+constexpr double usual_load = 7.0;                          // N: thrust of a hand on a bone saw
+
+const std::array<std::string, 7> set_keys{"title",  "note",       "licence",  "synthesised",
+                                          "sensor", "full_scale", "recording"};
+const std::array<std::string, 8> recording_keys{"file", "state", "rate",   "load",
+                                                "loop", "note",  "sensor", "full_scale"};
+const std::array<std::string, 2> states{"cutting", "free_air"};
+
+/// [begin, end) of the part to use.
+struct Part {
+    std::size_t begin, end;
+};
+
+Part part_of(const Recording& r) {
+    const auto sample = [&](double seconds) { return static_cast<std::size_t>(std::lround(seconds * r.sample_rate)); };
+    return {sample(r.loop_begin), r.loop_end > 0.0 ? std::min(sample(r.loop_end), r.samples.size()) : r.samples.size()};
+}
+
+void load_samples(Recording& r) {
+    const Sound sound = load_sound(r.file);
+    r.sample_rate = sound.rate;
+    r.samples = mix_to_mono(sound);
+}
+
+/// Estimates the rate where nobody stated it. Throws Error when the sound has no rate or is too short for it.
+void settle_rate(Recording& r) {
+    const Part part = part_of(r);
+    if (r.rate == 0.0) {
+        const auto part_used = std::span(r.samples).subspan(part.begin, part.end - part.begin);
+        const signal::Comb heard = signal::fit_comb(part_used, r.sample_rate, lowest_heard, highest_heard);
+        if (heard.confidence < signal::sure_of_comb)
+            throw Error(fmt::format("no rate of reciprocation can be heard in '{}'; state it, rate = \"233 Hz\"",
+                                    r.file.filename().string()));
+        r.rate = heard.best.frequency;
+        r.rate_estimated = true;
+    }
+    const double cycles = static_cast<double>(part.end - part.begin) / r.sample_rate * r.rate;
+    if (cycles < static_cast<double>(vibration::CycleLoop::fewest_cycles))
+        throw Error(fmt::format("'{}' holds only {:.1f} cycles at {:.4g} Hz; {} are needed", r.file.filename().string(),
+                                cycles, r.rate, vibration::CycleLoop::fewest_cycles));
+}
+
+class SetReader {
+public:
+    explicit SetReader(const std::filesystem::path& path) : path_(path) {}
+
+    RecordingSet read() {
+        const file::TomlTable parsed = file::parse_toml(file::read_whole_file(path_), path_.string());
+        const toml::table& root = *parsed;
+        check_keys(root, set_keys, "a recording set");
+        RecordingSet set;
+        set.path = path_;
+        set.title = text_of(root, "title");
+        set.note = text_of(root, "note");
+        set.licence = text_of(root, "licence");
+        if (const toml::node* flag = root.get("synthesised")) {
+            if (!flag->is_boolean()) throw Error(location(flag->source()), "'synthesised' is true or false");
+            set.synthesised = flag->as_boolean()->get();
+        }
+        sensor_ = text_of(root, "sensor");
+        if (const toml::node* value = root.get("full_scale")) full_scale_ = full_scale(*value);
+        const toml::node* list = root.get("recording");
+        if (!list) throw Error({path_.string(), 1, 1}, "the set has no recording; begin each with [[recording]]");
+        const toml::array* items = list->as_array();
+        if (!items) throw Error(location(list->source()), "a recording begins with [[recording]], in two brackets");
+        if (items->empty()) throw Error(location(list->source()), "the set has no recording");
+        if (items->size() > vibration::SawVoice::most_recordings)
+            throw Error(location(list->source()), fmt::format("a set has at most {} recordings, not {}",
+                                                              vibration::SawVoice::most_recordings, items->size()));
+        for (const toml::node& item : *items) {
+            set.recordings.push_back(recording(item));
+            if (set.recordings.back().full_scale.has_value() != set.calibrated())
+                throw Error(location(item.source()),
+                            "some recordings are calibrated (full_scale) and some not: their levels do not compare");
+        }
+        return set;
+    }
+
+private:
+    SourceLocation location(const toml::source_region& region) const {
+        return {path_.string(), static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
+    }
+
+    template <std::size_t N>
+    void check_keys(const toml::table& table, const std::array<std::string, N>& known, std::string_view what) const {
+        for (const auto& [key, value] : table)
+            if (std::find(known.begin(), known.end(), key.str()) == known.end())
+                throw Error(location(key.source()),
+                            fmt::format("unknown key '{}' in {}{}", key.str(), what, did_you_mean(key.str(), known)));
+    }
+
+    std::string text(const toml::node& value, std::string_view key) const {
+        if (const auto* found = value.as_string()) return found->get();
+        throw Error(location(value.source()), fmt::format("'{}' is a text; put it in quotes", key));
+    }
+    std::string text_of(const toml::table& table, std::string_view key) const {
+        const toml::node* value = table.get(key);
+        return value ? text(*value, key) : std::string{};
+    }
+
+    double quantity(const toml::node& value, std::string_view key, std::string_view unit) const {
+        try {
+            return parse_as(text(value, key), unit);
+        } catch (const Error& error) {
+            if (error.where().line > 0) throw;
+            throw Error(location(value.source()), fmt::format("'{}': {}", key, error.message()));
+        }
+    }
+
+    std::optional<double> full_scale(const toml::node& value) const {
+        if (const auto* word = value.as_string(); word && word->get() == "uncalibrated") return std::nullopt;
+        const double found = quantity(value, "full_scale", "m/s^2");
+        if (std::isfinite(found) && found > 0.0) return found;
+        throw Error(location(value.source()), "'full_scale' is above 0 m/s^2, or \"uncalibrated\"");
+    }
+
+    Recording recording(const toml::node& item) const {
+        const toml::table* table = item.as_table();
+        if (!table) throw Error(location(item.source()), "a recording begins with [[recording]], in two brackets");
+        check_keys(*table, recording_keys, "a recording");
+        Recording r;
+        const toml::node *file = table->get("file"), *state = table->get("state");
+        if (!file) throw Error(location(item.source()), "the recording has no file = \"…\"");
+        if (!state) throw Error(location(item.source()), "the recording has no state; \"cutting\" or \"free_air\"");
+        r.file = path_.parent_path() / text(*file, "file");
+        const std::string word = text(*state, "state");
+        if (std::find(states.begin(), states.end(), word) == states.end())
+            throw Error(location(state->source()), fmt::format("unknown state '{}'; a saw is cutting or free_air{}",
+                                                               word, did_you_mean(word, states)));
+        r.cutting = word == "cutting";
+        r.note = text_of(*table, "note");
+        r.sensor = table->contains("sensor") ? text_of(*table, "sensor") : sensor_;
+        const toml::node* own_scale = table->get("full_scale");
+        r.full_scale = own_scale ? full_scale(*own_scale) : full_scale_;
+        const toml::node* rate = table->get("rate");
+        if (rate) r.rate = quantity(*rate, "rate", "Hz");
+        if (rate && !(r.rate >= lowest_rate && r.rate <= highest_rate))
+            throw Error(location(rate->source()), "'rate' is 5 Hz to 1 kHz");
+        load(*table, item, r);
+        try {
+            load_samples(r);
+        } catch (const Error& error) {
+            throw Error(location(file->source()), error.message());
+        }
+        if (const toml::node* bounds = table->get("loop")) loop(*bounds, r);
+        try {
+            settle_rate(r);
+        } catch (const Error& error) {
+            throw Error(location((rate ? *rate : item).source()), error.message());
+        }
+        return r;
+    }
+
+    void load(const toml::table& table, const toml::node& item, Recording& r) const {
+        const toml::node* value = table.get("load");
+        if (!value && !r.cutting) return;
+        if (!value) throw Error(location(item.source()), "a cutting recording needs its load, such as load = \"7 N\"");
+        if (!r.cutting) throw Error(location(value->source()), "in free air there is no load; remove it");
+        r.load = quantity(*value, "load", "N");
+        if (!(std::isfinite(r.load) && r.load > 0.0)) throw Error(location(value->source()), "'load' is above 0 N");
+    }
+
+    void loop(const toml::node& value, Recording& r) const {
+        const toml::array* bounds = value.as_array();
+        if (!bounds || bounds->size() != 2)
+            throw Error(location(value.source()), "'loop' is begin and end: loop = [\"0.1 s\", \"2.4 s\"]");
+        r.loop_begin = quantity(*bounds->get(0), "loop", "s");
+        r.loop_end = quantity(*bounds->get(1), "loop", "s");
+        const double length = static_cast<double>(r.samples.size()) / r.sample_rate;
+        if (!(r.loop_begin >= 0.0 && r.loop_end > r.loop_begin && r.loop_end <= length))
+            throw Error(location(value.source()),
+                        fmt::format("'loop' must begin at 0 s or later and end after that, within the {:.4g} s of '{}'",
+                                    length, r.file.filename().string()));
+    }
+
+    std::filesystem::path path_;
+    std::string sensor_;
+    std::optional<double> full_scale_;
+};
+
+}  // namespace
+
+RecordingSet load_recording_set(const std::filesystem::path& path, std::optional<double> rate) {
+    if (rate && !(*rate >= lowest_rate && *rate <= highest_rate))
+        throw Error(fmt::format("{}: the rate of a saw is 5 Hz to 1 kHz", path.string()));
+    if (path.extension() == ".toml") {
+        if (rate) throw Error(fmt::format("{}: a set states its rates itself; leave out the rate", path.string()));
+        return SetReader(path).read();
+    }
+    Recording r;
+    r.file = path;
+    r.cutting = true;
+    r.load = usual_load;
+    r.rate = rate.value_or(0.0);
+    load_samples(r);
+    try {
+        settle_rate(r);
+    } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", path.string(), error.message()));
+    }
+    RecordingSet set;
+    set.path = path;
+    set.title = path.stem().string();
+    set.recordings.push_back(std::move(r));
+    return set;
+}
+
+std::vector<vibration::SawRecording> saw_recordings(const RecordingSet& set) {
+    std::vector<vibration::SawRecording> out;
+    for (const Recording& r : set.recordings) {
+        const Part part = part_of(r);
+        out.push_back({r.samples, static_cast<double>(r.sample_rate), r.rate, r.load, r.cutting,
+                       r.full_scale.value_or(1.0), part.begin, part.end});
+    }
+    return out;
+}
+
+}  // namespace tactus::sound

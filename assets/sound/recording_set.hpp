@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recordings of a saw, each with what was going on while it was made.
+#pragma once
+
+#include "dsp/vibration/saw_voice.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::sound {
+
+struct Recording {
+    std::filesystem::path file;
+    bool cutting = false;              ///< in bone; else in free air
+    double rate = 0.0;                 ///< strokes to and fro per second, Hz
+    bool rate_estimated = false;       ///< from the sound, because nobody stated it
+    double load = 0.0;                 ///< thrust, N; 0 in free air
+    std::string sensor;                ///< what it was recorded with, in words
+    std::string note;
+    std::optional<double> full_scale;  ///< m/s² at sample value 1; empty when uncalibrated
+    double loop_begin = 0.0;           ///< s
+    double loop_end = 0.0;             ///< s; 0 means to the end
+    int sample_rate = 0;               ///< Hz
+    std::vector<float> samples;        ///< mono
+};
+
+struct RecordingSet {
+    std::filesystem::path path;
+    std::string title, note, licence;
+    bool synthesised = false;  ///< computed, not recorded
+    std::vector<Recording> recordings;
+
+    bool calibrated() const { return !recordings.empty() && recordings.front().full_scale.has_value(); }
+};
+
+/// Reads a set (TOML) and all its sounds:
+///
+///     title = "…"   note = "…"   licence = "…"   synthesised = true
+///     sensor = "contact microphone"      # sensor and full_scale hold for every recording that has none of its own
+///     full_scale = "98.1 m/s^2"          # or "uncalibrated", the default
+///     [[recording]]
+///     file  = "cutting_233.flac"         # against the folder of the set
+///     state = "cutting"                  # or "free_air"
+///     rate  = "233 Hz"                   # of reciprocation, 5 Hz to 1 kHz
+///     load  = "7 N"                      # cutting only, required there
+///     loop  = ["0.1 s", "2.4 s"]         # optional: the part to use
+///     note  = "…"
+///
+/// A sound file in place of a set becomes a set of one cutting recording at 7 N, uncalibrated, its rate estimated from
+/// the sound unless `rate` (Hz) tells it; SawVoice plays it 12 dB lower in free air. Calibrated and uncalibrated
+/// recordings do not mix. Throws Error with file, line and column.
+RecordingSet load_recording_set(const std::filesystem::path& path, std::optional<double> rate = std::nullopt);
+
+/// The set as SawVoice::prepare takes it; points into `set`.
+std::vector<vibration::SawRecording> saw_recordings(const RecordingSet& set);
+
+}  // namespace tactus::sound

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/sound/response_file.hpp"
+
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string_view>
+
+namespace tactus::sound {
+
+namespace {
+
+constexpr int most_lines = 1'000'000;
+
+std::string lower(std::string_view text) {
+    std::string out(text);
+    for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+    return out;
+}
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && (text.front() == ' ' || text.front() == '\t' || text.front() == '"')) text.remove_prefix(1);
+    while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r' || text.back() == '"'))
+        text.remove_suffix(1);
+    return text;
+}
+
+/// Cells between commas or semicolons, empty ones kept; else words between blanks.
+std::vector<std::string_view> cells_of(std::string_view line) {
+    std::vector<std::string_view> cells;
+    const bool has_comma = line.find_first_of(",;") != std::string_view::npos;
+    const std::string_view separators = has_comma ? ",;" : " \t";
+    while (true) {
+        const std::size_t end = line.find_first_of(separators);
+        const std::string_view cell = trimmed(line.substr(0, end));
+        if (has_comma || !cell.empty()) cells.push_back(cell);
+        if (end == std::string_view::npos) return cells;
+        line.remove_prefix(end + 1);
+    }
+}
+
+std::optional<double> number_in(std::string_view text) {
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double value = 0.0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (failure != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+    return value;
+}
+
+class Reader {
+public:
+    explicit Reader(const std::filesystem::path& path) : path_(path) {}
+
+    ResponseFile read() {
+        const std::string text = file::read_whole_file(path_);
+        std::string_view rest = text;
+        while (!rest.empty()) {
+            const std::size_t end = rest.find('\n');
+            const std::string_view line = trimmed(rest.substr(0, end));
+            rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+            if (++line_ > most_lines) fail(fmt::format("longer than {} lines", most_lines));
+            if (line.empty()) continue;
+            if (line.front() == '#' || line.front() == '*' || line.front() == ';') remark(line.substr(1));
+            else row(cells_of(line));
+        }
+        vibration::FrequencyResponse& response = file_.identified.response;
+        if (response.hz.size() < 3) throw Error({path_.string(), 0, 0}, "a response needs 3 frequencies or more");
+        if (!has_phase_) assume_minimum_phase(response);
+        return std::move(file_);
+    }
+
+private:
+    [[noreturn]] void fail(const std::string& message) const { throw Error({path_.string(), line_, 1}, message); }
+
+    void remark(std::string_view text) {
+        const std::size_t equals = text.find('=');
+        if (equals == std::string_view::npos) return;
+        const std::string_view key = trimmed(text.substr(0, equals)), value = trimmed(text.substr(equals + 1));
+        if (key == "title") file_.title = value;
+        if (key == "unit") file_.unit = value;
+        if (key == "latency_s") {
+            const auto latency = number_in(value);
+            if (!latency) fail("latency_s is a number of seconds");
+            file_.identified.response.latency = *latency;
+        }
+    }
+
+    void names(const std::vector<std::string_view>& cells) {
+        hz_ = level_ = phase_ = coherence_ = none;
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            const std::string name = lower(cells[i]);
+            if (name.starts_with("freq") || name == "hz") hz_ = i;
+            else if (name.starts_with("level") || name.starts_with("mag") || name.starts_with("spl") || name == "db")
+                level_ = i;
+            else if (name.starts_with("phase") || name.starts_with("deg")) phase_ = i;
+            else if (name.starts_with("coherence")) coherence_ = i;
+            else if (name.starts_with("order_")) {
+                const auto order = number_in(std::string_view(name).substr(6));
+                if (!order || *order < 2.0 || *order > 100.0) fail(fmt::format("'{}' is no order", name));
+                orders_.push_back(i);
+                file_.identified.distortions.push_back({static_cast<int>(*order), {}});
+            }
+        }
+        if (hz_ == none || level_ == none)
+            fail("no columns of numbers: frequency in Hz, level in dB and phase in degrees are expected");
+        has_phase_ = phase_ != none;
+        named_ = true;
+    }
+
+    void row(const std::vector<std::string_view>& cells) {
+        vibration::FrequencyResponse& response = file_.identified.response;
+        if (!number_in(cells.front())) {
+            if (named_ || !response.hz.empty()) fail(fmt::format("'{}' is not a number", cells.front()));
+            return names(cells);
+        }
+        if (!named_ && response.hz.empty()) has_phase_ = cells.size() > 2;
+        const auto value = [&](std::size_t column) {
+            const auto read = column < cells.size() ? number_in(cells[column]) : std::nullopt;
+            if (!read) fail(fmt::format("column {} is not a number", column + 1));
+            return *read;
+        };
+        const double hz = value(hz_), level = value(level_);
+        if (!(hz >= 0.0)) fail("a frequency must not be negative");
+        if (hz == 0.0) return;  // tables of transforms begin there
+        if (!response.hz.empty() && hz <= response.hz.back()) fail("frequencies must rise from line to line");
+        if (std::abs(level) > 400.0) fail("a level must lie between -400 and 400 dB");
+        const double phase = has_phase_ ? value(phase_) * std::numbers::pi / 180.0 : 0.0;
+        response.hz.push_back(hz);
+        response.gain.push_back(std::polar(std::pow(10.0, level / 20.0), phase));
+        if (coherence_ != none) response.coherence.push_back(std::clamp(value(coherence_), 0.0, 1.0));
+        for (std::size_t i = 0; i < orders_.size(); ++i) {
+            const auto ratio = orders_[i] < cells.size() ? number_in(cells[orders_[i]]) : std::nullopt;
+            file_.identified.distortions[i].ratio.push_back(ratio.value_or(std::numeric_limits<double>::quiet_NaN()));
+        }
+    }
+
+    static void assume_minimum_phase(vibration::FrequencyResponse& response) {
+        std::vector<double> magnitude;
+        for (const auto& gain : response.gain) magnitude.push_back(std::abs(gain));
+        const std::vector<double> phase = vibration::minimum_phase(response.hz, magnitude);
+        for (std::size_t i = 0; i < phase.size(); ++i) response.gain[i] = std::polar(magnitude[i], phase[i]);
+    }
+
+    static constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+    std::filesystem::path path_;
+    ResponseFile file_;
+    int line_ = 0;
+    bool named_ = false, has_phase_ = false;
+    std::size_t hz_ = 0, level_ = 1, phase_ = 2, coherence_ = none;
+    std::vector<std::size_t> orders_;
+};
+
+}  // namespace
+
+void save_response(const ResponseFile& file, const std::filesystem::path& path) {
+    const vibration::FrequencyResponse& response = file.identified.response;
+    std::string out = fmt::format("# title = \"{}\"\n# unit = \"{}\"\n# latency_s = {:.9g}\n", file.title, file.unit,
+                                  response.latency);
+    out += "frequency_hz,level_db,phase_deg,coherence";
+    for (const vibration::Distortion& d : file.identified.distortions) out += fmt::format(",order_{}", d.order);
+    const std::vector<double> phase = vibration::unwrapped_phase(response.gain);
+    for (std::size_t i = 0; i < response.hz.size(); ++i) {
+        out +=
+            fmt::format("\n{:.7g},{:.6f},{:.5f},{:.7f}", response.hz[i],
+                        20.0 * std::log10(std::max(std::abs(response.gain[i]), 1e-18)),
+                        phase[i] * 180.0 / std::numbers::pi, response.coherence.empty() ? 1.0 : response.coherence[i]);
+        for (const vibration::Distortion& d : file.identified.distortions)
+            out += std::isfinite(d.ratio[i]) ? fmt::format(",{:.3e}", d.ratio[i]) : ",";
+    }
+    file::write_whole_file(path, out + "\n");
+}
+
+ResponseFile load_response(const std::filesystem::path& path) { return Reader(path).read(); }
+
+}  // namespace tactus::sound

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Admittance control of one finger (thesis figure 39): force → virtual object → position loop → speed of the motor.
+#pragma once
+
+#include "dsp/control/loop_stability.hpp"
+#include "dsp/control/position_loop.hpp"
+#include "dsp/control/virtual_object.hpp"
+#include "dsp/control/force_limiter.hpp"
+
+namespace tactus::control {
+
+struct ControllerSettings {
+    ObjectSettings object;
+    LoopModel loop;             ///< what is assumed of motor and hand; its gain 0: gain_share of the limit
+    double gain_share = 0.5;    ///< of the limit, below 1
+    double max_speed = 0.07;    ///< m/s
+    double least_speed = 0.0;   ///< m/s, see PositionLoopSettings
+    double blend = 0.1;         ///< s, time constant with which a jump of the wanted position is let go
+    bool allow_unstable = false;
+    double stuck_speed = 0.04;  ///< m/s; told to run faster than this …
+    double stuck_travel = 0.008;  ///< … and so far, m, while the encoder does not change at all, it is stuck …
+    double stall_force = 2.0;  ///< N … unless the hand holds against it with this much: then the motor may be stalled
+
+    bool operator==(const ControllerSettings&) const = default;
+};
+
+class AdmittanceControl {
+public:
+    /// Takes new settings without a jump of the wanted position. False: they cannot be rendered, or the loop would be
+    /// unstable and that is not allowed; the old ones stay. Real-time safe.
+    bool set(const ControllerSettings& settings) noexcept;
+
+    /// Speed for the motor, m/s, after `periods` periods. `sensed` is what is wrong with the sensors; `slips`: the load
+    /// is stronger than the motor, so that a finger that stands still is no fault. On any fault the motor holds and the
+    /// first reason stays.
+    double tick(double force, double position, Fault sensed, int periods, bool slips = false) noexcept;
+    /// Goes on after a fault when nothing is wrong any more, from where the finger is. Wait-free.
+    void recover() noexcept { asked_ = true; }
+
+    double wanted() const noexcept { return wanted_; }
+    bool saturated() const noexcept { return loop_.saturated; }
+    Fault fault() const noexcept { return fault_; }
+    double gain() const noexcept { return gain_; }
+    double limit() const noexcept { return limit_; }  ///< of the gain, 1/s
+
+private:
+    double limit_for(const ControllerSettings& settings) const noexcept;
+    bool is_stuck(double force, double position, bool slips) noexcept;
+    double follow(double force, double position, int periods) noexcept;
+
+    ControllerSettings settings_;
+    VirtualObject object_;
+    PositionLoop loop_;
+    double gain_ = 0.0, limit_ = 0.0;
+    double wanted_ = 0.0, offset_ = 0.0, force_ = 0.0;
+    double told_ = 0.0, told_travel_ = 0.0, seen_travel_ = 0.0, position_ = 0.0;
+    Fault fault_ = Fault::none;
+    bool engaged_ = false, asked_ = false;
+};
+
+}  // namespace tactus::control

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/control/force_limiter.hpp"
+
+#include <algorithm>
+
+namespace tactus::control {
+namespace {
+
+/// `v` shortened to at most `length`. Scaled by its largest part first: squaring 1e200 N would overflow.
+Vec3 shorten(const Vec3& v, double length) noexcept {
+    const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    if (largest == 0.0) return v;
+    const Vec3 unit = v / largest;
+    const double excess = glm::length(unit) * largest / length;
+    return excess > 1.0 ? unit * (length / glm::length(unit)) : v;
+}
+
+}  // namespace
+
+const char* describe(Fault fault) noexcept {
+    switch (fault) {
+        case Fault::none: return "no fault";
+        case Fault::not_finite: return "a force or torque was not a finite number";
+        case Fault::stale_input: return "the device stopped delivering samples";
+        case Fault::invalid_input: return "the device delivered an invalid sample";
+        case Fault::late_commit: return "no force arrived in time";
+        case Fault::sound_lost: return "the sound card was lost";
+        case Fault::stuck_encoder: return "the motor was told to run and the encoder stood still";
+        case Fault::beyond_drive_limit: return "a motor was told to run faster than it may";
+    }
+    return "unknown fault";
+}
+
+void ForceLimiter::prepare(const ForceLimits& limits, double period_s) {
+    *this = ForceLimiter{};
+    limits_ = limits;
+    period_s_ = period_s;
+}
+
+void ForceLimiter::fail(Fault reason) noexcept {
+    if (fault_ != Fault::none) return;
+    fault_ = reason;
+    fade_from_ = output_;
+    faded_s_ = 0.0;
+}
+
+void ForceLimiter::cut(Fault reason) noexcept {
+    fail(reason);
+    output_ = fade_from_ = {};
+}
+
+void ForceLimiter::hold_off(bool wanted) noexcept {
+    if (wanted == held_off_) return;
+    held_off_ = wanted;
+    small_ticks_ = 0;
+    ramped_s_ = 0.0;
+    if (!wanted || fault_ != Fault::none) return;
+    fade_from_ = output_;
+    faded_s_ = 0.0;
+}
+
+void ForceLimiter::recover() noexcept {
+    fault_ = Fault::none;
+    has_counter_ = false;
+    still_ticks_ = small_ticks_ = 0;
+    ramped_s_ = 0.0;
+}
+
+void ForceLimiter::measure(const Wrench& raw) noexcept {
+    const Vec3 force_step = raw.force - raw_.force, torque_step = raw.torque - raw_.torque;
+    statistics_.max_force = std::max(statistics_.max_force, glm::length(raw.force));
+    statistics_.max_torque = std::max(statistics_.max_torque, glm::length(raw.torque));
+    statistics_.max_force_step = std::max(statistics_.max_force_step, glm::length(force_step));
+    statistics_.max_torque_step = std::max(statistics_.max_torque_step, glm::length(torque_step));
+    const bool too_large = glm::length(raw.force) > limits_.max_force || glm::length(raw.torque) > limits_.max_torque;
+    const bool too_fast = glm::length(force_step) > limits_.force_slew * period_s_ ||
+                          glm::length(torque_step) > limits_.torque_slew * period_s_;
+    statistics_.force_limited += too_large;
+    statistics_.slew_limited += too_fast;
+    statistics_.limited += too_large || too_fast;
+    raw_ = raw;
+}
+
+void ForceLimiter::watch_input(std::int64_t counter, bool valid) noexcept {
+    still_ticks_ = has_counter_ && counter == counter_ ? still_ticks_ + 1 : 0;
+    counter_ = counter;
+    has_counter_ = true;
+    if (!valid) fail(Fault::invalid_input);
+    if (still_ticks_ >= limits_.stale_ticks) fail(Fault::stale_input);
+}
+
+Wrench ForceLimiter::fade(double elapsed_s) noexcept {
+    faded_s_ += elapsed_s > 0.0 ? elapsed_s : period_s_;
+    // The margin keeps ten ticks of 1 ms from summing to just under 10 ms.
+    const double left = faded_s_ < limits_.fade_s * (1.0 - 1e-9) ? 1.0 - faded_s_ / limits_.fade_s : 0.0;
+    return fade_from_ * left;
+}
+
+double ForceLimiter::engagement(const Wrench& raw, double elapsed_s) noexcept {
+    if (small_ticks_ < limits_.engage_ticks) {
+        const bool is_small =
+            glm::length(raw.force) < limits_.engage_force && glm::length(raw.torque) < limits_.engage_torque;
+        small_ticks_ = is_small ? small_ticks_ + 1 : 0;
+        return 0.0;
+    }
+    ramped_s_ = std::min(ramped_s_ + elapsed_s, limits_.engage_ramp_s);
+    return limits_.engage_ramp_s > 0.0 ? ramped_s_ / limits_.engage_ramp_s : 1.0;
+}
+
+Wrench ForceLimiter::tick(const Wrench& raw, std::int64_t counter, bool valid, double elapsed_s) noexcept {
+    ++statistics_.ticks;
+    if (is_finite(raw)) measure(raw);
+    else fail(Fault::not_finite);
+    watch_input(counter, valid);
+    if (fault_ != Fault::none || held_off_) return output_ = fade(elapsed_s);
+
+    const double gain = engagement(raw, elapsed_s);
+    const Wrench wanted{shorten(raw.force, limits_.max_force) * gain, shorten(raw.torque, limits_.max_torque) * gain};
+    output_.force += shorten(wanted.force - output_.force, limits_.force_slew * period_s_);
+    output_.torque += shorten(wanted.torque - output_.torque, limits_.torque_slew * period_s_);
+    return output_;
+}
+
+}  // namespace tactus::control

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/fit/fit.hpp"
+
+#include "dsp/core/rotation.hpp"
+#include "dsp/fit/fit_steps.hpp"
+#include "dsp/fit/constraint_analysis.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tactus::fit {
+
+namespace {
+
+constexpr int spins = 24;
+constexpr std::size_t coarse_points = 160;  // of each side, about
+
+struct Candidate {
+    Pose pose;  // between centres
+    double score = 0.0;
+};
+
+/// The start, the same with the middles of the paints on each other and their normals opposed, and turns around that.
+std::vector<Pose> starts_near(const FitSurface& moving, const FitSurface& fixed, const Pose& start) {
+    std::vector<Pose> starts{start, {Vec3(0.0), start.orientation}};
+    const Quat flat_on = opposed(moving, fixed, start.orientation);
+    starts.push_back({Vec3(0.0), flat_on});
+    const Vec3 about = direction_of(fixed.mean_normal);
+    for (const double spin : {-0.5, -0.25, 0.25, 0.5})
+        starts.push_back({Vec3(0.0), glm::angleAxis(spin, about) * flat_on});
+    return starts;
+}
+
+std::vector<Pose> starts_everywhere(const FitSurface& moving, const FitSurface& fixed) {
+    const Vec3 about = direction_of(fixed.mean_normal);
+    const Quat flat_on = opposed(moving, fixed, {1.0, 0.0, 0.0, 0.0});
+    std::vector<Pose> starts;
+    for (int n = 0; n < spins; ++n)
+        starts.push_back({Vec3(0.0), glm::angleAxis(2.0 * std::numbers::pi * n / spins, about) * flat_on});
+    return starts;
+}
+
+/// Best first; of those within `nearer` of each other only the best stays.
+void keep_distinct(std::vector<Candidate>& all, double gyration, double nearer) {
+    std::ranges::stable_sort(all, std::ranges::greater{}, &Candidate::score);
+    std::vector<Candidate> kept;
+    for (const Candidate& c : all)
+        if (std::ranges::none_of(kept, [&](const Candidate& k) { return apart(c.pose, k.pose, gyration) < nearer; }))
+            kept.push_back(c);
+    all = kept;
+}
+
+bool is_within_reach(const Pose& pose, const Pose& start, const FitSettings& settings) {
+    return glm::length(pose.position - start.position) < settings.most_way &&
+           glm::length(rotation_between(start.orientation, pose.orientation)) < settings.most_turn;
+}
+
+std::vector<Candidate> coarse(FitEnergy& energy, const std::vector<Pose>& starts, const FitSettings& settings,
+                              int& iterations) {
+    set_law(energy, settings.outline, coarse_points);
+    std::vector<Candidate> found;
+    for (const Pose& start : starts) {
+        const Pose pose =
+            anneal(energy, start, {settings.widest, 2.0 * settings.finest, 25, settings.power}, iterations);
+        found.push_back({pose, energy.quality(pose, 2.0 * settings.sigma).score});
+    }
+    keep_distinct(found, energy.moving().gyration, 1e-3);
+    return found;
+}
+
+void fine(FitEnergy& energy, std::vector<Candidate>& candidates, std::size_t most, const FitSettings& settings,
+          int& iterations) {
+    set_law(energy, settings.outline);
+    if (candidates.size() > most) candidates.resize(most);
+    for (Candidate& c : candidates) {
+        c.pose = anneal(energy, c.pose, {4.0 * settings.finest, settings.finest, 10, settings.power}, iterations);
+        c.pose = refine(energy, c.pose, settings, iterations);
+        c.score = energy.quality(c.pose, settings.sigma).score;
+    }
+    keep_distinct(candidates, energy.moving().gyration, 1e-3);
+}
+
+/// Thesis 6.1.2: pull of constant size, contact and the springs of a hand balance each millisecond; the hand gives way.
+Pose follow_thesis(FitEnergy& energy, const Pose& start, const FitSettings& settings, int& iterations) noexcept {
+    energy.law = {};
+    energy.law.kernel = FitKernel::steady;
+    energy.law.strength = settings.pull;
+    energy.law.two_sided = energy.law.gated = false;
+    energy.law.contact = 10e3;
+    coupling::QuasiStaticCoupling solver;
+    solver.settings.reach = solver.settings.gyration = energy.moving().gyration;
+    solver.reset(start);
+    Pose hand = start;
+    constexpr double follow = 1.0 / 50.0;
+    for (int tick = 0; tick < 400; ++tick) {
+        energy.look(solver.state().proxy);
+        const coupling::QuasiStaticState& now = solver.update(hand, energy);
+        iterations += now.iterations;
+        hand.position += follow * (now.proxy.position - hand.position);
+        hand.orientation = glm::normalize(
+            rotation_by(follow * rotation_between(hand.orientation, now.proxy.orientation)) * hand.orientation);
+    }
+    return solver.state().proxy;
+}
+
+}  // namespace
+
+std::string_view name_of(FitVerdict verdict) {
+    constexpr std::string_view names[] = {"fit", "sliding", "ambiguous", "no_match", "blocked"};
+    return names[static_cast<std::size_t>(verdict)];
+}
+
+FitVerdict judge(const FitQuality& quality, bool is_free, double margin, const FitSettings& settings) noexcept {
+    // Surfaces that do not belong together cross each other: what is near is spread evenly over all distances.
+    if (quality.score < settings.least_score || quality.overlap < settings.least_overlap ||
+        quality.rms > settings.most_rms * settings.sigma)
+        return FitVerdict::no_match;
+    if (is_free) return FitVerdict::sliding;
+    if (margin < settings.least_margin) return FitVerdict::ambiguous;
+    if (quality.penetration > settings.most_penetration) return FitVerdict::blocked;
+    return FitVerdict::fit;
+}
+
+Pose between_centres(const FitSurface& moving, const FitSurface& fixed, const Pose& bodies) {
+    return {bodies.apply(moving.centre) - fixed.centre, bodies.orientation};
+}
+
+Pose between_bodies(const FitSurface& moving, const FitSurface& fixed, const Pose& centres) {
+    return {centres.position + fixed.centre - centres.orientation * moving.centre, centres.orientation};
+}
+
+Pose settle(FitEnergy& energy, const Pose& start, const FitSettings& settings, int* iterations) noexcept {
+    set_law(energy, settings.outline);
+    int count = 0;
+    const Pose pose = refine(energy, between_centres(energy.moving(), energy.fixed(), start), settings, count);
+    if (iterations) *iterations += count;
+    return between_bodies(energy.moving(), energy.fixed(), pose);
+}
+
+void widen_for(FitSettings& settings, const Vec3& spacing) noexcept {
+    const double h = std::max({spacing.x, spacing.y, spacing.z});
+    settings.finest = std::max(settings.finest, 0.6 * h);
+    settings.sigma = std::max(settings.sigma, 0.5 * h);
+    settings.polish = std::max(settings.polish, 0.3 * h);
+    // A few dozen voxels of any two surfaces lie on each other somewhere.
+    settings.least_overlap = std::max(settings.least_overlap, 60.0 * h * h);
+}
+
+FitSettings settings_for(const FitSurface& moving, const FitSurface& fixed) {
+    FitSettings settings;
+    widen_for(settings, moving.field.grid.spacing);
+    widen_for(settings, fixed.field.grid.spacing);
+    return settings;
+}
+
+Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& start, FitMode mode,
+             const FitSettings& settings) {
+    FitEnergy energy(moving, fixed);
+    Fit fit;
+    const Pose from = between_centres(moving, fixed, start);
+    const double radius = moving.gyration;
+    std::vector<Candidate> elsewhere = coarse(energy, starts_everywhere(moving, fixed), settings, fit.iterations);
+    std::vector<Candidate> found;
+    if (mode == FitMode::global) {
+        fine(energy, elsewhere, 4, settings, fit.iterations);
+        found = elsewhere;
+    } else {
+        if (mode == FitMode::thesis) {
+            found = {{follow_thesis(energy, from, settings, fit.iterations), 0.0}};
+            set_law(energy, settings.outline);
+            found[0].score = energy.quality(found[0].pose, settings.sigma).score;
+        } else {
+            found = coarse(energy, starts_near(moving, fixed, from), settings, fit.iterations);
+            // What the spins found within a hand's reach of the start counts as found from there.
+            for (const Candidate& c : elsewhere)
+                if (is_within_reach(c.pose, from, settings)) found.push_back(c);
+            keep_distinct(found, radius, 1e-3);
+            fine(energy, found, 4, settings, fit.iterations);
+        }
+        fine(energy, elsewhere, 3, settings, fit.iterations);
+    }
+    const Candidate best = found.front();
+    double second = 0.0;
+    for (const auto* list : {&found, &elsewhere})
+        for (const Candidate& c : *list)
+            if (apart(c.pose, best.pose, radius) > 1e-3) second = std::max(second, c.score);
+    set_law(energy, settings.outline);
+    fit.quality = energy.quality(best.pose, settings.sigma);
+    fit.margin = best.score > 0.0 ? std::clamp(1.0 - second / best.score, 0.0, 1.0) : 0.0;
+    energy.law.scale = settings.finest;
+    energy.law.power = settings.power;
+    energy.look(best.pose);
+    find_free(fit, energy(best.pose, contact::ContactParts::all).stiffness, radius, settings.least_hold);
+    fit.pose = between_bodies(moving, fixed, best.pose);
+    fit.verdict = judge(fit.quality, !fit.free.empty(), fit.margin, settings);
+    return fit;
+}
+
+Fit find_fit(std::span<const FitSurface> moving, std::span<const FitSurface> fixed, const Pose& start, FitMode mode) {
+    std::vector<Fit> fits;
+    std::size_t best = 0;
+    const FitSurface *moving_face = &moving.front(), *fixed_face = &fixed.front();
+    for (const FitSurface& m : moving)
+        for (const FitSurface& f : fixed) {
+            fits.push_back(find_fit(m, f, start, mode, settings_for(m, f)));
+            // The area that fits counts as well: a small patch finds its like on any large one.
+            const auto worth = [](const Fit& fit) { return fit.quality.score * std::sqrt(fit.quality.overlap); };
+            if (fits.size() > 1 && !(worth(fits.back()) > worth(fits[best]))) continue;
+            best = fits.size() - 1;
+            moving_face = &m;
+            fixed_face = &f;
+        }
+    Fit fit = fits[best];
+    const Pose chosen = between_centres(*moving_face, *fixed_face, fit.pose);
+    for (std::size_t n = 0; n < fits.size(); ++n) {
+        fit.iterations += n == best ? 0 : fits[n].iterations;
+        const Pose other = between_centres(*moving_face, *fixed_face, fits[n].pose);
+        // Patches that fit by chance are small: they count by what they cover of the best one.
+        const double area = std::min(1.0, fits[n].quality.overlap / std::max(fit.quality.overlap, 1e-12));
+        if (n != best && apart(other, chosen, moving_face->gyration) > 1e-3 && fit.quality.score > 0.0)
+            fit.margin = std::min(fit.margin, std::max(0.0, 1.0 - area * fits[n].quality.score / fit.quality.score));
+    }
+    fit.verdict = judge(fit.quality, !fit.free.empty(), fit.margin, settings_for(*moving_face, *fixed_face));
+    return fit;
+}
+
+}  // namespace tactus::fit

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/fit/fragment_matcher.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/core/rotation.hpp"
+#include "dsp/fit/faces.hpp"
+#include "dsp/fit/adjoint.hpp"
+#include "dsp/fit/fit_steps.hpp"
+#include "dsp/fit/constraint_analysis.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace tactus::fit {
+
+namespace {
+
+constexpr int spins = 16;
+constexpr std::size_t coarse_points = 160;
+
+/// One face as a surface of its own, with at most so many points.
+FitSurface surface_of(const FragmentSurface& fragment, std::span<const std::size_t> face, std::size_t most) {
+    FitSurfaceOptions options;
+    options.reach = 6e-3;
+    options.most_samples = 1'000'000;
+    FitSurface made = make_fit_face(fragment.points, face, *fragment.distance, options);
+    const std::size_t stride = (made.position.size() + most - 1) / most;
+    if (stride < 2) return made;
+    std::size_t kept = 0;
+    double sum = 0.0;
+    for (std::size_t n = 0; n < made.position.size(); n += stride, ++kept) {
+        made.position[kept] = made.position[n];
+        made.normal[kept] = made.normal[n];
+        sum += made.share[kept] = made.share[n];
+    }
+    made.position.resize(kept);
+    made.normal.resize(kept);
+    made.share.resize(kept);
+    for (double& share : made.share) share /= sum;
+    return made;
+}
+
+}  // namespace
+
+/// Several pairs of faces of one moving fragment, as the solver asks for one contact, each with an energy of the same
+/// number. Its handle stands at `centre` of the fragment, wherever its file has its origin.
+class FragmentMatcher::Together {
+public:
+    Together(FragmentMatcher& matcher, std::span<const Pair> pairs, std::span<const Pose> poses, const Vec3& centre)
+        : matcher_(matcher), pairs_(pairs), poses_(poses), centre_(centre) {}
+
+    Pose handle(const Pose& body) const noexcept { return {body.apply(centre_), body.orientation}; }
+    Pose body(const Pose& handle) const noexcept { return {handle.apply(-centre_), handle.orientation}; }
+
+    void look(const Pose& at) noexcept {
+        for (std::size_t n = 0; n < pairs_.size(); ++n)
+            matcher_.energies_[n].look(matcher_.centres(pairs_[n], body(at), poses_));
+    }
+    contact::ContactSum operator()(const Pose& at, contact::ContactParts parts) noexcept {
+        contact::ContactSum all;
+        for (std::size_t k = 0; k < pairs_.size(); ++k) {
+            const Pair& pair = pairs_[k];
+            const Face &m = matcher_.faces_[pair.moving], &f = matcher_.faces_[pair.fixed];
+            const contact::ContactSum one =
+                carried(matcher_.energies_[k](matcher_.centres(pair, body(at), poses_), parts),
+                        glm::mat3_cast(poses_[static_cast<std::size_t>(f.fragment)].orientation),
+                        at.rotate(m.surface.centre - centre_), std::min(m.surface.area, f.surface.area) * 1e4);
+            all.energy += one.energy;
+            for (std::size_t n = 0; n < 6; ++n) all.gradient[n] += one.gradient[n];
+            for (std::size_t n = 0; n < 36; ++n) all.stiffness[n] += one.stiffness[n];
+        }
+        return all;
+    }
+    double clearance(const Pose&) const noexcept { return 0.0; }
+
+private:
+    FragmentMatcher& matcher_;
+    std::span<const Pair> pairs_;
+    std::span<const Pose> poses_;
+    Vec3 centre_;
+};
+
+FragmentMatcher::FragmentMatcher(std::span<const FragmentSurface> fragments, const MatcherSettings& wanted)
+    : settings(wanted) {
+    const double polish = settings.fit.polish;
+    for (const FragmentSurface& fragment : fragments)
+        if (fragment.distance) widen_for(settings.fit, fragment.distance->spacing);
+    settings.fit.polish = std::max(polish, 0.5 * settings.fit.polish);
+    for (std::size_t n = 0; n < fragments.size(); ++n)
+        for (const auto& face : split_faces(fragments[n].points)) {
+            if (face.size() < 40) continue;
+            faces_.push_back({static_cast<int>(n), surface_of(fragments[n], face, settings.most_points)});
+        }
+    if (faces_.size() > settings.most_faces)
+        throw Error(
+            fmt::format("the fragments have {} painted faces and at most {} can be matched: paint less, or "
+                        "leave out fragments",
+                        faces_.size(), settings.most_faces));
+    std::size_t points = 0, outline = 0;
+    for (const Face& face : faces_) {
+        points = std::max(points, face.surface.position.size());
+        outline = std::max(outline, face.surface.outline.size());
+    }
+    const std::size_t joined = std::max<std::size_t>(settings.most_joined, 1);
+    for (std::size_t n = 0; n < joined && !faces_.empty(); ++n)
+        energies_.emplace_back(faces_.front().surface, faces_.front().surface).reserve(points, outline);
+    pairs_.reserve(faces_.size() * faces_.size());
+    joined_.reserve(joined);
+    stood_.reserve(fragments.size());
+    solved_.reserve(std::max<std::size_t>(settings.most_pairs, 1));
+    free_.free.reserve(6);
+}
+
+FitEnergy& FragmentMatcher::energy(std::size_t slot, const Pair& pair) noexcept {
+    FitEnergy& one = energies_[slot];
+    one.rebind(faces_[pair.moving].surface, faces_[pair.fixed].surface);
+    return one;
+}
+
+std::size_t FragmentMatcher::faces_of(int fragment) const noexcept {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(faces_, [fragment](const Face& f) { return f.fragment == fragment; }));
+}
+
+Pose FragmentMatcher::world(const Pair& pair, const Pose& at, std::span<const Pose> poses) const noexcept {
+    const Face& f = faces_[pair.fixed];
+    return poses[static_cast<std::size_t>(f.fragment)] * between_bodies(faces_[pair.moving].surface, f.surface, at);
+}
+
+Pose FragmentMatcher::centres(const Pair& pair, const Pose& moving, std::span<const Pose> poses) const noexcept {
+    const Face& f = faces_[pair.fixed];
+    return between_centres(faces_[pair.moving].surface, f.surface,
+                           poses[static_cast<std::size_t>(f.fragment)].inverse() * moving);
+}
+
+FragmentMatcher::Solved FragmentMatcher::solve(const Pair& pair, std::span<const Pose> starts) noexcept {
+    FitEnergy& e = energy(0, pair);
+    const FitSettings& fit = settings.fit;
+    const double gyration = e.moving().gyration;
+    int steps = 0;
+    std::array<Candidate, 2> best;
+    set_law(e, 0.0, coarse_points);
+    for (const Pose& start : starts) {
+        Candidate c{anneal(e, start, {fit.widest, 2.0 * fit.finest, 24, fit.power}, steps), 0.0};
+        c.score = e.quality(c.pose, 2.0 * fit.sigma).score;
+        // The same place again counts once.
+        if (best[0].score >= 0.0 && apart(c.pose, best[0].pose, gyration) < 1e-3) {
+            if (c.score > best[0].score) best[0] = c;
+        } else if (c.score > best[0].score) best[1] = best[0], best[0] = c;
+        else if (c.score > best[1].score) best[1] = c;
+    }
+    Solved solved{pair, {}, 0.0};
+    set_law(e, 0.0, settings.most_points);
+    for (Candidate& c : best) {
+        if (!(c.score >= 0.0)) continue;
+        c.pose = anneal(e, c.pose, {4.0 * fit.finest, fit.finest, 14, fit.power}, steps);
+        c.score = e.quality(c.pose, fit.sigma).score;
+        if (c.score > solved.best.score) {
+            if (solved.best.score >= 0.0 && apart(c.pose, solved.best.pose, gyration) > 1e-3)
+                solved.second = solved.best.score;
+            solved.best = c;
+        } else if (apart(c.pose, solved.best.pose, gyration) > 1e-3) solved.second = std::max(solved.second, c.score);
+    }
+    return solved;
+}
+
+const FragmentMatch& FragmentMatcher::near(int moving, std::span<const Pose> poses,
+                                           std::span<const char> stands) noexcept {
+    match_ = {};
+    match_.moving = moving;
+    pairs_.clear();
+    const Pose& held = poses[static_cast<std::size_t>(moving)];
+    for (std::size_t m = 0; m < faces_.size(); ++m) {
+        if (faces_[m].fragment != moving) continue;
+        for (std::size_t f = 0; f < faces_.size(); ++f) {
+            const auto other = static_cast<std::size_t>(faces_[f].fragment);
+            if (faces_[f].fragment == moving || !stands[other]) continue;
+            const FitSurface &a = faces_[m].surface, &b = faces_[f].surface;
+            const double facing = glm::dot(held.rotate(a.mean_normal), poses[other].rotate(b.mean_normal));
+            const double away = glm::length(held.apply(a.centre) - poses[other].apply(b.centre));
+            if (facing < -0.2 && away < settings.near) pairs_.push_back({m, f, away});
+        }
+    }
+    std::ranges::sort(pairs_, [](const Pair& a, const Pair& b) {
+        return a.apart != b.apart ? a.apart < b.apart : a.moving != b.moving ? a.moving < b.moving : a.fixed < b.fixed;
+    });
+    solved_.clear();
+    for (std::size_t n = 0; n < std::min({pairs_.size(), settings.most_pairs, solved_.capacity()}); ++n) {
+        const Pair& pair = pairs_[n];
+        const FitSurface &a = faces_[pair.moving].surface, &b = faces_[pair.fixed].surface;
+        const Pose from = centres(pair, held, poses);
+        const Vec3 about = direction_of(b.mean_normal);
+        const Quat flat_on = opposed(a, b, from.orientation);
+        // Where it is; middles on each other as it is, flat on, and turned a little either way; and flat on where it
+        // is, also shifted: the middles of faces that share but a part do not belong on each other.
+        const Vec3 beside = from.position - glm::dot(from.position, about) * about;
+        const Vec3 across =
+            glm::normalize(glm::cross(about, std::abs(about.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0)));
+        const Vec3 u = 2.5e-3 * across, v = 2.5e-3 * glm::cross(about, across);
+        const std::array<Pose, 10> starts{{from,
+                                           {Vec3(0.0), from.orientation},
+                                           {Vec3(0.0), flat_on},
+                                           {Vec3(0.0), glm::angleAxis(0.3, about) * flat_on},
+                                           {Vec3(0.0), glm::angleAxis(-0.3, about) * flat_on},
+                                           {beside, flat_on},
+                                           {beside + u, flat_on},
+                                           {beside - u, flat_on},
+                                           {beside + v, flat_on},
+                                           {beside - v, flat_on}}};
+        solved_.push_back(solve(pair, starts));
+    }
+    // In their order of worth; a chance fit far from where the fragment is held is none that the hand meant.
+    const auto worth = [this](const Solved& s) {
+        return s.best.score *
+               std::sqrt(std::min(faces_[s.pair.moving].surface.area, faces_[s.pair.fixed].surface.area));
+    };
+    std::erase_if(solved_, [&](const Solved& s) {
+        const Pose at = world(s.pair, s.best.pose, poses);
+        const Vec3& centre = faces_[s.pair.moving].surface.centre;
+        return glm::length(at.apply(centre) - held.apply(centre)) > settings.near ||
+               glm::length(rotation_between(held.orientation, at.orientation)) > settings.most_turn;
+    });
+    std::ranges::sort(solved_, [&](const Solved& a, const Solved& b) { return worth(a) > worth(b); });
+    FragmentMatch first = match_;
+    for (std::size_t n = 0; n < std::min<std::size_t>(solved_.size(), 3); ++n) {
+        match_ = {};
+        match_.moving = moving;
+        lead(solved_[n], poses, stands);
+        if (match_.verdict == FitVerdict::fit) return match_;
+        if (n == 0) first = match_;
+    }
+    match_ = first;
+    return match_;
+}
+
+void FragmentMatcher::begin_search() noexcept {
+    found_ = {};
+    left_ = next_ = 0;
+}
+
+const FragmentMatch& FragmentMatcher::search(int moving, std::span<const Pose> poses,
+                                             std::span<const char> stands) noexcept {
+    if (!same_search(moving, stands)) {
+        found_ = {};
+        found_.moving = moving;
+        next_ = 0;
+        stood_.assign(stands.begin(), stands.end());
+    }
+    pairs_.clear();
+    for (std::size_t m = 0; m < faces_.size(); ++m)
+        for (std::size_t f = 0; f < faces_.size(); ++f)
+            if (faces_[m].fragment == moving && faces_[f].fragment != moving &&
+                stands[static_cast<std::size_t>(faces_[f].fragment)])
+                pairs_.push_back({m, f, 0.0});
+    if (pairs_.empty()) {
+        left_ = 0;
+        return found_;
+    }
+    next_ = std::min(next_, pairs_.size() - 1);
+    const Pair pair = pairs_[next_++];
+    left_ = pairs_.size() - next_;
+    const FitSurface &a = faces_[pair.moving].surface, &b = faces_[pair.fixed].surface;
+    const Vec3 about = direction_of(b.mean_normal);
+    const Quat flat_on = opposed(a, b, {1.0, 0.0, 0.0, 0.0});
+    std::array<Pose, spins> starts;
+    for (int n = 0; n < spins; ++n)
+        starts[static_cast<std::size_t>(n)] = {Vec3(0.0),
+                                               glm::angleAxis(2.0 * std::numbers::pi * n / spins, about) * flat_on};
+    solved_.clear();
+    solved_.push_back(solve(pair, starts));
+    match_ = {};
+    match_.moving = moving;
+    lead(solved_.front(), poses, stands);
+    const auto worth = [](const FragmentMatch& m) { return m.quality.score * std::sqrt(m.quality.overlap); };
+    if (worth(match_) > worth(found_)) {
+        found_ = match_;
+        found_beside_ = poses[static_cast<std::size_t>(match_.partner)].inverse() * match_.pose;
+    }
+    // Its partner may have been moved since.
+    if (found_.partner != Arrangement::none)
+        found_.pose = poses[static_cast<std::size_t>(found_.partner)] * found_beside_;
+    return found_;
+}
+
+bool FragmentMatcher::same_search(int moving, std::span<const char> stands) noexcept {
+    return left_ > 0 && found_.moving == moving && std::ranges::equal(stood_, stands);
+}
+
+void FragmentMatcher::join(const Solved& best, const Pose& at, std::span<const Pose> poses,
+                           std::span<const char> stands) noexcept {
+    joined_.clear();
+    joined_.push_back(best.pair);
+    for (std::size_t m = 0; m < faces_.size(); ++m)
+        for (std::size_t f = 0; f < faces_.size() && joined_.size() < energies_.size(); ++f) {
+            if (faces_[m].fragment != match_.moving || faces_[f].fragment == match_.moving ||
+                !stands[static_cast<std::size_t>(faces_[f].fragment)] ||
+                (m == best.pair.moving && f == best.pair.fixed))
+                continue;
+            const Pair pair{m, f, 0.0};
+            const Pose there = centres(pair, at, poses);
+            const double reach = faces_[m].surface.gyration + faces_[f].surface.gyration;
+            if (glm::length(there.position) > reach) continue;
+            FitEnergy& e = energy(0, pair);
+            set_law(e, 0.0, coarse_points);
+            if (e.quality(there, 1.5 * settings.fit.sigma).score > settings.least_share * best.best.score)
+                joined_.push_back(pair);
+        }
+    match_.faces = static_cast<int>(joined_.size());
+}
+
+void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std::span<const char> stands) noexcept {
+    if (!(best.best.score > 0.0)) return;
+    const FitSettings& fit = settings.fit;
+    Pose at = world(best.pair, best.best.pose, poses);
+    match_.partner = faces_[best.pair.fixed].fragment;
+    // All faces that lie well there take part.
+    join(best, at, poses, stands);
+    for (std::size_t n = 0; n < joined_.size(); ++n) set_law(energy(n, joined_[n]), 0.0, settings.most_points);
+    const auto at_scale = [&](double scale) {
+        for (std::size_t n = 0; n < joined_.size(); ++n) {
+            energies_[n].law.scale = scale;
+            energies_[n].law.power = fit.power;
+        }
+    };
+    Together together(*this, joined_, poses, faces_[best.pair.moving].surface.centre);
+    coupling::QuasiStaticCoupling solver;
+    solver.settings = free_solver(faces_[best.pair.moving].surface.gyration);
+    solver.settings.reach = 0.02;
+    solver.settings.step = 0.3e-3;
+    solver.reset(together.handle(at));
+    const auto step = [&] {
+        const Pose before = solver.state().proxy;
+        together.look(before);
+        return solver.update(before, together).iterations;
+    };
+    for (int stage = 0; stage < 18; ++stage) {
+        at_scale(fit.finest * (stage < 8 ? 3.0 - 0.25 * stage : 1.0));
+        if (step() == 0 && stage > 8) break;
+    }
+    for (int n = 1; n <= polish_steps; ++n) {
+        for (std::size_t k = 0; k < joined_.size(); ++k) set_polish(energies_[k], fit, n);
+        step();
+    }
+    at = together.body(solver.state().proxy);
+    match_.pose = at;
+    at_scale(fit.finest);
+    match_.quality = energies_[0].quality(centres(best.pair, at, poses), fit.sigma);
+    match_.margin = match_.quality.score > 0.0 ? std::clamp(1.0 - best.second / match_.quality.score, 0.0, 1.0) : 0.0;
+    free_.free.clear();
+    together.look(solver.state().proxy);
+    find_free(free_, together(solver.state().proxy, contact::ContactParts::all).stiffness,
+              faces_[best.pair.moving].surface.gyration, fit.least_hold);
+    match_.verdict = judge(match_.quality, !free_.free.empty(), match_.margin, fit);
+}
+
+}  // namespace tactus::fit

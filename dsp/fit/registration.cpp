@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/fit/registration.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/core/rotation.hpp"
+#include "dsp/geometry/symmetric6.hpp"
+#include "dsp/geometry/main_axes.hpp"
+#include "dsp/geometry/neighbours.hpp"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace tactus::fit {
+
+namespace {
+
+constexpr double least_cosine = 0.5;
+
+std::vector<Vec3> positions_of(std::span<const contact::SurfacePoint> points) {
+    std::vector<Vec3> positions;
+    positions.reserve(points.size());
+    for (const contact::SurfacePoint& p : points) positions.push_back(p.position);
+    return positions;
+}
+
+struct Spread {
+    Vec3 middle{0.0};
+    Mat3 axes{1.0};  ///< columns, longest first
+    double gyration = 0.0;
+};
+
+/// Middle and main axes of the surface.
+Spread spread_of(std::span<const contact::SurfacePoint> points) {
+    Spread spread;
+    double area = 0.0;
+    for (const contact::SurfacePoint& p : points) spread.middle += p.area * p.position, area += p.area;
+    spread.middle /= area;
+    Mat3 m(0.0);
+    for (const contact::SurfacePoint& p : points) {
+        const Vec3 r = p.position - spread.middle;
+        m += p.area / area * glm::outerProduct(r, r);
+    }
+    spread.gyration = std::sqrt(m[0][0] + m[1][1] + m[2][2]);
+    spread.axes = geometry::main_axes(m);
+    return spread;
+}
+
+std::vector<contact::SurfacePoint> thinned(std::span<const contact::SurfacePoint> points, std::size_t most) {
+    const std::size_t stride = std::max<std::size_t>(1, (points.size() + most - 1) / most);
+    std::vector<contact::SurfacePoint> some;
+    for (std::size_t n = 0; n < points.size(); n += stride) some.push_back(points[n]);
+    return some;
+}
+
+/// Of all points from the surface, ascending.
+std::vector<double> distances(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed, const Pose& pose) {
+    std::vector<double> all;
+    for (const contact::SurfacePoint& p : moving) all.push_back(fixed.distance(pose.apply(p.position)));
+    std::ranges::sort(all);
+    return all;
+}
+
+void judge(Registration& result, std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed,
+           const Pose& start, double scale) {
+    const std::vector<double> all = distances(moving, fixed, result.pose);
+    result.before = median_distance(moving, fixed, start);
+    result.median = all[all.size() / 2];
+    result.p90 = all[all.size() * 9 / 10];
+    const auto near = std::ranges::lower_bound(all, 2.0 * scale) - all.begin();
+    result.covered = static_cast<double>(near) / static_cast<double>(all.size());
+}
+
+Pose anneal(const std::vector<contact::SurfacePoint>& moving, const RegistrationTarget& fixed, const Pose& start,
+            const RegistrationSettings& settings) {
+    const Spread spread = spread_of(moving);
+    Pose pose = start;
+    for (int stage = 0; stage < settings.stages + 20; ++stage) {
+        const double progress = std::min(1.0, static_cast<double>(stage) / std::max(1, settings.stages - 1));
+        const double s = settings.widest * std::pow(settings.finest / settings.widest, progress);
+        const Vec3 centre = pose.apply(spread.middle);
+        geometry::Matrix6 k{};
+        geometry::Vector6 push{}, step{};
+        for (const contact::SurfacePoint& p : moving) {
+            const Vec3 x = pose.apply(p.position);
+            const std::size_t to = fixed.nearest(x);
+            const Vec3& n = fixed.normal(to);
+            const double facing = glm::dot(pose.rotate(p.normal), n);
+            if (!(facing > least_cosine)) continue;
+            const Vec3 apart = x - fixed.position(to);
+            const double squares = glm::dot(apart, apart), kernel = s * s / (s * s + squares);
+            const double weight = p.area * facing * kernel * kernel, d = glm::dot(n, apart);
+            const Vec3 lever = glm::cross(x - centre, n);
+            const double row[6] = {n.x, n.y, n.z, lever.x, lever.y, lever.z};
+            for (std::size_t a = 0; a < 6; ++a) {
+                push[a] -= weight * d * row[a];
+                for (std::size_t b = 0; b < 6; ++b) k[6 * a + b] += weight * row[a] * row[b];
+            }
+        }
+        // Scaled to numbers that the solver's floor for what nothing holds is small against.
+        double greatest = 0.0;
+        for (std::size_t a = 0; a < 3; ++a) greatest = std::max(greatest, k[7 * a]);
+        if (!(greatest > 0.0)) break;
+        for (double& entry : k) entry *= 1e6 / greatest;
+        for (double& entry : push) entry *= 1e6 / greatest;
+        if (!geometry::solve_symmetric6(k, push, step)) break;
+        const Vec3 way(step[0], step[1], step[2]), turn(step[3], step[4], step[5]);
+        const Quat spin = rotation_by(turn);
+        pose = {centre + way + spin * (pose.position - centre), glm::normalize(spin * pose.orientation)};
+        if (stage > settings.stages && glm::length(way) + glm::length(turn) * spread.gyration < 1e-8) break;
+    }
+    return pose;
+}
+
+/// How much of a surface lies on the target: mean of exp(−d² / 2s²).
+double lies_on(const std::vector<contact::SurfacePoint>& points, const RegistrationTarget& fixed, const Pose& pose, double s) {
+    double sum = 0.0, area = 0.0;
+    for (const contact::SurfacePoint& p : points) {
+        const double d = fixed.distance(pose.apply(p.position));
+        sum += p.area * std::exp(-0.5 * d * d / (s * s));
+        area += p.area;
+    }
+    return sum / area;
+}
+
+/// The eight parts of a surface about its middle, along its main axes.
+std::array<std::vector<contact::SurfacePoint>, 8> parts_of(const std::vector<contact::SurfacePoint>& points) {
+    const Spread spread = spread_of(points);
+    std::array<std::vector<contact::SurfacePoint>, 8> parts;
+    for (const contact::SurfacePoint& p : points) {
+        const Vec3 r = p.position - spread.middle;
+        std::size_t part = 0;
+        for (int axis = 0; axis < 3; ++axis) part = 2 * part + (glm::dot(r, spread.axes[axis]) > 0.0 ? 1 : 0);
+        parts[part].push_back(p);
+    }
+    return parts;
+}
+
+}  // namespace
+
+RegistrationTarget::RegistrationTarget(std::span<const contact::SurfacePoint> points)
+    : positions_(positions_of(points)), tree_(positions_) {
+    if (points.empty()) throw Error("there is no surface to register to");
+    for (const contact::SurfacePoint& p : points) normals_.push_back(p.normal);
+}
+
+double RegistrationTarget::distance(const Vec3& place) const noexcept {
+    const std::size_t n = nearest(place);
+    const Vec3 apart = place - positions_[n];
+    const double plane = std::abs(glm::dot(apart, normals_[n])), point = glm::length(apart);
+    return point < 3e-3 ? plane : point;
+}
+
+double median_distance(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed, const Pose& pose) {
+    if (moving.empty()) throw Error("there is no surface to measure");
+    const std::vector<double> all = distances(moving, fixed, pose);
+    return all[all.size() / 2];
+}
+
+Registration register_surface(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed, const Pose& start,
+                              const RegistrationSettings& settings) {
+    if (moving.empty()) throw Error("there is no surface to register");
+    const std::vector<contact::SurfacePoint> some = thinned(moving, settings.most_points);
+    const auto from_scale = [&](double widest, double finest) {
+        RegistrationSettings scales = settings;
+        scales.widest = widest;
+        scales.finest = finest;
+        Registration made;
+        made.pose = anneal(some, fixed, start, scales);
+        judge(made, some, fixed, start, settings.finest);
+        return made;
+    };
+    const Registration far = from_scale(settings.widest, settings.finest);
+    // A part that is displaced turns the whole as long as it is within sight: what lies well already is found from near.
+    const Registration near = from_scale(0.5 * settings.finest, 0.5 * settings.finest);
+    Registration best = near.median < far.median ? near : far;
+    if (!settings.by_parts) return best;
+    // Where much of it is elsewhere the whole lies between two places. Each part by itself finds one of them, and the
+    // place where most of the whole lies on the target is the one.
+    const double tight = 0.25 * settings.finest;
+    double most = lies_on(some, fixed, best.pose, tight);
+    const Pose from = best.pose;
+    for (const std::vector<contact::SurfacePoint>& part : parts_of(some)) {
+        if (part.size() < 50) continue;
+        RegistrationSettings scales = settings;
+        scales.widest = 4.0 * settings.finest;
+        scales.finest = 0.5 * settings.finest;
+        scales.stages = 30;
+        const Pose alone = anneal(part, fixed, from, scales);
+        scales.widest = scales.finest = 0.5 * settings.finest;
+        const Pose pose = anneal(some, fixed, alone, scales);
+        const double share = lies_on(some, fixed, pose, tight);
+        if (!(share > 1.02 * most)) continue;
+        most = share;
+        best.pose = pose;
+        judge(best, some, fixed, start, settings.finest);
+    }
+    return best;
+}
+
+Registration register_from_anywhere(std::span<const contact::SurfacePoint> moving, std::span<const contact::SurfacePoint> fixed_points,
+                                    const RegistrationTarget& fixed, const RegistrationSettings& settings) {
+    if (moving.empty()) throw Error("there is no surface to register");
+    const Spread from = spread_of(moving), to = spread_of(fixed_points);
+    RegistrationSettings coarse = settings;
+    coarse.most_points = std::max<std::size_t>(200, settings.most_points / 8);
+    coarse.finest = 3.0 * settings.finest;
+    coarse.stages = settings.stages / 2;
+    coarse.by_parts = false;
+    Registration best;
+    for (int n = 0; n < 24; ++n) {
+        // Main axes along each other in the four ways that are turns, each also turned about the longest by sixths.
+        Mat3 axes = to.axes;
+        if (n & 1) axes[0] = -axes[0], axes[1] = -axes[1];
+        const Quat about = glm::angleAxis(2.0 * std::numbers::pi * (n / 2) / 12.0, to.axes[0]);
+        const Quat turn = glm::normalize(about * glm::quat_cast(axes * glm::transpose(from.axes)));
+        const Registration found = register_surface(moving, fixed, {to.middle - turn * from.middle, turn}, coarse);
+        if (n == 0 || found.median < best.median) best = found;
+    }
+    return register_surface(moving, fixed, best.pose, settings);
+}
+
+namespace {
+
+/// The patch with the most area of what is marked and hangs together with gaps below `gap`.
+std::vector<std::size_t> largest_patch(std::span<const contact::SurfacePoint> points, const std::vector<char>& marked,
+                                       double gap) {
+    const auto patches = geometry::patches_of(points, gap, [&](std::size_t n) { return marked[n] != 0; });
+    const auto area_of = [&](const std::vector<std::size_t>& patch) {
+        double area = 0.0;
+        for (const std::size_t n : patch) area += points[n].area;
+        return area;
+    };
+    if (patches.empty()) return {};
+    return *std::ranges::max_element(patches, {}, area_of);
+}
+
+}  // namespace
+
+std::vector<std::size_t> displaced_region(std::span<const contact::SurfacePoint> moving, const Pose& pose,
+                                          const RegistrationTarget& fixed, double away, double gap, double margin) {
+    std::vector<char> is_away(moving.size());
+    for (std::size_t n = 0; n < moving.size(); ++n) is_away[n] = fixed.distance(pose.apply(moving[n].position)) > away;
+    const auto largest = largest_patch(moving, is_away, gap);
+    std::vector<char> taken(moving.size(), 0);
+    const geometry::Neighbours neighbours(moving, std::max(margin, 1e-9));
+    for (const std::size_t n : largest) neighbours.around(n, [&](std::size_t m) { taken[m] = 1; });
+    std::vector<std::size_t> region;
+    for (std::size_t n = 0; n < taken.size(); ++n)
+        if (taken[n]) region.push_back(n);
+    return region;
+}
+
+std::vector<std::size_t> region_nearer(std::span<const contact::SurfacePoint> moving, const Pose& rest, const Pose& own,
+                                       const RegistrationTarget& fixed, double nearer, double away, double gap) {
+    std::vector<char> fits_better(moving.size());
+    for (std::size_t n = 0; n < moving.size(); ++n) {
+        const double there = fixed.distance(own.apply(moving[n].position));
+        fits_better[n] = there < away && there + nearer < fixed.distance(rest.apply(moving[n].position));
+    }
+    return largest_patch(moving, fits_better, gap);
+}
+
+}  // namespace tactus::fit

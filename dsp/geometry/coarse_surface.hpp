@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// The same surface with fewer triangles, for pictures in which those of the full one are about a pixel: vertices within one
+// cell of a grid become one of them (Rossignac and Borrel 1993), unless that changed the outline.
+#pragma once
+
+#include "dsp/geometry/brick_surface.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tactus::geometry {
+
+/// The samples that a surface was made from.
+struct SurfaceGrid {
+    Vec3 origin{0.0};  ///< a corner where parts meet, m
+    Vec3 voxel{1e-3};  ///< m
+    int part = 0;  ///< voxels along the side of a part, such as a brick; 0: the surface is one part
+};
+
+/// Keeps the memory it works in. One thread at a time.
+class CoarseSurface {
+public:
+    /// Voxels along the side of a cell, by level; those of a level lie within those of the next. All divide a part.
+    static constexpr std::array<int, 4> factors{1, 2, 4, 8};
+    using Levels = std::array<SurfacePatch, factors.size()>;
+
+    /// What each level leaves of `fine`; valid until the next call. Every vertex stays within its cell and within a quarter
+    /// of a cell's side of the surface, and what stays is a vertex of `fine`. A body closed by several parts is closed
+    /// again: vertices on a face between two parts stay there, and both parts choose the same ones.
+    const Levels& make(const SurfacePatch& fine, const SurfaceGrid& grid);
+
+private:
+    struct Cell {
+        std::uint64_t key = 0;
+        double distance = 0.0;  ///< of its vertex to its middle, squared, in cells
+        std::uint32_t vertex = 0;
+    };
+
+    void merge(const SurfacePatch& fine, const SurfaceGrid& grid, int factor, SurfacePatch& coarse);
+    std::uint32_t cell_of(std::uint64_t key);
+
+    Levels levels_;
+    std::vector<Cell> cells_;
+    std::vector<std::uint32_t> slots_;  // open addressing: number in cells_ plus one
+    std::vector<std::uint32_t> now_;  // cell by vertex of the finer one
+};
+
+}  // namespace tactus::geometry

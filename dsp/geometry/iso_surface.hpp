@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles of the surface where the samples of a grid cross a value.
+#pragma once
+
+#include "dsp/volume/grid.hpp"
+
+#include <array>
+#include <vector>
+
+namespace tactus::geometry {
+
+/// Triangles with shared vertices, counter-clockwise seen from outside.
+struct TriangleSurface {
+    std::vector<Vec3> vertices;                 ///< m
+    std::vector<std::array<int, 3>> triangles;  ///< indices into vertices
+};
+
+/// The surface value == iso by marching tetrahedra (six per cell around its main diagonal), which has no ambiguous
+/// case: closed and two-manifold wherever it does not meet the border. Samples ≥ iso are inside when `inside_above`,
+/// samples < iso otherwise.
+TriangleSurface iso_surface(const volume::Grid& grid, float iso, bool inside_above);
+
+}  // namespace tactus::geometry

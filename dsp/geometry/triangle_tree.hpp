@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles of a surface in a tree of boxes: how near, which ones, and what a moving ball meets first.
+#pragma once
+
+#include "dsp/core/types.hpp"
+#include "dsp/geometry/iso_surface.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace tactus::geometry {
+
+/// Read only after construction; no query allocates. m, frame of the surface.
+class TriangleTree {
+public:
+    explicit TriangleTree(const TriangleSurface& surface);
+
+    struct Near {
+        Vec3 point{0.0};  ///< of a triangle, nearest to where it was asked for
+        double distance = std::numeric_limits<double>::infinity();
+        /// Unit, interpolated between those of the corners; zero next to what bends too sharply to be meant as round.
+        Vec3 normal{0.0};
+    };
+    /// The nearest point of all triangles that is nearer than `within`; infinitely far when there is none.
+    Near nearest(const Vec3& p, double within = std::numeric_limits<double>::infinity()) const noexcept;
+    /// Points of triangles nearer than `within`, one per triangle, in the order of the tree, until `found` is full.
+    std::size_t all_near(const Vec3& p, double within, std::span<Near> found) const noexcept;
+    /// Share of the way from `from` to `from` + `way` at which a ball first touches a triangle that it does not leave,
+    /// 0 to 1; 1 when it touches none.
+    double sweep(const Vec3& from, const Vec3& way, double radius) const noexcept;
+
+    std::size_t size() const noexcept { return corners_.size() / 3; }
+
+private:
+    struct Node {
+        Vec3 low, high;
+        std::uint32_t first = 0, count = 0;  // triangles of a leaf; of an inner node, `first` is its second child
+    };
+    Near near_on(std::size_t triangle, const Vec3& p) const noexcept;
+    std::uint32_t build(std::span<std::uint32_t> order, const std::vector<Vec3>& corners, std::uint32_t first);
+
+    std::vector<Node> nodes_;  // an inner node's first child follows it
+    std::vector<Vec3> corners_, normals_;  // three per triangle, in the order of the leaves
+};
+
+}  // namespace tactus::geometry

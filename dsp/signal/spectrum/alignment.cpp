@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/signal/spectrum/alignment.hpp"
+
+#include "dsp/signal/spectrum/transform.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <vector>
+
+namespace tactus::signal {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double pi = std::numbers::pi;
+constexpr double floor_ratio = 1e-6;       // −60 dB
+constexpr double search = 5e-3;            // s around the whitened peak
+constexpr double chance = 1e-3;
+// A Hann window makes neighbouring bins depend on each other: as if there were fewer.
+constexpr double hann_independence = 1.0 / 1.5;
+
+/// Half cosines at both ends: leakage of a record's ends would correlate with that of any other.
+std::vector<double> windowed(std::span<const double> samples, std::size_t count) {
+    std::vector<double> out(count);
+    for (std::size_t i = 0; i < count; ++i)
+        out[i] =
+            samples[i] * (0.5 - 0.5 * std::cos(2.0 * pi * (static_cast<double>(i) + 0.5) / static_cast<double>(count)));
+    return out;
+}
+
+/// Value at a lag in samples; negative lags stand at the end.
+double at(const std::vector<double>& circle, std::ptrdiff_t lag) {
+    const auto size = static_cast<std::ptrdiff_t>(circle.size());
+    return circle[static_cast<std::size_t>((lag % size + size) % size)];
+}
+
+/// Lag of the largest magnitude in [from, to].
+std::ptrdiff_t peak_of(const std::vector<double>& circle, std::ptrdiff_t from, std::ptrdiff_t to) {
+    std::ptrdiff_t best = from;
+    for (std::ptrdiff_t lag = from; lag <= to; ++lag)
+        if (std::abs(at(circle, lag)) > std::abs(at(circle, best))) best = lag;
+    return best;
+}
+
+}  // namespace
+
+Alignment align_takes(std::span<const double> reference, std::span<const double> output, double rate, double lowest,
+                      double highest, double longest) {
+    const std::size_t common = std::min(reference.size(), output.size());
+    const auto reach =
+        static_cast<std::ptrdiff_t>(std::min(std::round(longest * rate), 0.5 * static_cast<double>(common)));
+    Alignment found;
+    if (common < 64 || reach < 1) return found;
+    const std::size_t size = std::bit_ceil(common + static_cast<std::size_t>(reach) + 1);
+    const double step = rate / static_cast<double>(size);
+    const auto first = static_cast<std::size_t>(std::ceil(lowest / step));
+    const auto end = std::min(size / 2, static_cast<std::size_t>(std::floor(highest / step))) + 1;
+    if (first >= end) return found;
+
+    std::vector<Complex> a = spectrum_of(windowed(reference, common), size);
+    const std::vector<Complex> b = spectrum_of(windowed(output, common), size);
+    double strongest_a = 0.0, strongest_b = 0.0, power_a = 0.0, power_b = 0.0;
+    for (std::size_t k = first; k < end; ++k) {
+        strongest_a = std::max(strongest_a, std::norm(a[k]));
+        strongest_b = std::max(strongest_b, std::norm(b[k]));
+        power_a += std::norm(a[k]);
+        power_b += std::norm(b[k]);
+    }
+    if (!(power_a > 0.0 && power_b > 0.0)) return found;
+    std::vector<Complex> white(a.size()), plain(a.size());
+    double kept = 0.0;
+    for (std::size_t k = first; k < end; ++k) {
+        plain[k] = std::conj(a[k]) * b[k];
+        if (std::norm(a[k]) < floor_ratio * strongest_a || std::norm(b[k]) < floor_ratio * strongest_b) continue;
+        white[k] = plain[k] / std::abs(plain[k]);
+        kept += 1.0;
+    }
+    // What is kept are bins of the padded transform; as many values were free as the record alone would have.
+    kept *= static_cast<double>(common) / static_cast<double>(size);
+    if (kept < 2.0) return found;
+    const std::vector<double> whitened = samples_of(white);
+    const std::ptrdiff_t coarse = peak_of(whitened, -reach, reach);
+    // Mean of cos over random phases: variance 1/2 per independent value. The transform's sum counts each bin twice.
+    const double bins = kept * static_cast<double>(size) / static_cast<double>(common);
+    const double height = std::abs(at(whitened, coarse)) * static_cast<double>(size) / (2.0 * bins);
+    found.significance = height * std::sqrt(2.0 * kept * hann_independence);
+    // Peaks of the correlation of a band are about 1/(2 × bandwidth) apart.
+    const double trials = std::max(1.0, 4.0 * longest * (highest - lowest));
+    const double needed = std::sqrt(2.0 * std::log(2.0 * trials / chance));
+    found.significant = found.significance > needed;
+    if (!found.significant) return found;
+
+    const std::vector<double> correlation = samples_of(plain);
+    const auto near = static_cast<std::ptrdiff_t>(std::ceil(search * rate));
+    const std::ptrdiff_t lag = peak_of(correlation, std::max(coarse - near, -reach), std::min(coarse + near, reach));
+    const double left = at(correlation, lag - 1), middle = at(correlation, lag), right = at(correlation, lag + 1);
+    const double bend = left - 2.0 * middle + right;
+    const double shift = bend != 0.0 ? std::clamp(0.5 * (left - right) / bend, -0.5, 0.5) : 0.0;
+    found.delay = (static_cast<double>(lag) + shift) / rate;
+    const double peak = middle - 0.25 * (left - right) * shift;
+    found.correlation = std::clamp(peak * static_cast<double>(size) / (2.0 * std::sqrt(power_a * power_b)), -1.0, 1.0);
+    return found;
+}
+
+}  // namespace tactus::signal

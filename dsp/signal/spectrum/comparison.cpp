@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/signal/spectrum/comparison.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/signal/filter/resample.hpp"
+#include "dsp/signal/spectrum/bands.hpp"
+#include "dsp/signal/spectrum/comb.hpp"
+#include "dsp/signal/spectrum/cross.hpp"
+#include "dsp/signal/spectrum/welch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+namespace tactus::signal {
+
+namespace {
+
+constexpr double rate = 8000.0;  // Hz: everything here lies below 1 kHz
+constexpr double touch_end = 500.0;
+constexpr double shortest = 0.5, stretch = 60.0;  // s: of a take, and of what is aligned
+constexpr double silence = 1e-5;  // of the peak
+// Segments for distance and cosine, coherence, bands, lines.
+constexpr std::size_t coarse = 1024, middle = 2048, fine = 4096, sharp = 8192;
+constexpr double speed_range = 0.03;
+constexpr double lowest_rate = 60.0, highest_rate = 400.0;  // of a saw, Hz
+
+double decibel(double power_ratio) { return 10.0 * std::log10(power_ratio); }
+
+/// A take at the common rate, piece by piece.
+class Stream {
+public:
+    /// `start`: s of the take's clock where it begins. `speed`: by how much faster the take was than it shall be.
+    Stream(const Take& take, double start, double speed = 1.0)
+        : blocks_(take.open()), resampling_(take.frames, take.rate / speed, rate, start) {}
+
+    std::size_t size() const { return resampling_.frames(); }
+    /// The next `most` samples, fewer only at the end. Good until the next call.
+    std::span<const double> next(std::size_t most) {
+        ready_.erase(ready_.begin(), ready_.begin() + static_cast<std::ptrdiff_t>(given_));
+        while (ready_.size() < most) {
+            const std::span<const double> block = blocks_();
+            if (block.empty()) break;
+            resampling_.push(block, ready_);
+        }
+        given_ = std::min(most, ready_.size());
+        return {ready_.data(), given_};
+    }
+
+private:
+    Take::Blocks blocks_;
+    ResamplingStream resampling_;
+    std::vector<double> ready_;
+    std::size_t given_ = 0;
+};
+
+double variance(std::span<const double> samples) {
+    double mean = 0.0, square = 0.0;
+    for (const double x : samples) mean += x / static_cast<double>(samples.size());
+    for (const double x : samples) square += (x - mean) * (x - mean);
+    return square / static_cast<double>(samples.size());
+}
+
+/// The same stretch of both takes.
+struct Stretch {
+    std::vector<double> reference, output;
+};
+
+/// Where both are loudest, of stretches of that many samples, one after another; all of takes that are no longer.
+Stretch loudest_stretch(const Take& reference, const Take& output, std::size_t length) {
+    Stream r(reference, 0.0), d(output, 0.0);
+    Stretch best;
+    for (double most = -1.0;;) {
+        const std::span<const double> a = r.next(length), b = d.next(length);
+        const bool whole = a.size() == length && b.size() == length;
+        if (most < 0.0 || (whole && variance(a) * variance(b) > most)) {
+            most = whole ? variance(a) * variance(b) : 0.0;
+            best = {{a.begin(), a.end()}, {b.begin(), b.end()}};
+        }
+        if (!whole) return best;
+    }
+}
+
+/// What is compared: both takes from where they begin together, the output in the reference's polarity and at its speed.
+struct Pair {
+    const Take& reference;
+    const Take& output;
+    double reference_start = 0.0, output_start = 0.0;  // s
+    double speed = 1.0, sign = 1.0;
+    std::size_t common = 0;  // samples of both; 0: all that each has
+
+    std::size_t reference_size() const { return size_of(Stream(reference, reference_start)); }
+    std::size_t output_size() const { return size_of(Stream(output, output_start, speed)); }
+    WelchSettings settings(std::size_t segment) const {
+        // Whichever take is shorter holds four segments.
+        const std::size_t longest = std::bit_floor(std::min(reference_size(), output_size()) / 4);
+        WelchSettings settings;
+        settings.rate = rate;
+        settings.segment = std::min(segment, longest);
+        settings.overlap = settings.segment / 2;
+        return settings;
+    }
+    /// Calls `use` with pieces of both, as long as each other until one of them ends.
+    template <class Use>
+    void read(const Use& use) const {
+        Stream r(reference, reference_start), d(output, output_start, speed);
+        std::vector<double> turned;
+        constexpr std::size_t piece = 8192;
+        for (std::size_t done = 0; common == 0 || done < common; done += piece) {
+            const std::size_t most = common == 0 ? piece : std::min(piece, common - done);
+            const std::span<const double> a = r.next(most), b = d.next(most);
+            if (a.empty() && b.empty()) return;
+            turned.assign(b.begin(), b.end());
+            for (double& x : turned) x *= sign;
+            use(a, std::span<const double>(turned));
+        }
+    }
+
+private:
+    std::size_t size_of(const Stream& stream) const { return common == 0 ? stream.size() : common; }
+};
+
+/// A spectrum of each.
+struct SpectraOfBoth {
+    WelchStream<double> reference, output;
+    explicit SpectraOfBoth(const WelchSettings& settings) : reference(settings), output(reference) {}
+    void push(std::span<const double> r, std::span<const double> d) {
+        reference.push(r);
+        output.push(d);
+    }
+};
+
+/// Power in the band. Throws Error when that is nothing beside the greatest value, as in a constant.
+double power_in_band(double peak, const Spectrum& density, const Comparison& result, const char* name) {
+    const double power = band_power(density, result.lowest, result.highest);
+    if (!(std::sqrt(power) > silence * peak))
+        throw Error(fmt::format("the {} is silent from {:g} to {:g} Hz", name, result.lowest, result.highest));
+    return power;
+}
+
+/// Hz; 0 when the lines are of no one rate.
+double rate_of_strokes(const Spectrum& density) {
+    const Comb comb = fit_comb(density, lowest_rate, highest_rate);
+    return comb.confidence >= sure_of_comb ? comb.best.frequency : 0.0;
+}
+
+double peak_of(double before, std::span<const double> samples) {
+    for (const double x : samples) before = std::max(before, std::abs(x));
+    return before;
+}
+
+void score_spectra(const Pair& pair, const ComparisonOptions& options, SpectrogramSimilarity& spectrograms,
+                   Comparison& result) {
+    SpectraOfBoth coarse_spectra(pair.settings(coarse)), fine_spectra(pair.settings(fine));
+    double reference_peak = 0.0, output_peak = 0.0;
+    pair.read([&](std::span<const double> r, std::span<const double> d) {
+        coarse_spectra.push(r, d);
+        fine_spectra.push(r, d);
+        const std::size_t both = std::min(r.size(), d.size());
+        spectrograms.push(r.first(both), d.first(both));
+        reference_peak = peak_of(reference_peak, r);
+        output_peak = peak_of(output_peak, d);
+    });
+    spectrograms.end_of_pass();
+    const Spectrum fine_reference = fine_spectra.reference.spectrum(), fine_output = fine_spectra.output.spectrum();
+    const double low = result.lowest, high = result.highest;
+    const double reference_power = power_in_band(reference_peak, fine_reference, result, "reference");
+    const double output_power = power_in_band(output_peak, fine_output, result, "output");
+    result.reference_rms = std::sqrt(reference_power);
+    result.output_rms = std::sqrt(output_power);
+    result.gain_db = decibel(reference_power / output_power);
+    const double gain = std::sqrt(reference_power / output_power);
+
+    const Spectrum a = coarse_spectra.reference.spectrum(), b = coarse_spectra.output.spectrum();
+    const SpectrumPair powers{a.power, b.power, a.df};
+    result.lsd_db = log_spectral_distance(powers, low, std::min(touch_end, high), gain);
+    result.cosine_500 = spectral_cosine(powers, low, std::min(touch_end, high));
+    result.cosine_1000 = spectral_cosine(powers, low, high);
+    result.touch_cosine = spectral_cosine(powers, low, high, options.touch);
+    double felt_reference = 0.0, felt_output = 0.0;
+    for (std::size_t k = 0; k < a.power.size(); ++k) {
+        const double f = a.frequency(k);
+        if (f < low || f > high) continue;
+        const double weight = std::pow(10.0, 0.1 * touch_weight_db(f, options.touch));
+        felt_reference += weight * a.power[k];
+        felt_output += weight * gain * gain * b.power[k];
+    }
+    result.touch_gap_db = decibel(felt_output / felt_reference);
+
+    result.third_octaves =
+        third_octave_errors({fine_reference.power, fine_output.power, fine_reference.df}, low, high, gain);
+    double square = 0.0;
+    for (const BandError& band : result.third_octaves) {
+        result.third_octave_max_db = std::max(result.third_octave_max_db, std::abs(band.error_db));
+        square += band.error_db * band.error_db / static_cast<double>(result.third_octaves.size());
+    }
+    result.third_octave_rms_db = std::sqrt(square);
+    result.step = fine_reference.df;
+    result.reference_density = fine_reference.power;
+    for (const double power : fine_output.power) result.output_density.push_back(gain * gain * power);
+}
+
+void score_over_time(const Pair& pair, SpectrogramSimilarity& spectrograms, Comparison& result) {
+    std::optional<WaveformSimilarity> waveforms;
+    std::optional<CrossStream<double>> crossed;
+    if (result.alignment.significant) {
+        waveforms.emplace();
+        crossed.emplace(pair.settings(middle));
+    }
+    std::vector<double> equally_strong;
+    pair.read([&](std::span<const double> r, std::span<const double> d) {
+        const std::size_t both = std::min(r.size(), d.size());
+        spectrograms.push(r.first(both), d.first(both));
+        if (!waveforms) return;
+        equally_strong.assign(d.begin(), d.end());
+        for (double& x : equally_strong) x *= result.reference_rms / result.output_rms;
+        waveforms->push(r, equally_strong);
+        crossed->push(r, d);
+    });
+    spectrograms.end_of_pass();
+    result.spectrogram_similarity = spectrograms.value();
+    if (!waveforms) return;
+    result.st_sim = waveforms->st_sim();
+    result.spqi = waveforms->spqi();
+    result.signal_to_noise_db = waveforms->signal_to_noise_db();
+    const CrossSpectra cross = crossed->spectra();
+    result.coherence = cross.coherence();
+    result.coherence_step = cross.df;
+    // Only where the reference has something to say; between its lines there is noise of other origin.
+    double greatest = 0.0, sum = 0.0, count = 0.0;
+    const auto in_band = [&](std::size_t k) {
+        return cross.frequency(k) >= result.lowest && cross.frequency(k) <= result.highest;
+    };
+    for (std::size_t k = 0; k < cross.xx.size(); ++k)
+        if (in_band(k)) greatest = std::max(greatest, cross.xx[k]);
+    for (std::size_t k = 0; k < cross.xx.size(); ++k)
+        if (in_band(k) && cross.xx[k] > 1e-4 * greatest) sum += result.coherence[k], count += 1.0;
+    result.coherence_mean = count > 0.0 ? sum / count : 0.0;
+}
+
+template <class Sample>
+Take::Blocks blocks_of(std::span<const Sample> samples) {
+    return [samples, buffer = std::vector<double>()]() mutable -> std::span<const double> {
+        const std::size_t count = std::min<std::size_t>(samples.size(), 65536);
+        buffer.assign(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(count));
+        samples = samples.subspan(count);
+        return buffer;
+    };
+}
+
+}  // namespace
+
+Take::Take(std::span<const float> samples, double sample_rate)
+    : Take(sample_rate, samples.size(), [samples] { return blocks_of(samples); }) {}
+
+Take::Take(std::span<const double> samples, double sample_rate)
+    : Take(sample_rate, samples.size(), [samples] { return blocks_of(samples); }) {}
+
+Comparison compare(const Take& reference, const Take& output, const ComparisonOptions& options) {
+    Comparison result;
+    result.highest = std::min(1000.0, 0.45 * std::min(reference.rate, output.rate));
+    if (!(result.highest >= 100.0))
+        throw Error(fmt::format("a rate of {:g} Hz is too low to compare vibrations from 40 Hz on; 223 Hz is the least",
+                                std::min(reference.rate, output.rate)));
+    for (const auto& [take, name] : {std::pair(&reference, "reference"), std::pair(&output, "output")})
+        if (static_cast<double>(take->frames) < shortest * take->rate)
+            throw Error(fmt::format("the {} is shorter than {} s", name, shortest));
+    const auto length = static_cast<std::size_t>(rate * std::max(stretch, 4.0 * options.longest_delay));
+    const Stretch loud = loudest_stretch(reference, output, length);
+    result.alignment =
+        align_takes(loud.reference, loud.output, rate, result.lowest, result.highest, options.longest_delay);
+
+    // A take that is in memory already need not be read again.
+    const auto kept = [&](const Take& take, const std::vector<double>& samples) {
+        return Stream(take, 0.0).size() == samples.size() ? Take(std::span<const double>(samples), rate) : take;
+    };
+    const Take r = kept(reference, loud.reference), d = kept(output, loud.output);
+    Pair pair{r, d};
+    if (result.alignment.significant) {
+        pair.reference_start = std::max(0.0, -result.alignment.delay);
+        pair.output_start = std::max(0.0, result.alignment.delay);
+        pair.sign = result.alignment.correlation < 0.0 ? -1.0 : 1.0;
+        pair.common = std::min(pair.reference_size(), pair.output_size());
+    }
+    SpectraOfBoth sharp_spectra(pair.settings(sharp));
+    pair.read([&](std::span<const double> a, std::span<const double> b) { sharp_spectra.push(a, b); });
+    const Spectrum sharp_reference = sharp_spectra.reference.spectrum(), sharp_output = sharp_spectra.output.spectrum();
+    result.reference_hz = rate_of_strokes(sharp_reference);
+    result.output_hz = rate_of_strokes(sharp_output);
+    const double ratio = result.output_hz / result.reference_hz;
+    const bool one_saw = std::abs(ratio - 1.0) < speed_range;
+    // Both rates known and near each other: the output is brought to the reference's.
+    if (one_saw && !result.alignment.significant && std::abs(ratio - 1.0) >= 1e-5)
+        pair.speed = result.speed_ratio = ratio;
+    SpectrogramSimilarity spectrograms(rate, result.lowest, result.highest);
+    score_spectra(pair, options, spectrograms, result);
+    score_over_time(pair, spectrograms, result);
+    // Of a saw at another speed, the orders are compared, each take at its own.
+    result.harmonic_error_db = harmonic_error(sharp_reference, result.reference_hz, sharp_output,
+                                              one_saw ? result.output_hz : result.reference_hz, result.highest);
+    result.lines = match_lines(sharp_reference, sharp_output, std::pow(10.0, result.gain_db / 20.0), result.speed_ratio,
+                               result.lowest, result.highest);
+    return result;
+}
+
+}  // namespace tactus::signal

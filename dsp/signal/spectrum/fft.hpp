@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// Discrete Fourier transforms of any length, in float or double, by KissFFT. It is given lengths whose prime factors are
+// at most 31; others take the chirp way (Bluestein 1970) through a power of two, so none is slow.
+#pragma once
+
+#include "dsp/signal/spectrum/lanes.hpp"
+
+#include <complex>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace tactus::signal {
+
+namespace detail {
+
+/// The complex transform on interleaved parts (re, im, re, im, …). `V` is T, or Lanes<T> for several at once. Allocates
+/// when made or copied, not when used; not for two threads at once, as KissFFT keeps a scratch buffer.
+template <class T, class V>
+class FftPlan {
+public:
+    explicit FftPlan(std::size_t n);
+    ~FftPlan();
+    FftPlan(const FftPlan& other);
+    FftPlan(FftPlan&&) noexcept;
+    FftPlan& operator=(const FftPlan& other);
+    FftPlan& operator=(FftPlan&&) noexcept;
+
+    /// Transforms `a`, using `b` (2n values each, apart); the result stands in the one that is returned.
+    V* operator()(V* a, V* b) noexcept;
+
+private:
+    struct Kiss;
+    struct Chirp;
+
+    V* through_chirp(V* a) noexcept;
+
+    std::size_t n_;
+    std::unique_ptr<Kiss> kiss_;
+    std::unique_ptr<Chirp> chirp_;
+};
+
+/// The transform of real input; see RealFft.
+template <class T, class V>
+class RealFftPlan {
+public:
+    explicit RealFftPlan(std::size_t n);
+
+    std::size_t size() const noexcept { return n_; }
+    /// Where the n real values belong; the transforms spoil them.
+    V* input() noexcept { return a_.data(); }
+    /// n/2 + 1 complex values, interleaved, of what stands in input(); good until the next call.
+    const V* forward() noexcept;
+    /// From n/2 + 1 complex values, interleaved, to n real ones times n (n/2 for even n).
+    const V* inverse(const V* spectrum) noexcept;
+
+private:
+    std::size_t n_;
+    FftPlan<T, V> plan_;
+    std::vector<T> turns_;  // exp(−2πik/n) for k ≤ n/4, even n
+    std::vector<V> a_, b_;
+};
+
+}  // namespace detail
+
+/// Complex transform of length n ≥ 1. Allocates when made, not when used; not for two threads at once.
+template <class T>
+class Fft {
+public:
+    explicit Fft(std::size_t n) : n_(n), plan_(n), a_(2 * n), b_(2 * n) {}
+
+    std::size_t size() const noexcept { return n_; }
+    /// X[k] = Σ x[i] exp(−2πi·ik/n). Both spans hold n values and may be the same.
+    void forward(std::span<const std::complex<T>> x, std::span<std::complex<T>> spectrum) noexcept;
+    /// The inverse of forward: x[i] = 1/n Σ X[k] exp(+2πi·ik/n).
+    void inverse(std::span<const std::complex<T>> spectrum, std::span<std::complex<T>> x) noexcept;
+
+private:
+    std::size_t n_;
+    detail::FftPlan<T, T> plan_;
+    std::vector<T> a_, b_;
+};
+
+/// Real transform of length n ≥ 1. Allocates when made, not when used; not for two threads at once.
+template <class T>
+class RealFft {
+public:
+    explicit RealFft(std::size_t n) : plan_(n) {}
+
+    std::size_t size() const noexcept { return plan_.size(); }
+    /// Number of complex values: 0 Hz up to half the rate, n/2 + 1.
+    std::size_t bins() const noexcept { return plan_.size() / 2 + 1; }
+    /// `x`: n values; `spectrum`: bins() values.
+    void forward(std::span<const T> x, std::span<std::complex<T>> spectrum) noexcept;
+    /// The inverse of forward. Imaginary parts at 0 Hz and (even n) at half the rate count as zero.
+    void inverse(std::span<const std::complex<T>> spectrum, std::span<T> x) noexcept;
+
+private:
+    detail::RealFftPlan<T, T> plan_;
+};
+
+}  // namespace tactus::signal

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/signal/spectrum/lines.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace tactus::signal {
+
+namespace {
+
+double decibels(double ratio) { return 10.0 * std::log10(std::max(ratio, 1e-30)); }
+
+/// Median of the bins 4 … 16 away from `k`, on both sides.
+double floor_around(const Spectrum& spectrum, std::size_t k) {
+    std::array<double, 26> bins;
+    std::size_t count = 0;
+    for (std::size_t away = 4; away <= 16; ++away) {
+        if (k >= away + 1) bins[count++] = spectrum.power[k - away];
+        if (k + away < spectrum.power.size()) bins[count++] = spectrum.power[k + away];
+    }
+    if (count == 0) return 0.0;
+    const auto middle = bins.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(bins.begin(), middle, bins.begin() + static_cast<std::ptrdiff_t>(count));
+    return *middle;
+}
+
+double snr_of(const Spectrum& spectrum, std::size_t k) {
+    const double floor = floor_around(spectrum, k);
+    if (!(spectrum.power[k] > 0.0)) return 0.0;
+    return std::min(200.0, decibels(spectrum.power[k] / std::max(floor, 1e-20 * spectrum.power[k])));
+}
+
+}  // namespace
+
+bool is_top(const Spectrum& spectrum, std::size_t k) noexcept {
+    const std::vector<double>& p = spectrum.power;
+    return k >= 1 && k + 1 < p.size() && p[k] > p[k - 1] && p[k] >= p[k + 1];
+}
+
+SpectralLine line_at(const Spectrum& spectrum, std::size_t k) {
+    const std::vector<double>& p = spectrum.power;
+    SpectralLine line{spectrum.frequency(k), p[k] * spectrum.noise_bandwidth, snr_of(spectrum, k)};
+    if (!is_top(spectrum, k)) return line;
+    const bool above = p[k + 1] > p[k - 1];
+    const double ratio = std::sqrt((above ? p[k + 1] : p[k - 1]) / p[k]);
+    const double shift = std::clamp((2.0 * ratio - 1.0) / (ratio + 1.0), 0.0, 0.5);
+    line.frequency += (above ? shift : -shift) * spectrum.df;
+    if (shift > 1e-9) {
+        const double angle = std::numbers::pi * shift;
+        const double loss = std::sin(angle) / (angle * (1.0 - shift * shift));
+        line.power /= loss * loss;
+        line.snr_db -= decibels(loss * loss);
+    }
+    return line;
+}
+
+SpectralLine line_near(const Spectrum& spectrum, double frequency, double reach) {
+    if (spectrum.power.size() < 3) return {frequency, 0.0, 0.0};
+    const double last = static_cast<double>(spectrum.power.size() - 2);
+    const double low = std::ceil((frequency - reach) / spectrum.df),
+                 high = std::floor((frequency + reach) / spectrum.df);
+    if (!(low <= last) || !(high >= 1.0)) return {frequency, 0.0, 0.0};
+    auto k = static_cast<std::size_t>(std::clamp(low, 1.0, last));
+    const auto end = static_cast<std::size_t>(std::clamp(std::max(low, high), 1.0, last));
+    std::size_t best = k;
+    for (; k <= end; ++k)
+        if (spectrum.power[k] > spectrum.power[best]) best = k;
+    return line_at(spectrum, best);
+}
+
+double detection_threshold_db(const Spectrum& spectrum) {
+    // Quantile 1 − 10⁻⁶ of the mean of K exponential powers over their median (Wilson and Hilferty 1931).
+    const double part = 1.0 / (9.0 * std::max(1.0, spectrum.effective_segments));
+    const double tail = std::pow(1.0 - part + 4.75 * std::sqrt(part), 3.0), median = std::pow(1.0 - part, 3.0);
+    // A line between two bins counts for up to 1.42 dB more than its stronger bin.
+    return std::max(10.0, decibels(tail / median) + 1.42);
+}
+
+std::vector<SpectralLine> find_lines(const Spectrum& spectrum, double lowest, double highest, double snr_db) {
+    std::vector<SpectralLine> lines;
+    each_line(spectrum, lowest, highest, snr_db, [&](const SpectralLine& line) { lines.push_back(line); });
+    return lines;
+}
+
+std::vector<Harmonic> harmonic_table(const Spectrum& spectrum, double fundamental, int orders) {
+    std::vector<Harmonic> table;
+    const double highest = spectrum.df * static_cast<double>(spectrum.power.size() - 2);
+    for (int order = 1; order <= orders && fundamental > 0.0 && order * fundamental < highest; ++order) {
+        const double place = order * fundamental;
+        // A rate that wavers moves its high orders most.
+        const double reach = std::min(1.5 * spectrum.df + 0.005 * place, 0.4 * fundamental);
+        Harmonic harmonic;
+        static_cast<SpectralLine&>(harmonic) = line_near(spectrum, place, reach);
+        harmonic.order = order;
+        harmonic.present = harmonic.snr_db >= 6.0 && std::abs(harmonic.frequency - place) <= reach;
+        table.push_back(harmonic);
+    }
+    return table;
+}
+
+std::vector<HumLine> find_hum(const Spectrum& spectrum, double fundamental) {
+    std::vector<HumLine> found;
+    if (spectrum.power.size() < 16) return found;
+    const double threshold = detection_threshold_db(spectrum);
+    const auto is_mains = [](double f) { return std::abs(f - 50.0) < 0.15 || std::abs(f - 60.0) < 0.15; };
+    for (const int mains : {50, 60}) {
+        std::vector<HumLine> family;
+        for (int order = 1; order <= 10; ++order) {
+            const double place = mains * order;
+            if (place > spectrum.frequency(spectrum.power.size() - 6) || place < 5.0 * spectrum.df) continue;
+            if (fundamental > 0.0 && !is_mains(fundamental)) {
+                const double nearest = std::max(1.0, std::round(place / fundamental)) * fundamental;
+                if (std::abs(place - nearest) <= 1.5 * spectrum.noise_bandwidth + 0.003 * place) continue;
+            }
+            HumLine line;
+            static_cast<SpectralLine&>(line) = line_near(spectrum, place, 2.0 * spectrum.df);
+            line.mains = mains;
+            line.order = order;
+            const auto top = static_cast<std::size_t>(std::lround(line.frequency / spectrum.df));
+            // A steady line is as narrow as the window; a hump of noise or of a wavering rate is not.
+            const double skirt = std::max(spectrum.power[top - 3], spectrum.power[top + 3]);
+            const bool narrow = spectrum.power[top] > 4.0 * skirt;
+            const bool in_place = std::abs(line.frequency - place) <= 0.5 * spectrum.df + 0.002 * place;
+            if (line.snr_db >= threshold && narrow && in_place) family.push_back(line);
+        }
+        const bool founded = std::any_of(family.begin(), family.end(), [](const HumLine& h) { return h.order <= 3; });
+        // 300 and 600 Hz belong to both: the family that comes second does not repeat them.
+        for (const HumLine& line : family)
+            if (founded && std::none_of(found.begin(), found.end(), [&](const HumLine& other) {
+                    return std::abs(other.mains * other.order - line.mains * line.order) == 0;
+                }))
+                found.push_back(line);
+    }
+    return found;
+}
+
+}  // namespace tactus::signal

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sensors of a gripper: what they add to the truth, and how a strain gauge is calibrated.
+#pragma once
+
+#include "dsp/core/random.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+namespace tactus::simulate {
+
+/// Counts in steps of `step` with normal noise before counting.
+struct Quantiser {
+    double step = 0.0;   ///< 0: none
+    double noise = 0.0;  ///< rms, in the unit of the value
+    Random random;
+
+    /// Depends on `value` and `index` only.
+    double operator()(double value, std::uint64_t index) const noexcept {
+        if (noise > 0.0) value += noise * random.normal(index);
+        return step > 0.0 ? step * std::nearbyint(value / step) : value;
+    }
+};
+
+/// y = slope x + offset by least squares.
+struct LineFit {
+    double slope = 1.0, offset = 0.0;
+    double r_squared = 1.0;       ///< share of the variance that the line explains
+    double worst_residual = 0.0;  ///< of one point, in the unit of y: how far from linear
+
+    double operator()(double x) const noexcept { return slope * x + offset; }
+};
+
+/// A strain gauge's constant from readings under known forces (thesis 6.3.1). Needs two points with different x; else a
+/// slope of 0. Sums in the order of the points.
+LineFit fit_line(std::span<const double> x, std::span<const double> y) noexcept;
+
+}  // namespace tactus::simulate

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// A simulated hand on a device: a rigid mass that springs and dampers pull towards where the operator wants it, pushed
+// by the force of the device.
+#pragma once
+
+#include "dsp/core/rotation.hpp"
+#include "dsp/core/types.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::simulate {
+
+/// Where the operator wants the hand, and how it moves there.
+struct Intention {
+    Pose pose;
+    Twist twist;
+};
+
+/// Hand, handpiece and moving parts of the device. Defaults: a 0.2 kg handpiece in a precision grip, 800 N/m and
+/// 15 N·s/m (critical damping ratio 0.6); all of it assumptions within the range published for hands.
+struct HandDynamics {
+    double mass = 0.2;               ///< kg
+    double inertia = 4e-4;           ///< kg·m², the same about every axis
+    double stiffness = 800.0;        ///< N/m
+    double damping = 15.0;           ///< N·s/m, against the intended velocity
+    double angular_stiffness = 2.0;  ///< N·m/rad
+    double angular_damping = 0.04;   ///< N·m·s/rad
+};
+
+/// State of the hand. `step` is the implicit midpoint rule: stable for any stiffness and step, and without damping of
+/// its own, so a wall rendered too stiff shows as the instability it is.
+struct Hand {
+    HandDynamics dynamics;
+    Pose pose;
+    Twist twist;
+
+    /// Advances by `h` s towards `intended` (its pose and twist in the middle of the step) under `force`, which is
+    /// constant during the step. Device frame.
+    void step(double h, const Intention& intended, const Wrench& force) noexcept {
+        const HandDynamics& d = dynamics;
+        const Vec3 v = (twist.linear * (2.0 * d.mass / h) + force.force +
+                        (intended.pose.position - pose.position) * d.stiffness + intended.twist.linear * d.damping) /
+                       (2.0 * d.mass / h + d.damping + 0.5 * d.stiffness * h);
+        pose.position += v * h;
+        twist.linear = 2.0 * v - twist.linear;
+
+        const Vec3 error = rotation_between(pose.orientation, intended.pose.orientation);
+        const Vec3 w = (twist.angular * (2.0 * d.inertia / h) + force.torque + error * d.angular_stiffness +
+                        intended.twist.angular * d.angular_damping) /
+                       (2.0 * d.inertia / h + d.angular_damping + 0.5 * d.angular_stiffness * h);
+        pose.orientation = glm::normalize(rotation_by(w * h) * pose.orientation);
+        twist.angular = 2.0 * w - twist.angular;
+    }
+};
+
+/// Longest internal step of a hand, s.
+inline constexpr double hand_substep_s = 0.25e-3;
+
+/// Moves `hand` through `elapsed_s` in equal steps of at most `hand_substep_s`, with the force held. `intend(h, force,
+/// pose)` advances the operator by h and returns the intention in the middle of that step. A force that is not finite
+/// is taken as none: a broken wrench must not break the hand too.
+template <typename Intend>
+void advance(Hand& hand, Intend& intend, const Wrench& force, double elapsed_s) noexcept {
+    if (!(elapsed_s > 0.0)) return;
+    const Wrench felt = is_finite(force) ? force : Wrench{};
+    const int steps = static_cast<int>(std::ceil(std::min(elapsed_s, 10.0) / hand_substep_s - 1e-6));
+    const double h = elapsed_s / std::max(steps, 1);
+    for (int i = 0; i < std::max(steps, 1); ++i) hand.step(h, intend(h, felt, hand.pose), felt);
+}
+
+}  // namespace tactus::simulate

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a simulated operator intends: approach, press, long strokes while feeding into the material, retract.
+#pragma once
+
+#include "dsp/simulate/hand.hpp"
+#include "dsp/simulate/tremor.hpp"
+
+#include <numbers>
+
+namespace tactus::simulate {
+
+/// The path of one cut in the device frame. Thrust is no input: it emerges where the feed meets resistance.
+struct StrokePlan {
+    Pose start;                            ///< clear of the material
+    Vec3 stroke_axis{1.0, 0.0, 0.0};       ///< unit, along the blade
+    Vec3 feed_axis{0.0, 0.0, -1.0};        ///< unit, into the material
+    double stroke_amplitude = 8e-3;        ///< m
+    double stroke_rate = 0.7;              ///< Hz
+    double thrust = 7.0;                   ///< N at which the operator stops pushing further
+    double feed_speed = 30e-3;             ///< m/s when nothing resists
+    double depth = 30e-3;                  ///< m along feed_axis from start; the hand there means: through, retract
+    double retract_speed = 40e-3;          ///< m/s
+    double feed_at = 0.5;                  ///< s: leaves the start pose
+    double stroke_at = 1.0;                ///< s: strokes begin; they reach full length within a second
+    double retract_at = 60.0;              ///< s: retracts even if not through
+    double trigger_on = 0.3;               ///< s
+    double trigger_off = 1e9;              ///< s: released then, or when back at the start pose
+    Tremor tremor{};
+};
+
+/// The operator's side of a cut. The intended depth advances at feed_speed · (1 − felt / thrust): a muscle that yields
+/// as the felt force nears its goal. In a material that gives way at speed v the thrust settles at
+/// thrust · (1 − v / feed_speed), whatever the stiffness of the contact.
+class StrokeOperator {
+public:
+    explicit StrokeOperator(const StrokePlan& plan = {}) : plan_(plan) {}
+
+    /// See `advance` in hand.hpp.
+    Intention operator()(double h, const Wrench& force, const Pose& hand) noexcept {
+        const double middle = time_ + 0.5 * h;
+        const double depth_speed = feed(h, force, hand);
+        Intention intended;
+        intended.pose.orientation = plan_.start.orientation;
+        Vec3 shake, shake_speed;
+        plan_.tremor.at(middle, shake, shake_speed);
+        double along = 0.0, along_speed = 0.0;
+        stroke(middle, along, along_speed);
+        intended.pose.position = plan_.start.position + shake + plan_.feed_axis * (depth_ + 0.5 * h * depth_speed) +
+                                 plan_.stroke_axis * along;
+        intended.twist.linear = shake_speed + plan_.feed_axis * depth_speed + plan_.stroke_axis * along_speed;
+        depth_ += h * depth_speed;
+        time_ += h;
+        return intended;
+    }
+
+    bool trigger() const noexcept {
+        return time_ >= plan_.trigger_on && time_ < plan_.trigger_off && !(retracting_ && depth_ <= 0.0);
+    }
+    bool is_retracting() const noexcept { return retracting_; }
+    double felt_thrust() const noexcept { return felt_; }      ///< N, as the muscles sense it
+    double intended_depth() const noexcept { return depth_; }  ///< m
+    double time() const noexcept { return time_; }             ///< s
+
+private:
+    static constexpr double sense_s = 0.03;  // proprioceptive delay as a low-pass; ten times faster than the feed loop
+    static constexpr double ease_s = 1.0;
+
+    double feed(double h, const Wrench& force, const Pose& hand) noexcept {
+        felt_ += (-glm::dot(force.force, plan_.feed_axis) - felt_) * h / (sense_s + h);
+        if (time_ < plan_.feed_at) return 0.0;
+        const double reached = glm::dot(hand.position - plan_.start.position, plan_.feed_axis);
+        if (!retracting_ && (time_ >= plan_.retract_at || reached >= plan_.depth)) {
+            retracting_ = true;
+            retract_from_ = time_;
+            // From the hand, not from where it was pushing to: an operator lets go before pulling out.
+            depth_ = std::min(depth_, std::max(reached, 0.0));
+        }
+        if (retracting_) return std::max(-plan_.retract_speed, -depth_ / h);
+        return plan_.feed_speed * std::clamp(1.0 - felt_ / plan_.thrust, -1.0, 1.0);
+    }
+
+    void stroke(double t, double& along, double& speed) const noexcept {
+        const double since = t - plan_.stroke_at;
+        if (since <= 0.0) return;
+        const double pi = std::numbers::pi, rate = 2.0 * pi * plan_.stroke_rate;
+        double gain = 1.0, gain_rate = 0.0;
+        ease(since, gain, gain_rate);
+        if (retracting_) {
+            double rise = 0.0, rise_rate = 0.0;
+            ease(t - retract_from_, rise, rise_rate);
+            gain_rate = gain_rate * (1.0 - rise) - gain * rise_rate;
+            gain *= 1.0 - rise;
+        }
+        along = plan_.stroke_amplitude * gain * std::sin(rate * since);
+        speed = plan_.stroke_amplitude * (gain_rate * std::sin(rate * since) + gain * rate * std::cos(rate * since));
+    }
+
+    /// Half a cosine from 0 to 1 within ease_s.
+    static void ease(double since, double& value, double& rate) noexcept {
+        const double pi = std::numbers::pi;
+        const bool rising = since < ease_s;
+        value = rising ? 0.5 - 0.5 * std::cos(pi * since / ease_s) : 1.0;
+        rate = rising ? 0.5 * pi / ease_s * std::sin(pi * since / ease_s) : 0.0;
+    }
+
+    StrokePlan plan_;
+    double time_ = 0.0, depth_ = 0.0, felt_ = 0.0, retract_from_ = 0.0;
+    bool retracting_ = false;
+};
+
+}  // namespace tactus::simulate

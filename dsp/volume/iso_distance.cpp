@@ -1,0 +1,394 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/volume/iso_distance.hpp"
+
+#include "dsp/volume/cubic_interpolant.hpp"
+#include "dsp/geometry/nearest_points.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace tactus::volume {
+
+namespace {
+
+// Points of the surface, about one per cell that it crosses, with normals.
+struct Points {
+    std::vector<glm::vec3> at;      // samples from the origin
+    std::vector<glm::vec3> normal;  // unit length in m, towards lower values
+};
+
+// A step along the gradient onto the surface, m, at most `reach` long so that a flat spot throws nothing away.
+Vec3 onto_surface(const CubicInterpolant::Sample& f, double iso, double reach) {
+    const double steep = glm::dot(f.gradient, f.gradient);
+    if (!(steep > 0.0)) return Vec3(0.0);
+    const Vec3 step = f.gradient * ((iso - f.value) / steep);
+    const double length = glm::length(step);
+    return length > reach ? step * (reach / length) : step;
+}
+
+// `grey` are layers of the volume from `first` on; all places count from the volume's first layer.
+struct Finder {
+    const Grid& grey;
+    int first, layers;  // held from here on; of the whole volume
+    float iso;
+    CubicInterpolant f{grey, first, layers};
+    double cell = std::min({grey.spacing.x, grey.spacing.y, grey.spacing.z});
+    double widest = std::max({grey.spacing.x, grey.spacing.y, grey.spacing.z});
+    glm::vec3 h{grey.spacing};
+
+    // The mean of the places where the cell's edges cross iso, moved onto the surface.
+    std::optional<Vec3> point_in_cell(int i, int j, int k, const std::array<float, 8>& value) const {
+        Vec3 sum(0.0);
+        int count = 0;
+        for (int from = 0; from < 8; ++from)
+            for (int bit = 1; bit < 8; bit <<= 1) {
+                if (from & bit) continue;
+                const float a = value[static_cast<std::size_t>(from)], b = value[static_cast<std::size_t>(from | bit)];
+                if ((a >= iso) == (b >= iso)) continue;
+                const double t = (double(iso) - double(a)) / (double(b) - double(a));
+                Vec3 at(from & 1, from >> 1 & 1, from >> 2);
+                at[bit >> 1] += t;
+                sum += at;
+                ++count;
+            }
+        if (count == 0) return {};
+        const Vec3 corner(i, j, k);
+        Vec3 at = corner + sum / double(count);
+        for (int step = 0; step < 2; ++step) at += onto_surface(f(at), iso, 0.5 * cell) / grey.spacing;
+        return glm::clamp(at, corner, corner + 1.0);
+    }
+
+    void points_of_layer(int k, Points& points) const {
+        const auto width = static_cast<std::size_t>(grey.size[0]), layer = grey.index(0, 0, 1);
+        for (int j = 0; j + 1 < grey.size[1]; ++j) {
+            const float* row = &grey.values[grey.index(0, j, k - first)];
+            for (int i = 0; i + 1 < grey.size[0]; ++i, ++row) {
+                const std::array<float, 8> value{
+                    row[0],     row[1],         row[width],         row[width + 1],
+                    row[layer], row[layer + 1], row[layer + width], row[layer + width + 1]};
+                int above = 0;
+                for (const float v : value) above += v >= iso;
+                if (above == 0 || above == 8) continue;
+                const auto at = point_in_cell(i, j, k, value);
+                const Vec3 slope = f(*at).gradient;
+                const double length = glm::length(slope);
+                points.at.push_back(glm::vec3(*at));
+                points.normal.push_back(glm::vec3(length > 0.0 ? -slope / length : Vec3(0.0)));
+            }
+        }
+    }
+
+    // Distance to the point of the surface nearest to `at`, from a near guess: steps onto the surface, and along it
+    // towards `at`, as long as the curvature seen so far asks for. Infinite when no point of the surface was met.
+    double refined(const Vec3& at, const Vec3& guess) const {
+        Vec3 x = guess, moved(0.0), before(0.0);
+        double best = std::numeric_limits<double>::infinity(), stretch = 1.0;
+        for (int step = 0; step < 10; ++step) {
+            const auto here = f(x);
+            const double steep = glm::dot(here.gradient, here.gradient);
+            if (!(steep > 0.0)) break;
+            const Vec3 towards = (at - x) * grey.spacing;
+            const Vec3 along = towards - here.gradient * (glm::dot(towards, here.gradient) / steep);
+            const double off = std::abs(here.value - double(iso)) / std::sqrt(steep), aside = glm::length(along);
+            const double far = glm::length(towards);
+            if (off < 2e-3 * cell) {
+                best = std::min(best, far);
+                // Straight below `at`: what is left aside lengthens by its square only.
+                if (aside < 0.04 * far || aside < 2e-3 * cell) break;
+            }
+            // On a convex surface a full step overshoots, in a hollow it falls short.
+            if (const double length2 = glm::dot(moved, moved); length2 > 0.0)
+                stretch = std::clamp(length2 / std::max(glm::dot(before - along, moved), 1e-9 * length2), 0.2, 2.0);
+            moved = along * std::min(stretch, 0.6 * cell / std::max(aside, 1e-30));
+            before = along;
+            x += (onto_surface(here, iso, 0.5 * cell) + moved) / grey.spacing;
+        }
+        return best;
+    }
+};
+
+// What is known around the samples of some layers: grey values, and which point of the surface is nearest.
+struct Field {
+    const Finder& finder;
+    const Points& points;
+    const std::vector<std::int32_t>& nearest;
+    int first, end;  // layers that `nearest` covers
+    double reach;
+    float band = static_cast<float>(3.0 * finder.widest);
+    float around2 =
+        (band + 1.5f * static_cast<float>(finder.widest)) * (band + 1.5f * static_cast<float>(finder.widest));
+
+    float apart2(const glm::vec3& at, std::int32_t id) const {
+        const glm::vec3 d = (points.at[static_cast<std::size_t>(id)] - at) * finder.h;
+        return glm::dot(d, d);
+    }
+
+    // To the disc of half a cell's diagonal around a point, along its tangent plane.
+    float to_disc(const glm::vec3& at, std::int32_t id) const {
+        const glm::vec3 d = (at - points.at[static_cast<std::size_t>(id)]) * finder.h;
+        const float up = glm::dot(d, points.normal[static_cast<std::size_t>(id)]);
+        const float aside = std::sqrt(std::max(0.0f, glm::dot(d, d) - up * up));
+        const float over = std::max(0.0f, aside - 0.7f * static_cast<float>(finder.cell));
+        return std::sqrt(up * up + over * over);
+    }
+
+    // Points that may be nearest, the nearest first: what the sample, its neighbours and the places below it on the
+    // surface know.
+    struct Candidates {
+        std::array<std::int32_t, 3> id{-1, -1, -1};
+        std::array<float, 3> apart2{};
+    };
+
+    std::int32_t nearest_at(int x, int y, int z) const { return nearest[finder.grey.index(x, y, z - first)]; }
+
+    void offer(Candidates& found, const glm::vec3& at, int x, int y, int z) const {
+        const std::int32_t id = nearest_at(x, y, std::clamp(z, first, end - 1));
+        if (id == found.id[0] || id == found.id[1] || id == found.id[2]) return;
+        const float d = apart2(at, id);
+        for (std::size_t n = 0; n < 3; ++n)
+            if (found.id[n] < 0 || d < found.apart2[n]) {
+                for (std::size_t m = 2; m > n; --m)
+                    found.id[m] = found.id[m - 1], found.apart2[m] = found.apart2[m - 1];
+                found.id[n] = id, found.apart2[n] = d;
+                return;
+            }
+    }
+
+    void neighbours(Candidates& found, const glm::vec3& at, int i, int j, int k) const {
+        const auto& size = finder.grey.size;
+        if (i > 0) offer(found, at, i - 1, j, k);
+        if (j > 0) offer(found, at, i, j - 1, k);
+        if (k > 0) offer(found, at, i, j, k - 1);
+        if (i + 1 < size[0]) offer(found, at, i + 1, j, k);
+        if (j + 1 < size[1]) offer(found, at, i, j + 1, k);
+        if (k + 1 < finder.layers) offer(found, at, i, j, k + 1);
+    }
+
+    void walk(Candidates& found, const glm::vec3& at) const {
+        const auto& size = finder.grey.size;
+        for (int step = 0; step < 3; ++step) {
+            const std::int32_t before = found.id[0];
+            const auto n = static_cast<std::size_t>(before);
+            const glm::vec3 d = (at - points.at[n]) * finder.h;
+            const glm::vec3 foot = at - points.normal[n] * glm::dot(d, points.normal[n]) / finder.h;
+            offer(found, at, std::clamp(static_cast<int>(foot.x + 0.5f), 0, size[0] - 1),
+                  std::clamp(static_cast<int>(foot.y + 0.5f), 0, size[1] - 1),
+                  std::clamp(static_cast<int>(foot.z + 0.5f), 0, finder.layers - 1));
+            if (found.id[0] == before) break;
+        }
+    }
+
+    double exact(const glm::vec3& at, const Candidates& found) const {
+        const auto place = [&](std::size_t n) { return points.at[static_cast<std::size_t>(found.id[n])]; };
+        double least = finder.refined(Vec3(at), Vec3(place(0)));
+        for (std::size_t n = 1; n < 3 && found.id[n] >= 0; ++n) {
+            // Another part of the surface: not beside the first, and no farther than its cell's corners allow.
+            const glm::vec3 between = (place(n) - place(0)) * finder.h;
+            const auto aside = 1.0 * finder.widest;
+            if (glm::length(between) > 1.5f * static_cast<float>(finder.widest) &&
+                double(found.apart2[n]) < least * least + aside * aside)
+                least = std::min(least, finder.refined(Vec3(at), Vec3(place(n))));
+        }
+        return least;
+    }
+
+    // All points that can count for a sample this far from the surface lie in the layers at hand: those below its feet
+    // are as far away once more.
+    bool is_sure(int k, double away) const {
+        const double need = 2.0 * away + 6.0 * finder.widest, h = finder.grey.spacing.z;
+        return (first == 0 || (k - first) * h >= need) && (end == finder.layers || (end - 1 - k) * h >= need);
+    }
+
+    // Distances of layer k; false where more layers around it must be at hand.
+    bool layer(int k, float* out) const {
+        const Grid& grid = finder.grey;
+        for (int j = 0; j < grid.size[1]; ++j)
+            for (int i = 0; i < grid.size[0]; ++i, ++out) {
+                const glm::vec3 at(i, j, k);
+                const bool inside = grid.at(i, j, k - finder.first) >= finder.iso;
+                Candidates found;
+                const bool has_point = nearest_at(i, j, k) >= 0;
+                if (has_point) offer(found, at, i, j, k);
+                const double away =
+                    has_point ? std::sqrt(double(found.apart2[0])) : std::numeric_limits<double>::infinity();
+                if (!inside && away >= reach + finder.widest) {
+                    *out = static_cast<float>(reach);
+                    continue;
+                }
+                if (!is_sure(k, away)) return false;
+                if (!has_point) {
+                    *out = inside ? -std::numeric_limits<float>::infinity() : static_cast<float>(reach);
+                    continue;
+                }
+                if (found.apart2[0] < around2) neighbours(found, at, i, j, k);
+                walk(found, at);
+                float value = to_disc(at, found.id[0]);
+                if (value < band)
+                    if (const double d = exact(at, found); std::isfinite(d)) value = static_cast<float>(d);
+                *out = inside ? -value : std::min(value, static_cast<float>(reach));
+            }
+        return true;
+    }
+};
+
+// A volume's layers that are in memory, and the points of its surface that were found so far.
+struct Slabs {
+    const Grid& layout;
+    float iso;
+    const DistanceInLayers& how;
+    const LayersOfGrey& source;
+    const RunJobs& run;
+    Grid held{};  // from layer `first` on
+    int first = 0;
+    std::vector<Points> cells{};  // between each layer and the next
+    double widest = std::max({layout.spacing.x, layout.spacing.y, layout.spacing.z});
+    double cell = std::min({layout.spacing.x, layout.spacing.y, layout.spacing.z});
+
+    int layers() const { return layout.size[2]; }
+    int held_end() const { return first + held.size[2]; }
+    Finder finder() const { return {held, first, layers(), iso}; }
+
+    // Around a sample in the band: where steps from a point near it can lead, with the cubic's own support.
+    int around() const { return static_cast<int>(std::ceil((10.0 * widest + 11.0 * cell) / layout.spacing.z)) + 3; }
+
+    // Holds the layers from `from` up to `end`, and knows the points of all cells below `end` - 3.
+    void hold(int from, int end) {
+        from = std::max(from, first);
+        end = std::min(end, layers());
+        const std::size_t layer = layout.index(0, 0, 1);
+        if (const int gone = std::min(from, held_end()) - first; gone > 0) {
+            held.values.erase(held.values.begin(), held.values.begin() + static_cast<std::ptrdiff_t>(
+                                                                             static_cast<std::size_t>(gone) * layer));
+            held.size[2] -= gone;
+            first += gone;
+        }
+        if (end <= held_end()) return;
+        if (held.values.empty()) {
+            held = source(held_end(), end - held_end());
+            held.origin = layout.origin;
+        } else {
+            const Grid more = source(held_end(), end - held_end());
+            held.values.insert(held.values.end(), more.values.begin(), more.values.end());
+            held.size[2] += more.size[2];
+        }
+        find_points(held_end() == layers() ? layers() - 1 : held_end() - 3);
+    }
+
+    void find_points(int end) {
+        const int begin = static_cast<int>(cells.size());
+        if (end <= begin) return;
+        cells.resize(static_cast<std::size_t>(end));
+        const Finder finder = this->finder();
+        run(end - begin, [&](int n) {
+            Points& points = cells[static_cast<std::size_t>(begin + n)];
+            finder.points_of_layer(begin + n, points);
+            points.at.shrink_to_fit();
+            points.normal.shrink_to_fit();
+        });
+    }
+
+    // Those of the cells between the layers from `from` up to `end`.
+    Points points_between(int from, int end) const {
+        Points all;
+        std::size_t count = 0;
+        for (int k = from; k + 1 < end; ++k) count += cells[static_cast<std::size_t>(k)].at.size();
+        all.at.reserve(count);
+        all.normal.reserve(count);
+        for (int k = from; k + 1 < end; ++k) {
+            const Points& points = cells[static_cast<std::size_t>(k)];
+            all.at.insert(all.at.end(), points.at.begin(), points.at.end());
+            all.normal.insert(all.normal.end(), points.normal.begin(), points.normal.end());
+        }
+        return all;
+    }
+
+    // Distances of the layers from k0 up to k1 with points of `beside` layers on both sides; false if that is too few.
+    bool distances(int k0, int k1, int beside, Grid& out) {
+        const int from = std::max(0, k0 - beside), end = std::min(layers(), k1 + beside);
+        hold(k0 - around(), std::max(end + 3, k1 + around()));
+        const Points points = points_between(from, end);
+        Grid window{{layout.size[0], layout.size[1], end - from}, layout.origin, layout.spacing, {}};
+        const std::vector<std::int32_t> nearest = geometry::nearest_points(window, points.at, run, from);
+        const Finder finder = this->finder();
+        const Field field{finder, points, nearest, from, end, how.reach};
+        std::vector<char> sure(static_cast<std::size_t>(k1 - k0));
+        run(k1 - k0,
+            [&](int n) { sure[static_cast<std::size_t>(n)] = field.layer(k0 + n, &out.values[out.index(0, 0, n)]); });
+        return std::find(sure.begin(), sure.end(), 0) == sure.end();
+    }
+};
+
+// The weights over three rows, in place; `before` is what stood in the row before, and becomes what stood in this one.
+void smooth_row(float* row, const float* after, std::vector<float>& before) {
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        const float here = row[i];
+        row[i] = (before[i] + 4.0f * here + (after ? after[i] : here)) / 6.0f;
+        before[i] = here;
+    }
+}
+
+// Along x and y.
+void smooth_layer(Grid& grid, int k) {
+    const int width = grid.size[0], rows = grid.size[1];
+    for (int j = 0; j < rows; ++j) {
+        float* row = &grid.values[grid.index(0, j, k)];
+        float before = row[0];
+        for (int i = 0; i < width; ++i) {
+            const float here = row[i];
+            row[i] = (before + 4.0f * here + row[std::min(i + 1, width - 1)]) / 6.0f;
+            before = here;
+        }
+    }
+    float* row = &grid.values[grid.index(0, 0, k)];
+    std::vector<float> before(row, row + width);
+    for (int j = 0; j < rows; ++j, row += width) smooth_row(row, j + 1 < rows ? row + width : nullptr, before);
+}
+
+// Along z.
+void smooth_wall(Grid& grid, int j) {
+    const float* first = &grid.values[grid.index(0, j, 0)];
+    std::vector<float> before(first, first + grid.size[0]);
+    for (int k = 0; k < grid.size[2]; ++k)
+        smooth_row(&grid.values[grid.index(0, j, k)],
+                   k + 1 < grid.size[2] ? &grid.values[grid.index(0, j, k + 1)] : nullptr, before);
+}
+
+}  // namespace
+
+Grid smoothed(Grid grid, const RunJobs& run) {
+    if (grid.values.empty()) return grid;
+    run(grid.size[2], [&](int k) { smooth_layer(grid, k); });
+    run(grid.size[1], [&](int j) { smooth_wall(grid, j); });
+    return grid;
+}
+
+void distance_to_iso(const Grid& layout, float iso, const DistanceInLayers& how, const LayersOfGrey& grey,
+                     const TakeLayers& take, const RunJobs& run) {
+    Slabs slabs{layout, iso, how, grey, run};
+    const int layers = layout.size[2], at_once = how.at_once > 0 ? how.at_once : layers;
+    int beside = layers;
+    if (std::isfinite(how.reach))
+        beside =
+            std::min(layers, static_cast<int>(std::ceil((2.0 * how.reach + 8.0 * slabs.widest) / layout.spacing.z)));
+    for (int k = 0; k < layers; k += at_once) {
+        const int end = std::min(k + at_once, layers);
+        Grid out{{layout.size[0], layout.size[1], end - k}, layout.position(0, 0, k), layout.spacing, {}};
+        out.values.resize(out.count());
+        while (!slabs.distances(k, end, beside, out)) beside = std::min(layers, 2 * beside);
+        take(k, out);
+    }
+}
+
+Grid distance_to_iso(const Grid& grey, float iso, const RunJobs& run) {
+    Grid out;
+    distance_to_iso(
+        grey, iso, {}, [&grey](int, int) { return grey; }, [&out](int, const Grid& distance) { out = distance; }, run);
+    out.origin = grey.origin;
+    return out;
+}
+
+}  // namespace tactus::volume

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/volume/surface_distance.hpp"
+
+#include "dsp/geometry/closest_point.hpp"
+#include "dsp/geometry/nearest_points.hpp"
+#include "dsp/volume/surface_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tactus::volume {
+
+namespace {
+
+double widest_of(const Grid& layout) { return std::max({layout.spacing.x, layout.spacing.y, layout.spacing.z}); }
+
+// What is known of each sample: the nearest triangle so far and its nearest point.
+struct Feet {
+    const Grid& layout;
+    const geometry::TriangleSurface& surface;
+    std::vector<std::int32_t> triangle = std::vector<std::int32_t>(layout.count(), -1);
+    std::vector<glm::vec3> at = std::vector<glm::vec3>(layout.count());  // m from the layout's origin
+    std::vector<float> apart2 = std::vector<float>(layout.count(), std::numeric_limits<float>::infinity());  // m²
+
+    bool offer(std::size_t sample, const Vec3& p, std::int32_t candidate, const std::array<Vec3, 3>& corners) {
+        const Vec3 closest = geometry::closest_on_triangle(p, corners[0], corners[1], corners[2]), d = closest - p;
+        const auto far2 = static_cast<float>(glm::dot(d, d));
+        if (!(far2 < apart2[sample])) return false;
+        apart2[sample] = far2;
+        triangle[sample] = candidate;
+        at[sample] = glm::vec3(closest - layout.origin);
+        return true;
+    }
+    bool offer(std::size_t sample, const Vec3& p, std::int32_t candidate) {
+        return offer(sample, p, candidate, corners_of(surface, candidate));
+    }
+};
+
+// Every triangle is offered to the samples of a layer that it can be within reach of.
+void offer_near(Feet& feet, const TriangleLayers& near, double reach, int k) {
+    const Grid& layout = feet.layout;
+    for (const std::int32_t triangle : near[k]) {
+        const auto corners = corners_of(feet.surface, triangle);
+        const IndexBox box = samples_near(layout, corners, reach);
+        const Vec3 across = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+        const double twice_area = glm::length(across);
+        const PlaneRow plane{corners[0], twice_area > 0.0 ? across / twice_area : Vec3(0.0), reach};
+        for (int j = box.low[1]; j <= box.high[1]; ++j) {
+            int first = box.low[0], last = box.high[0];
+            plane.narrow(layout, Vec3(0.0), j, k, first, last);
+            for (int i = first; i <= last; ++i)
+                feet.offer(layout.index(i, j, k), layout.position(i, j, k), triangle, corners);
+        }
+    }
+}
+
+// Samples beyond the band, which are not known to be exact.
+struct Far {
+    Feet& feet;
+    const SurfaceCells& cells;
+    const std::vector<std::int32_t>& nearest;  // cell per sample
+    float band2, close2;                       // m², of the exact band and of what deserves a close look
+    float cell2;                               // m², of two cells
+
+    // A first guess: the triangles of the cell that holds the nearest point, farther away only that point's.
+    void guess(int k) const {
+        const Grid& layout = feet.layout;
+        for (int j = 0; j < layout.size[1]; ++j)
+            for (int i = 0; i < layout.size[0]; ++i) {
+                const std::size_t sample = layout.index(i, j, k);
+                if (feet.apart2[sample] <= band2) continue;
+                const Vec3 p = layout.position(i, j, k);
+                const auto cell = static_cast<std::size_t>(nearest[sample]);
+                for (std::size_t n = cells.start[cell]; n < cells.start[cell + 1]; ++n) {
+                    feet.offer(sample, p, cells.triangle[n]);
+                    if (feet.apart2[sample] > close2) break;
+                }
+            }
+    }
+
+    // Asks the six neighbours of each second sample of a row, those of one colour of a chessboard: theirs are of the other
+    // colour, so that all rows can be done at once. Returns whether anything became nearer.
+    bool ask_neighbours(int j, int k, int colour, bool closely) const {
+        const Grid& layout = feet.layout;
+        const auto& size = layout.size;
+        const std::array<std::ptrdiff_t, 3> stride{1, size[0], static_cast<std::ptrdiff_t>(layout.index(0, 0, 1))};
+        bool changed = false;
+        for (int i = (j + k + colour) & 1; i < size[0]; i += 2) {
+            const std::size_t sample = layout.index(i, j, k);
+            float own = feet.apart2[sample];
+            if (own <= band2) continue;
+            const std::array<int, 3> place{i, j, k};
+            const glm::vec3 here(layout.position(i, j, k) - layout.origin);
+            for (std::size_t a = 0; a < 3; ++a)
+                for (const int step : {-1, 1}) {
+                    if (place[a] + step < 0 || place[a] + step >= size[a]) continue;
+                    const auto other = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(sample) + step * stride[a]);
+                    if (feet.triangle[other] == feet.triangle[sample]) continue;
+                    const glm::vec3 d = feet.at[other] - here;
+                    // Nearby another triangle may be nearer although its point for the neighbour is not.
+                    const float wanted = closely && own < close2 ? own + cell2 : own * 0.9998f;
+                    if (!(glm::dot(d, d) < wanted)) continue;
+                    changed |= feet.offer(sample, layout.position(i, j, k), feet.triangle[other]);
+                    own = feet.apart2[sample];
+                }
+        }
+        return changed;
+    }
+};
+
+// Until nothing becomes nearer, but only in rows beside which something has.
+void settle(const Far& far, const RunJobs& run) {
+    constexpr int most_rounds = 60;
+    const int rows = far.feet.layout.size[1], layers = far.feet.layout.size[2];
+    const auto row_of = [rows](int j, int k) {
+        return static_cast<std::size_t>(k) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(j);
+    };
+    std::vector<char> active(row_of(0, layers), 1), changed(active.size());
+    for (int round = 0; round < most_rounds; ++round) {
+        std::fill(changed.begin(), changed.end(), 0);
+        for (const int colour : {0, 1})
+            run(layers, [&](int k) {
+                for (int j = 0; j < rows; ++j)
+                    if (active[row_of(j, k)] && far.ask_neighbours(j, k, colour, round == 0)) changed[row_of(j, k)] = 1;
+            });
+        run(layers, [&](int k) {
+            for (int j = 0; j < rows; ++j)
+                active[row_of(j, k)] = changed[row_of(j, k)] || (j > 0 && changed[row_of(j - 1, k)]) ||
+                                       (j + 1 < rows && changed[row_of(j + 1, k)]) ||
+                                       (k > 0 && changed[row_of(j, k - 1)]) ||
+                                       (k + 1 < layers && changed[row_of(j, k + 1)]);
+        });
+        if (std::find(active.begin(), active.end(), 1) == active.end()) return;
+    }
+}
+
+// Which side of the projected edge a → b the origin is on: ±1, and exactly opposite for b → a. The origin is thought
+// of as shifted by (ε², ε) where it would be on the edge; 0 only when the two ends coincide.
+int side(double ay, double az, double by, double bz) {
+    const double area = ay * bz - az * by;
+    if (area != 0.0) return area > 0.0 ? 1 : -1;
+    if (ay != by) return ay < by ? -1 : 1;
+    if (az != bz) return az < bz ? 1 : -1;
+    return 0;
+}
+
+// Marks in row (j, k) the sample from which on a triangle has been crossed along x.
+void cross(const Grid& layout, const std::array<Vec3, 3>& corner, int j, int k, std::vector<std::int16_t>& crossings) {
+    const Vec3 ray = layout.position(0, j, k);
+    std::array<double, 3> y{}, z{};
+    for (std::size_t c = 0; c < 3; ++c) y[c] = corner[c].y - ray.y, z[c] = corner[c].z - ray.z;
+    const int s0 = side(y[1], z[1], y[2], z[2]), s1 = side(y[2], z[2], y[0], z[0]);
+    const int s2 = side(y[0], z[0], y[1], z[1]);
+    if (s0 == 0 || s0 != s1 || s1 != s2) return;
+    const double w0 = y[1] * z[2] - z[1] * y[2], w1 = y[2] * z[0] - z[2] * y[0];
+    const double w2 = y[0] * z[1] - z[0] * y[1], sum = w0 + w1 + w2;
+    if (sum == 0.0) return;
+    const double x = (w0 * corner[0].x + w1 * corner[1].x + w2 * corner[2].x) / sum;
+    const double first = std::ceil((x - layout.origin.x) / layout.spacing.x);
+    if (first >= layout.size[0]) return;
+    // Entering through a triangle that looks towards -x (negative area in y, z) counts up.
+    std::int16_t& count = crossings[layout.index(first < 0.0 ? 0 : static_cast<int>(first), j, k)];
+    count = static_cast<std::int16_t>(count - s0);
+}
+
+}  // namespace
+
+std::vector<float> surface_distance(const Grid& layout, const geometry::TriangleSurface& surface, const RunJobs& run) {
+    Feet feet{layout, surface};
+    const double widest = widest_of(layout), reach = 1.5 * widest;
+    const TriangleLayers near(layout, surface, reach);
+    run(layout.size[2], [&](int k) { offer_near(feet, near, reach, k); });
+    if (const SurfaceCells cells = surface_cells(layout, surface, run); !cells.at.empty()) {
+        const std::vector<std::int32_t> nearest = geometry::nearest_points(layout, cells.at, run);
+        const Far far{feet,
+                      cells,
+                      nearest,
+                      static_cast<float>(reach * reach),
+                      static_cast<float>(64.0 * widest * widest),
+                      static_cast<float>(4.0 * widest * widest)};
+        run(layout.size[2], [&](int k) { far.guess(k); });
+        settle(far, run);
+    }
+    std::vector<float>& distance = feet.apart2;
+    run(layout.size[2], [&](int k) {
+        const std::size_t first = layout.index(0, 0, k), end = layout.index(0, 0, k + 1);
+        for (std::size_t n = first; n < end; ++n) distance[n] = std::sqrt(distance[n]);
+    });
+    return std::move(distance);
+}
+
+std::vector<std::int16_t> winding_numbers(const Grid& layout, const geometry::TriangleSurface& surface, const RunJobs& run) {
+    std::vector<std::int16_t> crossings(layout.count(), 0);
+    const TriangleLayers near(layout, surface, 0.5 * widest_of(layout));
+    run(layout.size[2], [&](int k) {
+        for (const std::int32_t triangle : near[k]) {
+            const auto corners = corners_of(surface, triangle);
+            const IndexBox box = samples_near(layout, corners, 0.5 * layout.spacing.y);
+            for (int j = box.low[1]; j <= box.high[1]; ++j) cross(layout, corners, j, k, crossings);
+        }
+        for (int j = 0; j < layout.size[1]; ++j)
+            for (int i = 1; i < layout.size[0]; ++i) {
+                std::int16_t& here = crossings[layout.index(i, j, k)];
+                here = static_cast<std::int16_t>(here + crossings[layout.index(i - 1, j, k)]);
+            }
+    });
+    return crossings;
+}
+
+Grid signed_distance(const Grid& layout, const geometry::TriangleSurface& surface, const RunJobs& run) {
+    Grid grid{layout.size, layout.origin, layout.spacing, surface_distance(layout, surface, run)};
+    const auto winding = winding_numbers(layout, surface, run);
+    for (std::size_t n = 0; n < winding.size(); ++n)
+        if (winding[n] != 0) grid.values[n] = -grid.values[n];
+    return grid;
+}
+
+}  // namespace tactus::volume

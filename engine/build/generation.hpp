@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// A plan made runnable: its nodes prepared, its wires laid out, one program for each rate group. When it follows on
+// another, nodes and channels that the edit did not touch go on as they are.
+#pragma once
+
+#include "engine/build/group_program.hpp"
+#include "engine/run/group_runtime.hpp"
+#include "engine/observe/observer.hpp"
+#include "engine/io/outside.hpp"
+#include "graph/compile/plan.hpp"
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tactus::build {
+
+/// A node while it runs. Lives as long as the youngest plan that keeps it.
+struct LiveNode {
+    std::string name;
+    const NodeType* type = nullptr;
+    compile::NodeInstance instance{nullptr, nullptr};
+    run::GroupRuntime* group = nullptr;
+    std::string structure;  ///< what must be equal for a node to survive an edit
+    observe::NodeTelemetry time;
+    std::vector<Input*> inputs;
+    std::vector<Output*> outputs;
+    std::map<std::string, Param*> params;
+    io::OutsideUses uses;  ///< what its prepare asked for
+    std::vector<std::shared_ptr<observe::ObservedPort>> seen;  ///< as outputs, when there is an observer
+};
+
+/// What the generations of one run share. Used by one builder at a time.
+struct Workshop {
+    io::EngineOutside& outside;
+    int block = 0;  ///< most samples per call of an audio group, 0: the patch's quantum
+    bool hash = true;  ///< keep hashes of all outputs
+    std::map<std::pair<const ValueType*, std::string>, std::pair<std::shared_ptr<const void>, std::vector<std::byte>>>
+        constants;
+    /// Where the values of an output are recorded, or null. Named "node.port"; empty: there is no take.
+    std::function<RecordStream*(const std::string& port, const ValueType&, const run::GroupRuntime&)> take;
+    int next_group = 0, next_link = 0;
+    observe::Observer* observer = nullptr;  ///< who looks on, or null
+};
+
+struct Generation {
+    std::int64_t number = 0;
+    compile::Plan plan;
+    std::vector<std::map<std::string, double>> patch_values;  ///< of each node's parameters, SI
+    std::vector<std::shared_ptr<LiveNode>> nodes;             ///< as plan.nodes
+    std::vector<bool> survived;                               ///< as plan.nodes
+    std::vector<std::shared_ptr<run::GroupRuntime>> groups;        ///< as plan.groups
+    std::vector<bool> group_is_new;                           ///< as plan.groups
+    std::vector<std::unique_ptr<GroupProgram>> programs;      ///< as plan.groups
+    std::vector<std::shared_ptr<run::Link>> links;
+    std::vector<std::unique_ptr<std::vector<std::byte>>> memory;  ///< values of outputs and unconnected inputs
+
+    /// Index of a node, −1: none of that name.
+    int find(std::string_view node) const;
+    bool keeps(const run::GroupRuntime* group) const;
+    /// Nothing reads from links of the generation before any more. Any thread.
+    bool settled() const;
+};
+
+/// Builds what follows `before` (null: nothing). Assets must be loaded. What runs is not touched. Throws Error.
+std::unique_ptr<Generation> build_generation(compile::Plan plan, const Generation* before, Workshop& workshop);
+
+}  // namespace tactus::build

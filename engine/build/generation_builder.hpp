@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a plan is made runnable, step by step. Only generation*.cpp include it.
+#pragma once
+
+#include "engine/build/generation.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+namespace tactus::build {
+
+/// Builds on the freshly compiled nodes, then points everything at the nodes that live. A compiled node whose older
+/// self goes on is never prepared: it only shows how the inputs of that one are to be wired.
+class GenerationBuilder {
+public:
+    GenerationBuilder(compile::Plan plan, const Generation* before, Workshop& workshop);
+    std::unique_ptr<Generation> build();
+
+private:
+    compile::Plan& plan() { return made_->plan; }
+    run::GroupRuntime& group_of(const compile::PlanNode& node) { return *made_->groups[static_cast<std::size_t>(node.group)]; }
+    GroupProgram& program_of(int group) { return *made_->programs[static_cast<std::size_t>(group)]; }
+    GroupProgram& program_of(const run::GroupRuntime* runtime) { return program_of(group_index_.at(runtime)); }
+    template <class T>
+    T* live(T* port) const {
+        const auto found = moved_.find(port);
+        return found == moved_.end() ? port : static_cast<T*>(found->second);
+    }
+    const Output* live(const Output* port) const { return live(const_cast<Output*>(port)); }
+
+    // generation.cpp: groups and nodes, new or kept
+    void note_patch_values();
+    void form_groups();
+    void find_survivors();
+    void prepare();
+
+    // generation_wires.cpp
+    void allocate();
+    std::byte* memory(std::size_t bytes);
+    void connect(const compile::PlanWire& wire);
+    void connect_constant(const compile::PlanWire& wire);
+    void connect_delay(const compile::PlanWire& wire, const Output& source, Input* target, int group_index);
+    run::Link& link_for(const compile::PlanWire& wire);
+    bool is_same_wire(const run::LinkWire& old, const run::LinkWire& wire) const;
+    /// Notes for each wire of `link` the same one of `old`; returns how many there are.
+    std::size_t match_wires(run::Link& link, run::Link* old) const;
+    int ring_frames(const run::GroupRuntime& group);
+    void finish_links();
+
+    // generation_programs.cpp
+    void make_steps();
+    std::vector<bool> vary_within_call() const;
+    void add_step(GroupProgram& program, std::size_t index, bool varies);
+    /// Where the output of a node is seen from outside. One that goes on is looked at as before.
+    observe::ObservedPort& observed(LiveNode& node, std::size_t output, const std::string& name);
+    void make_programs();
+    void finish_program(std::size_t g);
+    void find_delays_before(GroupProgram& program, const GroupProgram& old) const;
+    void find_outputs_before(GroupProgram& program, const GroupProgram& old) const;
+    void assign_devices(std::size_t index);
+    /// What has to be set on a node that goes on.
+    void rewire(std::size_t index);
+
+    /// Groups that a link joins, and its latency.
+    using LinkEnds = std::tuple<const run::GroupRuntime*, const run::GroupRuntime*, Flicks>;
+    static LinkEnds ends_of(const run::Link& link) { return {link.producer, link.consumer, link.latency}; }
+    void index_before();
+
+    const Generation* before_;
+    Workshop& workshop_;
+    std::unique_ptr<Generation> made_;
+    // What is looked up by node, wire or group, so that a plan of n nodes takes n steps.
+    std::unordered_map<std::string_view, std::size_t> nodes_before_;         // by name, in `before_`
+    std::unordered_map<const run::GroupRuntime*, std::size_t> groups_before_;     // in `before_`
+    std::unordered_set<const Param*> driven_before_, driven_;                // parameters at the end of a wire
+    std::unordered_map<const run::GroupRuntime*, int> group_index_;               // in `made_`
+    std::unordered_map<std::string_view, const patch::PatchAsset*> assets_;
+    std::map<LinkEnds, std::shared_ptr<run::Link>> links_before_, links_made_;
+    std::unordered_set<const run::Link*> links_going_on_;                         // of `before_`
+    std::unordered_map<const void*, void*> moved_;  // ports and parameters of compiled nodes to those that live
+    std::vector<std::vector<Drive>> drives_;
+    std::unordered_set<const run::Link*> new_links_;
+};
+
+}  // namespace tactus::build

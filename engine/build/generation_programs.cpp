@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// What each rate group does in a tick, and what it takes over from the program before.
+#include "engine/build/force_path.hpp"
+#include "engine/build/generation_builder.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace tactus::build {
+
+void GenerationBuilder::make_steps() {
+    std::unordered_map<const Param*, std::size_t> owners;
+    for (std::size_t i = 0; i < plan().nodes.size(); ++i)
+        for (const auto& [name, param] : made_->nodes[i]->params) owners.emplace(param, i);
+    for (const auto& link : made_->links)
+        for (const run::LinkWire& wire : link->wires)
+            if (wire.param && wire.mode == patch::WireMode::linear)
+                drives_[owners.at(wire.param)].push_back({wire.param, nullptr, &wire});
+    const std::vector<bool> vary = vary_within_call();
+    for (std::size_t g = 0; g < plan().groups.size(); ++g)
+        for (const int index : plan().groups[g].order)
+            add_step(*made_->programs[g], static_cast<std::size_t>(index), vary[static_cast<std::size_t>(index)]);
+}
+
+std::vector<bool> GenerationBuilder::vary_within_call() const {
+    std::vector<bool> vary(made_->plan.nodes.size());
+    for (const compile::PlanWire& wire : made_->plan.wires) {
+        if (wire.from_node < 0) continue;
+        const compile::PlanNode& node = made_->plan.nodes[static_cast<std::size_t>(wire.to_node)];
+        const bool same_group = made_->plan.nodes[static_cast<std::size_t>(wire.from_node)].group == node.group;
+        if (!same_group && wire.mode != patch::WireMode::linear) continue;
+        const InputKind kind =
+            wire.to_input < 0 ? InputKind::value : node.inputs[static_cast<std::size_t>(wire.to_input)].port->kind;
+        if (kind == InputKind::value) vary[static_cast<std::size_t>(wire.to_node)] = true;
+    }
+    return vary;
+}
+
+void GenerationBuilder::add_step(GroupProgram& program, std::size_t index, bool varies) {
+    const compile::PlanNode& node = plan().nodes[index];
+    LiveNode& running = *made_->nodes[index];
+    StepWires& wires = program.wires.emplace_back();
+    for (const Drive& drive : drives_[index])
+        wires.drives.push_back({live(drive.param), drive.source ? live(drive.source) : nullptr, drive.glide});
+    for (std::size_t k = 0; k < node.inputs.size(); ++k)
+        if (node.inputs[k].port->type) wires.inputs.push_back(running.inputs[k]);
+    wires.time = &running.time;
+    Step& step = program.steps.emplace_back();
+    step.process = node.type->process;
+    step.node = running.instance.get();
+    step.driven = !wires.drives.empty();
+    step.one_at_a_time = !node.takes_blocks || varies;
+    step.first_output = static_cast<std::uint32_t>(program.published.size());
+    step.output_count = static_cast<std::uint32_t>(node.outputs.size());
+    for (std::size_t k = 0; k < node.outputs.size(); ++k) {
+        const ValueType& type = *node.outputs[k].port->type;
+        PublishedOutput& output = program.published.emplace_back();
+        output.port = running.outputs[k];
+        output.is_signal = &type == &value::signal;
+        output.name = node.name + "." + node.outputs[k].name;
+        if (workshop_.take) output.take = workshop_.take(output.name, type, *running.group);
+        if (workshop_.observer) output.seen = &observed(running, k, output.name);
+        if (type.version) program.snapshots.push_back(static_cast<SnapshotOutput*>(running.outputs[k]));
+    }
+    program.hashes_outputs = workshop_.hash;
+    program.records_outputs = workshop_.take || workshop_.observer;
+}
+
+observe::ObservedPort& GenerationBuilder::observed(LiveNode& node, std::size_t output, const std::string& name) {
+    if (node.seen.size() <= output) {
+        const run::GroupRuntime& group = *node.group;
+        node.seen.push_back(
+            workshop_.observer->open({name, group.plan->period, group.plan->has_audio ? group.max_frames : 1},
+                                     *node.outputs[output]->type, node.outputs[output]->data));
+    }
+    return *node.seen[output];
+}
+
+void GenerationBuilder::make_programs() {
+    for (const auto& link : made_->links) {
+        GroupProgram &consumer = program_of(link->consumer), &producer = program_of(link->producer);
+        consumer.inputs.push_back(link.get());
+        consumer.producers.push_back(link->producer);
+        producer.outputs.push_back(link.get());
+        if (link->continued) links_going_on_.insert(link->continued);
+        if (!new_links_.contains(link.get())) {
+            links_going_on_.insert(link.get());
+            continue;
+        }
+        consumer.new_inputs.push_back(link.get());
+        producer.new_outputs.push_back(link.get());
+    }
+    for (std::size_t g = 0; g < made_->groups.size(); ++g) finish_program(g);
+    for (std::size_t i = 0; i < plan().nodes.size(); ++i) {
+        if (made_->survived[i]) rewire(i);
+        assign_devices(i);
+    }
+    if (!before_ || !changes_force_path(*before_, *made_)) return;
+    for (const auto& program : made_->programs) program->changes_force = !program->driven.empty();
+}
+
+void GenerationBuilder::assign_devices(std::size_t index) {
+    const compile::PlanNode& node = plan().nodes[index];
+    GroupProgram& program = program_of(node.group);
+    for (const auto& [slot, use] : made_->nodes[index]->uses.devices) {
+        if (std::ranges::find(program.devices, slot) == program.devices.end()) program.devices.push_back(slot);
+        if (use != DeviceUse::drive) continue;
+        if (std::ranges::find(program.driven, slot) != program.driven.end())
+            throw Error(node.where, "another node already drives this device; a hand takes one force");
+        program.driven.push_back(slot);
+    }
+    std::ranges::sort(program.devices, {}, &DeviceSlot::id);
+    // Late ticks are never run back to back against a hand.
+    if (!program.devices.empty() && !plan().groups[static_cast<std::size_t>(node.group)].backlog_given)
+        program.backlog = 0;
+}
+
+void GenerationBuilder::finish_program(std::size_t g) {
+    GroupProgram& program = *made_->programs[g];
+    for (const auto& line : program.delays) {
+        line->source = live(line->source);
+        line->target = live(line->target);
+        line->param = live(line->param);
+    }
+    const auto found = groups_before_.find(made_->groups[g].get());
+    if (found == groups_before_.end()) return;
+    const GroupProgram& old = *before_->programs[found->second];
+    find_delays_before(program, old);
+    find_outputs_before(program, old);
+    for (run::Link* link : old.inputs)
+        if (!links_going_on_.contains(link)) program.ended.push_back(link);
+}
+
+void GenerationBuilder::find_delays_before(GroupProgram& program, const GroupProgram& old) const {
+    // Nothing has two wires.
+    const auto end_of = [](const DelayLine& line) -> const void* {
+        return line.target ? static_cast<const void*>(line.target) : line.param;
+    };
+    std::unordered_map<const void*, DelayLine*> old_lines;
+    for (const auto& line : old.delays) old_lines.emplace(end_of(*line), line.get());
+    for (const auto& line : program.delays) {
+        const auto found = old_lines.find(end_of(*line));
+        if (found == old_lines.end()) continue;
+        DelayLine& candidate = *found->second;
+        if (candidate.source == line->source && candidate.target == line->target && candidate.param == line->param &&
+            candidate.count == line->count)
+            line->before = &candidate;
+    }
+}
+
+void GenerationBuilder::find_outputs_before(GroupProgram& program, const GroupProgram& old) const {
+    std::unordered_map<std::string_view, std::size_t> past;
+    for (std::size_t k = 0; k < old.published.size(); ++k) past.emplace(old.published[k].name, k);
+    for (PublishedOutput& output : program.published) {
+        const auto found = past.find(output.name);
+        if (found != past.end() && old.published[found->second].port->type == output.port->type)
+            output.before = static_cast<int>(found->second);
+    }
+}
+
+void GenerationBuilder::rewire(std::size_t index) {
+    const compile::PlanNode& node = plan().nodes[index];
+    const LiveNode& running = *made_->nodes[index];
+    GroupProgram& program = program_of(node.group);
+    for (std::size_t k = 0; k < node.inputs.size(); ++k)
+        program.wiring.emplace_back(running.inputs[k], node.inputs[k].port);
+    const std::size_t old = nodes_before_.at(node.name);
+    const compile::PlanNode& old_node = before_->plan.nodes[old];
+    for (const auto& [name, param] : node.params) {
+        if (driven_.contains(param)) continue;
+        const double now = made_->patch_values[index].at(name);
+        // A value set from outside stays until the patch's text says another.
+        if (now != before_->patch_values[old].at(name) || driven_before_.contains(old_node.params.at(name)))
+            program.params.emplace_back(running.params.at(name), now);
+    }
+}
+
+}  // namespace tactus::build

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/build/survival.hpp"
+
+#include <fmt/format.h>
+
+namespace tactus::build {
+
+namespace {
+
+class Describer : public MemberVisitor {
+public:
+    explicit Describer(std::string& description) : description_(description) {}
+
+    void param(std::string_view name, Param& p) override {
+        if (p.is_structural) add(name, fmt::format("{:a}", p.value));
+    }
+    void choice(std::string_view name, Choice& c) override { add(name, std::to_string(c.index)); }
+    void text(std::string_view name, Text& t) override { add(name, t.value); }
+    void flag(std::string_view name, Flag& f) override { add(name, f.value ? "true" : "false"); }
+    void vector(std::string_view name, Vector& v) override {
+        add(name, fmt::format("{:a} {:a} {:a}", v.value.x, v.value.y, v.value.z));
+    }
+    // The file itself counts: two names of one file are the same asset.
+    void asset(std::string_view name, AssetParam& a) override { add(name, fmt::format("{}", a.loaded.get())); }
+
+private:
+    void add(std::string_view name, const std::string& value) { description_ += fmt::format("{}={}\n", name, value); }
+
+    std::string& description_;
+};
+
+/// What a wire into an input says of the node behind it.
+void describe_wire(const compile::Plan& plan, const compile::PlanWire& wire, std::string& text) {
+    const compile::PlanInput& input =
+        plan.nodes[static_cast<std::size_t>(wire.to_node)].inputs[static_cast<std::size_t>(wire.to_input)];
+    // What comes in batches was prepared for at its rate.
+    if (input.port->kind == InputKind::batch) text += fmt::format("{} every {}\n", input.name, input.port->period);
+    if (input.port->kind != InputKind::any) return;
+    std::string source = wire.asset;
+    if (wire.from_node >= 0) {
+        const compile::PlanNode& from = plan.nodes[static_cast<std::size_t>(wire.from_node)];
+        source = from.name + "." + from.outputs[static_cast<std::size_t>(wire.from_output)].name;
+    }
+    text += fmt::format("{} from {}\n", input.name, source);
+}
+
+}  // namespace
+
+std::vector<std::string> structures_of(const compile::Plan& plan) {
+    std::vector<std::string> texts;
+    texts.reserve(plan.nodes.size());
+    for (const compile::PlanNode& node : plan.nodes) {
+        std::string& text = texts.emplace_back(fmt::format("{} seed {}\n", node.type->name, plan.patch.seed));
+        Describer describer(text);
+        node.type->visit(node.instance.get(), describer);
+    }
+    for (const compile::PlanWire& wire : plan.wires)
+        if (wire.to_input >= 0) describe_wire(plan, wire, texts[static_cast<std::size_t>(wire.to_node)]);
+    return texts;
+}
+
+}  // namespace tactus::build

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/io/device_guard.hpp"
+
+#include <glm/geometric.hpp>
+
+namespace tactus::io {
+
+namespace {
+
+Vec3 shorten(const Vec3& v, double length) noexcept {
+    const double excess = length > 0.0 ? glm::length(v) / length : 0.0;
+    return excess > 1.0 ? v / excess : v;
+}
+
+}  // namespace
+
+Wrench bearable(const Wrench& wanted, const DeviceInfo& device) noexcept {
+    if (!is_finite(wanted)) return {};
+    return {shorten(wanted.force, device.max_force), shorten(wanted.torque, device.max_torque)};
+}
+
+void DeviceGuard::commit(HapticDevice& device, const Wrench& wanted, std::int64_t now_ns) noexcept {
+    if (!guard_.begin()) {
+        refused_ = true;
+        asked_ns_.store(now_ns, std::memory_order_release);
+        return;
+    }
+    const Wrench given = bearable(wanted, device.info());
+    device.commit(given);
+    guard_.end(given, now_ns);
+}
+
+bool DeviceGuard::was_taken() noexcept {
+    const bool taken = refused_ || guard_.is_taken();
+    refused_ = false;
+    return taken;
+}
+
+void DeviceGuard::note(control::Fault reason, std::int64_t tick, double force_N) noexcept {
+    if (reason == last_) return;
+    last_ = reason;
+    const std::size_t count = count_.load(std::memory_order_relaxed);
+    if (reason == control::Fault::none || count == faults_.size()) return;
+    faults_[count] = {reason, tick, force_N};
+    count_.store(count + 1, std::memory_order_release);
+}
+
+void DeviceGuard::poll(HapticDevice& device, std::int64_t now_ns) noexcept {
+    if (at_rest_.load(std::memory_order_relaxed)) return;
+    const bool retired = retired_.load(std::memory_order_acquire);
+    Wrench out;
+    if (!guard_.poll(now_ns, out, retired)) {
+        if (retired && !guard_.has_committed()) at_rest_.store(true, std::memory_order_release);
+        return;
+    }
+    device.commit(out);
+    if (!guard_.has_faded(now_ns)) return;
+    if (retired) at_rest_.store(true, std::memory_order_release);
+    else if (now_ns - asked_ns_.load(std::memory_order_acquire) <= guard_.limit_ns) guard_.release();
+}
+
+}  // namespace tactus::io

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// The last word before a driver: every force of a live run passes here, from the thread of the tick or, when that one
+// comes no more, from the watchdog's.
+#pragma once
+
+#include "dsp/control/commit_guard.hpp"
+#include "dsp/control/force_limiter.hpp"
+#include "graph/node/device.hpp"
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace tactus::io {
+
+/// A fault of a device, for people.
+struct DeviceFault {
+    control::Fault reason = control::Fault::none;
+    std::int64_t tick = 0;  ///< of the device's group
+    double force_N = 0.0;   ///< that was on the hand the tick before
+};
+
+/// What is finite and within what the device states it can bear; anything else becomes no force at all, so that not even
+/// a node that writes to a device by itself gets round the limits.
+Wrench bearable(const Wrench& wanted, const DeviceInfo& device) noexcept;
+
+class DeviceGuard {
+public:
+    /// Before the run: an age of the last commit that means the tick's thread is gone.
+    void set_limit(std::int64_t ns) noexcept { guard_.limit_ns = ns; }
+
+    // Thread of the tick.
+    /// Gives the device a force, unless the watchdog has it. May call the system, in the driver.
+    void commit(HapticDevice& device, const Wrench& wanted, std::int64_t now_ns) noexcept;
+    /// Before the steps: the watchdog had the device since the last call, so that forces must come in anew.
+    bool was_taken() noexcept;
+    /// No tick comes any more, on purpose: the watchdog may fade what is left.
+    void retire() noexcept { retired_.store(true, std::memory_order_release); }
+    /// Keeps a fault to tell of, when the reason is new.
+    void note(control::Fault reason, std::int64_t tick, double force_N) noexcept;
+
+    // Thread of the watchdog.
+    /// Takes the device when its time has come, fades the force, gives the device back once the force is zero and the
+    /// tick's thread asks for it again.
+    void poll(HapticDevice& device, std::int64_t now_ns) noexcept;
+    /// The force is to fade and come in anew, for a reason outside of the device. Any thread; wait-free.
+    void ask_fade() noexcept { fade_asked_.store(true, std::memory_order_relaxed); }
+    /// True once after `ask_fade`. Thread of the tick; wait-free.
+    bool is_asked_to_fade() noexcept {
+        return fade_asked_.load(std::memory_order_relaxed) && fade_asked_.exchange(false, std::memory_order_relaxed);
+    }
+    /// Retired, and no force is left.
+    bool is_at_rest() const noexcept { return at_rest_.load(std::memory_order_acquire); }
+
+    /// Any thread.
+    std::span<const DeviceFault> faults() const noexcept {
+        return {faults_.data(), count_.load(std::memory_order_acquire)};
+    }
+
+private:
+    control::CommitGuard guard_;
+    std::atomic<std::int64_t> asked_ns_{0};  // when the tick's thread was last refused
+    std::atomic<bool> retired_{false}, at_rest_{false}, fade_asked_{false};
+    bool refused_ = false;  // thread of the tick
+    control::Fault last_ = control::Fault::none;
+    std::array<DeviceFault, 64> faults_;
+    std::atomic<std::size_t> count_{0};
+};
+
+}  // namespace tactus::io

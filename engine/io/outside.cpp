@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/io/outside.hpp"
+
+#include "devices/audio/portaudio.hpp"
+#include "devices/haptic/catalogue.hpp"
+#include "engine/io/kept_end.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace tactus::io {
+
+namespace {
+
+class NowhereEnd : public StreamEnd {
+public:
+    void take(std::int64_t, const std::byte*, std::size_t) override {}
+    void finish() override {}
+};
+
+/// What a device reported is in the log that is replayed; there is no hand to feel the forces.
+class StandIn : public HapticDevice {
+public:
+    explicit StandIn(RecordedDevice recorded) : recorded_(std::move(recorded)) {}
+    const DeviceInfo& info() const override { return recorded_.info; }
+    void prepare(double) override {}
+    DeviceSample acquire(double) noexcept override { return recorded_.first; }
+    void commit(const Wrench&) noexcept override {}
+
+private:
+    RecordedDevice recorded_;
+};
+
+/// Files that the run or its take writes by itself: a recording of that name would be written over, or write over them.
+bool is_of_run(const std::string& file) {
+    constexpr std::array<std::string_view, 5> names{"summary.json", "take.json", "events.jsonl", "timing.log",
+                                                    "result.json"};
+    constexpr std::array<std::string_view, 3> endings{".vdb", ".png", ".part"};
+    return std::ranges::find(names, file) != names.end() || file == "streams" || file.starts_with("journal-") ||
+           (file.starts_with("patch-") && file.ends_with(".toml")) ||
+           std::ranges::any_of(endings, [&file](std::string_view ending) { return file.ends_with(ending); });
+}
+
+bool same_settings(const std::vector<OptionText>& a, const std::vector<OptionText>& b) {
+    return std::ranges::equal(
+        a, b, [](const OptionText& x, const OptionText& y) { return x.name == y.name && x.text == y.text; });
+}
+
+}  // namespace
+
+EngineOutside::EngineOutside(std::optional<std::filesystem::path> folder, bool live, AudioChoice audio)
+    : folder_(std::move(folder)), live_(live), audio_(std::move(audio)) {}
+
+void EngineOutside::begin(const patch::Patch& patch) {
+    patch_ = patch;
+    files_opened_.clear();
+    files_before_.clear();
+    for (const auto& stream : streams) files_before_.insert(stream->format().file);
+    for (const auto& [name, settings] : device_settings_)
+        for (const patch::PatchDevice& declared : patch.devices)
+            if (declared.name == name && !same_settings(declared.settings, settings))
+                throw Error(declared.where,
+                            fmt::format("device '{}' is open; its settings take effect at the next start", name));
+}
+
+void EngineOutside::keep() {
+    for (auto& slot : opened_.devices) {
+        const auto declared = std::ranges::find(patch_.devices, slot->name, &patch::PatchDevice::name);
+        if (declared != patch_.devices.end()) device_settings_.emplace_back(slot->name, declared->settings);
+        devices.push_back(std::move(slot));
+    }
+    for (auto& stream : opened_.streams) streams.push_back(std::move(stream));
+    for (auto& card : opened_.cards) cards.push_back(std::move(card));
+    for (auto& notice : opened_.notices) notices.push_back(std::move(notice));
+    opened_ = {};
+}
+
+void EngineOutside::discard() { opened_ = {}; }
+
+std::string EngineOutside::device_name(const std::string& wanted, const SourceLocation& where) const {
+    if (!wanted.empty()) return wanted;
+    if (patch_.devices.size() == 1) return patch_.devices.front().name;
+    if (devices.size() + opened_.devices.size() == 1)
+        return (devices.empty() ? opened_.devices : devices).front()->name;
+    throw Error(where, "which device is meant? Name it, as in device = \"simulated\"");
+}
+
+build::DeviceSlot* EngineOutside::find_device(const std::string& name) const {
+    for (const auto* list : {&devices, &opened_.devices})
+        for (const auto& slot : *list)
+            if (slot->name == name) return slot.get();
+    return nullptr;
+}
+
+DevicePort& EngineOutside::use_device(build::DeviceSlot& slot, DeviceUse use, const SourceLocation& where) {
+    if (slot.group != group_)
+        throw Error(where, fmt::format("device '{}' is used in two groups; its nodes must share one rate, and keep it "
+                                       "while the patch runs",
+                                       slot.name));
+    uses_->devices.emplace_back(&slot, use);
+    if (use == DeviceUse::drive && !slot.port.info.actuates_torque && slot.port.info.fingers == 0) {
+        std::string notice =
+            fmt::format("device '{}' gives forces only: torques that the patch computes for it are dropped", slot.name);
+        if (std::ranges::find(notices, notice) == notices.end()) opened_.notices.push_back(std::move(notice));
+    }
+    return slot.port;
+}
+
+DevicePort& EngineOutside::device(const std::string& wanted, DeviceUse use, const SourceLocation& where) {
+    const std::string name = device_name(wanted, where);
+    if (build::DeviceSlot* slot = find_device(name)) return use_device(*slot, use, where);
+    const auto declared = std::ranges::find(patch_.devices, name, &patch::PatchDevice::name);
+    const bool is_declared = declared != patch_.devices.end();
+    Options options(fmt::format("device '{}'", name), is_declared ? declared->settings : std::vector<OptionText>{},
+                    is_declared ? declared->where : where);
+    const haptic::PathResolver resolve = [this, &where](const std::string& asset) {
+        const auto found = std::ranges::find(patch_.assets, asset, &patch::PatchAsset::name);
+        if (found != patch_.assets.end()) return found->path;
+        std::vector<std::string> names;
+        for (const patch::PatchAsset& known : patch_.assets) names.push_back(known.name);
+        throw Error(where, fmt::format("no asset '{}' in [assets]{}", asset, did_you_mean(asset, names)));
+    };
+    auto slot = std::make_unique<build::DeviceSlot>();
+    slot->name = name;
+    if (recorded_) {
+        const auto recorded = std::ranges::find(*recorded_, name, &RecordedDevice::name);
+        if (recorded == recorded_->end()) throw Error(where, fmt::format("the take knows no device '{}'", name));
+        slot->device = std::make_unique<StandIn>(*recorded);
+    } else {
+        if (!live_ && haptic::is_real_driver(is_declared ? declared->driver : name))
+            throw Error(is_declared ? declared->where : where,
+                        fmt::format("device '{}' is hardware and keeps its own time; use 'tactus run'", name));
+        slot->device = haptic::open_haptic_device(is_declared ? declared->driver : name, is_declared ? declared->where : where,
+                                          options, resolve);
+        options.finish();
+    }
+    slot->device->prepare(seconds(period_));
+    slot->port.info = slot->device->info();
+    slot->port.sample = slot->device->acquire(0.0);
+    slot->group = group_;
+    slot->period = period_;
+    for (const auto* list : {&devices, &opened_.devices})
+        for (const auto& other : *list) slot->id += other->group == group_;
+    opened_.devices.push_back(std::move(slot));
+    return use_device(*opened_.devices.back(), use, where);
+}
+
+RecordStream& EngineOutside::record(const StreamFormat& wanted, const SourceLocation& where) {
+    if (wanted.file.empty() || wanted.file.find('/') != std::string::npos || wanted.file.starts_with('.'))
+        throw Error(where, fmt::format("'{}' is not a file name; recordings go to the folder of the run", wanted.file));
+    if (folder_ && is_of_run(wanted.file))
+        throw Error(where,
+                    fmt::format("'{}' is the name of a file that the run itself may write; record to another one, "
+                                "as 'force.csv'",
+                                wanted.file));
+    if (files_opened_.contains(wanted.file))
+        throw Error(where, fmt::format("two recordings would be written to '{}'", wanted.file));
+    StreamFormat format = wanted;
+    // A recording that an edit begins anew leaves what was recorded before untouched.
+    const std::filesystem::path name = wanted.file;
+    for (int again = 2; files_before_.contains(format.file) || files_opened_.contains(format.file); ++again)
+        format.file = fmt::format("{}-{}{}", name.stem().string(), again, name.extension().string());
+    const bool is_sound = format.type == &value::signal;
+    if (!is_sound && format.type->columns.empty())
+        throw Error(where, fmt::format("a {} cannot be recorded as numbers", format.type->name));
+    std::unique_ptr<StreamEnd> end = std::make_unique<NowhereEnd>();
+    if (folder_ && format.keeper) {
+        format.keeper->open((*folder_ / format.file).string());
+        end = std::make_unique<KeptEnd>(format.keeper, format.type->size);
+    } else if (folder_)
+        end = is_sound ? make_sound_end(*folder_ / format.file, format) : make_csv_end(*folder_ / format.file, format);
+    files_opened_.insert(format.file);
+    opened_.streams.push_back(std::make_unique<Stream>(format, std::move(end)));
+    uses_->streams.push_back(opened_.streams.back().get());
+    return *opened_.streams.back();
+}
+
+/// One whose node an edit took away: it plays on, and only one thread ever writes to it.
+SoundCard* EngineOutside::spare_card(const StreamFormat& format) const {
+    for (const auto& card : cards)
+        if (!card->is_lost() && card->serves(group_, format.period) &&
+            std::ranges::find(cards_in_use_, card.get()) == cards_in_use_.end())
+            return card.get();
+    return nullptr;
+}
+
+RecordStream& EngineOutside::audio(const StreamFormat& format, const SourceLocation& where) {
+    if (!live_ || audio_.device == "file") return record(format, where);
+    if (audio_.device == "none") {
+        StreamFormat unheard = format;
+        unheard.file.clear();
+        opened_.streams.push_back(std::make_unique<Stream>(unheard, std::make_unique<NowhereEnd>()));
+        uses_->streams.push_back(opened_.streams.back().get());
+        return *opened_.streams.back();
+    }
+    if (SoundCard* card = spare_card(format)) {
+        cards_in_use_.push_back(card);
+        uses_->cards.push_back(card);
+        return *card;
+    }
+    try {
+        std::unique_ptr<AudioSink> sink =
+            audio::make_portaudio_sink(audio_.device == "default" ? "" : audio_.device, audio_.margin_s);
+        sink->prepare(rate_of(format.period), 1);
+        opened_.notices.push_back(fmt::format("playing on {}", sink->name()));
+        opened_.cards.push_back(std::make_unique<SoundCard>(std::move(sink), format.period, audio_.margin_s, group_));
+        uses_->cards.push_back(opened_.cards.back().get());
+        return *opened_.cards.back();
+    } catch (const Error& error) {
+        if (audio_.is_required()) throw Error(where, error.message());
+        opened_.notices.push_back(
+            fmt::format("no sound card ({}); the sound goes to {}", error.message(), format.file));
+    }
+    return record(format, where);
+}
+
+}  // namespace tactus::io

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// The engine's side of graph/node/setup.hpp: opens what the nodes ask for and owns it.
+#pragma once
+
+#include "engine/build/group_program.hpp"
+#include "engine/io/sound_card.hpp"
+#include "engine/io/streams.hpp"
+#include "graph/patch/patch.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+namespace tactus::io {
+
+/// A device of a run that is over, as a take remembers it.
+struct RecordedDevice {
+    std::string name;
+    DeviceInfo info;
+    DeviceSample first;  ///< what nodes saw when they were prepared
+};
+
+/// What a node asked for.
+struct OutsideUses {
+    std::vector<std::pair<build::DeviceSlot*, DeviceUse>> devices;
+    std::vector<SoundCard*> cards;
+    std::vector<const RecordStream*> streams;
+};
+
+/// Where sound goes in a live run.
+struct AudioChoice {
+    std::string
+        device;  ///< "": the default card, a file when there is none; "file"; "none"; "default" or part of a name
+    double margin_s = 0.01;  ///< sound that waits for the card in case a thread is late, s
+
+    bool is_required() const { return !device.empty() && device != "file" && device != "none"; }
+};
+
+class EngineOutside : public Outside {
+public:
+    /// Without a folder nothing is written: streams end nowhere. `live` allows real devices and sound cards.
+    EngineOutside(std::optional<std::filesystem::path> folder, bool live, AudioChoice audio = {});
+
+    DevicePort& device(const std::string& name, DeviceUse use, const SourceLocation& where) override;
+    RecordStream& record(const StreamFormat& format, const SourceLocation& where) override;
+    RecordStream& audio(const StreamFormat& format, const SourceLocation& where) override;
+
+    /// What the nodes prepared from now on ask for belongs to this plan. It is opened aside, while the run goes on.
+    void begin(const patch::Patch& patch);
+    /// Cards of nodes that go on; the others are given to nodes that are prepared anew.
+    void keep_cards(std::vector<SoundCard*> in_use) { cards_in_use_ = std::move(in_use); }
+    /// Which group the node being prepared belongs to, and where to note what it asks for.
+    void prepare_for(int group, Flicks period, OutsideUses& uses) {
+        group_ = group;
+        period_ = period;
+        uses_ = &uses;
+    }
+    /// Puts what was opened since `begin` to use; control thread.
+    void keep();
+    /// Closes what was opened since `begin`.
+    void discard();
+
+    /// Instead of opening devices, stand-ins for those of a run that is over: what they reported is in its log.
+    void imitate(std::vector<RecordedDevice> recorded) { recorded_ = std::move(recorded); }
+
+    // Of the run; control thread.
+    std::vector<std::unique_ptr<build::DeviceSlot>> devices;
+    std::vector<std::unique_ptr<Stream>> streams;
+    std::vector<std::unique_ptr<SoundCard>> cards;
+    std::vector<std::string> notices;  ///< what the user should know once: "no sound card: …"
+
+private:
+    std::string device_name(const std::string& wanted, const SourceLocation& where) const;
+    build::DeviceSlot* find_device(const std::string& name) const;
+    DevicePort& use_device(build::DeviceSlot& slot, DeviceUse use, const SourceLocation& where);
+    SoundCard* spare_card(const StreamFormat& format) const;
+
+    struct Opened {
+        std::vector<std::unique_ptr<build::DeviceSlot>> devices;
+        std::vector<std::unique_ptr<Stream>> streams;
+        std::vector<std::unique_ptr<SoundCard>> cards;
+        std::vector<std::string> notices;
+    };
+
+    patch::Patch patch_;
+    std::optional<std::vector<RecordedDevice>> recorded_;
+    Opened opened_;
+    std::unordered_set<std::string> files_opened_, files_before_;  ///< recordings since `begin`, and those of the run
+    OutsideUses* uses_ = nullptr;
+    std::vector<SoundCard*> cards_in_use_;
+    std::vector<std::pair<std::string, std::vector<OptionText>>> device_settings_;
+    std::optional<std::filesystem::path> folder_;
+    bool live_;
+    AudioChoice audio_;
+    int group_ = -1;
+    Flicks period_ = 0;
+};
+
+}  // namespace tactus::io

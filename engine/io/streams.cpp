@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/io/streams.hpp"
+
+#include "assets/file/growing_file.hpp"
+#include "assets/sound/sound.hpp"
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <utility>
+
+namespace tactus::io {
+
+namespace {
+
+constexpr std::size_t ring_bytes = std::size_t{1} << 20;
+constexpr std::size_t longest_piece = 4096;  // values of one write
+
+class SoundEnd : public StreamEnd {
+public:
+    SoundEnd(const std::filesystem::path& path, const StreamFormat& format)
+        : writer_(path, 1, static_cast<int>(std::lround(rate_of(format.period)))) {}
+
+    void take(std::int64_t first, const std::byte* values, std::size_t count) override {
+        static constexpr float silence[1024] = {};
+        for (; next_ < first; next_ += std::min<std::int64_t>(first - next_, 1024))
+            writer_.write(silence, static_cast<std::size_t>(std::min<std::int64_t>(first - next_, 1024)));
+        writer_.write(reinterpret_cast<const float*>(values), count);
+        next_ += static_cast<std::int64_t>(count);
+    }
+    void finish() override { writer_.finish(); }
+
+private:
+    sound::SoundWriter writer_;
+    std::int64_t next_ = 0;
+};
+
+class CsvEnd : public StreamEnd {
+public:
+    CsvEnd(std::filesystem::path path, const StreamFormat& format)
+        : path_(std::move(path)),
+          part_(path_.string() + ".part"),
+          file_(std::make_unique<file::GrowingFile>(part_, path_)),
+          type_(*format.type),
+          period_(format.period) {
+        std::string header = "t_s";
+        for (const std::string_view column : type_.columns)
+            header += fmt::format(",{}{}{}", column, format.unit.empty() ? "" : "_", format.unit);
+        file_->append(header + "\n");
+        row_.resize(type_.columns.size());
+    }
+    ~CsvEnd() override {
+        if (!file_) return;
+        file_.reset();
+        std::error_code ignored;
+        std::filesystem::remove(part_, ignored);
+    }
+    void take(std::int64_t first, const std::byte* values, std::size_t count) override {
+        for (std::size_t i = 0; i < count; ++i) {
+            type_.to_columns(values + i * type_.size, row_.data());
+            line_.clear();
+            fmt::format_to(std::back_inserter(line_), "{:.6f}",
+                           seconds((first + static_cast<std::int64_t>(i)) * period_));
+            for (const double number : row_) fmt::format_to(std::back_inserter(line_), ",{}", number);
+            line_ += '\n';
+            file_->append(line_);
+        }
+    }
+    void finish() override {
+        const std::unique_ptr<file::GrowingFile> file = std::move(file_);
+        std::exception_ptr full;
+        try {
+            file->close();
+        } catch (const Error&) {
+            full = std::current_exception();
+        }
+        std::error_code failure;
+        const bool is_empty = std::filesystem::file_size(part_, failure) == 0;  // not even the names of the columns
+        if (is_empty) std::filesystem::remove(part_, failure);
+        else std::filesystem::rename(part_, path_, failure);
+        if (full) std::rethrow_exception(full);
+        if (failure)
+            throw Error(
+                fmt::format("{}: cannot be renamed to {}: {}", part_.string(), path_.string(), failure.message()));
+    }
+
+private:
+    std::filesystem::path path_, part_;
+    std::unique_ptr<file::GrowingFile> file_;
+    const ValueType& type_;
+    Flicks period_;
+    std::vector<double> row_;
+    std::string line_;
+};
+
+}  // namespace
+
+std::unique_ptr<StreamEnd> make_sound_end(const std::filesystem::path& path, const StreamFormat& format) {
+    return std::make_unique<SoundEnd>(path, format);
+}
+std::unique_ptr<StreamEnd> make_csv_end(const std::filesystem::path& path, const StreamFormat& format) {
+    return std::make_unique<CsvEnd>(path, format);
+}
+
+Stream::Stream(StreamFormat format, std::unique_ptr<StreamEnd> end)
+    : format_(std::move(format)),
+      end_(std::move(end)),
+      ring_(std::make_unique<Ring<std::byte>>(ring_bytes)),
+      packed_(sizeof(Piece) + longest_piece * format_.type->size),
+      drained_(longest_piece * format_.type->size) {}
+
+bool Stream::write(std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept {
+    const std::size_t size = format_.type->size;
+    const std::int64_t begin = std::max(first, from_),
+                       end = std::min(first + static_cast<std::int64_t>(count), until());
+    // Past its end it may have been completed already.
+    if (begin >= end) return true;
+    values = static_cast<const std::byte*>(values) + static_cast<std::ptrdiff_t>(begin - first) * stride;
+    count = static_cast<std::size_t>(end - begin);
+    const Piece piece{begin, count};
+    const std::size_t bytes = sizeof piece + count * size;
+    if (count > longest_piece || ring_->space() < bytes) {
+        dropped_.fetch_add(count, std::memory_order_relaxed);
+        return false;
+    }
+    std::memcpy(packed_.data(), &piece, sizeof piece);
+    for (std::size_t i = 0; i < count; ++i)
+        std::memcpy(packed_.data() + sizeof piece + i * size,
+                    static_cast<const std::byte*>(values) + static_cast<std::ptrdiff_t>(i) * stride, size);
+    return ring_->push(packed_.data(), bytes) == bytes;
+}
+
+void Stream::drain() {
+    const std::lock_guard lock(draining_);
+    if (!ring_) return;
+    Piece piece;
+    // A piece is pushed whole, so once its head is there the rest is too.
+    while (ring_->pop(reinterpret_cast<std::byte*>(&piece), sizeof piece) == sizeof piece) {
+        ring_->pop(drained_.data(), piece.count * format_.type->size);
+        if (!loss_.empty()) continue;
+        try {
+            end_->take(piece.first, drained_.data(), piece.count);
+        } catch (const Error& error) {
+            lose(error);
+        }
+    }
+}
+
+/// Keeps what there is; the run goes on without this stream.
+void Stream::lose(const Error& error) {
+    loss_ = error.message();
+    try {
+        end_->finish();
+    } catch (const Error& another) {
+        if (another.message() != loss_) loss_ += fmt::format("; {}", another.message());
+    }
+}
+
+std::string Stream::loss() {
+    const std::lock_guard lock(draining_);
+    return loss_;
+}
+
+void Stream::finish() {
+    drain();
+    const std::lock_guard lock(draining_);
+    if (!end_) return;
+    if (loss_.empty()) {
+        try {
+            end_->finish();
+        } catch (const Error& error) {
+            loss_ = error.message();
+        }
+    }
+    end_.reset();
+    ring_.reset();
+    packed_ = std::vector<std::byte>();
+    drained_ = std::vector<std::byte>();
+}
+
+}  // namespace tactus::io

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an observer gets of a run: copies, its own to keep. Nothing here is shared with the run.
+#pragma once
+
+#include "dsp/contact/pointshell.hpp"
+#include "dsp/core/time.hpp"
+#include "dsp/core/types.hpp"
+#include "dsp/coupling/scene.hpp"
+#include "dsp/volume/bricks.hpp"
+#include "dsp/volume/grid.hpp"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tactus::observe {
+
+/// A value and the logical time of the activation that made it.
+template <class T>
+struct Seen {
+    T value;
+    Flicks when = 0;
+};
+
+/// Values of a port one after another, as numbers. Activations that were lost are missing.
+struct SeenValues {
+    std::vector<Flicks> when;     ///< of each value
+    std::vector<double> columns;  ///< those of ValueType::to_columns, value after value
+    std::size_t per_value = 1;    ///< numbers of one value
+};
+
+/// A scene without what its bodies are made of: those are told apart by the hash of their content.
+struct SeenScene {
+    struct Object {
+        std::uint64_t body = 0;  ///< content_hash of the Body
+        Pose pose;
+    };
+    std::uint64_t count = 0;
+    std::array<Object, coupling::Scene::most_objects> objects;
+};
+
+/// What a body is made of, in its own frame, m.
+struct SeenBody {
+    std::string port;  ///< "node.port" that gives it
+    std::uint64_t content_hash = 0;
+    Pose home;
+    volume::Grid distance;  ///< empty when it has no distance field
+    std::vector<Vec3> points;
+    std::vector<std::uint8_t> labels;  ///< per point, see surface_label
+};
+
+/// A copy of one version of a bone. Bricks that came with the same publication always appear together.
+struct SeenBone {
+    volume::BrickLayout layout;
+    volume::BoneRoot root;  ///< its bricks, and `layout`
+    std::int64_t version = 0, first_version = 0;
+    Flicks when = 0;
+    std::uint64_t update = 1;  ///< rises whenever bricks change
+    std::vector<std::uint64_t> changed_at;  ///< per brick: the update that changed it last; 1: as it began
+    std::vector<std::unique_ptr<float[]>> distance, density;  ///< own copies, null where none is stored
+    std::shared_ptr<const void> borrowed;  ///< keeps bricks of `root` that are not its own
+
+    /// Copies everything. Throws std::bad_alloc at most.
+    explicit SeenBone(const volume::BoneSnapshot& from);
+    SeenBone(const SeenBone&) = delete;
+    SeenBone& operator=(const SeenBone&) = delete;
+
+    volume::BoneSnapshot snapshot() const { return {&root, version, 0}; }
+    /// Bricks that changed after `since`, ascending.
+    std::vector<std::uint32_t> changed_since(std::uint64_t since) const;
+};
+
+}  // namespace tactus::observe

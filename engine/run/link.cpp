@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/run/link.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+namespace tactus::run {
+
+void Link::prepare(Flicks slack, int producer_frames, int consumer_frames, std::int64_t first) {
+    first_.store(first);
+    settled_.store(continued == nullptr);
+    // Slot m is wanted until the consumer's next read; latency and the lengths of calls on both sides add to that.
+    const Flicks reach = consumer_period * consumer_frames + latency + slack;
+    depth_ = ceil_div(reach, producer_period) + 2 + 2 * static_cast<std::int64_t>(producer_frames);
+    const auto depth = static_cast<std::size_t>(depth_);
+    stamp_ = std::vector<std::atomic<std::int64_t>>(depth);
+    for (auto& stamp : stamp_) stamp.store(-1, std::memory_order_relaxed);
+    for (LinkWire& wire : wires) {
+        const std::size_t size = wire.type->size;
+        wire.ring.assign(depth * size, std::byte{0});
+        wire.current.resize(size);
+        if (wire.starts_from_output) std::memcpy(wire.current.data(), wire.source->data, size);
+        else wire.type->make_default(wire.current.data());
+        wire.previous = wire.current;
+        if (wire.mode == patch::WireMode::linear) wire.glide.resize(size * static_cast<std::size_t>(consumer_frames));
+        if (wire.mode == patch::WireMode::batch) {
+            held_.resize(depth + (continued ? continued->stamp_.size() : 0));
+            wire.batch.resize(held_.size() * size);
+            wire.batch_times.resize(held_.size());
+        }
+        if (wire.param) wire.param->drive(*reinterpret_cast<const double*>(wire.current.data()));
+        if (wire.target) wire.point(*wire.target, producer_period);
+    }
+}
+
+void LinkWire::point(Input& input, Flicks producer_period) const {
+    input.data = mode == patch::WireMode::batch ? batch.data() : current.data();
+    input.times = batch_times.data();
+    input.period = producer_period;
+}
+
+void Link::publish(std::int64_t first, int count) noexcept {
+    for (LinkWire& wire : wires)
+        for (int i = 0; i < count; ++i)
+            std::memcpy(wire.slot(first + i, depth_), wire.source->data + i * wire.source->stride, wire.type->size);
+    for (int i = 0; i < count; ++i) stamp(first + i).store(first + i, std::memory_order_relaxed);
+}
+
+void Link::take_over() noexcept {
+    if (!continued) return;
+    continues_ = true;
+    used_ = continued->used_;
+    fresh_ = continued->fresh_;
+    for (LinkWire& wire : wires) {
+        if (!wire.before) continue;
+        std::memcpy(wire.current.data(), wire.before->current.data(), wire.type->size);
+        std::memcpy(wire.previous.data(), wire.before->previous.data(), wire.type->size);
+    }
+}
+
+void Link::abandon() noexcept { hold_from(std::numeric_limits<std::int64_t>::max() / 2); }
+
+void Link::hold_from(std::int64_t index) noexcept {
+    oldest_.store(index, std::memory_order_release);
+    if (settled_.load(std::memory_order_relaxed)) return;
+    if (index < first_.load(std::memory_order_acquire)) {
+        continued->hold_from(index);
+        return;
+    }
+    continued->abandon();
+    continues_ = false;
+    settled_.store(true, std::memory_order_release);
+}
+
+bool Link::holds(std::int64_t index) const noexcept {
+    if (index < 0) return false;
+    if (index < first_.load(std::memory_order_acquire)) return continues_ && continued->holds(index);
+    return stamp(index).load(std::memory_order_relaxed) == index;
+}
+
+const std::byte* Link::value(const LinkWire& wire, std::int64_t index) const noexcept {
+    if (index >= first_.load(std::memory_order_acquire))
+        return wire.ring.data() + static_cast<std::size_t>(index % depth_) * wire.type->size;
+    // A wire that is new has brought nothing yet.
+    return continues_ && wire.before ? continued->value(*wire.before, index) : wire.current.data();
+}
+
+std::int64_t Link::oldest_version(const Output* output) const noexcept {
+    std::int64_t oldest = std::numeric_limits<std::int64_t>::max();
+    if (!settled_.load(std::memory_order_acquire)) oldest = continued->oldest_version(output);
+    const std::int64_t held = oldest_.load(std::memory_order_acquire);
+    const bool is_begun = held >= first_.load(std::memory_order_relaxed);
+    for (const LinkWire& wire : wires) {
+        if (wire.source != output) continue;
+        // Index −1 is the value set by prepare, which counts as the oldest there is.
+        if (!is_begun && !wire.before && wire.starts_from_output) return 0;
+        for (std::size_t slot = 0; slot < stamp_.size(); ++slot)
+            if (stamp_[slot].load(std::memory_order_relaxed) >= held)
+                oldest = std::min(oldest, wire.type->version(wire.ring.data() + slot * wire.type->size));
+    }
+    return oldest;
+}
+
+std::int64_t Link::newest_held(std::int64_t newest) const noexcept {
+    if (holds(newest)) return newest;
+    // After a standstill of either side the values that were kept may lie anywhere.
+    std::int64_t found = -1;
+    for (const auto& slot : stamp_)
+        if (const std::int64_t index = slot.load(std::memory_order_relaxed); index <= newest)
+            found = std::max(found, index);
+    return found < 0 && continues_ ? continued->newest_held(newest) : found;
+}
+
+std::int64_t Link::newest_available(std::int64_t want, std::int64_t done) const noexcept {
+    return std::max(used_, newest_held(std::min(want, done - 1)));
+}
+
+void Link::list_held(std::int64_t newest) noexcept {
+    held_count_ = 0;
+    const auto add = [this](std::int64_t index) { held_[held_count_++] = index; };
+    if (newest - used_ <= depth_) {
+        for (std::int64_t index = used_ + 1; index <= newest; ++index)
+            if (holds(index)) add(index);
+        return;
+    }
+    // After a standstill of either side the values that were kept may lie anywhere.
+    const std::int64_t first = first_.load(std::memory_order_acquire);
+    const auto add_all = [&](const Link& link, std::int64_t from, std::int64_t to) {
+        for (const auto& slot : link.stamp_)
+            if (const std::int64_t index = slot.load(std::memory_order_relaxed); index >= from && index <= to)
+                add(index);
+    };
+    add_all(*this, std::max(used_ + 1, first), newest);
+    if (continues_) add_all(*continued, used_ + 1, std::min(newest, first - 1));
+    std::sort(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(held_count_));
+}
+
+void Link::gather_batch(LinkWire& wire) noexcept {
+    int count = 0;
+    for (std::size_t n = 0; n < held_count_; ++n) {
+        const std::int64_t index = held_[n];
+        if (index < first_.load(std::memory_order_acquire) && !wire.before) continue;
+        std::memcpy(wire.batch.data() + static_cast<std::size_t>(count) * wire.type->size, value(wire, index),
+                    wire.type->size);
+        wire.batch_times[static_cast<std::size_t>(count++)] = index * producer_period;
+    }
+    wire.target->count = count;
+}
+
+void Link::read(std::int64_t index) noexcept {
+    fresh_ = true;
+    if (!held_.empty()) list_held(index);
+    for (LinkWire& wire : wires) {
+        if (wire.mode == patch::WireMode::batch) {
+            gather_batch(wire);
+            continue;
+        }
+        if (index == used_) continue;
+        if (wire.mode == patch::WireMode::linear) {
+            // The value before the new one; after a gap, the one that was in use.
+            const bool adjacent = index - 1 > used_ && holds(index - 1);
+            std::memcpy(wire.previous.data(), adjacent ? value(wire, index - 1) : wire.current.data(), wire.type->size);
+        }
+        const std::byte* now = value(wire, index);
+        if (now != wire.current.data()) std::memcpy(wire.current.data(), now, wire.type->size);
+    }
+    used_ = index;
+    hold_from(index);
+}
+
+void Link::deliver(std::int64_t j, int frames) noexcept {
+    for (LinkWire& wire : wires) {
+        if (wire.mode == patch::WireMode::batch) {
+            // A batch is seen by one call only, however many calls share one read.
+            if (!fresh_) wire.target->count = 0;
+            continue;
+        }
+        const std::byte* values = wire.current.data();
+        std::ptrdiff_t stride = 0;
+        if (wire.mode == patch::WireMode::linear) {
+            for (int i = 0; i < frames; ++i) {
+                const Flicks past = (j + i) * consumer_period - latency - used_ * producer_period;
+                const double t = std::clamp(static_cast<double>(past) / static_cast<double>(producer_period), 0.0, 1.0);
+                wire.type->interpolate(wire.previous.data(), wire.current.data(), t,
+                                       wire.glide.data() + static_cast<std::size_t>(i) * wire.type->size);
+            }
+            values = wire.glide.data();
+            stride = static_cast<std::ptrdiff_t>(wire.type->size);
+        }
+        if (wire.target) {
+            wire.target->data = values;
+            wire.target->stride = stride;
+        } else if (wire.mode != patch::WireMode::linear) {
+            wire.param->drive(*reinterpret_cast<const double*>(values));
+        }
+    }
+    fresh_ = false;
+}
+
+}  // namespace tactus::run

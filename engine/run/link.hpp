@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// The wires from one group to another: rings of plain slots, guarded by the progress words of both groups. When a plan
+// takes over from another, a link may continue one of the old plan: values published before the switch are still read
+// from there.
+#pragma once
+
+#include "graph/compile/plan.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace tactus::run {
+
+class GroupRuntime;
+
+/// One wire between two groups. Its ring belongs to both, all else to the consumer.
+struct LinkWire {
+    const ValueType* type = nullptr;
+    const Output* source = nullptr;
+    Input* target = nullptr;   ///< or null, and then:
+    Param* param = nullptr;
+    patch::WireMode mode = patch::WireMode::hold;
+    LinkWire* before = nullptr;                ///< the same wire in the link that this one continues
+    bool starts_from_output = true;            ///< index −1 is what prepare set; else the type's default
+    std::vector<std::byte> ring;               ///< depth values
+    std::vector<std::byte> current, previous;  ///< values of the used index and of the one before it
+    std::vector<std::byte> glide;              ///< `linear`: one value per activation of a call
+    std::vector<std::byte> batch;              ///< `batch`: the values of a call, and when they were made
+    std::vector<Flicks> batch_times;
+
+    /// Points an input at the values.
+    void point(Input& input, Flicks producer_period) const;
+
+    std::byte* slot(std::int64_t index, std::int64_t depth) {
+        return ring.data() + static_cast<std::size_t>(index % depth) * type->size;
+    }
+};
+
+/// All wires of one latency from one group to another; whether a value is there is decided for all of them at once.
+class Link {
+public:
+    const GroupRuntime *producer = nullptr, *consumer = nullptr;
+    int id = 0;
+    Flicks producer_period = 0, consumer_period = 0, latency = 0;
+    std::vector<LinkWire> wires;
+    /// The link of the plan before that this one continues. It must live until `settled` and one call of the producer.
+    Link* continued = nullptr;
+
+    /// Fixes the depth of the rings and takes the outputs' present values as index −1. `slack` is how late, in flicks,
+    /// the consumer may run before publications are dropped; `max_frames` the longest calls of producer and consumer;
+    /// `first` the first index that will be published, `unknown` when the producer is to say it by `begin_at`.
+    void prepare(Flicks slack, int producer_frames, int consumer_frames, std::int64_t first = 0);
+
+    /// Index that consumer activation `j` reads when all is in time.
+    std::int64_t wanted(std::int64_t j) const { return compile::source_index(j, consumer_period, latency, producer_period); }
+    /// First activation after `j` that wants another index.
+    std::int64_t window_end(std::int64_t j) const {
+        return ceil_div((wanted(j) + 1) * producer_period + latency, consumer_period);
+    }
+
+    // Producer's side.
+    /// The producer publishes here from `index` on. Wait-free.
+    void begin_at(std::int64_t index) noexcept { first_.store(index, std::memory_order_release); }
+    /// True when the slots of indices first … first + count − 1 are released. Wait-free.
+    bool has_room(std::int64_t first, int count) const noexcept {
+        const std::int64_t oldest = oldest_.load(std::memory_order_acquire);
+        // As long as nobody stood still, slots are taken in turn.
+        if (first + count - 1 - depth_ < std::max(oldest, first_.load(std::memory_order_relaxed) - 1)) return true;
+        for (int i = 0; i < count; ++i)
+            if (const std::int64_t there = stamp(first + i).load(std::memory_order_relaxed);
+                there >= 0 && there >= oldest)
+                return false;
+        return true;
+    }
+    /// Copies the outputs' values into the slots. The group's progress word publishes them. Wait-free.
+    void publish(std::int64_t first, int count) noexcept;
+    /// Smallest version of `output` that the consumer may still look at, or INT64_MAX when this link has none.
+    std::int64_t oldest_version(const Output* output) const noexcept;
+
+    // Consumer's side.
+    /// The consumer reads here from now on. Wait-free.
+    void take_over() noexcept;
+    /// The consumer never reads here again. Wait-free.
+    void abandon() noexcept;
+    /// True when reading something older than `want` counts as a miss; false before the first publication of a link
+    /// that continues nothing.
+    bool misses(std::int64_t want) const noexcept {
+        const std::int64_t first = first_.load(std::memory_order_acquire);
+        return continues_ || first == unknown || want >= first;
+    }
+    /// Newest index ≤ `want` and < `done` that was published and not dropped, or the one in use. Wait-free.
+    std::int64_t newest_available(std::int64_t want, std::int64_t done) const noexcept;
+    /// Takes over the values of `index` (≥ the one in use) and releases what is older. Wait-free.
+    void read(std::int64_t index) noexcept;
+    /// Points inputs at values for the call of activations j … j + frames − 1. Wait-free.
+    void deliver(std::int64_t j, int frames) noexcept;
+
+    std::int64_t used() const { return used_; }
+    std::int64_t depth() const { return depth_; }
+    /// Nothing is read from `continued` any more. Any thread.
+    bool settled() const noexcept { return settled_.load(std::memory_order_acquire); }
+
+    /// The plan before is taken apart; only when settled. Control thread.
+    void forget_continued() { continued = nullptr; }
+
+    static constexpr std::int64_t unknown = std::numeric_limits<std::int64_t>::max();
+
+private:
+    bool holds(std::int64_t index) const noexcept;
+    std::int64_t newest_held(std::int64_t newest) const noexcept;
+    std::atomic<std::int64_t>& stamp(std::int64_t index) { return stamp_[static_cast<std::size_t>(index % depth_)]; }
+    const std::atomic<std::int64_t>& stamp(std::int64_t index) const {
+        return stamp_[static_cast<std::size_t>(index % depth_)];
+    }
+    const std::byte* value(const LinkWire& wire, std::int64_t index) const noexcept;
+    void hold_from(std::int64_t index) noexcept;
+    /// Lists what lies between the used index and `newest`, in order.
+    void list_held(std::int64_t newest) noexcept;
+    void gather_batch(LinkWire& wire) noexcept;
+
+    std::int64_t depth_ = 0;
+    /// Index whose values are in each slot, −1: none. What the reader may read is published by the writer's progress.
+    std::vector<std::atomic<std::int64_t>> stamp_;
+    std::vector<std::int64_t> held_;  ///< consumer's list of indices; empty when no wire is a batch
+    std::size_t held_count_ = 0;
+    std::int64_t used_ = -1;
+    bool fresh_ = false;  ///< `read` was called since the last `deliver`
+    bool continues_ = false;  ///< consumer's: values before `first_` are read from `continued`
+    std::atomic<bool> settled_{true};
+    std::atomic<std::int64_t> first_{0};  ///< first index published here; `unknown` before the producer's switch
+    alignas(64) std::atomic<std::int64_t> oldest_{-1};  ///< index the consumer holds; older ones it never reads again
+};
+
+}  // namespace tactus::run

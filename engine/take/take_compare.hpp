@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compares every value that a repetition publishes with those of the take, bit by bit, while it runs.
+#pragma once
+
+#include "engine/run/group_runtime.hpp"
+#include "engine/io/streams.hpp"
+#include "engine/take/take_reader.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::take {
+
+struct TakeDifference {
+    std::string port;
+    std::int64_t tick = 0;
+    double time = 0.0;  ///< logical, s
+    std::vector<std::string> channels;
+    std::vector<double> expected, got;
+};
+
+class TakeComparison {
+public:
+    explicit TakeComparison(const Take& take) : take_(take) {}
+
+    /// Where the values of an output go: what EngineOptions::tap asks for. Null when the take has none of it.
+    std::unique_ptr<io::Stream> tap(const std::string& port, const ValueType& type, const run::GroupRuntime& group);
+
+    // After the run:
+    std::uint64_t compared_values() const { return compared_; }
+    /// The earliest in logical time; at equal times the first name.
+    const std::optional<TakeDifference>& first_difference() const { return first_; }
+
+    // For the stream ends.
+    void count(std::uint64_t values);
+    void differs(TakeDifference difference);
+
+private:
+    const Take& take_;
+    std::mutex lock_;
+    std::uint64_t compared_ = 0;
+    std::optional<TakeDifference> first_;
+};
+
+}  // namespace tactus::take

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/take/take_reader.hpp"
+
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <optional>
+#include <sstream>
+
+namespace tactus::take {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::uint64_t bits_of(const Json& json) {
+    const auto& text = json.get_ref<const std::string&>();
+    std::uint64_t bits = 0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), bits, 16);
+    if (failure != std::errc{} || end != text.data() + text.size()) throw Error("a number is damaged");
+    return bits;
+}
+
+double number_of(const Json& json) { return std::bit_cast<double>(bits_of(json)); }
+
+void read_assets(const Json& list, std::vector<TakenAsset>& assets) {
+    for (const Json& asset : list) {
+        TakenAsset taken{asset.at("name"), asset.at("path").get<std::string>(), bits_of(asset.at("hash"))};
+        const bool known = std::ranges::any_of(
+            assets, [&](const TakenAsset& a) { return a.path == taken.path && a.hash == taken.hash; });
+        if (!known) assets.push_back(std::move(taken));
+    }
+}
+
+io::RecordedDevice read_device(const Json& json) {
+    io::RecordedDevice device;
+    device.name = json.at("device");
+    const Json& info = json.at("info");
+    device.info = {info.at("name"),          info.at("max_force"),       info.at("max_torque"),      info.at("damping"),
+                   info.at("max_stiffness"), info.at("actuates_torque"), info.at("senses_rotation"), info.at("fingers"),
+                   info.at("max_speed"),     info.at("least_speed")};
+    const Json& first = json.at("first");
+    device.first.buttons = first.at("buttons");
+    device.first.counter = first.at("counter");
+    device.first.valid = first.at("valid");
+    const Json& n = first.at("numbers");
+    const auto v = [&n](std::size_t i) { return number_of(n.at(i)); };
+    device.first.pose = {Vec3(v(0), v(1), v(2)), Quat(v(3), v(4), v(5), v(6))};
+    device.first.twist = {Vec3(v(7), v(8), v(9)), Vec3(v(10), v(11), v(12))};
+    for (std::size_t i = 0; i < most_fingers; ++i) {
+        const Json& finger = first.at("fingers").at(i);
+        device.first.fingers[i] = {number_of(finger.at(0)), number_of(finger.at(1)), finger.at(2)};
+    }
+    return device;
+}
+
+TakeStreamInfo read_stream(const Json& json) {
+    TakeStreamInfo info;
+    info.file = json.at("stream");
+    info.port = json.at("port");
+    info.group = json.at("group");
+    info.group_number = json.at("group_number");
+    info.type = json.at("type");
+    info.period = json.at("period_flicks");
+    info.start = json.at("start");
+    if (!info.file.starts_with("streams/") || info.file.find("..") != std::string::npos)
+        throw Error(fmt::format("'{}' is no stream of the take", info.file));
+    if (info.period < 1 || info.start < 0)
+        throw Error(fmt::format("the stream of {} has no period, or begins before the run", info.port));
+    return info;
+}
+
+void read_event(const Json& json, Take& take) {
+    if (json.contains("device")) take.devices.push_back(read_device(json));
+    else if (json.contains("stream")) take.streams.push_back(read_stream(json));
+    else if (json.contains("plan")) {
+        TakenEdit edit;
+        edit.number = json.at("plan");
+        edit.when = json.at("when_flicks");
+        edit.text = file::read_whole_file(take.folder / fmt::format("patch-{}.toml", edit.number));
+        read_assets(json.at("assets"), take.assets);
+        take.events.emplace_back(std::move(edit));
+    } else if (json.contains("set")) {
+        take.events.emplace_back(
+            TakenChange{json.at("set"), json.at("node"), json.at("param"), number_of(json.at("bits"))});
+    }
+}
+
+}  // namespace
+
+Take Take::load(const fs::path& folder) {
+    Take take;
+    take.folder = folder;
+    if (!fs::exists(folder / "take.json"))
+        throw Error(fmt::format("{}: not a take; make one with 'tactus run PATCH --record TAKE'", folder.string()));
+    fs::path reading = folder / "take.json";
+    int line_number = 0;
+    try {
+        const Json json = Json::parse(file::read_whole_file(reading));
+        if (json.at("format") != take_format)
+            throw Error(
+                fmt::format("it has format {}, and this tactus reads format {}; replay it with the build that "
+                            "made it, or record it again",
+                            json.at("format").dump(), take_format));
+        take.about.patch_file = json.at("patch").get<std::string>();
+        take.about.overrides.settings = json.at("settings");
+        take.about.overrides.assets = json.at("asset_overrides");
+        take.about.seconds = json.at("seconds");
+        take.about.live = json.at("live");
+        if (json.contains("seed")) take.about.seed = json.at("seed").get<std::uint64_t>();
+        take.title = json.at("title");
+        take.build = json.at("build");
+        take.cpu = json.at("cpu");
+        read_assets(json.at("assets"), take.assets);
+        take.text = file::read_whole_file(folder / "patch-0.toml");
+
+        reading = folder / "events.jsonl";
+        std::istringstream events(file::read_whole_file(reading));
+        for (std::string line; std::getline(events, line);) {
+            ++line_number;
+            // The last line may have been cut off; what was promised is in result.json.
+            if (events.eof() && !Json::accept(line)) break;
+            read_event(Json::parse(line), take);
+            ++take.lines;
+        }
+        line_number = 0;
+        reading = folder / "result.json";
+        if (fs::exists(reading)) {
+            const Json result = Json::parse(file::read_whole_file(reading));
+            for (const auto& [port, hash] : result.at("ports").items()) take.result[port] = bits_of(hash);
+            for (const auto& [file, count] : result.at("holds").items()) take.written[file] = count.get<std::int64_t>();
+            take.is_complete = true;
+        }
+    } catch (const nlohmann::json::exception& error) {
+        throw Error({reading.string(), line_number, 0}, fmt::format("the take is damaged: {}", error.what()));
+    } catch (const Error& error) {
+        if (error.message().find(folder.string()) != std::string::npos) throw;
+        throw Error({reading.string(), line_number, 0}, fmt::format("the take cannot be used: {}", error.message()));
+    }
+    take.log = TimingLog::load(folder / "timing.log", true);
+    return take;
+}
+
+std::vector<std::string> Take::differences() const {
+    std::vector<std::string> found;
+    if (build != build_identity())
+        found.push_back(fmt::format("the take was made by another build ({}, this is {})", build, build_identity()));
+    if (cpu != cpu_family())
+        found.push_back(
+            fmt::format("the take was made on another kind of processor ({}, this is {})", cpu, cpu_family()));
+    return found;
+}
+
+std::vector<std::string> Take::changed_assets() const {
+    std::vector<std::string> found;
+    for (const TakenAsset& asset : assets) {
+        if (asset.hash == 0) continue;
+        if (!fs::exists(asset.path))
+            found.push_back(fmt::format("asset '{}' is gone: {}", asset.name, asset.path.string()));
+        else if (hash_of_asset(asset.path) != asset.hash)
+            found.push_back(fmt::format("asset '{}' has changed since: {}", asset.name, asset.path.string()));
+    }
+    return found;
+}
+
+namespace {
+
+/// Frames of a stream; nothing when it cannot be read.
+std::optional<std::int64_t> frames_in(const fs::path& folder, const TakeStreamInfo& stream) {
+    try {
+        return TakeStreamReader(folder / stream.file, stream).frames();
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+}
+
+}  // namespace
+
+std::vector<TakeDamage> Take::damages() const {
+    std::vector<TakeDamage> found;
+    const auto compare = [&](const std::string& file, std::int64_t holds, const char* unit) {
+        const auto known = written.find(file);
+        const std::int64_t count = known == written.end() ? 0 : known->second;
+        if (holds != count) found.push_back({file, holds, count, unit});
+    };
+    if (is_complete) {
+        compare("timing.log", log.records, "records");
+        compare("events.jsonl", lines, "lines");
+        for (const TakeStreamInfo& stream : streams)
+            compare(stream.file, frames_in(folder, stream).value_or(0), "values");
+    }
+    if (found.empty() && log.written && !log.is_whole)
+        found.push_back({"timing.log", log.records, *log.written, "records"});
+    return found;
+}
+
+void Take::drop_unreadable_streams() {
+    std::erase_if(streams, [this](const TakeStreamInfo& stream) { return !frames_in(folder, stream); });
+}
+
+}  // namespace tactus::take

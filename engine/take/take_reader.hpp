@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading a take back, see engine/take/take_writer.hpp.
+#pragma once
+
+#include "engine/io/outside.hpp"
+#include "engine/take/take_stream.hpp"
+#include "engine/take/take_writer.hpp"
+#include "engine/take/timing_log.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace tactus::take {
+
+struct TakenAsset {
+    std::string name;
+    std::filesystem::path path;
+    std::uint64_t hash = 0;
+};
+/// A plan that took over while the run went on.
+struct TakenEdit {
+    std::int64_t number = 0;
+    Flicks when = 0;
+    std::string text;
+};
+/// A parameter set while the run went on.
+struct TakenChange {
+    std::int64_t id = 0;
+    std::string node, param;
+    double value = 0.0;
+};
+
+/// A file of a take that does not hold what the run wrote.
+struct TakeDamage {
+    std::string file;  ///< within the take
+    std::int64_t holds = 0, written = 0;
+    std::string unit;  ///< "values", "records", "lines"
+};
+
+struct Take {
+    std::filesystem::path folder;
+    TakeAbout about;
+    std::string title, text, build, cpu;
+    std::vector<TakenAsset> assets;  ///< of all plans
+    std::vector<std::variant<TakenEdit, TakenChange>> events;  ///< in the order they happened
+    std::vector<io::RecordedDevice> devices;
+    std::vector<TakeStreamInfo> streams;
+    TimingLog log;
+    std::int64_t lines = 0;  ///< of events.jsonl
+    bool is_complete = false;  ///< the run came to its end; false: it was cut off
+    std::map<std::string, std::uint64_t> result;  ///< hash of every output, empty when the run was cut off
+    std::map<std::string, std::int64_t> written;  ///< frames, records or lines by file, empty when it was cut off
+
+    /// Throws Error when the folder is no take or is damaged. One that was cut off is read as far as it goes.
+    static Take load(const std::filesystem::path& folder);
+
+    /// What about this machine, this program or the files may make a repetition differ; empty: nothing.
+    std::vector<std::string> differences() const;
+    /// Assets that are gone or have changed since: a repetition must differ.
+    std::vector<std::string> changed_assets() const;
+    /// Files that hold less, or more, than the run wrote. Of a run that was cut off, only its log can tell.
+    std::vector<TakeDamage> damages() const;
+    /// Forgets streams that cannot be read at all.
+    void drop_unreadable_streams();
+};
+
+}  // namespace tactus::take

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// One output in a take: every value it published, as a multichannel sound file of doubles that audio editors open. A
+// large value is kept as two numbers, the halves of its content's hash.
+#pragma once
+
+#include "dsp/core/time.hpp"
+#include "graph/node/value.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tactus::take {
+
+struct TakeStreamInfo {
+    std::string file;       ///< within the take
+    std::string port;       ///< "node.port"
+    std::string group, type;
+    int group_number = 0;    ///< as in the timing log: an edit may end a group and begin another of that name
+    Flicks period = 0;
+    std::int64_t start = 0;  ///< activation of the file's first frame
+};
+
+/// Names of a type's channels.
+std::vector<std::string> channels_of(const ValueType& type);
+/// One value as the numbers of a frame.
+void to_frame(const ValueType& type, const void* value, double* frame);
+
+class TakeStreamWriter {
+public:
+    /// `path` appears at once and is readable while it grows. Throws Error.
+    TakeStreamWriter(const std::filesystem::path& path, const TakeStreamInfo& info, const ValueType& type);
+    ~TakeStreamWriter();
+    TakeStreamWriter(const TakeStreamWriter&) = delete;
+    TakeStreamWriter& operator=(const TakeStreamWriter&) = delete;
+
+    /// Values of activations first … first + count − 1. The last value is repeated where activations never ran.
+    void write(std::int64_t first, const std::byte* values, std::size_t count);
+    /// Tells the file's header how long it is by now.
+    void update();
+    void finish();
+    std::int64_t frames() const;  ///< written so far
+
+private:
+    struct File;
+    std::unique_ptr<File> file_;
+};
+
+class TakeStreamReader {
+public:
+    /// Throws Error.
+    TakeStreamReader(const std::filesystem::path& path, const TakeStreamInfo& info);
+    ~TakeStreamReader();
+    TakeStreamReader(const TakeStreamReader&) = delete;
+    TakeStreamReader& operator=(const TakeStreamReader&) = delete;
+
+    int channels() const;
+    std::int64_t frames() const;  ///< in the file
+    /// The next frame asked for will not lie before that of `activation`.
+    void seek(std::int64_t activation);
+    /// The frame of an activation, or null when it is not in the file. Activations must be asked for in order.
+    const double* frame(std::int64_t activation);
+
+private:
+    struct File;
+    std::unique_ptr<File> file_;
+};
+
+}  // namespace tactus::take

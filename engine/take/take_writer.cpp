@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/take/take_writer.hpp"
+
+#include "assets/bone/bone.hpp"
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+#include "engine/run/group_runtime.hpp"
+#include "graph/patch/sub_patch.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <fstream>
+#include <functional>
+
+namespace tactus::take {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr auto flush_every = std::chrono::milliseconds(500);
+
+/// Opens its file with the first values: until then it is not known at which activation the output begins.
+class TakeEnd : public io::StreamEnd {
+public:
+    using Opened = std::function<void(const TakeStreamInfo&)>;
+    using Finished = std::function<void(const std::string& file, std::int64_t frames)>;
+    TakeEnd(fs::path folder, TakeStreamInfo info, const ValueType& type, Opened opened, Finished finished)
+        : folder_(std::move(folder)),
+          info_(std::move(info)),
+          type_(type),
+          opened_(std::move(opened)),
+          finished_(std::move(finished)) {}
+
+    void take(std::int64_t first, const std::byte* values, std::size_t count) override {
+        const bool is_first = !writer_;
+        if (is_first) {
+            info_.start = first;
+            writer_ = std::make_unique<TakeStreamWriter>(folder_ / info_.file, info_, type_);
+        }
+        writer_->write(first, values, count);
+        // A file that found no room for anything is not told of.
+        if (is_first) opened_(info_);
+        const auto now = std::chrono::steady_clock::now();
+        if (now - updated_ < flush_every) return;
+        updated_ = now;
+        writer_->update();
+    }
+    void finish() override {
+        if (!writer_) return;
+        writer_->finish();
+        finished_(info_.file, writer_->frames());
+    }
+
+private:
+    fs::path folder_;
+    TakeStreamInfo info_;
+    const ValueType& type_;
+    Opened opened_;
+    Finished finished_;
+    std::unique_ptr<TakeStreamWriter> writer_;
+    std::chrono::steady_clock::time_point updated_ = std::chrono::steady_clock::now();
+};
+
+Json assets_json(const patch::Patch& patch) {
+    Json assets = Json::array();
+    for (const patch::PatchAsset& asset : patch.assets)
+        assets.push_back({{"name", asset.name},
+                          {"path", fs::absolute(asset.path).string()},
+                          // A patch may name a file that nothing uses.
+                          {"hash", fmt::format("{:016x}", fs::exists(asset.path) ? hash_of_asset(asset.path) : 0)}});
+    return assets;
+}
+
+Json sample_json(const DeviceSample& s) {
+    const auto bits = [](double v) { return fmt::format("{:016x}", std::bit_cast<std::uint64_t>(v)); };
+    Json json{{"buttons", s.buttons}, {"counter", s.counter}, {"valid", s.valid}, {"numbers", Json::array()}};
+    const Quat& q = s.pose.orientation;
+    for (const double v :
+         {s.pose.position.x, s.pose.position.y, s.pose.position.z, q.w, q.x, q.y, q.z, s.twist.linear.x,
+          s.twist.linear.y, s.twist.linear.z, s.twist.angular.x, s.twist.angular.y, s.twist.angular.z})
+        json["numbers"].push_back(bits(v));
+    for (const FingerSample& finger : s.fingers)
+        json["fingers"].push_back({bits(finger.position), bits(finger.force), finger.state});
+    return json;
+}
+
+}  // namespace
+
+std::uint64_t hash_of_asset(const fs::path& path) {
+    Hash hash;
+    if (path.extension() != ".toml") {
+        file::add_file(hash, bone::file_of_bone(path));
+        return hash.value();
+    }
+    const std::string text = file::read_whole_file(path);
+    hash.add_bytes(text.data(), text.size());
+    // A recording set is a text that names its sounds.
+    std::vector<fs::path> beside;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(path.parent_path().empty() ? "." : path.parent_path(), ignored))
+        if (entry.is_regular_file() && entry.path() != path && text.find(entry.path().filename()) != std::string::npos)
+            beside.push_back(entry.path());
+    std::ranges::sort(beside);
+    for (const fs::path& other : beside)
+        if (other.extension() != ".toml") hash.add_word(hash_of_asset(other));
+    return hash.value();
+}
+
+std::string build_identity() {
+    static const std::string identity = [] {
+        Hash hash;
+        file::add_file(hash, "/proc/self/exe");
+        return fmt::format("{:016x}", hash.value());
+    }();
+    return identity;
+}
+
+std::string cpu_family() {
+    std::ifstream file("/proc/cpuinfo");
+    std::string vendor, family, model;
+    for (std::string line; std::getline(file, line) && !line.empty();) {
+        const auto value = [&line] { return line.substr(std::min(line.size(), line.find(':') + 2)); };
+        if (line.starts_with("vendor_id")) vendor = value();
+        else if (line.starts_with("cpu family")) family = value();
+        else if (line.starts_with("model\t")) model = value();
+    }
+    return vendor.empty() ? "unknown" : fmt::format("{} family {} model {}", vendor, family, model);
+}
+
+TakeWriter::TakeWriter(fs::path folder, TakeAbout about) : folder_(std::move(folder)), about_(std::move(about)) {
+    std::error_code failure;
+    fs::create_directories(folder_ / "streams", failure);
+    if (failure) throw Error(fmt::format("{}: cannot make the folder: {}", folder_.string(), failure.message()));
+    if (fs::exists(folder_ / "take.json"))
+        throw Error(fmt::format("{}: there is a take already; choose another name", folder_.string()));
+    events_ = std::make_unique<file::GrowingFile>(folder_ / "events.jsonl");
+}
+
+TakeWriter::~TakeWriter() = default;
+
+std::string TakeWriter::loss() const {
+    const std::lock_guard lock(writing_);
+    return loss_;
+}
+
+void TakeWriter::lose(const std::string& why) {
+    const std::lock_guard lock(writing_);
+    if (is_lost_.exchange(true)) return;
+    loss_ = fmt::format("{}; the take repeats the run up to there", why);
+}
+
+void TakeWriter::begin(const patch::Patch& patch, std::uint64_t plan_hash) {
+    file::write_whole_file(folder_ / "patch-0.toml", patch::bundle_text(patch));
+    Json json{{"format", take_format},
+              {"patch", fs::absolute(about_.patch_file).string()},
+              {"title", patch.title},
+              {"settings", about_.overrides.settings},
+              {"asset_overrides", about_.overrides.assets},
+              {"seconds", about_.seconds},
+              {"live", about_.live},
+              {"build", build_identity()},
+              {"cpu", cpu_family()},
+              {"assets", assets_json(patch)}};
+    if (about_.seed) json["seed"] = *about_.seed;
+    log_ = std::make_unique<TimingLogWriter>(folder_ / "timing.log", plan_hash, about_.seconds,
+                                             TimingLogWriter::Name::at_once);
+    log_->flush();
+    file::write_whole_file(folder_ / "take.json", json.dump(2) + "\n");
+}
+
+void TakeWriter::line(const std::string& json) {
+    if (is_lost_) return;
+    try {
+        const std::lock_guard lock(writing_);
+        events_->append(json + "\n");
+        events_->flush();
+        ++lines_;
+    } catch (const Error& error) {
+        // What the log says from here on would be of things that are told nowhere.
+        lose(error.message());
+    }
+}
+
+void TakeWriter::record(const TimingRecord& record) {
+    if (is_lost_) return;
+    try {
+        log_->write(record);
+    } catch (const Error& error) {
+        lose(error.message());
+    }
+}
+
+void TakeWriter::device(const build::DeviceSlot& slot) {
+    const DeviceInfo& info = slot.port.info;
+    line(Json{{"device", slot.name},
+              {"info",
+               {{"name", info.name},
+                {"max_force", info.max_force},
+                {"max_torque", info.max_torque},
+                {"damping", info.damping},
+                {"max_stiffness", info.max_stiffness},
+                {"actuates_torque", info.actuates_torque},
+                {"senses_rotation", info.senses_rotation},
+                {"fingers", info.fingers},
+                {"max_speed", info.max_speed},
+                {"least_speed", info.least_speed}}},
+              {"first", sample_json(slot.port.sample)}}
+             .dump());
+}
+
+std::unique_ptr<io::Stream> TakeWriter::stream(const std::string& port, const ValueType& type, const run::GroupRuntime& group) {
+    TakeStreamInfo info;
+    info.port = port;
+    info.group = group.plan->name;
+    info.group_number = group.index;
+    info.type = type.name;
+    info.period = group.plan->period;
+    std::string stem = "streams/" + port;
+    for (int again = 2; files_.contains(stem); ++again) stem = fmt::format("streams/{}-{}", port, again);
+    files_.insert(stem);
+    info.file = stem + ".wav";
+    StreamFormat format;
+    format.file = info.file;
+    format.type = &type;
+    format.period = info.period;
+    const auto opened = [this, &type](const TakeStreamInfo& now) {
+        if (is_lost_) throw Error(loss());
+        line(Json{{"stream", now.file},
+                  {"port", now.port},
+                  {"group", now.group},
+                  {"group_number", now.group_number},
+                  {"type", now.type},
+                  {"period_flicks", now.period},
+                  {"rate_hz", rate_of(now.period)},
+                  {"start", now.start},
+                  {"channels", channels_of(type)}}
+                 .dump());
+    };
+    const auto finished = [this](const std::string& file, std::int64_t frames) {
+        const std::lock_guard lock(writing_);
+        frames_[file] = frames;
+    };
+    return std::make_unique<io::Stream>(format, std::make_unique<TakeEnd>(folder_, info, type, opened, finished));
+}
+
+void TakeWriter::edit(std::int64_t number, Flicks when, const patch::Patch& patch) {
+    const std::string file = fmt::format("patch-{}.toml", number);
+    if (is_lost_) return;
+    try {
+        file::write_whole_file(folder_ / file, patch::bundle_text(patch));
+    } catch (const Error& error) {
+        return lose(error.message());
+    }
+    line(Json{{"plan", number}, {"file", file}, {"when_flicks", when}, {"assets", assets_json(patch)}}.dump());
+}
+
+void TakeWriter::change(std::int64_t id, std::int64_t plan, const std::string& node, const std::string& param,
+                        double value) {
+    line(Json{{"set", id},
+              {"in_plan", plan},
+              {"node", node},
+              {"param", param},
+              {"value", value},
+              {"bits", fmt::format("{:016x}", std::bit_cast<std::uint64_t>(value))}}
+             .dump());
+}
+
+void TakeWriter::checkpoint(const std::vector<Progress>& progress) {
+    const auto now = std::chrono::steady_clock::now();
+    if (is_lost_ || now - flushed_ < flush_every) return;
+    flushed_ = now;
+    for (const Progress& group : progress) {
+        TimingRecord record;
+        record.kind = TimingKind::progress;
+        record.group = static_cast<std::uint16_t>(group.group);
+        record.tick = group.done;
+        record.value = group.time;
+        this->record(record);
+    }
+    try {
+        log_->flush();
+    } catch (const Error& error) {
+        lose(error.message());
+    }
+}
+
+void TakeWriter::move_to(const fs::path& folder) {
+    std::error_code failure;
+    // Renaming would replace a folder that is empty.
+    if (fs::exists(folder)) throw Error(fmt::format("{}: is there already; choose another name", folder.string()));
+    fs::rename(folder_, folder, failure);
+    if (failure) throw Error(fmt::format("{}: cannot make the take: {}", folder.string(), failure.message()));
+    folder_ = folder;
+}
+
+void TakeWriter::finish(const std::vector<std::pair<std::string, std::uint64_t>>& port_hashes) {
+    // A log without its last record says itself that it was cut off.
+    if (is_lost_) return log_.reset();
+    try {
+        log_->finish();
+        Json json{{"ports", Json::object()}, {"holds", {{"timing.log", log_->records()}, {"events.jsonl", lines_}}}};
+        for (const auto& [name, hash] : port_hashes) json["ports"][name] = fmt::format("{:016x}", hash);
+        for (const auto& [file, frames] : frames_) json["holds"][file] = frames;
+        file::write_whole_file(folder_ / "result.json", json.dump(2) + "\n");
+    } catch (const Error& error) {
+        lose(error.message());
+    }
+}
+
+}  // namespace tactus::take

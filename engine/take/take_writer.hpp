@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// A take: a folder that holds all that is needed to repeat a run and to check that the repetition is the same. Files
+// only grow, and can be read up to the last second after a crash:
+//
+//   take.json       the patch, what the command line changed, hashes of assets, build, CPU family, seconds asked for
+//   patch-N.toml    the text of the plan numbered N, 0 first
+//   events.jsonl    one line for each edit, each parameter set, each device opened, each stream
+//   timing.log      everything that timing decided, see engine/take/timing_log.hpp
+//   streams/        every published value of every output, see engine/take/take_stream.hpp
+//   result.json     when the run came to its end: hash of every output, and how much each file of the take holds
+#pragma once
+
+#include "assets/file/growing_file.hpp"
+#include "engine/io/outside.hpp"
+#include "engine/io/streams.hpp"
+#include "engine/take/take_stream.hpp"
+#include "engine/take/timing_log.hpp"
+#include "graph/patch/patch.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+namespace tactus::run {
+class GroupRuntime;
+}
+
+namespace tactus::take {
+
+
+/// Of take.json; takes of another one are refused.
+constexpr int take_format = 2;
+
+/// What a take says about the run it is of.
+struct TakeAbout {
+    std::filesystem::path patch_file;  ///< absolute
+    patch::PatchOverrides overrides;
+    std::optional<std::uint64_t> seed;
+    double seconds = 0.0;
+    bool live = false;
+};
+
+/// When the disk is full during the run, what is in the take stays and repeats the run up to there; nothing more comes.
+class TakeWriter {
+public:
+    /// Makes the folder; one that holds something else is refused. Throws Error.
+    TakeWriter(std::filesystem::path folder, TakeAbout about);
+    ~TakeWriter();
+    TakeWriter(const TakeWriter&) = delete;
+    TakeWriter& operator=(const TakeWriter&) = delete;
+
+    /// The plan that runs first; before anything is recorded.
+    void begin(const patch::Patch& patch, std::uint64_t plan_hash);
+    void device(const build::DeviceSlot& slot);
+    std::unique_ptr<io::Stream> stream(const std::string& port, const ValueType& type, const run::GroupRuntime& group);
+    void edit(std::int64_t number, Flicks when, const patch::Patch& patch);
+    void change(std::int64_t id, std::int64_t plan, const std::string& node, const std::string& param, double value);
+    void record(const TimingRecord& record);
+    /// What each group had reached (index in the log, activation, logical time) before the last records were written.
+    struct Progress {
+        int group;
+        std::int64_t done;
+        Flicks time;
+    };
+    void checkpoint(const std::vector<Progress>& progress);
+    void finish(const std::vector<std::pair<std::string, std::uint64_t>>& port_hashes);
+    /// Why it repeats only a part of the run; empty: it does not. Any thread.
+    std::string loss() const;
+    bool is_lost() const { return is_lost_; }
+    /// It repeats the run only up to here.
+    void lose(const std::string& why);
+
+    const std::filesystem::path& folder() const { return folder_; }
+    /// Gives the folder another name, on the same disk, while it grows. Throws Error.
+    void move_to(const std::filesystem::path& folder);
+    /// Bytes of its log by now.
+    std::uint64_t size() const { return log_ ? log_->size() : 0; }
+
+private:
+    void line(const std::string& json);
+
+    std::filesystem::path folder_;
+    TakeAbout about_;
+    std::unique_ptr<TimingLogWriter> log_;
+    std::unique_ptr<file::GrowingFile> events_;
+    mutable std::mutex writing_;  // lines come from whoever drains a stream
+    std::int64_t lines_ = 0;  // of events.jsonl
+    std::map<std::string, std::int64_t> frames_;  // of each stream that is complete
+    std::atomic<bool> is_lost_{false};
+    std::string loss_;
+    std::unordered_set<std::string> files_;
+    std::chrono::steady_clock::time_point flushed_;
+};
+
+/// Hash of a file's bytes; of a text that names other files beside it, theirs too. Throws Error.
+std::uint64_t hash_of_asset(const std::filesystem::path& path);
+/// Of the running program.
+std::string build_identity();
+/// Vendor, family and model of the processor, as far as they may change rounding.
+std::string cpu_family();
+
+}  // namespace tactus::take

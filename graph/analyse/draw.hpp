@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// A picture of the compiled graph.
+#pragma once
+
+#include "graph/compile/plan.hpp"
+
+#include <string>
+
+namespace tactus::analyse {
+
+/// The plan as a self-contained SVG: groups as lanes, nodes from left to right in the order values flow, wires coloured
+/// by type; wires between groups are dashed and carry their mode and latency.
+std::string draw_svg(const compile::Plan& plan);
+
+}  // namespace tactus::analyse

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// How old, in logical time, what leaves a patch can be.
+#pragma once
+
+#include "graph/compile/plan.hpp"
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace tactus::analyse {
+
+struct PathLatency {
+    std::string from, to;          ///< names of nodes
+    double latency_ms = 0.0;       ///< largest age at the end of the path of a value from its start
+    std::vector<std::string> via;  ///< the nodes on the way, ends included
+};
+
+/// Largest age, over all activations of the consumer, of the value that a wire between two groups delivers.
+Flicks worst_age(const compile::PlanGroup& producer, const compile::PlanGroup& consumer, const compile::PlanWire& wire);
+
+inline constexpr Flicks unreached = std::numeric_limits<Flicks>::max();
+
+/// By the quickest way from one node to each other: how old its value is there, or `unreached`, and the node before on
+/// that way (−1: none).
+struct Ages {
+    std::vector<Flicks> age;
+    std::vector<int> before;
+};
+Ages ages_from(const compile::Plan& plan, int source);
+
+/// By the quickest way from each node to `sink`: how much older a value becomes, or `unreached`.
+std::vector<Flicks> ages_to(const compile::Plan& plan, int sink);
+
+/// The quickest path from every device input to every output of the patch (device_output, audio_output, record), in
+/// order of names. Inside a group values are passed on in the same tick and do not age.
+std::vector<PathLatency> path_latencies(const compile::Plan& plan);
+
+}  // namespace tactus::analyse

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/analyse/stiffness.hpp"
+
+#include "dsp/core/units.hpp"
+#include "graph/analyse/latency.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <unordered_set>
+
+namespace tactus::analyse {
+
+namespace {
+
+std::string setting_of(const compile::Plan& plan, std::size_t node, std::string_view name) {
+    for (const OptionText& given : plan.patch.nodes[node].settings)
+        if (given.name == name) return given.text;
+    return {};
+}
+
+using DrivenParams = std::unordered_set<const Param*>;
+
+/// The node's largest stiffness: the value that a parameter has, or the largest while a wire drives it.
+std::optional<DeclaredStiffness> stiffest(const DrivenParams& driven, const compile::PlanNode& node) {
+    static const Dimension force_per_distance = parse_unit("N/m").dimension;
+    std::optional<DeclaredStiffness> found;
+    for (const auto& [name, param] : node.params) {
+        if (param->is_internal || parse_unit(param->unit).dimension != force_per_distance) continue;
+        const double value = driven.contains(param) ? param->max : param->value;
+        if (!found || value > found->newton_per_metre) found = {node.name + "." + name, value};
+    }
+    return found;
+}
+
+/// What a metre of the device is in the scene, behind the quickest ways from a source: workspaces multiply.
+class Scales {
+public:
+    Scales(const compile::Plan& plan, const Ages& from_source)
+        : plan_(plan), before_(from_source.before), nearest_(plan.nodes.size(), unknown) {}
+
+    double of(std::size_t node) {
+        double scale = 1.0;
+        for (int at = workspace_at(static_cast<int>(node)); at >= 0;
+             at = workspace_at(before_[static_cast<std::size_t>(at)]))
+            scale *= plan_.nodes[static_cast<std::size_t>(at)].params.at("scale")->value;
+        return scale;
+    }
+
+private:
+    static constexpr int unknown = -2;
+
+    /// The first workspace on the way back, `node` itself among them; −1: there is none.
+    int workspace_at(int node) {
+        way_.clear();
+        int at = node;
+        for (; at >= 0 && nearest_[static_cast<std::size_t>(at)] == unknown;
+             at = before_[static_cast<std::size_t>(at)]) {
+            way_.push_back(at);
+            if (plan_.nodes[static_cast<std::size_t>(at)].type->role == NodeRole::placement) {
+                nearest_[static_cast<std::size_t>(at)] = at;
+                break;
+            }
+        }
+        const int found = at < 0 ? -1 : nearest_[static_cast<std::size_t>(at)];
+        for (const int passed : way_) nearest_[static_cast<std::size_t>(passed)] = found;
+        return found;
+    }
+
+    const compile::Plan& plan_;
+    const std::vector<int>& before_;
+    std::vector<int> nearest_;  // workspace of each node that was asked for or passed
+    std::vector<int> way_;
+};
+
+}  // namespace
+
+std::vector<ForceLoop> force_loops(const compile::Plan& plan, const std::function<double(const std::string&)>& damping) {
+    DrivenParams driven;
+    for (const compile::PlanWire& wire : plan.wires)
+        if (wire.param) driven.insert(wire.param);
+    std::vector<std::pair<std::size_t, DeclaredStiffness>> springs;
+    std::vector<std::pair<std::size_t, std::vector<Flicks>>> sinks;  // with the way from each node to it
+    for (std::size_t n = 0; n < plan.nodes.size(); ++n) {
+        if (const auto declared = stiffest(driven, plan.nodes[n])) springs.emplace_back(n, *declared);
+        if (plan.nodes[n].type->role == NodeRole::hand_sink) sinks.emplace_back(n, ages_to(plan, static_cast<int>(n)));
+    }
+
+    std::vector<ForceLoop> loops;
+    for (std::size_t source = 0; source < plan.nodes.size(); ++source) {
+        if (plan.nodes[source].type->role != NodeRole::hand_source) continue;
+        const Ages from = ages_from(plan, static_cast<int>(source));
+        Scales scales(plan, from);
+        for (const auto& at_sink : sinks) {
+            const std::size_t sink = at_sink.first;
+            const std::vector<Flicks>& to_sink = at_sink.second;
+            if (from.age[sink] == unreached) continue;
+            const double period = seconds(plan.groups[static_cast<std::size_t>(plan.nodes[sink].group)].period);
+            const double b = damping(setting_of(plan, sink, "device"));
+            const auto loop_of = [&](Flicks latency, std::optional<DeclaredStiffness> declared) {
+                return ForceLoop{plan.nodes[source].name,
+                                 plan.nodes[sink].name,
+                                 seconds(latency),
+                                 b,
+                                 stiffness_limit(b, period, seconds(latency)),
+                                 std::move(declared)};
+            };
+            std::optional<ForceLoop> worst;
+            for (const auto& [spring, declared] : springs) {
+                const Flicks there = from.age[spring], back = to_sink[spring];
+                if (there == unreached || back == unreached) continue;
+                const double scale = scales.of(spring);
+                DeclaredStiffness felt{declared.param, declared.newton_per_metre * scale * scale};
+                ForceLoop loop = loop_of(there + back, std::move(felt));
+                // Stiffness times lateness: what comes closest to the limit, also for a device of unknown damping.
+                const auto strain = [period](const ForceLoop& l) {
+                    return l.declared->newton_per_metre * (0.5 * period + l.latency_s);
+                };
+                if (!worst || strain(loop) > strain(*worst)) worst = std::move(loop);
+            }
+            loops.push_back(worst ? std::move(*worst) : loop_of(from.age[sink], std::nullopt));
+        }
+    }
+    std::ranges::sort(
+        loops, [](const ForceLoop& a, const ForceLoop& b) { return std::tie(a.from, a.to) < std::tie(b.from, b.to); });
+    return loops;
+}
+
+}  // namespace tactus::analyse

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/compile/compile.hpp"
+
+#include "graph/patch/sub_patch.hpp"
+
+namespace tactus::compile {
+
+std::optional<Plan> compile(const patch::Patch& patch, Catalogue catalogue, patch::Problems& problems) {
+    Plan plan;
+    plan.patch = patch;
+    const std::size_t earlier = problems.list.size();
+    patch::flatten(plan.patch, problems);
+    if (problems.list.size() > earlier) return std::nullopt;
+    resolve_nodes(plan, catalogue, problems);
+    form_groups(plan, problems);
+    resolve_wires(plan, problems);
+    // An order is only worth finding among wires that exist: otherwise one slip is reported twice.
+    if (problems.empty()) order_nodes(plan, problems);
+    if (!problems.empty()) return std::nullopt;
+    return plan;
+}
+
+}  // namespace tactus::compile

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where in a TOML text its parts stand, byte by byte: what an edit needs that leaves all else as it was.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactus::edit {
+
+/// Bytes begin … end − 1 of a text.
+struct TextSpan {
+    std::size_t begin = 0, end = 0;
+
+    std::string_view of(std::string_view text) const { return text.substr(begin, end - begin); }
+    bool operator==(const TextSpan&) const = default;
+};
+
+/// "[nodes.hand]"
+struct TomlHeader {
+    std::vector<std::string> path;
+    std::vector<TextSpan> keys;  ///< one for each part of the path
+    TextSpan span;               ///< with its brackets
+};
+
+/// "rate = "1 kHz"", in a table or between the braces of an inline one.
+struct TomlEntry {
+    std::vector<std::string> path;  ///< from the root, dotted keys taken apart
+    std::vector<TextSpan> keys;     ///< of the last parts of the path: those that are written here
+    TextSpan span, value;           ///< from the key to the end of the value; the value
+    int header = -1;                ///< the one above it, −1: none
+    int parent = -1;                ///< the entry whose inline table it stands in, −1: none
+
+    /// Where part `i` of the path is written, or null when that is elsewhere.
+    const TextSpan* key(std::size_t i) const {
+        const std::size_t above = path.size() - keys.size();
+        return i < above || i >= path.size() ? nullptr : &keys[i - above];
+    }
+};
+
+struct TomlSpans {
+    std::vector<TomlHeader> headers;
+    std::vector<TomlEntry> entries;  ///< in the order of the text
+
+    const TomlEntry* find(const std::vector<std::string>& path) const;
+};
+
+/// Of a text that a parser accepts; of any other, whatever it can make out.
+TomlSpans toml_spans(std::string_view text);
+
+/// One element of an array: its value, and the comma behind it (empty: none).
+struct TomlElement {
+    TextSpan value, comma;
+};
+std::vector<TomlElement> toml_elements(std::string_view text, const TextSpan& array);
+
+/// What a string in quotes says, or the text itself when it has no quotes.
+std::string toml_unquoted(std::string_view written);
+/// A one-line string in quotes that says `text`.
+std::string toml_quoted(std::string_view text);
+
+}  // namespace tactus::edit

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The assets that a node may name in a patch, and how each is loaded.
+#pragma once
+
+#include "assets/bone/bone.hpp"
+#include "assets/table/deflection_file.hpp"
+#include "assets/sound/equaliser_file.hpp"
+#include "assets/cases/case_bones.hpp"
+#include "assets/sound/recording_set.hpp"
+#include "graph/node/param.hpp"
+
+namespace tactus {
+
+template <>
+struct AssetLoader<bone::Bone> {
+    static constexpr std::string_view name = "bone";
+    static bone::Bone load(const std::string& path) { return bone::load_bone(path); }
+};
+
+template <>
+struct AssetLoader<cases::CaseBones> {
+    static constexpr std::string_view name = "plan of a case";
+    static cases::CaseBones load(const std::string& path) { return cases::load_case(path); }
+};
+
+template <>
+struct AssetLoader<sound::RecordingSet> {
+    static constexpr std::string_view name = "recording set";
+    static sound::RecordingSet load(const std::string& path) { return sound::load_recording_set(path); }
+};
+
+template <>
+struct AssetLoader<vibration::Equaliser> {
+    static constexpr std::string_view name = "equaliser";
+    static vibration::Equaliser load(const std::string& path) { return sound::load_equaliser(path); }
+};
+
+template <>
+struct AssetLoader<control::DeflectionTable> {
+    static constexpr std::string_view name = "deflection table";
+    static control::DeflectionTable load(const std::string& path) { return table::load_deflection_table(path); }
+};
+
+}  // namespace tactus

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// Declaring a node type: a plain struct whose members are ports and parameters, and one TACTUS_NODE line.
+//
+//     struct Gain {
+//         static constexpr auto about = "Multiplies a signal.";
+//         In<Signal> in{"signal"};
+//         Out<Signal> out{"product"};
+//         Param gain{"1", "-100", "100", "factor"};
+//         void process(const Tick& tick) noexcept {
+//             for (int i = 0; i < tick.frames; ++i) out[i] = in[i] * static_cast<float>(gain);
+//         }
+//     };
+//     TACTUS_NODE(Gain, in, out, gain)
+//
+// Parameters that several types share are a struct of their own with a TACTUS_GROUP line, which any node may hold as a
+// member and list like one; in a patch they stand among the node's own:
+//
+//     struct WaveParameters {
+//         Param height{"0 mm", "0 mm", "2 mm", "of the waves"};
+//         Param length{"2 mm", "0.1 mm", "100 mm", "of one wave"};
+//         TACTUS_GROUP(height, length)
+//     };
+//
+// Optional members: `void prepare(const Setup&)` may allocate and throw Error, and sets the initial value of each
+// output; `void report(Report&) const` speaks after the run; `static constexpr NodeRole role` says what the type does
+// at the border of a patch.
+#pragma once
+
+#include "graph/node/node_memory.hpp"
+#include "graph/node/param.hpp"
+#include "graph/node/port.hpp"
+#include "graph/node/setup.hpp"
+
+#include <concepts>
+#include <cstdint>
+#include <memory>
+#include <new>
+#include <string>
+#include <string_view>
+
+namespace tactus {
+
+class MemberVisitor;
+
+/// Ports and parameters that are declared together, by TACTUS_GROUP.
+template <class G>
+concept MemberGroup = requires(G& group, MemberVisitor& visitor) { group.each(visitor); };
+
+/// Receives every declared member of a node, in the order of the TACTUS_NODE line; those of a group one by one.
+class MemberVisitor {
+public:
+    virtual ~MemberVisitor() = default;
+    virtual void input(std::string_view, Input&) {}
+    virtual void output(std::string_view, Output&) {}
+    virtual void param(std::string_view, Param&) {}
+    virtual void choice(std::string_view, Choice&) {}
+    virtual void text(std::string_view, Text&) {}
+    virtual void flag(std::string_view, Flag&) {}
+    virtual void vector(std::string_view, Vector&) {}
+    virtual void asset(std::string_view, AssetParam&) {}
+
+    template <class M>
+    void member(std::string_view name, M& m) {
+        if constexpr (MemberGroup<M>) m.each(*this);
+        else if constexpr (std::derived_from<M, Input>) input(name, m);
+        else if constexpr (std::derived_from<M, Output>) output(name, m);
+        else if constexpr (std::derived_from<M, AssetParam>) asset(name, m);
+        else if constexpr (std::same_as<M, Param>) param(name, m);
+        else if constexpr (std::same_as<M, Choice>) choice(name, m);
+        else if constexpr (std::same_as<M, Text>) text(name, m);
+        else if constexpr (std::same_as<M, Flag>) flag(name, m);
+        else {
+            static_assert(std::same_as<M, Vector>, "a listed member must be a port, a parameter or a group");
+            vector(name, m);
+        }
+    }
+};
+
+/// What a node type does at the border of a patch. Analyses of a plan look for a role, never for a type's name.
+enum class NodeRole : std::uint8_t {
+    inner,
+    hand_source,  ///< gives the pose of a hand; has a text parameter `device`
+    hand_sink,    ///< sends a force to a hand; has a text parameter `device`
+    placement,    ///< places a device in the scene; its parameter `scale` says how many metres one metre becomes
+    sound_sink,
+    file_sink
+};
+
+/// One row of the catalogue.
+struct NodeType {
+    std::string name;  ///< "blade_contact"
+    std::string_view about;
+    NodeRole role = NodeRole::inner;
+    void* (*create)() = nullptr;
+    void (*destroy)(void*) = nullptr;
+    void (*visit)(void*, MemberVisitor&) = nullptr;
+    void (*prepare)(void*, const Setup&) = nullptr;
+    void (*process)(void*, const Tick&) noexcept = nullptr;
+    void (*report)(const void*, Report&) = nullptr;
+};
+
+/// "BladeContact" → "blade_contact".
+std::string type_name_of(std::string_view struct_name);
+
+template <class T>
+constexpr NodeRole role_of() {
+    if constexpr (requires { T::role; }) return T::role;
+    else return NodeRole::inner;
+}
+
+template <class T>
+NodeType make_node_type(std::string_view struct_name, void (*visit)(void*, MemberVisitor&)) {
+    static_assert(noexcept(std::declval<T&>().process(std::declval<const Tick&>())), "process must be noexcept");
+    static_assert(alignof(T) <= node_offset, "a node is aligned to 16 bytes");
+    return {
+        .name = type_name_of(struct_name),
+        .about = T::about,
+        .role = role_of<T>(),
+        .create = []() -> void* {
+            void* const memory = take_node_memory(sizeof(T));
+            try {
+                return new (memory) T;
+            } catch (...) {
+                give_back_node_memory(memory, sizeof(T));
+                throw;
+            }
+        },
+        .destroy =
+            [](void* node) {
+                std::destroy_at(static_cast<T*>(node));
+                give_back_node_memory(node, sizeof(T));
+            },
+        .visit = visit,
+        .prepare =
+            [](void* node, const Setup& setup) {
+                if constexpr (requires(T& t) { t.prepare(setup); }) static_cast<T*>(node)->prepare(setup);
+            },
+        .process = [](void* node, const Tick& tick) noexcept { static_cast<T*>(node)->process(tick); },
+        .report =
+            [](const void* node, Report& report) {
+                if constexpr (requires(const T& t) { t.report(report); }) static_cast<const T*>(node)->report(report);
+            },
+    };
+}
+
+}  // namespace tactus
+
+// TACTUS_EACH(f, a, b, …) expands to f(a) f(b) … for up to 256 names, by recursive rescanning (C++20 __VA_OPT__).
+#define TACTUS_PARENS ()
+#define TACTUS_EXPAND(...) TACTUS_EXPAND3(TACTUS_EXPAND3(TACTUS_EXPAND3(TACTUS_EXPAND3(__VA_ARGS__))))
+#define TACTUS_EXPAND3(...) TACTUS_EXPAND2(TACTUS_EXPAND2(TACTUS_EXPAND2(TACTUS_EXPAND2(__VA_ARGS__))))
+#define TACTUS_EXPAND2(...) TACTUS_EXPAND1(TACTUS_EXPAND1(TACTUS_EXPAND1(TACTUS_EXPAND1(__VA_ARGS__))))
+#define TACTUS_EXPAND1(...) __VA_ARGS__
+#define TACTUS_EACH(f, ...) __VA_OPT__(TACTUS_EXPAND(TACTUS_EACH_NEXT(f, __VA_ARGS__)))
+#define TACTUS_EACH_NEXT(f, a, ...) f(a) __VA_OPT__(TACTUS_EACH_AGAIN TACTUS_PARENS(f, __VA_ARGS__))
+#define TACTUS_EACH_AGAIN() TACTUS_EACH_NEXT
+#define TACTUS_VISIT_MEMBER(m) visitor.member(#m, node.m);
+
+/// Declares `Type` as a node with the listed ports and parameters; nodes/catalogue.cpp names it once more.
+#define TACTUS_NODE(Type, ...)                                                                                     \
+    const ::tactus::NodeType& node_type_##Type() {                                                                 \
+        static const ::tactus::NodeType type =                                                                     \
+            ::tactus::make_node_type<Type>(#Type, [](void* p, [[maybe_unused]] ::tactus::MemberVisitor& visitor) { \
+                [[maybe_unused]] Type& node = *static_cast<Type*>(p);                                              \
+                TACTUS_EACH(TACTUS_VISIT_MEMBER, __VA_ARGS__)                                                      \
+            });                                                                                                    \
+        return type;                                                                                               \
+    }
+
+/// Within a struct: declares the listed members as a group.
+#define TACTUS_GROUP(...)                             \
+    void each(::tactus::MemberVisitor& visitor) {     \
+        auto& node = *this;                           \
+        TACTUS_EACH(TACTUS_VISIT_MEMBER, __VA_ARGS__) \
+    }

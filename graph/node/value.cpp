@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/node/value.hpp"
+
+#include <glm/gtc/quaternion.hpp>
+
+#include <bit>
+#include <new>
+
+namespace tactus::value {
+
+namespace {
+
+constexpr std::string_view pose_columns[] = {"px", "py", "pz", "qw", "qx", "qy", "qz"};
+constexpr std::string_view twist_columns[] = {"vx", "vy", "vz", "wx", "wy", "wz"};
+constexpr std::string_view wrench_columns[] = {"fx", "fy", "fz", "tx", "ty", "tz"};
+constexpr std::string_view number_columns[] = {"value"};
+
+template <class T>
+const T& as(const void* p) {
+    return *static_cast<const T*>(p);
+}
+
+template <class T>
+void hash_words(Hash& hash, const void* p) {
+    static_assert(sizeof(T) % 8 == 0);
+    hash.add_bytes(p, sizeof(T));
+}
+
+template <class T>
+void set_default(void* out) {
+    new (out) T{};
+}
+
+void put(const Vec3& v, double* out) {
+    out[0] = v.x;
+    out[1] = v.y;
+    out[2] = v.z;
+}
+
+Vec3 mix(const Vec3& a, const Vec3& b, double t) { return a + (b - a) * t; }
+
+}  // namespace
+
+const ValueType pose{
+    .name = "pose",
+    .size = sizeof(Pose),
+    .columns = pose_columns,
+    .hash = hash_words<Pose>,
+    .interpolate =
+        [](const void* a, const void* b, double t, void* out) {
+            *static_cast<Pose*>(out) = {mix(as<Pose>(a).position, as<Pose>(b).position, t),
+                                        glm::slerp(as<Pose>(a).orientation, as<Pose>(b).orientation, t)};
+        },
+    .to_columns =
+        [](const void* p, double* out) {
+            const Quat& q = as<Pose>(p).orientation;
+            put(as<Pose>(p).position, out);
+            out[3] = q.w;
+            out[4] = q.x;
+            out[5] = q.y;
+            out[6] = q.z;
+        },
+    .make_default = set_default<Pose>,
+};
+
+const ValueType twist{
+    .name = "twist",
+    .size = sizeof(Twist),
+    .columns = twist_columns,
+    .hash = hash_words<Twist>,
+    .interpolate =
+        [](const void* a, const void* b, double t, void* out) {
+            *static_cast<Twist*>(out) = {mix(as<Twist>(a).linear, as<Twist>(b).linear, t),
+                                         mix(as<Twist>(a).angular, as<Twist>(b).angular, t)};
+        },
+    .to_columns =
+        [](const void* p, double* out) {
+            put(as<Twist>(p).linear, out);
+            put(as<Twist>(p).angular, out + 3);
+        },
+    .make_default = set_default<Twist>,
+};
+
+const ValueType wrench{
+    .name = "wrench",
+    .size = sizeof(Wrench),
+    .columns = wrench_columns,
+    .hash = hash_words<Wrench>,
+    .interpolate =
+        [](const void* a, const void* b, double t, void* out) {
+            *static_cast<Wrench*>(out) = {mix(as<Wrench>(a).force, as<Wrench>(b).force, t),
+                                          mix(as<Wrench>(a).torque, as<Wrench>(b).torque, t)};
+        },
+    .to_columns =
+        [](const void* p, double* out) {
+            put(as<Wrench>(p).force, out);
+            put(as<Wrench>(p).torque, out + 3);
+        },
+    .make_default = set_default<Wrench>,
+};
+
+const ValueType number{
+    .name = "number",
+    .size = sizeof(double),
+    .columns = number_columns,
+    .hash = hash_words<double>,
+    .interpolate = [](const void* a, const void* b, double t,
+                      void* out) { *static_cast<double*>(out) = as<double>(a) + (as<double>(b) - as<double>(a)) * t; },
+    .to_columns = [](const void* p, double* out) { *out = as<double>(p); },
+    .make_default = set_default<double>,
+};
+
+const ValueType boolean{
+    .name = "bool",
+    .size = sizeof(bool),
+    .columns = number_columns,
+    .hash = [](Hash& hash, const void* p) { hash.add_word(as<bool>(p) ? 1 : 0); },
+    .to_columns = [](const void* p, double* out) { *out = as<bool>(p) ? 1.0 : 0.0; },
+    .make_default = set_default<bool>,
+};
+
+const ValueType signal{
+    .name = "signal",
+    .size = sizeof(float),
+    .columns = number_columns,
+    .hash = [](Hash& hash, const void* p) { hash.add_word(std::bit_cast<std::uint32_t>(as<float>(p))); },
+    .to_columns = [](const void* p, double* out) { *out = static_cast<double>(as<float>(p)); },
+    .make_default = set_default<float>,
+};
+
+}  // namespace tactus::value

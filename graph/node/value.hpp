@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// The types that a wire can carry, as run-time descriptors: the compiler and the engine move values by these.
+#pragma once
+
+#include "dsp/core/hash.hpp"
+#include "dsp/core/types.hpp"
+#include "dsp/volume/bricks.hpp"
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <new>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace tactus {
+
+/// Tag of an audio wire: one float per activation.
+struct Signal {};
+/// Tag of a number that an audio node reads once per sample, so that a slower wire can glide into it.
+struct Ramp {};
+
+/// An immutable version of something large. `T` is a small handle with `version` (rising) and `content_hash`.
+template <class T>
+concept SnapshotHandle = std::is_trivially_copyable_v<T> && requires(const T& t) {
+    { t.version } -> std::convertible_to<std::int64_t>;
+    { t.content_hash } -> std::convertible_to<std::uint64_t>;
+};
+
+/// Specialise with a `load` to let a file stand on a wire as a constant `T`.
+template <class T>
+struct SnapshotFile {
+    static constexpr std::shared_ptr<const void> (*load)(const std::string& path, void* out) = nullptr;
+};
+
+/// A bone file as a bone that nobody carves.
+template <>
+struct SnapshotFile<volume::BoneSnapshot> {
+    static std::shared_ptr<const void> load(const std::string& path, void* out);
+};
+
+/// What the engine needs to know about a type of value. One object per type; compared by address.
+struct ValueType {
+    std::string_view name;                                     ///< as users see it: "pose", "signal"
+    std::size_t size = 0;                                      ///< bytes of one value
+    std::span<const std::string_view> columns;                 ///< names of its doubles for a trace, empty if opaque
+    void (*hash)(Hash&, const void*) = nullptr;
+    void (*interpolate)(const void* a, const void* b, double t, void* out) = nullptr;  ///< null: not interpolable
+    void (*to_columns)(const void*, double* out) = nullptr;
+    void (*make_default)(void* out) = nullptr;                 ///< zero, identity, nothing
+    std::int64_t (*version)(const void*) = nullptr;            ///< non-null for snapshots
+    /// Snapshots that a file can hold: loads it, puts the handle in `out` and returns the owner. Throws Error.
+    std::shared_ptr<const void> (*load_asset)(const std::string& path, void* out) = nullptr;
+};
+
+namespace value {
+extern const ValueType pose, twist, wrench, number, boolean, signal;
+
+template <SnapshotHandle T>
+inline const ValueType snapshot{
+    .name = T::wire_name,
+    .size = sizeof(T),
+    .columns = {},
+    .hash = [](Hash& hash, const void* p) { hash.add_word(static_cast<const T*>(p)->content_hash); },
+    .interpolate = nullptr,
+    .to_columns = nullptr,
+    .make_default = [](void* out) { new (out) T{}; },
+    .version = [](const void* p) { return static_cast<std::int64_t>(static_cast<const T*>(p)->version); },
+    .load_asset = SnapshotFile<T>::load,
+};
+}  // namespace value
+
+template <class T>
+constexpr const ValueType& value_type() {
+    if constexpr (std::is_same_v<T, Pose>) return value::pose;
+    else if constexpr (std::is_same_v<T, Twist>) return value::twist;
+    else if constexpr (std::is_same_v<T, Wrench>) return value::wrench;
+    else if constexpr (std::is_same_v<T, double> || std::is_same_v<T, Ramp>) return value::number;
+    else if constexpr (std::is_same_v<T, bool>) return value::boolean;
+    else if constexpr (std::is_same_v<T, Signal>) return value::signal;
+    else return value::snapshot<T>;
+}
+
+/// What is stored for a `T` on a wire.
+template <class T> struct ElementOf {
+    using type = T;
+};
+template <> struct ElementOf<Signal> {
+    using type = float;
+};
+template <> struct ElementOf<Ramp> {
+    using type = double;
+};
+template <class T> using Element = typename ElementOf<T>::type;
+
+}  // namespace tactus

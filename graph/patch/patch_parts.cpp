@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/patch/patch_parts.hpp"
+
+#include "graph/patch/sub_patch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+
+namespace tactus::patch {
+
+namespace {
+
+/// Finds one port of a node by name; every signal port is offered when it is another.
+struct SignalPorts final : MemberVisitor {
+    explicit SignalPorts(std::string_view wanted_) : wanted(wanted_) {}
+
+    void input(std::string_view name, Input& port) override { look(name, port.type, port.unit, true); }
+    void output(std::string_view name, Output& port) override { look(name, port.type, port.unit, false); }
+
+    std::string_view wanted;
+    std::vector<std::string> names;
+    bool found = false, is_input = false;
+    std::string unit;
+
+private:
+    void look(std::string_view name, const ValueType* type, std::string_view its_unit, bool input) {
+        if (type != &value::signal) return;
+        names.emplace_back(name);
+        if (name != wanted) return;
+        found = true;
+        is_input = input;
+        unit = its_unit;
+    }
+};
+
+}  // namespace
+
+SignalEnd find_signal(const Patch& patch, const std::string& text, std::string_view option, compile::Catalogue catalogue) {
+    const SourceLocation where{fmt::format("{} {}", option, text), 0, 0};
+    const std::size_t dot = text.find('.');
+    if (dot == std::string::npos || dot == 0 || dot + 1 == text.size()) throw Error(where, "write NODE.PORT");
+    std::string several;
+    for (const PatchEnd& end : patch.offered)
+        if (end.name == text) several += fmt::format("{}{}.{}", several.empty() ? "" : ", ", end.node, end.port);
+    if (several.find(',') != std::string::npos)
+        throw Error(where, fmt::format("'{}' leads to several ports; name one of them: {}", text, several));
+    const auto [name, port] = end_within(patch, text.substr(0, dot), text.substr(dot + 1));
+    const auto node = std::ranges::find(patch.nodes, name, &PatchNode::name);
+    if (node == patch.nodes.end()) {
+        std::vector<std::string> names;
+        for (const PatchNode& n : patch.nodes) names.push_back(n.name);
+        throw Error(where, fmt::format("no node '{}'{}", name, did_you_mean(name, names)));
+    }
+    const auto type = std::ranges::find(catalogue, node->type, [](const NodeType* t) { return t->name; });
+    if (type == catalogue.end()) throw Error(where, fmt::format("node '{}' has an unknown type", name));
+    const compile::NodeInstance instance((*type)->create(), (*type)->destroy);
+    SignalPorts ports(port);
+    (*type)->visit(instance.get(), ports);
+    if (!ports.found) {
+        std::string list;
+        for (const std::string& known : ports.names) list += (list.empty() ? "" : ", ") + known;
+        throw Error(where, fmt::format("'{}' has no signal '{}'{}; its signals: {}", name, port,
+                                       did_you_mean(port, ports.names), list.empty() ? "none" : list));
+    }
+    return {&*node, port, ports.unit, ports.is_input};
+}
+
+void keep_what_leads_to(std::vector<std::string> kept, Patch& patch) {
+    std::unordered_map<std::string, std::vector<std::string>> sources;  // of each node
+    for (const PatchWire& wire : patch.wires) sources[wire.to_node].push_back(wire.from_node);
+    std::unordered_set<std::string> known(kept.begin(), kept.end());
+    while (!kept.empty()) {
+        const std::string node = std::move(kept.back());
+        kept.pop_back();
+        for (const std::string& source : sources[node])
+            if (known.insert(source).second) kept.push_back(source);
+    }
+    const auto is_dropped = [&](const std::string& name) { return !known.contains(name); };
+    std::erase_if(patch.nodes, [&](const PatchNode& node) { return is_dropped(node.name); });
+    std::erase_if(patch.wires, [&](const PatchWire& wire) { return is_dropped(wire.to_node); });
+}
+
+}  // namespace tactus::patch

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/node/node.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace tactus::nodes {
+
+struct AudioOutput {
+    static constexpr auto about = "Sound for a listener or an actuator: the sound card, or a file when there is none.";
+    static constexpr NodeRole role = NodeRole::sound_sink;
+
+    In<Signal> signal{"what is heard"};
+    Param full_scale{"1", "1e-6", "1e6", "value of the signal (SI) that drives the card fully; more is cut"};
+
+    void prepare(const Setup& setup) {
+        stream_ = &setup.outside->audio({setup.name + ".wav", "", &value::signal, setup.period}, setup.where);
+        block_.resize(static_cast<std::size_t>(setup.max_frames));
+        name_ = setup.name;
+    }
+
+    void process(const Tick& tick) noexcept {
+        const auto factor = static_cast<float>(1.0 / full_scale);
+        for (int i = 0; i < tick.frames; ++i) {
+            const float wanted = factor * signal[i];
+            const float given = std::isfinite(wanted) ? std::clamp(wanted, -1.0f, 1.0f) : 0.0f;
+            clipped_ += given != wanted;
+            block_[static_cast<std::size_t>(i)] = given;
+        }
+        stream_->write(tick.index, block_.data(), static_cast<std::size_t>(tick.frames), sizeof(float));
+    }
+
+    void report(Report& report) const { report.set(name_, "clipped_samples", static_cast<double>(clipped_)); }
+
+private:
+    RecordStream* stream_ = nullptr;
+    std::vector<float> block_;
+    std::int64_t clipped_ = 0;
+    std::string name_;
+};
+
+TACTUS_NODE(AudioOutput, signal, full_scale)
+
+}  // namespace tactus::nodes

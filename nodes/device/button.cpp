@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/node/node.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+namespace tactus::nodes {
+
+struct Button {
+    static constexpr auto about =
+        "A button for what the device has none for: pressed for a moment whenever 'press' changes, as by 'tactus set "
+        "undo.press=1' and next time 'tactus set undo.press=2', and as long as 'hold' is 1.";
+
+    Out<bool> pressed{"for 20 ms after each change of press, and while it is held"};
+    Param press{"0", "-1e9", "1e9", "any other number than before is a press"};
+    Param hold{"0", "0", "1", "above a half: held down"};
+
+    void prepare(const Setup& setup) {
+        ticks_ = static_cast<std::int64_t>(std::ceil(0.02 * setup.rate()));
+        left_ = 0;
+        last_ = press;
+        pressed = hold > 0.5;
+    }
+    void process(const Tick&) noexcept {
+        if (press != last_) left_ = ticks_;
+        last_ = press;
+        pressed = left_ > 0 || hold > 0.5;
+        left_ -= left_ > 0;
+    }
+
+private:
+    std::int64_t ticks_ = 1, left_ = 0;
+    double last_ = 0.0;
+};
+
+TACTUS_NODE(Button, pressed, press, hold)
+
+}  // namespace tactus::nodes

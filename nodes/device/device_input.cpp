@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/node/node.hpp"
+
+namespace tactus::nodes {
+
+struct DeviceInput {
+    static constexpr auto about =
+        "Where the hand is: pose, velocity and buttons of a haptic device, in the frame of the device.";
+    static constexpr NodeRole role = NodeRole::hand_source;
+
+    Out<Pose> pose{"handle in the device frame; keeps the last good one while samples are invalid", "m"};
+    Out<Twist> twist{"velocity of the handle, zero while samples are invalid", "m/s, rad/s"};
+    Out<bool> trigger{"the trigger is held; false while samples are invalid"};
+    Out<bool> second{"the second button is held"};
+    Out<bool> third{"the third button is held"};
+    Out<bool> fourth{"the fourth button is held"};
+    Out<bool> valid{"this tick's sample is good"};
+    Text device{"", "name of an entry of [devices]; empty: the only one"};
+
+    void prepare(const Setup& setup) {
+        port_ = &setup.outside->device(device.value, DeviceUse::read, device.where);
+        read();
+    }
+    void process(const Tick&) noexcept { read(); }
+
+private:
+    void read() noexcept {
+        const DeviceSample& s = port_->sample;
+        const bool good = s.valid && is_valid(s.pose) && is_finite(s.twist.linear) && is_finite(s.twist.angular);
+        if (good) last_ = {s.pose.position, glm::normalize(s.pose.orientation)};
+        pose = last_;
+        twist = good ? s.twist : Twist{};
+        trigger = good && (s.buttons & button_trigger) != 0;
+        second = good && (s.buttons & button_second) != 0;
+        third = good && (s.buttons & button_third) != 0;
+        fourth = good && (s.buttons & button_fourth) != 0;
+        valid = good;
+    }
+
+    // Bits of DeviceSample::buttons; bit 1 is the gap of a replayed hand.
+    static constexpr std::uint32_t button_second = 4u, button_third = 8u, button_fourth = 16u;
+    DevicePort* port_ = nullptr;
+    Pose last_;
+};
+
+TACTUS_NODE(DeviceInput, pose, twist, trigger, second, third, fourth, valid, device)
+
+}  // namespace tactus::nodes

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/control/force_limiter.hpp"
+#include "graph/node/node.hpp"
+
+#include <algorithm>
+
+namespace tactus::nodes {
+
+/// A limit of 0 in `info` means that the device states none.
+static double lower_limit(double wanted, double of_device) {
+    return of_device > 0.0 ? std::min(wanted, of_device) : wanted;
+}
+
+struct DeviceOutput {
+    static constexpr auto about =
+        "Force on the hand: checked, limited, ramped in, and faded to zero on any fault. The device's own limits hold "
+        "too.";
+    static constexpr NodeRole role = NodeRole::hand_sink;
+
+    In<Wrench> wrench{"on the hand about the handle, device frame", "N, N m"};
+    Out<Wrench> applied{"what the device is given", "N, N m"};
+    Out<bool> engaged{"forces pass"};
+    Out<bool> torque_dropped{"the device gives no torque and was asked for one"};
+    Text device{"", "name of an entry of [devices]; empty: the only one"};
+    Param max_force{structural, "10 N", "0 N", "50 N", "largest force on the hand"};
+    Param max_torque{structural, "0.5 N m", "0 N m", "5 N m", "largest torque on the hand"};
+    Param slew{structural, "1 N/ms", "0.01 N/ms", "100 N/ms", "fastest change of the force"};
+    Param torque_slew{structural, "0.05 N m/ms", "0.001 N m/ms", "10 N m/ms", "fastest change of the torque"};
+    Param recover_after{
+        structural, "1 s", "0 s", "1 h",
+        "forces may come in again once ticks and samples were good for so long after a fault of theirs; "
+        "0 s: never. After a force that is not finite they never do"};
+    Param engage_time{structural, "100 ms", "0 ms", "10 s", "forces come in over this time once they were small"};
+
+    void prepare(const Setup& setup) {
+        port_ = &setup.outside->device(device.value, DeviceUse::drive, device.where);
+        control::ForceLimits limits;
+        limits.max_force = lower_limit(max_force, port_->info.max_force);
+        limits.max_torque = lower_limit(max_torque, port_->info.max_torque);
+        limits.force_slew = slew;
+        limits.torque_slew = torque_slew;
+        limits.engage_ramp_s = engage_time;
+        limiter_.prepare(limits, seconds(setup.period));
+    }
+
+    void process(const Tick& tick) noexcept {
+        const DeviceSample& s = port_->sample;
+        limiter_.hold_off(port_->hold_off);
+        if (s.sound_lost) limiter_.fail(control::Fault::sound_lost);
+        if (s.taken) limiter_.cut(control::Fault::late_commit);
+        const Wrench out = limiter_.tick(givable(), s.counter, s.valid && is_valid(s.pose), tick.elapsed_seconds());
+        applied = out;
+        port_->wrench = out;
+        port_->fault = limiter_.fault();
+        if (limiter_.fault() != control::Fault::none) recover(tick);
+        counter_ = s.counter;
+        engaged = limiter_.engaged();
+        const double force = glm::length(out.force);
+        largest_ = std::max(largest_, force);
+        sum_ += force;
+    }
+
+    void report(Report& report) const {
+        const control::ForceStatistics& s = limiter_.statistics();
+        const auto ticks = static_cast<double>(s.ticks);
+        report.set("force", "max_N", largest_);
+        report.set("force", "mean_N", s.ticks > 0 ? sum_ / ticks : 0.0);
+        report.set("force", "ticks", ticks);
+        report.set("force", "raw_max_N", s.max_force);
+        report.set("force", "raw_max_step_N", s.max_force_step);
+        report.set("force", "over_limit_ticks", static_cast<double>(s.force_limited));
+        report.set("force", "slew_limited_ticks", static_cast<double>(s.slew_limited));
+        report.set("contact", "limited_ticks", static_cast<double>(s.limited));
+        if (!port_->info.actuates_torque) {
+            report.set("force", "torque_dropped_max_Nm", most_dropped_);
+            report.set("force", "torque_dropped_ticks", static_cast<double>(ticks_dropped_));
+        }
+        report.set("force", "fault", std::string(control::describe(last_fault_)));
+        report.set("force", "faults", static_cast<double>(faults_));
+    }
+
+private:
+    /// What the device can give of the wrench. One that is not finite stays so, for the limiter to see.
+    Wrench givable() noexcept {
+        Wrench asked = wrench.get();
+        torque_dropped = false;
+        if (port_->info.actuates_torque || !is_finite(asked)) return asked;
+        const double torque = glm::length(asked.torque);
+        asked.torque = Vec3(0.0);
+        if (!(torque > 0.0)) return asked;
+        torque_dropped = true;
+        most_dropped_ = std::max(most_dropped_, torque);
+        ++ticks_dropped_;
+        return asked;
+    }
+
+    void recover(const Tick& tick) noexcept {
+        if (!in_fault_) {
+            in_fault_ = true;
+            last_fault_ = limiter_.fault();
+            ++faults_;
+            well_for_ = 0.0;
+        }
+        const DeviceSample& s = port_->sample;
+        const bool well = s.valid && is_valid(s.pose) && !s.taken && s.counter != counter_;
+        well_for_ = well ? well_for_ + tick.elapsed_seconds() : 0.0;
+        if (limiter_.fault() == control::Fault::not_finite || recover_after == 0.0 || well_for_ < recover_after) return;
+        limiter_.recover();
+        in_fault_ = false;
+    }
+
+    DevicePort* port_ = nullptr;
+    control::ForceLimiter limiter_;
+    double largest_ = 0.0, sum_ = 0.0, well_for_ = 0.0, most_dropped_ = 0.0;
+    std::int64_t counter_ = 0, faults_ = 0, ticks_dropped_ = 0;
+    control::Fault last_fault_ = control::Fault::none;
+    bool in_fault_ = false;
+};
+
+TACTUS_NODE(DeviceOutput, wrench, applied, engaged, torque_dropped, device, max_force, max_torque, slew, torque_slew,
+            engage_time, recover_after)
+
+}  // namespace tactus::nodes

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/coupling/placement.hpp"
+#include "graph/node/node.hpp"
+
+namespace tactus::nodes {
+
+struct DeviceWrench {
+    static constexpr auto about =
+        "Brings a wrench on the tool back to the hand: device axes, torque about the handle, the same power on both "
+        "sides.";
+
+    In<Wrench> wrench{"on the tool, about its origin, in the scene", "N, N m"};
+    In<Pose> tool{"tool in the scene: workspace.pose", "m"};
+    In<Pose> frame{"device at the handle: workspace.frame", "m"};
+    Out<Wrench> on_hand{"about the handle, device frame", "N, N m"};
+    Param scale{"1", "0.01", "100", "the workspace's scale; workspace.force_scale drives it"};
+
+    void process(const Tick&) noexcept { on_hand = coupling::wrench_on_hand(wrench, tool->position, frame, scale); }
+};
+
+TACTUS_NODE(DeviceWrench, wrench, tool, frame, on_hand, scale)
+
+}  // namespace tactus::nodes

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/display/camera.hpp"
+#include "graph/node/node.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace tactus::nodes {
+
+struct SimulatedHead {
+    static constexpr auto about =
+        "The head of a viewer who looks around: sways about a place and keeps its eyes on a point. In place of a "
+        "tracker, for 'run --view --head' and 'render --head'.";
+
+    Out<Pose> pose{"the place between the eyes; x leads to the right eye, y up, z away from what is looked at", "m"};
+    Vector position{"0 mm, -450 mm, 400 mm", "about which it sways, in the world of the viewer"};
+    Vector look_at{"0 mm, 0 mm, 0 mm", "what it looks at, in the world of the viewer"};
+    Vector sway{"100 mm, 30 mm, 40 mm", "to each side, along x, y and z"};
+    Param frequency{"0.2 Hz", "0 Hz", "5 Hz", "of the sway along x; along y 1.3 and along z 0.7 times as fast"};
+
+    void prepare(const Setup&) {
+        turns_ = 0.0;
+        look();
+    }
+    void process(const Tick& tick) noexcept {
+        turns_ += frequency * tick.elapsed_seconds();
+        look();
+    }
+
+private:
+    void look() noexcept {
+        const double angle = 2.0 * std::numbers::pi * turns_;
+        const Vec3 middle = position, reach = sway, towards = look_at;
+        display::OrbitCamera eyes;
+        const Vec3 at = middle + reach * Vec3(std::sin(angle), std::sin(1.3 * angle), std::sin(0.7 * angle));
+        eyes.look_along(towards - at);
+        pose = Pose{at, eyes.orientation};
+    }
+
+    double turns_ = 0.0;
+};
+
+TACTUS_NODE(SimulatedHead, pose, position, look_at, sway, frequency)
+
+}  // namespace tactus::nodes

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/coupling/placement.hpp"
+#include "dsp/volume/site.hpp"
+#include "graph/node/assets.hpp"
+#include "graph/node/node.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <optional>
+
+namespace tactus::nodes {
+
+struct Workspace {
+    static constexpr auto about =
+        "Places the device in the scene and the tool in the hand. Given a bone, it finds a place where a saw blade can "
+        "be set on, and puts the resting tool in front of it. With 'clutch' held the hand takes the device along "
+        "through "
+        "the scene and the tool stays in place; with 'turn' held the scene turns and shifts with the hand. Forces go "
+        "back through device_wrench.";
+    static constexpr NodeRole role = NodeRole::placement;
+
+    In<Pose> device{"handle in the device frame", "m"};
+    In<bool> clutch{optional, "held: the tool stays while the hand goes where it has room"};
+    In<bool> turn{optional, "held: the scene turns and shifts with the hand"};
+    Out<Pose> pose{"tool in the scene", "m"};
+    Out<Pose> frame{"the device's axes, at the handle, in the scene; for device_wrench", "m"};
+    Out<double> force_scale{"the scale, for device_wrench", "1"};
+    Asset<bone::Bone> bone{optional,
+                     "what is to be cut; origin and rotation then count from the tool's place in front of it"};
+    Vector origin{"0 mm, 0 mm, 0 mm", "of the device frame in the scene"};
+    Vector rotation{"0 deg, 0 deg, 0 deg", "of the device frame in the scene: about x first, then y, then z"};
+    Param scale{"1", "0.01", "100", "distance in the scene per distance of the device; the tool stays when it changes"};
+    Vector grip{"0 mm, 0 mm, 0 mm", "origin of the tool in the frame of the handle"};
+    Vector grip_rotation{
+        "-90 deg, 0 deg, 0 deg",
+        "of the tool in the frame of the handle: about x first, then y, then z; by default a blade cuts "
+        "towards -z of the device"};
+    Param clearance{structural, "5 mm", "0 mm", "100 mm", "from the resting tool to the bone"};
+
+    void prepare(const Setup& setup) {
+        placement_ = {{origin, coupling::rotation_xyz(rotation)}, scale, {grip, coupling::rotation_xyz(grip_rotation)}};
+        holds_ = turns_ = false;
+        last_ = {};
+        if (bone) placement_.device = in_front_of(*bone, setup) * placement_.device;
+        place({});
+    }
+    void process(const Tick&) noexcept {
+        const Pose hand = device;
+        // What stays must not be moved by a faulty pose.
+        if (is_valid(hand) && glm::length(hand.position) < farthest)
+            arrange({hand.position, glm::normalize(hand.orientation)});
+        place(hand);
+    }
+
+    void report(Report& report) const {
+        if (!site_) return;
+        const auto list = [](const Vec3& v) { return std::vector<double>{v.x, v.y, v.z}; };
+        report.set("site", "position_mm", list(site_->point * 1e3));
+        report.set("site", "normal", list(-site_->feed));
+        report.set("site", "stroke", list(site_->stroke));
+        report.set("site", "thickness_mm", site_->thickness * 1e3);
+        report.set("site", "width_mm", site_->width * 1e3);
+    }
+
+private:
+    /// Moves the device's frame in the scene, where a button or a new scale asks for it, so that the tool stays.
+    void arrange(const Pose& hand) noexcept {
+        const bool holds = clutch.connected && clutch.get(), turns = turn.connected && turn.get();
+        Pose& frame_in_scene = placement_.device;
+        const Pose handle{frame_in_scene.apply(last_.position * placement_.scale),
+                          frame_in_scene.orientation * last_.orientation};
+        const bool keeps_turn = turns && turns_;
+        if (scale != placement_.scale || (holds && holds_) || keeps_turn) {
+            placement_.scale = scale;
+            if (keeps_turn)
+                frame_in_scene.orientation = glm::normalize(handle.orientation * glm::conjugate(hand.orientation));
+            frame_in_scene.position = handle.position - frame_in_scene.orientation * (hand.position * placement_.scale);
+        }
+        holds_ = holds;
+        turns_ = turns;
+        last_ = hand;
+    }
+
+    void place(const Pose& handle) noexcept {
+        pose = placement_.tool(handle);
+        frame = placement_.frame(handle);
+        force_scale = placement_.scale;
+    }
+
+    /// Frame of the device so that a handle at its origin holds the tool in front of the site: x of the tool along the
+    /// stroke, y into the bone.
+    Pose in_front_of(const bone::Bone& target, const Setup& setup) {
+        site_ = volume::find_saw_site(target.distance, target.density);
+        if (!site_)
+            setup.fail("no place was found on bone '" + bone.name +
+                       "' where a saw blade can be set on; leave 'bone' out and give 'origin' and 'rotation'");
+        const Mat3 axes(site_->stroke, site_->feed, glm::cross(site_->stroke, site_->feed));
+        const Pose tool{site_->point - site_->feed * clearance.value, glm::normalize(glm::quat_cast(axes))};
+        return tool * placement_.grip.inverse();
+    }
+
+    static constexpr double farthest = 1e3;  // m
+
+    coupling::Placement placement_;
+    Pose last_;
+    bool holds_ = false, turns_ = false;
+    std::optional<volume::SawSite> site_;
+};
+
+TACTUS_NODE(Workspace, device, clutch, turn, pose, frame, force_scale, bone, origin, rotation, scale, grip,
+            grip_rotation, clearance)
+
+}  // namespace tactus::nodes

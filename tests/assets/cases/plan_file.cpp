@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/cases/plan_file.hpp"
+
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+#include "dsp/core/random.hpp"
+#include "tests/assets/bone/temporary_folder.hpp"
+
+#include <catch2/catch.hpp>
+#include <glm/geometric.hpp>
+
+#include <bit>
+#include <cstdint>
+
+using namespace tactus;
+
+namespace {
+
+bool same_bits(const Pose& a, const Pose& b) {
+    const double x[] = {a.position.x,    a.position.y,    a.position.z,   a.orientation.w,
+                        a.orientation.x, a.orientation.y, a.orientation.z};
+    const double y[] = {b.position.x,    b.position.y,    b.position.z,   b.orientation.w,
+                        b.orientation.x, b.orientation.y, b.orientation.z};
+    for (int i = 0; i < 7; ++i)
+        if (std::bit_cast<std::uint64_t>(x[i]) != std::bit_cast<std::uint64_t>(y[i])) return false;
+    return true;
+}
+
+Pose any_pose(std::uint64_t n) {
+    const Random random{n};
+    return {Vec3(random.normal(0), random.normal(1), random.normal(2)) * 0.1,
+            glm::normalize(Quat(random.normal(3), random.normal(4), random.normal(5), random.normal(6)))};
+}
+
+/// Four fragments, none of whose files is looked at.
+cases::CasePlan four() {
+    cases::CasePlan plan;
+    plan.title = "a jaw";
+    for (const char* name : {"a", "b", "c", "d"}) plan.fragments.push_back({name, name, 7, {0.1, 0.2, 0.3}});
+    return plan;
+}
+
+cases::PlanStep meaning(cases::StepKind kind, std::vector<int> fragments, std::string group = "") {
+    cases::PlanStep step;
+    step.kind = kind;
+    step.by = "command";
+    step.fragments = std::move(fragments);
+    step.group = std::move(group);
+    return step;
+}
+
+void put(cases::CasePlan& plan, int fragment, const Pose& pose) { cases::add_step(plan, cases::placing(plan, fragment, pose, "hand")); }
+
+/// Every kind of step, an undone branch and a second alternative.
+cases::CasePlan eventful() {
+    cases::CasePlan plan = four();
+    for (int n = 1; n < 4; ++n) put(plan, n, any_pose(static_cast<std::uint64_t>(n)));
+    cases::add_step(plan, meaning(cases::StepKind::group, {1, 2}, "chin"));
+    cases::add_step(plan, meaning(cases::StepKind::add, {3}, "chin"));
+    put(plan, 1, any_pose(9));
+    plan.steps.back().fit = cases::PlanFit{"a", "fit", 0.8, 0.3, 1e-4, -1e-5, 2e-4, 1.1e-4};
+    plan.steps.back().run_second = 1.25;
+    plan.steps.back().time = cases::time_of_day();
+    plan.place() = fit::undone(plan.before(), plan.place());
+    cases::add_step(plan, meaning(cases::StepKind::lock, {0, 1}));
+    cases::add_step(plan, meaning(cases::StepKind::hide, {2}));
+    plan.alternatives.push_back({"other", plan.place()});
+    plan.current = 1;
+    cases::PlanStep mirror = meaning(cases::StepKind::mirror, {});
+    mirror.mirror = cases::MirrorTarget{"healthy.stl", 3, {0.0, 1.0, 0.0}, 0.1, any_pose(11), 1e-3};
+    cases::add_step(plan, mirror);
+    plan.place() = fit::undone(plan.before(), plan.place());
+    return plan;
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+    const auto at = text.find(what);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, what.size(), by);
+}
+
+}  // namespace
+
+TEST_CASE("a plan that is read again has the same bits in every pose, and can be undone and redone as before") {
+    const cases::CasePlan plan = eventful(), again = cases::read_plan_text(cases::plan_text(plan), "p");
+    REQUIRE(again.steps.size() == plan.steps.size());
+    for (std::size_t n = 0; n < plan.steps.size(); ++n) {
+        REQUIRE(again.steps[n].poses.size() == plan.steps[n].poses.size());
+        for (std::size_t k = 0; k < plan.steps[n].poses.size(); ++k)
+            CHECK(same_bits(again.steps[n].poses[k], plan.steps[n].poses[k]));
+    }
+    CHECK(cases::plan_text(again) == cases::plan_text(plan));
+    CHECK(again.alternatives[1].place.tip == plan.alternatives[1].place.tip);
+    CHECK(fit::redone(again.before(), again.place()).head == static_cast<int>(plan.steps.size()) - 1);
+    const cases::PlanState before = cases::state_of(plan), after = cases::state_of(again);
+    for (int n = 0; n < 4; ++n) CHECK(same_bits(before.arrangement.pose(n), after.arrangement.pose(n)));
+    CHECK(before.arrangement.is_hidden(2));
+    CHECK(after.arrangement.is_locked(1));
+    CHECK(after.find_group("chin") != fit::Arrangement::none);
+}
+
+TEST_CASE("undoing takes poses back to the bit, and no step is ever lost") {
+    cases::CasePlan plan = four();
+    std::vector<Pose> way{Pose{}};
+    for (std::uint64_t n = 0; n < 50; ++n) {
+        put(plan, 2, any_pose(n));
+        way.push_back(cases::state_of(plan).arrangement.pose(2));
+    }
+    for (std::size_t n = way.size() - 1; n-- > 0;) {
+        plan.place() = fit::undone(plan.before(), plan.place());
+        CHECK(same_bits(cases::state_of(plan).arrangement.pose(2), way[n]));
+    }
+    for (std::size_t n = 1; n < way.size(); ++n) {
+        plan.place() = fit::redone(plan.before(), plan.place());
+        CHECK(same_bits(cases::state_of(plan).arrangement.pose(2), way[n]));
+    }
+    for (int n = 0; n < 20; ++n) plan.place() = fit::undone(plan.before(), plan.place());
+    put(plan, 1, any_pose(99));
+    CHECK(plan.steps.size() == 51);
+    CHECK(same_bits(cases::state_of(plan).arrangement.pose(2), way[30]));
+}
+
+TEST_CASE("a grouped fragment takes its group along, and the step says where each of them stands") {
+    cases::CasePlan plan = four();
+    cases::add_step(plan, meaning(cases::StepKind::group, {0, 3}, "pair"));
+    put(plan, 3, any_pose(1));
+    CHECK(plan.steps.back().fragments == std::vector<int>{3, 0});
+    CHECK(same_bits(cases::state_of(plan).arrangement.pose(0), plan.steps.back().poses[1]));
+    cases::add_step(plan, meaning(cases::StepKind::remove, {0}));
+    CHECK(cases::state_of(plan).find_group("pair") == fit::Arrangement::none);
+}
+
+TEST_CASE("a step that cannot be is refused and leaves the plan as it was") {
+    cases::CasePlan plan = eventful();
+    const std::string text = cases::plan_text(plan);
+    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::add, {0}, "chim")), Catch::Contains("did you mean 'chin'"));
+    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::group, {1, 2}, "x")), Catch::Contains("move together already"));
+    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::group, {0, 1}, "chin")), Catch::Contains("already"));
+    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::hide, {4})), Catch::Contains("no fragment number 4"));
+    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::hide, {1, 1})), Catch::Contains("twice"));
+    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::remove, {0})), Catch::Contains("in no group"));
+    CHECK_THROWS_WITH(put(plan, 1, any_pose(1)), Catch::Contains("locked"));
+    CHECK_THROWS_WITH(put(plan, 2, any_pose(1)), Catch::Contains("locked"));
+    CHECK_THROWS_WITH(cases::find_fragment(plan, "z"), Catch::Contains("no fragment 'z'"));
+    CHECK(cases::plan_text(plan) == text);
+}
+
+TEST_CASE("what is no plan of ours is refused in one line that says what to do") {
+    const std::string text = cases::plan_text(eventful());
+    const auto refusal = [](const std::string& damaged) -> std::string {
+        try {
+            cases::read_plan_text(damaged, "case.json");
+        } catch (const Error& error) {
+            CHECK(error.message().find('\n') == std::string::npos);
+            CHECK(error.message().starts_with("case.json: "));
+            return error.message();
+        }
+        return "";
+    };
+    for (std::size_t length = 1; length + 2 < text.size(); length += 37)
+        CHECK_THAT(refusal(text.substr(0, length)), Catch::Contains("ends in the middle"));
+    CHECK_THAT(refusal(replaced(text, "\"version\": 1", "\"version\": 2")),
+               Catch::Contains("version 2; this program reads version 1; nothing was changed"));
+    CHECK_THAT(refusal(replaced(text, "\"name\": \"b\"", "\"name\": \"a\"")), Catch::Contains("another fragment has"));
+    CHECK_THAT(refusal(replaced(text, "\"after\": 0", "\"after\": 1")), Catch::Contains("no step before it"));
+    CHECK_THAT(refusal(replaced(text, "\"kind\": \"lock\"", "\"kind\": \"eat\"")), Catch::Contains("'eat'"));
+    CHECK_THAT(refusal(replaced(text, "\"current\": \"other\"", "\"current\": \"x\"")), Catch::Contains("'x'"));
+    CHECK_THAT(refusal(replaced(text, "\"unit\": \"m\"", "\"unit\": \"mm\"")), Catch::Contains("unit \"m\""));
+    CHECK_THAT(refusal(replaced(text, "\"score\": 0.8", "\"score\": \"0.8\"")), Catch::Contains("no number"));
+    CHECK_THAT(refusal("{}"), Catch::Contains("no plan"));
+    CHECK_THAT(refusal("solid ascii"), Catch::Contains("JSON"));
+}
+
+TEST_CASE("a plan is saved whole or not at all") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    cases::save_case_plan(eventful(), file);
+    const std::string whole = file::read_whole_file(file);
+    CHECK(whole == cases::plan_text(cases::load_case_plan(file)));
+    // What a crash while writing leaves beside it is in nobody's way.
+    file::write_whole_file(file.string() + ".part", whole.substr(0, 100));
+    CHECK(cases::load_case_plan(file).steps.size() == eventful().steps.size());
+    cases::save_case_plan(four(), file);
+    CHECK(cases::load_case_plan(file).steps.empty());
+    CHECK_FALSE(std::filesystem::exists(file.string() + ".part"));
+    CHECK_THROWS_AS(cases::save_case_plan(four(), folder / "none" / "case.json"), Error);
+}
+
+TEST_CASE("a file that is gone or has changed since is named, and names of fragments stay apart") {
+    const TemporaryFolder folder;
+    const auto file = folder / "bone.stl";
+    file::write_whole_file(file, "one");
+    cases::CasePlan plan;
+    cases::add_fragment(plan, "left", file, file.parent_path(), Vec3(1.0));
+    CHECK(plan.fragments[0].file == "bone.stl");
+    CHECK_THROWS_WITH(cases::add_fragment(plan, "left", file, file.parent_path(), Vec3(1.0)), Catch::Contains("another name"));
+    CHECK(cases::changed_files(plan, file.parent_path()).empty());
+    file::write_whole_file(file, "two");
+    REQUIRE(cases::changed_files(plan, file.parent_path()).size() == 1);
+    CHECK_THAT(cases::changed_files(plan, file.parent_path())[0], Catch::Contains("not the one that the plan was made with"));
+    std::filesystem::remove(file);
+    CHECK_THAT(cases::changed_files(plan, file.parent_path())[0], Catch::Contains("is missing"));
+}

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/cases/plan_keeper.hpp"
+
+#include "assets/file/whole_file.hpp"
+#include "assets/cases/plan_file.hpp"
+#include "dsp/core/error.hpp"
+#include "tests/assets/bone/temporary_folder.hpp"
+
+#include <sys/resource.h>
+#include <catch2/catch.hpp>
+
+#include <csignal>
+
+using namespace tactus;
+
+namespace {
+
+cases::CasePlan two() {
+    cases::CasePlan plan;
+    plan.title = "two";
+    for (const char* name : {"a", "b"}) plan.fragments.push_back({name, name, 1, Vec3(1.0)});
+    return plan;
+}
+
+cases::StepRow put(int step, double x) {
+    cases::StepRow row;
+    row.step = step;
+    row.after = step - 1;
+    row.x = x;
+    return row;
+}
+
+/// No file may grow beyond so many bytes while this lives: what a full disk does.
+struct FullDisk {
+    explicit FullDisk(rlim_t bytes) : handler(std::signal(SIGXFSZ, SIG_IGN)) {
+        ::getrlimit(RLIMIT_FSIZE, &before);
+        const rlimit less{bytes, before.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &less);
+    }
+    ~FullDisk() {
+        ::setrlimit(RLIMIT_FSIZE, &before);
+        std::signal(SIGXFSZ, handler);
+    }
+    rlimit before{};
+    void (*handler)(int);
+};
+
+}  // namespace
+
+TEST_CASE("a kept plan is there from the start, and holds each step once it is saved") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    cases::PlanKeeper keeper(two(), file);
+    CHECK(cases::load_case_plan(file).steps.empty());
+    for (int n = 0; n < 5; ++n) {
+        keeper.add(put(n, 0.1 * n), n);
+        keeper.save();
+        const cases::CasePlan now = cases::load_case_plan(file);
+        REQUIRE(now.steps.size() == static_cast<std::size_t>(n) + 1);
+        CHECK(now.steps.back().poses[0].position.x == 0.1 * n);
+        CHECK(*now.steps.back().run_second == n);
+    }
+    // To the step before: what follows is there to be redone.
+    cases::StepRow back;
+    back.kind = cases::row_goes_to;
+    back.step = 5;
+    back.after = 3;
+    keeper.add(back, 9.0);
+    keeper.finish();
+    CHECK(cases::load_case_plan(file).place().head == 3);
+    CHECK(cases::load_case_plan(file).place().tip == 4);
+    CHECK(keeper.trouble().empty());
+}
+
+TEST_CASE("while the disk is full the last saved plan stays, and all is saved when there is room again") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    cases::PlanKeeper keeper(two(), file);
+    keeper.add(put(0, 0.1), 0.0);
+    keeper.save();
+    const std::string before = file::read_whole_file(file);
+    {
+        const FullDisk full(100);
+        keeper.add(put(1, 0.2), 1.0);
+        CHECK_THROWS_WITH(keeper.save(), Catch::Contains("cannot be written"));
+        CHECK(file::read_whole_file(file) == before);
+        CHECK_FALSE(std::filesystem::exists(file.string() + ".part"));
+    }
+    keeper.add(put(2, 0.3), 2.0);
+    keeper.save();
+    CHECK(cases::load_case_plan(file).steps.size() == 3);
+}
+
+TEST_CASE("a plan whose folder is gone at the end is put aside with all of its steps, and the message says where") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    cases::PlanKeeper keeper(two(), file);
+    keeper.add(put(0, 0.1), 0.0);
+    std::filesystem::remove_all(file.parent_path());
+    std::string message;
+    try {
+        keeper.finish();
+    } catch (const Error& error) {
+        message = error.message();
+    }
+    const auto at = message.find("is in ");
+    REQUIRE(at != std::string::npos);
+    const std::filesystem::path spare = message.substr(at + 6);
+    CHECK(cases::load_case_plan(spare).steps.size() == 1);
+    std::filesystem::remove(spare);
+    std::filesystem::create_directories(file.parent_path());
+}
+
+TEST_CASE("a plan of another run is never written over, and one that is continued is") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    {
+        cases::PlanKeeper keeper(two(), file);
+        keeper.add(put(0, 0.1), 0.0);
+        keeper.finish();
+    }
+    const std::string first = file::read_whole_file(file);
+    {
+        cases::PlanKeeper keeper(cases::load_case_plan(file), file);
+        keeper.add(put(1, 0.2), 0.0);
+        keeper.finish();
+    }
+    CHECK_FALSE(std::filesystem::exists(file.string() + ".1"));
+    const std::string second = file::read_whole_file(file);
+    {
+        // The same case from its beginning: other steps.
+        cases::PlanKeeper keeper(two(), file);
+        keeper.finish();
+    }
+    CHECK(file::read_whole_file(file.string() + ".1") == second);
+    file::write_whole_file(file, "what is this?");
+    {
+        cases::PlanKeeper keeper(two(), file);
+        keeper.finish();
+    }
+    CHECK(file::read_whole_file(file.string() + ".2") == "what is this?");
+    CHECK(cases::load_case_plan(file).steps.empty());
+}
+
+TEST_CASE("two keepers of one plan: the second is refused until the first has ended") {
+    const TemporaryFolder folder;
+    const auto file = folder / "case.plan.json";
+    {
+        const cases::PlanKeeper first(two(), file);
+        CHECK_THROWS_WITH(cases::PlanKeeper(two(), file), Catch::Contains("another program is changing this plan"));
+    }
+    CHECK_NOTHROW(cases::PlanKeeper(two(), file));
+    CHECK_THROWS_WITH(cases::PlanKeeper(two(), folder / "none" / "case.plan.json"), Catch::Contains("cannot be changed"));
+}

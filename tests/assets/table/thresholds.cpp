@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assets/table/thresholds.hpp"
+
+#include "dsp/core/error.hpp"
+#include "tests/assets/bone/temporary_folder.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <fstream>
+
+using namespace tactus;
+using Catch::Matchers::Contains;
+
+namespace {
+
+table::Thresholds read(const std::string& text) {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "t.toml", std::ios::binary) << text;
+    return table::load_thresholds(folder / "t.toml");
+}
+
+}  // namespace
+
+TEST_CASE("thresholds keep their defaults but for what the file says") {
+    const table::Thresholds all = read("");
+    CHECK(all.lsd_db == 2.0);
+    CHECK_FALSE(all.st_sim.has_value());
+    const table::Thresholds some = read("lsd_db = 1\nst_sim = 0.95\nadded_line_db = false\n");
+    CHECK(some.lsd_db == 1.0);
+    CHECK(some.st_sim == 0.95);
+    CHECK_FALSE(some.added_line_db.has_value());
+    CHECK(some.cosine_40_500 == all.cosine_40_500);
+}
+
+TEST_CASE("thresholds that make no sense are refused with their place") {
+    CHECK_THROWS_WITH(read("lsd = 1"), Contains("did you mean 'lsd_db'?"));
+    CHECK_THROWS_WITH(read("\nlsd_db = \"1\""), Contains(":2:") && Contains("number"));
+    CHECK_THROWS_WITH(read("lsd_db = nan"), Contains("number"));
+    CHECK_THROWS_WITH(read("lsd_db = true"), Contains("number"));
+    CHECK_THROWS_WITH(read("lsd_db"), Contains("TOML"));
+}

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/display/rig_touches.hpp"
+
+#include "dsp/coupling/placement.hpp"
+
+#include <catch2/catch.hpp>
+#include <glm/geometric.hpp>
+
+#include <string>
+#include <vector>
+
+using namespace tactus;
+
+namespace {
+
+const Pose device{{0.03, -0.24, -0.18}, coupling::rotation_xyz({0.2, -0.1, 0.4})};
+const display::Plane mirror{{0.0, 0.02, 0.01}, glm::normalize(Vec3(0.0, 0.35, 0.94))};
+// A mirror swaps left and right.
+const display::Screen image{{0.25, -0.1, -0.3}, {-0.25, -0.1, -0.3}, {0.25, 0.17, -0.22}};
+
+Vec3 on_screen(const display::Screen& screen, double u, double v) {
+    return screen.low_left + u * screen.right() + v * screen.up();
+}
+
+/// A whole rig without noise: 8 places, 8 touches of the mirror, 9 marks as the mirror shows them.
+std::vector<display::RigTouch> whole_rig() {
+    std::vector<display::RigTouch> touches;
+    const auto add = [&](display::RigTouch touch, const Vec3& at) {
+        touch.reading = device.inverse().apply(at);
+        touches.push_back(touch);
+    };
+    for (int n = 0; n < 8; ++n) {
+        const Vec3 at(n & 1 ? 0.1 : -0.1, n & 2 ? 0.1 : -0.1, n & 4 ? -0.05 : -0.25);
+        add({display::RigTouch::Of::workspace, {}, {}, {}, at}, at);
+    }
+    const Vec3 along(1.0, 0.0, 0.0), across = glm::cross(mirror.normal, along);
+    for (int n = 0; n < 8; ++n)
+        add({display::RigTouch::Of::mirror, {}, {}, {}, {}},
+            mirror.point + (0.04 * n - 0.15) * along + (n % 3 - 1) * 0.1 * across);
+    for (int n = 0; n < 9; ++n) {
+        const glm::dvec2 mark(0.1 + 0.4 * (n % 3), 0.1 + 0.4 * (n / 3));
+        add({display::RigTouch::Of::image, "monitor", mark, {}, {}}, on_screen(image, mark.x, mark.y));
+    }
+    return touches;
+}
+
+}  // namespace
+
+TEST_CASE("dsp: a rig comes out of exact touches as it is, the screen where it really stands above its mirror") {
+    const display::RigFit fit = display::fit_rig(whole_rig());
+    CHECK(glm::length(fit.device.position - device.position) < 1e-9);
+    REQUIRE(fit.mirror);
+    CHECK(std::abs(fit.mirror->height(mirror.point)) < 1e-9);
+    CHECK(std::abs(glm::dot(fit.mirror->normal, mirror.normal)) == Approx(1.0));
+    REQUIRE(fit.screens.size() == 1);
+    CHECK(glm::length(fit.screens[0].second.low_left - mirror.reflected(image.low_left)) < 1e-6);
+    CHECK(glm::length(fit.screens[0].second.high_left - mirror.reflected(image.high_left)) < 1e-4);
+    REQUIRE(fit.parts.size() == 3);
+    CHECK(fit.parts[2].what == "screen 'monitor'");
+    CHECK(fit.parts[2].off.size() == 9);
+}
+
+TEST_CASE("dsp: a touch that went wrong is named, with how far it is off the others, which agree") {
+    for (const std::size_t wrong : {3u, 11u, 18u}) {
+        std::vector<display::RigTouch> touches = whole_rig();
+        touches[wrong].reading += device.inverse().rotate(0.02 * mirror.normal);
+        try {
+            display::fit_rig(touches);
+            FAIL("the touch was taken");
+        } catch (const display::BadTouch& bad) {
+            CHECK(bad.touch == wrong);
+            INFO(bad.message());
+            CHECK(bad.message().find("touch " + std::to_string(wrong + 1) + ",") != std::string::npos);
+            CHECK(bad.message().find("20.0 mm off") != std::string::npos);
+            CHECK(bad.message().find("touch it again") != std::string::npos);
+        }
+    }
+}
+
+TEST_CASE("dsp: touches that decide nothing, or contradict each other altogether, are refused with what to do") {
+    std::vector<display::RigTouch> touches = whole_rig();
+    CHECK_THROWS_WITH(display::fit_rig(std::span(touches).first(3)), Catch::Contains("touch 4 places at least"));
+    CHECK_THROWS_WITH(display::fit_rig(std::span(touches).subspan(16)), Catch::Contains("touch the mirror as well"));
+    auto mixed = touches;
+    mixed[20].of = display::RigTouch::Of::screen;
+    CHECK_THROWS_WITH(display::fit_rig(mixed), Catch::Contains("not both"));
+    auto swapped = touches;
+    for (std::size_t i = 16; i < 25; ++i) swapped[i].shown.x = 1.0 - swapped[i].shown.x;
+    CHECK_THROWS_WITH(display::fit_rig(swapped), Catch::Contains("look away from the mirror"));
+    auto shaken = touches;
+    for (std::size_t i = 16; i < 25; ++i) shaken[i].reading.x += 0.02 * static_cast<double>((i * 7) % 5);
+    CHECK_THROWS_WITH(display::fit_rig(shaken), Catch::Contains("no single one is to blame"));
+    auto line = touches;
+    for (std::size_t i = 8; i < 16; ++i)
+        line[i].reading = touches[8].reading + Vec3(0.01 * static_cast<double>(i), 0.0, 0.0);
+    CHECK_THROWS_WITH(display::fit_rig(line), Catch::Contains("on a line"));
+    auto tiny = touches;
+    for (std::size_t i = 17; i < 25; ++i)
+        tiny[i].reading = touches[16].reading + 0.01 * (touches[i].reading - touches[16].reading);
+    CHECK_THROWS_WITH(display::fit_rig(tiny), Catch::Contains("no size of a screen"));
+    auto lost = touches;
+    lost[5].reading.y = std::nan("");
+    CHECK_THROWS_WITH(display::fit_rig(lost), Catch::Contains("touch 6"));
+}
+
+TEST_CASE("dsp: a device that is not true is taken as it is when its scales and skews may be fitted") {
+    std::vector<display::RigTouch> touches = whole_rig();
+    const Mat3 untrue(Vec3(1.03, 0.0, 0.0), Vec3(0.01, 0.98, 0.0), Vec3(0.0, 0.02, 1.01));
+    for (display::RigTouch& touch : touches) touch.reading = untrue * touch.reading;
+    display::RigFitOptions options;
+    options.is_affine = true;
+    const display::RigFit fit = display::fit_rig(touches, options);
+    CHECK(fit.parts[0].residual.worst < 1e-9);
+    const Vec3 at(0.05, 0.02, -0.1);
+    const Vec3 reading = untrue * device.inverse().apply(at);
+    CHECK(glm::length(fit.device.apply(fit.stretch * reading) - at) < 1e-9);
+    CHECK_THROWS_WITH(display::fit_rig(touches), Catch::Contains("device"));
+}

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/fit/fragment_matcher.hpp"
+
+#include "dsp/core/error.hpp"
+#include "tests/dsp/fit/broken_bar.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <vector>
+
+using namespace tactus;
+using namespace tactus::test;
+
+namespace {
+
+constexpr double degree = 0.017453292519943295;
+const Relief& relief() {
+    static const Relief made = rough_relief(3);
+    return made;
+}
+const Half& left() {
+    static const Half made = bar_half(-1.0, relief());
+    return made;
+}
+const Half& right() {
+    static const Half made = bar_half(1.0, relief());
+    return made;
+}
+
+fit::FragmentSurface surface_of(const Half& half) { return {half.points, &half.distance}; }
+
+/// The best of all pairs of faces and all ways round.
+fit::FragmentMatch searched(fit::FragmentMatcher& matcher, std::span<const Pose> poses, std::span<const char> stands) {
+    matcher.begin_search();
+    fit::FragmentMatch match;
+    do match = matcher.search(0, poses, stands);
+    while (matcher.left() > 0);
+    return match;
+}
+
+}  // namespace
+
+TEST_CASE("dsp: the matcher names a mirrored and a foreign partner, from nearby and from anywhere") {
+    const Half mirror = mirrored(right()), foreign = bar_half(1.0, rough_relief(12));
+    const std::vector<fit::FragmentSurface> surfaces{surface_of(left()), surface_of(right()), surface_of(mirror),
+                                                surface_of(foreign)};
+    fit::FragmentMatcher matcher(surfaces);
+    const std::vector<Pose> poses{beside(4 * mm, 10 * degree, 7), {}, {}, {}};
+    const auto stands_alone = [&](std::size_t n) {
+        std::vector<char> stands(4, 0);
+        stands[n] = 1;
+        return stands;
+    };
+    const fit::FragmentMatch own = matcher.near(0, poses, stands_alone(1));
+    CHECK(own.verdict == fit::FitVerdict::fit);
+    CHECK(own.partner == 1);
+    CHECK(error_of(left(), own.pose) < 0.1 * mm);
+    for (const std::size_t wrong : {2u, 3u}) {
+        CAPTURE(wrong);
+        CHECK(matcher.near(0, poses, stands_alone(wrong)).verdict != fit::FitVerdict::fit);
+        CHECK(searched(matcher, poses, stands_alone(wrong)).verdict != fit::FitVerdict::fit);
+    }
+    // With all of them to choose from, its own is chosen, from any orientation.
+    const std::vector<Pose> far{{Vec3(0.3, 0.1, -0.2), rotation_by({1.0, -2.0, 0.7})}, {}, {}, {}};
+    const fit::FragmentMatch found = searched(matcher, far, std::vector<char>(4, 1));
+    CHECK(found.verdict == fit::FitVerdict::fit);
+    CHECK(found.partner == 1);
+    CHECK(error_of(left(), found.pose) < 0.1 * mm);
+}
+
+TEST_CASE("dsp: what a search found goes along with its partner, and other partners are another search") {
+    const Half foreign = bar_half(1.0, rough_relief(12));
+    const std::vector<fit::FragmentSurface> surfaces{surface_of(left()), surface_of(right()), surface_of(foreign)};
+    fit::FragmentMatcher matcher(surfaces);
+    std::vector<Pose> poses{{}, {}, {}};
+    std::vector<char> stands{0, 1, 1};
+    REQUIRE(searched(matcher, poses, stands).partner == 1);
+    matcher.begin_search();
+    while (matcher.search(0, poses, stands).verdict != fit::FitVerdict::fit) REQUIRE(matcher.left() > 0);
+    REQUIRE(matcher.left() > 0);
+    poses[1] = beside(9 * mm, 0.3, 4);
+    const fit::FragmentMatch moved = matcher.search(0, poses, stands);
+    CHECK(moved.partner == 1);
+    CHECK(error_of(left(), moved.pose, poses[1]) < 0.1 * mm);
+    // The partner is taken away: what was found with it is forgotten.
+    stands[1] = 0;
+    CHECK(matcher.search(0, poses, stands).partner != 1);
+}
+
+TEST_CASE("dsp: a face on either side of a thin plate is pulled to its own side only") {
+    // A plate of 1.5 mm with a relief on its upper side, and the block that fits there.
+    const auto height = [](double x, double y) { return 0.35 * mm * relief()(x, y) / (0.6 * mm); };
+    const auto make = [&](bool plate) {
+        Half half;
+        half.distance.spacing = Vec3(0.35 * mm);
+        half.distance.size = {72, 58, 40};
+        half.distance.origin = Vec3(-12.5 * mm, -10 * mm, plate ? -5 * mm : -3 * mm);
+        for (int k = 0; k < half.distance.size[2]; ++k)
+            for (int j = 0; j < half.distance.size[1]; ++j)
+                for (int i = 0; i < half.distance.size[0]; ++i) {
+                    const Vec3 p = half.distance.position(i, j, k);
+                    const double up = (p.z - height(p.x, p.y)) / 1.1;
+                    const double body = plate ? std::max(up, -1.5 * mm - p.z) : std::max(-up, p.z - 6 * mm);
+                    half.distance.values.push_back(
+                        static_cast<float>(std::max({body, std::abs(p.x) - 9 * mm, std::abs(p.y) - 7 * mm})));
+                }
+        half.points = contact::sample_surface(half.distance, {.spacing = 0.5 * mm});
+        for (contact::SurfacePoint& p : half.points)
+            if (std::abs(p.position.z - height(p.position.x, p.position.y)) < 0.2 * mm &&
+                std::abs(p.position.x) < 8.6 * mm && std::abs(p.position.y) < 6.6 * mm)
+                p.label = contact::surface_label::fracture;
+        return half;
+    };
+    const Half plate = make(true), block = make(false);
+    const fit::FitSurface fixed = plate.surface(), moving = block.surface();
+    const fit::Fit fit = fit::find_fit(moving, fixed, beside(2 * mm, 6 * degree, 3), fit::FitMode::extended);
+    CHECK(fit.verdict == fit::FitVerdict::fit);
+    CHECK(error_of(block, fit.pose) < 0.1 * mm);
+    // With its face at the plate's lower side nothing holds it there, although that is a millimetre and a half away.
+    fit::FitEnergy energy(moving, fixed);
+    energy.law.gated = false;
+    energy.law.two_sided = false;
+    energy.law.scale = 0.5 * mm;
+    const auto stiffness_at = [&](const Pose& bodies) {
+        const Pose pose = fit::between_centres(moving, fixed, bodies);
+        energy.look(pose);
+        const contact::ContactSum sum = energy(pose, contact::ContactParts::all);
+        return sum.stiffness[14];
+    };
+    CHECK(stiffness_at({Vec3(0.0, 0.0, -1.5 * mm), {1.0, 0.0, 0.0, 0.0}}) < 0.1 * stiffness_at({}));
+}
+
+TEST_CASE("dsp: more faces than there is room for are an error, and hardly any paint fits nothing") {
+    const std::vector<fit::FragmentSurface> surfaces{surface_of(left()), surface_of(right())};
+    fit::MatcherSettings one_face;
+    one_face.most_faces = 1;
+    CHECK_THROWS_AS(fit::FragmentMatcher(surfaces, one_face), Error);
+    Half dotted = left();
+    std::size_t painted = 0;
+    for (contact::SurfacePoint& p : dotted.points)
+        if (p.label == contact::surface_label::fracture && ++painted > 25) p.label = contact::surface_label::none;
+    const std::vector<fit::FragmentSurface> hardly{surface_of(dotted), surface_of(right())};
+    fit::FragmentMatcher matcher(hardly);
+    CHECK(matcher.faces_of(0) == 0);
+    const std::vector<Pose> poses(2);
+    const std::vector<char> stands{0, 1};
+    CHECK(matcher.near(0, poses, stands).verdict == fit::FitVerdict::no_match);
+    CHECK(matcher.search(0, poses, stands).verdict == fit::FitVerdict::no_match);
+}
+
+TEST_CASE("dsp: coarse scans widen the matcher's scales as they widen a fit's") {
+    const Half coarse = bar_half(1.0, relief(), {.voxel = Vec3(1.0 * mm)});
+    const fit::FragmentMatcher matcher(std::vector<fit::FragmentSurface>{surface_of(left()), surface_of(coarse)});
+    const fit::FitSettings alone = fit::settings_for(left().surface(), coarse.surface());
+    CHECK(matcher.settings.fit.finest == Approx(alone.finest));
+    CHECK(matcher.settings.fit.sigma == Approx(alone.sigma));
+    CHECK(matcher.settings.fit.polish == Approx(0.5 * alone.polish));
+}

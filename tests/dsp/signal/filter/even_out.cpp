@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/signal/filter/even_out.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/core/random.hpp"
+#include "dsp/geometry/spline.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <numbers>
+
+using namespace tactus;
+
+namespace {
+
+using Channels = std::vector<std::vector<double>>;
+
+double wave(double t) { return std::sin(2.0 * std::numbers::pi * 17.0 * t); }
+
+}  // namespace
+
+TEST_CASE("a spline goes through its points, straight where they are straight") {
+    const geometry::Spline line({0.0, 1.0, 3.0, 4.0}, {1.0, 3.0, 7.0, 9.0});
+    for (const double x : {-1.0, 0.0, 0.3, 2.0, 4.0, 6.0}) {
+        CHECK(line(x).value == Approx(1.0 + 2.0 * x));
+        CHECK(line(x).slope == Approx(2.0));
+    }
+    CHECK_THROWS_AS(geometry::Spline({0.0, 0.0}, {1.0, 2.0}), Error);
+    CHECK_THROWS_AS(geometry::Spline({0.0}, {1.0}), Error);
+}
+
+TEST_CASE("samples at uneven times give the wave they were taken from") {
+    const Random random{1};
+    std::vector<double> times, values;
+    for (std::size_t i = 0; i < 2000; ++i) times.push_back(0.003 * (static_cast<double>(i) + 0.6 * random.uniform(i)));
+    for (const double t : times) values.push_back(wave(t));
+    const signal::EvenRecord even = signal::even_out(times, Channels{values});
+    CHECK(even.rate == Approx(1.0 / 0.003).epsilon(1e-3));
+    CHECK(even.usable < 0.5 * even.rate);
+    CHECK(even.gaps == 0);
+    REQUIRE(even.pieces.size() == 1);
+    double worst = 0.0;
+    const std::vector<double>& out = even.pieces[0][0];
+    for (std::size_t i = 10; i + 10 < out.size(); ++i)
+        worst = std::max(worst, std::abs(out[i] - wave(times.front() + static_cast<double>(i) / even.rate)));
+    CHECK(worst < 2e-3);
+}
+
+TEST_CASE("a gap parts the record, nothing is made up in it; equal time stamps are spread") {
+    std::vector<double> times, values;
+    for (int i = 0; i < 300; ++i) {
+        if (i >= 100 && i < 150) continue;
+        times.push_back(std::floor(i / 3) * 0.003);  // a clock of 3 ms under samples of 1 ms
+        values.push_back(i);
+    }
+    const signal::EvenRecord even = signal::even_out(times, Channels{values});
+    CHECK(even.rate == Approx(1000.0).epsilon(0.02));
+    CHECK(even.gaps == 1);
+    CHECK(even.lost == Approx(0.05).epsilon(0.1));
+    REQUIRE(even.pieces.size() == 2);
+    for (std::size_t i = 0; i + 1 < even.pieces[1][0].size(); ++i)
+        CHECK(even.pieces[1][0][i + 1] - even.pieces[1][0][i] == Approx(1.0).epsilon(0.1));
+}
+
+TEST_CASE("times that run backwards or stand still are refused") {
+    const std::vector<double> values{1, 2, 3, 4};
+    CHECK_THROWS_WITH(signal::even_out(std::vector{0.0, 1.0, 0.5, 2.0}, Channels{values}), Catch::Contains("backwards"));
+    CHECK_THROWS_WITH(signal::even_out(std::vector{1.0, 1.0, 1.0, 1.0}, Channels{values}), Catch::Contains("stands still"));
+    CHECK_THROWS_AS(signal::even_out(std::vector{0.0}, Channels{values}), Error);
+}

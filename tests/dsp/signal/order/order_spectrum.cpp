@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/signal/order/order_spectrum.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/core/random.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <numbers>
+
+using namespace tactus;
+
+namespace {
+
+constexpr double rate = 8000.0, seconds = 6.0;
+constexpr double amplitudes[] = {0.0, 1.0, 0.6, 0.4, 0.25};
+
+/// Turns after `t` seconds of a run-up from 50 to 233 Hz.
+double turns_at(double t) { return 50.0 * t + 0.5 * (233.0 - 50.0) / seconds * t * t; }
+
+std::vector<double> run_up() {
+    std::vector<double> x(static_cast<std::size_t>(rate * seconds));
+    for (std::size_t i = 0; i < x.size(); ++i)
+        for (int k = 1; k <= 4; ++k)
+            x[i] += amplitudes[k] *
+                    std::sin(2.0 * std::numbers::pi * k * turns_at(static_cast<double>(i) / rate) + 0.4 * k);
+    return x;
+}
+
+}  // namespace
+
+TEST_CASE("orders 1 to 4 of a run-up from 50 to 233 Hz keep their amplitude within 0.1 %") {
+    std::vector<double> tacho(static_cast<std::size_t>(rate * seconds));
+    for (std::size_t i = 0; i < tacho.size(); ++i)
+        tacho[i] = std::sin(2.0 * std::numbers::pi * turns_at(static_cast<double>(i) / rate));
+    const signal::OrderSpectrum spectrum = signal::order_spectrum(run_up(), rate, signal::rotation_from_tacho(tacho, rate, 1.0), 8);
+    REQUIRE(spectrum.orders.size() == 8);
+    for (int k = 1; k <= 4; ++k) {
+        const signal::OrderLevel& order = spectrum.orders[static_cast<std::size_t>(k - 1)];
+        CAPTURE(k, order.amplitude);
+        CHECK(order.amplitude == Approx(amplitudes[k]).epsilon(1e-3));
+        CHECK(order.snr_db > 40.0);
+    }
+    for (int k = 5; k <= 8; ++k) CHECK(spectrum.orders[static_cast<std::size_t>(k - 1)].amplitude < 1e-3);
+}
+
+TEST_CASE("without a tachometer the rate is followed by its ridge, in noise too") {
+    std::vector<double> x = run_up();
+    const Random random{3};
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += 0.2 * random.normal(i);
+    signal::RidgeSettings settings;
+    settings.orders = 4;
+    settings.frame = 0.2;
+    const signal::Ridge ridge = signal::track_ridge(x, rate, settings);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < ridge.time.size(); ++i) {
+        const double truth = 50.0 + (233.0 - 50.0) / seconds * ridge.time[i];
+        worst = std::max(worst, std::abs(ridge.frequency[i] / truth - 1.0));
+    }
+    CHECK(worst < 0.02);
+    CHECK(ridge.prominence_db > 10.0);
+    const signal::OrderSpectrum spectrum = signal::order_spectrum(x, rate, ridge.rotation(seconds), 6);
+    for (int k = 1; k <= 2; ++k)
+        CHECK(spectrum.orders[static_cast<std::size_t>(k - 1)].amplitude == Approx(amplitudes[k]).epsilon(0.1));
+}
+
+TEST_CASE("the ridge of a few clean orders is their rate and not half of it; noise has hardly one") {
+    const auto mean_of = [](const signal::Ridge& ridge) {
+        double sum = 0.0;
+        for (const double frequency : ridge.frequency) sum += frequency / static_cast<double>(ridge.frequency.size());
+        return sum;
+    };
+    for (const int orders : {1, 2, 3, 5}) {
+        std::vector<double> x(24000);
+        for (std::size_t i = 0; i < x.size(); ++i)
+            for (int k = 1; k <= orders; ++k)
+                x[i] += 0.5 / k * std::sin(2.0 * std::numbers::pi * 100.0 * k * static_cast<double>(i) / rate + k * k);
+        INFO(orders << " orders");
+        CHECK(mean_of(signal::track_ridge(x, rate, {})) == Approx(100.0).epsilon(0.005));
+    }
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        std::vector<double> noise(24000);
+        const Random random{seed};
+        for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = random.normal(i);
+        CHECK(signal::track_ridge(noise, rate, {}).prominence_db < 6.0);
+    }
+}
+
+TEST_CASE("a fixed rate needs no tracking") {
+    std::vector<double> x(16000);
+    for (std::size_t i = 0; i < x.size(); ++i)
+        x[i] = 3.0 + 0.5 * std::cos(2.0 * std::numbers::pi * 3.0 * 70.0 * static_cast<double>(i) / rate);
+    const signal::OrderSpectrum spectrum = signal::order_spectrum(x, rate, signal::rotation_at(70.0, 2.0), 5);
+    CHECK(spectrum.orders[2].amplitude == Approx(0.5).epsilon(1e-3));
+    CHECK(spectrum.orders[0].amplitude < 1e-3);
+    CHECK(spectrum.turns == 140.0);
+}
+
+TEST_CASE("what cannot be tracked is refused") {
+    const std::vector<double> flat(1000, 1.0);
+    CHECK_THROWS_WITH(signal::rotation_from_tacho(flat, rate, 1.0), Catch::Contains("at least 4"));
+    CHECK_THROWS_WITH(signal::track_ridge(flat, rate, {}), Catch::Contains("--rate"));
+    CHECK_THROWS_WITH(signal::order_spectrum(flat, rate, signal::rotation_at(20.0, 0.125), 4), Catch::Contains("whole turns"));
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/signal/spectrum/alignment.hpp"
+
+#include "dsp/signal/filter/resample.hpp"
+#include "tests/dsp/vibration/plant.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace tactus;
+
+namespace {
+
+constexpr double rate = 8000.0;
+
+signal::Alignment align(const std::vector<double>& a, const std::vector<double>& b) {
+    return signal::align_takes(a, b, rate, 40.0, 1000.0, 2.0);
+}
+
+std::vector<double> take_in(double strokes, bool cutting, std::uint64_t seed, double start = 0.0) {
+    return signal::resample(test::saw(strokes, cutting, 6.0, 48000.0, seed), 48000.0, rate, start);
+}
+
+std::vector<double> played(const std::vector<float>& drive, double start = 0.0) {
+    return signal::resample(test::Plant{}(drive), 48000.0, rate, start);
+}
+
+}  // namespace
+
+TEST_CASE("a take and what an actuator made of it are found to belong together, whatever the delay") {
+    for (const bool cutting : {false, true})
+        for (const double delay : {0.0, 0.00123, 0.7, -0.4}) {
+            INFO((cutting ? "cutting, " : "idle, ") << delay << " s");
+            const std::vector<float> drive = test::saw(233.0, cutting, 6.0, 48000.0, 1);
+            const std::vector<double> reference = signal::resample(drive, 48000.0, rate, std::max(delay, 0.0));
+            const signal::Alignment found = align(reference, signal::resample(drive, 48000.0, rate, std::max(-delay, 0.0)));
+            CHECK(found.significant);
+            // What repeats itself 233 times a second tells the delay up to whole periods.
+            const double error = found.delay - delay;
+            CHECK((cutting ? error : std::remainder(error, 1.0 / 233.0)) == Approx(0.0).margin(2e-5));
+            CHECK(found.correlation > 0.8);
+            CHECK(align(reference, played(drive, std::max(-delay, 0.0))).significant);
+        }
+}
+
+TEST_CASE("two takes of one saw do not belong together, however alike") {
+    for (const bool cutting : {false, true})
+        for (std::uint64_t seed = 1; seed < 6; ++seed) {
+            INFO((cutting ? "cutting, seed " : "idle, seed ") << seed);
+            const std::vector<double> reference = take_in(233.0, cutting, seed);
+            CHECK_FALSE(align(reference, take_in(233.4, cutting, seed + 50)).significant);
+            CHECK_FALSE(align(reference, take_in(150.0, cutting, seed + 50)).significant);
+        }
+}
+
+TEST_CASE("a reversed polarity is found as a negative correlation") {
+    const std::vector<double> reference = take_in(233.0, true, 1);
+    std::vector<double> reversed = reference;
+    for (double& x : reversed) x = -x;
+    const signal::Alignment found = align(reference, reversed);
+    CHECK(found.significant);
+    CHECK(found.delay == Approx(0.0).margin(1e-6));
+    CHECK(found.correlation == Approx(-1.0).margin(1e-6));
+}
+
+TEST_CASE("noise belongs to no other noise: no alarm in 200 pairs") {
+    int alarms = 0;
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        std::vector<double> a(8000), b(8000);
+        const Random x{2 * seed}, y{2 * seed + 1};
+        for (std::size_t i = 0; i < a.size(); ++i) a[i] = x.normal(i), b[i] = y.normal(i);
+        alarms += align(a, b).significant;
+    }
+    CHECK(alarms == 0);
+}
+
+TEST_CASE("silence and records of a few samples belong to nothing") {
+    CHECK_FALSE(align(std::vector<double>(8000), std::vector<double>(8000)).significant);
+    CHECK_FALSE(align(std::vector<double>(10, 1.0), std::vector<double>(10, 1.0)).significant);
+    CHECK_FALSE(align({}, {}).significant);
+}

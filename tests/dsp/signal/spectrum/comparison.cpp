@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/signal/spectrum/comparison.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/signal/filter/resample.hpp"
+#include "dsp/signal/spectrum/welch.hpp"
+#include "tests/dsp/vibration/plant.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+using namespace tactus;
+using Catch::Matchers::Contains;
+
+namespace {
+
+constexpr double rate = 48000.0;
+
+std::vector<float> at_rate(const std::vector<float>& samples, double to) {
+    const std::vector<double> moved = signal::resample(samples, rate, to);
+    return {moved.begin(), moved.end()};
+}
+
+std::vector<float> louder(std::vector<float> samples, float factor) {
+    for (float& x : samples) x *= factor;
+    return samples;
+}
+
+}  // namespace
+
+// scipy 1.10.1, the pair of tests/dsp/signal/spectrum/similarity.cpp: welch(x, 8000, 'hann', 1024, 512, detrend=False), floor at
+// −40 dB of the largest, 40 to 500 Hz.
+TEST_CASE("distance and cosine of a known pair agree with scipy's spectra") {
+    std::vector<double> r(8192), d(8192);
+    for (std::size_t i = 0; i < r.size(); ++i) {
+        const double t = 2.0 * std::numbers::pi * static_cast<double>(i) / 8000.0;
+        r[i] = std::sin(233.0 * t) + 0.5 * std::sin(466.0 * t + 0.3);
+        d[i] = 0.9 * std::sin(233.0 * t + 0.1) + 0.6 * std::sin(466.0 * t) + 0.05 * std::sin(50.0 * t);
+    }
+    signal::WelchSettings settings;
+    settings.rate = 8000.0;
+    settings.segment = 1024;
+    settings.overlap = 512;
+    settings.detrend = signal::Detrend::none;
+    const signal::Spectrum a = signal::welch<double>(r, settings), b = signal::welch<double>(d, settings);
+    CHECK(signal::log_spectral_distance({a.power, b.power, a.df}, 40.0, 500.0) == Approx(2.396848788987).epsilon(1e-9));
+    CHECK(signal::spectral_cosine({a.power, b.power, a.df}, 40.0, 500.0) == Approx(0.991256496561).epsilon(1e-9));
+}
+
+TEST_CASE("a take is the same as itself at another level, rate and time") {
+    const std::vector<float> take = test::saw(233.0, true, 8.0, rate, 1);
+    const std::vector<float> later = louder(at_rate({take.begin() + 5000, take.end()}, 44100.0), 0.1f);
+    const signal::Comparison same = signal::compare({take, rate}, {later, 44100.0});
+    CHECK(same.alignment.significant);
+    CHECK(same.alignment.delay == Approx(-5000.0 / rate).margin(2e-5));
+    CHECK(same.gain_db == Approx(20.0).margin(0.02));
+    CHECK(same.lsd_db < 0.1);
+    CHECK(same.cosine_1000 > 0.9999);
+    CHECK(same.third_octave_max_db < 0.1);
+    CHECK(same.harmonic_error_db.value() < 0.05);
+    CHECK(same.st_sim.value() > 0.99);
+    CHECK(same.spqi.value() > 0.99);
+    CHECK(same.coherence_mean.value() > 0.999);
+    CHECK(same.spectrogram_similarity > 0.95);
+    CHECK(same.reference_hz == Approx(233.0).margin(0.05));
+    CHECK(same.lines.only_in_output.empty());
+    CHECK(same.lines.only_in_reference.empty());
+    CHECK(same.lines.in_both.size() == 4);
+}
+
+TEST_CASE("two takes of one saw at 233 and 233.4 Hz score as the same saw; another saw does not") {
+    for (const bool cutting : {false, true}) {
+        INFO((cutting ? "cutting" : "idle"));
+        const std::vector<float> take = test::saw(233.0, cutting, 10.0, rate, 1);
+        const std::vector<float> another = test::saw(233.4, cutting, 10.0, rate, 2);
+        const signal::Comparison same = signal::compare({take, rate}, {another, rate});
+        CHECK_FALSE(same.alignment.significant);
+        CHECK_FALSE(same.st_sim.has_value());
+        CHECK_FALSE(same.spqi.has_value());
+        CHECK_FALSE(same.coherence_mean.has_value());
+        CHECK(same.speed_ratio == Approx(233.4 / 233.0).epsilon(1e-4));
+        CHECK(same.gain_db == Approx(0.0).margin(0.2));
+        CHECK(same.lsd_db < 1.0);
+        CHECK(same.cosine_500 > 0.999);
+        CHECK(same.cosine_1000 > 0.995);
+        CHECK(same.third_octave_max_db < 1.5);
+        CHECK(same.harmonic_error_db.value() < 0.5);
+        CHECK(same.lines.only_in_output.empty());
+        CHECK(same.lines.only_in_reference.empty());
+
+        const signal::Comparison other = signal::compare({take, rate}, {test::saw(150.0, cutting, 10.0, rate, 2), rate});
+        CHECK(other.lsd_db > 5.0);
+        CHECK(other.cosine_500 < 0.7);
+        CHECK(other.lines.only_in_output.size() >= 3);
+    }
+}
+
+TEST_CASE("mains hum that only the output has is found, and named by its frequency") {
+    const std::vector<float> take = test::saw(233.0, false, 10.0, rate, 1);
+    std::vector<float> hummed = test::saw(233.0, false, 10.0, rate, 3);
+    test::add_disturbance(hummed, rate, -40.0, -80.0, 5);
+    const signal::Comparison found = signal::compare({take, rate}, {hummed, rate});
+    REQUIRE(found.lines.only_in_output.size() == 1);
+    CHECK(found.lines.only_in_output[0].frequency == Approx(50.0).margin(0.05));
+    CHECK(signal::level_db(found.lines.only_in_output[0]) == Approx(-40.0).margin(0.2));
+    const signal::Comparison turned = signal::compare({hummed, rate}, {take, rate});
+    REQUIRE(turned.lines.only_in_reference.size() == 1);
+    CHECK(turned.lines.only_in_reference[0].frequency == Approx(50.0).margin(0.05));
+}
+
+TEST_CASE("a slow sensor is compared as far as it goes") {
+    const std::vector<float> take = test::saw(150.0, false, 6.0, rate, 1);
+    const signal::Comparison found = signal::compare({take, rate}, {at_rate(take, 1000.0), 1000.0});
+    CHECK(found.highest == Approx(450.0));
+    CHECK(found.third_octaves.back().hz < 450.0);
+    CHECK(found.cosine_1000 > 0.999);
+    CHECK_THROWS_WITH(signal::compare({take, rate}, {at_rate(take, 200.0), 200.0}), Contains("200 Hz is too low"));
+}
+
+TEST_CASE("silence, and takes too short to tell, are refused by name") {
+    const std::vector<float> take = test::saw(233.0, false, 2.0, rate, 1), silent(96000, 0.0f), bit(1000, 0.1f);
+    CHECK_THROWS_WITH(signal::compare({silent, rate}, {take, rate}), Contains("reference is silent"));
+    CHECK_THROWS_WITH(signal::compare({take, rate}, {silent, rate}), Contains("output is silent"));
+    CHECK_THROWS_WITH(signal::compare({bit, rate}, {take, rate}), Contains("reference is shorter"));
+    CHECK_THROWS_WITH(signal::compare({take, rate}, {std::vector<float>(), rate}), Contains("output is shorter"));
+    const std::vector<float> direct(96000, 0.5f);
+    CHECK_THROWS_WITH(signal::compare({take, rate}, {direct, rate}), Contains("output is silent"));
+}

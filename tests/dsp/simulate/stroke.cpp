@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/simulate/stroke.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <limits>
+
+using namespace tactus;
+
+namespace {
+
+constexpr double period = 0.001;
+
+struct Cut {
+    double mean = 0.0, ripple = 0.0, peak = 0.0;  // N, thrust in the last half
+    double penetration = 0.0;                     // m at the end, relative to the first surface
+    simulate::Hand hand;
+    simulate::StrokeOperator intend;
+};
+
+/// Presses against a wall 5 mm below the start for `seconds`. The material gives way at `rate` m/s while it is touched.
+Cut press(double stiffness, double rate, double seconds, simulate::StrokePlan plan = {}) {
+    Cut cut;
+    cut.intend = simulate::StrokeOperator(plan);
+    cut.hand.pose = plan.start;
+    double surface = -5e-3, sum = 0.0, square = 0.0;
+    int count = 0;
+    Wrench force;
+    const int ticks = static_cast<int>(seconds / period);
+    for (int i = 0; i < ticks; ++i) {
+        simulate::advance(cut.hand, cut.intend, force, period);
+        const double inside = surface - cut.hand.pose.position.z;
+        force.force.z = inside > 0.0 ? stiffness * inside : 0.0;
+        if (inside > 0.0) surface -= rate * period;
+        cut.peak = std::max(cut.peak, force.force.z);
+        if (i < ticks / 2) continue;
+        sum += force.force.z;
+        square += force.force.z * force.force.z;
+        ++count;
+    }
+    cut.mean = sum / count;
+    cut.ripple = std::sqrt(std::max(square / count - cut.mean * cut.mean, 0.0));
+    cut.penetration = -5e-3 - cut.hand.pose.position.z;
+    return cut;
+}
+
+}  // namespace
+
+TEST_CASE("thrust in slowly cut bone is 7 N within 10 % whatever the contact stiffness") {
+    for (double stiffness : {500.0, 800.0, 2000.0, 5000.0}) {
+        const Cut cut = press(stiffness, 0.4e-3, 12.0);
+        INFO(stiffness << " N/m: mean " << cut.mean << " ripple " << cut.ripple << " peak " << cut.peak);
+        CHECK(cut.mean == Approx(7.0).epsilon(0.1));
+        CHECK(cut.ripple < 0.35);
+        CHECK(cut.peak < 9.0);
+    }
+}
+
+TEST_CASE("thrust falls in material that gives way fast") {
+    const Cut hard = press(800.0, 0.4e-3, 8.0), soft = press(800.0, 4e-3, 5.0);
+    CHECK(soft.mean < 0.95 * hard.mean);
+    CHECK(soft.penetration > 2.0 * hard.penetration);
+}
+
+TEST_CASE("contact without tremor does not ring") {
+    simulate::StrokePlan plan;
+    plan.tremor.rms = 0.0;
+    for (double stiffness : {500.0, 5000.0}) CHECK(press(stiffness, 0.0, 12.0, plan).ripple < 0.02);
+}
+
+TEST_CASE("the hand follows its strokes in free space within a millimetre") {
+    simulate::StrokePlan plan;
+    plan.feed_at = 1e9;
+    plan.tremor.rms = 0.0;
+    simulate::StrokeOperator intend(plan);
+    simulate::Hand hand;
+    double worst = 0.0, furthest = 0.0;
+    for (int i = 0; i < 6000; ++i) {
+        simulate::Intention last;
+        const auto watch = [&](double h, const Wrench& force, const Pose& pose) noexcept {
+            return last = intend(h, force, pose);
+        };
+        simulate::advance(hand, watch, {}, period);
+        worst = std::max(worst, glm::length(hand.pose.position - last.pose.position));
+        furthest = std::max(furthest, std::abs(hand.pose.position.x));
+    }
+    CHECK(worst < 1e-3);
+    CHECK(furthest == Approx(8e-3).epsilon(0.05));
+}
+
+TEST_CASE("tremor has the stated size and lies between 8 and 12 Hz") {
+    const simulate::Tremor tremor{50e-6, {7}};
+    double square = 0.0, speed_square = 0.0;
+    const int count = 60'000;
+    for (int i = 0; i < count; ++i) {
+        Vec3 shake, speed;
+        tremor.at(i * period, shake, speed);
+        square += shake.y * shake.y;
+        speed_square += speed.y * speed.y;
+    }
+    CHECK(std::sqrt(square / count) == Approx(50e-6).epsilon(0.05));
+    const double mean_hz = std::sqrt(speed_square / square) / (2.0 * std::numbers::pi);
+    CHECK(mean_hz > 9.0);
+    CHECK(mean_hz < 11.0);
+}
+
+TEST_CASE("an operator who is through pulls back to the start and lets go of the trigger") {
+    simulate::StrokePlan plan;
+    plan.depth = 10e-3;
+    const Cut cut = press(800.0, 4e-3, 12.0, plan);
+    CHECK(cut.intend.is_retracting());
+    CHECK_FALSE(cut.intend.trigger());
+    CHECK(glm::length(cut.hand.pose.position) < 0.5e-3);
+}
+
+TEST_CASE("an operator whose time is up pulls back too") {
+    simulate::StrokePlan plan;
+    plan.retract_at = 4.0;
+    const Cut cut = press(800.0, 0.0, 7.0, plan);
+    CHECK(glm::length(cut.hand.pose.position) < 0.5e-3);
+}
+
+TEST_CASE("the trigger follows its times") {
+    simulate::StrokePlan plan;
+    plan.trigger_on = 0.2;
+    plan.trigger_off = 0.4;
+    simulate::StrokeOperator intend(plan);
+    simulate::Hand hand;
+    const auto at = [&](double until) {
+        while (intend.time() < until - 1e-9) simulate::advance(hand, intend, {}, period);
+        return intend.trigger();
+    };
+    CHECK_FALSE(at(0.1));
+    CHECK(at(0.3));
+    CHECK_FALSE(at(0.5));
+}
+
+TEST_CASE("two operators with one seed are equal to the last bit, with another seed they are not") {
+    simulate::StrokePlan plan;
+    plan.tremor.random.seed = 3;
+    const Cut a = press(800.0, 1e-3, 2.0, plan), b = press(800.0, 1e-3, 2.0, plan);
+    plan.tremor.random.seed = 4;
+    const Cut c = press(800.0, 1e-3, 2.0, plan);
+    CHECK(a.hand.pose.position == b.hand.pose.position);
+    CHECK(a.hand.twist.linear == b.hand.twist.linear);
+    CHECK(a.hand.pose.position != c.hand.pose.position);
+}

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the engine makes of a card, with one that a test plays.
+#include "engine/io/sound_card.hpp"
+#include "devices/audio/stream_state.hpp"
+#include "engine/run/run_clock.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <numeric>
+#include <thread>
+#include <vector>
+
+using namespace tactus;
+
+namespace {
+
+constexpr Flicks period = flicks_per_second / 48000;
+
+class PlayedSink : public AudioSink {
+public:
+    explicit PlayedSink(std::size_t frames = 4096) : state(1, frames) {}
+    const std::string& name() const override { return name_; }
+    void prepare(double, int) override {}
+    std::size_t write(const float* samples, std::size_t frames) noexcept override {
+        return state.write(samples, frames);
+    }
+    std::size_t writable() const noexcept override { return state.writable(); }
+    AudioStatistics statistics() const noexcept override { return state.statistics(); }
+    AudioProgress progress() const noexcept override { return state.progress(); }
+    void leave_out(std::int64_t frames) noexcept override { state.leave_out(frames); }
+    void close() override {}
+
+    std::vector<float> ask(std::size_t frames, std::int64_t now_ns) {
+        std::vector<float> out(frames, -1.0F);
+        state.feed(out.data(), frames, now_ns);
+        return out;
+    }
+
+    audio::StreamState state;
+
+private:
+    std::string name_ = "played";
+};
+
+struct Bench {
+    explicit Bench(std::size_t frames = 4096) {
+        auto owned = std::make_unique<PlayedSink>(frames);
+        sink = owned.get();
+        card = std::make_unique<io::SoundCard>(std::move(owned), period, 0.005, 0);
+    }
+    void write(std::int64_t first, std::size_t count) const {
+        std::vector<float> values(count);
+        std::iota(values.begin(), values.end(), static_cast<float>(first));
+        card->write(first, values.data(), count, sizeof(float));
+    }
+    PlayedSink* sink;
+    std::unique_ptr<io::SoundCard> card;
+};
+
+}  // namespace
+
+TEST_CASE("activations that never ran are silence of the same length on the card") {
+    const Bench bench;
+    bench.write(100, 3);
+    bench.write(105, 2);
+    CHECK(bench.sink->ask(7, 1) == std::vector<float>{100, 101, 102, 0, 0, 105, 106});
+}
+
+TEST_CASE("what finds no room is counted, and the clock still knows which frame plays") {
+    const Bench bench(64);
+    bench.write(0, 1000);
+    CHECK(bench.sink->statistics().frames_dropped == 936);
+    control::TrimmedClock clock{0, 0, 1.0};
+    bench.sink->ask(64, 1'000'000);
+    bench.card->tend(1'000'000, 0, &clock);
+    // Frame 1000 comes next, at 20.8 ms of a clock that has come to 1 ms: it is much too late.
+    CHECK(bench.card->follower().excess_s() == Approx(0.001 - (1000 + 240 + 64) / 48000.0).margin(1e-6));
+    CHECK(clock.slope == Approx(1.0 - control::TrimmedClock::furthest));
+}
+
+TEST_CASE("a card that asks for nothing is lost after half a second, once, and found when it asks again") {
+    const Bench bench;
+    control::TrimmedClock clock{0, 0, 1.0};
+    const std::int64_t ms = 1'000'000;
+    bench.write(0, 480);
+    bench.sink->ask(64, 10 * ms);
+    CHECK_FALSE(bench.card->tend(11 * ms, 0, &clock));
+    CHECK_FALSE(bench.card->tend(509 * ms, 0, &clock));
+    CHECK(bench.card->tend(512 * ms, 77, &clock));
+    CHECK(bench.card->is_lost());
+    CHECK(bench.card->lost_at() == 77);
+    CHECK(clock.slope == 1.0);
+    CHECK_FALSE(bench.card->tend(5000 * ms, 0, &clock));
+    bench.sink->ask(64, 5001 * ms);
+    CHECK_FALSE(bench.card->tend(5002 * ms, 0, &clock));
+    CHECK_FALSE(bench.card->is_lost());
+    CHECK(bench.card->losses() == 1);
+}
+
+TEST_CASE("a card that never asked is lost as well") {
+    const Bench bench;
+    control::TrimmedClock clock{0, 0, 1.0};
+    CHECK_FALSE(bench.card->tend(1, 0, &clock));
+    CHECK(bench.card->tend(600'000'000, 0, &clock));
+}
+
+TEST_CASE("readers of the run's clock see whole lines only") {
+    run::RunClock clock;
+    std::atomic<bool> end{false};
+    control::TrimmedClock none{7, 8, 9.0};
+    CHECK_FALSE(clock.try_get(none));
+    CHECK(none.logical == 7);
+    clock.set({0, 0, 1.0});
+    std::thread trimmer([&] {
+        for (std::int64_t i = 1; i <= 200'000; ++i) clock.set({i, 3 * i, 1.0 + static_cast<double>(i)});
+        end = true;
+    });
+    control::TrimmedClock line{0, 0, 1.0};
+    std::int64_t torn = 0;
+    while (!end) {
+        line = clock.get(line);
+        torn += line.steady_ns != 3 * line.logical || line.slope != 1.0 + static_cast<double>(line.logical);
+        // Who has read nothing yet is told so.
+        control::TrimmedClock first{-1, -3, 0.0};
+        const bool read = clock.try_get(first);
+        torn += (first.logical >= 0) != read || first.steady_ns != 3 * first.logical;
+    }
+    trimmer.join();
+    CHECK(torn == 0);
+}

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/analyse/stiffness.hpp"
+
+#include "tests/graph/compile/compile_nodes.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace tactus;
+
+namespace {
+
+std::vector<analyse::ForceLoop> loops_of(const std::string& text, double damping = 2.0) {
+    const Compiled c = compiled(text);
+    INFO(c.said);
+    REQUIRE(c.plan);
+    return analyse::force_loops(*c.plan, [damping](const std::string&) { return damping; });
+}
+
+const std::string hand = a_node("in", "device_input") + a_node("out", "device_output");
+
+}  // namespace
+
+TEST_CASE("the largest stiffness is damping over half a period and the delay") {
+    // b / (T (1/2 + D)) for b = 2 N s/m at 1 kHz: 4, 1.33 and 0.8 N/mm for no, one and two periods of delay.
+    CHECK(analyse::stiffness_limit(2.0, 1e-3, 0.0) == Approx(4000.0));
+    CHECK(analyse::stiffness_limit(2.0, 1e-3, 1e-3) == Approx(1333.333));
+    CHECK(analyse::stiffness_limit(2.0, 1e-3, 2e-3) == Approx(800.0));
+}
+
+//  in ──► wall ──► out     all at 1 kHz
+TEST_CASE("a spring in the tick of the hand is compared with the limit of no delay") {
+    const auto loops = loops_of("wires = [\"in.out -> wall.in\", \"wall.out -> out.in\"]\n" + hand +
+                                a_node("wall", "stiff", "1 kHz", "stiffness = \"3.9 N/mm\"\n"));
+    REQUIRE(loops.size() == 1);
+    CHECK(loops[0].limit == Approx(4000.0));
+    REQUIRE(loops[0].declared);
+    CHECK(loops[0].declared->param == "wall.stiffness");
+    CHECK(loops[0].declared->newton_per_metre == Approx(3900.0));
+    CHECK(loops[0].ok());
+}
+
+//  in ──► wall ─1─► out
+TEST_CASE("one tick of delay costs a factor of three") {
+    const auto loops = loops_of("wires = [\"in.out -> wall.in\", \"wall.out -> out.in as delay 1\"]\n" + hand +
+                                a_node("wall", "stiff", "1 kHz", "stiffness = \"3.9 N/mm\"\n"));
+    REQUIRE(loops.size() == 1);
+    CHECK(loops[0].latency_s == Approx(1e-3));
+    CHECK(loops[0].limit == Approx(4000.0 / 3.0));
+    CHECK_FALSE(loops[0].ok());
+}
+
+//  in ──► soft ─────────► x.a ──► out
+//   └───► wall (100 Hz) ► x.b
+TEST_CASE("of several springs the one nearest to its limit counts, with its own way's latency") {
+    const auto loops = loops_of(
+        "wires = [\"in.out -> soft.in\", \"in.out -> wall.in\", \"soft.out -> x.a\", \"wall.out -> x.b\", "
+        "\"x.out -> out.in\"]\n" +
+        hand + a_node("soft", "stiff", "1 kHz", "stiffness = \"0.5 N/mm\"\n") +
+        a_node("wall", "stiff", "100 Hz", "stiffness = \"0.2 N/mm\"\n") + a_node("x", "sum"));
+    REQUIRE(loops.size() == 1);
+    CHECK(loops[0].declared->param == "wall.stiffness");
+    CHECK(loops[0].latency_s == Approx(20e-3));  // 1 ms down, 10 ms of the slow group and 9 ms until it is read
+    CHECK(loops[0].limit == Approx(2.0 / (0.5e-3 + 20e-3)));
+    CHECK_FALSE(loops[0].ok());
+}
+
+TEST_CASE("a driven stiffness counts with the end of its range") {
+    const auto loops =
+        loops_of("wires = [\"in.out -> wall.in\", \"wall.out -> out.in\", \"s.value -> wall.stiffness\"]\n" + hand +
+                 a_node("wall", "stiff") + a_node("s", "source"));
+    REQUIRE(loops.size() == 1);
+    CHECK(loops[0].declared->newton_per_metre == Approx(20e3));
+    CHECK_FALSE(loops[0].ok());
+}
+
+TEST_CASE("a way without a spring has a limit and nothing to compare; an unknown damping promises nothing") {
+    const auto plain = loops_of("wires = [\"in.out -> out.in\"]\n" + hand);
+    REQUIRE(plain.size() == 1);
+    CHECK_FALSE(plain[0].declared);
+    CHECK(plain[0].limit == Approx(4000.0));
+    CHECK(plain[0].ok());
+    CHECK(loops_of("wires = [\"in.out -> out.in\"]\n" + hand, 0.0)[0].limit == 0.0);
+}

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/rig_matrix.hpp"
+
+#include "assets/file/whole_file.hpp"
+#include "dsp/core/error.hpp"
+#include "tests/assets/bone/temporary_folder.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace tactus;
+
+namespace {
+
+table::RigMatrix read(const std::string& text) {
+    const TemporaryFolder folder;
+    file::write_whole_file(folder / "m.toml", text);
+    return table::load_rig_matrix(folder / "m.toml");
+}
+
+}  // namespace
+
+TEST_CASE("a matrix says what is tried, in units; the rest is the standard") {
+    const table::RigMatrix m = read(R"(motors = ["a"]
+rates = ["0.5 Hz", "2 Hz"]
+amplitudes = ["1 cm"]
+cycles = 7
+[[objects]]
+stiffness = "2 N/mm"
+damping = "0.03 N s/mm"
+[[objects]]
+kind = "wall"
+[crossover]
+rates = ["3 Hz", "1 Hz"]
+[assumed.a]
+lag = ["1 ms", "2 ms"]
+)");
+    CHECK(m.motors == std::vector<std::string>{"a"});
+    CHECK(m.rates == std::vector<double>{0.5, 2.0});
+    CHECK(m.amplitudes == std::vector<double>{0.01});
+    CHECK(m.cycles == 7);
+    REQUIRE(m.objects.size() == 2);
+    CHECK(m.objects[0].stiffness == Approx(2000.0));
+    CHECK(m.objects[0].damping == Approx(30.0));
+    CHECK(m.objects[1].kind == control::ObjectKind::wall);
+    CHECK(m.crossover_rates == std::vector<double>{1.0, 3.0});
+    REQUIRE(m.assumptions.size() == 1);
+    CHECK(m.assumptions[0].high == "2 ms");
+    CHECK(read("").objects.size() == table::RigMatrix{}.objects.size());
+}
+
+TEST_CASE("a matrix that cannot be tried says where") {
+    CHECK_THROWS_WITH(read("rats = []"), Catch::Contains("did you mean 'rates'"));
+    CHECK_THROWS_WITH(read("rates = [1]"), Catch::Contains("m.toml:1:10"));
+    CHECK_THROWS_WITH(read("rates = [\"1 mm\"]"), Catch::Contains("wrong kind of unit"));
+    CHECK_THROWS_WITH(read("rates = [\"0 Hz\"]"), Catch::Contains("above 0"));
+    CHECK_THROWS_WITH(read("rates = []"), Catch::Contains("1 to 100"));
+    CHECK_THROWS_WITH(read("[[objects]]\nname = \"nothing\""), Catch::Contains("needs a stiffness or a damping"));
+    CHECK_THROWS_WITH(read("cycles = 1"), Catch::Contains("from 2"));
+    CHECK_THROWS_WITH(read("[assumed.a]\nlag = [\"1 ms\"]"), Catch::Contains("two ends"));
+    CHECK_THROWS_WITH(read("rates = "), Catch::Contains("not valid TOML"));
+}
