@@ -53,7 +53,7 @@ void leave_socket(const fs::path& path) {
     ::close(socket);
 }
 
-const std::string patch_text = "[nodes.half]\ntype = \"constant\"\nrate = \"1 kHz\"\nnumber = 0.5\n";
+const std::string patch = "[nodes.half]\ntype = \"constant\"\nrate = \"1 kHz\"\nnumber = 0.5\n";
 
 }  // namespace
 

@@ -15,37 +15,37 @@ const std::string sweep_name = "measure_sweep", record_name = "measure_record";
 
 }  // namespace
 
-MeasuredPatch measured_patch(const Patch& patch, const MeasuredPath& path, compile::Catalogue catalogue) {
-    const SignalEnd in = find_signal(patch, path.in, "--in", catalogue),
-                    out = find_signal(patch, path.out, "--out", catalogue);
+MeasuredPatch measured_patch(const patch::Patch& patch, const MeasuredPath& path, compile::Catalogue catalogue) {
+    const patch::SignalEnd in = patch::find_signal(patch, path.in, "--in", catalogue),
+                    out = patch::find_signal(patch, path.out, "--out", catalogue);
     const SourceLocation where{fmt::format("--in {} --out {}", path.in, path.out), 0, 0};
     if (out.is_input) throw Error(where, fmt::format("'{}' is an input; --out takes what a node puts out", path.out));
     if (in.node->group != out.node->group ||
-        (in.node->group.empty() && parse_rate(in.node->rate) != parse_rate(out.node->rate)))
+        (in.node->group.empty() && patch::parse_rate(in.node->rate) != patch::parse_rate(out.node->rate)))
         throw Error(where, "both ends must run at one rate, in one group");
 
     MeasuredPatch made{patch, in.node->rate, in.unit, out.unit, record_name + ".wav"};
-    Patch& measured = made.patch;
+    patch::Patch& measured = made.patch;
     if (!in.node->group.empty()) {
-        const auto group = std::ranges::find(patch.groups, in.node->group, &PatchGroup::name);
+        const auto group = std::ranges::find(patch.groups, in.node->group, &patch::PatchGroup::name);
         if (group != patch.groups.end()) made.rate = group->rate;
     }
-    PatchNode sweep{sweep_name, "sweep", in.node->rate, in.node->group, where, where, where, path.sweep};
-    PatchNode record{record_name, "record", in.node->rate, in.node->group, where, where, where, {}};
+    patch::PatchNode sweep{sweep_name, "sweep", in.node->rate, in.node->group, where, where, where, path.sweep};
+    patch::PatchNode record{record_name, "record", in.node->rate, in.node->group, where, where, where, {}};
     if (in.is_input) {
         std::erase_if(measured.wires,
-                      [&](const PatchWire& w) { return w.to_node == in.node->name && w.to_port == in.port; });
-        measured.wires.push_back({sweep_name, "signal", in.node->name, in.port, WireMode::hold, false, 0, where});
+                      [&](const patch::PatchWire& w) { return w.to_node == in.node->name && w.to_port == in.port; });
+        measured.wires.push_back({sweep_name, "signal", in.node->name, in.port, patch::WireMode::hold, false, 0, where});
     } else {
-        for (PatchWire& wire : measured.wires)
+        for (patch::PatchWire& wire : measured.wires)
             if (wire.from_node == in.node->name && wire.from_port == in.port)
                 wire.from_node = sweep_name, wire.from_port = "signal";
     }
-    measured.wires.push_back({out.node->name, out.port, record_name, "in", WireMode::hold, false, 0, where});
+    measured.wires.push_back({out.node->name, out.port, record_name, "in", patch::WireMode::hold, false, 0, where});
     measured.nodes.push_back(std::move(sweep));
     measured.nodes.push_back(std::move(record));
-    keep_what_leads_to({record_name}, measured);
-    if (std::ranges::find(measured.nodes, sweep_name, &PatchNode::name) == measured.nodes.end())
+    patch::keep_what_leads_to({record_name}, measured);
+    if (std::ranges::find(measured.nodes, sweep_name, &patch::PatchNode::name) == measured.nodes.end())
         throw Error(where, fmt::format("no wires lead from '{}' to '{}'", path.in, path.out));
     return made;
 }

@@ -17,7 +17,7 @@ struct MeasuredPath {
 
 /// What became of the patch.
 struct MeasuredPatch {
-    Patch patch;
+    patch::Patch patch;
     std::string rate;            ///< of both ends, as the patch writes it
     std::string in_unit, out_unit;
     std::string file;            ///< the recording's name in the folder of the run
@@ -26,6 +26,6 @@ struct MeasuredPatch {
 /// Replaces the signal at `path.in` by a sweep and records `path.out`; of the patch only the nodes remain that lead to
 /// it. Throws Error when a port does not exist or is no signal, the ends run at different rates, or no wires lead from
 /// one to the other.
-MeasuredPatch measured_patch(const Patch& patch, const MeasuredPath& path, compile::Catalogue catalogue);
+MeasuredPatch measured_patch(const patch::Patch& patch, const MeasuredPath& path, compile::Catalogue catalogue);
 
 }  // namespace tactus::study

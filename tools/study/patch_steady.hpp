@@ -18,7 +18,7 @@ struct SawPath {
 
 /// Finds what the names leave open: the only node of type 'saw'; what is recorded as handle.wav, or else what the only
 /// actuator does. Throws Error naming the options --saw and --out when that is not clear.
-SawPath find_saw_path(const Patch& patch, const std::string& saw, const std::string& out, compile::Catalogue catalogue);
+SawPath find_saw_path(const patch::Patch& patch, const std::string& saw, const std::string& out, compile::Catalogue catalogue);
 
 /// How the saw runs.
 struct SteadySaw {
@@ -30,12 +30,12 @@ struct SteadySaw {
 
 /// What became of the patch; files are in the folder of the run.
 struct SteadyPatch {
-    Patch patch;
+    patch::Patch patch;
     std::string out_file, drive_file;  ///< the latter empty without a drive
 };
 
 /// The saw's load, trigger and rate no longer come from wires; of the patch only the nodes remain that lead to
 /// `path.out`. Throws Error when no wires lead from the saw to it.
-SteadyPatch steady_patch(const Patch& patch, const SawPath& path, const SteadySaw& saw, compile::Catalogue catalogue);
+SteadyPatch steady_patch(const patch::Patch& patch, const SawPath& path, const SteadySaw& saw, compile::Catalogue catalogue);
 
 }  // namespace tactus::study

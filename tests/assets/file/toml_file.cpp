@@ -25,7 +25,7 @@ TEST_CASE("a key of a hundred thousand parts is refused by every reader of TOML,
     std::ofstream(file) << deep;
     const auto refusal = Contains("at most 32 dots");
     CHECK_THROWS_WITH(display::load_rig_file(file), refusal);
-    CHECK_THROWS_WITH(table::load_rig_matrix(file), refusal);
+    CHECK_THROWS_WITH(study::load_rig_matrix(file), refusal);
     CHECK_THROWS_WITH(sound::load_recording_set(file), refusal);
     CHECK_THROWS_WITH(sound::load_equaliser(file), refusal);
     CHECK_THROWS_WITH(table::load_thresholds(file), refusal);

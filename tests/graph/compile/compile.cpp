@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compile_nodes.hpp"
+#include "tests/support/compile_nodes.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/compile/layout.hpp"
 
-#include "compile_nodes.hpp"
+#include "tests/support/compile_nodes.hpp"
 
 #include <catch2/catch.hpp>
 

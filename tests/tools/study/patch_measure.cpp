@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/patch_measure.hpp"
 
-#include "tests/graph/compile/compile_nodes.hpp"
+#include "tests/support/compile_nodes.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -23,8 +23,8 @@ patch::Patch chain() {
         a_node("d", "gain", "4 kHz") + a_node("number", "source", "8 kHz"));
 }
 
-patch::MeasuredPatch measured(const std::string& in, const std::string& out) {
-    return patch::measured_patch(chain(), {in, out, {{"first", "20 Hz", {}}}}, test_catalogue());
+study::MeasuredPatch measured(const std::string& in, const std::string& out) {
+    return study::measured_patch(chain(), {in, out, {{"first", "20 Hz", {}}}}, test_catalogue());
 }
 
 std::string names(const patch::Patch& patch) {
@@ -43,7 +43,7 @@ std::string wires(const patch::Patch& patch) {
 }  // namespace
 
 TEST_CASE("a sweep feeds an input in the place of its wire; only what leads to the recorder remains") {
-    const patch::MeasuredPatch made = measured("b.in", "c.out");
+    const study::MeasuredPatch made = measured("b.in", "c.out");
     CHECK(names(made.patch) == "b c measure_sweep measure_record");
     CHECK(wires(made.patch) == "b.out c.in, measure_sweep.signal b.in, c.out measure_record.in");
     CHECK(made.rate == "8 kHz");
@@ -56,7 +56,7 @@ TEST_CASE("a sweep feeds an input in the place of its wire; only what leads to t
 }
 
 TEST_CASE("a sweep replaces an output for all that it feeds") {
-    const patch::MeasuredPatch made = measured("a.out", "c.out");
+    const study::MeasuredPatch made = measured("a.out", "c.out");
     CHECK(names(made.patch) == "b c measure_sweep measure_record");
     CHECK(wires(made.patch) == "measure_sweep.signal b.in, b.out c.in, c.out measure_record.in");
 }

@@ -11,16 +11,16 @@ using namespace tactus;
 
 namespace {
 
-table::RigMatrix read(const std::string& text) {
+study::RigMatrix read(const std::string& text) {
     const TemporaryFolder folder;
     file::write_whole_file(folder / "m.toml", text);
-    return table::load_rig_matrix(folder / "m.toml");
+    return study::load_rig_matrix(folder / "m.toml");
 }
 
 }  // namespace
 
 TEST_CASE("a matrix says what is tried, in units; the rest is the standard") {
-    const table::RigMatrix m = read(R"(motors = ["a"]
+    const study::RigMatrix m = read(R"(motors = ["a"]
 rates = ["0.5 Hz", "2 Hz"]
 amplitudes = ["1 cm"]
 cycles = 7
@@ -45,7 +45,7 @@ lag = ["1 ms", "2 ms"]
     CHECK(m.crossover_rates == std::vector<double>{1.0, 3.0});
     REQUIRE(m.assumptions.size() == 1);
     CHECK(m.assumptions[0].high == "2 ms");
-    CHECK(read("").objects.size() == table::RigMatrix{}.objects.size());
+    CHECK(read("").objects.size() == study::RigMatrix{}.objects.size());
 }
 
 TEST_CASE("a matrix that cannot be tried says where") {

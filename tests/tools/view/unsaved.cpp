@@ -151,8 +151,8 @@ TEST_CASE("a patch of the library is never written: it is saved under another na
     const Variable state("XDG_STATE_HOME", (folder.path / "state").string());
     const std::string before = slurp(library / "patches/voice.toml");
     RunChoice choice = choice_of(library / "patches/voice.toml");
-    CHECK(view::session::is_of_library(library / "patches/new.toml"));
-    CHECK_FALSE(view::session::is_of_library(folder.path / "library-2/voice.toml"));
+    CHECK(session::is_of_library(library / "patches/new.toml"));
+    CHECK_FALSE(session::is_of_library(folder.path / "library-2/voice.toml"));
 
     leave_edit(choice, "330 Hz");
     REQUIRE(find_unsaved(choice.patch).size() == 1);

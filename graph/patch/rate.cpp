@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace tactus {
+namespace tactus::patch {
 
 namespace {
 
@@ -46,4 +46,4 @@ Flicks parse_rate(std::string_view text) {
     return std::llround(whole_second / hertz);
 }
 
-}  // namespace tactus
+}  // namespace tactus::patch
