@@ -48,9 +48,9 @@ std::string gzipped(const std::string& bytes) {
     return out;
 }
 
-std::string samples_of(const Grid& grid, SampleType type) {
+std::string samples_of(const Grid& grid, WrittenType type) {
     std::string bytes;
-    if (type == SampleType::float32) {
+    if (type == WrittenType::float32) {
         bytes.assign(reinterpret_cast<const char*>(grid.values.data()), grid.values.size() * sizeof(float));
         return bytes;
     }
@@ -62,19 +62,19 @@ std::string samples_of(const Grid& grid, SampleType type) {
     return bytes;
 }
 
-std::string nrrd_of(const Grid& grid, SampleType type) {
+std::string nrrd_of(const Grid& grid, WrittenType type) {
     const Vec3 h = grid.spacing * 1e3, o = grid.origin * 1e3;
     return fmt::format(
                "NRRD0005\ntype: {}\ndimension: 3\nspace: left-posterior-superior\nsizes: {} {} {}\n"
                "space directions: ({},0,0) (0,{},0) (0,0,{})\nkinds: domain domain domain\nendian: little\n"
                "encoding: gzip\nspace origin: ({},{},{})\n\n",
-               type == SampleType::int16 ? "short" : "float", grid.size[0], grid.size[1], grid.size[2], h.x, h.y, h.z,
+               type == WrittenType::int16 ? "short" : "float", grid.size[0], grid.size[1], grid.size[2], h.x, h.y, h.z,
                o.x, o.y, o.z) +
            gzipped(samples_of(grid, type));
 }
 
 // The header of NIfTI-1: 348 bytes at fixed places, then 4 that say no extension follows.
-std::string nifti_of(const Grid& grid, SampleType type) {
+std::string nifti_of(const Grid& grid, WrittenType type) {
     std::string header(352, '\0');
     const auto put = [&header](std::size_t at, auto value) { std::memcpy(header.data() + at, &value, sizeof value); };
     const Vec3 h = grid.spacing * 1e3, o = grid.origin * 1e3;
@@ -87,8 +87,8 @@ std::string nifti_of(const Grid& grid, SampleType type) {
         put(80 + 4 * n, static_cast<float>(h[static_cast<int>(n)]));
     }
     for (std::size_t n = 3; n < 7; ++n) put(42 + 2 * n, std::int16_t{1});
-    put(70, static_cast<std::int16_t>(type == SampleType::int16 ? 4 : 16));
-    put(72, static_cast<std::int16_t>(type == SampleType::int16 ? 16 : 32));
+    put(70, static_cast<std::int16_t>(type == WrittenType::int16 ? 4 : 16));
+    put(72, static_cast<std::int16_t>(type == WrittenType::int16 ? 16 : 32));
     put(76, 1.0f);     // qfac: right-handed
     put(108, 352.0f);  // where samples begin
     put(112, 1.0f);    // slope
@@ -108,7 +108,7 @@ std::string nifti_of(const Grid& grid, SampleType type) {
 
 }  // namespace
 
-void write_volume(const Grid& grid, SampleType type, const std::filesystem::path& path) {
+void write_volume(const Grid& grid, WrittenType type, const std::filesystem::path& path) {
     const std::string name = path.filename().string();
     if (name.ends_with(".nrrd")) file::write_whole_file(path, nrrd_of(grid, type));
     else if (name.ends_with(".nii.gz")) file::write_whole_file(path, gzipped(nifti_of(grid, type)));

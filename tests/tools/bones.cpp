@@ -78,8 +78,8 @@ double ball_mm3(double radius) { return 4.0 / 3.0 * std::numbers::pi * radius * 
 
 TEST_CASE("info answers the same questions for a CT and a label map and a mesh and bones") {
     const Folder folder;
-    volume::write_volume(two_balls(false), volume::SampleType::int16, folder / "ct.nrrd");
-    volume::write_volume(two_balls(true), volume::SampleType::int16, folder / "labels.nrrd");
+    volume::write_volume(two_balls(false), volume::WrittenType::int16, folder / "ct.nrrd");
+    volume::write_volume(two_balls(true), volume::WrittenType::int16, folder / "labels.nrrd");
     REQUIRE(folder
                 .tactus("import " + folder / "labels.nrrd" + " --label all --ct " + folder / "ct.nrrd" + " -o " +
                         folder / "two.vdb")
@@ -119,7 +119,7 @@ TEST_CASE("info answers the same questions for a CT and a label map and a mesh a
 
 TEST_CASE("a label map goes in and comes out: import, load by name, export, import again") {
     const Folder folder;
-    volume::write_volume(two_balls(true), volume::SampleType::int16, folder / "labels.nrrd");
+    volume::write_volume(two_balls(true), volume::WrittenType::int16, folder / "labels.nrrd");
     const json made = folder.answer("import " + folder / "labels.nrrd --label all --json -o " + folder / "two.vdb");
     REQUIRE(made["bones"].size() == 2);
     CHECK(made["bones"][1]["label"] == 2);

@@ -99,7 +99,7 @@ TEST_CASE("an exported NRRD read by teem has the bone's place, and its threshold
     const TemporaryFolder folder;
     const bone::Bone bone = cut_ball();
     const volume::Grid hu = bone::volume_of_bones({&bone, 1}, bone::BoneQuantity::hu);
-    volume::write_volume(hu, volume::SampleType::int16, folder / "ball.nrrd");
+    volume::write_volume(hu, volume::WrittenType::int16, folder / "ball.nrrd");
     Nrrd* nrrd = nrrdNew();
     REQUIRE(nrrdLoad(nrrd, (folder / "ball.nrrd").c_str(), nullptr) == 0);
     CHECK(nrrd->type == nrrdTypeShort);
@@ -127,8 +127,8 @@ TEST_CASE("an exported NIfTI holds the same samples with the axes of RAS in its 
     const TemporaryFolder folder;
     const bone::Bone bone = cut_ball();
     const volume::Grid distance = bone::volume_of_bones({&bone, 1}, bone::BoneQuantity::distance);
-    volume::write_volume(distance, volume::SampleType::float32, folder / "ball.nii.gz");
-    volume::write_volume(distance, volume::SampleType::float32, folder / "ball.nii");
+    volume::write_volume(distance, volume::WrittenType::float32, folder / "ball.nii.gz");
+    volume::write_volume(distance, volume::WrittenType::float32, folder / "ball.nii");
     const std::string plain = file::read_whole_file(folder / "ball.nii");
     // zlib itself is the independent reader of the compression.
     std::string bytes(plain.size() + 1, '\0');
@@ -169,7 +169,7 @@ TEST_CASE("an exported NIfTI read by nibabel has the samples and their places") 
     const TemporaryFolder folder;
     const bone::Bone bone = cut_ball();
     const volume::Grid distance = bone::volume_of_bones({&bone, 1}, bone::BoneQuantity::distance);
-    volume::write_volume(distance, volume::SampleType::float32, folder / "ball.nii.gz");
+    volume::write_volume(distance, volume::WrittenType::float32, folder / "ball.nii.gz");
     const std::string command =
         "/usr/bin/python3 -c 'import nibabel; v = nibabel.load(\"" + (folder / "ball.nii.gz").string() +
         "\"); d = v.get_fdata(); p = v.affine @ [3, 5, 7, 1]; print(*d.shape, *p[:3], d[3, 5, 7], d.sum())' >" +
@@ -202,5 +202,5 @@ TEST_CASE("bones on one lattice become one volume, others are asked for one by o
     CHECK_THROWS_WITH(bone::volume_of_bones(bones, bone::BoneQuantity::hu), Contains("--bone"));
     CHECK_THROWS_WITH(bone::volume_of_bones({}, bone::BoneQuantity::hu), Contains("no bone"));
     const TemporaryFolder folder;
-    CHECK_THROWS_WITH(volume::write_volume(both, volume::SampleType::int16, folder / "ball.mha"), Contains(".nrrd"));
+    CHECK_THROWS_WITH(volume::write_volume(both, volume::WrittenType::int16, folder / "ball.mha"), Contains(".nrrd"));
 }

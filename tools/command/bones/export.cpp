@@ -32,7 +32,9 @@ std::vector<bone::Bone> chosen_bones(const ExportChoice& choice) {
 }
 
 bone::BoneQuantity quantity_of(const std::string& text) {
-    return text == "density" ? bone::BoneQuantity::density : text == "distance" ? bone::BoneQuantity::distance : bone::BoneQuantity::hu;
+    return text == "density"    ? bone::BoneQuantity::density
+           : text == "distance" ? bone::BoneQuantity::distance
+                                : bone::BoneQuantity::hu;
 }
 
 nlohmann::ordered_json export_mesh(const std::vector<bone::Bone>& bones, const std::filesystem::path& out) {
@@ -51,7 +53,9 @@ nlohmann::ordered_json export_mesh(const std::vector<bone::Bone>& bones, const s
 nlohmann::ordered_json export_volume(const std::vector<bone::Bone>& bones, const ExportChoice& choice) {
     const bone::BoneQuantity quantity = quantity_of(choice.quantity);
     const volume::Grid volume = bone::volume_of_bones(bones, quantity);
-    volume::write_volume(volume, quantity == bone::BoneQuantity::hu ? volume::SampleType::int16 : volume::SampleType::float32, choice.out);
+    volume::write_volume(volume,
+                         quantity == bone::BoneQuantity::hu ? volume::WrittenType::int16 : volume::WrittenType::float32,
+                         choice.out);
     const Vec3 h = volume.spacing * 1e3;
     return {{"quantity", choice.quantity}, {"size", volume.size}, {"spacing_mm", {h.x, h.y, h.z}}};
 }
