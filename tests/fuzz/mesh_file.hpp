@@ -17,12 +17,12 @@ namespace tactus {
 inline void try_mesh(const std::uint8_t* data, std::size_t size, const std::string& name) {
     const MemoryFile file(data, size, name);
     try {
-        Mesh mesh = load_mesh(file.path());
+        mesh::Mesh mesh = mesh::load_mesh(file.path());
         for (const auto& t : mesh.triangles)
             for (const int v : t)
                 if (v < 0 || static_cast<std::size_t>(v) >= mesh.vertices.size()) std::abort();
-        repair(mesh, "mesh");
-        if (topology_of(mesh).boundary_edges > 0) std::abort();
+        mesh::repair(mesh, "mesh");
+        if (mesh::topology_of(mesh).boundary_edges > 0) std::abort();
     } catch (const Error&) {
         // Refusing is right for most bytes.
     }

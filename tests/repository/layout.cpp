@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 
 const fs::path root = tactus::test::source_folder();
 constexpr std::array<std::string_view, 7> rooms{"dsp", "assets", "graph", "devices", "nodes", "engine", "tools"};
+constexpr std::array<std::string_view, 6> tool_rooms{"session", "study", "picture", "view", "command", "bench"};
 
 std::string read(const fs::path& file) {
     std::ifstream stream(file);
@@ -209,4 +210,63 @@ TEST_CASE("heavy libraries stay out of headers") {
                     CAPTURE(file.string(), name);
                     CHECK_FALSE(name.starts_with(heavy));
                 }
+}
+
+TEST_CASE("rooms of tools include only what stands left of them") {
+    for (std::size_t room = 0; room < tool_rooms.size(); ++room) {
+        const std::string folder = "tools/" + std::string(tool_rooms[room]);
+        const std::vector<fs::path> files = files_under(folder, {".cpp", ".hpp"});
+        CHECK_FALSE(files.empty());
+        for (const fs::path& file : files) {
+            CAPTURE(file.string());
+            if (file.stem() != "main")
+                CHECK(read(file).find("namespace tactus::" + std::string(tool_rooms[room])) != std::string::npos);
+            for (const std::string& name : includes_of(file)) {
+                if (!name.starts_with("tools/")) continue;
+                CAPTURE(name);
+                const std::string inner = name.substr(6, name.find('/', 6) - 6);
+                const auto included = std::ranges::find(tool_rooms, inner);
+                if (included == tool_rooms.end()) continue;
+                CHECK(static_cast<std::size_t>(included - tool_rooms.begin()) <= room);
+            }
+        }
+    }
+}
+
+TEST_CASE("only commands read command lines and write JSON") {
+    for (const std::string_view room : {"session", "study", "picture", "view"})
+        for (const fs::path& file : files_under("tools/" + std::string(room), {".cpp", ".hpp"})) {
+            // A run leaves its summary behind as JSON.
+            if (file.filename() == "summary.cpp") continue;
+            for (const std::string& name : includes_of(file)) {
+                CAPTURE(file.string(), name);
+                CHECK_FALSE(name.starts_with("CLI/"));
+                CHECK_FALSE(name.starts_with("nlohmann/"));
+            }
+        }
+}
+
+TEST_CASE("studies print nothing") {
+    for (const fs::path& file : files_under("tools/study", {".cpp", ".hpp"})) {
+        const std::string text = read(file);
+        CAPTURE(file.string());
+        for (const std::string_view word : {"fmt::print", "stderr", "stdout", "std::cout", "std::cerr", "printf("})
+            CHECK(text.find(word) == std::string::npos);
+    }
+}
+
+TEST_CASE("every verb is in the catalogue, in the folder that it names") {
+    const std::string catalogue = read(root / "tools/command/catalogue.cpp");
+    const std::regex definition("^Verb (\\w+)_verb\\(\\)", std::regex::multiline);
+    int verbs = 0;
+    for (const fs::path& file : files_under("tools/command", {".cpp"})) {
+        const std::string text = read(file);
+        for (auto found = std::sregex_iterator(text.begin(), text.end(), definition); found != std::sregex_iterator();
+             ++found, ++verbs) {
+            CAPTURE(file.string(), found->str());
+            const std::string line = "X(" + found->str(1) + ", " + file.parent_path().filename().string() + ")";
+            CHECK(catalogue.find(line) != std::string::npos);
+        }
+    }
+    CHECK(verbs > 40);
 }

@@ -40,7 +40,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string bytes = is_packed ? std::string(reinterpret_cast<const char*>(data), size) : packed(data, size);
     const tactus::MemoryFile file(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), "v.inv3");
     try {
-        const tactus::ScanVolume volume = tactus::read_volume(file.path());
+        const tactus::volume::ScanVolume volume = tactus::volume::read_volume(file.path());
         if (volume.values.size() != volume.count()) std::abort();
     } catch (const tactus::Error&) {
         // Refusing is right for most bytes.

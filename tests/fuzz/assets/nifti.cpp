@@ -9,7 +9,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const tactus::MemoryFile file(data, size, "v.nii");
     try {
-        const tactus::ScanVolume volume = tactus::read_volume(file.path());
+        const tactus::volume::ScanVolume volume = tactus::volume::read_volume(file.path());
         if (volume.values.size() != volume.count()) std::abort();
     } catch (const tactus::Error&) {
         // Refusing is right for most bytes.

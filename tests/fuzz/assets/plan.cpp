@@ -10,12 +10,12 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     try {
-        const tactus::CasePlan plan =
-            tactus::read_plan_text({reinterpret_cast<const char*>(data), size}, "case.plan.json");
-        for (const tactus::PlanAlternative& alternative : plan.alternatives)
-            tactus::state_of(plan, alternative.place.head);
-        const std::string text = tactus::plan_text(plan);
-        if (tactus::plan_text(tactus::read_plan_text(text, "again")) != text) std::abort();
+        const tactus::cases::CasePlan plan =
+            tactus::cases::read_plan_text({reinterpret_cast<const char*>(data), size}, "case.plan.json");
+        for (const tactus::cases::PlanAlternative& alternative : plan.alternatives)
+            tactus::cases::state_of(plan, alternative.place.head);
+        const std::string text = tactus::cases::plan_text(plan);
+        if (tactus::cases::plan_text(tactus::cases::read_plan_text(text, "again")) != text) std::abort();
     } catch (const tactus::Error& error) {
         if (error.message().empty() || error.message().find('\n') != std::string::npos) std::abort();
     }

@@ -14,10 +14,11 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     try {
-        const tactus::SampleLog log = tactus::read_sample_log({reinterpret_cast<const char*>(data), size}, "l.csv", {});
+        const tactus::table::SampleLog log =
+            tactus::table::read_sample_log({reinterpret_cast<const char*>(data), size}, "l.csv", {});
         for (const auto& column : log.columns)
             if (column.size() != log.times.size()) std::abort();
-        const tactus::EvenRecord even = tactus::even_out(log.times, log.columns);
+        const tactus::signal::EvenRecord even = tactus::signal::even_out(log.times, log.columns);
         if (!(even.rate > 0.0)) std::abort();
     } catch (const tactus::Error& error) {
         if (std::string_view(error.what()).empty()) std::abort();

@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static const std::string path = "/proc/self/fd/" + std::to_string(file);
     if (ftruncate(file, 0) != 0 || pwrite(file, data, size, 0) != static_cast<ssize_t>(size)) return 0;
     try {
-        tactus::SoundReader reader(path);
+        tactus::sound::SoundReader reader(path);
         if (reader.channels() > 1024) return 0;
         std::vector<double> samples(256 * reader.channels());
         for (int i = 0; i < 1000; ++i) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // All that is a table of numbers: any text is read as each of them or refused with one message, and what is read is
 // finite.
-#include "assets/table/deflection_file.hpp"
 #include "assets/display/touch_file.hpp"
 #include "assets/sound/response_file.hpp"
+#include "assets/table/deflection_file.hpp"
 #include "assets/table/trajectory.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/fuzz/memory_file.hpp"
@@ -28,18 +28,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     using namespace tactus;
     const MemoryFile file(data, size, "table.csv");
     try_reader(file.path(), [](const auto& path) {
-        for (const TrajectorySample& sample : read_trajectory(path).samples)
+        for (const auto& sample : table::read_trajectory(path).samples)
             if (!is_finite(sample.pose.position)) std::abort();
     });
     try_reader(file.path(), [](const auto& path) {
-        for (const Vec3& place : load_places(path))
+        for (const Vec3& place : table::load_places(path))
             if (!is_finite(place)) std::abort();
     });
-    try_reader(file.path(), [](const auto& path) { load_touches(path); });
-    try_reader(file.path(), [](const auto& path) { load_response(path); });
-    try_reader(file.path(), [](const auto& path) { load_deflection_table(path); });
+    try_reader(file.path(), [](const auto& path) { display::load_touches(path); });
+    try_reader(file.path(), [](const auto& path) { sound::load_response(path); });
+    try_reader(file.path(), [](const auto& path) { table::load_deflection_table(path); });
     try_reader(file.path(), [](const auto& path) {
-        if (!std::isfinite(load_force_calibration(path).slope)) std::abort();
+        if (!std::isfinite(table::load_force_calibration(path).slope)) std::abort();
     });
     return 0;
 }

@@ -3,10 +3,10 @@
 #include "assets/display/rig_file.hpp"
 #include "assets/sound/equaliser_file.hpp"
 #include "assets/sound/recording_set.hpp"
-#include "tools/study/rig_matrix.hpp"
 #include "assets/table/thresholds.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/fuzz/memory_file.hpp"
+#include "tools/study/rig_matrix.hpp"
 
 #include <cstdlib>
 
@@ -25,10 +25,10 @@ void try_reader(const std::filesystem::path& path, Load load) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const tactus::MemoryFile file(data, size, "file.toml");
-    try_reader(file.path(), [](const auto& path) { tactus::load_rig_file(path); });
-    try_reader(file.path(), [](const auto& path) { tactus::load_rig_matrix(path); });
-    try_reader(file.path(), [](const auto& path) { tactus::load_thresholds(path); });
-    try_reader(file.path(), [](const auto& path) { tactus::load_equaliser(path); });
-    try_reader(file.path(), [](const auto& path) { tactus::load_recording_set(path); });
+    try_reader(file.path(), [](const auto& path) { tactus::display::load_rig_file(path); });
+    try_reader(file.path(), [](const auto& path) { tactus::study::load_rig_matrix(path); });
+    try_reader(file.path(), [](const auto& path) { tactus::table::load_thresholds(path); });
+    try_reader(file.path(), [](const auto& path) { tactus::sound::load_equaliser(path); });
+    try_reader(file.path(), [](const auto& path) { tactus::sound::load_recording_set(path); });
     return 0;
 }

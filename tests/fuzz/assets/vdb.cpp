@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string bytes = tactus::test::sealed({reinterpret_cast<const char*>(data), size - std::min(size, seal)});
     const tactus::MemoryFile file(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), "b.vdb");
     try {
-        tactus::load_bones(file.path());
+        tactus::bone::load_bones(file.path());
     } catch (const tactus::Error&) {
         // Refusing is right for most bytes.
     } catch (const std::bad_alloc&) {

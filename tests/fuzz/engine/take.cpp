@@ -20,7 +20,7 @@ const fs::path& folder() {
         fs::path path = "/dev/shm/fuzz-take-" + std::to_string(getpid());
         fs::create_directories(path);
         for (const char* name : {"patch-0.toml", "patch-1.toml"}) std::ofstream(path / name) << "title = \"a\"\n";
-        tactus::TimingLogWriter(path / "timing.log", 0, 1.0).finish();
+        tactus::take::TimingLogWriter(path / "timing.log", 0, 1.0).finish();
         std::atexit([] { fs::remove_all("/dev/shm/fuzz-take-" + std::to_string(getpid())); });
         return path;
     }();
@@ -38,11 +38,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 5);
     }
     try {
-        const tactus::Take take = tactus::Take::load(folder());
-        for (const tactus::TakeStreamInfo& stream : take.streams)
+        const tactus::take::Take take = tactus::take::Take::load(folder());
+        for (const tactus::take::TakeStreamInfo& stream : take.streams)
             if (stream.period < 1 || stream.start < 0) std::abort();
         take.differences();
-        for (const tactus::TakeDamage& damage : take.damages())
+        for (const tactus::take::TakeDamage& damage : take.damages())
             if (damage.holds == damage.written) std::abort();
     } catch (const tactus::Error& error) {
         if (error.message().empty() || error.message().find('\n') != std::string::npos) std::abort();

@@ -9,7 +9,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const tactus::MemoryFile file(data, size, "timing.log");
     for (const bool may_be_cut : {false, true}) try {
-            const tactus::TimingLog log = tactus::TimingLog::load(file.path(), may_be_cut);
+            const tactus::take::TimingLog log = tactus::take::TimingLog::load(file.path(), may_be_cut);
             if (!log.is_whole && !may_be_cut) std::abort();
             for (std::size_t group = 0; group < log.groups.size(); ++group)
                 if (log.end_of(group, 705600) < 0) std::abort();
