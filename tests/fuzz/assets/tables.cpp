@@ -32,7 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             if (!is_finite(sample.pose.position)) std::abort();
     });
     try_reader(file.path(), [](const auto& path) {
-        for (const Vec3& place : table::load_places(path))
+        for (const Vec3& place : display::load_places(path))
             if (!is_finite(place)) std::abort();
     });
     try_reader(file.path(), [](const auto& path) { display::load_touches(path); });
