@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <string>
 
@@ -59,4 +60,15 @@ TEST_CASE("the generated pages are what the command says; docs/generate.sh write
         const bool is_same = slurp(folder.path / name) == slurp(source_folder() / "docs/reference" / name);
         CHECK(is_same);
     }
+}
+
+TEST_CASE("the ways through the code name files that exist") {
+    const std::string page = slurp(source_folder() / "docs/explanation/code.md");
+    static const std::regex file("`([a-z]+/[a-z0-9_/.-]+\\.[ch]pp)`");
+    int files = 0;
+    for (std::sregex_iterator at(page.begin(), page.end(), file), end; at != end; ++at, ++files) {
+        CAPTURE((*at)[1].str());
+        CHECK(std::filesystem::exists(source_folder() / (*at)[1].str()));
+    }
+    CHECK(files > 30);
 }
