@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/patch/sub_patch.hpp"
 
-#include "graph/flat_part.hpp"
+#include "graph/patch/flat_part.hpp"
 
 #include <fmt/format.h>
 

@@ -145,6 +145,18 @@ TEST_CASE("no two types have one name in one namespace") {
         }
 }
 
+TEST_CASE("every source file stands in a folder of its room") {
+    // The table of all node types; what the command and its window share.
+    const std::set<std::string> shared{"nodes/catalogue", "tools/exit_code", "tools/terminal", "tools/make_library"};
+    for (const auto room : rooms)
+        for (const fs::path& file : files_under(room, {".cpp", ".hpp"})) {
+            const fs::path place = fs::relative(file, root);
+            CAPTURE(place.string());
+            CHECK((std::distance(place.begin(), place.end()) > 2 ||
+                   shared.contains((place.parent_path() / place.stem()).string())));
+        }
+}
+
 TEST_CASE("at most twenty source files stand side by side") {
     std::map<fs::path, int> count;
     for (const auto room : rooms)

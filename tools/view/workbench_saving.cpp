@@ -4,7 +4,7 @@
 
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
-#include "graph/patch_paths.hpp"
+#include "graph/edit/patch_paths.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/view/unsaved.hpp"
 
@@ -59,7 +59,7 @@ bool Workbench::save_as(const std::string& name) {
         if (fs::exists(fs::symlink_status(file)))
             throw Error(fmt::format("{}: is there already; choose another name", file.string()));
         const fs::path folder = fs::absolute(editor_->file()).parent_path();
-        editor_->save_as(file, [&](std::string_view text) { return with_absolute_paths(text, folder); });
+        editor_->save_as(file, [&](std::string_view text) { return edit::with_absolute_paths(text, folder); });
         wants_name = false;
         tell(fmt::format("saved {}", file.string()));
         drop_restored();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "graph/patch_paths.hpp"
+#include "graph/edit/patch_paths.hpp"
 #include "graph/edit/patch_editor.hpp"
 
 #include <unistd.h>
@@ -23,7 +23,7 @@ rate = "48 kHz"
 [nodes.tone]
 type = "sine"
 )";
-    CHECK(with_absolute_paths(text, "/lib/patches") == R"(title = "a"  # bones/a.vdb
+    CHECK(edit::with_absolute_paths(text, "/lib/patches") == R"(title = "a"  # bones/a.vdb
 [assets]
 still = "/lib/bones/a.vdb#left"   # kept
 far = "/data/b.vdb"
@@ -34,7 +34,7 @@ rate = "48 kHz"
 [nodes.tone]
 type = "sine"
 )");
-    CHECK(with_absolute_paths("assets = { a = \"x\", b = \"y\" }\n", "/l") ==
+    CHECK(edit::with_absolute_paths("assets = { a = \"x\", b = \"y\" }\n", "/l") ==
           "assets = { a = \"/l/x\", b = \"/l/y\" }\n");
 }
 

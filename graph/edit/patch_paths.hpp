@@ -6,10 +6,10 @@
 #include <string>
 #include <string_view>
 
-namespace tactus {
+namespace tactus::edit {
 
 /// The text with the relative paths of [assets] and of `type = "patch:..."` made absolute, as seen from `folder`, which
 /// is absolute. All other bytes stay.
 std::string with_absolute_paths(std::string_view text, const std::filesystem::path& folder);
 
-}  // namespace tactus
+}  // namespace tactus::edit

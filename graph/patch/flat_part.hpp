@@ -12,14 +12,14 @@
 #include <utility>
 #include <vector>
 
-namespace tactus {
+namespace tactus::patch {
 
 /// A flattened part, and what is looked up in it each time it is used.
 struct FlatPart {
-    using Ends = std::vector<const patch::PatchEnd*>;
+    using Ends = std::vector<const PatchEnd*>;
     using Index = std::unordered_map<std::string_view, Ends>;
 
-    explicit FlatPart(patch::Patch flat) : patch(std::move(flat)) {
+    explicit FlatPart(Patch flat) : patch(std::move(flat)) {
         index(patch.offered, offered);
         index(patch.inputs, targets);
         index(patch.parameters, targets);
@@ -30,8 +30,8 @@ struct FlatPart {
     FlatPart(const FlatPart&) = delete;
     FlatPart& operator=(const FlatPart&) = delete;
 
-    static void index(const std::vector<patch::PatchEnd>& ends, Index& by_name) {
-        for (const patch::PatchEnd& end : ends) by_name[end.name].push_back(&end);
+    static void index(const std::vector<PatchEnd>& ends, Index& by_name) {
+        for (const PatchEnd& end : ends) by_name[end.name].push_back(&end);
     }
     static const Ends& find(const Index& by_name, const std::string& name) {
         static const Ends none;
@@ -40,7 +40,7 @@ struct FlatPart {
     }
     std::string file() const { return patch.file.filename().string(); }
 
-    patch::Patch patch;
+    Patch patch;
     Index offered, outputs, parameters;
     Index targets;  ///< where a wire may end: inputs, then parameters
     std::unordered_map<std::string_view, std::size_t> nodes;
@@ -49,8 +49,8 @@ struct FlatPart {
 /// The wires of a patch whose nodes are being replaced: what each of them has become, by the nodes it joins.
 class OuterWires {
 public:
-    OuterWires(std::vector<patch::PatchWire> wires, const std::vector<patch::PatchNode>& nodes) : pieces_(wires.size()) {
-        for (const patch::PatchNode& node : nodes)
+    OuterWires(std::vector<PatchWire> wires, const std::vector<PatchNode>& nodes) : pieces_(wires.size()) {
+        for (const PatchNode& node : nodes)
             if (patch::is_sub_patch(node)) touching_.try_emplace(node.name);
         for (std::size_t w = 0; w < wires.size(); ++w) {
             note(wires[w].from_node, w);
@@ -65,8 +65,8 @@ public:
         for (const std::size_t w : touching_.at(node)) replace(pieces_[w]);
     }
 
-    std::vector<patch::PatchWire> joined() {
-        std::vector<patch::PatchWire> wires;
+    std::vector<PatchWire> joined() {
+        std::vector<PatchWire> wires;
         for (auto& pieces : pieces_) std::ranges::move(pieces, std::back_inserter(wires));
         return wires;
     }
@@ -76,8 +76,8 @@ private:
         if (const auto found = touching_.find(node); found != touching_.end()) found->second.push_back(wire);
     }
 
-    std::vector<std::vector<patch::PatchWire>> pieces_;
+    std::vector<std::vector<PatchWire>> pieces_;
     std::unordered_map<std::string, std::vector<std::size_t>> touching_;  // of each node that is a patch
 };
 
-}  // namespace tactus
+}  // namespace tactus::patch
