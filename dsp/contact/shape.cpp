@@ -83,7 +83,7 @@ std::vector<SurfacePoint> Box::points(double spacing) const {
     return all;
 }
 
-double Turned::distance(const Vec3& p) const {
+double Revolved::distance(const Vec3& p) const {
     const glm::dvec2 q(std::hypot(p.x, p.y), p.z);
     double nearest = std::numeric_limits<double>::infinity();
     bool inside = false;
@@ -99,7 +99,7 @@ double Turned::distance(const Vec3& p) const {
     return inside ? -nearest : nearest;
 }
 
-std::vector<SurfacePoint> Turned::points(double spacing) const {
+std::vector<SurfacePoint> Revolved::points(double spacing) const {
     std::vector<SurfacePoint> all;
     for (std::size_t i = 0; i < profile.size(); ++i) {
         const glm::dvec2 a = profile[i], b = profile[(i + 1) % profile.size()], ab = b - a;
@@ -124,30 +124,30 @@ std::vector<SurfacePoint> Turned::points(double spacing) const {
     return all;
 }
 
-Vec3 Turned::low() const {
+Vec3 Revolved::low() const {
     Vec3 corner(0.0, 0.0, std::numeric_limits<double>::infinity());
     for (const auto& p : profile) corner = glm::min(corner, Vec3(-p.x, -p.x, p.y));
     return corner;
 }
 
-Vec3 Turned::high() const {
+Vec3 Revolved::high() const {
     Vec3 corner(0.0, 0.0, -std::numeric_limits<double>::infinity());
     for (const auto& p : profile) corner = glm::max(corner, Vec3(p.x, p.x, p.y));
     return corner;
 }
 
-Turned make_cylinder(double diameter, double height, double bevel) {
+Revolved make_cylinder(double diameter, double height, double bevel) {
     const double r = 0.5 * diameter;
-    Turned turned{{{0.0, 0.0}, {r - bevel, 0.0}, {r, bevel}, {r, height}, {0.0, height}}};
-    if (bevel <= 0.0) turned.profile.erase(turned.profile.begin() + 1);
-    return turned;
+    Revolved body{{{0.0, 0.0}, {r - bevel, 0.0}, {r, bevel}, {r, height}, {0.0, height}}};
+    if (bevel <= 0.0) body.profile.erase(body.profile.begin() + 1);
+    return body;
 }
 
-Turned make_bushing(double bore, double diameter, double height, double bevel) {
+Revolved make_bushing(double bore, double diameter, double height, double bevel) {
     const double in = 0.5 * bore, out = 0.5 * diameter;
-    Turned turned{{{out, 0.0}, {in + bevel, 0.0}, {in, -bevel}, {in, -height}, {out, -height}}};
-    if (bevel <= 0.0) turned.profile.erase(turned.profile.begin() + 1);
-    return turned;
+    Revolved body{{{out, 0.0}, {in + bevel, 0.0}, {in, -bevel}, {in, -height}, {out, -height}}};
+    if (bevel <= 0.0) body.profile.erase(body.profile.begin() + 1);
+    return body;
 }
 
 }  // namespace tactus::contact

@@ -42,7 +42,7 @@ struct Box {
 
 /// A polygon in the half-plane (distance from the axis, height) turned about the z axis; counter-clockwise, with the
 /// height upwards and the solid to its left.
-struct Turned {
+struct Revolved {
     std::vector<glm::dvec2> profile;
 
     double distance(const Vec3& p) const;
@@ -52,9 +52,9 @@ struct Turned {
 };
 
 /// Upright on z = 0, the lower rim bevelled by `bevel` at 45°.
-Turned make_cylinder(double diameter, double height, double bevel = 0.0);
+Revolved make_cylinder(double diameter, double height, double bevel = 0.0);
 /// A round block below z = 0 with a hole through it along its axis, the mouth widened by `bevel` at 45°.
-Turned make_bushing(double bore, double diameter, double height, double bevel = 0.0);
+Revolved make_bushing(double bore, double diameter, double height, double bevel = 0.0);
 
 /// The distance field of a shape and `margin` m around it.
 template <class Shape>
