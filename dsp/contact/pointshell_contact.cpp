@@ -223,7 +223,7 @@ ContactSum PointshellContact::operator()(std::span<const ContactPair> pairs, con
         while (end < chosen_.size() && chosen_[end].pair == pair) ++end;
         const Relation relation(pairs[pair], about);
         kernel::PairFrame frame = relation.frame(law, parts);
-        frame.calls_ahead = end - first > many_chunks;
+        frame.prefetches = end - first > many_chunks;
         kernel::LaneSums lanes;
         Totals totals;
         kernel::ChunkFrame chunks[kernel::most_chunks];

@@ -66,7 +66,7 @@ void evaluate_chunks(const PairFrame& pair, const ChunkFrame* chunks, std::size_
         Places &here = places[n % 2], &next = places[(n + 1) % 2];
         if (n + 1 < count) {
             locate_cells(pair, chunks[n + 1], next);
-            if (pair.calls_ahead) call(pair, chunks[n + 1], next);
+            if (pair.prefetches) prefetch(pair, chunks[n + 1], next);
         }
         if (pair.quadratic) add_quadratic(pair, chunks[n], here, corners, pushes, into);
         else add_trilinear(pair, chunks[n], here, corners, pushes, into);

@@ -34,8 +34,8 @@ struct PairFrame {
     float stiffness = 0.0f;  ///< k
     float near = 0.0f;  ///< the quadratic field may reach the surface only where the trilinear one is below this, m
     bool by_area = false, by_normal = false, quadratic = false, saturates = false, energy_only = false;
-    /// The samples of the next chunk are called while one is computed: pays where they are too many for the caches.
-    bool calls_ahead = false;
+    /// Prefetches the samples of the next chunk while one is computed: pays when the map does not fit the caches.
+    bool prefetches = false;
     DepthLaw<float> law;
 };
 

@@ -122,8 +122,8 @@ HWY_INLINE void fetch(const PairFrame& pair, const ChunkFrame& at, const Places&
     }
 }
 
-/// Calls the samples that `fetch` will read into the nearest cache.
-HWY_INLINE void call(const PairFrame& pair, const ChunkFrame& at, const Places& places) {
+/// Prefetches the samples that `fetch` will read into the nearest cache.
+HWY_INLINE void prefetch(const PairFrame& pair, const ChunkFrame& at, const Places& places) {
     const float* base = pair.values + at.base;
     for (std::size_t l = 0; l < at.rows * lanes; ++l) {
         const float* sample = base + places.index[l];
