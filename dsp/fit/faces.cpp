@@ -46,7 +46,8 @@ Paint paint_of(std::span<const contact::SurfacePoint> points, const FaceOptions&
 constexpr int none = -1;
 
 /// Faces grown from the flattest places on.
-std::vector<int> grow(const Paint& paint, const geometry::Neighbours& touching, const FaceOptions& options, int& count) {
+std::vector<int> grow(const Paint& paint, const geometry::Neighbours& touching, const FaceOptions& options,
+                      int& count) {
     std::vector<std::size_t> order(paint.points.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t n) { return paint.flatness[n]; });
@@ -71,9 +72,10 @@ std::vector<int> grow(const Paint& paint, const geometry::Neighbours& touching, 
 
 }  // namespace
 
-std::vector<std::vector<std::size_t>> split_faces(std::span<const contact::SurfacePoint> points, const FaceOptions& options) {
+std::vector<std::vector<std::size_t>> split_faces(std::span<const contact::SurfacePoint> points,
+                                                  const FaceOptions& options) {
     const Paint paint = paint_of(points, options);
-    const geometry::Neighbours touching(paint.points, options.apart);
+    const geometry::Neighbours touching(paint.points, options.max_gap);
     int count = 0;
     std::vector<int> face = grow(paint, touching, options, count);
     std::vector<double> area(static_cast<std::size_t>(count), 0.0);

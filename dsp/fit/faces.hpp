@@ -14,7 +14,7 @@ namespace tactus::fit {
 struct FaceOptions {
     std::uint8_t paint = contact::surface_label::fracture;
     double smooth = 3e-3;        ///< m: over which a face's relief is averaged out
-    double apart = 1.5e-3;       ///< m: painted points farther apart do not touch
+    double max_gap = 1.5e-3;       ///< m: painted points farther apart do not touch
     double bend = 0.75;          ///< rad: a point looks no farther away than this from the mean of its face
     double least_area = 12e-6;   ///< m²: smaller faces go to the neighbour they touch, or are left out
 };

@@ -2,8 +2,8 @@
 #include "dsp/fit/fit.hpp"
 
 #include "dsp/core/rotation.hpp"
-#include "dsp/fit/fit_steps.hpp"
 #include "dsp/fit/constraint_analysis.hpp"
+#include "dsp/fit/fit_steps.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -48,7 +48,8 @@ void keep_distinct(std::vector<Candidate>& all, double gyration, double nearer) 
     std::ranges::stable_sort(all, std::ranges::greater{}, &Candidate::score);
     std::vector<Candidate> kept;
     for (const Candidate& c : all)
-        if (std::ranges::none_of(kept, [&](const Candidate& k) { return apart(c.pose, k.pose, gyration) < nearer; }))
+        if (std::ranges::none_of(kept,
+                                 [&](const Candidate& k) { return pose_distance(c.pose, k.pose, gyration) < nearer; }))
             kept.push_back(c);
     all = kept;
 }
@@ -186,7 +187,7 @@ Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& star
     double second = 0.0;
     for (const auto* list : {&found, &elsewhere})
         for (const Candidate& c : *list)
-            if (apart(c.pose, best.pose, radius) > 1e-3) second = std::max(second, c.score);
+            if (pose_distance(c.pose, best.pose, radius) > 1e-3) second = std::max(second, c.score);
     set_law(energy, settings.outline);
     fit.quality = energy.quality(best.pose, settings.sigma);
     fit.margin = best.score > 0.0 ? std::clamp(1.0 - second / best.score, 0.0, 1.0) : 0.0;
@@ -220,7 +221,7 @@ Fit find_fit(std::span<const FitSurface> moving, std::span<const FitSurface> fix
         const Pose other = between_centres(*moving_face, *fixed_face, fits[n].pose);
         // Patches that fit by chance are small: they count by what they cover of the best one.
         const double area = std::min(1.0, fits[n].quality.overlap / std::max(fit.quality.overlap, 1e-12));
-        if (n != best && apart(other, chosen, moving_face->gyration) > 1e-3 && fit.quality.score > 0.0)
+        if (n != best && pose_distance(other, chosen, moving_face->gyration) > 1e-3 && fit.quality.score > 0.0)
             fit.margin = std::min(fit.margin, std::max(0.0, 1.0 - area * fits[n].quality.score / fit.quality.score));
     }
     fit.verdict = judge(fit.quality, !fit.free.empty(), fit.margin, settings_for(*moving_face, *fixed_face));

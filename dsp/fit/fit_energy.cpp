@@ -128,8 +128,8 @@ void FitEnergy::link(const Pose& pose) noexcept {
         double least = std::numeric_limits<double>::infinity();
         std::size_t nearest = 0;
         for (std::size_t j = 0; j < fixed_->outline.size(); j += step) {
-            const Vec3 apart = x - fixed_->outline[j];
-            const double d2 = glm::dot(apart, apart);
+            const Vec3 difference = x - fixed_->outline[j];
+            const double d2 = glm::dot(difference, difference);
             if (d2 < least) least = d2, nearest = j;
         }
         const Vec3 normal = turn * moving_->outline_normal[i], other = fixed_->outline_normal[nearest];
@@ -146,7 +146,8 @@ void FitEnergy::look(const Pose& pose) noexcept {
     link(pose);
 }
 
-void FitEnergy::add(contact::ContactSum& sum, Side& side, const Pose& pose, const Pose& into, double sign) const noexcept {
+void FitEnergy::add(contact::ContactSum& sum, Side& side, const Pose& pose, const Pose& into,
+                    double sign) const noexcept {
     read(side, into);
     const Mat3 turn = glm::mat3_cast(into.orientation);
     const FitSurface& points = *side.points;

@@ -45,6 +45,6 @@ Vec3 direction_of(const Vec3& normal) noexcept;
 Quat opposed(const FitSurface& moving, const FitSurface& fixed, const Quat& from) noexcept;
 
 /// m, of two poses of the same body: way of the middle, and turn at the gyration.
-double apart(const Pose& a, const Pose& b, double gyration) noexcept;
+double pose_distance(const Pose& a, const Pose& b, double gyration) noexcept;
 
 }  // namespace tactus::fit

@@ -36,11 +36,11 @@ PointRegistration register_points(std::span<const contact::SurfacePoint> moving,
         geometry::Matrix6 k{};
         geometry::Vector6 push{}, step{};
         for (const Match& m : matches) {
-            const Vec3 arm = m.from - centre, apart = m.to - m.from, torque = glm::cross(arm, apart);
+            const Vec3 arm = m.from - centre, difference = m.to - m.from, torque = glm::cross(arm, difference);
             const Mat3 inertia = glm::dot(arm, arm) * Mat3(1.0) - glm::outerProduct(arm, arm);
             for (int a = 0; a < 3; ++a) {
                 const auto row = static_cast<std::size_t>(a);
-                push[row] += apart[a];
+                push[row] += difference[a];
                 push[row + 3] += 1e3 * torque[a];
                 k[7 * row] += 1.0;
                 for (int b = 0; b < 3; ++b) k[6 * (row + 3) + static_cast<std::size_t>(b) + 3] += 1e6 * inertia[b][a];

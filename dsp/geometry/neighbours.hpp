@@ -40,8 +40,8 @@ public:
                 const std::uint64_t first = key_of({c.x - 1, c.y + dy, c.z + dz}), last = first + 2;
                 auto at = std::ranges::lower_bound(sorted_, first, {}, &Entry::key);
                 for (; at != sorted_.end() && at->key <= last; ++at) {
-                    const Vec3 apart = points_[at->index].position - points_[i].position;
-                    if (glm::dot(apart, apart) <= side_ * side_) visit(at->index);
+                    const Vec3 difference = points_[at->index].position - points_[i].position;
+                    if (glm::dot(difference, difference) <= side_ * side_) visit(at->index);
                 }
             }
     }

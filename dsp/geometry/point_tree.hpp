@@ -64,8 +64,8 @@ private:
     void look(Search& search, std::size_t first, std::size_t last) const noexcept {
         if (first >= last) return;
         const std::size_t middle = (first + last) / 2;
-        const Vec3 apart = search.place - points_[order_[middle]];
-        const double square = glm::dot(apart, apart), side = apart[axis_[middle]];
+        const Vec3 difference = search.place - points_[order_[middle]];
+        const double square = glm::dot(difference, difference), side = difference[axis_[middle]];
         if (square < search.least) search.least = square, search.best = order_[middle];
         if (side < 0.0) look(search, first, middle);
         else look(search, middle + 1, last);

@@ -129,8 +129,9 @@ struct Netter {
     void make_quad(bool out_at_end, int a, int b, int c, int d) {
         if (!out_at_end) std::swap(b, d);
         const auto length2 = [this](int p, int q) {
-            const Vec3 apart = net.vertices[static_cast<std::size_t>(p)] - net.vertices[static_cast<std::size_t>(q)];
-            return glm::dot(apart, apart);
+            const Vec3 difference =
+                net.vertices[static_cast<std::size_t>(p)] - net.vertices[static_cast<std::size_t>(q)];
+            return glm::dot(difference, difference);
         };
         if (length2(a, c) <= length2(b, d)) {
             net.triangles.push_back({a, b, c});

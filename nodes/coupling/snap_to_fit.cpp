@@ -142,7 +142,7 @@ private:
             energy_->law.stride = std::max<std::size_t>(1, moving_paint_->position.size() / 300);
             score_ = energy_
                          ->quality(fit::between_centres(*moving_paint_, *fixed_paint_,
-                                                   fixed_file.inverse() * (now.proxy * moving_file)),
+                                                        fixed_file.inverse() * (now.proxy * moving_file)),
                                    0.2e-3)
                          .score;
             energy_->law.stride = 1;
@@ -152,9 +152,9 @@ private:
 
     /// The scale follows how far the paints are apart, so that what does not match stops counting as they meet.
     void narrow(double elapsed) noexcept {
-        const double apart =
+        const double distance =
             lead_.share() > 0.0 ? std::sqrt(fit_->energy() / (lead_.share() * energy_->law.strength)) : reach;
-        const double wanted = std::clamp(2.0 * apart, 0.25e-3, std::max(0.25e-3, 0.5 * reach));
+        const double wanted = std::clamp(2.0 * distance, 0.25e-3, std::max(0.25e-3, 0.5 * reach));
         scale_ += (wanted - scale_) * std::min(1.0, elapsed / 0.05);
     }
 
