@@ -35,9 +35,9 @@ Vec3 middle_of(const std::vector<contact::SurfacePoint>& points) {
 }
 
 /// Turned about its middle and moved.
-Pose about(const Vec3& middle, const Vec3& way, const Vec3& turn) {
-    const Quat q = rotation_by(turn);
-    return {middle + way - q * middle, q};
+Pose about(const Vec3& middle, const Vec3& translation, const Vec3& rotation) {
+    const Quat q = rotation_by(rotation);
+    return {middle + translation - q * middle, q};
 }
 
 std::size_t samples_inside(const volume::Grid& solid) {
@@ -190,11 +190,12 @@ std::string script_of(const BrokenMandible& broken, const BrokenMandibleOptions&
         script.go(0.6, grip, "");
         script.stay(0.1, "trigger");
         script.stay(0.1, "trigger");
-        const Vec3 way = way_in(broken.fragments[n].points, broken.truth[n], geometry::PointTree(standing), standing);
+        const Vec3 translation =
+            way_in(broken.fragments[n].points, broken.truth[n], geometry::PointTree(standing), standing);
         stand(n);
         // Off the table, before its place, and in.
         script.go(0.4, about(middle, Vec3(0.0, 25e-3, 0.0), Vec3(0.0)) * grip, "trigger");
-        script.go(0.8, about(place, 40e-3 * way, Vec3(0.0)) * beside * grip, "trigger");
+        script.go(0.8, about(place, 40e-3 * translation, Vec3(0.0)) * beside * grip, "trigger");
         script.go(0.6, beside * grip, "trigger");
         script.stay(0.2, "trigger");
         snap_and_settle(script);
@@ -231,7 +232,7 @@ BrokenMandible break_mandible(const bone::Bone& bone, const BrokenMandibleOption
         // Laid out in rows before the bone.
         const Vec3 to = centre + Vec3(36e-3 * (static_cast<double>(n % 4) - 1.5), -options.distance,
                                       36e-3 * (static_cast<double>(n / 4) - 1.0));
-        const Pose placement = n == 0 ? Pose{} : about(middle, to - middle, options.turn * direction(random, 0));
+        const Pose placement = n == 0 ? Pose{} : about(middle, to - middle, options.rotation * direction(random, 0));
         bone::Bone fragment;
         fragment.distance = cases::scan_solid(solid, placement, {.seed = options.seed * 2003 + n});
         fragment.density = fragment.distance;

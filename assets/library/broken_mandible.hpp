@@ -18,7 +18,7 @@ struct BrokenMandibleOptions {
     double kerf = 0.0;          ///< m
     int missing = 0;            ///< so many of the smallest pieces are lost
     double distance = 100e-3;      ///< m, how far before the bone the pieces are laid out
-    double turn = 0.5;          ///< rad, how far they are turned
+    double rotation = 0.5;          ///< rad, how far they are turned
     double error = 5e-3, error_turn = 0.17453292519943295;  ///< m, rad: where the hand stops beside a piece's place
 };
 

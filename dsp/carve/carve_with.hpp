@@ -91,14 +91,14 @@ private:
         }
     }
 
-    double way(const Ends& last, std::size_t n) const noexcept {
+    double travel(const Ends& last, std::size_t n) const noexcept {
         const auto nodes = edge_.nodes();
         return std::max(glm::length(nodes[n].at - last.a), glm::length(nodes[n + 1].at - last.b));
     }
 
     double moved_since(const std::vector<Ends>& last) const noexcept {
         double most = 0.0;
-        for (std::size_t n = 0; n < last.size(); ++n) most = std::max(most, way(last[n], n));
+        for (std::size_t n = 0; n < last.size(); ++n) most = std::max(most, travel(last[n], n));
         return most;
     }
 
@@ -126,7 +126,7 @@ private:
             const EdgeNode &a = nodes[n], &b = nodes[n + 1];
             if (a.fresh) cut_[n].a = deep_[n].a = a.at;
             if (b.fresh) cut_[n].b = deep_[n].b = b.at;
-            const double moved = way(cut_[n], n);
+            const double moved = travel(cut_[n], n);
             const double clear = radius + moved + edge_.pitch() + voxel_;
             const bool near = field.value(a.at) < clear || field.value(b.at) < clear;
             spans[n].fresh = a.fresh || b.fresh;
@@ -157,7 +157,7 @@ private:
         std::size_t worst = deep_.size();
         double most = 0.25 * voxel_;
         for (std::size_t n = 0; n < deep_.size(); ++n) {
-            const double moved = way(deep_[n], n);
+            const double moved = travel(deep_[n], n);
             if (moved > most) {
                 most = moved;
                 worst = n;
@@ -230,8 +230,8 @@ private:
     /// What lies behind an edge that moves on is nearer to where the edge was, and was kept up then: how far against y
     /// new values can come, within `reach`, is a matter of how much the way turns aside.
     static double behind(const SweptSpan& s, double reach) noexcept {
-        const auto of = [reach](const Vec3& way) {
-            return way.y > 0.0 ? reach * (std::abs(way.x) + std::abs(way.z)) / way.y : reach;
+        const auto of = [reach](const Vec3& direction) {
+            return direction.y > 0.0 ? reach * (std::abs(direction.x) + std::abs(direction.z)) / direction.y : reach;
         };
         return std::max(of(s.a1 - s.a0), of(s.b1 - s.b0));
     }

@@ -122,9 +122,9 @@ private:
         }
     }
 
-    static double nearest_on(const Vec3& from, const Vec3& way, const Vec3& p) noexcept {
-        const double squared_length = glm::dot(way, way);
-        return squared_length > 1e-18 ? std::clamp(glm::dot(p - from, way) / squared_length, 0.0, 1.0) : 1.0;
+    static double nearest_on(const Vec3& from, const Vec3& displacement, const Vec3& p) noexcept {
+        const double squared_length = glm::dot(displacement, displacement);
+        return squared_length > 1e-18 ? std::clamp(glm::dot(p - from, displacement) / squared_length, 0.0, 1.0) : 1.0;
     }
 
     /// Alternates between the two directions of the sheet; each projection can only come nearer.

@@ -27,7 +27,7 @@ Pose normalised(const Pose& pose) noexcept { return {pose.position, glm::normali
 struct Relation {
     const Pointshell* shell = nullptr;
     const Voxmap* map = nullptr;
-    Mat3 turn{1.0}, to_world{1.0};  // shell to map, map to world
+    Mat3 rotation{1.0}, to_world{1.0};  // shell to map, map to world
     Vec3 shift{0.0};  // of the shell's origin, map frame
     Vec3 about{0.0};  // map frame
     double sign = 1.0;
@@ -37,7 +37,7 @@ struct Relation {
         : shell(pair.shell), map(pair.map), sign(pair.shell_moves ? 1.0 : -1.0) {
         const Pose map_pose = normalised(pair.map_pose);
         const Pose into_map = map_pose.inverse() * normalised(pair.shell_pose);
-        turn = glm::mat3_cast(into_map.orientation);
+        rotation = glm::mat3_cast(into_map.orientation);
         shift = into_map.position;
         to_world = glm::mat3_cast(map_pose.orientation);
         about = map_pose.inverse().apply(world_about);
@@ -45,7 +45,7 @@ struct Relation {
 
     /// No point of the node reads less than this.
     double clearance(const ShellNode& node) const noexcept {
-        return map->least_within(shift + turn * node.centre, node.radius);
+        return map->least_within(shift + rotation * node.centre, node.radius);
     }
 
     kernel::PairFrame frame(const ContactLaw& law, ContactParts parts) const noexcept {
@@ -59,8 +59,8 @@ struct Relation {
             frame.spacing[axis] = static_cast<float>(grid.spacing[axis]);
             frame.per_spacing[axis] = static_cast<float>(1.0 / grid.spacing[axis]);
             for (int c = 0; c < 3; ++c) {
-                frame.turn[3 * axis + c] = static_cast<float>(turn[c][axis]);
-                frame.cells[3 * axis + c] = static_cast<float>(turn[c][axis] / grid.spacing[axis]);
+                frame.rotation[3 * axis + c] = static_cast<float>(rotation[c][axis]);
+                frame.cells[3 * axis + c] = static_cast<float>(rotation[c][axis] / grid.spacing[axis]);
             }
         }
         frame.stiffness = static_cast<float>(law.stiffness);
@@ -77,7 +77,7 @@ struct Relation {
     kernel::ChunkFrame chunk(std::size_t n) const noexcept {
         const ShellNode& node = shell->nodes[n];
         const volume::Grid& grid = map->grid;
-        const Vec3 centre = shift + turn * node.centre, at = (centre - grid.origin) / grid.spacing;
+        const Vec3 centre = shift + rotation * node.centre, at = (centre - grid.origin) / grid.spacing;
         kernel::ChunkFrame frame;
         frame.chunk = &shell->chunks[n];
         frame.rows = (node.held + kernel::lanes - 1) / kernel::lanes;

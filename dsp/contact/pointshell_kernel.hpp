@@ -28,7 +28,7 @@ struct PairFrame {
     const float* values = nullptr;  ///< of the voxmap
     std::ptrdiff_t row = 0, plane = 0;  ///< samples from one to the next along y and z
     int size[3] = {};
-    float turn[9] = {};  ///< rows of the rotation from shell to map
+    float rotation[9] = {};  ///< rows of the rotation from shell to map
     float cells[9] = {};  ///< the same, in cells per metre
     float spacing[3] = {}, per_spacing[3] = {};  ///< m and 1/m
     float stiffness = 0.0f;  ///< k

@@ -56,9 +56,9 @@ HWY_INLINE bool respond(const PairFrame& pair, const ChunkFrame& at, const Place
     if (pair.by_normal) {
         const ShellChunk& c = *at.chunk;
         const V x = hn::Neg(load(c.nx + l)), y = hn::Neg(load(c.ny + l)), z = hn::Neg(load(c.nz + l));
-        nx = dot(pair.turn, x, y, z);
-        ny = dot(pair.turn + 3, x, y, z);
-        nz = dot(pair.turn + 6, x, y, z);
+        nx = dot(pair.rotation, x, y, z);
+        ny = dot(pair.rotation + 3, x, y, z);
+        nz = dot(pair.rotation + 6, x, y, z);
     }
     const auto lever = [&](const float* place, std::size_t axis) HWY_ATTR {
         return hn::Add(hn::Mul(load(place + l), hn::Set(d, pair.spacing[axis])), hn::Set(d, at.lever[axis]));

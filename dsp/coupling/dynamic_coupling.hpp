@@ -50,7 +50,7 @@ public:
         const auto angular = s.springs.angular(turn_);
         // (M/h² + D/h + K) δ = M v/h + D v_hand − forces, for the way δ of this tick.
         geometry::Matrix6 k = state_.contact.stiffness;
-        geometry::Vector6 push{}, way{};
+        geometry::Vector6 push{}, displacement{};
         for (int i = 0; i < 3; ++i) {
             const auto n = static_cast<std::size_t>(i);
             k[7 * n] += s.mass / (h * h) + s.damping / h + linear.curvature;
@@ -60,14 +60,15 @@ public:
             push[n + 3] = s.inertia / h * state_.twist.angular[i] + s.angular_damping * drive.angular[i] -
                           angular.force[i] - state_.contact.gradient[n + 3];
         }
-        if (!geometry::solve_symmetric6(k, push, way)) state_.twist = {};
-        const double length =
-            std::hypot(way[0], way[1], way[2]) + std::hypot(way[3], way[4], way[5]) * std::max(s.reach, 1e-6);
+        if (!geometry::solve_symmetric6(k, push, displacement)) state_.twist = {};
+        const double length = std::hypot(displacement[0], displacement[1], displacement[2]) +
+                              std::hypot(displacement[3], displacement[4], displacement[5]) * std::max(s.reach, 1e-6);
         if (length > s.step) {
             const double free = std::max(0.0, static_cast<double>(contact.clearance(state_.proxy)));
-            for (double& w : way) w *= std::min(1.0, (s.step + free) / length);
+            for (double& w : displacement) w *= std::min(1.0, (s.step + free) / length);
         }
-        const Vec3 v(way[0], way[1], way[2]), w(way[3], way[4], way[5]);
+        const Vec3 v(displacement[0], displacement[1], displacement[2]),
+            w(displacement[3], displacement[4], displacement[5]);
         state_.proxy.position += v;
         state_.proxy.orientation = glm::normalize(rotation_by(w) * state_.proxy.orientation);
         state_.twist = {v / h, w / h};

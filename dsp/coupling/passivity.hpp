@@ -26,19 +26,19 @@ public:
     /// is known exactly by where the hand went. With `control`, a damper of at most `most_damping` along the hand's
     /// movement takes back what is missing.
     Value operator()(const Wrench& wrench, const Pose& hand, double h, bool control, double most_damping) noexcept {
-        Vec3 way(0.0);
+        Vec3 translation(0.0);
         if (is_valid(hand)) {
             if (started_) {
-                way = hand.position - last_.position;
-                const Vec3 turn = rotation_between(last_.orientation, hand.orientation);
-                const double energy = energy_ - glm::dot(held_.force, way) - glm::dot(held_.torque, turn);
+                translation = hand.position - last_.position;
+                const Vec3 rotation = rotation_between(last_.orientation, hand.orientation);
+                const double energy = energy_ - glm::dot(held_.force, translation) - glm::dot(held_.torque, rotation);
                 if (std::isfinite(energy)) energy_ = energy;
             }
             last_ = hand;
             started_ = true;
         }
         Value now{wrench, energy_, 0.0};
-        const Vec3 velocity = way / h;
+        const Vec3 velocity = translation / h;
         const double speed2 = glm::dot(velocity, velocity);
         if (control && energy_ < 0.0 && speed2 > slowest * slowest) {
             now.damping = std::min(-energy_ / (h * speed2), most_damping);

@@ -100,9 +100,10 @@ void ProxySurface::touched(const Vec3& at, const ProxyShape& shape, ProxyPlanes&
     }
 }
 
-double ProxySurface::free_way(const Vec3& at, const Vec3& way, double length, const ProxyShape& shape) const noexcept {
+double ProxySurface::free_distance(const Vec3& at, const Vec3& direction, double length,
+                                   const ProxyShape& shape) const noexcept {
     const Pose back = pose.inverse();
-    const Vec3 from = back.apply(at), along = back.rotate(way) * length;
+    const Vec3 from = back.apply(at), along = back.rotate(direction) * length;
     const double share = triangles->sweep(from, along, shape.radius);
     if (!(share < 1.0)) return length;
     // A little less, so that the next move does not begin within reach; never less than half.

@@ -40,8 +40,8 @@ struct ProxySurface {
     double stride(const ProxyShape& shape) const noexcept;
     /// Planes of all triangles that a ball at `at` touches.
     void touched(const Vec3& at, const ProxyShape& shape, ProxyPlanes& into) const noexcept;
-    /// How far a ball may go along the unit vector `way` before it touches a triangle, m; at most `length`.
-    double free_way(const Vec3& at, const Vec3& way, double length, const ProxyShape& shape) const noexcept;
+    /// How far a ball may go along the unit vector `direction` before it touches a triangle, m; at most `length`.
+    double free_distance(const Vec3& at, const Vec3& direction, double length, const ProxyShape& shape) const noexcept;
 };
 
 inline constexpr double proxy_hover = 1e-7;  ///< m: how far off a surface a proxy is held

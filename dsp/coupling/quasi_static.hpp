@@ -66,7 +66,7 @@ public:
     void reset(const Pose& hand) noexcept {
         state_ = {};
         state_.proxy = hand_ = is_valid(hand) ? hand : hand_;
-        turn_ = Vec3(0.0);
+        rotation_ = Vec3(0.0);
         curvature_.forget();
     }
 
@@ -78,7 +78,7 @@ public:
         left_ = settings.slip;
         if (state_.hand_is_valid) {
             const Pose now{hand.position, glm::normalize(hand.orientation)};
-            left_ += way_of(now.position - hand_.position, rotation_between(hand_.orientation, now.orientation));
+            left_ += travel_of(now.position - hand_.position, rotation_between(hand_.orientation, now.orientation));
             hand_ = now;
         }
         state_.iterations = 0;
@@ -97,7 +97,7 @@ public:
         state_.residual = residual(now);
         state_.energy = now.energy;
         state_.contact = now.contact;
-        turn_ = now.turn;
+        rotation_ = now.rotation;
         state_.wrench = {now.linear.force, now.angular.force};
         // A scene that is no scene: better no force than a wrong one.
         if (!std::isfinite(now.energy) || !is_finite(state_.wrench)) state_.wrench = {};
@@ -108,7 +108,7 @@ private:
     struct Balance {
         contact::ContactSum contact;
         SaturatedSpring::Value linear, angular;
-        Vec3 turn{0.0};
+        Vec3 rotation{0.0};
         double energy = 0.0;
         geometry::Vector6 gradient{};
     };
@@ -118,9 +118,9 @@ private:
         Balance b;
         b.contact = contact(proxy, contact::ContactParts::all);
         ++state_.evaluations;
-        b.turn = rotation_near(hand_.orientation, proxy.orientation, turn_);
+        b.rotation = rotation_near(hand_.orientation, proxy.orientation, rotation_);
         b.linear = settings.springs.linear(proxy.position - hand_.position);
-        b.angular = settings.springs.angular(b.turn);
+        b.angular = settings.springs.angular(b.rotation);
         b.energy = b.contact.energy + b.linear.energy + b.angular.energy;
         for (int i = 0; i < 3; ++i) {
             const auto n = static_cast<std::size_t>(i);
@@ -154,7 +154,7 @@ private:
     bool improve(Balance& now, Contact& contact) noexcept {
         const geometry::Matrix6 known = stiffness(now);
         if (now.contact.in_contact == 0) curvature_.forget();
-        turn_ = now.turn;
+        rotation_ = now.rotation;
         Step step;
         if (curvature_.is_trusted()) {
             if (!find_step(step, curvature_.added_to(known), now, contact)) curvature_.forget();
@@ -164,14 +164,14 @@ private:
         if (!find_step(step, known, now, contact)) return false;
         for (int halving = 0; halving <= most_halvings && may_evaluate(); ++halving) {
             if (try_step(step, known, now, contact)) return true;
-            for (double& s : step.way) s *= 0.5;
+            for (double& s : step.displacement) s *= 0.5;
             step.slope *= 0.5;
         }
         return false;
     }
 
     struct Step {
-        geometry::Vector6 way{};
+        geometry::Vector6 displacement{};
         double slope = 0.0;  ///< of the energy along it, J
     };
 
@@ -180,45 +180,45 @@ private:
     bool find_step(Step& step, const geometry::Matrix6& k, const Balance& now, Contact& contact) const noexcept {
         geometry::Vector6 down{};
         for (std::size_t i = 0; i < 6; ++i) down[i] = -now.gradient[i];
-        if (!geometry::solve_symmetric6(k, down, step.way)) return false;
-        limit(step.way, contact);
+        if (!geometry::solve_symmetric6(k, down, step.displacement)) return false;
+        limit(step.displacement, contact);
         step.slope = 0.0;
-        for (std::size_t i = 0; i < 6; ++i) step.slope += now.gradient[i] * step.way[i];
+        for (std::size_t i = 0; i < 6; ++i) step.slope += now.gradient[i] * step.displacement[i];
         return step.slope < 0.0;
     }
 
     /// Takes the step if it lowers the energy enough (Armijo 1966).
     template <class Contact>
     bool try_step(const Step& step, const geometry::Matrix6& known, Balance& now, Contact& contact) noexcept {
-        const Pose trial = moved(state_.proxy, step.way);
+        const Pose trial = moved(state_.proxy, step.displacement);
         const Balance there = balance(trial, contact);
         if (!(there.energy <= now.energy + 1e-4 * step.slope)) return false;
         geometry::Vector6 change{};
         for (std::size_t i = 0; i < 6; ++i) change[i] = there.gradient[i] - now.gradient[i];
-        curvature_.learn(step.way, change, known, std::max(settings.gyration, 1e-6));
+        curvature_.learn(step.displacement, change, known, std::max(settings.gyration, 1e-6));
         state_.proxy = trial;
         now = there;
-        left_ -= way_of(step.way);
+        left_ -= travel_of(step.displacement);
         return true;
     }
 
     /// m: no point of the body moves farther by this.
-    double way_of(const Vec3& shift, const Vec3& turn) const noexcept {
+    double travel_of(const Vec3& shift, const Vec3& rotation) const noexcept {
         return std::hypot(shift.x, shift.y, shift.z) +
-               std::hypot(turn.x, turn.y, turn.z) * std::max(settings.reach, 1e-6);
+               std::hypot(rotation.x, rotation.y, rotation.z) * std::max(settings.reach, 1e-6);
     }
-    double way_of(const geometry::Vector6& step) const noexcept {
-        return way_of(Vec3(step[0], step[1], step[2]), Vec3(step[3], step[4], step[5]));
+    double travel_of(const geometry::Vector6& step) const noexcept {
+        return travel_of(Vec3(step[0], step[1], step[2]), Vec3(step[3], step[4], step[5]));
     }
 
     template <class Contact>
     void limit(geometry::Vector6& step, Contact& contact) const noexcept {
-        const double way = way_of(step);
+        const double travel = travel_of(step);
         double most = left_;
-        if (way > settings.step)
+        if (travel > settings.step)
             most = std::min(most, settings.step + std::max(0.0, static_cast<double>(contact.clearance(state_.proxy))));
-        if (!(way > most)) return;
-        const double share = most / way;
+        if (!(travel > most)) return;
+        const double share = most / travel;
         for (double& s : step) s *= share;
     }
 
@@ -232,7 +232,7 @@ private:
     LearnedCurvature curvature_;
     QuasiStaticState state_;
     Pose hand_;
-    Vec3 turn_{0.0};
+    Vec3 rotation_{0.0};
     double left_ = 0.0;  // m that the points may still move in this tick
 };
 

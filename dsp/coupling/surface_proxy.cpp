@@ -48,7 +48,7 @@ Vec3 SurfaceProxy::settle(Vec3 at, std::span<const ProxySurface> surfaces) const
             const double length = glm::length(out);
             double free = length;
             for (const ProxySurface& other : surfaces)
-                if (other.triangles) free = other.free_way(at, out / length, free, shape_);
+                if (other.triangles) free = other.free_distance(at, out / length, free, shape_);
             at += out * (free / length);
             moved = true;
         }
@@ -80,14 +80,14 @@ Vec3 SurfaceProxy::lead(Vec3 from, const Vec3& goal, std::span<const ProxySurfac
         const Vec3 target = nearest_within(wanted, from, here.planes.all());
         const double length = glm::length(target - from);
         if (!(length > settled)) break;
-        const Vec3 way = (target - from) / length;
+        const Vec3 direction = (target - from) / length;
         double free = length * share;
         for (std::size_t i = 0; i < surfaces.size(); ++i) {
             if (!surfaces[i].is_exact(shape_))
                 free = std::min(free, std::max(here.levels[i].room, share * surfaces[i].stride(shape_)));
-            if (surfaces[i].triangles) free = surfaces[i].free_way(from, way, free, shape_);
+            if (surfaces[i].triangles) free = surfaces[i].free_distance(from, direction, free, shape_);
         }
-        const Vec3 next = settle(from + way * free, surfaces);
+        const Vec3 next = settle(from + direction * free, surfaces);
         const View there = look(next, surfaces);
         const bool gets_out = here.deepest > proxy_touch && there.deepest < here.deepest;
         const bool gets_near = glm::length(next - wanted) < glm::length(from - wanted) - 1e-3 * settled;

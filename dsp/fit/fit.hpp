@@ -30,7 +30,7 @@ std::string_view name_of(FitVerdict verdict);
 
 /// A motion that the fit does not hold.
 struct FreeDirection {
-    bool is_turn = false;
+    bool is_rotation = false;
     Vec3 axis{0.0};  ///< unit, fixed frame; of a turn about the moving paint's middle
 };
 

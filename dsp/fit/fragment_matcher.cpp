@@ -66,10 +66,10 @@ public:
         for (std::size_t k = 0; k < pairs_.size(); ++k) {
             const Pair& pair = pairs_[k];
             const Face &m = matcher_.faces_[pair.moving], &f = matcher_.faces_[pair.fixed];
-            const contact::ContactSum one =
-                carried(matcher_.energies_[k](matcher_.centres(pair, body(at), poses_), parts),
-                        glm::mat3_cast(poses_[static_cast<std::size_t>(f.fragment)].orientation),
-                        at.rotate(m.surface.centre - centre_), std::min(m.surface.area, f.surface.area) * 1e4);
+            const contact::ContactSum one = adjoint_transform(
+                matcher_.energies_[k](matcher_.centres(pair, body(at), poses_), parts),
+                glm::mat3_cast(poses_[static_cast<std::size_t>(f.fragment)].orientation),
+                at.rotate(m.surface.centre - centre_), std::min(m.surface.area, f.surface.area) * 1e4);
             all.energy += one.energy;
             for (std::size_t n = 0; n < 6; ++n) all.gradient[n] += one.gradient[n];
             for (std::size_t n = 0; n < 36; ++n) all.stiffness[n] += one.stiffness[n];

@@ -48,10 +48,11 @@ PointRegistration register_points(std::span<const contact::SurfacePoint> moving,
         }
         matches.resize(moving.size());
         if (!geometry::solve_symmetric6(k, push, step)) break;
-        const Vec3 way(step[0], step[1], step[2]), turn = 1e3 * Vec3(step[3], step[4], step[5]);
-        const Quat spin = rotation_by(turn);
-        made.pose = {centre + way + spin * (made.pose.position - centre), glm::normalize(spin * made.pose.orientation)};
-        if (glm::length(way) < 1e-7 && glm::length(turn) < 1e-6) break;
+        const Vec3 translation(step[0], step[1], step[2]), rotation = 1e3 * Vec3(step[3], step[4], step[5]);
+        const Quat spin = rotation_by(rotation);
+        made.pose = {centre + translation + spin * (made.pose.position - centre),
+                     glm::normalize(spin * made.pose.orientation)};
+        if (glm::length(translation) < 1e-7 && glm::length(rotation) < 1e-6) break;
     }
     std::vector<double> to_points, to_surface;
     for (const contact::SurfacePoint& p : moving) {

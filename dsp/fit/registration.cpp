@@ -109,10 +109,10 @@ Pose anneal(const std::vector<contact::SurfacePoint>& moving, const Registration
         for (double& entry : k) entry *= 1e6 / greatest;
         for (double& entry : push) entry *= 1e6 / greatest;
         if (!geometry::solve_symmetric6(k, push, step)) break;
-        const Vec3 way(step[0], step[1], step[2]), turn(step[3], step[4], step[5]);
-        const Quat spin = rotation_by(turn);
-        pose = {centre + way + spin * (pose.position - centre), glm::normalize(spin * pose.orientation)};
-        if (stage > settings.stages && glm::length(way) + glm::length(turn) * spread.gyration < 1e-8) break;
+        const Vec3 translation(step[0], step[1], step[2]), rotation(step[3], step[4], step[5]);
+        const Quat spin = rotation_by(rotation);
+        pose = {centre + translation + spin * (pose.position - centre), glm::normalize(spin * pose.orientation)};
+        if (stage > settings.stages && glm::length(translation) + glm::length(rotation) * spread.gyration < 1e-8) break;
     }
     return pose;
 }
@@ -221,8 +221,9 @@ Registration register_from_anywhere(std::span<const contact::SurfacePoint> movin
         Mat3 axes = to.axes;
         if (n & 1) axes[0] = -axes[0], axes[1] = -axes[1];
         const Quat about = glm::angleAxis(2.0 * std::numbers::pi * (n / 2) / 12.0, to.axes[0]);
-        const Quat turn = glm::normalize(about * glm::quat_cast(axes * glm::transpose(from.axes)));
-        const Registration found = register_surface(moving, fixed, {to.middle - turn * from.middle, turn}, coarse);
+        const Quat rotation = glm::normalize(about * glm::quat_cast(axes * glm::transpose(from.axes)));
+        const Registration found =
+            register_surface(moving, fixed, {to.middle - rotation * from.middle, rotation}, coarse);
         if (n == 0 || found.median < best.median) best = found;
     }
     return register_surface(moving, fixed, best.pose, settings);

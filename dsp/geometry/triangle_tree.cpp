@@ -25,14 +25,14 @@ double distance2(const Vec3& p, const Vec3& low, const Vec3& high) {
 }
 
 /// True when the segment a + t (b − a), 0 ≤ t ≤ most, meets the box.
-bool meets(const Vec3& a, const Vec3& way, double most, const Vec3& low, const Vec3& high) {
+bool meets(const Vec3& a, const Vec3& translation, double most, const Vec3& low, const Vec3& high) {
     double from = 0.0, to = most;
     for (int axis = 0; axis < 3; ++axis) {
-        if (way[axis] == 0.0) {
+        if (translation[axis] == 0.0) {
             if (a[axis] < low[axis] || a[axis] > high[axis]) return false;
             continue;
         }
-        const double t0 = (low[axis] - a[axis]) / way[axis], t1 = (high[axis] - a[axis]) / way[axis];
+        const double t0 = (low[axis] - a[axis]) / translation[axis], t1 = (high[axis] - a[axis]) / translation[axis];
         from = std::max(from, std::min(t0, t1));
         to = std::min(to, std::max(t0, t1));
     }
@@ -206,7 +206,7 @@ std::size_t TriangleTree::all_near(const Vec3& p, double within, std::span<Near>
     return count;
 }
 
-double TriangleTree::sweep(const Vec3& from, const Vec3& way, double radius) const noexcept {
+double TriangleTree::sweep(const Vec3& from, const Vec3& translation, double radius) const noexcept {
     double first = 1.0;
     if (nodes_.empty()) return first;
     std::uint32_t stack[most_levels];
@@ -215,10 +215,10 @@ double TriangleTree::sweep(const Vec3& from, const Vec3& way, double radius) con
     while (depth > 0) {
         const std::uint32_t at = stack[--depth];
         const Node& node = nodes_[at];
-        if (!meets(from, way, first, node.low - Vec3(radius), node.high + Vec3(radius))) continue;
+        if (!meets(from, translation, first, node.low - Vec3(radius), node.high + Vec3(radius))) continue;
         for (std::uint32_t t = node.first; t < node.first + node.count; ++t) {
             const Vec3* c = &corners_[3 * std::size_t(t)];
-            first = std::min(first, ball_meets(from, way, radius, c[0], c[1], c[2]));
+            first = std::min(first, ball_meets(from, translation, radius, c[0], c[1], c[2]));
         }
         if (node.count > 0) continue;
         stack[depth++] = node.first;

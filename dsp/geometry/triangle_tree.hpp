@@ -27,9 +27,9 @@ public:
     Near nearest(const Vec3& p, double within = std::numeric_limits<double>::infinity()) const noexcept;
     /// Points of triangles nearer than `within`, one per triangle, in the order of the tree, until `found` is full.
     std::size_t all_near(const Vec3& p, double within, std::span<Near> found) const noexcept;
-    /// Share of the way from `from` to `from` + `way` at which a ball first touches a triangle that it does not leave,
+    /// Share of the way from `from` to `from` + `translation` at which a ball first touches a triangle that it does not leave,
     /// 0 to 1; 1 when it touches none.
-    double sweep(const Vec3& from, const Vec3& way, double radius) const noexcept;
+    double sweep(const Vec3& from, const Vec3& translation, double radius) const noexcept;
 
     std::size_t size() const noexcept { return corners_.size() / 3; }
 
