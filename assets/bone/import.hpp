@@ -64,7 +64,7 @@ using ImportProgress = std::function<void(double, std::string_view)>;
 Bone import_bone(const ImportOptions& options, const ImportProgress& progress = {}, ImportSummary* summary = nullptr);
 
 /// The same straight into a bone file. A CT then takes memory for a few of its layers and for what lies near the bone, not
-/// for all of it; see LpsLayers for files that cannot be read layer by layer.
+/// for all of it; see ReorientedVolume for files that cannot be read layer by layer.
 ImportSummary import_bone_file(const ImportOptions& options, const std::filesystem::path& out,
                                const ImportProgress& progress = {});
 

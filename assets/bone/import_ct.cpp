@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/from_hu.hpp"
 #include "assets/bone/import_steps.hpp"
-#include "assets/volume/lps_layers.hpp"
+#include "assets/volume/reoriented_volume.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/volume/resample.hpp"
 #include "dsp/volume/grid_part.hpp"
+#include "dsp/volume/resample.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -98,7 +98,7 @@ SparseImport import_ct(const ImportOptions& options, const ImportReport& report,
     report(0.0, "reading");
     const std::unique_ptr<volume::SliceReader> reader = volume::open_volume(options.input, {options.series});
     volume::ScanVolume& about = reader->about;
-    volume::LpsLayers source(*reader, options.run);
+    volume::ReorientedVolume source(*reader, options.run);
     source.set_line(options.rescale);
     const auto check = [&] {
         source.settle();
@@ -120,10 +120,11 @@ SparseImport import_ct(const ImportOptions& options, const ImportReport& report,
         constexpr int at_once = 16;
         volume::Grid all;
         for (int k = first; k < first + count; k += at_once) {
-            const volume::LayerRange wanted{k, std::min(at_once, first + count - k)}, from = volume::layers_for(ct, layout, wanted);
-            volume::Grid part =
-                volume::window_of(volume::resampled_layers(source.layers(from.first, from.count), ct, layout, wanted, options.run),
-                          window.low, window.high);
+            const volume::LayerRange wanted{k, std::min(at_once, first + count - k)},
+                from = volume::layers_for(ct, layout, wanted);
+            volume::Grid part = volume::window_of(
+                volume::resampled_layers(source.layers(from.first, from.count), ct, layout, wanted, options.run),
+                window.low, window.high);
             if (all.values.empty()) {
                 all = std::move(part);
                 all.values.reserve(static_cast<std::size_t>(count) * all.index(0, 0, 1));

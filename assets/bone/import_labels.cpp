@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/bone/import_steps.hpp"
 #include "assets/bone/labels.hpp"
-#include "assets/volume/lps_layers.hpp"
+#include "assets/volume/reoriented_volume.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/volume/components.hpp"
 
@@ -20,12 +20,13 @@ namespace {
 
 // Those of the map that `wanted` means: "all", a number, or a name that the file gives.
 std::vector<volume::Segment> choose_segments(const std::string& wanted, const std::vector<int>& labels,
-                                     const std::vector<volume::Segment>& named, const std::string& file) {
+                                             const std::vector<volume::Segment>& named, const std::string& file) {
     if (labels.empty()) throw Error(fmt::format("{}: every voxel is 0; there is no label", file));
     std::vector<volume::Segment> all;
     std::vector<std::string> names;
     for (const int label : labels) {
-        const auto known = std::find_if(named.begin(), named.end(), [&](const volume::Segment& s) { return s.label == label; });
+        const auto known =
+            std::find_if(named.begin(), named.end(), [&](const volume::Segment& s) { return s.label == label; });
         all.push_back(known != named.end() ? *known : volume::Segment{label, "", {}});
         // A name that another label has already would not tell them apart.
         if (all.back().name.empty() || std::count(names.begin(), names.end(), all.back().name) > 0)
@@ -47,7 +48,7 @@ std::size_t pieces_of(volume::Grid distance) {
 constexpr double air_around = 5e-3;  // m
 
 // The samples at the ends of each label.
-std::map<int, volume::Components::Box> boxes_of(volume::LpsLayers& source) {
+std::map<int, volume::Components::Box> boxes_of(volume::ReorientedVolume& source) {
     constexpr int at_once = 16;
     const auto& size = source.layout().size;
     std::map<int, volume::Components::Box> boxes;
@@ -91,7 +92,8 @@ std::vector<int> labels_of(const volume::Tally& tally, const std::string& file) 
 }
 
 // Samples of `source` around those of `box`, which count on `layout`; `more` samples beyond the air that a bone is given.
-volume::Grid part_around(volume::LpsLayers& source, const volume::Grid& layout, const volume::Components::Box& box, int more) {
+volume::Grid part_around(volume::ReorientedVolume& source, const volume::Grid& layout,
+                         const volume::Components::Box& box, int more) {
     const volume::Grid& all = source.layout();
     std::array<int, 3> low{}, high{};
     for (int axis = 0; axis < 3; ++axis) {
@@ -114,7 +116,7 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
     const std::string file = options.input.string();
     report(0.0, "reading");
     const std::unique_ptr<volume::SliceReader> reader = volume::open_volume(options.input, {options.series});
-    volume::LpsLayers source(*reader, options.run);
+    volume::ReorientedVolume source(*reader, options.run);
     reader->about.kind = volume::VolumeKind::labels;
     if (source.is_turned()) source.settle();
     const std::map<int, volume::Components::Box> boxes = boxes_of(source);
@@ -124,7 +126,7 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
     LabelBone how;
     how.spacing = options.spacing;
     std::unique_ptr<volume::SliceReader> grey;
-    std::optional<volume::LpsLayers> ct;
+    std::optional<volume::ReorientedVolume> ct;
     volume::HuKind hu = volume::HuKind::none;
     if (!options.ct.empty()) {
         grey = volume::open_volume(options.ct);

@@ -8,8 +8,8 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
-#include "dsp/geometry/point_tree.hpp"
 #include "dsp/fit/faces.hpp"
+#include "dsp/geometry/point_tree.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -35,9 +35,9 @@ Vec3 middle_of(const std::vector<contact::SurfacePoint>& points) {
 }
 
 /// Turned about its middle and moved.
-Pose about(const Vec3& middle, const Vec3& way, const Vec3& turn) {
-    const Quat q = rotation_by(turn);
-    return {middle + way - q * middle, q};
+Pose about(const Vec3& middle, const Vec3& translation, const Vec3& rotation) {
+    const Quat q = rotation_by(rotation);
+    return {middle + translation - q * middle, q};
 }
 
 std::size_t samples_inside(const volume::Grid& solid) {
@@ -67,8 +67,8 @@ std::vector<std::vector<FacePoint>> paint_of(const BrokenMandible& broken) {
 
 /// How much of a piece's largest fitting face lies on what stands, in points; 0 when none touches it. A face that is
 /// covered as a whole shows its place better than a larger one that is not.
-double worth_of(const std::vector<FacePoint>& piece, const std::vector<FacePoint>& standing, const geometry::PointTree& tree,
-                double kerf) {
+double worth_of(const std::vector<FacePoint>& piece, const std::vector<FacePoint>& standing,
+                const geometry::PointTree& tree, double kerf) {
     struct Covered {
         std::size_t near = 0, touching = 0;
     };
@@ -76,11 +76,11 @@ double worth_of(const std::vector<FacePoint>& piece, const std::vector<FacePoint
     std::map<std::pair<std::size_t, std::size_t>, Covered> covered;
     for (const FacePoint& p : piece) {
         const FacePoint& other = standing[tree.nearest(p.position)];
-        const double apart = glm::length(p.position - other.position) - kerf;
-        if (!(apart < 0.7e-3 && glm::dot(p.normal, other.normal) < -0.6)) continue;
+        const double distance = glm::length(p.position - other.position) - kerf;
+        if (!(distance < 0.7e-3 && glm::dot(p.normal, other.normal) < -0.6)) continue;
         Covered& pair = covered[{p.face, other.face}];
         ++pair.near;
-        pair.touching += apart < 0.4e-3;
+        pair.touching += distance < 0.4e-3;
     }
     double most = 0.0;
     for (const auto& [pair, points] : covered) {
@@ -177,7 +177,8 @@ std::string script_of(const BrokenMandible& broken, const BrokenMandibleOptions&
     const auto& order = broken.order;
     std::vector<Vec3> standing;
     const auto stand = [&](std::size_t n) {
-        for (const contact::SurfacePoint& p : broken.fragments[n].points) standing.push_back(broken.truth[n].apply(p.position));
+        for (const contact::SurfacePoint& p : broken.fragments[n].points)
+            standing.push_back(broken.truth[n].apply(p.position));
     };
     stand(0);
     script.go(0.0, {middle_of(broken.fragments[order[0]].points), {1.0, 0.0, 0.0, 0.0}}, "");
@@ -189,11 +190,12 @@ std::string script_of(const BrokenMandible& broken, const BrokenMandibleOptions&
         script.go(0.6, grip, "");
         script.stay(0.1, "trigger");
         script.stay(0.1, "trigger");
-        const Vec3 way = way_in(broken.fragments[n].points, broken.truth[n], geometry::PointTree(standing), standing);
+        const Vec3 translation =
+            way_in(broken.fragments[n].points, broken.truth[n], geometry::PointTree(standing), standing);
         stand(n);
         // Off the table, before its place, and in.
         script.go(0.4, about(middle, Vec3(0.0, 25e-3, 0.0), Vec3(0.0)) * grip, "trigger");
-        script.go(0.8, about(place, 40e-3 * way, Vec3(0.0)) * beside * grip, "trigger");
+        script.go(0.8, about(place, 40e-3 * translation, Vec3(0.0)) * beside * grip, "trigger");
         script.go(0.6, beside * grip, "trigger");
         script.stay(0.2, "trigger");
         snap_and_settle(script);
@@ -228,9 +230,9 @@ BrokenMandible break_mandible(const bone::Bone& bone, const BrokenMandibleOption
         const volume::Grid& solid = solids[n];
         const Vec3 middle = solid.position(solid.size[0] / 2, solid.size[1] / 2, solid.size[2] / 2);
         // Laid out in rows before the bone.
-        const Vec3 to = centre + Vec3(36e-3 * (static_cast<double>(n % 4) - 1.5), -options.apart,
+        const Vec3 to = centre + Vec3(36e-3 * (static_cast<double>(n % 4) - 1.5), -options.distance,
                                       36e-3 * (static_cast<double>(n / 4) - 1.0));
-        const Pose placement = n == 0 ? Pose{} : about(middle, to - middle, options.turn * direction(random, 0));
+        const Pose placement = n == 0 ? Pose{} : about(middle, to - middle, options.rotation * direction(random, 0));
         bone::Bone fragment;
         fragment.distance = cases::scan_solid(solid, placement, {.seed = options.seed * 2003 + n});
         fragment.density = fragment.distance;
@@ -265,7 +267,7 @@ BrokenMandible break_mandible(const bone::Bone& bone, const BrokenMandibleOption
 }
 
 cases::CasePlan plan_of(const BrokenMandible& broken, const std::vector<std::string>& files,
-                 const std::vector<std::uint64_t>& hashes) {
+                        const std::vector<std::uint64_t>& hashes) {
     cases::CasePlan plan;
     plan.title = "A mandible in twelve pieces";
     for (std::size_t n = 0; n < broken.fragments.size(); ++n)

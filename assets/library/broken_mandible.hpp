@@ -17,8 +17,8 @@ struct BrokenMandibleOptions {
     double chips = 0.15;        ///< share of each fracture's area
     double kerf = 0.0;          ///< m
     int missing = 0;            ///< so many of the smallest pieces are lost
-    double apart = 100e-3;      ///< m, how far before the bone the pieces are laid out
-    double turn = 0.5;          ///< rad, how far they are turned
+    double distance = 100e-3;      ///< m, how far before the bone the pieces are laid out
+    double rotation = 0.5;          ///< rad, how far they are turned
     double error = 5e-3, error_turn = 0.17453292519943295;  ///< m, rad: where the hand stops beside a piece's place
 };
 
@@ -42,6 +42,6 @@ BrokenMandible break_mandible(const bone::Bone& bone, const BrokenMandibleOption
 
 /// The plan of the case as it is scanned, for fragments in files of their names; the first one is locked.
 cases::CasePlan plan_of(const BrokenMandible& broken, const std::vector<std::string>& files,
-                 const std::vector<std::uint64_t>& hashes);
+                        const std::vector<std::uint64_t>& hashes);
 
 }  // namespace tactus::library

@@ -4,7 +4,7 @@
 #include "assets/sound/sound_reader.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
-#include "dsp/signal/filter/even_out.hpp"
+#include "dsp/signal/filter/regularise.hpp"
 
 #include <fmt/format.h>
 
@@ -72,7 +72,7 @@ RecordReader::RecordReader(const std::filesystem::path& path, const table::LogSe
     } else {
         const table::SampleLog log = table::load_sample_log(path, selection);
         try {
-            source_->even = signal::even_out(log.times, log.columns);
+            source_->even = signal::regularise(log.times, log.columns);
         } catch (const Error& error) {
             throw Error(fmt::format("{}: {}", path.string(), error.message()));
         }

@@ -196,9 +196,9 @@ private:
 };
 
 // Evenly spaced slices from four of the file each: a cubic with the slopes of a parabola.
-class Evened {
+class ResampledSlices {
 public:
-    Evened(const Slices& slices, std::size_t each) : h_(slices.height), each_(each) {}
+    ResampledSlices(const Slices& slices, std::size_t each) : h_(slices.height), each_(each) {}
 
     void read(double height, Samples& samples, std::span<float> out) {
         const auto above = std::upper_bound(h_.begin() + 1, h_.end() - 1, height);
@@ -294,12 +294,12 @@ public:
         if (first.is_inverted)
             about.notes.push_back("MONOCHROME1: meant to be shown inverted; its values are taken as they are");
         samples_.emplace(slices_, slice_size());
-        evened_.emplace(slices_, slice_size());
+        resampled_.emplace(slices_, slice_size());
     }
 
     void read(int k, std::span<float> values) override {
         if (about.uniform) samples_->read(static_cast<std::size_t>(k), values);
-        else evened_->read(slices_.height.front() + k * gap_, *samples_, values);
+        else resampled_->read(slices_.height.front() + k * gap_, *samples_, values);
     }
 
     void settle(const Tally& tally) override {
@@ -315,7 +315,7 @@ private:
     Slices slices_;
     double gap_ = 0.0;  // mm
     std::optional<Samples> samples_;
-    std::optional<Evened> evened_;
+    std::optional<ResampledSlices> resampled_;
 };
 
 }  // namespace

@@ -70,7 +70,7 @@ ScanVolume read_volume(const std::filesystem::path& path, const ReadOptions& opt
 /// True for files and folders that read_volume would try; false for meshes, bones and everything else.
 bool is_volume_file(const std::filesystem::path& path);
 
-/// The same volume on axes of LPS, see LpsLayers.
+/// The same volume on axes of LPS, see ReorientedVolume.
 Grid lps_grid(ScanVolume volume);
 
 }  // namespace tactus::volume

@@ -28,13 +28,13 @@ double width_of(const std::string& text, bool bold = false) {
 /// Dimensions that follow a picture's, so that text is readable in large and small ones.
 double scale_for(int width, int height) { return std::clamp(std::min(width, height) / 600.0, 0.55, 4.0); }
 
-Image turn(Image image, Turned turned) {
+Image flipped(Image image, Flip flip) {
     const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
     std::uint8_t* const rgb = image.rgb.data();
-    if (turned == Turned::upside_down)
+    if (flip == Flip::upside_down)
         for (std::size_t y = 0; y < height / 2; ++y)
             std::swap_ranges(rgb + 3 * y * width, rgb + 3 * (y + 1) * width, rgb + 3 * (height - 1 - y) * width);
-    if (turned == Turned::left_right)
+    if (flip == Flip::left_right)
         for (std::size_t y = 0; y < height; ++y)
             for (std::size_t x = 0; x < width / 2; ++x)
                 std::swap_ranges(rgb + 3 * (y * width + x), rgb + 3 * (y * width + x + 1),
@@ -106,15 +106,15 @@ Image legend_image(const Legend& legend, double scale) {
     return figure.image(scale);
 }
 
-void add_legend(Image& image, const Legend& legend) { add_legend(image, legend, 0, image.width, Turned::none); }
+void add_legend(Image& image, const Legend& legend) { add_legend(image, legend, 0, image.width, Flip::none); }
 
-void add_legend(Image& image, const Legend& legend, int x, int width, Turned turned) {
+void add_legend(Image& image, const Legend& legend, int x, int width, Flip flip) {
     if (legend.empty()) return;
     const double scale = scale_for(width, image.height);
-    const Image box = turn(legend_image(legend, scale), turned);
+    const Image box = flipped(legend_image(legend, scale), flip);
     const int gap = static_cast<int>(margin * scale);
-    lay_over(image, box, turned == Turned::left_right ? x + width - box.width - gap : x + gap,
-             turned == Turned::upside_down ? gap : image.height - box.height - gap, 0.9);
+    lay_over(image, box, flip == Flip::left_right ? x + width - box.width - gap : x + gap,
+             flip == Flip::upside_down ? gap : image.height - box.height - gap, 0.9);
 }
 
 void add_scale_bar(Image& image, double metres_per_pixel) {

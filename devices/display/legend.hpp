@@ -3,8 +3,8 @@
 #pragma once
 
 #include "devices/display/offscreen.hpp"
-#include "dsp/geometry/brick_surface.hpp"
 #include "dsp/display/screen.hpp"
+#include "dsp/geometry/brick_surface.hpp"
 
 #include <string>
 #include <vector>
@@ -37,7 +37,7 @@ Image legend_image(const Legend& legend, double scale);
 /// Puts the legend into the lower left corner, a tenth of what is behind shining through.
 void add_legend(Image& image, const Legend& legend);
 /// The same in `width` columns from `x` on, in the corner that is the lower left one for who sees the picture.
-void add_legend(Image& image, const Legend& legend, int x, int width, Turned turned);
+void add_legend(Image& image, const Legend& legend, int x, int width, Flip flip);
 
 /// A bar of a round length in the lower right corner. `metres_per_pixel` holds at the depth of what is looked at.
 void add_scale_bar(Image& image, double metres_per_pixel);

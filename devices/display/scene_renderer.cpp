@@ -90,21 +90,20 @@ std::vector<DrawnView> views_of(const OrbitCamera& camera, const Bounds& scene, 
     return views_of(both, width, height, mode);
 }
 
-std::vector<DrawnView> views_of(std::span<const RigView> eyes, int width, int height, StereoMode mode, Turned turned) {
+std::vector<DrawnView> views_of(std::span<const RigView> eyes, int width, int height, StereoMode mode, Flip flip) {
     if (eyes.size() < 2 || mode == StereoMode::mono)
-        return {{eyes.front().projection, 0, 0, width, height, Channel::all, turned}};
+        return {{eyes.front().projection, 0, 0, width, height, Channel::all, flip}};
     const Projection &left = eyes[0].projection, &right = eyes[1].projection;
     const int half = width / 2;
     switch (mode) {
         case StereoMode::side_by_side:
-            return {{left, 0, 0, half, height, Channel::all, turned},
-                    {right, half, 0, width - half, height, Channel::all, turned}};
+            return {{left, 0, 0, half, height, Channel::all, flip},
+                    {right, half, 0, width - half, height, Channel::all, flip}};
         case StereoMode::anaglyph:
-            return {{left, 0, 0, width, height, Channel::red, turned},
-                    {right, 0, 0, width, height, Channel::cyan, turned}};
+            return {{left, 0, 0, width, height, Channel::red, flip}, {right, 0, 0, width, height, Channel::cyan, flip}};
         default:
-            return {{left, 0, 0, width, height, Channel::back_left, turned},
-                    {right, 0, 0, width, height, Channel::back_right, turned}};
+            return {{left, 0, 0, width, height, Channel::back_left, flip},
+                    {right, 0, 0, width, height, Channel::back_right, flip}};
     }
 }
 
@@ -201,8 +200,8 @@ void SceneRenderer::draw(const Picture& picture, std::span<const DrawnView> view
         if (view.channel == Channel::back_left) glDrawBuffer(GL_BACK_LEFT);
         if (view.channel == Channel::back_right) glDrawBuffer(GL_BACK_RIGHT);
         glColorMask(red, cyan, cyan, GL_TRUE);
-        const float across = view.turned == Turned::left_right ? -1.0f : 1.0f,
-                    upwards = view.turned == Turned::upside_down ? -1.0f : 1.0f;
+        const float across = view.flip == Flip::left_right ? -1.0f : 1.0f,
+                    upwards = view.flip == Flip::upside_down ? -1.0f : 1.0f;
         glViewport(view.x, view.y, view.width, view.height);
         glScissor(view.x, view.y, view.width, view.height);
         glDepthMask(GL_TRUE);

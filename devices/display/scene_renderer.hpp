@@ -32,7 +32,8 @@ inline constexpr double grain_of_motion = 4.0;
 /// Everything that is to be seen.
 struct Picture {
     std::vector<DrawnMesh> meshes;
-    std::vector<geometry::SurfaceVertex> points;  ///< dots that lie on top of what is less than 2 mm before them; normals unused
+    std::vector<geometry::SurfaceVertex>
+        points;  ///< dots that lie on top of what is less than 2 mm before them; normals unused
     double point_size = 7.0;  ///< pixels
     std::optional<Plane> clip;  ///< what is above it is taken away, and cut bodies show a flat section
     Vec3 section{0.72, 0.56, 0.46};  ///< sRGB of a section
@@ -49,7 +50,7 @@ struct DrawnView {
     Projection projection;
     int x = 0, y = 0, width = 0, height = 0;
     Channel channel = Channel::all;
-    Turned turned = Turned::none;  ///< light and background come from above for who sees it
+    Flip flip = Flip::none;  ///< light and background come from above for who sees it
 };
 
 /// The views of a camera: one, or two eyes `separation` m apart that meet at the camera's target. By default the eyes
@@ -58,7 +59,7 @@ std::vector<DrawnView> views_of(const OrbitCamera& camera, const Bounds& scene, 
                                 std::optional<double> separation = {});
 /// The views of a rig that shows one screen in the target: the projections of one eye, or of the left and the right one.
 std::vector<DrawnView> views_of(std::span<const RigView> eyes, int width, int height, StereoMode mode,
-                                Turned turned = Turned::none);
+                                Flip flip = Flip::none);
 
 /// What is seen at a place of the picture.
 struct Picked {

@@ -29,7 +29,9 @@ struct Following {
     double trigger_on = 0.0, trigger_off = 0.0;
     std::shared_ptr<const std::vector<Press>> presses;  // shared by the copy that `prepare` goes back to
 
-    simulate::Intention operator()(double h, const Wrench& force, const Pose& hand) noexcept { return moves(h, force, hand); }
+    simulate::Intention operator()(double h, const Wrench& force, const Pose& hand) noexcept {
+        return moves(h, force, hand);
+    }
     Pose start() const { return moves.start(); }
     std::uint32_t buttons() const noexcept {
         if (presses->empty()) return moves.time() >= trigger_on && moves.time() < trigger_off ? button_trigger : 0;
@@ -64,7 +66,8 @@ simulate::HandTarget read_target(std::string_view text) {
     target.time = parse_as(trimmed(text.substr(0, colon)), "s");
     target.pose.position = three(trimmed(place.substr(0, comma)), "0 0 0 mm");
     if (comma != std::string_view::npos)
-        target.pose.orientation = glm::normalize(coupling::rotation_xyz(three(trimmed(place.substr(comma + 1)), "0 0 0 deg")));
+        target.pose.orientation =
+            glm::normalize(coupling::rotation_xyz(three(trimmed(place.substr(comma + 1)), "0 0 0 deg")));
     return target;
 }
 
@@ -141,7 +144,7 @@ std::unique_ptr<HapticDevice> open_scripted(Options& options, const PathResolver
     read_script(options, resolve, targets, presses);
     simulate::HandWiggle wiggle;
     wiggle.amplitude = options.quantity("wiggle", "0 mm", "0 mm", "20 mm");
-    wiggle.turn = options.quantity("wiggle_turn", "0 deg", "0 deg", "45 deg");
+    wiggle.rotation = options.quantity("wiggle_turn", "0 deg", "0 deg", "45 deg");
     wiggle.rate = options.quantity("wiggle_rate", "1.5 Hz", "0 Hz", "10 Hz");
     const double on = options.quantity("trigger_on", "0 s", "0 s"),
                  off = options.quantity("trigger_off", "1e9 s", "0 s");

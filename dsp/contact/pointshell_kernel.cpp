@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-// Highway compiles what follows once per instruction set; this file includes itself for it.
+// Highway compiles the rest of this file once per instruction set; the file includes itself for that.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "dsp/contact/pointshell_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -66,7 +66,7 @@ void evaluate_chunks(const PairFrame& pair, const ChunkFrame* chunks, std::size_
         Places &here = places[n % 2], &next = places[(n + 1) % 2];
         if (n + 1 < count) {
             locate_cells(pair, chunks[n + 1], next);
-            if (pair.calls_ahead) call(pair, chunks[n + 1], next);
+            if (pair.prefetches) prefetch(pair, chunks[n + 1], next);
         }
         if (pair.quadratic) add_quadratic(pair, chunks[n], here, corners, pushes, into);
         else add_trilinear(pair, chunks[n], here, corners, pushes, into);
@@ -86,7 +86,7 @@ HWY_EXPORT(evaluate_chunks);
 
 namespace {
 
-/// What was compiled and can run here, better ones first (their bits are lower).
+/// Compiled variants that can run here, best first (better ones have lower bits).
 std::int64_t usable() { return HWY_TARGETS & (hwy::SupportedTargets() | HWY_STATIC_TARGET); }
 
 std::int64_t forced = 0;

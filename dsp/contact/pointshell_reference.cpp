@@ -33,19 +33,20 @@ ContactSum contact_reference(std::span<const ContactPair> pairs, const Vec3& abo
         const Pose shell{pair.shell_pose.position, glm::normalize(pair.shell_pose.orientation)};
         const Pose map{pair.map_pose.position, glm::normalize(pair.map_pose.orientation)};
         const Pose into_map = map.inverse() * shell;
-        const Mat3 to_world = glm::mat3_cast(map.orientation), turn = glm::mat3_cast(shell.orientation);
+        const Mat3 to_world = glm::mat3_cast(map.orientation), rotation = glm::mat3_cast(shell.orientation);
         const double sign = pair.shell_moves ? 1.0 : -1.0;
         for (std::size_t i = 0; i < pair.shell->size(); ++i) {
             const Vec3 local = into_map.apply(pair.shell->position[i]);
-            const volume::Sample sample = law.interpolation == Interpolation::trilinear ? pair.map->sample(local)
-                                                                                : pair.map->smooth_sample(local);
+            const volume::Sample sample = law.interpolation == Interpolation::trilinear
+                                              ? pair.map->sample(local)
+                                              : pair.map->smooth_sample(local);
             ++sum.evaluated;
             if (!sample.inside) continue;
             const DepthEnergy<double> point = depth_law(-sample.value);
             if (!(point.force > 0.0)) continue;
             const double k = law.stiffness * (law.by_area ? static_cast<double>(pair.shell->area[i]) : 1.0);
             const Vec3 n = law.direction == ForceDirection::field_gradient ? to_world * sample.gradient
-                                                                           : turn * -pair.shell->normal[i];
+                                                                           : rotation * -pair.shell->normal[i];
             const Vec3 r = map.apply(local) - about;
             add(sum, sign, n, r, k * point.energy, k * point.force, k * point.stiffness);
             sum.penetration = std::max(sum.penetration, -sample.value);

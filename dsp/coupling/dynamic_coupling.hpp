@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dynamic coupling: the held body has mass, springs and dampers pull it to the hand, contact pushes it.
+// Dynamic virtual coupling: the held body has mass, springs and dampers pull it to the hand, contact pushes it.
 #pragma once
 
 #include "dsp/coupling/quasi_static.hpp"
@@ -9,7 +9,7 @@ namespace tactus::coupling {
 struct DynamicSettings {
     CouplingSprings springs;
     double mass = 0.1;               ///< kg
-    double inertia = 1e-4;           ///< kg·m², the same about every axis through the handle
+    double inertia = 1e-4;  ///< kg·m², the same about every axis through the handle
     double damping = 10.0;           ///< N·s/m between hand and body
     double angular_damping = 0.01;   ///< N·m·s/rad
     double step = 0.5e-3, reach = 0.05;  ///< m, as in QuasiStaticSettings
@@ -19,13 +19,13 @@ struct DynamicState {
     Pose proxy;
     Twist twist;
     Wrench wrench;  ///< on the hand: spring and damper
-    contact::ContactSum contact;  ///< where the last step began
+    contact::ContactSum contact;  ///< at the start of the last step
     bool hand_is_valid = true;
 };
 
-/// Backward Euler, linearised once per tick: one contact evaluation and one 6 × 6 system. The stiffness of contact and
-/// springs enters implicitly, so that no stiffness and no step makes it blow up; fast motion is damped in exchange. The
-/// gyroscopic torque of a body with equal inertias is none.
+/// Linearly implicit (backward) Euler: one contact evaluation and one 6 × 6 system per tick. The stiffness of contact
+/// and springs enters implicitly, so the step is stable for any stiffness and time step; fast motion is damped in
+/// exchange. With equal inertias the gyroscopic torque is zero.
 class DynamicCoupling {
 public:
     DynamicSettings settings;
@@ -48,9 +48,9 @@ public:
         turn_ = rotation_near(hand_.orientation, state_.proxy.orientation, turn_);
         const auto linear = s.springs.linear(state_.proxy.position - hand_.position);
         const auto angular = s.springs.angular(turn_);
-        // (M/h² + D/h + K) δ = M v/h + D v_hand − forces, for the way δ of this tick.
+        // (M/h² + D/h + K) δ = M v/h + D v_hand − forces, for the displacement δ of this tick.
         geometry::Matrix6 k = state_.contact.stiffness;
-        geometry::Vector6 push{}, way{};
+        geometry::Vector6 push{}, displacement{};
         for (int i = 0; i < 3; ++i) {
             const auto n = static_cast<std::size_t>(i);
             k[7 * n] += s.mass / (h * h) + s.damping / h + linear.curvature;
@@ -60,14 +60,15 @@ public:
             push[n + 3] = s.inertia / h * state_.twist.angular[i] + s.angular_damping * drive.angular[i] -
                           angular.force[i] - state_.contact.gradient[n + 3];
         }
-        if (!geometry::solve_symmetric6(k, push, way)) state_.twist = {};
-        const double length =
-            std::hypot(way[0], way[1], way[2]) + std::hypot(way[3], way[4], way[5]) * std::max(s.reach, 1e-6);
+        if (!geometry::solve_symmetric6(k, push, displacement)) state_.twist = {};
+        const double length = std::hypot(displacement[0], displacement[1], displacement[2]) +
+                              std::hypot(displacement[3], displacement[4], displacement[5]) * std::max(s.reach, 1e-6);
         if (length > s.step) {
             const double free = std::max(0.0, static_cast<double>(contact.clearance(state_.proxy)));
-            for (double& w : way) w *= std::min(1.0, (s.step + free) / length);
+            for (double& w : displacement) w *= std::min(1.0, (s.step + free) / length);
         }
-        const Vec3 v(way[0], way[1], way[2]), w(way[3], way[4], way[5]);
+        const Vec3 v(displacement[0], displacement[1], displacement[2]),
+            w(displacement[3], displacement[4], displacement[5]);
         state_.proxy.position += v;
         state_.proxy.orientation = glm::normalize(rotation_by(w) * state_.proxy.orientation);
         state_.twist = {v / h, w / h};

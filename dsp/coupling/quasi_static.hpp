@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Quasi-static coupling: a proxy of what the hand holds stands where the springs to the hand and the contact forces
-// balance. No mass, no time: every tick the energy
+// Quasi-static virtual coupling: finds the pose of the proxy of a held body at which the springs to the hand and the
+// contact forces balance. Without mass and time: each tick lowers the energy
 //
 //     E(proxy) = contact energy + ψ(p − p_hand) + ψ(log(R R_handᵀ))
 //
-// is lowered by Gauss–Newton steps on rigid motions with Armijo's rule, from the proxy of the tick before; what
-// Gauss–Newton leaves out is learned on the way (dsp/coupling/learned_curvature.hpp). It may stop after any iteration:
-// the proxy is always a pose and its energy has never risen. After Wan and McNeely 2003 and Barbič and James 2008, with
-// the contact's own energy in the place of forces along normals.
+// by Gauss–Newton steps on rigid motions with Armijo's rule, from the proxy of the previous tick; the curvature that
+// Gauss–Newton neglects is learned (dsp/coupling/learned_curvature.hpp). It may stop after any iteration: the proxy is
+// always a valid pose and its energy has never increased. After Wan and McNeely 2003 and Barbič and James 2008, with
+// the gradient of a contact energy in place of forces along normals.
 #pragma once
 
 #include "dsp/contact/pointshell_contact.hpp"
@@ -21,8 +21,8 @@
 
 namespace tactus::coupling {
 
-/// What the solver sees: contact of the held body at a trial pose of the handle, about the handle's origin, and a lower
-/// bound of the way that every point may go from there before it can touch anything.
+/// What the solver needs: contact of the held body at a trial pose of the handle, about the handle's origin, and a
+/// lower bound of the distance that every point can move from there before it touches anything.
 template <class T>
 concept HeldContactLike = requires(T& contact, const Pose& handle) {
     { contact(handle, contact::ContactParts::all) } -> std::same_as<contact::ContactSum>;
@@ -32,41 +32,41 @@ concept HeldContactLike = requires(T& contact, const Pose& handle) {
 struct QuasiStaticSettings {
     CouplingSprings springs;
     int iterations = 10;
-    int evaluations = 24;  ///< most of the contact in one tick, whatever they are for
-    double tolerance = 1e-3;  ///< N: balanced when the residual is below
-    /// m: farthest that one iteration moves any point beyond what is surely free. Half of the thinnest wall plus the
-    /// thinnest held part at most, or they pass through each other.
+    int evaluations = 24;  ///< maximum number of contact evaluations in a tick
+    double tolerance = 1e-3;  ///< N: balanced when the residual is below this
+    /// m: maximum motion of any point in one iteration beyond the free distance. At most half of the thinnest wall plus
+    /// the thinnest held part, or bodies pass through each other.
     double step = 0.5e-3;
-    /// m: farthest that any point moves in one tick beyond what the hand does. What would jump over an edge takes as many
-    /// ticks as that needs, so that the force of the springs changes by no more than they are stretched by it.
+    /// m: maximum motion of any point in one tick beyond the motion of the hand. A jump over an edge is spread over as
+    /// many ticks as needed, so that the spring force changes by no more than this stretches the springs.
     double slip = std::numeric_limits<double>::infinity();
-    double reach = 0.05;  ///< m, farthest point of the held body from the handle: what a turn moves
-    double gyration = 0.02;  ///< m: a torque counts as the force that makes it at this lever
+    double reach = 0.05;  ///< m, greatest distance of the held body's points from the handle: the lever of rotations
+    double gyration = 0.02;  ///< m: converts a torque to a force for the residual
 };
 
 struct QuasiStaticState {
     Pose proxy;  ///< of the handle
-    Wrench wrench;  ///< on the hand, about its own origin; equals the contact's about the proxy when balanced
+    Wrench wrench;  ///< on the hand, about its own origin; in balance equal to the contact's about the proxy
     contact::ContactSum contact;  ///< at the proxy
-    double residual = 0.0;  ///< N, of the balance
+    double residual = 0.0;  ///< N, of the force balance
     double energy = 0.0;  ///< J, of contact and springs
-    double energy_before = 0.0;  ///< J, of the last proxy under this tick's hand
+    double energy_before = 0.0;  ///< J, of the previous proxy with the hand of this tick
     int iterations = 0;  ///< steps taken
     int evaluations = 0;  ///< of the contact
     bool balanced = false;
-    bool is_slowed = false;  ///< `slip` ended the tick before it was balanced: the rest of the way is the next ticks'
-    bool hand_is_valid = true;  ///< false: its pose was no pose and the last good one holds
+    bool is_slowed = false;  ///< `slip` ended the tick before it was balanced; the next ticks do the rest
+    bool hand_is_valid = true;  ///< false: the pose of the hand was invalid and the last valid one is used
 };
 
 class QuasiStaticCoupling {
 public:
     QuasiStaticSettings settings;
 
-    /// Takes hold: no force, the proxy at the hand.
+    /// Starts holding: no force, the proxy at the hand.
     void reset(const Pose& hand) noexcept {
         state_ = {};
         state_.proxy = hand_ = is_valid(hand) ? hand : hand_;
-        turn_ = Vec3(0.0);
+        rotation_ = Vec3(0.0);
         curvature_.forget();
     }
 
@@ -78,7 +78,7 @@ public:
         left_ = settings.slip;
         if (state_.hand_is_valid) {
             const Pose now{hand.position, glm::normalize(hand.orientation)};
-            left_ += way_of(now.position - hand_.position, rotation_between(hand_.orientation, now.orientation));
+            left_ += travel_of(now.position - hand_.position, rotation_between(hand_.orientation, now.orientation));
             hand_ = now;
         }
         state_.iterations = 0;
@@ -97,9 +97,9 @@ public:
         state_.residual = residual(now);
         state_.energy = now.energy;
         state_.contact = now.contact;
-        turn_ = now.turn;
+        rotation_ = now.rotation;
         state_.wrench = {now.linear.force, now.angular.force};
-        // A scene that is no scene: better no force than a wrong one.
+        // An invalid scene gives no force.
         if (!std::isfinite(now.energy) || !is_finite(state_.wrench)) state_.wrench = {};
         return state_;
     }
@@ -108,7 +108,7 @@ private:
     struct Balance {
         contact::ContactSum contact;
         SaturatedSpring::Value linear, angular;
-        Vec3 turn{0.0};
+        Vec3 rotation{0.0};
         double energy = 0.0;
         geometry::Vector6 gradient{};
     };
@@ -118,9 +118,9 @@ private:
         Balance b;
         b.contact = contact(proxy, contact::ContactParts::all);
         ++state_.evaluations;
-        b.turn = rotation_near(hand_.orientation, proxy.orientation, turn_);
+        b.rotation = rotation_near(hand_.orientation, proxy.orientation, rotation_);
         b.linear = settings.springs.linear(proxy.position - hand_.position);
-        b.angular = settings.springs.angular(b.turn);
+        b.angular = settings.springs.angular(b.rotation);
         b.energy = b.contact.energy + b.linear.energy + b.angular.energy;
         for (int i = 0; i < 3; ++i) {
             const auto n = static_cast<std::size_t>(i);
@@ -139,7 +139,7 @@ private:
                          (g[3] * g[3] + g[4] * g[4] + g[5] * g[5]) / (lever * lever));
     }
 
-    /// As far as Gauss–Newton knows it.
+    /// The Gauss–Newton part.
     static geometry::Matrix6 stiffness(const Balance& b) noexcept {
         geometry::Matrix6 k = b.contact.stiffness;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -149,12 +149,12 @@ private:
         return k;
     }
 
-    /// One step downhill; false when none was found.
+    /// One descent step; false when none was found.
     template <class Contact>
     bool improve(Balance& now, Contact& contact) noexcept {
         const geometry::Matrix6 known = stiffness(now);
         if (now.contact.in_contact == 0) curvature_.forget();
-        turn_ = now.turn;
+        rotation_ = now.rotation;
         Step step;
         if (curvature_.is_trusted()) {
             if (!find_step(step, curvature_.added_to(known), now, contact)) curvature_.forget();
@@ -164,61 +164,61 @@ private:
         if (!find_step(step, known, now, contact)) return false;
         for (int halving = 0; halving <= most_halvings && may_evaluate(); ++halving) {
             if (try_step(step, known, now, contact)) return true;
-            for (double& s : step.way) s *= 0.5;
+            for (double& s : step.displacement) s *= 0.5;
             step.slope *= 0.5;
         }
         return false;
     }
 
     struct Step {
-        geometry::Vector6 way{};
-        double slope = 0.0;  ///< of the energy along it, J
+        geometry::Vector6 displacement{};
+        double slope = 0.0;  ///< derivative of the energy along the step, J
     };
 
-    /// False when there is none that leads down.
+    /// False when there is no descent direction.
     template <class Contact>
     bool find_step(Step& step, const geometry::Matrix6& k, const Balance& now, Contact& contact) const noexcept {
         geometry::Vector6 down{};
         for (std::size_t i = 0; i < 6; ++i) down[i] = -now.gradient[i];
-        if (!geometry::solve_symmetric6(k, down, step.way)) return false;
-        limit(step.way, contact);
+        if (!geometry::solve_symmetric6(k, down, step.displacement)) return false;
+        limit(step.displacement, contact);
         step.slope = 0.0;
-        for (std::size_t i = 0; i < 6; ++i) step.slope += now.gradient[i] * step.way[i];
+        for (std::size_t i = 0; i < 6; ++i) step.slope += now.gradient[i] * step.displacement[i];
         return step.slope < 0.0;
     }
 
-    /// Takes the step if it lowers the energy enough (Armijo 1966).
+    /// Takes the step if the energy decreases sufficiently (Armijo 1966).
     template <class Contact>
     bool try_step(const Step& step, const geometry::Matrix6& known, Balance& now, Contact& contact) noexcept {
-        const Pose trial = moved(state_.proxy, step.way);
+        const Pose trial = moved(state_.proxy, step.displacement);
         const Balance there = balance(trial, contact);
         if (!(there.energy <= now.energy + 1e-4 * step.slope)) return false;
         geometry::Vector6 change{};
         for (std::size_t i = 0; i < 6; ++i) change[i] = there.gradient[i] - now.gradient[i];
-        curvature_.learn(step.way, change, known, std::max(settings.gyration, 1e-6));
+        curvature_.learn(step.displacement, change, known, std::max(settings.gyration, 1e-6));
         state_.proxy = trial;
         now = there;
-        left_ -= way_of(step.way);
+        left_ -= travel_of(step.displacement);
         return true;
     }
 
-    /// m: no point of the body moves farther by this.
-    double way_of(const Vec3& shift, const Vec3& turn) const noexcept {
+    /// m: upper bound of any point's displacement by this motion.
+    double travel_of(const Vec3& shift, const Vec3& rotation) const noexcept {
         return std::hypot(shift.x, shift.y, shift.z) +
-               std::hypot(turn.x, turn.y, turn.z) * std::max(settings.reach, 1e-6);
+               std::hypot(rotation.x, rotation.y, rotation.z) * std::max(settings.reach, 1e-6);
     }
-    double way_of(const geometry::Vector6& step) const noexcept {
-        return way_of(Vec3(step[0], step[1], step[2]), Vec3(step[3], step[4], step[5]));
+    double travel_of(const geometry::Vector6& step) const noexcept {
+        return travel_of(Vec3(step[0], step[1], step[2]), Vec3(step[3], step[4], step[5]));
     }
 
     template <class Contact>
     void limit(geometry::Vector6& step, Contact& contact) const noexcept {
-        const double way = way_of(step);
+        const double travel = travel_of(step);
         double most = left_;
-        if (way > settings.step)
+        if (travel > settings.step)
             most = std::min(most, settings.step + std::max(0.0, static_cast<double>(contact.clearance(state_.proxy))));
-        if (!(way > most)) return;
-        const double share = most / way;
+        if (!(travel > most)) return;
+        const double share = most / travel;
         for (double& s : step) s *= share;
     }
 
@@ -232,7 +232,7 @@ private:
     LearnedCurvature curvature_;
     QuasiStaticState state_;
     Pose hand_;
-    Vec3 turn_{0.0};
+    Vec3 rotation_{0.0};
     double left_ = 0.0;  // m that the points may still move in this tick
 };
 

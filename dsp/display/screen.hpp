@@ -30,7 +30,7 @@ inline constexpr std::array<std::string_view, 4> stereo_names{"mono", "side-by-s
 std::optional<StereoMode> stereo_of_name(std::string_view name);
 
 /// How a picture has to lie on its screen to be seen upright in a mirror.
-enum class Turned : std::uint8_t { none, left_right, upside_down };
+enum class Flip : std::uint8_t { none, left_right, upside_down };
 
 /// A plane; of a mirror either side may be the shiny one.
 struct Plane {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The energy of a fit, told to a solver that moves another point along other axes.
+// Adjoint transform of a fit's energy: to another reference point and other axes.
 #pragma once
 
 #include "dsp/contact/pointshell_contact.hpp"
@@ -11,14 +11,15 @@
 
 namespace tactus::fit {
 
-/// The same sum about another point and along other axes: `arm` from there to the old point, new axes; `turn` takes old
-/// axes to new ones.
-inline contact::ContactSum carried(const contact::ContactSum& sum, const Mat3& turn, const Vec3& arm, double share) noexcept {
-    // Motion of the old frame from that of the new one: v' = turnᵀ (v + ω × arm), ω' = turnᵀ ω.
+/// The same sum about another point and along other axes: `arm` leads from the new point to the old one, new axes;
+/// `rotation` maps old axes to new ones.
+inline contact::ContactSum adjoint_transform(const contact::ContactSum& sum, const Mat3& rotation, const Vec3& arm,
+                                             double share) noexcept {
+    // Motion of the old frame from that of the new one: v' = rotationᵀ (v + ω × arm), ω' = rotationᵀ ω.
     geometry::Matrix6 motion{};
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column) {
-            const Vec3 axis(column == 0, column == 1, column == 2), old = turn[row];
+            const Vec3 axis(column == 0, column == 1, column == 2), old = rotation[row];
             const auto r = static_cast<std::size_t>(row), c = static_cast<std::size_t>(column);
             motion[6 * r + c] = motion[6 * (r + 3) + c + 3] = glm::dot(old, axis);
             motion[6 * r + c + 3] = glm::dot(old, glm::cross(axis, arm));

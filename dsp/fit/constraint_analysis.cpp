@@ -22,9 +22,9 @@ void find_free(Fit& fit, const geometry::Matrix6& stiffness, double radius, doub
     fit.free.clear();
     for (std::size_t n = 0; n < 6 && eigen.value[n] < least_hold; ++n) {
         const geometry::Vector6& v = eigen.vector[n];
-        const Vec3 way(v[0], v[1], v[2]), turn(v[3], v[4], v[5]);
-        const bool is_turn = glm::length(turn) > glm::length(way);
-        fit.free.push_back({is_turn, glm::normalize(is_turn ? turn : way)});
+        const Vec3 translation(v[0], v[1], v[2]), rotation(v[3], v[4], v[5]);
+        const bool is_rotation = glm::length(rotation) > glm::length(translation);
+        fit.free.push_back({is_rotation, glm::normalize(is_rotation ? rotation : translation)});
     }
 }
 

@@ -12,7 +12,7 @@ namespace tactus::fit {
 namespace {
 
 constexpr double outline_reach2 = 9e-6;  // m²: partners 3 mm apart count half
-constexpr double outline_corner = 0.3e-3;  // m: beyond this a step of the outline pulls no harder
+constexpr double outline_corner = 0.3e-3;  // m: beyond this a step of the outline has constant force
 
 struct Pull {
     double energy, force, stiffness;  // per weight: force = d energy / d d
@@ -43,7 +43,7 @@ void add_point(contact::ContactSum& sum, double force, double stiffness, const V
     }
 }
 
-/// The lower triangle from the upper one.
+/// Copies the upper triangle to the lower one.
 void mirror(std::array<double, 36>& m) noexcept {
     for (std::size_t a = 0; a < 6; ++a)
         for (std::size_t b = 0; b < a; ++b) m[6 * a + b] = m[6 * b + a];
@@ -93,25 +93,25 @@ void FitEnergy::read(Side& side, const Pose& into) const noexcept {
     if (side.seen_stride == law.stride && side.seen_at.position == into.position &&
         side.seen_at.orientation == into.orientation)
         return;
-    const Mat3 turn = glm::mat3_cast(into.orientation);
+    const Mat3 rotation = glm::mat3_cast(into.orientation);
     const std::vector<Vec3>& points = side.points->position;
     for (std::size_t i = 0; i < points.size(); i += law.stride)
-        side.seen[i] = side.field->field.sample(into.position + turn * points[i]);
+        side.seen[i] = side.field->field.sample(into.position + rotation * points[i]);
     side.seen_at = into;
     side.seen_stride = law.stride;
 }
 
 void FitEnergy::look(Side& side, const Pose& into) noexcept {
     read(side, into);
-    const Mat3 turn = glm::mat3_cast(into.orientation);
+    const Mat3 rotation = glm::mat3_cast(into.orientation);
     const FitSurface &points = *side.points, &field = *side.field;
     for (std::size_t i = 0; i < points.position.size(); i += law.stride) {
         side.weight[i] = 0.0;
         const volume::Sample& here = side.seen[i];
         if (!here.inside) continue;
-        const double against = -glm::dot(turn * points.normal[i], here.gradient);
+        const double against = -glm::dot(rotation * points.normal[i], here.gradient);
         if (!(against > 0.0)) continue;
-        if (law.gated && !field.is_painted_near(into.position + turn * points.position[i])) continue;
+        if (law.gated && !field.is_painted_near(into.position + rotation * points.position[i])) continue;
         side.weight[i] = points.share[i] * static_cast<double>(law.stride) *
                          (law.power == 1.0 ? against : std::pow(against, law.power));
     }
@@ -120,19 +120,19 @@ void FitEnergy::look(Side& side, const Pose& into) noexcept {
 void FitEnergy::link(const Pose& pose) noexcept {
     link_count_ = 0;
     if (!(law.outline > 0.0) || fixed_->outline.empty() || moving_->outline.empty()) return;
-    const Mat3 turn = glm::mat3_cast(pose.orientation);
+    const Mat3 rotation = glm::mat3_cast(pose.orientation);
     const double each = law.outline * law.strength / static_cast<double>(moving_->outline.size());
     const std::size_t step = law.stride > 1 ? 2 : 1;
     for (std::size_t i = 0; i < moving_->outline.size(); i += step) {
-        const Vec3 x = pose.position + turn * moving_->outline[i];
+        const Vec3 x = pose.position + rotation * moving_->outline[i];
         double least = std::numeric_limits<double>::infinity();
         std::size_t nearest = 0;
         for (std::size_t j = 0; j < fixed_->outline.size(); j += step) {
-            const Vec3 apart = x - fixed_->outline[j];
-            const double d2 = glm::dot(apart, apart);
+            const Vec3 difference = x - fixed_->outline[j];
+            const double d2 = glm::dot(difference, difference);
             if (d2 < least) least = d2, nearest = j;
         }
-        const Vec3 normal = turn * moving_->outline_normal[i], other = fixed_->outline_normal[nearest];
+        const Vec3 normal = rotation * moving_->outline_normal[i], other = fixed_->outline_normal[nearest];
         const double alike = glm::dot(normal, other);
         if (!(alike > 0.0)) continue;
         links_[link_count_++] = {moving_->outline[i], fixed_->outline[nearest], 0.5 * (normal + other),
@@ -146,9 +146,10 @@ void FitEnergy::look(const Pose& pose) noexcept {
     link(pose);
 }
 
-void FitEnergy::add(contact::ContactSum& sum, Side& side, const Pose& pose, const Pose& into, double sign) const noexcept {
+void FitEnergy::add(contact::ContactSum& sum, Side& side, const Pose& pose, const Pose& into,
+                    double sign) const noexcept {
     read(side, into);
-    const Mat3 turn = glm::mat3_cast(into.orientation);
+    const Mat3 rotation = glm::mat3_cast(into.orientation);
     const FitSurface& points = *side.points;
     const bool is_moving = sign > 0.0;
     for (std::size_t i = 0; i < points.position.size(); i += law.stride) {
@@ -167,9 +168,9 @@ void FitEnergy::add(contact::ContactSum& sum, Side& side, const Pose& pose, cons
         }
         sum.energy += pull.energy;
         ++sum.evaluated;
-        // A field that moves pushes the standing point back: the same direction with the other sign.
+        // A moving field pushes the fixed point: the same direction with opposite sign.
         if (is_moving) {
-            add_point(sum, pull.force, pull.stiffness, here.gradient, turn * points.position[i]);
+            add_point(sum, pull.force, pull.stiffness, here.gradient, rotation * points.position[i]);
         } else {
             const Vec3 n = -pose.rotate(here.gradient);
             add_point(sum, pull.force, pull.stiffness, n, points.position[i] - pose.position);
@@ -219,15 +220,15 @@ FitQuality FitEnergy::quality(const Pose& pose, double sigma) noexcept {
     std::size_t seen = 0;
     const Pose poses[2] = {pose, pose.inverse()};
     for (std::size_t s = 0; s < 2; ++s) {
-        const Mat3 turn = glm::mat3_cast(poses[s].orientation);
+        const Mat3 rotation = glm::mat3_cast(poses[s].orientation);
         const FitSurface& points = *sides_[s].points;
         const contact::Voxmap& field = sides_[s].field->field;
         for (std::size_t i = 0; i < points.position.size(); i += law.stride) {
-            const Vec3 at = poses[s].position + turn * points.position[i];
+            const Vec3 at = poses[s].position + rotation * points.position[i];
             const volume::Sample here = field.sample(at);
             if (!here.inside) continue;
             depths_[seen++] = here.value;
-            const double against = std::clamp(-glm::dot(turn * points.normal[i], here.gradient), 0.0, 1.0);
+            const double against = std::clamp(-glm::dot(rotation * points.normal[i], here.gradient), 0.0, 1.0);
             if (!(against > 0.0) || std::abs(here.value) > 5.0 * sigma || !sides_[s].field->is_painted_near(at))
                 continue;
             const double share = points.share[i] * static_cast<double>(law.stride);
@@ -239,7 +240,7 @@ FitQuality FitEnergy::quality(const Pose& pose, double sigma) noexcept {
             if (s == 0) q.overlap += share * points.area;
         }
         for (const Vec3& p : points.outline) {
-            const volume::Sample here = field.sample(poses[s].position + turn * p);
+            const volume::Sample here = field.sample(poses[s].position + rotation * p);
             if (here.inside) depths_[seen++] = here.value;
         }
     }

@@ -13,12 +13,12 @@ namespace tactus::fit {
 
 namespace {
 
-/// One step of the solver from where it is, with the weights of that place. Returns how far it went, m.
+/// One step of the solver from its pose, with the weights of that pose. Returns the length of the step, m.
 double step_once(FitEnergy& energy, coupling::QuasiStaticCoupling& solver, int& iterations) noexcept {
     const Pose before = solver.state().proxy;
     energy.look(before);
     iterations += solver.update(before, energy).iterations;
-    return apart(before, solver.state().proxy, energy.moving().gyration);
+    return pose_distance(before, solver.state().proxy, energy.moving().gyration);
 }
 
 }  // namespace
@@ -98,7 +98,7 @@ Quat opposed(const FitSurface& moving, const FitSurface& fixed, const Quat& from
     return shortest_turn(from * direction_of(moving.mean_normal), -direction_of(fixed.mean_normal)) * from;
 }
 
-double apart(const Pose& a, const Pose& b, double gyration) noexcept {
+double pose_distance(const Pose& a, const Pose& b, double gyration) noexcept {
     return glm::length(a.position - b.position) +
            gyration * glm::length(rotation_between(a.orientation, b.orientation));
 }

@@ -35,8 +35,8 @@ std::vector<std::size_t> spread_evenly(const std::vector<Vec3>& candidates, std:
     while (picks.size() < std::min(most, candidates.size())) {
         picks.push_back(pick);
         for (std::size_t i = 0; i < candidates.size(); ++i) {
-            const Vec3 apart = candidates[i] - candidates[pick];
-            nearest[i] = std::min(nearest[i], glm::dot(apart, apart));
+            const Vec3 difference = candidates[i] - candidates[pick];
+            nearest[i] = std::min(nearest[i], glm::dot(difference, difference));
         }
         pick = static_cast<std::size_t>(std::ranges::max_element(nearest) - nearest.begin());
     }
@@ -90,11 +90,12 @@ volume::Grid layout_around(const FitSurface& made, const volume::Grid& distance,
 }
 
 /// Distances and paint at the samples of `field`. Returns how many samples came from the grid.
-std::size_t fill(volume::Grid& field, std::vector<std::uint8_t>& painted, const Vec3& centre, const contact::Voxmap& source,
-                 std::span<const contact::SurfacePoint> points, std::uint8_t paint) {
+std::size_t fill(volume::Grid& field, std::vector<std::uint8_t>& painted, const Vec3& centre,
+                 const contact::Voxmap& source, std::span<const contact::SurfacePoint> points, std::uint8_t paint) {
     std::vector<glm::vec3> places;
     places.reserve(points.size());
-    for (const contact::SurfacePoint& p : points) places.emplace_back((p.position - centre - field.origin) / field.spacing);
+    for (const contact::SurfacePoint& p : points)
+        places.emplace_back((p.position - centre - field.origin) / field.spacing);
     const std::vector<std::int32_t> nearest = geometry::nearest_points(field, places, run_in_turn);
     field.values.resize(field.count());
     painted.resize(field.count());
@@ -176,7 +177,8 @@ FitSurface make_live_fit_surface(std::span<const contact::SurfacePoint> points, 
 
 std::vector<FitSurface> make_fit_faces(std::span<const contact::SurfacePoint> points, const volume::Grid& distance,
                                        const FitSurfaceOptions& options) {
-    auto patches = geometry::patches_of(points, options.apart, [&](std::size_t i) { return points[i].label == options.paint; });
+    auto patches =
+        geometry::patches_of(points, options.max_gap, [&](std::size_t i) { return points[i].label == options.paint; });
     std::erase_if(patches, [](const auto& patch) { return patch.size() < least_points; });
     std::ranges::stable_sort(patches, std::ranges::greater{}, [](const auto& patch) { return patch.size(); });
     std::vector<FitSurface> faces;
@@ -188,8 +190,8 @@ std::vector<FitSurface> make_fit_faces(std::span<const contact::SurfacePoint> po
     return faces;
 }
 
-FitSurface make_fit_face(std::span<const contact::SurfacePoint> points, std::span<const std::size_t> face, const volume::Grid& distance,
-                         const FitSurfaceOptions& options) {
+FitSurface make_fit_face(std::span<const contact::SurfacePoint> points, std::span<const std::size_t> face,
+                         const volume::Grid& distance, const FitSurfaceOptions& options) {
     std::vector<contact::SurfacePoint> one(points.begin(), points.end());
     for (const std::size_t i : face) one[i].label = own_label;
     FitSurfaceOptions own = options;

@@ -18,7 +18,7 @@ struct FitSurfaceOptions {
     double reach = 12e-3;  ///< m: how far from painted points the field goes on: no pull from farther away
     double outline = 6e-3;  ///< m: points this near to the paint, not painted, show how the outer contour goes on
     std::size_t most_outline = 240;  ///< points of the outline, spread evenly
-    double apart = 1.5e-3;  ///< m: painted points farther apart belong to different faces
+    double max_gap = 1.5e-3;  ///< m: painted points farther apart belong to different faces
     std::size_t most_samples = 8'000'000;  ///< of the field; it gets coarser rather than larger
 };
 
@@ -53,7 +53,7 @@ std::vector<FitSurface> make_fit_faces(std::span<const contact::SurfacePoint> po
                                        const FitSurfaceOptions& options = {});
 
 /// One face of several, by the indices of its points: points of other faces are neither its paint nor its outline.
-FitSurface make_fit_face(std::span<const contact::SurfacePoint> points, std::span<const std::size_t> face, const volume::Grid& distance,
-                         const FitSurfaceOptions& options = {});
+FitSurface make_fit_face(std::span<const contact::SurfacePoint> points, std::span<const std::size_t> face,
+                         const volume::Grid& distance, const FitSurfaceOptions& options = {});
 
 }  // namespace tactus::fit

@@ -3,10 +3,10 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
-#include "dsp/fit/faces.hpp"
 #include "dsp/fit/adjoint.hpp"
-#include "dsp/fit/fit_steps.hpp"
 #include "dsp/fit/constraint_analysis.hpp"
+#include "dsp/fit/faces.hpp"
+#include "dsp/fit/fit_steps.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -66,10 +66,10 @@ public:
         for (std::size_t k = 0; k < pairs_.size(); ++k) {
             const Pair& pair = pairs_[k];
             const Face &m = matcher_.faces_[pair.moving], &f = matcher_.faces_[pair.fixed];
-            const contact::ContactSum one =
-                carried(matcher_.energies_[k](matcher_.centres(pair, body(at), poses_), parts),
-                        glm::mat3_cast(poses_[static_cast<std::size_t>(f.fragment)].orientation),
-                        at.rotate(m.surface.centre - centre_), std::min(m.surface.area, f.surface.area) * 1e4);
+            const contact::ContactSum one = adjoint_transform(
+                matcher_.energies_[k](matcher_.centres(pair, body(at), poses_), parts),
+                glm::mat3_cast(poses_[static_cast<std::size_t>(f.fragment)].orientation),
+                at.rotate(m.surface.centre - centre_), std::min(m.surface.area, f.surface.area) * 1e4);
             all.energy += one.energy;
             for (std::size_t n = 0; n < 6; ++n) all.gradient[n] += one.gradient[n];
             for (std::size_t n = 0; n < 36; ++n) all.stiffness[n] += one.stiffness[n];
@@ -149,7 +149,7 @@ FragmentMatcher::Solved FragmentMatcher::solve(const Pair& pair, std::span<const
         Candidate c{anneal(e, start, {fit.widest, 2.0 * fit.finest, 24, fit.power}, steps), 0.0};
         c.score = e.quality(c.pose, 2.0 * fit.sigma).score;
         // The same place again counts once.
-        if (best[0].score >= 0.0 && apart(c.pose, best[0].pose, gyration) < 1e-3) {
+        if (best[0].score >= 0.0 && pose_distance(c.pose, best[0].pose, gyration) < 1e-3) {
             if (c.score > best[0].score) best[0] = c;
         } else if (c.score > best[0].score) best[1] = best[0], best[0] = c;
         else if (c.score > best[1].score) best[1] = c;
@@ -161,10 +161,11 @@ FragmentMatcher::Solved FragmentMatcher::solve(const Pair& pair, std::span<const
         c.pose = anneal(e, c.pose, {4.0 * fit.finest, fit.finest, 14, fit.power}, steps);
         c.score = e.quality(c.pose, fit.sigma).score;
         if (c.score > solved.best.score) {
-            if (solved.best.score >= 0.0 && apart(c.pose, solved.best.pose, gyration) > 1e-3)
+            if (solved.best.score >= 0.0 && pose_distance(c.pose, solved.best.pose, gyration) > 1e-3)
                 solved.second = solved.best.score;
             solved.best = c;
-        } else if (apart(c.pose, solved.best.pose, gyration) > 1e-3) solved.second = std::max(solved.second, c.score);
+        } else if (pose_distance(c.pose, solved.best.pose, gyration) > 1e-3)
+            solved.second = std::max(solved.second, c.score);
     }
     return solved;
 }
@@ -187,7 +188,9 @@ const FragmentMatch& FragmentMatcher::near(int moving, std::span<const Pose> pos
         }
     }
     std::ranges::sort(pairs_, [](const Pair& a, const Pair& b) {
-        return a.apart != b.apart ? a.apart < b.apart : a.moving != b.moving ? a.moving < b.moving : a.fixed < b.fixed;
+        return a.distance != b.distance ? a.distance < b.distance
+               : a.moving != b.moving   ? a.moving < b.moving
+                                        : a.fixed < b.fixed;
     });
     solved_.clear();
     for (std::size_t n = 0; n < std::min({pairs_.size(), settings.most_pairs, solved_.capacity()}); ++n) {

@@ -84,7 +84,7 @@ private:
     };
     struct Pair {
         std::size_t moving, fixed;
-        double apart;
+        double distance;
     };
     struct Candidate {
         Pose pose;  // between centres

@@ -25,7 +25,7 @@ void HeldFit::read(FitHalf half, const Pose& handle, const Pose& moving, const P
     const Vec3 arm = body.apply(energy_->moving().centre) - handle.position;
     const contact::ContactSum sum = energy_->look_at_half(half, centres);
     halves_[static_cast<std::size_t>(half)] = {
-        carried(sum, glm::mat3_cast(fixed.orientation), arm, std::min(share, 1.0)), handle, true};
+        adjoint_transform(sum, glm::mat3_cast(fixed.orientation), arm, std::min(share, 1.0)), handle, true};
 }
 
 double HeldFit::force() const noexcept {
@@ -38,8 +38,9 @@ contact::ContactSum HeldFit::operator()(const Pose& handle, contact::ContactPart
     contact::ContactSum sum = contact_(handle, parts);
     for (const auto& [pull, at, is_read] : halves_) {
         if (!is_read || pull.energy == 0.0) continue;
-        const Vec3 way = handle.position - at.position, turn = rotation_between(at.orientation, handle.orientation);
-        const geometry::Vector6 x{way.x, way.y, way.z, turn.x, turn.y, turn.z};
+        const Vec3 translation = handle.position - at.position,
+                   rotation = rotation_between(at.orientation, handle.orientation);
+        const geometry::Vector6 x{translation.x, translation.y, translation.z, rotation.x, rotation.y, rotation.z};
         sum.energy += pull.energy;
         for (std::size_t i = 0; i < 6; ++i) {
             double slope = pull.gradient[i];

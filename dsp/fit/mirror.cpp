@@ -29,7 +29,8 @@ Vec3 turned_around(const Mat3& q) {
 
 }  // namespace
 
-std::vector<contact::SurfacePoint> mirrored(std::span<const contact::SurfacePoint> points, const MirrorPlane& plane, const Pose& pose) {
+std::vector<contact::SurfacePoint> mirrored(std::span<const contact::SurfacePoint> points, const MirrorPlane& plane,
+                                            const Pose& pose) {
     std::vector<contact::SurfacePoint> out(points.begin(), points.end());
     for (contact::SurfacePoint& p : out) {
         p.position = pose.apply(plane.reflect(p.position));
@@ -59,12 +60,12 @@ MirrorFit fit_mirror(std::span<const contact::SurfacePoint> healthy, std::span<c
     // The middle between a point and its image lies in the plane.
     const Vec3 image_of_origin = onto.apply(first.reflect(Vec3(0.0)));
     fit.plane = {n, 0.5 * glm::dot(n, image_of_origin)};
-    const Quat turn = glm::normalize(glm::quat_cast(q * reflection(n)));
+    const Quat rotation = glm::normalize(glm::quat_cast(q * reflection(n)));
     // pose(reflect(x)) = onto(first.reflect(x)) for all x, so also where the mirror leaves x in place.
     const Vec3 fixed_point = fit.plane.offset * n;
-    fit.pose = {onto.apply(first.reflect(fixed_point)) - turn * fixed_point, turn};
-    const Vec3 angle = rotation_between({1.0, 0.0, 0.0, 0.0}, turn);
-    fit.turn = glm::length(angle);
+    fit.pose = {onto.apply(first.reflect(fixed_point)) - rotation * fixed_point, rotation};
+    const Vec3 angle = rotation_between({1.0, 0.0, 0.0, 0.0}, rotation);
+    fit.rotation = glm::length(angle);
     Vec3 middle(0.0);
     for (const contact::SurfacePoint& p : healthy) middle += p.position / static_cast<double>(healthy.size());
     const Vec3 at = fit.plane.reflect(middle);

@@ -20,12 +20,12 @@ struct MirrorPlane {
 
 /// The points on the other side of the mirror, normals outwards, then moved by `pose`.
 std::vector<contact::SurfacePoint> mirrored(std::span<const contact::SurfacePoint> points, const MirrorPlane& plane,
-                                   const Pose& pose = {});
+                                            const Pose& pose = {});
 
 struct MirrorFit {
     MirrorPlane plane;  ///< of the body, in the frame of both
     Pose pose;  ///< what is left to do after the mirror: the body's own asymmetry and how it lay in the scanner
-    double turn = 0.0, glide = 0.0;  ///< rad and m of that pose
+    double rotation = 0.0, glide = 0.0;  ///< rad and m of that pose
     Registration registration;       ///< of the broken side's points to the mirrored healthy side
 };
 

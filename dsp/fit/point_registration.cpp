@@ -36,11 +36,11 @@ PointRegistration register_points(std::span<const contact::SurfacePoint> moving,
         geometry::Matrix6 k{};
         geometry::Vector6 push{}, step{};
         for (const Match& m : matches) {
-            const Vec3 arm = m.from - centre, apart = m.to - m.from, torque = glm::cross(arm, apart);
+            const Vec3 arm = m.from - centre, difference = m.to - m.from, torque = glm::cross(arm, difference);
             const Mat3 inertia = glm::dot(arm, arm) * Mat3(1.0) - glm::outerProduct(arm, arm);
             for (int a = 0; a < 3; ++a) {
                 const auto row = static_cast<std::size_t>(a);
-                push[row] += apart[a];
+                push[row] += difference[a];
                 push[row + 3] += 1e3 * torque[a];
                 k[7 * row] += 1.0;
                 for (int b = 0; b < 3; ++b) k[6 * (row + 3) + static_cast<std::size_t>(b) + 3] += 1e6 * inertia[b][a];
@@ -48,10 +48,11 @@ PointRegistration register_points(std::span<const contact::SurfacePoint> moving,
         }
         matches.resize(moving.size());
         if (!geometry::solve_symmetric6(k, push, step)) break;
-        const Vec3 way(step[0], step[1], step[2]), turn = 1e3 * Vec3(step[3], step[4], step[5]);
-        const Quat spin = rotation_by(turn);
-        made.pose = {centre + way + spin * (made.pose.position - centre), glm::normalize(spin * made.pose.orientation)};
-        if (glm::length(way) < 1e-7 && glm::length(turn) < 1e-6) break;
+        const Vec3 translation(step[0], step[1], step[2]), rotation = 1e3 * Vec3(step[3], step[4], step[5]);
+        const Quat spin = rotation_by(rotation);
+        made.pose = {centre + translation + spin * (made.pose.position - centre),
+                     glm::normalize(spin * made.pose.orientation)};
+        if (glm::length(translation) < 1e-7 && glm::length(rotation) < 1e-6) break;
     }
     std::vector<double> to_points, to_surface;
     for (const contact::SurfacePoint& p : moving) {

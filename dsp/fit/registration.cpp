@@ -3,9 +3,9 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
-#include "dsp/geometry/symmetric6.hpp"
 #include "dsp/geometry/main_axes.hpp"
 #include "dsp/geometry/neighbours.hpp"
+#include "dsp/geometry/symmetric6.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -58,7 +58,8 @@ std::vector<contact::SurfacePoint> thinned(std::span<const contact::SurfacePoint
 }
 
 /// Of all points from the surface, ascending.
-std::vector<double> distances(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed, const Pose& pose) {
+std::vector<double> distances(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed,
+                              const Pose& pose) {
     std::vector<double> all;
     for (const contact::SurfacePoint& p : moving) all.push_back(fixed.distance(pose.apply(p.position)));
     std::ranges::sort(all);
@@ -91,9 +92,9 @@ Pose anneal(const std::vector<contact::SurfacePoint>& moving, const Registration
             const Vec3& n = fixed.normal(to);
             const double facing = glm::dot(pose.rotate(p.normal), n);
             if (!(facing > least_cosine)) continue;
-            const Vec3 apart = x - fixed.position(to);
-            const double squares = glm::dot(apart, apart), kernel = s * s / (s * s + squares);
-            const double weight = p.area * facing * kernel * kernel, d = glm::dot(n, apart);
+            const Vec3 difference = x - fixed.position(to);
+            const double squares = glm::dot(difference, difference), kernel = s * s / (s * s + squares);
+            const double weight = p.area * facing * kernel * kernel, d = glm::dot(n, difference);
             const Vec3 lever = glm::cross(x - centre, n);
             const double row[6] = {n.x, n.y, n.z, lever.x, lever.y, lever.z};
             for (std::size_t a = 0; a < 6; ++a) {
@@ -108,16 +109,17 @@ Pose anneal(const std::vector<contact::SurfacePoint>& moving, const Registration
         for (double& entry : k) entry *= 1e6 / greatest;
         for (double& entry : push) entry *= 1e6 / greatest;
         if (!geometry::solve_symmetric6(k, push, step)) break;
-        const Vec3 way(step[0], step[1], step[2]), turn(step[3], step[4], step[5]);
-        const Quat spin = rotation_by(turn);
-        pose = {centre + way + spin * (pose.position - centre), glm::normalize(spin * pose.orientation)};
-        if (stage > settings.stages && glm::length(way) + glm::length(turn) * spread.gyration < 1e-8) break;
+        const Vec3 translation(step[0], step[1], step[2]), rotation(step[3], step[4], step[5]);
+        const Quat spin = rotation_by(rotation);
+        pose = {centre + translation + spin * (pose.position - centre), glm::normalize(spin * pose.orientation)};
+        if (stage > settings.stages && glm::length(translation) + glm::length(rotation) * spread.gyration < 1e-8) break;
     }
     return pose;
 }
 
 /// How much of a surface lies on the target: mean of exp(−d² / 2s²).
-double lies_on(const std::vector<contact::SurfacePoint>& points, const RegistrationTarget& fixed, const Pose& pose, double s) {
+double lies_on(const std::vector<contact::SurfacePoint>& points, const RegistrationTarget& fixed, const Pose& pose,
+               double s) {
     double sum = 0.0, area = 0.0;
     for (const contact::SurfacePoint& p : points) {
         const double d = fixed.distance(pose.apply(p.position));
@@ -150,19 +152,20 @@ RegistrationTarget::RegistrationTarget(std::span<const contact::SurfacePoint> po
 
 double RegistrationTarget::distance(const Vec3& place) const noexcept {
     const std::size_t n = nearest(place);
-    const Vec3 apart = place - positions_[n];
-    const double plane = std::abs(glm::dot(apart, normals_[n])), point = glm::length(apart);
+    const Vec3 difference = place - positions_[n];
+    const double plane = std::abs(glm::dot(difference, normals_[n])), point = glm::length(difference);
     return point < 3e-3 ? plane : point;
 }
 
-double median_distance(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed, const Pose& pose) {
+double median_distance(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed,
+                       const Pose& pose) {
     if (moving.empty()) throw Error("there is no surface to measure");
     const std::vector<double> all = distances(moving, fixed, pose);
     return all[all.size() / 2];
 }
 
-Registration register_surface(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed, const Pose& start,
-                              const RegistrationSettings& settings) {
+Registration register_surface(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed,
+                              const Pose& start, const RegistrationSettings& settings) {
     if (moving.empty()) throw Error("there is no surface to register");
     const std::vector<contact::SurfacePoint> some = thinned(moving, settings.most_points);
     const auto from_scale = [&](double widest, double finest) {
@@ -202,7 +205,8 @@ Registration register_surface(std::span<const contact::SurfacePoint> moving, con
     return best;
 }
 
-Registration register_from_anywhere(std::span<const contact::SurfacePoint> moving, std::span<const contact::SurfacePoint> fixed_points,
+Registration register_from_anywhere(std::span<const contact::SurfacePoint> moving,
+                                    std::span<const contact::SurfacePoint> fixed_points,
                                     const RegistrationTarget& fixed, const RegistrationSettings& settings) {
     if (moving.empty()) throw Error("there is no surface to register");
     const Spread from = spread_of(moving), to = spread_of(fixed_points);
@@ -217,8 +221,9 @@ Registration register_from_anywhere(std::span<const contact::SurfacePoint> movin
         Mat3 axes = to.axes;
         if (n & 1) axes[0] = -axes[0], axes[1] = -axes[1];
         const Quat about = glm::angleAxis(2.0 * std::numbers::pi * (n / 2) / 12.0, to.axes[0]);
-        const Quat turn = glm::normalize(about * glm::quat_cast(axes * glm::transpose(from.axes)));
-        const Registration found = register_surface(moving, fixed, {to.middle - turn * from.middle, turn}, coarse);
+        const Quat rotation = glm::normalize(about * glm::quat_cast(axes * glm::transpose(from.axes)));
+        const Registration found =
+            register_surface(moving, fixed, {to.middle - rotation * from.middle, rotation}, coarse);
         if (n == 0 || found.median < best.median) best = found;
     }
     return register_surface(moving, fixed, best.pose, settings);

@@ -10,7 +10,8 @@
 
 namespace tactus::fit {
 
-SurfaceBrush::SurfaceBrush(std::vector<contact::SurfacePoint> points) : points_(std::move(points)), order_(points_.size()) {
+SurfaceBrush::SurfaceBrush(std::vector<contact::SurfacePoint> points)
+    : points_(std::move(points)), order_(points_.size()) {
     Vec3 low(std::numeric_limits<double>::infinity()), high = -low;
     for (const contact::SurfacePoint& p : points_) {
         low = glm::min(low, p.position);
@@ -74,8 +75,8 @@ void SurfaceBrush::stroke(const Vec3& middle, double radius, std::uint8_t label)
         std::uint32_t same = 0;
         for (std::uint32_t n = cube.first; n < cube.end; ++n) {
             contact::SurfacePoint& p = points_[order_[n]];
-            const Vec3 apart = p.position - middle;
-            if (p.label != label && glm::dot(apart, apart) <= radius * radius) {
+            const Vec3 difference = p.position - middle;
+            if (p.label != label && glm::dot(difference, difference) <= radius * radius) {
                 const bool was = p.label != contact::surface_label::none, is = label != contact::surface_label::none;
                 p.label = label;
                 if (was != is) {
@@ -96,8 +97,8 @@ double SurfaceBrush::distance(const Vec3& place) const noexcept {
     for (double reach = side_; !points_.empty(); reach = std::min(2.0 * reach, farthest)) {
         cubes(cell_of(place - Vec3(reach)), cell_of(place + Vec3(reach)), [&](std::size_t i) {
             for (std::uint32_t n = cubes_[i].first; n < cubes_[i].end; ++n) {
-                const Vec3 apart = points_[order_[n]].position - place;
-                least = std::min(least, glm::dot(apart, apart));
+                const Vec3 difference = points_[order_[n]].position - place;
+                least = std::min(least, glm::dot(difference, difference));
             }
         });
         if (least <= reach * reach || reach >= farthest) break;

@@ -25,26 +25,26 @@ double distance2(const Vec3& p, const Vec3& low, const Vec3& high) {
 }
 
 /// True when the segment a + t (b − a), 0 ≤ t ≤ most, meets the box.
-bool meets(const Vec3& a, const Vec3& way, double most, const Vec3& low, const Vec3& high) {
+bool meets(const Vec3& a, const Vec3& translation, double most, const Vec3& low, const Vec3& high) {
     double from = 0.0, to = most;
     for (int axis = 0; axis < 3; ++axis) {
-        if (way[axis] == 0.0) {
+        if (translation[axis] == 0.0) {
             if (a[axis] < low[axis] || a[axis] > high[axis]) return false;
             continue;
         }
-        const double t0 = (low[axis] - a[axis]) / way[axis], t1 = (high[axis] - a[axis]) / way[axis];
+        const double t0 = (low[axis] - a[axis]) / translation[axis], t1 = (high[axis] - a[axis]) / translation[axis];
         from = std::max(from, std::min(t0, t1));
         to = std::min(to, std::max(t0, t1));
     }
     return from <= to;
 }
 
-/// Facets that meet at a smaller angle than this one are meant to be round.
+/// Facets that meet at a smaller angle than this belong to a round surface.
 constexpr double round_cosine = 0.94;
-/// Edges and areas below this part of the usual ones are left-overs, whose directions are those of rounding errors.
+/// Edges and areas below this share of the typical ones are slivers; rounding errors decide their directions.
 constexpr double sliver = 0.1;
 
-/// For each vertex one that stands for it and for all that are joined to it by edges shorter than `length`.
+/// For each vertex a representative of all vertices connected to it by edges shorter than `length`.
 std::vector<std::size_t> joined(const TriangleSurface& surface, double length) {
     std::vector<std::size_t> of(surface.vertices.size());
     std::iota(of.begin(), of.end(), std::size_t(0));
@@ -63,9 +63,9 @@ std::vector<std::size_t> joined(const TriangleSurface& surface, double length) {
     return of;
 }
 
-/// Unit normals at the corners of all triangles: the mean of those that meet there, by area, or zero where one of them
-/// stands off too far. Corners that all but coincide, as iso surfaces have them, count as one, and what slivers say does
-/// not count.
+/// Unit normals at the corners of all triangles: the area-weighted mean of the triangles that meet there, or zero where
+/// one of them deviates too much. Corners that nearly coincide, as in iso surfaces, are merged; slivers are
+/// ignored.
 std::vector<Vec3> corner_normals(const TriangleSurface& surface) {
     const auto at = [&](int v) { return surface.vertices[static_cast<std::size_t>(v)]; };
     std::vector<Vec3> face;
@@ -177,7 +177,7 @@ TriangleTree::Near TriangleTree::nearest(const Vec3& p, double within) const noe
             if (d2 < least2) least2 = d2, best = t;
         }
         if (node.count > 0) continue;
-        // The nearer child is looked at first.
+        // The nearer child is visited first.
         std::uint32_t a = at + 1, b = node.first;
         if (distance2(p, nodes_[a].low, nodes_[a].high) < distance2(p, nodes_[b].low, nodes_[b].high)) std::swap(a, b);
         stack[depth++] = a;
@@ -206,7 +206,7 @@ std::size_t TriangleTree::all_near(const Vec3& p, double within, std::span<Near>
     return count;
 }
 
-double TriangleTree::sweep(const Vec3& from, const Vec3& way, double radius) const noexcept {
+double TriangleTree::sweep(const Vec3& from, const Vec3& translation, double radius) const noexcept {
     double first = 1.0;
     if (nodes_.empty()) return first;
     std::uint32_t stack[most_levels];
@@ -215,10 +215,10 @@ double TriangleTree::sweep(const Vec3& from, const Vec3& way, double radius) con
     while (depth > 0) {
         const std::uint32_t at = stack[--depth];
         const Node& node = nodes_[at];
-        if (!meets(from, way, first, node.low - Vec3(radius), node.high + Vec3(radius))) continue;
+        if (!meets(from, translation, first, node.low - Vec3(radius), node.high + Vec3(radius))) continue;
         for (std::uint32_t t = node.first; t < node.first + node.count; ++t) {
             const Vec3* c = &corners_[3 * std::size_t(t)];
-            first = std::min(first, ball_meets(from, way, radius, c[0], c[1], c[2]));
+            first = std::min(first, ball_meets(from, translation, radius, c[0], c[1], c[2]));
         }
         if (node.count > 0) continue;
         stack[depth++] = node.first;

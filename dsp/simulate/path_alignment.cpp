@@ -34,7 +34,7 @@ void align_to_rest(std::span<TrajectorySample> samples, const Vec3& feed, double
     if (samples.empty()) return;
     const Vec3 median = median_position(samples);
     std::vector<double> depths;
-    Quat turn(0.0, 0.0, 0.0, 0.0), first = samples.front().pose.orientation;
+    Quat rotation(0.0, 0.0, 0.0, 0.0), first = samples.front().pose.orientation;
     for (const TrajectorySample& sample : samples) {
         const Vec3 off = sample.pose.position - median;
         const double depth = glm::dot(off, feed);
@@ -42,11 +42,11 @@ void align_to_rest(std::span<TrajectorySample> samples, const Vec3& feed, double
         depths.push_back(depth);
         const Quat& q = sample.pose.orientation;
         // q and −q are one rotation: add them up on one side.
-        turn = turn + q * (glm::dot(q, first) < 0.0 ? -1.0 : 1.0);
+        rotation = rotation + q * (glm::dot(q, first) < 0.0 ? -1.0 : 1.0);
     }
     const double deep = depths.empty() ? 0.0 : quantile(std::move(depths), 0.95);
-    const double length = glm::length(turn);
-    const Quat back = length > 1e-9 ? glm::conjugate(turn / length) : Quat(1.0, 0.0, 0.0, 0.0);
+    const double length = glm::length(rotation);
+    const Quat back = length > 1e-9 ? glm::conjugate(rotation / length) : Quat(1.0, 0.0, 0.0, 0.0);
     for (TrajectorySample& sample : samples) {
         sample.pose.position += feed * (reach - deep) - median;
         sample.pose.orientation = sample.pose.orientation * back;

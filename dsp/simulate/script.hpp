@@ -21,7 +21,7 @@ struct HandTarget {
 /// A small circling of the hand about where it means to be, and a nodding about the x and y axes.
 struct HandWiggle {
     double amplitude = 0.0;  ///< m, along x and y
-    double turn = 0.0;       ///< rad
+    double rotation = 0.0;       ///< rad
     double rate = 1.5;       ///< Hz
 };
 
@@ -49,10 +49,10 @@ public:
         intended.pose.position += grown * wiggle_.amplitude * Vec3(std::sin(w * t), std::sin(v * t), 0.0);
         intended.twist.linear += wiggle_.amplitude * (growth * Vec3(std::sin(w * t), std::sin(v * t), 0.0) +
                                                       grown * Vec3(w * std::cos(w * t), v * std::cos(v * t), 0.0));
-        const Vec3 nod = grown * wiggle_.turn * Vec3(std::sin(v * t), std::sin(w * t), 0.0);
+        const Vec3 nod = grown * wiggle_.rotation * Vec3(std::sin(v * t), std::sin(w * t), 0.0);
         intended.pose.orientation = glm::normalize(rotation_by(nod) * intended.pose.orientation);
-        intended.twist.angular += wiggle_.turn * (growth * Vec3(std::sin(v * t), std::sin(w * t), 0.0) +
-                                                  grown * Vec3(v * std::cos(v * t), w * std::cos(w * t), 0.0));
+        intended.twist.angular += wiggle_.rotation * (growth * Vec3(std::sin(v * t), std::sin(w * t), 0.0) +
+                                                      grown * Vec3(v * std::cos(v * t), w * std::cos(w * t), 0.0));
         return intended;
     }
 
@@ -67,10 +67,11 @@ private:
         const double span = to.time - from.time, s = (t - from.time) / span;
         const double share = s * s * s * (10.0 + s * (6.0 * s - 15.0));
         const double speed = 30.0 * s * s * (1.0 - s) * (1.0 - s) / span;
-        const Vec3 way = to.pose.position - from.pose.position;
-        const Vec3 turn = rotation_between(from.pose.orientation, to.pose.orientation);
-        return {{from.pose.position + share * way, glm::normalize(rotation_by(share * turn) * from.pose.orientation)},
-                {speed * way, speed * turn}};
+        const Vec3 translation = to.pose.position - from.pose.position;
+        const Vec3 rotation = rotation_between(from.pose.orientation, to.pose.orientation);
+        return {{from.pose.position + share * translation,
+                 glm::normalize(rotation_by(share * rotation) * from.pose.orientation)},
+                {speed * translation, speed * rotation}};
     }
 
     std::shared_ptr<const std::vector<HandTarget>> targets_;  // shared by the copy that `prepare` goes back to

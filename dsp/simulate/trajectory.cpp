@@ -75,10 +75,10 @@ void TrajectoryPlayer::fit(std::size_t first, std::size_t last, std::span<const 
 
 /// The pieces between two segments: hold at `knot`, then ease to the next one.
 void TrajectoryPlayer::cross(std::size_t knot, double& clock, double recorded, const TrajectoryRules& rules) {
-    const double way = glm::distance(position_of(knots_[knot].value), position_of(knots_[knot + 1].value));
-    const double turn =
+    const double translation = glm::distance(position_of(knots_[knot].value), position_of(knots_[knot + 1].value));
+    const double rotation =
         glm::length(rotation_between(orientation_of(knots_[knot].value), orientation_of(knots_[knot + 1].value)));
-    const double ease = jerk_peak * std::max(way / rules.max_speed, turn / rules.max_angular_speed);
+    const double ease = jerk_peak * std::max(translation / rules.max_speed, rotation / rules.max_angular_speed);
     const double hold = std::max(recorded - ease, 0.0);
     if (hold > 0.0) spans_.push_back({clock, clock + hold, knot, Piece::hold});
     clock += hold;
@@ -95,18 +95,18 @@ Intention TrajectoryPlayer::on(const Piece& piece, double time) const noexcept {
     if (piece.kind == Piece::ease) {
         const double s = u * u * u * (10.0 + u * (6.0 * u - 15.0));
         const double rate = 30.0 * u * u * (1.0 - u) * (1.0 - u) / span;
-        const Vec3 way = position_of(to.value) - position_of(from.value);
-        const Vec3 turn = rotation_between(orientation_of(from.value), orientation_of(to.value));
-        return {{position_of(from.value) + way * s, rotation_by(turn * s) * orientation_of(from.value)},
-                {way * rate, turn * rate}};
+        const Vec3 translation = position_of(to.value) - position_of(from.value);
+        const Vec3 rotation = rotation_between(orientation_of(from.value), orientation_of(to.value));
+        return {{position_of(from.value) + translation * s, rotation_by(rotation * s) * orientation_of(from.value)},
+                {translation * rate, rotation * rate}};
     }
     double value[channels], speed[channels];
     const double w = 1.0 - u, h6 = span / 6.0;
     for (std::size_t c = 0; c < channels; ++c) {
         const double bend = (w * w * w - w) * from.second[c] + (u * u * u - u) * to.second[c];
         value[c] = w * from.value[c] + u * to.value[c] + bend * span * h6;
-        const double turn = (1.0 - 3.0 * w * w) * from.second[c] + (3.0 * u * u - 1.0) * to.second[c];
-        speed[c] = (to.value[c] - from.value[c]) / span + turn * h6;
+        const double bend_slope = (1.0 - 3.0 * w * w) * from.second[c] + (3.0 * u * u - 1.0) * to.second[c];
+        speed[c] = (to.value[c] - from.value[c]) / span + bend_slope * h6;
     }
     // ω = 2 q̇ q⁻¹ for any length of q once the part along q is left out, which the vector part does by itself.
     const Quat q = orientation_of(value), rate = orientation_of(speed) * glm::inverse(q);

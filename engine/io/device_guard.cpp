@@ -14,7 +14,7 @@ Vec3 shorten(const Vec3& v, double length) noexcept {
 
 }  // namespace
 
-Wrench bearable(const Wrench& wanted, const DeviceInfo& device) noexcept {
+Wrench clamp_to_device(const Wrench& wanted, const DeviceInfo& device) noexcept {
     if (!is_finite(wanted)) return {};
     return {shorten(wanted.force, device.max_force), shorten(wanted.torque, device.max_torque)};
 }
@@ -25,7 +25,7 @@ void DeviceGuard::commit(HapticDevice& device, const Wrench& wanted, std::int64_
         asked_ns_.store(now_ns, std::memory_order_release);
         return;
     }
-    const Wrench given = bearable(wanted, device.info());
+    const Wrench given = clamp_to_device(wanted, device.info());
     device.commit(given);
     guard_.end(given, now_ns);
 }

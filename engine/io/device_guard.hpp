@@ -24,7 +24,7 @@ struct DeviceFault {
 
 /// What is finite and within what the device states it can bear; anything else becomes no force at all, so that not even
 /// a node that writes to a device by itself gets round the limits.
-Wrench bearable(const Wrench& wanted, const DeviceInfo& device) noexcept;
+Wrench clamp_to_device(const Wrench& wanted, const DeviceInfo& device) noexcept;
 
 class DeviceGuard {
 public:

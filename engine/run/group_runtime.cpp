@@ -12,7 +12,8 @@
 
 namespace tactus::run {
 
-const take::TimingRecord* GroupRuntime::replayed_at(take::TimingKind kind, std::uint32_t source, std::int64_t tick) const noexcept {
+const take::TimingRecord* GroupRuntime::replayed_at(take::TimingKind kind, std::uint32_t source,
+                                                    std::int64_t tick) const noexcept {
     if (!replayed) return nullptr;
     for (std::size_t i = cursor_; i < replayed->size(); ++i) {
         const take::TimingRecord& record = (*replayed)[i];
@@ -53,7 +54,8 @@ bool GroupRuntime::ready() const noexcept {
     for (std::size_t i = 0; i < program_->inputs.size(); ++i) {
         const Link& link = *program_->inputs[i];
         std::int64_t wanted = link.wanted(next_);
-        if (const take::TimingRecord* held = replayed_at(take::TimingKind::held_read, static_cast<std::uint32_t>(link.id), next_))
+        if (const take::TimingRecord* held =
+                replayed_at(take::TimingKind::held_read, static_cast<std::uint32_t>(link.id), next_))
             wanted = held->value;
         const GroupRuntime& producer = *program_->producers[i];
         wanted = std::min(wanted, producer.end.load(std::memory_order_relaxed) - 1);
@@ -105,7 +107,8 @@ void GroupRuntime::read_links(int frames, Pace pace) noexcept {
         const GroupRuntime& producer = *program_->producers[i];
         const std::int64_t want = link.wanted(next_);
         std::int64_t chosen = link.used();
-        if (const take::TimingRecord* held = replayed_at(take::TimingKind::held_read, static_cast<std::uint32_t>(link.id), next_))
+        if (const take::TimingRecord* held =
+                replayed_at(take::TimingKind::held_read, static_cast<std::uint32_t>(link.id), next_))
             chosen = held->value;
         else if (want > chosen) chosen = link.newest_available(want, producer.done());
         // Past the producer's last activation there is nothing to miss. Live, its end may still be set behind where it
@@ -176,7 +179,7 @@ int GroupRuntime::finish_call(Pace pace) noexcept {
         slot->guard.note(slot->port.fault, next_, glm::length(slot->committed.force));
         slot->committed = slot->port.wrench;
         if (pace == Pace::live) slot->guard.commit(*slot->device, slot->port.wrench, steady_ns());
-        else if (!replayed) slot->device->commit(io::bearable(slot->port.wrench, slot->port.info));
+        else if (!replayed) slot->device->commit(io::clamp_to_device(slot->port.wrench, slot->port.info));
         if (!replayed && slot->port.info.fingers > 0) slot->device->drive(slot->port.motors);
     }
     telemetry.ticks.fetch_add(n, std::memory_order_relaxed);

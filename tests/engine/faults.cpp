@@ -29,7 +29,8 @@ DeviceSample pressing(std::int64_t count) {
     return sample;
 }
 
-std::string patch_text(const std::string& fault, int at, const std::string& stall = "0 ms", const std::string& more = "") {
+std::string patch_text(const std::string& fault, int at, const std::string& stall = "0 ms",
+                       const std::string& more = "") {
     return PatchText{{{"hand", "device_input", "1 kHz", {{"device", "faulty"}}},
                       {"plant", "planted", "1 kHz", {{"fault", fault}, {"at", std::to_string(at)}, {"stall", stall}}},
                       {"out",
@@ -61,7 +62,7 @@ struct Outcome {
 };
 
 Outcome run_patch(const std::string& toml, double length, const std::function<DeviceSample(std::int64_t)>& hand,
-            const std::optional<std::filesystem::path>& live_log = {}) {
+                  const std::optional<std::filesystem::path>& live_log = {}) {
     Outcome outcome;
     outcome.given.reserve(100'000);
     Performance performance;
@@ -196,11 +197,11 @@ TEST_CASE("no node gets round the limits that the device states") {
     DeviceInfo device;
     device.max_force = 10.0;
     device.max_torque = 1.0;
-    CHECK(glm::length(io::bearable({{30.0, 40.0, 0.0}, {}}, device).force) == Approx(10.0));
-    CHECK(glm::length(io::bearable({{}, {0.0, 3.0, 4.0}}, device).torque) == Approx(1.0));
-    CHECK(io::bearable({{1.0, 2.0, 3.0}, {}}, device).force == Vec3(1.0, 2.0, 3.0));
-    CHECK(io::bearable({{std::nan(""), 2.0, 3.0}, {0.1, 0.0, 0.0}}, device).torque == Vec3(0.0));
-    CHECK(io::bearable({{30.0, 40.0, 0.0}, {}}, {}).force == Vec3(30.0, 40.0, 0.0));
+    CHECK(glm::length(io::clamp_to_device({{30.0, 40.0, 0.0}, {}}, device).force) == Approx(10.0));
+    CHECK(glm::length(io::clamp_to_device({{}, {0.0, 3.0, 4.0}}, device).torque) == Approx(1.0));
+    CHECK(io::clamp_to_device({{1.0, 2.0, 3.0}, {}}, device).force == Vec3(1.0, 2.0, 3.0));
+    CHECK(io::clamp_to_device({{std::nan(""), 2.0, 3.0}, {0.1, 0.0, 0.0}}, device).torque == Vec3(0.0));
+    CHECK(io::clamp_to_device({{30.0, 40.0, 0.0}, {}}, {}).force == Vec3(30.0, 40.0, 0.0));
 }
 
 TEST_CASE("a stalled tick loses the hand to the watchdog, which fades it; the other groups and the log go on") {
@@ -220,7 +221,8 @@ TEST_CASE("a stalled tick loses the hand to the watchdog, which fades it; the ot
         }
         if (must_be_taken) {
             CHECK(taken);
-            CHECK(std::ranges::any_of(o.faults, [](const io::DeviceFault& f) { return f.reason == control::Fault::late_commit; }));
+            CHECK(std::ranges::any_of(
+                o.faults, [](const io::DeviceFault& f) { return f.reason == control::Fault::late_commit; }));
         }
         // At the end of the run nothing is left on the hand.
         CHECK(force_at(o, o.given.size() - 1) == 0.0);

@@ -31,7 +31,8 @@ constexpr int grid_size = 256;
 const std::string grid_name = fmt::format("{0}x{0}x{0}", grid_size);
 
 contact::Voxmap ball(double radius) {
-    return contact::sample_voxmap(contact::centred_layout(grid_size, voxel), [=](const Vec3& p) { return contact::Ball{radius}.distance(p); });
+    return contact::sample_voxmap(contact::centred_layout(grid_size, voxel),
+                                  [=](const Vec3& p) { return contact::Ball{radius}.distance(p); });
 }
 
 // A shell just below the surface of the ball: every point in contact, as between fitted fracture surfaces. The points
@@ -57,7 +58,7 @@ Json measure(const Case& c, int rounds) {
     const ContactGridPeer peer(map.grid);
     const int frames = rounds * std::clamp(2'000'000 / c.points, 10, 200);
     // Reading single places is what the peer does, so it is compared where every point is read.
-    const bool has_peer = c.apart == 0.0 && c.budget > static_cast<std::size_t>(c.points);
+    const bool has_peer = c.distance == 0.0 && c.budget > static_cast<std::size_t>(c.points);
     std::vector<double> ours, theirs;
     contact::ContactSum sum;
     double checked = 0.0;
@@ -110,7 +111,7 @@ Json contact_libraries(const Case& c, int rounds) {
     if (failure || !std::filesystem::exists(program, failure)) return found;
     const int frames = rounds * std::clamp(250'000 / c.points, 3, 50);
     const std::string command =
-        fmt::format("'{}' {} {} {} {} {}", program.string(), c.name, c.points, c.radius, c.apart, frames);
+        fmt::format("'{}' {} {} {} {} {}", program.string(), c.name, c.points, c.radius, c.distance, frames);
     std::FILE* rows = ::popen(command.c_str(), "r");
     if (!rows) return found;
     char line[512];
@@ -124,8 +125,8 @@ Json contact_libraries(const Case& c, int rounds) {
 Json measure_frames(const Case& c, int rounds) {
     const double radius = c.radius * voxel;
     const contact::Pointshell shell = contact::make_pointshell(contact::spread_over_ball(c.points, radius));
-    const contact::Voxmap hole = contact::sample_voxmap(contact::centred_layout(grid_size, voxel),
-                                      [=](const Vec3& p) { return radius + 0.02e-3 - glm::length(p); });
+    const contact::Voxmap hole = contact::sample_voxmap(
+        contact::centred_layout(grid_size, voxel), [=](const Vec3& p) { return radius + 0.02e-3 - glm::length(p); });
     coupling::Scene scene;
     scene.count = 2;
     scene.objects[0].body = {&shell, nullptr, nullptr, {}, 1, 1};
@@ -216,8 +217,8 @@ int bench_contact(const BenchChoice& choice) {
         fmt::print(
             "energy, gradient and 6x6 stiffness; kernel {}; voxels of {} mm; processor time of one thread\n"
             "{:26} {:>9} {:>10} {:>9} {:>9} {:>9} {:>9} {:>9} {:>6}\n",
-            contact::kernel::variant_in_use(), 1e3 * voxel, "", "points", "in contact", "ns/point", "p50 us", "p99 us", "error",
-            "OpenVDB", "ratio");
+            contact::kernel::variant_in_use(), 1e3 * voxel, "", "points", "in contact", "ns/point", "p50 us", "p99 us",
+            "error", "OpenVDB", "ratio");
     for (const Case& c : cases) {
         rows.push_back(measure(c, choice.rounds));
         if (!choice.json) print_row(rows.back());
@@ -229,7 +230,7 @@ int bench_contact(const BenchChoice& choice) {
     for (std::size_t i = 0; i < std::size(cases); ++i) {
         const Case& c = cases[i];
         // Theirs depends neither on interpolation nor on a budget.
-        if (c.points > 50'000 && c.apart == 0.0) continue;
+        if (c.points > 50'000 && c.distance == 0.0) continue;
         if (c.interpolation != contact::Interpolation::trilinear) continue;
         Json found = contact_libraries(c, choice.rounds);
         if (found.empty()) continue;

@@ -25,12 +25,12 @@ struct Case {
     const char* name;
     int points;
     double radius;  ///< of the shell, in voxels
-    double apart;   ///< of the centres, in radii: 0 for a shell within the ball, 2 for two balls that touch
+    double distance;   ///< of the centres, in radii: 0 for a shell within the ball, 2 for two balls that touch
     contact::Interpolation interpolation = contact::Interpolation::trilinear;
     std::size_t budget = std::numeric_limits<std::size_t>::max();
 
     /// m, of the ball that the shell is held against.
-    double ball() const { return radius * voxel + (apart > 0.0 ? 0.0 : cover); }
+    double ball() const { return radius * voxel + (distance > 0.0 ? 0.0 : cover); }
 };
 
 /// Of the shell: any turn, pressed in by 0.1 to 0.2 mm, nothing like the frame before.
@@ -40,7 +40,7 @@ inline Pose pose_of(const Case& c, std::uint64_t frame) {
     const Quat turn = glm::normalize(Quat(normal(0), normal(1), normal(2), normal(3)));
     const Vec3 way = glm::normalize(Vec3(normal(4), normal(5), normal(6)));
     const double press = 1e-4 * (1.0 + random.uniform(16 * frame + 7));
-    return {way * (c.apart > 0.0 ? c.apart * c.radius * voxel - press : 0.5 * press), turn};
+    return {way * (c.distance > 0.0 ? c.distance * c.radius * voxel - press : 0.5 * press), turn};
 }
 
 /// Processor time of this thread, s: other work on the machine counts only by what it takes from the caches.

@@ -4,7 +4,7 @@
 #include "assets/bone/import.hpp"
 #include "assets/bone/sparse_bone.hpp"
 #include "assets/file/whole_file.hpp"
-#include "assets/volume/lps_layers.hpp"
+#include "assets/volume/reoriented_volume.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
@@ -127,7 +127,7 @@ TEST_CASE(
         const volume::Grid whole = volume::lps_grid(volume::read_volume(folder / "plain.nrrd"));
         for (const char* name : {"plain.nrrd", "packed.nrrd"}) {
             const auto reader = volume::open_volume(folder / name);
-            volume::LpsLayers layers(*reader, on_three_threads());
+            volume::ReorientedVolume layers(*reader, on_three_threads());
             layers.settle();
             REQUIRE(layers.layout().size == whole.size);
             for (const int first : {0, 3, 20, 5, whole.size[2] - 4}) {
@@ -175,7 +175,8 @@ TEST_CASE(
     std::filesystem::create_symlink(folder / "ct.nrrd", folder / "same.vdb");
     for (const char* out : {"ct.nrrd", "./ct.nrrd", "same.vdb"})
         CHECK_THROWS_WITH(bone::import_bone_file(options, folder / out, progress), Contains("would be overwritten"));
-    CHECK_THROWS_WITH(bone::import_bone_file(options, folder / "none/bone.vdb", progress), Contains("there is no folder"));
+    CHECK_THROWS_WITH(bone::import_bone_file(options, folder / "none/bone.vdb", progress),
+                      Contains("there is no folder"));
     CHECK_THROWS_WITH(bone::import_bone_file(options, folder.path, progress), Contains("is a folder"));
     CHECK_FALSE(began);
     CHECK(file::read_whole_file(folder / "ct.nrrd") == bytes);

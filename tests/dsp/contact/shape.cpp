@@ -35,12 +35,12 @@ TEST_CASE("points of a shape lie on its surface, look outwards and share out its
 }
 
 TEST_CASE("distances of turned shapes are those of their profile") {
-    const contact::Turned peg = contact::make_cylinder(0.01, 0.02, 1e-3);
+    const contact::Revolved peg = contact::make_cylinder(0.01, 0.02, 1e-3);
     CHECK(peg.distance({0.0, 0.0, 0.01}) == Approx(-0.005));
     CHECK(peg.distance({0.007, 0.0, 0.01}) == Approx(0.002));
     CHECK(peg.distance({0.0, 0.0, -0.003}) == Approx(0.003));
     CHECK(peg.distance({0.0, 0.005, 0.0}) == Approx(1e-3 / std::sqrt(2.0)));
-    const contact::Turned hole = contact::make_bushing(0.01, 0.03, 0.02, 1e-3);
+    const contact::Revolved hole = contact::make_bushing(0.01, 0.03, 0.02, 1e-3);
     CHECK(hole.distance({0.0, 0.0, -0.01}) == Approx(0.005));
     CHECK(hole.distance({0.0, 0.0, 0.01}) == Approx(std::hypot(0.006, 0.01)));
     CHECK(hole.distance({0.01, 0.0, -0.01}) == Approx(-0.005));

@@ -93,8 +93,8 @@ TEST_CASE("dsp: flat faces slide in two directions and turn about their normal")
     REQUIRE(fit.free.size() == 3);
     int turns = 0;
     for (const fit::FreeDirection& f : fit.free) {
-        turns += f.is_turn;
-        CHECK(std::abs(f.axis.x) == Approx(f.is_turn ? 1.0 : 0.0).margin(0.15));
+        turns += f.is_rotation;
+        CHECK(std::abs(f.axis.x) == Approx(f.is_rotation ? 1.0 : 0.0).margin(0.15));
     }
     CHECK(turns == 1);
 }
@@ -128,7 +128,7 @@ TEST_CASE("dsp: a round peg in its sleeve may spin and slide along") {
     const fit::Fit fit = fit::find_fit(moving, fixed, beside(0.4 * mm, 2 * degree, 2), fit::FitMode::extended);
     CHECK(fit.verdict == fit::FitVerdict::sliding);
     REQUIRE(fit.free.size() == 2);
-    CHECK(fit.free[0].is_turn != fit.free[1].is_turn);
+    CHECK(fit.free[0].is_rotation != fit.free[1].is_rotation);
     for (const fit::FreeDirection& f : fit.free) CHECK(std::abs(f.axis.x) > 0.95);
 }
 
@@ -157,7 +157,8 @@ TEST_CASE("dsp: chips, spilled and missing paint, lost bone and uneven voxels le
     };
     for (const Hardship& h : hardships) {
         const Half a = bar_half(-1.0, rough_relief(3), h.left), b = bar_half(1.0, rough_relief(3), h.right);
-        const fit::Fit fit = fit::find_fit(a.surface(), b.surface(), beside(4 * mm, 10 * degree, 7), fit::FitMode::extended);
+        const fit::Fit fit =
+            fit::find_fit(a.surface(), b.surface(), beside(4 * mm, 10 * degree, 7), fit::FitMode::extended);
         INFO(h.name << ": " << error_of(a, fit.pose) / mm << " mm, " << fit::name_of(fit.verdict));
         CHECK(error_of(a, fit.pose) < h.most_error);
     }
@@ -167,7 +168,8 @@ TEST_CASE("dsp: an outer contour with a step of its own does not pull the break 
     // The left half's lower side is 0.6 to 1.8 mm thicker than the right one's.
     for (const double bend : {1.1, 1.3}) {
         const Half a = bar_half(-1.0, rough_relief(3), {.bend = bend}), b = bar_half(1.0, rough_relief(3));
-        const fit::Fit fit = fit::find_fit(a.surface(), b.surface(), beside(4 * mm, 10 * degree, 7), fit::FitMode::extended);
+        const fit::Fit fit =
+            fit::find_fit(a.surface(), b.surface(), beside(4 * mm, 10 * degree, 7), fit::FitMode::extended);
         CAPTURE(bend, error_of(a, fit.pose) / mm, fit.quality.outline / mm);
         CHECK(error_of(a, fit.pose) < 0.15 * mm);
         CHECK(fit.verdict == fit::FitVerdict::fit);
@@ -177,7 +179,8 @@ TEST_CASE("dsp: an outer contour with a step of its own does not pull the break 
 TEST_CASE("dsp: bone lost along the break is closed, not called a failure") {
     for (const double gap : {0.2 * mm, 0.5 * mm, 1.0 * mm}) {
         const Half a = bar_half(-1.0, rough_relief(3), {.gap = gap}), b = bar_half(1.0, rough_relief(3), {.gap = gap});
-        const fit::Fit fit = fit::find_fit(a.surface(), b.surface(), beside(4 * mm, 10 * degree, 7), fit::FitMode::extended);
+        const fit::Fit fit =
+            fit::find_fit(a.surface(), b.surface(), beside(4 * mm, 10 * degree, 7), fit::FitMode::extended);
         // Pulled to each other by what was lost.
         CHECK(error_of(a, fit.pose, {{gap, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}) < 0.25 * mm);
         CHECK(fit.verdict == fit::FitVerdict::fit);
@@ -186,7 +189,8 @@ TEST_CASE("dsp: bone lost along the break is closed, not called a failure") {
 
 TEST_CASE("dsp: a start deep inside of the other bone finds out") {
     const fit::FitSurface moving = left().surface(), fixed = right().surface();
-    const fit::Fit fit = fit::find_fit(moving, fixed, {{7 * mm, 1 * mm, 0.0}, {1.0, 0.0, 0.0, 0.0}}, fit::FitMode::extended);
+    const fit::Fit fit =
+        fit::find_fit(moving, fixed, {{7 * mm, 1 * mm, 0.0}, {1.0, 0.0, 0.0, 0.0}}, fit::FitMode::extended);
     CHECK(error_of(left(), fit.pose) < 0.1 * mm);
 }
 
@@ -209,7 +213,8 @@ TEST_CASE("dsp: far from the origin the fit is the same") {
     const Half a = bar_half(-1.0, rough_relief(3), {.far = far}), b = bar_half(1.0, rough_relief(3), {.far = far});
     const Pose start = beside(4 * mm, 10 * degree, 7);
     const Pose shift{far, {1.0, 0.0, 0.0, 0.0}};
-    const fit::Fit fit = fit::find_fit(a.surface(), b.surface(), shift * start * shift.inverse(), fit::FitMode::extended);
+    const fit::Fit fit =
+        fit::find_fit(a.surface(), b.surface(), shift * start * shift.inverse(), fit::FitMode::extended);
     CHECK(error_of(a, fit.pose) < 0.1 * mm);
 }
 

@@ -5,9 +5,9 @@
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/fit/gap.hpp"
-#include "dsp/geometry/main_axes.hpp"
 #include "dsp/fit/mirror.hpp"
 #include "dsp/fit/point_registration.hpp"
+#include "dsp/geometry/main_axes.hpp"
 
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
@@ -122,7 +122,7 @@ TEST_CASE("the mirror of a body is found from its two sides, and what of one sid
     const fit::MirrorFit fit = fit::fit_mirror(left, right);
     CHECK(fit.registration.median < 0.1 * mm);
     CHECK(glm::dot(fit.plane.normal, truth.normal) > std::cos(0.03));
-    CHECK(fit.turn < 0.04);
+    CHECK(fit.rotation < 0.04);
     // Together they are the body's own symmetry: corners of the left side come to lie on the right one.
     for (const Vec3& p : {Vec3(10.0, 2.0, 3.0) * mm, Vec3(-4.0, 9.0, -8.0) * mm})
         CHECK(glm::length(fit.pose.apply(fit.plane.reflect(p)) - posture.apply(truth.reflect(p))) < 0.3 * mm);
@@ -170,8 +170,8 @@ TEST_CASE("gap and overlap of two balls are those of the formula") {
 TEST_CASE("main axes of a turned box are its edges, longest first, and a rotation") {
     const Quat turn = rotation_by({0.4, -1.1, 0.7});
     const Mat3 r = glm::mat3_cast(turn);
-    const Mat3 axes =
-        geometry::main_axes(r * Mat3(Vec3(2.0, 0.0, 0.0), Vec3(0.0, 9.0, 0.0), Vec3(0.0, 0.0, 5.0)) * glm::transpose(r));
+    const Mat3 axes = geometry::main_axes(r * Mat3(Vec3(2.0, 0.0, 0.0), Vec3(0.0, 9.0, 0.0), Vec3(0.0, 0.0, 5.0)) *
+                                          glm::transpose(r));
     CHECK(std::abs(glm::dot(axes[0], r[1])) == Approx(1.0));
     CHECK(std::abs(glm::dot(axes[1], r[2])) == Approx(1.0));
     CHECK(std::abs(glm::dot(axes[2], r[0])) == Approx(1.0));
@@ -187,7 +187,7 @@ TEST_CASE("where a third of a surface is elsewhere, the place that most of it ag
     const fit::RegistrationTarget target(fixed);
     const fit::Registration bulk =
         fit::register_surface(moving, target, {Vec3(1.0, 2.0, -1.0) * mm, rotation_by({0.02, 0.0, 0.0})},
-                         {.widest = 10e-3, .finest = 0.8e-3, .by_parts = true});
+                              {.widest = 10e-3, .finest = 0.8e-3, .by_parts = true});
     CHECK(off(bulk.pose, {}) < 0.4 * mm);
     // All that moved is told from the rest once its motion is known, also what slid along the surface.
     const auto region = fit::region_nearer(moving, bulk.pose, shift.inverse(), target, 0.1 * mm, 0.5 * mm, 3.0 * mm);

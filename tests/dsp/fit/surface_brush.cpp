@@ -23,8 +23,8 @@ std::vector<contact::SurfacePoint> sheet(int side) {
             const auto n = static_cast<std::uint64_t>(j * side + i);
             const Vec3 at = Vec3(0.4 * i, 0.4 * j, random.normal(n)) * mm;
             const bool is_painted = random.uniform(n + 1'000'000) < 0.1;
-            points.push_back(
-                {at, Vec3(0.0, 0.0, 1.0), 0.16 * mm * mm, is_painted ? contact::surface_label::fracture : contact::surface_label::none});
+            points.push_back({at, Vec3(0.0, 0.0, 1.0), 0.16 * mm * mm,
+                              is_painted ? contact::surface_label::fracture : contact::surface_label::none});
         }
     return points;
 }
@@ -46,14 +46,15 @@ TEST_CASE("strokes of any size, on and off the surface, label what a look at eve
         std::size_t labelled = 0;
         double area = 0.0;
         for (contact::SurfacePoint& p : points) {
-            const Vec3 apart = p.position - at;
-            if (glm::dot(apart, apart) <= radius * radius) p.label = label;
-            least = std::min(least, glm::length(apart));
+            const Vec3 difference = p.position - at;
+            if (glm::dot(difference, difference) <= radius * radius) p.label = label;
+            least = std::min(least, glm::length(difference));
             if (p.label == contact::surface_label::none) continue;
             ++labelled;
             area += p.area;
         }
-        REQUIRE(std::ranges::equal(brush.points(), points, {}, &contact::SurfacePoint::label, &contact::SurfacePoint::label));
+        REQUIRE(std::ranges::equal(brush.points(), points, {}, &contact::SurfacePoint::label,
+                                   &contact::SurfacePoint::label));
         REQUIRE(brush.labelled() == labelled);
         REQUIRE(brush.area() == Approx(area).margin(1e-12));
         REQUIRE(brush.distance(at) == Approx(least).margin(1e-12));

@@ -24,7 +24,8 @@ std::vector<simulate::TrajectorySample> recorded(double begin, double end, doubl
 
 simulate::TrajectoryPlayer with_gap(double gap, double jump) {
     std::vector<simulate::TrajectorySample> all = recorded(0.0, 0.5);
-    const std::vector<simulate::TrajectorySample> later = recorded(all.back().time + gap, all.back().time + gap + 0.5, jump);
+    const std::vector<simulate::TrajectorySample> later =
+        recorded(all.back().time + gap, all.back().time + gap + 0.5, jump);
     all.insert(all.end(), later.begin(), later.end());
     return {all, {}, {}};
 }
@@ -50,7 +51,7 @@ TEST_CASE("recorded samples are passed through exactly, and twist has no jump th
     std::size_t hint = 0;
     for (std::size_t i = 1; i + 1 < samples.size(); ++i) {
         const simulate::TrajectoryState before = player.at(samples[i].time - 1e-9, hint),
-                              after = player.at(samples[i].time, hint);
+                                        after = player.at(samples[i].time, hint);
         REQUIRE(glm::distance(after.intention.pose.position, samples[i].pose.position) < 1e-9);
         REQUIRE(glm::distance(before.intention.twist.linear, after.intention.twist.linear) < 1e-6);
     }
@@ -62,9 +63,9 @@ TEST_CASE("a quaternion that changes sign between samples does not turn the hand
     const simulate::TrajectoryPlayer flipped(samples, {}, {}), plain(recorded(0.0, 1.0), {}, {});
     std::size_t a = 0, b = 0;
     for (double t = 0.0; t < 0.99; t += 0.001) {
-        const Vec3 apart =
+        const Vec3 difference =
             rotation_between(flipped.at(t, a).intention.pose.orientation, plain.at(t, b).intention.pose.orientation);
-        REQUIRE(glm::length(apart) < 1e-9);
+        REQUIRE(glm::length(difference) < 1e-9);
     }
 }
 

@@ -2,8 +2,8 @@
 // The distance to the surface of grey values, beside the distance to every triangle of the same surface drawn finer.
 #include "dsp/core/random.hpp"
 #include "dsp/geometry/closest_point.hpp"
-#include "dsp/volume/iso_distance.hpp"
 #include "dsp/geometry/iso_surface.hpp"
+#include "dsp/volume/iso_distance.hpp"
 #include "dsp/volume/resample.hpp"
 
 #include <glm/geometric.hpp>
@@ -56,11 +56,11 @@ struct Triangles {
     double to_nearest(const Vec3& at) const {
         double least = std::numeric_limits<double>::infinity();
         for (std::size_t n = 0; n < middle.size(); ++n) {
-            const Vec3 apart = middle[n] - at;
-            if (glm::dot(apart, apart) > (least + radius) * (least + radius)) continue;
+            const Vec3 difference = middle[n] - at;
+            if (glm::dot(difference, difference) > (least + radius) * (least + radius)) continue;
             const auto& t = surface.triangles[n];
-            least =
-                std::min(least, glm::length(geometry::closest_on_triangle(at, corner(t[0]), corner(t[1]), corner(t[2])) - at));
+            least = std::min(
+                least, glm::length(geometry::closest_on_triangle(at, corner(t[0]), corner(t[1]), corner(t[2])) - at));
         }
         return least;
     }
@@ -195,9 +195,11 @@ TEST_CASE("volumes that are all bone, all air or one sample thick have a distanc
     for (const std::array<int, 3> size : {std::array<int, 3>{5, 4, 3}, {1, 1, 1}, {7, 1, 1}, {6, 5, 1}}) {
         volume::Grid grid{size, Vec3(0.0), Vec3(1e-3), {}};
         grid.values.assign(grid.count(), 1.0f);
-        for (const float d : volume::distance_to_iso(grid, 0.0f).values) CHECK(d == -std::numeric_limits<float>::infinity());
+        for (const float d : volume::distance_to_iso(grid, 0.0f).values)
+            CHECK(d == -std::numeric_limits<float>::infinity());
         grid.values.assign(grid.count(), -1.0f);
-        for (const float d : volume::distance_to_iso(grid, 0.0f).values) CHECK(d == std::numeric_limits<float>::infinity());
+        for (const float d : volume::distance_to_iso(grid, 0.0f).values)
+            CHECK(d == std::numeric_limits<float>::infinity());
     }
     volume::Grid thin{{2, 2, 2}, Vec3(0.0), Vec3(1e-3), {-1, 1, -1, 1, -1, 1, -1, 1}};
     for (int n = 0; n < 8; ++n)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// read_sample_log and even_out: any text is an even record of finite numbers or
+// read_sample_log and regularise: any text is an even record of finite numbers or
 // one Error.
 #include "assets/table/sample_log.hpp"
 
 #include "dsp/core/error.hpp"
-#include "dsp/signal/filter/even_out.hpp"
+#include "dsp/signal/filter/regularise.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             tactus::table::read_sample_log({reinterpret_cast<const char*>(data), size}, "l.csv", {});
         for (const auto& column : log.columns)
             if (column.size() != log.times.size()) std::abort();
-        const tactus::signal::EvenRecord even = tactus::signal::even_out(log.times, log.columns);
+        const tactus::signal::EvenRecord even = tactus::signal::regularise(log.times, log.columns);
         if (!(even.rate > 0.0)) std::abort();
     } catch (const tactus::Error& error) {
         if (std::string_view(error.what()).empty()) std::abort();

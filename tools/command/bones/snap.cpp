@@ -65,7 +65,8 @@ Json painted_mm2(const study::SnappedSide& side) {
 Json json_of(const fit::Fit& fit) {
     Json free = Json::array();
     for (const fit::FreeDirection& f : fit.free)
-        free.push_back({{"type", f.is_turn ? "rotation" : "translation"}, {"axis", {f.axis.x, f.axis.y, f.axis.z}}});
+        free.push_back(
+            {{"type", f.is_rotation ? "rotation" : "translation"}, {"axis", {f.axis.x, f.axis.y, f.axis.z}}});
     return {{"pose", pose_json<Json>(fit.pose)},
             {"score", fit.quality.score},
             {"margin", fit.margin},
@@ -94,13 +95,13 @@ void print(const study::Snapped& found) {
     const Vec3 p = fit.pose.position * 1e3;
     const Quat q = fit.pose.orientation;
     fmt::print("{}: score {:.2f}, margin {:.2f}, {:.0f} mm² on each other, {:.3f} mm rms, {:.0f} ms\n",
-               fit::name_of(fit.verdict), fit.quality.score, fit.margin, fit.quality.overlap * 1e6, fit.quality.rms * 1e3,
-               1e3 * found.seconds);
+               fit::name_of(fit.verdict), fit.quality.score, fit.margin, fit.quality.overlap * 1e6,
+               fit.quality.rms * 1e3, 1e3 * found.seconds);
     fmt::print("p_fixed = R p_moving + t: t = {:.3f} {:.3f} {:.3f} mm, q = {:.5f} {:.5f} {:.5f} {:.5f}\n", p.x, p.y,
                p.z, q.w, q.x, q.y, q.z);
     for (const fit::FreeDirection& f : fit.free)
-        fmt::print("free to {} {:.2f} {:.2f} {:.2f}\n", f.is_turn ? "turn about" : "slide along", f.axis.x, f.axis.y,
-                   f.axis.z);
+        fmt::print("free to {} {:.2f} {:.2f} {:.2f}\n", f.is_rotation ? "turn about" : "slide along", f.axis.x,
+                   f.axis.y, f.axis.z);
     if (found.as_scanned) fmt::print("{}\n", as_scanned_note);
 }
 

@@ -57,7 +57,7 @@ Json json_of(const std::string& main, const fit::MirrorFit& fit, const Json& oth
             {"residual_p90_mm", fit.registration.p90 * 1e3},
             {"plane_normal", {fit.plane.normal.x, fit.plane.normal.y, fit.plane.normal.z}},
             {"plane_offset_mm", fit.plane.offset * 1e3},
-            {"asymmetry", {{"angle_deg", fit.turn * 180.0 / std::numbers::pi}, {"distance_mm", fit.glide * 1e3}}},
+            {"asymmetry", {{"angle_deg", fit.rotation * 180.0 / std::numbers::pi}, {"distance_mm", fit.glide * 1e3}}},
             {"others", others}};
 }
 
@@ -79,12 +79,13 @@ int mirror(const MirrorChoice& choice) {
     Json others = Json::array();
     for (std::size_t n = 1; n < numbers.size(); ++n) {
         const int other = numbers[n];
-        const study::MirrorComparison found =
-            study::compare_with_mirror(target, loaded[static_cast<std::size_t>(numbers[0])], laid.stands,
-                                       loaded[static_cast<std::size_t>(other)], cases::state_of(plan).arrangement.pose(other));
+        const study::MirrorComparison found = study::compare_with_mirror(
+            target, loaded[static_cast<std::size_t>(numbers[0])], laid.stands, loaded[static_cast<std::size_t>(other)],
+            cases::state_of(plan).arrangement.pose(other));
         others.push_back(comparison_json(choice.names[n], found));
         if (!choice.json) print_comparison(choice.names[n], choice.names[0], found);
-        if (choice.settle) study::do_step(plan, cases::placing(plan, other, found.registration.pose, "mirror"), choice.plan);
+        if (choice.settle)
+            study::do_step(plan, cases::placing(plan, other, found.registration.pose, "mirror"), choice.plan);
     }
     if (choice.json) fmt::print("{}\n", json_of(choice.names[0], laid.fit, others).dump(2));
     else

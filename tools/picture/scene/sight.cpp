@@ -20,8 +20,9 @@ constexpr double plain_screen_height = 0.3;  // m, where no rig says more
 
 display::StereoMode parse_stereo(const std::string& text) {
     if (const auto mode = display::stereo_of_name(text)) return *mode;
-    throw Error(fmt::format("stereo takes {}, not '{}'{}", fmt::join(display::stereo_names, ", "), text,
-                            did_you_mean(text, std::vector<std::string>(display::stereo_names.begin(), display::stereo_names.end()))));
+    throw Error(fmt::format(
+        "stereo takes {}, not '{}'{}", fmt::join(display::stereo_names, ", "), text,
+        did_you_mean(text, std::vector<std::string>(display::stereo_names.begin(), display::stereo_names.end()))));
 }
 
 Vec3 parse_offset(const std::string& text) {
@@ -99,12 +100,12 @@ std::optional<double> Sight::aspect_of(std::size_t screen) const {
     return glm::length(seen.right()) / glm::length(seen.up());
 }
 
-display::Turned Sight::text_of(std::size_t screen) const {
-    if (!rig_ || !rig_->rig.is_mirrored(screen)) return display::Turned::none;
+display::Flip Sight::text_of(std::size_t screen) const {
+    if (!rig_ || !rig_->rig.is_mirrored(screen)) return display::Flip::none;
     const Vec3 up = rig_->rig.screens[screen].up(), normal = rig_->rig.mirror->normal;
     const Pose head_now = head_pose_.value_or(rig_->rig.place_before(screen, rig_->head_away));
     const double along = glm::dot(up - 2.0 * glm::dot(up, normal) * normal, head_now.rotate({0.0, 1.0, 0.0}));
-    return along < 0.0 ? display::Turned::upside_down : display::Turned::left_right;
+    return along < 0.0 ? display::Flip::upside_down : display::Flip::left_right;
 }
 
 display::DisplayRig Sight::rig_now() const {
@@ -131,8 +132,8 @@ std::vector<Vec3> Sight::eyes_for(std::size_t screen, const display::DisplayRig&
     return {eyes.left, eyes.right};
 }
 
-std::vector<display::DrawnView> Sight::views(std::size_t screen, const display::OrbitCamera& camera, const display::Bounds& scene, int width,
-                                    int height) {
+std::vector<display::DrawnView> Sight::views(std::size_t screen, const display::OrbitCamera& camera,
+                                             const display::Bounds& scene, int width, int height) {
     const display::StereoMode mode = mode_of(screen);
     if (!rig_ && (head.empty() || !head_pose_)) return display::views_of(camera, scene, width, height, mode);
     last_.resize(screens());
@@ -160,12 +161,14 @@ std::vector<display::DrawnView> Sight::views(std::size_t screen, const display::
     return display::views_of(last_[screen], width, height, mode, text_of(screen));
 }
 
-void add_legend(display::Image& image, const display::Legend& legend, std::span<const display::DrawnView> views, display::Turned turned) {
+void add_legend(display::Image& image, const display::Legend& legend, std::span<const display::DrawnView> views,
+                display::Flip flip) {
     // Eyes that share the whole picture share the legend.
     for (std::size_t i = 0; i < views.size(); ++i) {
         const display::DrawnView& view = views[i];
-        const bool is_drawn = std::ranges::any_of(views.first(i), [&](const display::DrawnView& v) { return v.x == view.x; });
-        if (!is_drawn) display::add_legend(image, legend, view.x, view.width, turned);
+        const bool is_drawn =
+            std::ranges::any_of(views.first(i), [&](const display::DrawnView& v) { return v.x == view.x; });
+        if (!is_drawn) display::add_legend(image, legend, view.x, view.width, flip);
     }
 }
 

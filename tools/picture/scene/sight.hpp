@@ -51,14 +51,14 @@ public:
 
     /// What is to be drawn into a picture that fills the screen. While the head is where it cannot see a screen, the
     /// picture before stays, and `warnings` says so.
-    std::vector<display::DrawnView> views(std::size_t screen, const display::OrbitCamera& camera, const display::Bounds& scene, int width,
-                                 int height);
+    std::vector<display::DrawnView> views(std::size_t screen, const display::OrbitCamera& camera,
+                                          const display::Bounds& scene, int width, int height);
     const std::vector<std::string>& warnings() const { return warnings_; }
     /// The head of the last `update`, in the world of the viewer; none: nothing tells where it is.
     const std::optional<Pose>& head_pose() const { return head_pose_; }
 
     /// How a picture's text has to lie for who sees it in a mirror.
-    display::Turned text_of(std::size_t screen) const;
+    display::Flip text_of(std::size_t screen) const;
 
 private:
     /// With the device where it is now.
@@ -76,6 +76,7 @@ private:
 };
 
 /// The legend in every view of a picture, at one place for both eyes: on the screen itself.
-void add_legend(display::Image& image, const display::Legend& legend, std::span<const display::DrawnView> views, display::Turned turned);
+void add_legend(display::Image& image, const display::Legend& legend, std::span<const display::DrawnView> views,
+                display::Flip flip);
 
 }  // namespace tactus::picture

@@ -3,10 +3,10 @@
 
 #include "assets/bone/labels.hpp"
 #include "assets/mesh/mesh.hpp"
-#include "assets/volume/lps_layers.hpp"
+#include "assets/volume/reoriented_volume.hpp"
+#include "dsp/geometry/surface_net.hpp"
 #include "dsp/volume/components.hpp"
 #include "dsp/volume/resample.hpp"
-#include "dsp/geometry/surface_net.hpp"
 #include "tools/study/workers.hpp"
 
 #include <glm/common.hpp>
@@ -121,7 +121,7 @@ void inspect_labels(Inspection& found, const volume::ScanVolume& volume) {
 
 Inspection inspect_volume(const std::filesystem::path& path, const std::string& series) {
     const std::unique_ptr<volume::SliceReader> reader = volume::open_volume(path, {series});
-    volume::LpsLayers layers(*reader, on_threads());
+    volume::ReorientedVolume layers(*reader, on_threads());
     if (layers.is_turned()) layers.settle();
     Inspection found;
     found.grey = volume::whole_of(layers);

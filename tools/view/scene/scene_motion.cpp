@@ -46,7 +46,7 @@ std::uint64_t looks_of(const display::Picture& picture, std::uint64_t mesh_chang
         add(hash, view.projection.to_eye);
         add(hash, view.projection.to_clip);
         for (const int n :
-             {view.x, view.y, view.width, view.height, static_cast<int>(view.channel), static_cast<int>(view.turned)})
+             {view.x, view.y, view.width, view.height, static_cast<int>(view.channel), static_cast<int>(view.flip)})
             hash.add_word(static_cast<std::uint64_t>(n));
     }
     add(hash, legend);

@@ -94,8 +94,8 @@ ScreenWindow* SceneScreens::window_of(std::size_t screen) const {
 }
 
 /// At the same place for both eyes, and so that it can be read in a mirror.
-void SceneScreens::draw_legend(std::size_t screen, TextureTarget& target, const Sight& sight, const display::Legend& legend,
-                               std::span<const display::DrawnView> views) {
+void SceneScreens::draw_legend(std::size_t screen, TextureTarget& target, const Sight& sight,
+                               const display::Legend& legend, std::span<const display::DrawnView> views) {
     const double scale = std::clamp(std::min(views[0].width, views[0].height) / 600.0, 0.55, 4.0);
     const std::string words = words_of(legend);
     if (words.empty()) return;
@@ -109,14 +109,15 @@ void SceneScreens::draw_legend(std::size_t screen, TextureTarget& target, const 
     for (const display::DrawnView& view : views) {
         if (view.x == last) continue;
         last = view.x;
-        const display::Turned turned = sight.text_of(screen);
+        const display::Flip flip = sight.text_of(screen);
         target.lay(legend_image_,
-                   turned == display::Turned::left_right ? view.x + view.width - gap - legend_image_.width : view.x + gap,
-                   turned == display::Turned::upside_down ? view.height - gap - legend_image_.height : gap, turned);
+                   flip == display::Flip::left_right ? view.x + view.width - gap - legend_image_.width : view.x + gap,
+                   flip == display::Flip::upside_down ? view.height - gap - legend_image_.height : gap, flip);
     }
 }
 
-std::vector<display::DrawnView> SceneScreens::aim(Sight& sight, const display::OrbitCamera& camera, const display::Bounds& scene) {
+std::vector<display::DrawnView> SceneScreens::aim(Sight& sight, const display::OrbitCamera& camera,
+                                                  const display::Bounds& scene) {
     std::vector<display::DrawnView> all;
     for (std::size_t i = 0; i < tiles_.size(); ++i) {
         Tile& tile = tiles_[i];
@@ -130,7 +131,8 @@ std::vector<display::DrawnView> SceneScreens::aim(Sight& sight, const display::O
     return all;
 }
 
-void SceneScreens::draw(display::SceneRenderer& renderer, const display::Picture& picture, const Sight& sight, const display::Legend& legend) {
+void SceneScreens::draw(display::SceneRenderer& renderer, const display::Picture& picture, const Sight& sight,
+                        const display::Legend& legend) {
     for (std::size_t i = 0; i < tiles_.size(); ++i) {
         Tile& tile = tiles_[i];
         Target& target = *targets_[i];

@@ -71,7 +71,7 @@ void TextureTarget::end() {
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
-void TextureTarget::lay(const display::Image& image, int x, int y, display::Turned turned) {
+void TextureTarget::lay(const display::Image& image, int x, int y, display::Flip flip) {
     const int left = std::max(x, 0), low = std::max(y, 0);
     const int wide = std::min(x + image.width, width_) - left, high = std::min(y + image.height, height_) - low;
     if (wide < 1 || high < 1) return;
@@ -80,8 +80,8 @@ void TextureTarget::lay(const display::Image& image, int x, int y, display::Turn
     part.reserve(3 * static_cast<std::size_t>(wide) * static_cast<std::size_t>(high));
     for (int v = low; v < low + high; ++v)
         for (int u = left; u < left + wide; ++u) {
-            const int across = turned == display::Turned::left_right ? image.width - 1 - (u - x) : u - x;
-            const int down = turned == display::Turned::upside_down ? v - y : image.height - 1 - (v - y);
+            const int across = flip == display::Flip::left_right ? image.width - 1 - (u - x) : u - x;
+            const int down = flip == display::Flip::upside_down ? v - y : image.height - 1 - (v - y);
             const std::uint8_t* const pixel = image.pixel(across, down);
             part.insert(part.end(), pixel, pixel + 3);
         }

@@ -23,7 +23,7 @@ public:
     void end();
 
     /// After `end`: puts an image on top, its lower left corner at (x, y) from the lower left.
-    void lay(const display::Image& image, int x, int y, display::Turned turned);
+    void lay(const display::Image& image, int x, int y, display::Flip flip);
 
     std::uint32_t texture() const { return texture_; }  ///< its first row is the lowest
     int width() const { return width_; }

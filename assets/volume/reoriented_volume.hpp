@@ -21,10 +21,10 @@ namespace tactus::volume {
 /// numbers. These are few where slices of the file lie across the patient and follow each other upwards; with a tilted
 /// gantry as many as a layer cuts; all where slices lie along the patient, where the volume is turned by much, or where a
 /// packed file runs downwards.
-class LpsLayers {
+class ReorientedVolume {
 public:
     /// Throws Error when the box around a turned volume has more than a billion samples.
-    LpsLayers(SliceReader& reader, RunJobs run);
+    ReorientedVolume(SliceReader& reader, RunJobs run);
 
     /// Size, origin and spacing; no values.
     const Grid& layout() const { return layout_; }
@@ -79,8 +79,8 @@ private:
 };
 
 /// The samples from `low` to `high` (inclusive), read a few layers at a time.
-Grid part_of(LpsLayers& layers, const std::array<int, 3>& low, const std::array<int, 3>& high);
+Grid part_of(ReorientedVolume& layers, const std::array<int, 3>& low, const std::array<int, 3>& high);
 /// All samples.
-Grid whole_of(LpsLayers& layers);
+Grid whole_of(ReorientedVolume& layers);
 
 }  // namespace tactus::volume

@@ -21,6 +21,6 @@ struct EvenRecord {
 /// `times` (s) must not decrease; samples with one time are spread evenly up to the next. `channels`: values per time. A cubic
 /// spline goes through each piece. Components above half the rate were folded when the samples were taken; nothing
 /// can undo that. Throws Error when there are fewer than four samples or time stands still.
-EvenRecord even_out(std::span<const double> times, std::span<const std::vector<double>> channels);
+EvenRecord regularise(std::span<const double> times, std::span<const std::vector<double>> channels);
 
 }  // namespace tactus::signal

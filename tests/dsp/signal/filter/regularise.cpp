@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/signal/filter/even_out.hpp"
+#include "dsp/signal/filter/regularise.hpp"
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
@@ -35,7 +35,7 @@ TEST_CASE("samples at uneven times give the wave they were taken from") {
     std::vector<double> times, values;
     for (std::size_t i = 0; i < 2000; ++i) times.push_back(0.003 * (static_cast<double>(i) + 0.6 * random.uniform(i)));
     for (const double t : times) values.push_back(wave(t));
-    const signal::EvenRecord even = signal::even_out(times, Channels{values});
+    const signal::EvenRecord even = signal::regularise(times, Channels{values});
     CHECK(even.rate == Approx(1.0 / 0.003).epsilon(1e-3));
     CHECK(even.usable < 0.5 * even.rate);
     CHECK(even.gaps == 0);
@@ -54,7 +54,7 @@ TEST_CASE("a gap parts the record, nothing is made up in it; equal time stamps a
         times.push_back(std::floor(i / 3) * 0.003);  // a clock of 3 ms under samples of 1 ms
         values.push_back(i);
     }
-    const signal::EvenRecord even = signal::even_out(times, Channels{values});
+    const signal::EvenRecord even = signal::regularise(times, Channels{values});
     CHECK(even.rate == Approx(1000.0).epsilon(0.02));
     CHECK(even.gaps == 1);
     CHECK(even.lost == Approx(0.05).epsilon(0.1));
@@ -65,7 +65,7 @@ TEST_CASE("a gap parts the record, nothing is made up in it; equal time stamps a
 
 TEST_CASE("times that run backwards or stand still are refused") {
     const std::vector<double> values{1, 2, 3, 4};
-    CHECK_THROWS_WITH(signal::even_out(std::vector{0.0, 1.0, 0.5, 2.0}, Channels{values}), Catch::Contains("backwards"));
-    CHECK_THROWS_WITH(signal::even_out(std::vector{1.0, 1.0, 1.0, 1.0}, Channels{values}), Catch::Contains("stands still"));
-    CHECK_THROWS_AS(signal::even_out(std::vector{0.0}, Channels{values}), Error);
+    CHECK_THROWS_WITH(signal::regularise(std::vector{0.0, 1.0, 0.5, 2.0}, Channels{values}), Catch::Contains("backwards"));
+    CHECK_THROWS_WITH(signal::regularise(std::vector{1.0, 1.0, 1.0, 1.0}, Channels{values}), Catch::Contains("stands still"));
+    CHECK_THROWS_AS(signal::regularise(std::vector{0.0}, Channels{values}), Error);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/signal/filter/even_out.hpp"
+#include "dsp/signal/filter/regularise.hpp"
 
 #include "dsp/core/error.hpp"
 #include "dsp/geometry/spline.hpp"
@@ -31,7 +31,7 @@ std::vector<double> spread_equal_times(std::span<const double> times) {
 
 }  // namespace
 
-EvenRecord even_out(std::span<const double> times, std::span<const std::vector<double>> channels) {
+EvenRecord regularise(std::span<const double> times, std::span<const std::vector<double>> channels) {
     if (times.size() < 4) throw Error(fmt::format("there are {} samples; a spectrum needs at least 4", times.size()));
     for (std::size_t i = 1; i < times.size(); ++i)
         if (!(times[i] >= times[i - 1])) throw Error(fmt::format("time runs backwards at sample {}", i + 1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "assets/volume/lps_layers.hpp"
+#include "assets/volume/reoriented_volume.hpp"
 
 #include "assets/file/room.hpp"
 #include "dsp/core/error.hpp"
@@ -71,7 +71,7 @@ private:
 
 }  // namespace
 
-LpsLayers::LpsLayers(SliceReader& reader, RunJobs run)
+ReorientedVolume::ReorientedVolume(SliceReader& reader, RunJobs run)
     : reader_(reader),
       run_(std::move(run)),
       width_(static_cast<std::size_t>(reader.about.size[0])),
@@ -86,7 +86,7 @@ LpsLayers::LpsLayers(SliceReader& reader, RunJobs run)
     keep_all_ = downwards && !reader.in_any_order();
 }
 
-void LpsLayers::sort_axes() {
+void ReorientedVolume::sort_axes() {
     const ScanVolume& in = reader_.about;
     layout_.origin = in.map.origin;
     for (int axis = 0; axis < 3; ++axis) {
@@ -99,7 +99,7 @@ void LpsLayers::sort_axes() {
     }
 }
 
-void LpsLayers::box_around() {
+void ReorientedVolume::box_around() {
     const ScanVolume& in = reader_.about;
     Vec3 low(std::numeric_limits<double>::infinity()), high = -low;
     for (int c = 0; c < 8; ++c) {
@@ -119,7 +119,7 @@ void LpsLayers::box_around() {
 }
 
 // One after the other from the file, then all cores count and pack what was read.
-void LpsLayers::read(const std::vector<int>& slices, bool keep) {
+void ReorientedVolume::read(const std::vector<int>& slices, bool keep) {
     constexpr std::size_t at_once = 8;
     std::vector<std::vector<float>> values(std::min(at_once, slices.size()), std::vector<float>(reader_.slice_size()));
     for (std::size_t start = 0; start < slices.size(); start += at_once) {
@@ -140,7 +140,7 @@ void LpsLayers::read(const std::vector<int>& slices, bool keep) {
 }
 
 // Holds the slices from `first` to `last`, and no others unless they would be dear to read again.
-void LpsLayers::hold(int first, int last) {
+void ReorientedVolume::hold(int first, int last) {
     std::vector<int> passed, wanted;
     for (int n = 0; n < static_cast<int>(slices_.size()); ++n) {
         const auto slot = static_cast<std::size_t>(n);
@@ -154,7 +154,7 @@ void LpsLayers::hold(int first, int last) {
     read(wanted, true);
 }
 
-void LpsLayers::settle() {
+void ReorientedVolume::settle() {
     if (std::exchange(settled_, true)) return;
     std::vector<int> left;
     for (int n = 0; n < static_cast<int>(slices_.size()); ++n)
@@ -163,7 +163,7 @@ void LpsLayers::settle() {
     reader_.settle(tally_);
 }
 
-std::pair<int, int> LpsLayers::slices_for(int first, int count) const {
+std::pair<int, int> ReorientedVolume::slices_for(int first, int count) const {
     const int last = static_cast<int>(slices_.size()) - 1, end = first + count - 1;
     if (!turned_) {
         if (file_axis_[2] != 2) return {0, last};
@@ -180,7 +180,7 @@ std::pair<int, int> LpsLayers::slices_for(int first, int count) const {
             std::clamp(static_cast<int>(std::ceil(high)) + 3, 0, last)};
 }
 
-double LpsLayers::cubic_at(const Vec3& u) const {
+double ReorientedVolume::cubic_at(const Vec3& u) const {
     const auto& size = reader_.about.size;
     std::array<int, 3> base{};
     std::array<std::array<double, 4>, 3> weight{};
@@ -204,7 +204,7 @@ double LpsLayers::cubic_at(const Vec3& u) const {
     return sum;
 }
 
-double LpsLayers::nearest_at(const Vec3& u) const {
+double ReorientedVolume::nearest_at(const Vec3& u) const {
     std::array<int, 3> at{};
     for (int axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
@@ -215,7 +215,7 @@ double LpsLayers::nearest_at(const Vec3& u) const {
     return double(value(at[0], at[1], at[2]));
 }
 
-void LpsLayers::sorted_row(int first, int j, int k, std::span<float> out) const {
+void ReorientedVolume::sorted_row(int first, int j, int k, std::span<float> out) const {
     const auto& size = layout_.size;
     std::array<int, 3> at{};  // in the file
     const auto place = [&](std::size_t axis, int n) {
@@ -237,7 +237,7 @@ void LpsLayers::sorted_row(int first, int j, int k, std::span<float> out) const 
     }
 }
 
-Grid LpsLayers::layers(int first, int count, const Window& window) {
+Grid ReorientedVolume::layers(int first, int count, const Window& window) {
     const auto [low, high] = slices_for(first, count);
     hold(low, high);
     const int i0 = window.low[0], j0 = window.low[1];
@@ -267,7 +267,7 @@ Grid LpsLayers::layers(int first, int count, const Window& window) {
     return out;
 }
 
-Grid part_of(LpsLayers& layers, const std::array<int, 3>& low, const std::array<int, 3>& high) {
+Grid part_of(ReorientedVolume& layers, const std::array<int, 3>& low, const std::array<int, 3>& high) {
     constexpr int at_once = 16;
     const Grid& all = layers.layout();
     Grid out{{}, all.position(low[0], low[1], low[2]), all.spacing, {}};
@@ -282,14 +282,14 @@ Grid part_of(LpsLayers& layers, const std::array<int, 3>& low, const std::array<
     return out;
 }
 
-Grid whole_of(LpsLayers& layers) {
+Grid whole_of(ReorientedVolume& layers) {
     const auto& size = layers.layout().size;
     return part_of(layers, {0, 0, 0}, {size[0] - 1, size[1] - 1, size[2] - 1});
 }
 
 Grid lps_grid(ScanVolume volume) {
     HeldSlices reader(std::move(volume));
-    LpsLayers layers(reader, run_in_turn);
+    ReorientedVolume layers(reader, run_in_turn);
     layers.settle();
     return whole_of(layers);
 }
