@@ -29,14 +29,36 @@ class TakeEnd : public io::StreamEnd {
 public:
     using Opened = std::function<void(const TakeStreamInfo&)>;
     using Finished = std::function<void(const std::string& file, std::int64_t frames)>;
-    TakeEnd(fs::path folder, TakeStreamInfo info, const ValueType& type, Opened opened, Finished finished)
+    using Cut = std::function<void()>;
+    TakeEnd(fs::path folder, TakeStreamInfo info, const ValueType& type, Opened opened, Finished finished, Cut cut)
         : folder_(std::move(folder)),
           info_(std::move(info)),
           type_(type),
           opened_(std::move(opened)),
-          finished_(std::move(finished)) {}
+          finished_(std::move(finished)),
+          cut_(std::move(cut)) {}
 
     void take(std::int64_t first, const std::byte* values, std::size_t count) override {
+        try {
+            write(first, values, count);
+        } catch (const Error&) {
+            cut_();
+            throw;
+        }
+    }
+    void finish() override {
+        if (!writer_) return;
+        try {
+            writer_->finish();
+        } catch (const Error&) {
+            cut_();
+            throw;
+        }
+        finished_(info_.file, writer_->frames());
+    }
+
+private:
+    void write(std::int64_t first, const std::byte* values, std::size_t count) {
         const bool is_first = !writer_;
         if (is_first) {
             info_.start = first;
@@ -50,18 +72,13 @@ public:
         updated_ = now;
         writer_->update();
     }
-    void finish() override {
-        if (!writer_) return;
-        writer_->finish();
-        finished_(info_.file, writer_->frames());
-    }
 
-private:
     fs::path folder_;
     TakeStreamInfo info_;
     const ValueType& type_;
     Opened opened_;
     Finished finished_;
+    Cut cut_;
     std::unique_ptr<TakeStreamWriter> writer_;
     std::chrono::steady_clock::time_point updated_ = std::chrono::steady_clock::now();
 };
@@ -213,7 +230,8 @@ void TakeWriter::device(const build::DeviceSlot& slot) {
              .dump());
 }
 
-std::unique_ptr<io::Stream> TakeWriter::stream(const std::string& port, const ValueType& type, const run::GroupRuntime& group) {
+std::unique_ptr<io::Stream> TakeWriter::stream(const std::string& port, const ValueType& type,
+                                               const run::GroupRuntime& group) {
     TakeStreamInfo info;
     info.port = port;
     info.group = group.plan->name;
@@ -245,7 +263,8 @@ std::unique_ptr<io::Stream> TakeWriter::stream(const std::string& port, const Va
         const std::lock_guard lock(writing_);
         frames_[file] = frames;
     };
-    return std::make_unique<io::Stream>(format, std::make_unique<TakeEnd>(folder_, info, type, opened, finished));
+    const auto cut = [this] { has_cut_stream_ = true; };
+    return std::make_unique<io::Stream>(format, std::make_unique<TakeEnd>(folder_, info, type, opened, finished, cut));
 }
 
 void TakeWriter::edit(std::int64_t number, Flicks when, const patch::Patch& patch) {
@@ -303,6 +322,8 @@ void TakeWriter::finish(const std::vector<std::pair<std::string, std::uint64_t>>
     if (is_lost_) return log_.reset();
     try {
         log_->finish();
+        // The log repeats the whole run, but not every value can be compared: the take counts as cut off.
+        if (has_cut_stream_) return;
         Json json{{"ports", Json::object()}, {"holds", {{"timing.log", log_->records()}, {"events.jsonl", lines_}}}};
         for (const auto& [name, hash] : port_hashes) json["ports"][name] = fmt::format("{:016x}", hash);
         for (const auto& [file, frames] : frames_) json["holds"][file] = frames;

@@ -7,7 +7,8 @@
 //   events.jsonl    one line for each edit, each parameter set, each device opened, each stream
 //   timing.log      everything that timing decided, see engine/take/timing_log.hpp
 //   streams/        every published value of every output, see engine/take/take_stream.hpp
-//   result.json     when the run came to its end: hash of every output, and how much each file of the take holds
+//   result.json     when the run came to its end and every stream is whole: hash of every output, and how much each file
+//                   of the take holds
 #pragma once
 
 #include "assets/file/growing_file.hpp"
@@ -34,7 +35,6 @@ class GroupRuntime;
 }
 
 namespace tactus::take {
-
 
 /// Of take.json; takes of another one are refused.
 constexpr int take_format = 2;
@@ -95,6 +95,7 @@ private:
     std::int64_t lines_ = 0;  // of events.jsonl
     std::map<std::string, std::int64_t> frames_;  // of each stream that is complete
     std::atomic<bool> is_lost_{false};
+    std::atomic<bool> has_cut_stream_{false};  // one of the streams ends before the run
     std::string loss_;
     std::unordered_set<std::string> files_;
     std::chrono::steady_clock::time_point flushed_;

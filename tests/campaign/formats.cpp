@@ -97,7 +97,7 @@ std::string mend_riff(std::string bytes, std::uint64_t number) {
 void pack_seeds(const fs::path& folder) {
     for (const fs::path& file : files_in(folder))
         file::write_whole_file(fs::path(file.string() + (file.extension() == ".tar" ? ".inv3" : ".gz")),
-                         gzip(file::read_whole_file(file)));
+                               gzip(file::read_whole_file(file)));
 }
 
 std::vector<fs::path> with_ending(const fs::path& folder, const std::string& ending) {
@@ -200,16 +200,16 @@ std::vector<Format> make_formats(const fs::path& folder) {
         {.name = "log",
          .seeds = {seed("assets/sample_log.seeds/small.csv"), take / "timing.log"},
          .verbs = {{"spectrum", "FILE"},
-                   {"render", "saw-vibration", "--seconds", "0.02", "--out", "out", "--log", "FILE"}}},
+                   {"render", "saw-vibration", "--seconds", "0.02", "--out", "out", "--overwrite", "--log", "FILE"}}},
         {.name = "patch",
-         .seeds = {seed("graph/patch/patch.seeds/small.toml"), source / "assets/library/patches/touch-sphere.toml",
+         .seeds = {seed("graph/patch.seeds/small.toml"), source / "assets/library/patches/touch-sphere.toml",
                    source / "assets/library/patches/saw-vibration.toml"},
          .verbs = {{"check", "FILE"}, {"draw", "FILE"}}},
         {.name = "table",
          .seeds = {seed("assets/tables.seeds/response.csv"), seed("assets/tables.seeds/trajectory.csv")},
          .verbs = {{"equalise", "FILE", "-o", "out.toml", "--from", "25", "--to", "80"},
-                   {"render", "peg-in-hole", "--seconds", "0.02", "--out", "out", "--asset", "trajectory=FILE", "--set",
-                    "hand.device=replay"}}}};
+                   {"render", "peg-in-hole", "--seconds", "0.02", "--out", "out", "--overwrite", "--asset",
+                    "trajectory=FILE", "--set", "hand.device=replay"}}}};
     for (const std::string kind : {"stl", "ply", "obj"})
         all.push_back({.name = kind,
                        .seeds = files_in(folder / ("assets_" + kind)),
