@@ -2,35 +2,36 @@
 // One line per verb, in the order of the help text. The file of a verb defines it: `Verb render_verb()`.
 #include "tools/command/catalogue.hpp"
 
-// name, folder
-#define TACTUS_VERBS(X)        \
-    X(render, run)             \
-    X(rig, grippers)           \
-    X(run, run)                \
-    X(set, run)                \
-    X(replay, run)             \
-    X(view, run)               \
-    X(check, run)              \
-    X(draw, run)               \
-    X(nodes, machine)          \
-    X(devices, machine)        \
-    X(calibrate, displays)     \
-    X(import, bones)           \
-    X(info, bones)             \
-    X(export, bones)           \
-    X(compare, vibration)      \
-    X(validate, vibration)     \
-    X(measure, vibration)      \
-    X(equalise, vibration)     \
-    X(spectrum, vibration)     \
-    X(orders, vibration)       \
-    X(exposure, vibration)     \
-    X(fracture, bones)         \
-    X(fracture_surface, bones) \
-    X(snap, bones)             \
-    X(register, bones)         \
-    X(plan, planning)          \
-    X(bench, machine)
+// name, folder, heading of the help text
+#define TACTUS_VERBS(X)                  \
+    X(run, run, run_and_patch)           \
+    X(render, run, run_and_patch)        \
+    X(check, run, run_and_patch)         \
+    X(draw, run, run_and_patch)          \
+    X(nodes, machine, run_and_patch)     \
+    X(set, run, run_and_patch)           \
+    X(trigger, run, run_and_patch)       \
+    X(replay, run, run_and_patch)        \
+    X(view, run, run_and_patch)          \
+    X(spectrum, vibration, vibrations)   \
+    X(orders, vibration, vibrations)     \
+    X(compare, vibration, vibrations)    \
+    X(validate, vibration, vibrations)   \
+    X(measure, vibration, vibrations)    \
+    X(equalise, vibration, vibrations)   \
+    X(exposure, vibration, vibrations)   \
+    X(import, bones, bones)              \
+    X(info, bones, bones)                \
+    X(export, bones, bones)              \
+    X(register, bones, bones)            \
+    X(fracture, bones, fractures)        \
+    X(fracture_surface, bones, fractures)\
+    X(snap, bones, fractures)            \
+    X(plan, planning, fractures)         \
+    X(gripper, grippers, grippers)       \
+    X(calibrate, displays, displays)     \
+    X(devices, machine, machine)         \
+    X(bench, machine, machine)
 
 #define TACTUS_PLAN_VERBS(X)      \
     X(plan_new, planning)         \
@@ -56,17 +57,33 @@
 
 namespace tactus::command {
 
-#define TACTUS_DECLARE(name, folder) Verb name##_verb();
+namespace {
+
+constexpr const char *run_and_patch = "Run and patch", *vibrations = "Vibration", *bones = "Bones",
+                     *fractures = "Fractures and plans", *grippers = "Grippers", *displays = "Displays",
+                     *machine = "This machine";
+
+Verb under(const char* job, Verb verb) {
+    verb.job = job;
+    return verb;
+}
+
+}  // namespace
+
+#define TACTUS_DECLARE(name, ...) Verb name##_verb();
 TACTUS_VERBS(TACTUS_DECLARE)
 TACTUS_PLAN_VERBS(TACTUS_DECLARE)
 #undef TACTUS_DECLARE
 
-#define TACTUS_LIST(name, folder) name##_verb(),
+#define TACTUS_LIST(name, folder, job) under(job, name##_verb()),
 
 const Verbs& all_verbs() {
     static const Verbs all{TACTUS_VERBS(TACTUS_LIST)};
     return all;
 }
+
+#undef TACTUS_LIST
+#define TACTUS_LIST(name, folder) name##_verb(),
 
 const Verbs& plan_verbs() {
     static const Verbs all{TACTUS_PLAN_VERBS(TACTUS_LIST)};

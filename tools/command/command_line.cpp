@@ -1,36 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/file/room.hpp"
-#include "tools/command/options.hpp"
+#include "tools/command/declare.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <map>
 #include <new>
+#include <system_error>
 
 namespace tactus::command {
 
 namespace {
 
-/// A verb in the command line: what runs with it, and what is handed on.
-struct Known {
-    const Verb* verb;
-    Action run;
-};
-using KnownVerbs = std::map<const CLI::App*, Known>;
+/// Puts the words of today in the place of old ones, behind the verb.
+void modernise(const OldSpellings& old, std::vector<std::string>& words) {
+    if (old.rewrite) old.rewrite(words);
+    for (std::string& word : words)
+        for (const auto& [before, now] : old.renamed)
+            if (word == before) word = now;
+            else if (word.starts_with(before + "=")) word = now + word.substr(before.size());
+}
 
-void add_verbs(CLI::App& app, const Verbs& verbs, KnownVerbs& known) {
-    app.require_subcommand(1);
-    for (const Verb& verb : verbs) {
-        CLI::App* part = app.add_subcommand(verb.name, verb.about);
-        if (verb.verbs) add_verbs(*part, verb.verbs(), known);
-        VerbOptions options(*part);
-        known[part] = {&verb, verb.add ? verb.add(options) : Action()};
-    }
+/// Where the verb stands: the first word behind the options of the program itself.
+std::size_t place_of_verb(const CLI::App& app, const std::vector<std::string>& words) {
+    std::size_t place = 0;
+    for (; place < words.size() && words[place].starts_with('-'); ++place)
+        if (const CLI::Option* option = app.get_option_no_throw(words[place]))
+            place += static_cast<std::size_t>(option->get_items_expected_min());
+    return std::min(place, words.size());
+}
+
+/// The verb of a word, also by its old name, which the word then loses; null: there is none.
+const Verb* verb_of(const Verbs& verbs, std::string& word) {
+    for (const Verb& verb : verbs)
+        if (word == verb.name || (verb.old_name && word == verb.old_name)) {
+            word = verb.name;
+            return &verb;
+        }
+    return nullptr;
 }
 
 /// The verb that was given, also within a group.
@@ -39,38 +51,50 @@ const CLI::App* given_verb(const CLI::App& app) {
     return below.empty() ? &app : given_verb(*below.front());
 }
 
-/// Where the verb stands: the first word behind the options of the program itself.
-int place_of_verb(const CLI::App& app, int argc, char** argv) {
-    int place = 1;
-    for (; place < argc && argv[place][0] == '-'; ++place) {
-        const std::string word = argv[place];
-        const CLI::Option* option = app.get_option_no_throw(word);
-        if (option) place += option->get_items_expected_min();
+/// As the program calls itself when a system call failed.
+int failed_call(const std::system_error& error) {
+    say(stderr, fmt::format("tactus: {}\n", error.what()));
+    for (const std::errc full : {std::errc::no_space_on_device, std::errc::io_error, std::errc::not_enough_memory,
+                                 std::errc::no_such_device, std::errc::read_only_file_system})
+        if (error.code() == full) return machine_failed;
+    return bad_input;
+}
+
+/// What is handed to another program, when the verb is one; the words that are left are ours.
+std::vector<std::string> words_handed_on(const Program& program, const CLI::App& app, const DeclaredVerbs& declared,
+                                         std::vector<std::string>& words) {
+    std::size_t place = place_of_verb(app, words);
+    const CLI::App* part = &app;
+    for (const Verbs* verbs = &program.verbs; verbs && place < words.size(); ++place) {
+        const Verb* verb = verb_of(*verbs, words[place]);
+        if (!verb) return {};
+        const auto behind = words.begin() + static_cast<std::ptrdiff_t>(place) + 1;
+        if (verb->forward) {
+            std::vector<std::string> handed_on(behind, words.end());
+            words.erase(behind, words.end());
+            return handed_on;
+        }
+        part = part->get_subcommand(verb->name);
+        std::vector<std::string> typed(behind, words.end());
+        modernise(declared.at(part).old, typed);
+        words.erase(behind, words.end());
+        words.insert(words.end(), typed.begin(), typed.end());
+        verbs = verb->verbs ? &verb->verbs() : nullptr;
     }
-    return place;
+    return {};
 }
 
 }  // namespace
 
 int command_line(const Program& program, int argc, char** argv) {
     CLI::App app{program.about, program.name};
-    app.add_option_function<std::string>(
-           "--memory", [](const std::string& size) { file::set_memory_limit(file::parse_memory_size(size)); },
-           "most memory that one file may take, as in \"2 GB\" (default: half of the machine's)")
-        ->trigger_on_parse();
-    KnownVerbs known;
+    DeclaredVerbs declared;
     try {
-        add_verbs(app, program.verbs, known);
-        // What another program is given is not ours to read.
-        std::vector<std::string> handed_on;
-        const int place = place_of_verb(app, argc, argv);
-        for (const Verb& verb : program.verbs)
-            if (verb.forward && place < argc && argv[place] == std::string(verb.name)) {
-                handed_on.assign(argv + place + 1, argv + argc);
-                argc = place + 1;
-            }
-        app.parse(argc, argv);
-        const Known& chosen = known.at(given_verb(app));
+        declare(app, program, declared);
+        std::vector<std::string> words(argv + 1, argv + std::max(argc, 1));
+        const std::vector<std::string> handed_on = words_handed_on(program, app, declared, words);
+        app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+        const DeclaredVerb& chosen = declared.at(given_verb(app));
         return chosen.verb->forward ? chosen.verb->forward(handed_on) : chosen.run();
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? done : bad_input;
@@ -80,6 +104,8 @@ int command_line(const Program& program, int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         say(stderr, "tactus: not enough memory\n");
         return machine_failed;
+    } catch (const std::system_error& error) {
+        return failed_call(error);
     } catch (const std::exception& error) {
         say(stderr, fmt::format("tactus: {}\n", error.what()));
     }

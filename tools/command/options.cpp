@@ -1,13 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/options.hpp"
 
+#include "dsp/core/error.hpp"
+#include "dsp/core/units.hpp"
+
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
+#include <tuple>
 
 namespace tactus::command {
+
+namespace {
+
+bool is_bare_number(const std::string& text) {
+    // As CLI11 reads numbers, which also takes "1e3", "+5" and " 5".
+    char* end = nullptr;
+    std::strtod(text.c_str(), &end);
+    while (end && *end == ' ') ++end;
+    return !text.empty() && end && *end == '\0';
+}
+
+/// What stands for the value in help texts.
+std::string name_of_unit(const std::string& unit) {
+    const Dimension dimension = parse_unit(unit).dimension;
+    for (const auto& [like, name] : {std::pair{"s", "TIME"}, {"Hz", "FREQUENCY"}, {"m", "LENGTH"}, {"m^2", "AREA"},
+                                     {"deg", "ANGLE"}, {"kg", "MASS"}})
+        if (parse_unit(like).dimension == dimension) return name;
+    return "QUANTITY";
+}
+
+double frequency_of(const std::string& text) {
+    return is_bare_number(text) ? std::strtod(text.c_str(), nullptr) : parse_as(text, "Hz");
+}
+
+}  // namespace
+
+std::pair<double, double> parse_band(const std::string& text, const std::string& option) {
+    const std::size_t colon = text.find(':');
+    double low = 0.0, high = 0.0;
+    try {
+        if (colon != std::string::npos) {
+            low = frequency_of(text.substr(0, colon));
+            high = frequency_of(text.substr(colon + 1));
+        }
+    } catch (const Error&) {
+        low = 0.0;  // said below
+    }
+    if (!(low > 0.0) || !(high > low) || !std::isfinite(high))
+        throw Error(fmt::format("{} takes LOW:HIGH in Hz, as in {} 200:600 or \"200 Hz:1 kHz\", not '{}'", option, option,
+                                text));
+    return {low, high};
+}
 
 Option& Option::required() {
     option_->required();
@@ -20,17 +69,37 @@ Option& Option::shows_default() {
 }
 
 Option& Option::range(int least, int most) {
-    option_->check(CLI::Range(least, most));
+    option_->check(CLI::Range(least, most).description(fmt::format("{} to {}", least, most)));
     return *this;
 }
 
 Option& Option::range(double least, double most) {
-    option_->check(CLI::Range(least, most));
+    option_->check(CLI::Range(least, most).description(fmt::format("{} to {}", least, most)));
     return *this;
 }
 
 Option& Option::positive() {
     option_->check(CLI::PositiveNumber);
+    return *this;
+}
+
+Option& Option::unit(const std::string& unit) {
+    const auto read = [unit](std::string& text) {
+        if (is_bare_number(text)) return std::string();
+        try {
+            text = fmt::format("{}", parse_as(text, unit) / parse_unit(unit).factor);
+        } catch (const Error& error) {
+            return error.message();
+        }
+        return std::string();
+    };
+    option_->transform(CLI::Validator(read, ""));
+    option_->type_name(name_of_unit(unit));
+    return *this;
+}
+
+Option& Option::hidden() {
+    option_->group("");
     return *this;
 }
 
@@ -86,6 +155,15 @@ Option VerbOptions::call(const std::string& name, std::function<void(const T&)> 
 
 Option VerbOptions::flag(const std::string& name, bool& value, const std::string& about) {
     return Option(app_.add_flag(name, value, about));
+}
+
+Option VerbOptions::band(const std::string& name, double& low, double& high, const std::string& about) {
+    const std::string shown = name.substr(name.rfind(',') + 1);
+    CLI::Option* option = app_.add_option_function<std::string>(
+        name, [&low, &high, shown](const std::string& text) { std::tie(low, high) = parse_band(text, shown); }, about);
+    option->type_name("LOW:HIGH");
+    option->default_str(fmt::format("{:g}:{:g}", low, high));
+    return Option(option);
 }
 
 Option VerbOptions::find(const std::string& name) { return Option(app_.get_option(name)); }

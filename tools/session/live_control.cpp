@@ -5,10 +5,21 @@
 #include "graph/patch/sub_patch.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <utility>
+#include <vector>
 
 namespace tactus::session {
+
+namespace {
+
+/// The parameter of a button: any other number than before is a press.
+constexpr const char* press = "press";
+
+}  // namespace
 
 LiveControl::LiveControl(run::Engine& engine, PatchChoice choice, compile::AssetCache& assets,
                          std::function<void(const std::string&)> say)
@@ -24,7 +35,7 @@ LiveControl::LiveControl(run::Engine& engine, PatchChoice choice, compile::Asset
     try {
         socket_ = std::make_unique<ControlSocket>();
     } catch (const Error& error) {
-        say_(fmt::format("'tactus set' cannot reach this run: {}", error.what()));
+        say_(fmt::format("'tactus set' and 'tactus trigger' cannot reach this run: {}", error.what()));
     }
 }
 
@@ -68,14 +79,45 @@ void LiveControl::edit(std::string text) {
     });
 }
 
+std::string LiveControl::set(const std::string& setting) {
+    const std::size_t dot = setting.find('.'), equals = setting.find('=');
+    if (dot == std::string::npos || equals == std::string::npos || dot > equals)
+        throw Error("write NODE.PARAM=VALUE, as in blade.stiffness=\"0.8 N/mm\"");
+    const std::string node = setting.substr(0, dot), param = setting.substr(dot + 1, equals - dot - 1),
+                      text = setting.substr(equals + 1);
+    const Flicks when = engine_.set(node, param, text);
+    const auto end = patch::end_within(engine_.plan().patch, node, param);
+    if (end.name == press) presses_[end.node] = std::strtod(text.c_str(), nullptr);
+    return fmt::format("{} from {:.3f} s", setting, seconds(when));
+}
+
+std::string LiveControl::trigger(const std::string& given) {
+    const std::string node = patch::end_within(engine_.plan().patch, given, press).node;
+    std::vector<std::string> buttons;
+    const Param* param = nullptr;
+    for (const auto& live : engine_.nodes()) {
+        const auto found = live->params.find(press);
+        if (found == live->params.end()) continue;
+        buttons.push_back(live->name);
+        if (live->name == node) param = found->second;
+    }
+    if (!param)
+        throw Error(buttons.empty() ? fmt::format("'{}' is no button; this patch has none", given)
+                                    : fmt::format("'{}' is no button; this patch has {}{}", given,
+                                                  fmt::join(buttons, ", "), did_you_mean(given, buttons)));
+    // Whoever ticks writes the parameter once it was set, so it is read before the first press only.
+    const auto told = presses_.find(node);
+    const double next = std::floor(told == presses_.end() ? param->value : told->second) + 1.0;
+    const Flicks when = engine_.set(given, press, fmt::format("{:.0f}", next));
+    presses_[node] = next;
+    return fmt::format("{} is pressed at {:.3f} s", given, seconds(when));
+}
+
 std::string LiveControl::answer(const std::string& line) {
-    const std::size_t dot = line.find('.'), equals = line.find('=');
-    if (!line.starts_with("set ") || dot == std::string::npos || equals == std::string::npos || dot > equals)
-        return "error write NODE.PARAM=VALUE, as in blade.stiffness=\"0.8 N/mm\"";
     try {
-        const Flicks when =
-            engine_.set(line.substr(4, dot - 4), line.substr(dot + 1, equals - dot - 1), line.substr(equals + 1));
-        return fmt::format("{} from {:.3f} s", line.substr(4), seconds(when));
+        if (line.starts_with("set ")) return set(line.substr(4));
+        if (line.starts_with("trigger ")) return trigger(line.substr(8));
+        return "error write 'set NODE.PARAM=VALUE' or 'trigger NODE'";
     } catch (const Error& error) {
         return fmt::format("error {}", error.what());
     }

@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -30,6 +31,10 @@ public:
 private:
     void take_over_file();
     std::string answer(const std::string& line);
+    /// "NODE.PARAM=VALUE". Returns what the caller is told. Throws Error.
+    std::string set(const std::string& setting);
+    /// Presses the button `node`: its parameter 'press' counts up. Returns what the caller is told. Throws Error.
+    std::string trigger(const std::string& node);
 
     run::Engine& engine_;
     PatchChoice choice_;
@@ -38,6 +43,7 @@ private:
     std::filesystem::path file_;
     PatchWatch watch_;
     std::unique_ptr<ControlSocket> socket_;
+    std::map<std::string, double> presses_;  // by node: what 'press' was set to last
 };
 
 }  // namespace tactus::session

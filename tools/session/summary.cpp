@@ -73,6 +73,17 @@ double number(const Report& report, const char* section, const char* key, double
 
 }  // namespace
 
+std::vector<std::string> unrecovered(const run::Engine& engine) {
+    std::vector<std::string> lines;
+    for (const auto& slot : engine.outside().devices)
+        if (const control::Fault fault = slot->port.fault;
+            fault != control::Fault::none && fault != control::Fault::late_commit)
+            lines.push_back(fmt::format("fault of {} at the end of the run: {}", slot->name, control::describe(fault)));
+    for (const auto& card : engine.outside().cards)
+        if (card->is_lost()) lines.push_back(fmt::format("{} was lost", card->name()));
+    return lines;
+}
+
 std::string summary_json(const run::Engine& engine, const Report& report, double seconds, bool live,
                          const std::vector<std::string>& files, const std::vector<std::string>& losses) {
     Json json{{"patch", engine.plan().patch.title},

@@ -9,6 +9,10 @@
 
 namespace tactus::session {
 
+/// What a run ended with that makes it fail: devices whose fault was not recovered, lateness left out, and sound cards
+/// that were lost. A line each; after the run.
+std::vector<std::string> unrecovered(const run::Engine& engine);
+
 /// The summary as JSON text. `files` are those written besides the recordings; `losses`: what could not be written to
 /// its end, and why.
 std::string summary_json(const run::Engine& engine, const Report& report, double seconds, bool live,

@@ -125,6 +125,15 @@ void print_check(const Json& json) {
     fmt::print("What a hand may feel before it hums: damping of the device / (period / 2 + latency).\n");
 }
 
+/// No path is stiffer than a hand may feel it, and no loop unstable.
+bool is_stable(const Json& json) {
+    for (const char* key : {"paths", "admittance_loops"})
+        if (json.contains(key))
+            for (const Json& row : json[key])
+                if (row.contains("ok") && !row["ok"].get<bool>()) return false;
+    return true;
+}
+
 int check(const CheckChoice& choice) {
     patch::Problems problems;
     compile::AssetCache assets;
@@ -155,9 +164,11 @@ int check(const CheckChoice& choice) {
             print_loops(json["admittance_loops"]);
         if (json.contains("warnings"))
             for (const Json& warning : json["warnings"]) fmt::print("warning: {}\n", warning.get<std::string>());
-        if (problems.empty()) fmt::print("no errors\n");
+        if (problems.empty())
+            fmt::print("{}\n", is_stable(json) ? "no errors" : "no errors, but a path is too stiff or a loop unstable");
     }
-    return problems.empty() ? done : bad_input;
+    if (!problems.empty()) return bad_input;
+    return is_stable(json) ? done : answer_is_no;
 }
 
 Action add(VerbOptions& verb) {
@@ -169,6 +180,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb check_verb() { return {"check", "find errors; list groups and latencies", add}; }
+Verb check_verb() { return {"check", "find errors; list groups, latencies and stiffness limits; exit code 1: too stiff or unstable", add}; }
 
 }  // namespace tactus::command

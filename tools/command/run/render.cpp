@@ -105,7 +105,10 @@ int render(const RenderChoice& choice) {
     }
     for (const std::string& loss : losses) say(stderr, fmt::format("tactus: {}\n", loss));
     say(stdout, choice.json ? summary : summary_text(engine, report, seconds, wall));
+    const std::vector<std::string> faults = unrecovered(engine);
+    for (const std::string& fault : faults) say(stderr, fmt::format("tactus: {}\n", fault));
     if (!losses.empty()) return output_lost;
+    if (!faults.empty()) return machine_failed;
     if (is_whole) return done;
     say(stderr, fmt::format("tactus: ended at {:.3f} s of {:.3f} s\n", ran, options.seconds));
     return answer_is_no;

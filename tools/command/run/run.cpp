@@ -5,6 +5,7 @@
 #include "tools/session/live_table.hpp"
 #include "tools/session/run_session.hpp"
 #include "tools/session/stop_signals.hpp"
+#include "tools/session/summary.hpp"
 #include "tools/terminal.hpp"
 #include "tools/view/view.hpp"
 
@@ -53,7 +54,10 @@ int run(const view::ViewedRunChoice& choice) {
     tell_losses();
     if (choice.json) say(stdout, session.summary_json());
     else say(stdout, fmt::format("{}  results in {}/\n", session.summary_text(), session.folder().string()));
-    return session.losses().empty() ? done : output_lost;
+    const std::vector<std::string> faults = unrecovered(session.engine());
+    for (const std::string& fault : faults) say(stderr, fmt::format("tactus: {}\n", fault));
+    if (!session.losses().empty()) return output_lost;
+    return faults.empty() ? done : machine_failed;
 }
 
 }  // namespace

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/command/vibration/record_options.hpp"
 
-#include "dsp/core/error.hpp"
-
-#include <fmt/format.h>
-
-#include <cstdio>
-
 namespace tactus::command {
 
 void add_record_options(VerbOptions& verb, RecordChoice& choice, const char* files) {
@@ -21,14 +15,6 @@ void add_record_options(VerbOptions& verb, RecordChoice& choice, const char* fil
     verb.add("--time-unit", choice.record.log.time_unit, "of a CSV log: s, ms, us or ns")
         .one_of({"s", "ms", "us", "ns"});
     verb.flag("--json", choice.json, "as JSON");
-}
-
-std::pair<double, double> parse_band(const std::string& text, const char* option) {
-    double low = 0.0, high = 0.0;
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%lf:%lf%c", &low, &high, &rest) != 2 || !(low > 0.0) || !(high > low))
-        throw Error(fmt::format("{} takes LOW:HIGH in Hz, as in {} 200:600, not '{}'", option, option, text));
-    return {low, high};
 }
 
 }  // namespace tactus::command

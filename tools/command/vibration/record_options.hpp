@@ -7,7 +7,6 @@
 
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace tactus::command {
@@ -20,8 +19,5 @@ struct RecordChoice {
 
 /// `files`: what the help text says of them.
 void add_record_options(VerbOptions& verb, RecordChoice& choice, const char* files);
-
-/// "200:600" → Hz. Throws Error that names the option.
-std::pair<double, double> parse_band(const std::string& text, const char* option);
 
 }  // namespace tactus::command

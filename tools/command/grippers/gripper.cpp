@@ -58,7 +58,7 @@ study::RigReport recorded(const RigChoice& choice) {
     return report;
 }
 
-int rig(const RigChoice& choice) {
+int judge(const RigChoice& choice) {
     const bool is_record = choice.patch.patch.ends_with(".csv");
     if (is_record && !choice.matrix.empty()) throw Error("a record says itself what was tried; leave --matrix out");
     study::RigMatrix matrix;
@@ -81,20 +81,23 @@ int rig(const RigChoice& choice) {
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<RigChoice>();
     add_patch_options(verb, choice->patch);
-    verb.find("patch").about("patch with a gripper on a rig, such as gripper-wqsm, or a CSV of a real one");
-    verb.add("--matrix", choice->matrix, "TOML: what is tried (default: the matrix of the thesis)");
-    verb.add("--out", choice->out, "folder for report.html, rig.json and rig.csv").required();
-    verb.add("--threads", choice->threads, "threads, 0: one per core").range(0, 64);
-    verb.flag("--series", choice->keep_series, "also write every sample, series.csv, which 'rig' reads as well");
-    verb.flag("--json", choice->json, "print the answer as JSON");
-    return [choice] { return rig(*choice); };
+    verb.find("patch").about("patch with a gripper on a test rig, such as gripper-wqsm, or a CSV record of a real one");
+    verb.add("--matrix", choice->matrix, "TOML file of what is tried (default: the matrix of Olsson 2015)");
+    verb.add("-o,--out", choice->out, "folder for report.html, rig.json and rig.csv").required();
+    verb.add("--jobs", choice->threads, "cells at a time, 0: one per core").range(0, 64);
+    verb.old("--threads", "--jobs");
+    verb.flag("--series", choice->keep_series, "also write every sample to series.csv, which this verb reads as well");
+    verb.flag("--json", choice->json, "print the result as JSON");
+    return [choice] { return judge(*choice); };
 }
 
 }  // namespace
 
-Verb rig_verb() {
-    return {"rig", "how faithfully a gripper renders objects: motors, objects, rates and amplitudes on a test rig",
-            add};
+Verb gripper_verb() {
+    return {.name = "gripper",
+            .about = "measure how faithfully a gripper renders objects: motors, objects, rates and amplitudes on a test rig",
+            .add = add,
+            .old_name = "rig"};
 }
 
 }  // namespace tactus::command

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Presses buttons of a patch that runs.
+#include "dsp/core/error.hpp"
+#include "tools/command/options.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/session/control_socket.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+#include <thread>
+
+namespace tactus::command {
+
+namespace {
+
+struct TriggerChoice {
+    std::vector<std::string> nodes;
+    int process = 0;  // 0: the only run there is
+};
+
+int trigger(const TriggerChoice& choice) {
+    for (std::size_t i = 0; i < choice.nodes.size(); ++i) {
+        const std::string& node = choice.nodes[i];
+        // A button is down for 20 ms: without a pause the second press of one would only make the first longer.
+        if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(60));
+        if (node.find('\n') != std::string::npos) throw Error("the name of a button is one line");
+        const std::string answer = session::ask_run(choice.process, "trigger " + node);
+        if (answer.starts_with("error ")) throw Error(answer.substr(6));
+        fmt::print("{}\n", answer);
+    }
+    return done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<TriggerChoice>();
+    verb.add("node", choice->nodes, "the button: a node with a parameter 'press', such as undo").required();
+    verb.add("--process", choice->process, "process number of the run, when there are several");
+    return [choice] { return trigger(*choice); };
+}
+
+}  // namespace
+
+Verb trigger_verb() { return {"trigger", "press a button of a patch that runs", add}; }
+
+}  // namespace tactus::command
