@@ -14,55 +14,59 @@ namespace tactus::nodes {
 
 struct AdmittanceController {
     static constexpr auto about =
-        "Lets a finger feel an object: the force moves the object, and a position loop makes the motor follow it. "
-        "Settings under which the loop would be unstable are refused.";
+        "Admittance control: the measured force moves a virtual object, and a position loop makes the motor follow it. "
+        "Refuses settings with which the loop would be unstable.";
 
-    In<double> force{"of the hand on the finger, towards + it closes", "N"};
+    In<double> force{"of the hand on the finger; positive closes the finger", "N"};
     In<double> position{"of the finger", "m"};
-    In<double> fault{optional, "what is wrong with the sensors: gripper_input.fault; the motor holds"};
-    In<bool> slips{optional,
-                   "the load is stronger than the motor: gripper_input.slips; a finger that stands is no fault"};
-    Out<double> velocity{"for the motor", "m/s"};
-    Out<double> wanted{"where the object has the finger", "m"};
-    Out<bool> saturated{"the motor is asked for more than max_speed"};
+    In<double> fault{optional, "number of a sensor fault: gripper_input.fault; the motor holds while it is not 0"};
+    In<bool> slips{
+        optional,
+        "the load moves the finger against the motor: gripper_input.slips. A finger at rest is then no fault"};
+    Out<double> velocity{"command for the motor", "m/s"};
+    Out<double> wanted{"position that the object gives the finger", "m"};
+    Out<bool> saturated{"the command is limited by max_speed"};
     Out<bool> holds{"the motor holds because of a fault"};
-    Out<double> reason{"0, or the number of the fault"};
-    Out<bool> refused{"the parameters are not used: unstable, or no object; the last good ones hold"};
+    Out<double> reason{"number of the fault; 0: none"};
+    Out<bool> refused{"the parameters were rejected (unstable, or no object); the last accepted ones stay in use"};
     Out<double> used_gain{"of the position loop", "1/s"};
-    Out<double> gain_limit{"beyond which the loop is unstable", "1/s"};
-    Choice object{{"elastic", "wall", "table"}, "spring and damper with mass, rigid, or measured"};
-    Choice sides{{"both", "one"}, "one: it lies beyond 'rest' towards +, and before it the finger is free"};
+    Out<double> gain_limit{"limit above which the loop is unstable", "1/s"};
+    Choice object{{"elastic", "wall", "table"}, "spring, damper and mass; rigid wall; measured table"};
+    Choice sides{{"both", "one"}, "one: the object begins at 'rest' and lies towards +; the finger is free before it"};
     Param stiffness{internal, "1 N/mm", "0 N/mm", "100 N/mm", "of an elastic object"};
     Param damping{"0 N s/m", "0 N s/m", "1000 N s/m", "of an elastic object"};
     Param mass{"0 kg", "0 kg", "10 kg", "of an elastic object"};
-    Param rest{"0 mm", "-500 mm", "500 mm", "where the object is without force"};
-    Param free_damping{"20 N s/m", "0 N s/m", "1000 N s/m", "felt before an object of one side"};
-    Asset<control::DeflectionTable> table{optional, "force and deflection as measured, for object = \"table\""};
-    Param gain{"0 s^-1", "0 s^-1", "10000 s^-1", "of the position loop; 0: gain_share of what is stable"};
-    Param gain_share{"0.5", "0.01", "0.95", "of the gain's limit"};
-    Param feed_forward{"0", "0", "1", "share of the object's velocity added to the loop's; the thesis had none"};
-    Param feed_forward_lag{"20 ms", "0 ms", "1 s", "smoothing of that velocity"};
-    Param max_speed{"70 mm/s", "0 mm/s", "10 m/s", "of the motor; gripper_input.max_speed drives it"};
+    Param rest{"0 mm", "-500 mm", "500 mm", "position at which the object exerts no force"};
+    Param free_damping{"20 N s/m", "0 N s/m", "1000 N s/m", "damping in front of a one-sided object"};
+    Asset<control::DeflectionTable> table{optional, "measured force over deflection, for object = \"table\""};
+    Param gain{"0 s^-1", "0 s^-1", "10000 s^-1", "of the position loop; 0: gain_share times the stability limit"};
+    Param gain_share{"0.5", "0.01", "0.95", "share of the stability limit, used when gain is 0"};
+    Param feed_forward{"0", "0", "1",
+                       "share of the object's velocity that is added to the command; the thesis had none"};
+    Param feed_forward_lag{"20 ms", "0 ms", "1 s", "time constant of the low-pass on that velocity"};
+    Param max_speed{"70 mm/s", "0 mm/s", "10 m/s", "of the motor; connect gripper_input.max_speed"};
     Param least_speed{
         "0 mm/s", "0 mm/s", "1 m/s",
-        "slower than this the motor turns not at all, so it is moved in steps of one tick; 0: it turns at "
-        "any speed; gripper_input.least_speed drives it"};
-    Param stall_force{"2 N", "0 N", "1000 N",
-                      "of the hand against the motion, from which on a finger that stands may be stalled, and not its "
-                      "encoder stuck"};
-    Param motor_lag{"4 ms", "0 ms", "100 ms", "of the motor's speed, for the limit"};
-    Param delay{"1", "0", "8", "ticks from a sample to the motor's motion, for the limit"};
-    Param hand_stiffness{internal, "0.38 N/mm", "0 N/mm", "100 N/mm", "of the stiffest hand, or rig, for the limit"};
-    Param blend{"100 ms", "0 ms", "10 s", "within which a new object takes over"};
-    Param recover{"0", "0", "1e9", "another number asks to go on after a fault"};
-    Flag allow_unstable{false, "use any gain"};
+        "below it the motor does not turn, so slower motion is made in steps of one tick; 0: the motor turns at any "
+        "speed; connect gripper_input.least_speed"};
+    Param stall_force{
+        "2 N", "0 N", "1000 N",
+        "force of the hand against the motion. Above it a finger at rest may be stalled; below it a stuck encoder is "
+        "suspected"};
+    Param motor_lag{"4 ms", "0 ms", "100 ms", "time constant of the motor's speed, for the stability limit"};
+    Param delay{"1", "0", "8", "ticks from a sample to the motion of the motor, for the stability limit"};
+    Param hand_stiffness{internal, "0.38 N/mm", "0 N/mm", "100 N/mm",
+                         "of the stiffest hand or rig, for the stability limit"};
+    Param blend{"100 ms", "0 ms", "10 s", "time in which a new object replaces the old one"};
+    Param recover{"0", "0", "1e9", "change the number to go on after a fault"};
+    Flag allow_unstable{false, "accept an unstable gain"};
 
     void prepare(const Setup& setup) {
         period_ = seconds(setup.period);
-        if (object.is("table") && !table) setup.fail("object = \"table\" needs an asset 'table'");
+        if (object.is("table") && !table) setup.fail("object = \"table\" needs the asset 'table'");
         const control::ControllerSettings wanted_settings = settings();
         if (!wanted_settings.object.is_renderable())
-            setup.fail("an object without stiffness, damping and mass would leave with any force; give a damping");
+            setup.fail("an object without stiffness, damping and mass has no force law; set a damping");
         if (!control_.set(wanted_settings)) {
             const double limit = tactus::control::gain_limit(wanted_settings.loop, wanted_settings.object);
             setup.fail(
@@ -135,7 +139,9 @@ private:
         return s;
     }
 
-    control::Fault sensed() const noexcept { return fault.connected ? control::fault_of_number(fault.get()) : control::Fault::none; }
+    control::Fault sensed() const noexcept {
+        return fault.connected ? control::fault_of_number(fault.get()) : control::Fault::none;
+    }
 
     void tell(double speed) noexcept {
         velocity = speed;

@@ -7,25 +7,27 @@ namespace tactus::nodes {
 
 struct GripperInput {
     static constexpr auto about =
-        "What a gripper senses: position and force of its finger, and of its thumb part if it has one.";
+        "Reads a gripper's sensors: position and force of the finger, and of the thumb part if it has one.";
 
-    Out<double> finger_position{"towards + it closes; keeps the last good one while samples are bad", "m"};
-    Out<double> finger_force{"of the hand on the finger, towards + it closes; 0 while samples are bad", "N"};
+    Out<double> finger_position{"positive closes the finger; keeps the last valid value while samples are invalid",
+                                "m"};
+    Out<double> finger_force{"of the hand on the finger; positive closes it; 0 while samples are invalid", "N"};
     Out<double> thumb_position{"of the thumb part, 0 without one", "m"};
     Out<double> thumb_force{"on the thumb part, 0 without one", "N"};
-    Out<bool> slips{"the load moves the finger although its motor holds it"};
-    Out<bool> thumb_slips{"the load moves the thumb part although its motor holds it"};
-    Out<bool> limited{"a motor runs as fast as it may"};
-    Out<bool> valid{"this tick's sample is good"};
-    Out<double> fault{"0, or the number of what is wrong: for admittance_controller"};
+    Out<bool> slips{"the load moves the finger although its motor holds"};
+    Out<bool> thumb_slips{"the load moves the thumb part although its motor holds"};
+    Out<bool> limited{"a motor is at its speed limit"};
+    Out<bool> valid{"the sample of this tick is valid"};
+    Out<double> fault{"number of the fault, for admittance_controller; 0: none"};
     Out<double> max_speed{"of a finger", "m/s"};
-    Out<double> least_speed{"slower than this no motor turns; 0: any speed", "m/s"};
+    Out<double> least_speed{"below it a motor does not turn; 0: it turns at any speed", "m/s"};
     Text device{"", "name of an entry of [devices]; empty: the only one"};
-    Param stale_after{structural, "25 ms", "0 ms", "10 s", "without a new sample for so long the sensor is gone"};
+    Param stale_after{structural, "25 ms", "0 ms", "10 s",
+                      "a sensor without a new sample for this long counts as lost"};
 
     void prepare(const Setup& setup) {
         port_ = &setup.outside->device(device.value, DeviceUse::read, device.where);
-        if (port_->info.fingers == 0) setup.fail("the device is no gripper; use device_input");
+        if (port_->info.fingers == 0) setup.fail("the device is not a gripper; use device_input");
         read(0.0);
     }
     void process(const Tick& tick) noexcept { read(tick.elapsed_seconds()); }

@@ -8,24 +8,24 @@ namespace tactus::nodes {
 
 struct GripperOutput {
     static constexpr auto about =
-        "Runs a gripper's motors, and the servo of a rig that holds it. On any fault the motors hold until asked to go "
-        "on.";
+        "Drives a gripper's motors, and the servo of a rig that holds it. After a fault the motors hold until "
+        "'recover' changes.";
 
-    In<double> finger_speed{"towards + the finger closes", "m/s"};
-    In<double> thumb_speed{optional, "of the thumb part; unconnected: it holds", "m/s"};
-    In<double> cord{optional, "where the rig's servo shall be at the end of the tick: test_rig.cord", "m"};
-    In<double> fault{optional, "why the motors are held upstream, to be told: admittance_controller.reason"};
-    Out<double> given{"speed that the finger's motor is told", "m/s"};
+    In<double> finger_speed{"positive closes the finger", "m/s"};
+    In<double> thumb_speed{optional, "of the thumb part; unconnected: the thumb part holds", "m/s"};
+    In<double> cord{optional, "position of the rig's servo at the end of the tick: test_rig.cord", "m"};
+    In<double> fault{optional, "number of a fault upstream, which holds the motors: admittance_controller.reason"};
+    Out<double> given{"speed command of the finger's motor", "m/s"};
     Out<double> cycles{"drive cycles per second of a walking motor at that speed", "Hz"};
     Out<bool> holds{"the motors hold because of a fault"};
     Text device{"", "name of an entry of [devices]; empty: the only one"};
-    Param recover{"0", "0", "1e9", "another number asks to go on after a fault"};
-    Param low_friction{"0", "0", "1", "from 0.5 on the hand moves the finger, where the motor can be lifted"};
+    Param recover{"0", "0", "1e9", "change the number to go on after a fault"};
+    Param low_friction{"0", "0", "1", "from 0.5 on the hand moves the finger freely, if the motor supports it"};
     Param drive_limit{"3 kHz", "1 Hz", "1 MHz", "drive cycles per second at full speed"};
 
     void prepare(const Setup& setup) {
         port_ = &setup.outside->device(device.value, DeviceUse::drive, device.where);
-        if (port_->info.fingers == 0) setup.fail("the device is no gripper; use device_output");
+        if (port_->info.fingers == 0) setup.fail("the device is not a gripper; use device_output");
         asked_ = recover;
         port_->motors = {};
     }
@@ -65,7 +65,9 @@ private:
         return most > 0.0 && std::max(std::abs(first), std::abs(second)) > most ? control::Fault::beyond_drive_limit
                                                                                 : control::Fault::none;
     }
-    control::Fault upstream() const noexcept { return fault.connected ? control::fault_of_number(fault.get()) : control::Fault::none; }
+    control::Fault upstream() const noexcept {
+        return fault.connected ? control::fault_of_number(fault.get()) : control::Fault::none;
+    }
 
     DevicePort* port_ = nullptr;
     double asked_ = 0.0, held_s_ = 0.0;

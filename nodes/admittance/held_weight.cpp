@@ -10,21 +10,21 @@ namespace tactus::nodes {
 
 struct HeldWeight {
     static constexpr auto about =
-        "A weight on a table, below the hand: gripped hard enough it is lifted and felt; gripped too weakly it slides "
-        "out.";
+        "A weight on a table below the hand. A firm grip lifts it and the hand feels its weight; with a weak grip it "
+        "slides out of the fingers.";
 
     In<Pose> hand{"in the device frame", "m"};
     In<Twist> hand_twist{optional, "velocity of the hand", "m/s, rad/s"};
     In<double> grip_force{"with which each finger presses", "N"};
     Out<Wrench> wrench{"on the hand", "N, N m"};
     Out<double> height{"of the weight above the table", "m"};
-    Out<bool> held{"the fingers press"};
-    Out<bool> slides{"it slides through the fingers"};
+    Out<bool> held{"the fingers grip the weight"};
+    Out<bool> slides{"the weight slides through the fingers"};
     Param mass{"200 g", "20 g", "5 kg", "of the weight"};
     Param friction{"0.6", "0", "5", "between finger and weight"};
     Param stiffness{internal, "0.6 N/mm", "0 N/mm", "5 N/mm", "of the grip"};
     Param damping{"8 N s/m", "0 N s/m", "50 N s/m", "of the grip"};
-    Param threshold{"0.3 N", "0 N", "100 N", "below it the fingers do not press"};
+    Param threshold{"0.3 N", "0 N", "100 N", "the fingers grip above it"};
 
     void prepare(const Setup&) {
         wrench = Wrench{};
@@ -42,7 +42,7 @@ struct HeldWeight {
         }
         const double press = good ? std::clamp(grip_force.get() - threshold, 0.0, 1000.0) : 0.0;
         const simulate::WeightSettings settings{mass, friction, stiffness, damping, 9.81, 0.0};
-        // Fine enough for the lightest weight in the stiffest grip.
+        // A step small enough for the lightest weight in the stiffest grip.
         const int steps = std::max(1, static_cast<int>(std::ceil(std::min(dt, 1.0) / 0.25e-3 - 1e-6)));
         Vec3 felt(0.0);
         for (int i = 0; i < steps; ++i) felt = weight_.step(settings, hand_, speed_, press, dt / steps);

@@ -9,19 +9,20 @@ namespace tactus::nodes {
 
 struct TestRig {
     static constexpr auto about =
-        "A servo swings a cord; two springs in it hold the finger of a gripper (thesis 6.3.4.1). Into "
-        "gripper_output.cord.";
+        "Test rig: a servo swings a cord with two springs that hold the finger of a gripper (thesis 6.3.4.1). Connect "
+        "'cord' to gripper_output.cord.";
 
-    In<double> finger{optional, "position of the finger, for the springs' force", "m"};
-    Out<double> cord{"where the cord shall be at the end of this tick", "m"};
-    Out<double> spring_force{"what the springs do to a finger at that place, with the cord where it is now", "N"};
-    Out<double> swing_rate{"of the swing, now", "Hz"};
-    Param peak_to_peak{"50 mm", "0 mm", "1 m", "of the cord"};
-    Param swings{"1 Hz", "0 Hz", "50 Hz", "rate of the swing; a live change keeps its phase"};
-    Param sweep_to{structural, "0 Hz", "0 Hz", "50 Hz", "rate at the end of a sweep from 'swings' on; 0: none"};
-    Param sweep_time{structural, "60 s", "1 s", "1 h", "duration of the sweep; the rate rises by equal ratios"};
+    In<double> finger{optional, "position of the finger, for the spring force", "m"};
+    Out<double> cord{"position of the cord at the end of this tick", "m"};
+    Out<double> spring_force{"of the springs on a finger at that position, with the cord as it is now", "N"};
+    Out<double> swing_rate{"present rate of the swing", "Hz"};
+    Param peak_to_peak{"50 mm", "0 mm", "1 m", "travel of the cord"};
+    Param swings{"1 Hz", "0 Hz", "50 Hz", "rate of the swing; the phase is continuous when it changes"};
+    Param sweep_to{structural, "0 Hz", "0 Hz", "50 Hz",
+                   "rate at the end of a logarithmic sweep that starts at 'swings'; 0: no sweep"};
+    Param sweep_time{structural, "60 s", "1 s", "1 h", "duration of the sweep"};
     Param spring{internal, "0.19 N/mm", "0 N/mm", "10 N/mm", "of each of the two springs"};
-    Param pretension{"35 mm", "0 mm", "1 m", "by which each is stretched at rest; then one that gets short is slack"};
+    Param pretension{"35 mm", "0 mm", "1 m", "stretch of each spring at rest; beyond it one spring is slack"};
 
     void prepare(const Setup&) { tell(0.0, swings); }
 

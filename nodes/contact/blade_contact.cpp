@@ -9,23 +9,25 @@ namespace tactus::nodes {
 
 struct BladeContact {
     static constexpr auto about =
-        "Forces on a saw blade in a bone, from 132 points on its edge and faces (thesis 6.2.2).";
+        "Contact forces on a saw blade in a bone, from 132 points on its tooth edge and faces (thesis 6.2.2).";
 
-    In<Pose> pose{"blade: x along the stroke, y into the bone, origin in the middle of the teeth"};
-    In<volume::BoneSnapshot> bone{"the bone as carved so far"};
+    In<Pose> pose{"of the blade: x along the stroke, y into the bone, origin in the middle of the tooth edge"};
+    In<volume::BoneSnapshot> bone{"the carved bone"};
     Out<Wrench> wrench{"on the blade, about its origin", "N"};
     Out<double> load{"thrust against the cutting direction", "N"};
-    Out<double> penetration{"depth of the deepest point", "m"};
-    Out<bool> in_contact{"some point is in the bone"};
-    Param stiffness{"0.8 N/mm", "0.01 N/mm", "50 N/mm", "the largest the hand can feel, however many points touch"};
+    Out<double> penetration{"of the deepest point", "m"};
+    Out<bool> in_contact{"at least one point is in the bone"};
+    Param stiffness{"0.8 N/mm", "0.01 N/mm", "50 N/mm",
+                    "upper bound of the stiffness that the hand feels, for any number of points in contact"};
     Param length{structural, "40 mm", "5 mm", "200 mm", "of the tooth edge"};
     Param height{structural, "10 mm", "1 mm", "100 mm", "of the blade, from the teeth back"};
-    Param thickness{structural, "0.7 mm", "0.1 mm", "5 mm", "of the blade; the teeth cut a little wider"};
+    Param thickness{structural, "0.7 mm", "0.1 mm", "5 mm", "of the blade; the kerf is a little wider"};
 
     void prepare(const Setup&) { points_.emplace(contact::BladeShape{length, height, thickness}); }
 
     void process(const Tick&) noexcept {
-        const tactus::contact::BladeContact now = contact::blade_contact(bone.get(), *points_, pose.get(), pose->position, stiffness);
+        const tactus::contact::BladeContact now =
+            contact::blade_contact(bone.get(), *points_, pose.get(), pose->position, stiffness);
         wrench = now.wrench;
         load = now.load;
         penetration = now.penetration;

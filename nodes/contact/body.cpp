@@ -11,14 +11,15 @@ namespace tactus::nodes {
 
 struct Body {
     static constexpr auto about =
-        "A bone as a body that can touch and be touched: points on its surface and the distance field around it. Its "
-        "frame is that of the file, moved to the middle of its points.";
+        "Makes a body for a scene from a bone: surface points and a distance field. Its frame has the axes of the file "
+        "and the centroid of the points as its origin.";
 
     Out<tactus::coupling::Body> body{"for a scene"};
-    Out<double> count{"points on the surface"};
-    Asset<bone::Bone> bone{"what it is made of"};
-    Param spacing{structural, "0 mm", "0 mm", "20 mm", "of the points; 0: those that the file holds, or else 0.5 mm"};
-    Flag triangles{false, "make the triangles of its surface too, for point_proxy and sphere_proxy"};
+    Out<double> count{"number of surface points"};
+    Asset<bone::Bone> bone{"the bone"};
+    Param spacing{structural, "0 mm", "0 mm", "20 mm",
+                  "of the points; 0: the points in the file, or 0.5 mm if it has none"};
+    Flag triangles{false, "also make the surface triangles, for point_proxy and sphere_proxy"};
 
     void prepare(const Setup& setup) {
         try {
@@ -48,8 +49,9 @@ private:
         for (contact::SurfacePoint& p : points) p.position -= middle;
         volume::Grid field = bone->distance;
         field.origin -= middle;
-        parts_ = std::make_shared<const BodyParts>(contact::make_pointshell(points), contact::make_voxmap(std::move(field)),
-                                                   Pose{middle, {1.0, 0.0, 0.0, 0.0}}, triangles);
+        parts_ =
+            std::make_shared<const BodyParts>(contact::make_pointshell(points), contact::make_voxmap(std::move(field)),
+                                              Pose{middle, {1.0, 0.0, 0.0, 0.0}}, triangles);
     }
     void tell() noexcept {
         body = parts_->body();

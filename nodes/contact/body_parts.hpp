@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a node that makes a body keeps of it.
+// The data that a node which makes a body owns.
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
 #include "dsp/contact/voxmap.hpp"
 #include "dsp/core/hash.hpp"
 #include "dsp/coupling/scene.hpp"
-#include "dsp/geometry/triangle_tree.hpp"
 #include "dsp/geometry/iso_surface.hpp"
+#include "dsp/geometry/triangle_tree.hpp"
 
 #include <optional>
 
 namespace tactus::nodes {
 
-/// Points and distances of one body, and if wanted the triangles of the field's zero surface.
+/// Points and distance field of one body; optionally the triangles of the field's zero surface.
 struct BodyParts {
     contact::Pointshell shell;
     contact::Voxmap map;
@@ -31,7 +31,9 @@ struct BodyParts {
         hash.add_word(with_triangles ? 1 : 0);
         content_hash = hash.state;
     }
-    coupling::Body body() const noexcept { return {&shell, &map, triangles ? &*triangles : nullptr, home, 1, content_hash}; }
+    coupling::Body body() const noexcept {
+        return {&shell, &map, triangles ? &*triangles : nullptr, home, 1, content_hash};
+    }
 };
 
 }  // namespace tactus::nodes

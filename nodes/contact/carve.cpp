@@ -14,25 +14,26 @@ namespace tactus::nodes {
 
 struct Carve {
     static constexpr auto about =
-        "Removes bone along the true path of a saw's teeth, at a speed inverse to the bone's density (thesis 6.2.2).";
+        "Carves a bone along the path of the saw's teeth, at a speed inversely proportional to density (thesis 6.2.2).";
 
-    Batch<Pose> path{"every pose of the blade: x along the stroke, y into the bone"};
+    Batch<Pose> path{"all poses of the blade: x along the stroke, y into the bone"};
     Batch<double> load{optional, "thrust at each pose; unconnected: the reference force", "N"};
-    In<bool> running{optional, "only a running saw removes; unconnected: always"};
-    In<double> strokes{optional, "reciprocation; unconnected: the reference rate", "Hz"};
-    Out<volume::BoneSnapshot> bone{"the bone as carved so far"};
+    In<bool> running{optional, "the saw runs; unconnected: always"};
+    In<double> strokes{optional, "reciprocation rate; unconnected: the reference rate", "Hz"};
+    Out<volume::BoneSnapshot> bone{"the carved bone"};
     Out<double> removed{"volume removed since the start", "m^3"};
-    Asset<bone::Bone> source{"the bone that is carved"};
-    Param speed{"0.67 mm/s", "0 mm/s", "100 mm/s",
-                "of removal in the reference density at the reference force and rate"};
-    Param reference_force{"7 N", "0.1 N", "100 N", "thrust at which the speed holds"};
-    Param reference_rate{"228 Hz", "1 Hz", "1000 Hz", "reciprocation at which the speed holds"};
-    Param reference_density{"1800 mg/cm^3", "1 mg/cm^3", "5000 mg/cm^3", "density at which the speed holds: cortex"};
-    Param force_exponent{"0", "0", "2", "how speed grows with thrust; 0 is the law of the thesis"};
+    Asset<bone::Bone> source{"the bone to carve"};
+    Param speed{"0.67 mm/s", "0 mm/s", "100 mm/s", "of advance at the reference density, force and rate"};
+    Param reference_force{"7 N", "0.1 N", "100 N", "thrust that 'speed' refers to"};
+    Param reference_rate{"228 Hz", "1 Hz", "1000 Hz", "reciprocation rate that 'speed' refers to"};
+    Param reference_density{"1800 mg/cm^3", "1 mg/cm^3", "5000 mg/cm^3",
+                            "density that 'speed' refers to: cortical bone"};
+    Param force_exponent{"0", "0", "2", "speed is proportional to thrust to this power; 0: the law of the thesis"};
     Param length{structural, "40 mm", "5 mm", "200 mm", "of the tooth edge"};
     Param kerf{structural, "1 mm", "0.1 mm", "5 mm", "width of the cut"};
     Param stroke{structural, "3 mm", "1 mm", "20 mm", "of the blade, peak to peak"};
-    Param bricks_per_tick{structural, "512", "16", "4096", "most bricks of 8 x 8 x 8 voxels that one tick may change"};
+    Param bricks_per_tick{structural, "512", "16", "4096",
+                          "maximum number of bricks of 8 x 8 x 8 voxels that one tick may change"};
 
     void prepare(const Setup& setup) {
         bone_ = source.shared();
@@ -54,7 +55,7 @@ struct Carve {
     void process(const Tick&) noexcept {
         gather();
         carver_.set_law(settings());
-        // A version that no reader took is never looked at, unless an earlier publication of it was.
+        // A version that was dropped has no reader, unless an earlier publication of the same version was taken.
         if (bone.last_was_dropped && last_was_new_) editor_->forget(last_);
         editor_->reclaim(bone.oldest_readable);
         const carve::CarveResult now = carver_.update(*editor_, samples_);
@@ -94,7 +95,7 @@ private:
         return s;
     }
 
-    /// The path as the carver wants it; more than 4096 poses in one tick are thinned by leaving out the oldest.
+    /// Copies the path for the carver. When a tick has more than 4096 poses, the oldest are dropped.
     void gather() noexcept {
         samples_.clear();
         const auto poses = path.values();

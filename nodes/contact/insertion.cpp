@@ -10,18 +10,17 @@ namespace tactus::nodes {
 
 struct Insertion {
     static constexpr auto about =
-        "How far a peg went into a hole, how hard and how straight. The axes are z of both, the peg's tip is its "
-        "origin, "
-        "and the hole goes down from its own.";
+        "Measures a peg-in-hole task: depth, force and straightness. z is the axis of both; the peg's tip is its "
+        "origin, and the hole extends along -z from its origin.";
 
-    In<Pose> peg{"its tip", "m"};
-    In<Pose> hole{optional, "middle of its mouth; unconnected: the origin", "m"};
+    In<Pose> peg{"pose of the peg's tip", "m"};
+    In<Pose> hole{optional, "pose of the middle of the hole's mouth; unconnected: the origin", "m"};
     In<Wrench> wrench{"on the hand", "N, N m"};
-    Out<double> depth{"of the tip below the mouth", "m"};
-    Out<bool> inserted{"the goal was reached"};
+    Out<double> depth{"of the tip below the hole's mouth", "m"};
+    Out<bool> inserted{"the goal depth was reached"};
     Param goal{"20 mm", "0 mm", "1 m", "depth that counts as inserted"};
-    Param tolerance{"0.1 mm", "0 mm", "10 mm", "by which the goal may be missed"};
-    Param guided{"2 mm", "0 mm", "1 m", "depth from which the hole leads the peg and its errors count"};
+    Param tolerance{"0.1 mm", "0 mm", "10 mm", "accepted shortfall of the depth"};
+    Param guided{"2 mm", "0 mm", "1 m", "depth from which the hole guides the peg; errors are measured from there on"};
 
     void process(const Tick&) noexcept {
         const Pose tip = hole.connected ? hole.get().inverse() * peg.get() : peg.get();

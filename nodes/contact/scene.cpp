@@ -10,30 +10,30 @@ namespace tactus::nodes {
 
 struct Scene {
     static constexpr auto about =
-        "Bodies and where they stand, as one value: place 0 is body 'a', place 1 body 'b', and so on. A body stands "
-        "where "
-        "its file has it, moved by its vector, unless a wire gives its pose or it was moved by a hand.";
+        "Combines up to four bodies and their poses into one scene: place 0 is body 'a', place 1 body 'b', and so on. "
+        "A body has the pose of its file plus its offset, unless a wire gives its pose or a hand has moved it.";
 
     In<coupling::Body> a{"place 0"};
     In<coupling::Body> b{optional, "place 1"};
     In<coupling::Body> c{optional, "place 2"};
     In<coupling::Body> d{optional, "place 3"};
-    In<Pose> a_pose{optional, "of body a, the whole time", "m"};
-    In<Pose> b_pose{optional, "of body b, the whole time", "m"};
-    In<Pose> c_pose{optional, "of body c, the whole time", "m"};
-    In<Pose> d_pose{optional, "of body d, the whole time", "m"};
-    In<Pose> moved{optional, "where a hand has put the body at place 'which'; it stays there", "m"};
-    In<double> which{optional, "place of the body that 'moved' speaks of; -1: of none"};
-    Out<tactus::coupling::Scene> scene{"for contact, couplings and grasp"};
-    Param middle{"-1", "-1", "3", "place of the body whose middle is the origin of the scene; -1: that of the files"};
-    Vector a_at{"0 mm, 0 mm, 0 mm", "body a is moved by"};
-    Vector b_at{"0 mm, 0 mm, 0 mm", "body b is moved by"};
-    Vector c_at{"0 mm, 0 mm, 0 mm", "body c is moved by"};
-    Vector d_at{"0 mm, 0 mm, 0 mm", "body d is moved by"};
-    Vector a_turn{"0 deg, 0 deg, 0 deg", "body a is turned by, in place: about x first, then y, then z"};
-    Vector b_turn{"0 deg, 0 deg, 0 deg", "body b is turned by, in place: about x first, then y, then z"};
-    Vector c_turn{"0 deg, 0 deg, 0 deg", "body c is turned by, in place: about x first, then y, then z"};
-    Vector d_turn{"0 deg, 0 deg, 0 deg", "body d is turned by, in place: about x first, then y, then z"};
+    In<Pose> a_pose{optional, "of body a, at every tick", "m"};
+    In<Pose> b_pose{optional, "of body b, at every tick", "m"};
+    In<Pose> c_pose{optional, "of body c, at every tick", "m"};
+    In<Pose> d_pose{optional, "of body d, at every tick", "m"};
+    In<Pose> moved{optional, "pose that a hand has given the body at place 'which'; the body keeps it", "m"};
+    In<double> which{optional, "place of the body that 'moved' refers to; -1: none"};
+    Out<tactus::coupling::Scene> scene{"for contact, coupling and grasp nodes"};
+    Param middle{"-1", "-1", "3",
+                 "place of the body whose centroid is the origin of the scene; -1: origin of the files"};
+    Vector a_at{"0 mm, 0 mm, 0 mm", "offset of body a"};
+    Vector b_at{"0 mm, 0 mm, 0 mm", "offset of body b"};
+    Vector c_at{"0 mm, 0 mm, 0 mm", "offset of body c"};
+    Vector d_at{"0 mm, 0 mm, 0 mm", "offset of body d"};
+    Vector a_turn{"0 deg, 0 deg, 0 deg", "rotation of body a about its own origin: about x first, then y, then z"};
+    Vector b_turn{"0 deg, 0 deg, 0 deg", "rotation of body b about its own origin: about x first, then y, then z"};
+    Vector c_turn{"0 deg, 0 deg, 0 deg", "rotation of body c about its own origin: about x first, then y, then z"};
+    Vector d_turn{"0 deg, 0 deg, 0 deg", "rotation of body d about its own origin: about x first, then y, then z"};
 
     void process(const Tick&) noexcept {
         tactus::coupling::Scene now;
@@ -44,7 +44,7 @@ struct Scene {
         const double first = middle;
         if (first >= 0.0 && bodies[static_cast<std::size_t>(first)]->connected)
             origin = bodies[static_cast<std::size_t>(first)]->get().home.position;
-        // What is missing between others keeps its place, empty.
+        // A body that is missing between others leaves an empty place.
         for (std::size_t i = 0; i < places; ++i) {
             if (!bodies[i]->connected && i > 0) continue;
             now.count = i + 1;

@@ -12,24 +12,22 @@
 namespace tactus::nodes {
 
 struct Shape {
-    static constexpr auto about =
-        "A body by formula: a ball, a box, an upright cylinder, or a round "
-        "block "
-        "with a hole.";
+    static constexpr auto about = "An analytic body: ball, box, upright cylinder, or round block with a hole.";
 
     Out<coupling::Body> body{"for a scene"};
-    Choice kind{{"ball", "box", "cylinder", "hole"},
-                "ball and box about their middle, a cylinder up from z = 0, a hole down from z = 0 in a round block"};
+    Choice kind{
+        {"ball", "box", "cylinder", "hole"},
+        "ball and box are centred; a cylinder extends up from z = 0; a hole extends down from z = 0 in a round block"};
     Vector size{"20 mm, 20 mm, 20 mm", "of a box"};
-    Param diameter{structural, "20 mm", "0.1 mm", "1 m", "of a ball or cylinder, or of what is to fit into the hole"};
+    Param diameter{structural, "20 mm", "0.1 mm", "1 m", "of a ball or cylinder, or of the peg that fits the hole"};
     Param height{structural, "20 mm", "0.1 mm", "1 m", "of a cylinder, or of the block with the hole"};
-    Param clearance{structural, "0.3 mm", "-5 mm", "50 mm", "by which a hole's diameter is larger than 'diameter'"};
-    Param wall{structural, "10 mm", "0.1 mm", "1 m", "of the block around the hole"};
-    Param bevel{structural, "0 mm", "0 mm", "50 mm", "of a cylinder's lower rim and of a hole's mouth, at 45 deg"};
-    Param spacing{structural, "0.42 mm", "0.01 mm", "20 mm", "of the points"};
+    Param clearance{structural, "0.3 mm", "-5 mm", "50 mm", "diameter of the hole minus 'diameter'"};
+    Param wall{structural, "10 mm", "0.1 mm", "1 m", "thickness of the block around the hole"};
+    Param bevel{structural, "0 mm", "0 mm", "50 mm", "of a cylinder's lower rim and a hole's mouth, at 45 deg"};
+    Param spacing{structural, "0.42 mm", "0.01 mm", "20 mm", "of the surface points"};
     Param voxel{structural, "0.25 mm", "0.01 mm", "20 mm", "of the distance field"};
-    Param margin{structural, "3 mm", "0.1 mm", "100 mm", "of the distance field around the body"};
-    Flag triangles{false, "make the triangles of its surface too, for point_proxy and sphere_proxy"};
+    Param margin{structural, "3 mm", "0.1 mm", "100 mm", "of the distance field beyond the body"};
+    Flag triangles{false, "also make the surface triangles, for point_proxy and sphere_proxy"};
 
     void prepare(const Setup& setup) {
         try {
@@ -46,7 +44,8 @@ struct Shape {
 
 private:
     double bore(const Setup& setup) const {
-        if (!(diameter + clearance > 0.0)) setup.fail("with that clearance nothing is left of the hole");
+        if (!(diameter + clearance > 0.0))
+            setup.fail("the hole's diameter, 'diameter' plus 'clearance', must be positive");
         return diameter + clearance;
     }
 

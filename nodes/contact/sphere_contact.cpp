@@ -7,13 +7,12 @@ namespace tactus::nodes {
 
 struct SphereContact {
     static constexpr auto about =
-        "A ball on the tool against a ball that is fixed in the scene: force = stiffness × depth, along the line of "
-        "centres.";
+        "Contact of a ball on the tool with a fixed ball: force = stiffness × depth, along the line of centres.";
 
-    In<Pose> pose{"tool; the ball sits at its origin", "m"};
+    In<Pose> pose{"of the tool; its ball is centred at the origin", "m"};
     Out<Wrench> wrench{"on the tool, about its origin", "N, N m"};
-    Out<double> penetration{"depth of the tool's ball in the fixed one", "m"};
-    Out<bool> in_contact{"they touch"};
+    Out<double> penetration{"depth of the tool's ball in the fixed ball", "m"};
+    Out<bool> in_contact{"the balls touch"};
     Vector centre{"0 mm, 0 mm, 0 mm", "of the fixed ball"};
     Param radius{"50 mm", "0.1 mm", "1 m", "of the fixed ball"};
     Param tool_radius{"5 mm", "0 mm", "1 m", "of the ball on the tool"};
@@ -23,7 +22,7 @@ struct SphereContact {
         const Vec3 from_centre = pose->position - centre.value;
         const double distance = glm::length(from_centre);
         const double depth = std::max(0.0, radius + tool_radius - distance);
-        // In the very centre every direction is as good as any other.
+        // The direction at the very centre is arbitrary.
         const Vec3 normal = distance > 0.0 ? from_centre / distance : Vec3(0.0, 0.0, 1.0);
         wrench = {normal * (stiffness * depth), {}};
         penetration = depth;

@@ -11,15 +11,15 @@ namespace tactus::nodes {
 
 struct VoxmapContact {
     static constexpr auto about =
-        "Contact of one body of a scene, as points, with the distance fields of all others, at one pose: forces in "
-        "proportion to depth. Stands open; couplings bring their own.";
+        "Pointshell contact of one body of a scene with the distance fields of all others, at a given pose; the force "
+        "is proportional to depth. For use without a coupling node; coupling nodes compute their own contact.";
 
     In<Pose> pose{"of the body", "m"};
-    In<tactus::coupling::Scene> scene{"everything that can be touched"};
+    In<tactus::coupling::Scene> scene{"the bodies"};
     Out<Wrench> wrench{"on the body, about its origin", "N, N m"};
     Out<double> stiffness{"of all touching points together, along the stiffest of the three axes", "N/m"};
     Out<double> penetration{"of the deepest point", "m"};
-    Out<bool> in_contact{"some point has a force"};
+    Out<bool> in_contact{"at least one point exerts a force"};
     Param held{"0", "-1", "15", "place of the body in the scene"};
     ContactParameters contact;
 
@@ -27,7 +27,8 @@ struct VoxmapContact {
 
     void process(const Tick&) noexcept {
         contact.set(*contact_, scene, static_cast<int>(held), {});
-        const contact::ContactSum now = is_valid(pose.get()) ? (*contact_)(pose, contact::ContactParts::all) : contact::ContactSum{};
+        const contact::ContactSum now =
+            is_valid(pose.get()) ? (*contact_)(pose, contact::ContactParts::all) : contact::ContactSum{};
         wrench = now.wrench();
         stiffness = std::max({now.stiffness[0], now.stiffness[7], now.stiffness[14]});
         penetration = now.penetration;

@@ -7,15 +7,16 @@ namespace tactus::nodes {
 
 struct DirectCoupling {
     static constexpr auto about =
-        "The hand itself is the body: it feels the contact forces, scaled down so that all points together are no "
-        "stiffer "
-        "than it can feel. Goes through what is thinner than the force is deep; a proxy does not (thesis 2.4.2).";
+        "Direct coupling: the body is rigidly attached to the hand. The contact force is scaled so that the stiffness "
+        "of all points together stays below a limit. A thin wall can be passed through; a proxy prevents that (thesis "
+        "2.4.2).";
 
-    In<Wrench> contact{"on the body, about the hand's origin: voxmap_contact.wrench", "N, N m"};
+    In<Wrench> contact{"on the body, about the origin of the hand: voxmap_contact.wrench", "N, N m"};
     In<double> contact_stiffness{"of all touching points together: voxmap_contact.stiffness", "N/m"};
     Out<Wrench> wrench{"on the hand", "N, N m"};
-    Param stiffness{"0.8 N/mm", "0 N/mm", "20 N/mm", "the largest the hand can feel, however many points touch"};
-    Param max_force{"10 N", "0 N", "100 N", "the force grows no larger; the torque shrinks with it"};
+    Param stiffness{"0.8 N/mm", "0 N/mm", "20 N/mm",
+                    "upper bound of the stiffness that the hand feels, for any number of points in contact"};
+    Param max_force{"10 N", "0 N", "100 N", "limit of the force; the torque is reduced in the same ratio"};
 
     void process(const Tick&) noexcept {
         const double all = contact_stiffness.get();

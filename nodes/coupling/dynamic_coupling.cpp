@@ -12,32 +12,32 @@ namespace tactus::nodes {
 
 struct DynamicCoupling {
     static constexpr auto about =
-        "Holds a body of a scene by springs and dampers; the body has mass, and contact pushes it. One implicit step "
-        "per tick.";
+        "Dynamic virtual coupling: springs and dampers pull a body with mass to the hand, and contact pushes it. One "
+        "implicit Euler step per tick.";
 
-    In<Pose> device{"the hand in the scene", "m"};
-    In<tactus::coupling::Scene> scene{"everything that can be touched, and the body that is held"};
-    In<Twist> device_twist{optional, "velocity of the hand in the scene; unconnected: what the damper feels is at rest",
+    In<Pose> device{"pose of the hand in the scene", "m"};
+    In<tactus::coupling::Scene> scene{"the bodies, with the held one among them"};
+    In<Twist> device_twist{optional, "velocity of the hand in the scene; unconnected: the damper takes it as zero",
                            "m/s, rad/s"};
-    In<Pose> grip{optional, "held body in the frame of the hand; unconnected: 'grip_at'", "m"};
-    In<bool> holding{optional, "false: the body stays where it was let go; unconnected: held all the time"};
-    In<double> strength{optional, "share of the force that is felt, 0 to 1; unconnected: all of it"};
+    In<Pose> grip{optional, "pose of the held body in the frame of the hand; unconnected: 'grip_at'", "m"};
+    In<bool> holding{optional, "false: the body stays where it was released; unconnected: true"};
+    In<double> strength{optional, "share of the force that the hand feels, 0 to 1; unconnected: 1"};
     Out<Wrench> wrench{"on the hand, about its origin", "N, N m"};
     Out<Pose> pose{"of the held body", "m"};
-    Out<double> place{"of the held body in the scene, -1 when there is none"};
+    Out<double> place{"place of the held body in the scene; -1: none"};
     Out<double> penetration{"of the deepest point", "m"};
-    Out<bool> in_contact{"some point has a force"};
-    Param held{"0", "-1", "15", "place of the held body in the scene; grasp drives it"};
+    Out<bool> in_contact{"at least one point exerts a force"};
+    Param held{"0", "-1", "15", "place of the held body in the scene; connect grasp.held"};
     Vector grip_at{"0 mm, 0 mm, 0 mm", "origin of the held body in the frame of the hand"};
     Param mass{"100 g", "0.1 g", "100 kg", "of the body"};
     Param inertia{"1e-4 kg m^2", "1e-9 kg m^2", "100 kg m^2", "of the body, about every axis through the hand"};
     Param stiffness{"1 N/mm", "0 N/mm", "20 N/mm", "of the spring to the hand"};
     Param damping{"10 N s/m", "0 N s/m", "500 N s/m", "of the damper to the hand"};
-    Param angular_stiffness{"1 N m/rad", "0 N m/rad", "100 N m/rad", "of the spring that turns"};
-    Param angular_damping{"0.01 N m s/rad", "0 N m s/rad", "10 N m s/rad", "of the damper that turns"};
-    Param max_force{"10 N", "0 N", "100 N", "the spring pulls no harder"};
-    Param max_torque{"0.5 N m", "0 N m", "20 N m", "the spring turns no harder"};
-    Param step{"0.5 mm", "0.001 mm", "20 mm", "farthest that a tick may move a point beyond what is free"};
+    Param angular_stiffness{"1 N m/rad", "0 N m/rad", "100 N m/rad", "of the rotational spring"};
+    Param angular_damping{"0.01 N m s/rad", "0 N m s/rad", "10 N m s/rad", "of the rotational damper"};
+    Param max_force{"10 N", "0 N", "100 N", "limit of the spring force"};
+    Param max_torque{"0.5 N m", "0 N m", "20 N m", "limit of the spring torque"};
+    Param step{"0.5 mm", "0.001 mm", "20 mm", "limit of a point's motion per tick beyond the free distance"};
     ContactParameters contact;
 
     void prepare(const Setup&) {

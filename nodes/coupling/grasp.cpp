@@ -9,20 +9,19 @@ namespace tactus::nodes {
 
 struct Grasp {
     static constexpr auto about =
-        "Takes hold of the body that is nearest to the hand while the trigger is held, at the very point where the "
-        "hand "
-        "is, and lets go of it again; forces come and go without a jump.";
+        "Grasps the body nearest to the hand while the trigger is held, with the body's pose relative to the hand "
+        "kept, and releases it afterwards. Forces fade in and out.";
 
-    In<Pose> hand{"in the scene", "m"};
-    In<tactus::coupling::Scene> scene{"what can be taken"};
-    In<bool> trigger{"hold"};
-    Out<double> held{"place of the body in the scene until its force has faded, -1 without one"};
-    Out<Pose> grip{"the body in the frame of the hand", "m"};
-    Out<bool> holding{"false once it is let go"};
-    Out<double> strength{"share of the coupling's force that is to be felt"};
-    Param reach{"5 mm", "0 mm", "1 m", "how near to a body the hand must be"};
-    Param fade{"50 ms", "0 ms", "10 s", "in which the force comes in and goes out"};
-    Param fixed{"1", "0", "16", "so many places from the first cannot be taken"};
+    In<Pose> hand{"pose of the hand in the scene", "m"};
+    In<tactus::coupling::Scene> scene{"the bodies that can be grasped"};
+    In<bool> trigger{"true: hold"};
+    Out<double> held{"place of the held body in the scene until its force has faded; -1: none"};
+    Out<Pose> grip{"pose of the body in the frame of the hand", "m"};
+    Out<bool> holding{"true until the body is released"};
+    Out<double> strength{"share of the coupling's force that the hand feels, 0 to 1"};
+    Param reach{"5 mm", "0 mm", "1 m", "maximum distance from the hand to the body"};
+    Param fade{"50 ms", "0 ms", "10 s", "time in which the force fades in and out"};
+    Param fixed{"1", "0", "16", "number of places, from place 0 on, that cannot be grasped"};
 
     void prepare(const Setup&) { tell(); }
 
@@ -34,7 +33,7 @@ struct Grasp {
         const double change = fade > 0.0 ? tick.elapsed_seconds() / fade : 1.0;
         strength_ = std::clamp(strength_ + (holds_ ? change : -change), 0.0, 1.0);
         tell();
-        // Told once more with no force, so that whoever follows sees the end of it.
+        // One more tick with strength 0, so that nodes downstream see the end.
         if (!holds_ && strength_ == 0.0) place_ = -1;
     }
 

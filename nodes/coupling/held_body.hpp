@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the couplings of a held body share: which body, where it is gripped, and how forces come and go.
+// Shared by the couplings of a held body: which body is held, its grip, and the fading of forces.
 #pragma once
 
 #include "dsp/coupling/held_contact.hpp"
@@ -9,7 +9,7 @@
 
 namespace tactus::nodes {
 
-/// Follows `grasp`: which place of the scene is held, whether it still is, and with what strength its force is felt.
+/// Follows `grasp`: the place of the held body, whether it is still held, and the strength of its force.
 struct Hold {
     int place = -1;
     bool holds = false, taken = false;  ///< taken: in this tick
@@ -22,7 +22,7 @@ struct Hold {
         place = now;
         holds = keeps;
         strength = now < 0 ? 0.0 : felt.connected ? std::clamp(felt.get(), 0.0, 1.0) : 1.0;
-        if (!(strength >= 0.0)) strength = 0.0;  // not a number
+        if (!(strength >= 0.0)) strength = 0.0;  // NaN
     }
 };
 

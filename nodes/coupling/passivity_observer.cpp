@@ -9,17 +9,16 @@ namespace tactus::nodes {
 
 struct PassivityObserver {
     static constexpr auto about =
-        "Counts the energy that goes to the hand and comes from it; when more came than went, it can brake the hand "
-        "with "
-        "just the damping that is missing (Hannaford and Ryu 2002).";
+        "Passivity observer and controller (time-domain passivity approach, Hannaford and Ryu 2002): sums the energy "
+        "that the hand puts in; when it is negative, adds as much damping as is missing.";
 
-    In<Wrench> in{"on the hand, as computed", "N, N m"};
-    In<Pose> hand{"in the frame of the wrench", "m"};
-    Out<Wrench> wrench{"on the hand, with the brake", "N, N m"};
-    Out<double> energy{"put in by the hand so far; below zero the scene is active", "J"};
-    Out<double> brake{"damping in this tick", "N s/m"};
-    Flag control{true, "brake; otherwise only count"};
-    Param max_damping{"50 N s/m", "0 N s/m", "500 N s/m", "of the brake"};
+    In<Wrench> in{"computed wrench on the hand", "N, N m"};
+    In<Pose> hand{"pose of the hand in the frame of the wrench", "m"};
+    Out<Wrench> wrench{"on the hand, with the damping force", "N, N m"};
+    Out<double> energy{"put in by the hand so far; negative: the scene is active", "J"};
+    Out<double> brake{"damping added in this tick", "N s/m"};
+    Flag control{true, "add damping; false: only observe"};
+    Param max_damping{"50 N s/m", "0 N s/m", "500 N s/m", "limit of the damping"};
 
     void process(const Tick& tick) noexcept {
         const auto now =

@@ -6,14 +6,14 @@ namespace tactus::nodes {
 
 struct PointProxy {
     static constexpr auto about =
-        "A point that stays outside of everything while the hand goes in, and a spring between the two: the "
-        "god-object.";
+        "God-object (Zilles and Salisbury 1995): a point that stays outside of all bodies while the hand moves into "
+        "them, and a spring between the two.";
 
-    In<Pose> device{"the hand in the scene; only its place counts", "m"};
-    In<tactus::coupling::Scene> scene{"everything that can be touched"};
+    In<Pose> device{"pose of the hand in the scene; only its position is used", "m"};
+    In<tactus::coupling::Scene> scene{"the bodies"};
     Out<Wrench> wrench{"on the hand, about its origin; no torque", "N, N m"};
-    Out<Pose> proxy{"where the hand would be if it could not go in", "m"};
-    Out<bool> in_contact{"it touches something"};
+    Out<Pose> proxy{"position of the proxy, with the orientation of the hand", "m"};
+    Out<bool> in_contact{"the proxy touches a body"};
     ProxyParameters parameters;
 
     void process(const Tick&) noexcept {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the proxies share: what they touch, and their parameters.
+// Shared by the proxy nodes: the surfaces of a scene, and the parameters.
 #pragma once
 
 #include "dsp/coupling/scene.hpp"
@@ -11,7 +11,7 @@
 
 namespace tactus::nodes {
 
-/// The bodies of a scene as a proxy sees them.
+/// The surfaces of a scene's bodies.
 class ProxySurfaces {
 public:
     ProxySurfaces(const coupling::Scene& scene, bool by_triangles) noexcept {
@@ -30,23 +30,22 @@ private:
 };
 
 struct ProxyParameters {
-    Choice surface{{"field", "triangles"}, "what is touched: the distance field, or the triangles"};
+    Choice surface{{"field", "triangles"}, "surface of a body: zero level of its distance field, or its triangles"};
     Param stiffness{"1 N/mm", "0 N/mm", "20 N/mm", "of the spring between hand and proxy"};
-    Param max_force{"10 N", "0 N", "100 N", "the spring pulls no harder"};
-    Param static_friction{"0", "0", "2", "coefficient of friction while it sticks"};
-    Param dynamic_friction{"0", "0", "2", "coefficient while it slides; at most the static one"};
-    Param texture_height{"0 mm", "0 mm", "2 mm", "of waves that stand on the surface, from their mean to the top"};
-    Param texture_length{"2 mm", "0.1 mm", "100 mm", "of a wave, along each axis of a body"};
-    Param step{
-        "0.25 mm", "0.001 mm", "10 mm",
-        "farthest move along a field at a time; at most half of its thinnest wall, and half a voxel in any case"};
-    Flag shading{true, "forces over round triangle meshes are those of a round surface, not of its facets"};
+    Param max_force{"10 N", "0 N", "100 N", "limit of the spring force"};
+    Param static_friction{"0", "0", "2", "coefficient of static friction"};
+    Param dynamic_friction{"0", "0", "2", "coefficient of sliding friction; at most the static one"};
+    Param texture_height{"0 mm", "0 mm", "2 mm", "of a wave texture on the surface, from mean to crest"};
+    Param texture_length{"2 mm", "0.1 mm", "100 mm", "wavelength of the texture along each axis of a body"};
+    Param step{"0.25 mm", "0.001 mm", "10 mm",
+               "step length along a distance field; at most half of its thinnest wall; never more than half a voxel"};
+    Flag shading{true, "force shading: forces on round triangle meshes follow interpolated normals"};
     TACTUS_GROUP(surface, stiffness, max_force, static_friction, dynamic_friction, texture_height, texture_length, step,
                  shading)
 
-    /// One tick of a proxy of that radius, m: towards the place of `device` as far as the scene lets it.
+    /// One tick of a proxy with `radius` m: moves it towards the position of `device` as far as the scene permits.
     const coupling::ProxyState& update(coupling::SurfaceProxy& proxy, double radius, const Pose& device,
-                             const coupling::Scene& scene) const noexcept {
+                                       const coupling::Scene& scene) const noexcept {
         proxy.settings = {{radius, texture_height, texture_length, step},
                           stiffness,
                           max_force,

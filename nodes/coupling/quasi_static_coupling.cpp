@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/coupling/guidance.hpp"
 #include "dsp/core/quantile.hpp"
+#include "dsp/coupling/guidance.hpp"
 #include "dsp/coupling/quasi_static.hpp"
 #include "graph/node/node.hpp"
 #include "nodes/contact/contact_parameters.hpp"
@@ -18,32 +18,32 @@ namespace tactus::nodes {
 
 struct QuasiStaticCoupling {
     static constexpr auto about =
-        "Holds a body of a scene by two springs: every tick it stands where springs and contact forces balance, solved "
-        "within the tick, and the hand feels the springs, in six degrees of freedom. It may be led to a target by a "
-        "second pair of springs, which the hand can always pull against.";
+        "Quasi-static virtual coupling in six degrees of freedom: each tick solves for the pose of the held body in "
+        "which the springs to the hand and the contact forces balance; the hand feels the springs. A second pair of "
+        "springs can pull the body to a target; the hand can always overcome them.";
 
-    In<Pose> device{"the hand in the scene", "m"};
-    In<tactus::coupling::Scene> scene{"everything that can be touched, and the body that is held"};
-    In<Pose> grip{optional, "held body in the frame of the hand; unconnected: 'grip_at'", "m"};
-    In<bool> holding{optional, "false: the body stays where it was let go; unconnected: held all the time"};
-    In<double> strength{optional, "share of the force that is felt, 0 to 1; unconnected: all of it"};
-    In<Pose> target{optional, "where the held body is led to, while 'guided'", "m"};
-    In<bool> guided{optional, "the hand wants it to be led there; unconnected: not"};
-    In<bool> has_target{optional, "there is a target; unconnected: always"};
-    In<double> target_of{optional, "place of the body that the target is of; unconnected: of whatever is held"};
-    In<bool> settle{optional, "the springs to the hand give way, so that it is led without bias"};
+    In<Pose> device{"pose of the hand in the scene", "m"};
+    In<tactus::coupling::Scene> scene{"the bodies, with the held one among them"};
+    In<Pose> grip{optional, "pose of the held body in the frame of the hand; unconnected: 'grip_at'", "m"};
+    In<bool> holding{optional, "false: the body stays where it was released; unconnected: true"};
+    In<double> strength{optional, "share of the force that the hand feels, 0 to 1; unconnected: 1"};
+    In<Pose> target{optional, "pose that the held body is pulled to while 'guided'", "m"};
+    In<bool> guided{optional, "pull the body to the target; unconnected: false"};
+    In<bool> has_target{optional, "the target is valid; unconnected: true"};
+    In<double> target_of{optional, "place of the body that the target is for; unconnected: the held one"};
+    In<bool> settle{optional, "the springs to the hand yield while the body is guided, so that the hand adds no bias"};
     Out<Wrench> wrench{"on the hand, about its origin", "N, N m"};
     Out<Pose> pose{"of the held body: the proxy", "m"};
-    Out<double> place{"of the held body in the scene, -1 when there is none"};
+    Out<double> place{"place of the held body in the scene; -1: none"};
     Out<double> penetration{"of the deepest point", "m"};
-    Out<double> residual{"of the balance", "N"};
-    Out<bool> in_contact{"some point has a force"};
-    Param held{"0", "-1", "15", "place of the held body in the scene; grasp drives it"};
+    Out<double> residual{"of the force balance", "N"};
+    Out<bool> in_contact{"at least one point exerts a force"};
+    Param held{"0", "-1", "15", "place of the held body in the scene; connect grasp.held"};
     Vector grip_at{"0 mm, 0 mm, 0 mm", "origin of the held body in the frame of the hand"};
     Param guide_stiffness{"1 N/mm", "0 N/mm", "20 N/mm", "of the spring to the target"};
-    Param guide_angular_stiffness{"1 N m/rad", "0 N m/rad", "100 N m/rad", "of that which turns"};
-    Param guide_force{"8 N", "0 N", "100 N", "the target pulls no harder"};
-    Param guide_torque{"0.3 N m", "0 N m", "20 N m", "the target turns no harder"};
+    Param guide_angular_stiffness{"1 N m/rad", "0 N m/rad", "100 N m/rad", "of the rotational spring to the target"};
+    Param guide_force{"8 N", "0 N", "100 N", "limit of the force to the target"};
+    Param guide_torque{"0.3 N m", "0 N m", "20 N m", "limit of the torque to the target"};
     LeadParameters led;
     SolverParameters solver;
     ContactParameters contact;
@@ -119,7 +119,7 @@ private:
         reduced_ += now.contact.reduced ? 1.0 : 0.0;
     }
 
-    /// The body stays; its last force fades with the strength.
+    /// Keeps the body where it is; its last force fades with the strength.
     void let_go() noexcept {
         wrench = last_ * hold_.strength;
         penetration = 0.0;
@@ -134,7 +134,7 @@ private:
     tactus::coupling::QuasiStaticCoupling solver_;
     Hold hold_;
     Wrench last_;
-    SizeCounts residuals_;  // of ticks that were not slowed
+    SizeCounts residuals_;  // of the ticks that `slip` did not end early
     std::uint64_t ticks_ = 0;
     double deepest_ = 0.0, balanced_ = 0.0, iterations_ = 0.0, evaluations_ = 0.0, touching_ = 0.0, most_points_ = 0.0,
            reduced_ = 0.0;

@@ -18,32 +18,34 @@ namespace tactus::nodes {
 
 struct SnapToFit {
     static constexpr auto about =
-        "Holds a fragment by two springs while its painted fracture is drawn to that of another: every tick it stands "
-        "where pull, contact and springs balance, and the hand can always pull it away. Without paint on both it holds "
-        "alone.";
+        "Snap-to-fit: quasi-static coupling of a held fragment whose painted fracture surface is pulled to that of "
+        "another fragment. Each tick solves for the balance of pull, contact and springs; the hand can always overcome "
+        "the pull. Without paint on both fragments there is no pull.";
 
-    In<Pose> device{"the hand in the scene", "m"};
-    In<tactus::coupling::Scene> scene{"the fragments and all else that can be touched"};
-    In<Pose> grip{optional, "held body in the frame of the hand; unconnected: its own frame", "m"};
-    In<bool> holding{optional, "false: the body stays where it was let go; unconnected: held all the time"};
-    In<double> strength{optional, "share of the force that is felt, 0 to 1; unconnected: all of it"};
-    In<bool> engaged{optional, "the pull is wanted; unconnected: all the time"};
-    In<bool> settle{optional, "the springs give way to the pull, so that the fit is not biased by the hand"};
+    In<Pose> device{"pose of the hand in the scene", "m"};
+    In<tactus::coupling::Scene> scene{"the fragments and all other bodies"};
+    In<Pose> grip{optional, "pose of the held body in the frame of the hand; unconnected: its own frame", "m"};
+    In<bool> holding{optional, "false: the body stays where it was released; unconnected: true"};
+    In<double> strength{optional, "share of the force that the hand feels, 0 to 1; unconnected: 1"};
+    In<bool> engaged{optional, "pull the fragment; unconnected: true"};
+    In<bool> settle{optional, "the springs to the hand yield to the pull, so that the hand adds no bias"};
     Out<Wrench> wrench{"on the hand, about its origin", "N, N m"};
     Out<Pose> pose{"of the held body: the proxy", "m"};
-    Out<double> place{"of the held body in the scene, -1 when there is none"};
-    Out<double> score{"of the fit, 0 to 1: share of both paints that lie on each other; ten times a second"};
-    Out<double> pull{"that draws the fragment", "N"};
+    Out<double> place{"place of the held body in the scene; -1: none"};
+    Out<double> score{"of the fit, 0 to 1: how much of both painted surfaces coincides; updated every 100 ticks"};
+    Out<double> pull{"force of the pull", "N"};
     Out<double> penetration{"of the deepest point", "m"};
-    Out<double> residual{"of the balance", "N"};
-    Out<bool> in_contact{"some point has a force"};
-    Asset<bone::Bone> moving{"the fragment that is held, with painted points"};
-    Asset<bone::Bone> fixed{"the one it is drawn to"};
-    Param held{"1", "-1", "15", "place of the held body in the scene; grasp drives it"};
+    Out<double> residual{"of the force balance", "N"};
+    Out<bool> in_contact{"at least one point exerts a force"};
+    Asset<bone::Bone> moving{"the held fragment, with painted points"};
+    Asset<bone::Bone> fixed{"the other fragment, with painted points"};
+    Param held{"1", "-1", "15", "place of the held body in the scene; connect grasp.held"};
     Param target{"0", "0", "15", "place of the other fragment"};
-    Choice mode{{"extended", "thesis"}, "extended: both paints, robust, narrowing; thesis: a steady pull of one"};
-    Param force{"10 N", "0 N", "100 N", "the pull of all painted points together, at most"};
-    Param reach{"4 mm", "0.1 mm", "12 mm", "no pull from farther away"};
+    Choice mode{{"extended", "thesis"},
+                "extended: robust two-sided energy with a narrowing scale; thesis: constant pull of the held "
+                "fragment's points"};
+    Param force{"10 N", "0 N", "100 N", "limit of the pull of all painted points together"};
+    Param reach{"4 mm", "0.1 mm", "12 mm", "maximum distance of the pull"};
     LeadParameters led;
     SolverParameters solver;
     ContactParameters contact;
@@ -103,7 +105,7 @@ private:
         law.kernel = mode.index == 0 ? fit::FitKernel::robust : fit::FitKernel::steady;
         law.outline = mode.index == 0 ? 0.3 : 0.0;
         law.scale = scale_;
-        // The robust kernel's force is greatest at scale / √3, where it is 0.325 of strength × scale, on each side.
+        // The robust kernel's force has its maximum at scale / √3: 0.325 of strength × scale, on each side.
         law.strength = mode.index == 0 ? force / (0.65 * scale_) : force.value;
     }
 
@@ -150,7 +152,7 @@ private:
         score = score_;
     }
 
-    /// The scale follows how far the paints are apart, so that what does not match stops counting as they meet.
+    /// The scale follows the distance of the painted surfaces: as they meet, points without a counterpart lose weight.
     void narrow(double elapsed) noexcept {
         const double distance =
             lead_.share() > 0.0 ? std::sqrt(fit_->energy() / (lead_.share() * energy_->law.strength)) : reach;
@@ -158,7 +160,7 @@ private:
         scale_ += (wanted - scale_) * std::min(1.0, elapsed / 0.05);
     }
 
-    /// The body stays; its last force fades with the strength.
+    /// Keeps the body where it is; its last force fades with the strength.
     void let_go() noexcept {
         wrench = last_ * hold_.strength;
         pull = 0.0;

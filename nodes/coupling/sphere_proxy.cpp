@@ -6,14 +6,14 @@ namespace tactus::nodes {
 
 struct SphereProxy {
     static constexpr auto about =
-        "A ball that stays outside of everything while the hand goes in, and a spring between the two; it falls "
-        "through no gap narrower than itself.";
+        "A ball that stays outside of all bodies while the hand moves into them, and a spring between the two "
+        "(Ruspini, Kolarov and Khatib 1997). It cannot enter a gap narrower than itself.";
 
-    In<Pose> device{"the hand in the scene; only its place counts", "m"};
-    In<tactus::coupling::Scene> scene{"everything that can be touched"};
+    In<Pose> device{"pose of the hand in the scene; only its position is used", "m"};
+    In<tactus::coupling::Scene> scene{"the bodies"};
     Out<Wrench> wrench{"on the hand, about its origin; no torque", "N, N m"};
-    Out<Pose> proxy{"where the hand would be if it could not go in", "m"};
-    Out<bool> in_contact{"it touches something"};
+    Out<Pose> proxy{"position of the ball's centre, with the orientation of the hand", "m"};
+    Out<bool> in_contact{"the ball touches a body"};
     Param radius{"2 mm", "0.01 mm", "100 mm", "of the ball"};
     ProxyParameters parameters;
 

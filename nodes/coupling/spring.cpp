@@ -6,18 +6,18 @@ namespace tactus::nodes {
 
 struct Spring {
     static constexpr auto about =
-        "Spring and damper that pull the device towards an object, in position and in orientation. Both poses and both "
-        "velocities are in one frame.";
+        "A spring and a damper between the device and an object, in position and in orientation. All poses and "
+        "velocities must be in the same frame.";
 
-    In<Pose> device{"what is pulled", "m"};
-    In<Pose> object{"where it is pulled to", "m"};
-    In<Twist> device_twist{optional, "its velocity, for the damping", "m/s, rad/s"};
+    In<Pose> device{"pose of the device", "m"};
+    In<Pose> object{"pose of the object", "m"};
+    In<Twist> device_twist{optional, "velocity of the device, for the damper", "m/s, rad/s"};
     In<Twist> object_twist{optional, "velocity of the object, for the damping", "m/s, rad/s"};
     Out<Wrench> wrench{"on the device, about its origin; the object feels the opposite", "N, N m"};
-    Param stiffness{"1 N/mm", "0 N/mm", "20 N/mm", "force per distance"};
-    Param damping{"0 N s/m", "0 N s/m", "50 N s/m", "force per velocity between the two"};
-    Param angular_stiffness{"0 N m/rad", "0 N m/rad", "20 N m/rad", "torque per angle"};
-    Param angular_damping{"0 N m s/rad", "0 N m s/rad", "1 N m s/rad", "torque per angular velocity between the two"};
+    Param stiffness{"1 N/mm", "0 N/mm", "20 N/mm", "force per distance between device and object"};
+    Param damping{"0 N s/m", "0 N s/m", "50 N s/m", "force per relative velocity"};
+    Param angular_stiffness{"0 N m/rad", "0 N m/rad", "20 N m/rad", "torque per angle between device and object"};
+    Param angular_damping{"0 N m s/rad", "0 N m s/rad", "1 N m s/rad", "torque per relative angular velocity"};
 
     void process(const Tick&) noexcept {
         const Vec3 velocity = object_twist->linear - device_twist->linear;

@@ -8,11 +8,12 @@
 namespace tactus::nodes {
 
 struct AudioOutput {
-    static constexpr auto about = "Sound for a listener or an actuator: the sound card, or a file when there is none.";
+    static constexpr auto about =
+        "Plays a signal on the sound card, for a listener or an actuator; writes a file when there is no card.";
     static constexpr NodeRole role = NodeRole::sound_sink;
 
-    In<Signal> signal{"what is heard"};
-    Param full_scale{"1", "1e-6", "1e6", "value of the signal (SI) that drives the card fully; more is cut"};
+    In<Signal> signal{"the signal to play"};
+    Param full_scale{"1", "1e-6", "1e6", "signal value (SI) that drives the card fully; larger values are clipped"};
 
     void prepare(const Setup& setup) {
         stream_ = &setup.outside->audio({setup.name + ".wav", "", &value::signal, setup.period}, setup.where);

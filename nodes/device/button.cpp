@@ -8,12 +8,12 @@ namespace tactus::nodes {
 
 struct Button {
     static constexpr auto about =
-        "A button for what the device has none for: pressed for a moment whenever 'press' changes, as by 'tactus set "
-        "undo.press=1' and next time 'tactus set undo.press=2', and as long as 'hold' is 1.";
+        "A button that is not on the device: pressed for 20 ms whenever 'press' changes, for example by 'tactus set "
+        "undo.press=1' and then 'tactus set undo.press=2', and for as long as 'hold' is 1.";
 
-    Out<bool> pressed{"for 20 ms after each change of press, and while it is held"};
-    Param press{"0", "-1e9", "1e9", "any other number than before is a press"};
-    Param hold{"0", "0", "1", "above a half: held down"};
+    Out<bool> pressed{"true for 20 ms after each change of 'press', and while 'hold' is above 0.5"};
+    Param press{"0", "-1e9", "1e9", "change the number to press once"};
+    Param hold{"0", "0", "1", "above 0.5: pressed"};
 
     void prepare(const Setup& setup) {
         ticks_ = static_cast<std::int64_t>(std::ceil(0.02 * setup.rate()));

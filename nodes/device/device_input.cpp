@@ -4,17 +4,16 @@
 namespace tactus::nodes {
 
 struct DeviceInput {
-    static constexpr auto about =
-        "Where the hand is: pose, velocity and buttons of a haptic device, in the frame of the device.";
+    static constexpr auto about = "Reads a haptic device: pose, velocity and buttons, in the device frame.";
     static constexpr NodeRole role = NodeRole::hand_source;
 
-    Out<Pose> pose{"handle in the device frame; keeps the last good one while samples are invalid", "m"};
+    Out<Pose> pose{"pose of the handle in the device frame; keeps the last valid one while samples are invalid", "m"};
     Out<Twist> twist{"velocity of the handle, zero while samples are invalid", "m/s, rad/s"};
     Out<bool> trigger{"the trigger is held; false while samples are invalid"};
     Out<bool> second{"the second button is held"};
     Out<bool> third{"the third button is held"};
     Out<bool> fourth{"the fourth button is held"};
-    Out<bool> valid{"this tick's sample is good"};
+    Out<bool> valid{"the sample of this tick is valid"};
     Text device{"", "name of an entry of [devices]; empty: the only one"};
 
     void prepare(const Setup& setup) {
@@ -37,7 +36,7 @@ private:
         valid = good;
     }
 
-    // Bits of DeviceSample::buttons; bit 1 is the gap of a replayed hand.
+    // Bits of DeviceSample::buttons; bit 1 marks a gap of a replayed recording.
     static constexpr std::uint32_t button_second = 4u, button_third = 8u, button_fourth = 16u;
     DevicePort* port_ = nullptr;
     Pose last_;

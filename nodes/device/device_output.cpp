@@ -6,31 +6,32 @@
 
 namespace tactus::nodes {
 
-/// A limit of 0 in `info` means that the device states none.
+/// A limit of 0 in `info` means that the device declares none.
 static double lower_limit(double wanted, double of_device) {
     return of_device > 0.0 ? std::min(wanted, of_device) : wanted;
 }
 
 struct DeviceOutput {
     static constexpr auto about =
-        "Force on the hand: checked, limited, ramped in, and faded to zero on any fault. The device's own limits hold "
-        "too.";
+        "Sends a force to the hand: checked, limited, ramped in, and faded to zero on any fault. The limits of the "
+        "device apply too.";
     static constexpr NodeRole role = NodeRole::hand_sink;
 
-    In<Wrench> wrench{"on the hand about the handle, device frame", "N, N m"};
-    Out<Wrench> applied{"what the device is given", "N, N m"};
-    Out<bool> engaged{"forces pass"};
-    Out<bool> torque_dropped{"the device gives no torque and was asked for one"};
+    In<Wrench> wrench{"on the hand, about the handle, device frame", "N, N m"};
+    Out<Wrench> applied{"the wrench that the device is given", "N, N m"};
+    Out<bool> engaged{"forces are on"};
+    Out<bool> torque_dropped{"a torque was asked for, but the device has none"};
     Text device{"", "name of an entry of [devices]; empty: the only one"};
     Param max_force{structural, "10 N", "0 N", "50 N", "largest force on the hand"};
     Param max_torque{structural, "0.5 N m", "0 N m", "5 N m", "largest torque on the hand"};
-    Param slew{structural, "1 N/ms", "0.01 N/ms", "100 N/ms", "fastest change of the force"};
-    Param torque_slew{structural, "0.05 N m/ms", "0.001 N m/ms", "10 N m/ms", "fastest change of the torque"};
+    Param slew{structural, "1 N/ms", "0.01 N/ms", "100 N/ms", "limit of the rate of change of the force"};
+    Param torque_slew{structural, "0.05 N m/ms", "0.001 N m/ms", "10 N m/ms",
+                      "limit of the rate of change of the torque"};
     Param recover_after{
         structural, "1 s", "0 s", "1 h",
-        "forces may come in again once ticks and samples were good for so long after a fault of theirs; "
-        "0 s: never. After a force that is not finite they never do"};
-    Param engage_time{structural, "100 ms", "0 ms", "10 s", "forces come in over this time once they were small"};
+        "forces may ramp in again after ticks and samples were good for this long after a timing or sample fault; 0 s: "
+        "never. After a non-finite force they stay off"};
+    Param engage_time{structural, "100 ms", "0 ms", "10 s", "duration of the ramp once forces are small"};
 
     void prepare(const Setup& setup) {
         port_ = &setup.outside->device(device.value, DeviceUse::drive, device.where);
@@ -80,7 +81,7 @@ struct DeviceOutput {
     }
 
 private:
-    /// What the device can give of the wrench. One that is not finite stays so, for the limiter to see.
+    /// The part of the wrench that the device can render. A non-finite wrench is kept, for the limiter to detect.
     Wrench givable() noexcept {
         Wrench asked = wrench.get();
         torque_dropped = false;

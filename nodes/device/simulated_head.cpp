@@ -9,14 +9,14 @@ namespace tactus::nodes {
 
 struct SimulatedHead {
     static constexpr auto about =
-        "The head of a viewer who looks around: sways about a place and keeps its eyes on a point. In place of a "
-        "tracker, for 'run --view --head' and 'render --head'.";
+        "A simulated head tracker for 'run --view --head' and 'render --head': the head sways about a position and "
+        "looks at a point.";
 
-    Out<Pose> pose{"the place between the eyes; x leads to the right eye, y up, z away from what is looked at", "m"};
-    Vector position{"0 mm, -450 mm, 400 mm", "about which it sways, in the world of the viewer"};
-    Vector look_at{"0 mm, 0 mm, 0 mm", "what it looks at, in the world of the viewer"};
-    Vector sway{"100 mm, 30 mm, 40 mm", "to each side, along x, y and z"};
-    Param frequency{"0.2 Hz", "0 Hz", "5 Hz", "of the sway along x; along y 1.3 and along z 0.7 times as fast"};
+    Out<Pose> pose{"point between the eyes; x leads to the right eye, y up, z away from the target", "m"};
+    Vector position{"0 mm, -450 mm, 400 mm", "centre of the sway, in the viewer's world"};
+    Vector look_at{"0 mm, 0 mm, 0 mm", "target of the eyes, in the viewer's world"};
+    Vector sway{"100 mm, 30 mm, 40 mm", "amplitude along x, y and z"};
+    Param frequency{"0.2 Hz", "0 Hz", "5 Hz", "of the sway along x; 1.3 times as fast along y, 0.7 times along z"};
 
     void prepare(const Setup&) {
         turns_ = 0.0;

@@ -12,29 +12,28 @@ namespace tactus::nodes {
 
 struct Workspace {
     static constexpr auto about =
-        "Places the device in the scene and the tool in the hand. Given a bone, it finds a place where a saw blade can "
-        "be set on, and puts the resting tool in front of it. With 'clutch' held the hand takes the device along "
-        "through "
-        "the scene and the tool stays in place; with 'turn' held the scene turns and shifts with the hand. Forces go "
-        "back through device_wrench.";
+        "Maps the device into the scene and the tool into the hand. With a bone, it finds a site for a saw cut and "
+        "puts the resting tool in front of it. While 'clutch' is held, the hand moves and the tool stays; while 'turn' "
+        "is held, the scene turns and shifts with the hand. Forces go back through device_wrench.";
     static constexpr NodeRole role = NodeRole::placement;
 
-    In<Pose> device{"handle in the device frame", "m"};
-    In<bool> clutch{optional, "held: the tool stays while the hand goes where it has room"};
+    In<Pose> device{"pose of the handle in the device frame", "m"};
+    In<bool> clutch{optional, "held: the hand moves and the tool stays"};
     In<bool> turn{optional, "held: the scene turns and shifts with the hand"};
-    Out<Pose> pose{"tool in the scene", "m"};
-    Out<Pose> frame{"the device's axes, at the handle, in the scene; for device_wrench", "m"};
+    Out<Pose> pose{"pose of the tool in the scene", "m"};
+    Out<Pose> frame{"device axes at the handle, in the scene; for device_wrench", "m"};
     Out<double> force_scale{"the scale, for device_wrench", "1"};
-    Asset<bone::Bone> bone{optional,
-                     "what is to be cut; origin and rotation then count from the tool's place in front of it"};
+    Asset<bone::Bone> bone{
+        optional, "bone to cut; origin and rotation are then relative to the tool's resting place in front of it"};
     Vector origin{"0 mm, 0 mm, 0 mm", "of the device frame in the scene"};
     Vector rotation{"0 deg, 0 deg, 0 deg", "of the device frame in the scene: about x first, then y, then z"};
-    Param scale{"1", "0.01", "100", "distance in the scene per distance of the device; the tool stays when it changes"};
+    Param scale{"1", "0.01", "100",
+                "distance in the scene per distance of the device; the tool stays in place when it changes"};
     Vector grip{"0 mm, 0 mm, 0 mm", "origin of the tool in the frame of the handle"};
     Vector grip_rotation{
         "-90 deg, 0 deg, 0 deg",
-        "of the tool in the frame of the handle: about x first, then y, then z; by default a blade cuts "
-        "towards -z of the device"};
+        "of the tool in the frame of the handle: about x first, then y, then z; the default makes a blade cut towards "
+        "-z of the device"};
     Param clearance{structural, "5 mm", "0 mm", "100 mm", "from the resting tool to the bone"};
 
     void prepare(const Setup& setup) {
@@ -46,7 +45,7 @@ struct Workspace {
     }
     void process(const Tick&) noexcept {
         const Pose hand = device;
-        // What stays must not be moved by a faulty pose.
+        // A faulty pose must not move what is to stay.
         if (is_valid(hand) && glm::length(hand.position) < farthest)
             arrange({hand.position, glm::normalize(hand.orientation)});
         place(hand);
@@ -63,7 +62,7 @@ struct Workspace {
     }
 
 private:
-    /// Moves the device's frame in the scene, where a button or a new scale asks for it, so that the tool stays.
+    /// Moves the device frame in the scene for a button or a new scale, so that the tool stays in place.
     void arrange(const Pose& hand) noexcept {
         const bool holds = clutch.connected && clutch.get(), turns = turn.connected && turn.get();
         Pose& frame_in_scene = placement_.device;
@@ -87,13 +86,13 @@ private:
         force_scale = placement_.scale;
     }
 
-    /// Frame of the device so that a handle at its origin holds the tool in front of the site: x of the tool along the
+    /// Frame of the device for which a handle at its origin holds the tool in front of the site: the tool's x along the
     /// stroke, y into the bone.
     Pose in_front_of(const bone::Bone& target, const Setup& setup) {
         site_ = volume::find_saw_site(target.distance, target.density);
         if (!site_)
-            setup.fail("no place was found on bone '" + bone.name +
-                       "' where a saw blade can be set on; leave 'bone' out and give 'origin' and 'rotation'");
+            setup.fail("found no site for a saw cut on bone '" + bone.name +
+                       "'; leave 'bone' out and set 'origin' and 'rotation'");
         const Mat3 axes(site_->stroke, site_->feed, glm::cross(site_->stroke, site_->feed));
         const Pose tool{site_->point - site_->feed * clearance.value, glm::normalize(glm::quat_cast(axes))};
         return tool * placement_.grip.inverse();

@@ -3,7 +3,7 @@
 
 namespace tactus::nodes {
 
-/// A number that stays what the patch, or a live change, says.
+/// A number that the patch or a live change sets.
 struct Constant {
     static constexpr auto about = "A constant number.";
 

@@ -7,10 +7,10 @@ namespace tactus::nodes {
 
 struct Magnitude {
     static constexpr auto about =
-        "Length of a force, velocity or position (or of the torque or angular velocity); absolute value of a number.";
+        "Length of a force, velocity or position (or of a torque or angular velocity); absolute value of a number.";
 
     AnyIn in{"a wrench, twist, pose or number"};
-    Out<double> out{"its length, SI"};
+    Out<double> out{"the length, in SI units"};
     Choice part{{"linear", "angular"}, "linear: force, velocity, position; angular: torque, angular velocity"};
 
     void prepare(const Setup& setup) {

@@ -8,11 +8,11 @@
 namespace tactus::nodes {
 
 struct Sine {
-    static constexpr auto about = "A sine. Its phase never jumps when the frequency changes.";
+    static constexpr auto about = "A sine oscillator. Its phase is continuous when the frequency changes.";
 
     Out<Signal> signal{"amplitude × sin(2π frequency t + phase)"};
     Param frequency{"100 Hz", "0 Hz", "1 MHz", "cycles per second"};
-    Param amplitude{"1", "-1e6", "1e6", "greatest value"};
+    Param amplitude{"1", "-1e6", "1e6", "peak value"};
     Param phase{structural, "0 deg", "-360 deg", "360 deg", "at the start"};
 
     void prepare(const Setup& setup) {

@@ -13,19 +13,19 @@ namespace tactus::nodes {
 
 struct Brush {
     static constexpr auto about =
-        "Paints the surface of a fragment with the device: what lies within the brush is fracture from then on, or "
-        "none while erasing. The painted bone goes to the folder of the run.";
+        "Paints the surface of a fragment with the device: points within the brush are labelled fracture, or "
+        "unlabelled while erasing. The painted bone is written to the run folder.";
 
-    In<Pose> tool{"its origin is the middle of the brush, in the scene", "m"};
-    In<bool> paint{"what the brush meets is fracture"};
-    In<bool> erase{optional, "what the brush meets is none; goes before painting"};
-    In<Pose> body{optional, "the fragment's file frame in the scene; unconnected: as filed", "m"};
-    Out<double> painted{"points that are fracture"};
-    Out<double> area{"that they stand for", "m^2"};
-    Out<double> distance{"from the middle of the brush to the nearest point, 20 mm at most", "m"};
+    In<Pose> tool{"pose whose origin is the centre of the brush, in the scene", "m"};
+    In<bool> paint{"label points within the brush as fracture"};
+    In<bool> erase{optional, "remove the label of points within the brush; takes precedence over 'paint'"};
+    In<Pose> body{optional, "pose of the fragment's file frame in the scene; unconnected: the identity", "m"};
+    Out<double> painted{"number of points labelled fracture"};
+    Out<double> area{"surface area of these points", "m^2"};
+    Out<double> distance{"from the centre of the brush to the nearest point, at most 20 mm", "m"};
     Asset<bone::Bone> bone{"the fragment"};
     Param radius{"1.5 mm", "0.1 mm", "50 mm", "of the brush"};
-    Flag start_clean{false, "take the file's paint off first"};
+    Flag start_clean{false, "remove the paint of the file at the start"};
 
     void prepare(const Setup& setup) {
         name_ = setup.name;

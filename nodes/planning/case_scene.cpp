@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/arrangement.hpp"
-#include "dsp/fit/step_tree.hpp"
 #include "dsp/fit/fit.hpp"
+#include "dsp/fit/step_tree.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
 #include "nodes/contact/body_parts.hpp"
@@ -18,42 +18,44 @@ namespace tactus::nodes {
 
 struct CaseScene {
     static constexpr auto about =
-        "The fragments of a plan as one scene. The one in the hand goes where the coupling has it, with all that is "
-        "grouped with it; letting go, settling, joining, splitting, locking and hiding are steps that can be undone, "
-        "those that the plan had before as well. Every step is in the plan's file soon after it is done.";
+        "The fragments of a plan as one scene. The held fragment and its group follow the coupling. Releasing, "
+        "settling, joining, splitting, locking and hiding are steps that can be undone, as are the steps already in "
+        "the plan. Every step is written to the plan's file soon after it is done.";
 
-    In<Pose> moved{optional, "where the coupling has the body at place 'which'", "m"};
-    In<double> which{optional, "place of the body in the hand, -1 without one"};
-    In<bool> holding{optional, "it is held; once it is not, it stays where it was last"};
-    In<Pose> target{optional, "where the body in the hand would fit: fragment_matcher.target", "m"};
-    In<bool> fits{optional, "there is such a place"};
-    In<double> target_of{optional, "place of the body that it is of: fragment_matcher.fragment, which may lag behind"};
+    In<Pose> moved{optional, "pose that the coupling gives the body at place 'which'", "m"};
+    In<double> which{optional, "place of the held body; -1: none"};
+    In<bool> holding{optional, "the body is held; when it is released it stays where it was last"};
+    In<Pose> target{optional, "pose of the held body for the fit: fragment_matcher.target", "m"};
+    In<bool> fits{optional, "there is a fit"};
+    In<double> target_of{optional,
+                         "place of the body that the target is for: fragment_matcher.fragment, which may lag behind"};
     In<double> partner{optional, "place of the body that it fits"};
-    In<double> score{optional, "of that fit"};
-    In<double> margin{optional, "of that fit, to the second best"};
-    In<double> rms{optional, "of that fit", "m"};
-    In<double> gap{optional, "of that fit", "m"};
-    In<double> penetration{optional, "of that fit", "m"};
-    In<double> overlap{optional, "of that fit", "m^2"};
-    In<bool> settle{optional, "pressed: what is held is put where it fits, and stays there"};
-    In<bool> join{optional, "pressed: what is held moves with its partner from now on"};
-    In<bool> split{optional, "pressed: what is held leaves all groups"};
-    In<bool> lock{optional, "pressed: what is held is locked, or unlocked"};
-    In<bool> hide{optional, "pressed: what was held last is hidden"};
-    In<bool> show{optional, "pressed: all that is hidden is there again"};
-    In<bool> undo{optional, "pressed: one step back"};
-    In<bool> redo{optional, "pressed: one step on"};
-    Out<tactus::coupling::Scene> scene{"for grasp, coupling and fragment_matcher"};
-    Out<double> steps{"done so far, without those that were undone"};
-    Out<bool> settled{"the body in the hand has been put where it fits"};
-    Asset<cases::CaseBones> plan{"the plan with its fragments; new steps follow where it stands"};
-    Text file{"case.plan.json", "name of the plan with the steps of the run, within the run's folder; empty: none"};
+    In<double> score{optional, "of the fit"};
+    In<double> margin{optional, "of the fit, to the second best"};
+    In<double> rms{optional, "of the fit", "m"};
+    In<double> gap{optional, "of the fit", "m"};
+    In<double> penetration{optional, "of the fit", "m"};
+    In<double> overlap{optional, "of the fit", "m^2"};
+    In<bool> settle{optional, "pressed: put the held body where it fits; it stays there"};
+    In<bool> join{optional, "pressed: the held body moves with its partner from now on"};
+    In<bool> split{optional, "pressed: the held body leaves all groups"};
+    In<bool> lock{optional, "pressed: lock or unlock the held body"};
+    In<bool> hide{optional, "pressed: hide the body that was held last"};
+    In<bool> show{optional, "pressed: show all hidden bodies"};
+    In<bool> undo{optional, "pressed: undo one step"};
+    In<bool> redo{optional, "pressed: redo one step"};
+    Out<tactus::coupling::Scene> scene{"for grasp, coupling and fragment_matcher nodes"};
+    Out<double> steps{"number of steps done, without undone ones"};
+    Out<bool> settled{"the held body has been put where it fits"};
+    Asset<cases::CaseBones> plan{"the plan with its fragments; new steps follow its current one"};
+    Text file{"case.plan.json", "name of the plan file with the steps of the run, in the run folder; empty: none"};
     Param loose{"8 mm", "0.1 mm", "100 mm",
-                "a settled body that the hand takes farther than this from where it had it is free again"};
+                "a settled body is free again when the hand moves it farther than this from where it settled"};
 
     void prepare(const Setup& setup) {
         if (plan->bones.size() > tactus::coupling::Scene::most_objects)
-            setup.fail("plan '" + plan.name + "' has more than 16 fragments; hide none, but plan them in parts");
+            setup.fail("plan '" + plan.name +
+                       "' has more than 16 fragments; hiding does not help: plan the case in parts");
         name_ = setup.name;
         parts_.clear();
         for (const bone::Bone& bone : plan->bones) parts_.push_back(body_of(bone));
@@ -85,7 +87,7 @@ struct CaseScene {
     }
 
 private:
-    // A step a second for nine hours; what a run does beyond that is kept, but those before are not undone any more.
+    // Nine hours at a step per second. Later steps are kept too, but the oldest can then no longer be undone.
     static constexpr std::size_t most_steps = 32768;
 
     static std::shared_ptr<const BodyParts> body_of(const bone::Bone& bone) {
@@ -95,7 +97,8 @@ private:
         for (contact::SurfacePoint& p : points) p.position -= middle;
         volume::Grid field = bone.distance;
         field.origin -= middle;
-        return std::make_shared<const BodyParts>(contact::make_pointshell(points), contact::make_voxmap(std::move(field)),
+        return std::make_shared<const BodyParts>(contact::make_pointshell(points),
+                                                 contact::make_voxmap(std::move(field)),
                                                  Pose{middle, {1.0, 0.0, 0.0, 0.0}}, false);
     }
 
@@ -108,7 +111,7 @@ private:
         return body * parts_[static_cast<std::size_t>(fragment)]->home.inverse();
     }
 
-    /// The body in the hand, and its group, where the coupling has it.
+    /// The held body and its group follow the coupling.
     void follow(const Tick& tick) noexcept {
         const int place = held();
         const bool wanted = place >= 0 && (!holding.connected || holding.get());
@@ -120,7 +123,7 @@ private:
         if (!is_valid(moved.get())) return;
         const Pose here = file_pose(place, {moved->position, glm::normalize(moved->orientation)});
         if (settled_) {
-            // What was in the way of the hand when it settled counts for nothing.
+            // The offset between hand and body at settling does not count.
             if (!(glm::length(middle_at(here) - let_at_) > loose)) return;
             settled_ = false;
         }
@@ -165,13 +168,13 @@ private:
         }
     }
 
-    /// Where the body in the hand would fit, and it is that body.
+    /// True when there is a fit for the held body.
     bool has_fit() const noexcept {
         return fits.connected && fits.get() && target.connected && is_valid(target.get()) &&
                (!target_of.connected || target_of.get() == static_cast<double>(last_));
     }
 
-    /// Where the hand has brought a body is a step before what is done to it there.
+    /// Moving a body by hand is a step of its own, before what is done to the body there.
     void keep_held(const Tick& tick) noexcept {
         if (holding_) keep_last(tick);
     }
@@ -198,7 +201,7 @@ private:
         return row;
     }
 
-    /// The one in the hand and all that moves with it stand where they are now.
+    /// Records the present poses of the held body and of all that moves with it.
     void placed(const Tick& tick, double by) noexcept {
         cases::StepRow row = next(static_cast<double>(cases::StepKind::place));
         row.by = by;
@@ -259,7 +262,7 @@ private:
         if (stream_ && !stream_->write(tick.index, &row, 1, sizeof row)) not_kept_ = true;
     }
 
-    /// What has been done since the last step is a step.
+    /// Records what has been done since the last step as a step.
     void done() noexcept {
         tree_->add(*kept_, *now_);
         *kept_ = *now_;
@@ -269,7 +272,7 @@ private:
         return pose.apply(parts_[static_cast<std::size_t>(last_)]->home.position);
     }
 
-    /// All of the scene anew.
+    /// Rebuilds the whole scene.
     void arrange_scene() noexcept {
         scene_.count = parts_.size();
         for (std::size_t n = 0; n < parts_.size(); ++n) {
@@ -282,7 +285,7 @@ private:
         }
         is_changed_ = true;
     }
-    /// Only where one and those that move with it are.
+    /// Updates the poses of one body and of those that move with it only.
     void show_unit(int fragment) noexcept {
         for (int n = 0; n < static_cast<int>(parts_.size()); ++n)
             if (now_->move_together(fragment, n)) show_place(n);
@@ -306,14 +309,14 @@ private:
     }
 
     std::vector<std::shared_ptr<const BodyParts>> parts_;
-    std::unique_ptr<fit::Arrangement> kept_, now_;  // after the last step, and with what the hand does since
+    std::unique_ptr<fit::Arrangement> kept_, now_;  // after the last step; with what the hand has done since
     std::unique_ptr<fit::StepTree> tree_;
     std::shared_ptr<StepKeeper> keeper_;
     RecordStream* stream_ = nullptr;
     std::string name_;
     tactus::coupling::Scene scene_;
     int last_ = -1;
-    Vec3 let_at_{0.0};  // where the hand had the middle of a body when it was settled
+    Vec3 let_at_{0.0};  // middle of a body in the hand's pose when it was settled
     bool holding_ = false, settled_ = false, is_changed_ = false, not_kept_ = false;
     bool was_[8] = {};
 };

@@ -16,31 +16,31 @@ namespace tactus::nodes {
 
 struct FragmentMatcher {
     static constexpr auto about =
-        "Finds, in the background, where the fragment in the hand fits those that stand: from where it is held, on all "
-        "faces together; and, when nothing near fits, by trying every face on every other in turn. What only fits as "
-        "the "
-        "scan has it already is no fit.";
+        "Searches in the background for a fit of the held fragment to the placed ones: from its present pose, on all "
+        "faces together; if none fits nearby, each of its faces on each other face in turn. A fit that only repeats "
+        "the position in the scan is reported as ambiguous.";
 
-    In<tactus::coupling::Scene> scene{"case_scene.scene, of the same plan"};
-    In<double> held{"place of the fragment in the hand, -1 without one"};
-    In<bool> engaged{optional, "look for a fit; unconnected: all the time"};
-    Out<Pose> target{"of the fragment in the hand, in the scene; as it is while there is no fit", "m"};
-    Out<bool> fits{"the target is a fit"};
-    Out<double> fragment{"place of the fragment that the target is of, -1 without one"};
-    Out<double> partner{"place of the fragment that it fits best, -1 without one"};
+    In<tactus::coupling::Scene> scene{"case_scene.scene of the same plan"};
+    In<double> held{"place of the held fragment; -1: none"};
+    In<bool> engaged{optional, "search; unconnected: true"};
+    Out<Pose> target{"pose of the held fragment for the fit, in the scene; its present pose while there is none", "m"};
+    Out<bool> fits{"there is a fit"};
+    Out<double> fragment{"place of the fragment that the target is for; -1: none"};
+    Out<double> partner{"place of the fragment that it fits best; -1: none"};
     Out<double> verdict{"0 fit, 1 sliding, 2 ambiguous (or as scanned), 3 no match, 4 blocked"};
-    Out<double> score{"of the faces that fit best, 0 to 1"};
-    Out<double> margin{"to the second best pose, as share of the best score"};
-    Out<double> rms{"of the distances of what lies on each other", "m"};
-    Out<double> gap{"mean signed distance of that: positive where bone is missing between", "m"};
+    Out<double> score{"of the best fitting faces, 0 to 1"};
+    Out<double> margin{"to the second best pose, as a share of the best score"};
+    Out<double> rms{"of the distances within the overlap", "m"};
+    Out<double> gap{"mean signed distance within the overlap; positive: bone is missing between the faces", "m"};
     Out<double> penetration{"exceeded by 1 % of the points of both faces", "m"};
-    Out<double> overlap{"area that lies on the other", "m^2"};
-    Out<double> faces{"pairs of faces that were fitted together"};
+    Out<double> overlap{"area of the overlap", "m^2"};
+    Out<double> faces{"number of face pairs that were fitted together"};
     Asset<cases::CaseBones> plan{"the plan that the scene shows"};
-    Choice partners{{"standing", "all"}, "standing: those that are locked or were fitted; all: any other"};
-    Choice reach{{"near", "anywhere"}, "near: from where it is; anywhere: also every face on every other, in turn"};
-    Param least_score{"0.2", "0", "1", "below it nothing matches"};
-    Param points{structural, "700", "100", "20000", "of each face that take part"};
+    Choice partners{{"standing", "all"}, "standing: fragments that are locked or fitted; all: every other fragment"};
+    Choice reach{{"near", "anywhere"},
+                 "near: search from the present pose; anywhere: also each face on each other face in turn"};
+    Param least_score{"0.2", "0", "1", "minimum score of a match"};
+    Param points{structural, "700", "100", "20000", "number of points per face"};
 
     void prepare(const Setup& setup) {
         std::vector<fit::FragmentSurface> surfaces;
@@ -113,13 +113,14 @@ private:
         faces = match.faces;
     }
 
-    /// A border between two labels of a scan fits itself wherever the fragments lie.
+    /// A border between two labels of one scan fits itself wherever the fragments lie.
     fit::FragmentMatch judged(fit::FragmentMatch match) const noexcept {
         if (match.verdict != fit::FitVerdict::fit) return match;
         const auto moving = static_cast<std::size_t>(match.moving), other = static_cast<std::size_t>(match.partner);
         const coupling::Body& body = scene->objects[other].body;
         const Pose into = body.home.inverse();
-        if (fit::is_as_scanned(plan->bones[moving].points, into * poses_[other].inverse() * match.pose, *body.map, into))
+        if (fit::is_as_scanned(plan->bones[moving].points, into * poses_[other].inverse() * match.pose, *body.map,
+                               into))
             match.verdict = fit::FitVerdict::ambiguous;
         return match;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps of a run on their way from the tick to the plan's file.
+// Carries the steps of a run from the tick to the plan file.
 #pragma once
 
 #include "assets/cases/plan_keeper.hpp"
@@ -14,7 +14,7 @@
 
 namespace tactus::nodes {
 
-/// Rows in a stream.
+/// Rows of the stream.
 inline const ValueType step_row_type{
     .name = "plan step",
     .size = sizeof(cases::StepRow),
@@ -27,7 +27,7 @@ inline const ValueType step_row_type{
     .load_asset = nullptr,
 };
 
-/// Gives the rows of a stream to the plan's keeper.
+/// Passes the rows of a stream to the plan's keeper.
 class StepKeeper : public StreamKeeper {
 public:
     StepKeeper(const cases::CasePlan& plan, Flicks period) : plan_(plan), period_(period) {}
@@ -46,7 +46,7 @@ public:
         trouble_ = plan_keeper_->trouble();
         plan_keeper_.reset();
     }
-    /// What was left out of the plan, when the run is over; mostly nothing.
+    /// Steps that could not be kept, reported at the end of the run; usually none.
     const std::string& trouble() const { return trouble_; }
 
 private:

@@ -9,9 +9,9 @@
 namespace tactus::nodes {
 
 struct Probe {
-    static constexpr auto about = "Least, greatest, mean and last value of a wire, told when the run is over.";
+    static constexpr auto about = "Reports the minimum, maximum, mean and last value of a wire at the end of the run.";
 
-    AnyIn in{"what is watched"};
+    AnyIn in{"the wire to observe"};
 
     void prepare(const Setup& setup) {
         if (!in.type) setup.fail("probe needs a wire to 'in'");
@@ -71,7 +71,7 @@ private:
         }
     }
 
-    /// One column is told as a number, several as a list in the order of the type's columns.
+    /// A value with one column becomes a number, one with several a list in the order of the type's columns.
     void set(Report& report, const std::string& key, const std::vector<double>& values) const {
         if (values.size() == 1) report.set(name_, key, values.front());
         else report.set(name_, key, values);

@@ -4,12 +4,12 @@
 namespace tactus::nodes {
 
 struct Record {
-    static constexpr auto about = "Writes every value of a wire to a file: a signal as sound, all else as a table.";
+    static constexpr auto about = "Writes every value of a wire to a file: signals as WAV, other types as CSV.";
     static constexpr NodeRole role = NodeRole::file_sink;
 
-    AnyIn in{"what is recorded"};
-    Text file{"", "name within the folder of the run; empty: the node's name with .wav or .csv"};
-    Text unit{"", "unit of the values, for the reader of the file"};
+    AnyIn in{"the wire to record"};
+    Text file{"", "file name in the run folder; empty: the node's name with .wav or .csv"};
+    Text unit{"", "unit of the values, noted in the file"};
 
     void prepare(const Setup& setup) {
         if (!in.type) setup.fail("record needs a wire to 'in'");

@@ -8,16 +8,17 @@ namespace tactus::nodes {
 
 struct Actuator {
     static constexpr auto about =
-        "A voice-coil actuator on a handle: what its amplifier delivers, and the acceleration that follows.";
+        "Model of a voice-coil actuator on a handle: the voltage of its amplifier and the acceleration of the handle.";
 
-    In<Signal> drive{"what it is to play"};
-    Out<Signal> voltage{"what the amplifier delivers", "V"};
+    In<Signal> drive{"signal to play"};
+    Out<Signal> voltage{"output of the amplifier", "V"};
     Out<Signal> signal{"acceleration of the handle", "m/s^2"};
-    Choice preset{{"haptuator_small", "haptuator_large", "markII_D"}, "its data where the parameters below say 0"};
+    Choice preset{{"haptuator_small", "haptuator_large", "markII_D"},
+                  "data of the actuator; used for parameters that are 0"};
     Param gain{"1 V", "-100 V", "100 V", "drive voltage per unit of the signal"};
-    Param mass{structural, "100 g", "1 g", "10 kg", "all that is shaken"};
+    Param mass{structural, "100 g", "1 g", "10 kg", "total vibrating mass"};
     Param resonance{structural, "0 Hz", "0 Hz", "2 kHz", "of the moving mass on its spring"};
-    Param damping{structural, "0", "0", "10", "ratio to critical"};
+    Param damping{structural, "0", "0", "10", "damping ratio"};
     Param resistance{structural, "0 ohm", "0 ohm", "1 kohm", "of the coil"};
     Param inductance{structural, "0 mH", "0 mH", "1 H", "of the coil"};
     Param voltage_limit{structural, "0 V", "0 V", "100 V", "of the amplifier"};
@@ -25,7 +26,8 @@ struct Actuator {
 
     void prepare(const Setup& setup) {
         try {
-            vibration::ActuatorModel data = vibration::find_actuator(preset.options[static_cast<std::size_t>(preset.index)]);
+            vibration::ActuatorModel data =
+                vibration::find_actuator(preset.options[static_cast<std::size_t>(preset.index)]);
             override_with(data.resonance, resonance);
             override_with(data.damping, damping);
             override_with(data.resistance, resistance);

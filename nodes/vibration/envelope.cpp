@@ -6,13 +6,13 @@
 namespace tactus::nodes {
 
 struct Envelope {
-    static constexpr auto about = "Level of a signal: its absolute value, smoothed.";
+    static constexpr auto about = "Envelope follower: the smoothed absolute value of a signal.";
 
     In<Signal> in{"the signal"};
-    Out<Signal> out{"its level"};
-    Out<double> level{"the same, as a number for slower nodes"};
-    Param attack{"5 ms", "0 ms", "10 s", "time constant of rising"};
-    Param release{"50 ms", "0 ms", "10 s", "time constant of falling"};
+    Out<Signal> out{"the envelope"};
+    Out<double> level{"the envelope as a number, for slower nodes"};
+    Param attack{"5 ms", "0 ms", "10 s", "time constant of the rise"};
+    Param release{"50 ms", "0 ms", "10 s", "time constant of the fall"};
 
     void prepare(const Setup& setup) { dt_ = seconds(setup.period); }
 

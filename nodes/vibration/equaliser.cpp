@@ -14,18 +14,18 @@ namespace tactus::nodes {
 
 struct Equaliser {
     static constexpr auto about =
-        "Undoes what an actuator does to a vibration, by a filter that 'tactus equalise' has made.";
+        "Compensates the frequency response of an actuator with a filter made by 'tactus equalise'.";
 
-    In<Signal> in{"the vibration that is wanted"};
-    Out<Signal> out{"what the actuator must be driven with to make it"};
-    Asset<tactus::vibration::Equaliser> filter{"the file of 'tactus equalise'"};
-    Param amount{"1", "0", "1", "0 passes the signal on with the same delay, 1 equalises it; between, a mix"};
+    In<Signal> in{"the desired vibration"};
+    Out<Signal> out{"drive signal that makes the actuator produce it"};
+    Asset<tactus::vibration::Equaliser> filter{"file written by 'tactus equalise'"};
+    Param amount{"1", "0", "1", "0: only the delay of the filter; 1: full equalisation; a mix in between"};
 
     void prepare(const Setup& setup) {
         if (std::abs(filter->rate / setup.rate() - 1.0) > 1e-9)
             setup.fail(fmt::format(
-                "the equaliser was made for {:g} Hz and this node runs at {:g} Hz; repeat 'tactus equalise' "
-                "with --rate {:g}",
+                "the equaliser was made for {:g} Hz and this node runs at {:g} Hz; repeat 'tactus equalise' with "
+                "--rate {:g}",
                 filter->rate, setup.rate(), setup.rate()));
         fir_ = signal::Fir(filter->taps);
         delay_ = static_cast<std::size_t>(std::llround(filter->delay * filter->rate));
@@ -36,12 +36,12 @@ struct Equaliser {
         for (int i = 0; i < tick.frames; ++i) {
             const float equalised = fir_(bounded(in[i]));
             out[i] = signal::to_sample(static_cast<double>(share * equalised) +
-                               static_cast<double>((1.0f - share) * fir_.past(delay_)));
+                                       static_cast<double>((1.0f - share) * fir_.past(delay_)));
         }
     }
 
 private:
-    /// A sample that would overflow the sum, or is not finite, would stay in the filter's memory.
+    /// A sample that is not finite, or would overflow the sum, would stay in the filter's memory.
     static float bounded(float x) noexcept {
         constexpr double largest = 1e12;
         return static_cast<float>(std::clamp(signal::finite_or_zero(x), -largest, largest));

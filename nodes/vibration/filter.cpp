@@ -7,14 +7,15 @@ namespace tactus::nodes {
 
 struct Filter {
     static constexpr auto about =
-        "Second-order filter. A sample that is not finite counts as 0; a frequency above half the rate acts as just "
+        "Second-order filter (biquad). A non-finite sample counts as 0; frequencies above half the rate act as just "
         "below.";
 
     In<Signal> in{"the signal"};
-    Out<Signal> out{"filtered"};
-    Choice kind{{"lowpass", "highpass", "bandpass", "notch"}, "what passes"};
-    Param frequency{"1 kHz", "0.1 Hz", "1 MHz", "of the edge, of the band's or the notch's middle"};
-    Param q{"0.70710678", "0.05", "200", "gain at the edge; middle frequency per -3 dB width of band and notch"};
+    Out<Signal> out{"the filtered signal"};
+    Choice kind{{"lowpass", "highpass", "bandpass", "notch"}, "filter type"};
+    Param frequency{"1 kHz", "0.1 Hz", "1 MHz", "corner frequency, or centre frequency of bandpass and notch"};
+    Param q{"0.70710678", "0.05", "200",
+            "lowpass, highpass: gain at the corner; bandpass, notch: centre frequency divided by the -3 dB bandwidth"};
 
     void prepare(const Setup& setup) { rate_ = setup.rate(); }
 

@@ -4,7 +4,7 @@
 namespace tactus::nodes {
 
 struct Mix {
-    static constexpr auto about = "Sum of up to eight signals, each times its gain.";
+    static constexpr auto about = "Weighted sum of up to eight signals.";
 
     In<Signal> in1{optional, "a signal"}, in2{optional, "a signal"}, in3{optional, "a signal"};
     In<Signal> in4{optional, "a signal"}, in5{optional, "a signal"}, in6{optional, "a signal"};

@@ -6,25 +6,26 @@
 namespace tactus::nodes {
 
 struct Saw {
-    static constexpr auto about = "The vibration of a powered saw, played from recordings by rate and load.";
+    static constexpr auto about = "Vibration of a powered saw, synthesised from recordings by blade rate and load.";
 
-    In<Ramp> load{optional, "thrust on the blade; none: in free air", "N"};
-    In<bool> trigger{optional, "the saw runs while it is true; without a wire it always runs"};
-    Out<Signal> signal{"vibration; of full scale when the recordings are not calibrated", "m/s^2"};
+    In<Ramp> load{optional, "thrust on the blade; unconnected: 0", "N"};
+    In<bool> trigger{optional, "the saw runs while true; unconnected: it always runs"};
+    Out<Signal> signal{"the vibration; relative to full scale if the recordings are not calibrated", "m/s^2"};
     Out<double> rate{"strokes of the blade per second", "Hz"};
     Out<bool> running{"the blade moves"};
     Asset<sound::RecordingSet> saw{"the recordings"};
-    Param blade_rate{"233 Hz", "0 Hz", "1 kHz", "strokes to and fro per second that the operator has set"};
+    Param blade_rate{"233 Hz", "0 Hz", "1 kHz", "strokes per second that the operator has set"};
     Param gain{structural, "1", "0", "1000", "factor of the vibration"};
     Param spin_up{structural, "80 ms", "0 ms", "10 s", "time constant of the rate after the trigger is pulled"};
     Param spin_down{structural, "150 ms", "0 ms", "10 s", "time constant of the rate after it is released"};
-    Param load_on{structural, "0.5 N", "0 N", "100 N", "cutting begins above this load"};
-    Param load_off{structural, "0.3 N", "0 N", "100 N", "and ends below this"};
-    Param fade{structural, "20 ms", "1 ms", "1 s", "cross-fade between recordings"};
+    Param load_on{structural, "0.5 N", "0 N", "100 N", "cutting starts above this load"};
+    Param load_off{structural, "0.3 N", "0 N", "100 N", "cutting ends below this load"};
+    Param fade{structural, "20 ms", "1 ms", "1 s", "duration of the cross-fade between recordings"};
 
     void prepare(const Setup& setup) {
         try {
-            voice_.prepare(setup.rate(), sound::saw_recordings(*saw), {spin_up, spin_down, load_on, load_off, fade, gain});
+            voice_.prepare(setup.rate(), sound::saw_recordings(*saw),
+                           {spin_up, spin_down, load_on, load_off, fade, gain});
         } catch (const Error& error) {
             setup.fail(error.message());
         }

@@ -9,25 +9,25 @@ namespace tactus::nodes {
 
 struct SpectralMonitor {
     static constexpr auto about =
-        "Whether an output vibrates as a reference does, told while both go on; delays do not matter. For a slow group "
-        "of its own.";
+        "Compares the spectra of an output and a reference while a patch runs; delays do not matter. Put it in a slow "
+        "group of its own.";
 
-    Batch<Signal> reference{"what is wanted, 'as batch' from the audio group"};
-    Batch<Signal> output{"what comes out, 'as batch' from the audio group"};
-    Out<bool> alike{"distance, likeness and worst band are all within what is asked below"};
-    Out<double> distance{"log-spectral, 40 to 500 Hz, dB"};
-    Out<double> likeness{"cosine of the amplitude spectra, 40 to 500 Hz: 1 for one shape"};
-    Out<double> worst_band{"largest third-octave error, 40 to 1000 Hz, dB"};
-    Out<double> gain{"that gives the output the reference's power, dB"};
-    Param most_distance{"2", "0", "100", "dB, of two that are alike"};
-    Param least_likeness{"0.98", "0", "1", "of two that are alike"};
-    Param most_band_error{"4.5", "0", "100", "dB, of two that are alike"};
-    Param memory{structural, "2 s", "10 ms", "1000 s", "time constant of forgetting"};
+    Batch<Signal> reference{"the reference, wired 'as batch' from the audio group"};
+    Batch<Signal> output{"the output, wired 'as batch' from the audio group"};
+    Out<bool> alike{"distance, likeness and worst band are within their limits"};
+    Out<double> distance{"log-spectral distance, 40 to 500 Hz, dB"};
+    Out<double> likeness{"cosine similarity of the amplitude spectra, 40 to 500 Hz; 1: same shape"};
+    Out<double> worst_band{"largest error of a third-octave band, 40 to 1000 Hz, dB"};
+    Out<double> gain{"that gives the output the power of the reference, dB"};
+    Param most_distance{"2", "0", "100", "limit of 'distance' for 'alike', dB"};
+    Param least_likeness{"0.98", "0", "1", "limit of 'likeness' for 'alike'"};
+    Param most_band_error{"4.5", "0", "100", "limit of 'worst_band' for 'alike', dB"};
+    Param memory{structural, "2 s", "10 ms", "1000 s", "time constant of the averaging"};
 
     void prepare(const Setup& setup) {
         const double reference_rate = rate_of(reference.period), output_rate = rate_of(output.period);
         if (!(std::min(reference_rate, output_rate) >= least_rate))
-            setup.fail("signals slower than 223 Hz carry too little of a vibration to be compared");
+            setup.fail("the signals' rate is below 223 Hz, too low to compare vibrations; use a faster group");
         comparison_ = signal::LiveComparison(reference_rate, output_rate, memory);
         name_ = setup.name;
         scores_ = comparison_.scores();

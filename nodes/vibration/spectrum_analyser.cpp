@@ -12,25 +12,24 @@ namespace tactus::nodes {
 
 struct SpectrumAnalyser {
     static constexpr auto about =
-        "What vibrates in a signal, now: its level, its strongest line and the rate of the machine. For a slow group "
-        "of "
-        "its own.";
+        "Analyses a signal while a patch runs: level, strongest spectral line and fundamental frequency. Put it in a "
+        "slow group of its own.";
 
-    Batch<Signal> in{"the signal, 'as batch' from the audio group"};
+    Batch<Signal> in{"the signal, wired 'as batch' from the audio group"};
     Out<double> level{"root mean square in the band, in the unit of the signal"};
-    Out<double> strongest{"frequency of the strongest line in the band; 0: none stands out of the noise", "Hz"};
-    Out<double> fundamental{"rate that explains the lines; 0: none", "Hz"};
-    Out<double> confidence{"in the fundamental, 0 to 1"};
-    Param lowest{structural, "20 Hz", "1 Hz", "10 kHz", "lower end of the band, and of the fundamental"};
-    Param highest{structural, "1 kHz", "2 Hz", "24 kHz", "upper end of the band"};
-    Param highest_rate{structural, "500 Hz", "1 Hz", "10 kHz", "highest fundamental"};
-    Param segment{structural, "512 ms", "1 ms", "10 s", "resolution: lines 4 over this apart are told apart"};
-    Param memory{structural, "2 s", "10 ms", "1000 s", "time constant of forgetting"};
+    Out<double> strongest{"frequency of the strongest line in the band; 0: no line above the noise", "Hz"};
+    Out<double> fundamental{"fundamental frequency of the harmonic lines; 0: none", "Hz"};
+    Out<double> confidence{"of the fundamental, 0 to 1"};
+    Param lowest{structural, "20 Hz", "1 Hz", "10 kHz", "lower limit of the band and of the fundamental"};
+    Param highest{structural, "1 kHz", "2 Hz", "24 kHz", "upper limit of the band"};
+    Param highest_rate{structural, "500 Hz", "1 Hz", "10 kHz", "upper limit of the fundamental"};
+    Param segment{structural, "512 ms", "1 ms", "10 s", "segment length: resolves lines that are 4 / segment apart"};
+    Param memory{structural, "2 s", "10 ms", "1000 s", "time constant of the averaging"};
 
     void prepare(const Setup& setup) {
         const double rate = rate_of(in.period);
         const auto samples = static_cast<std::size_t>(std::llround(rate * segment));
-        if (samples < 16) setup.fail("a segment holds fewer than 16 samples; make it longer");
+        if (samples < 16) setup.fail("a segment must hold at least 16 samples; make it longer");
         spectrum_ = signal::LiveSpectrum(rate, samples, memory);
         comb_ = {};
         name_ = setup.name;

@@ -8,19 +8,19 @@
 namespace tactus::nodes {
 
 struct Sweep {
-    static constexpr auto about = "A sine that glides from one frequency to another, each octave in the same time.";
+    static constexpr auto about = "A logarithmic sine sweep: each octave takes the same time.";
 
     Out<Signal> signal{"the sweep, then silence"};
-    Param first{structural, "20 Hz", "0.1 Hz", "100 kHz", "where it begins"};
-    Param last{structural, "2 kHz", "0.1 Hz", "100 kHz", "where it ends; above `first`"};
+    Param first{structural, "20 Hz", "0.1 Hz", "100 kHz", "start frequency"};
+    Param last{structural, "2 kHz", "0.1 Hz", "100 kHz", "end frequency; above 'first'"};
     Param duration{structural, "8 s", "10 ms", "1000 s", "of one sweep"};
     Param pause{structural, "1 s", "0 s", "1000 s", "silence after each sweep"};
-    Param repeats{structural, "1", "1", "1000", "sweeps in all"};
-    Param amplitude{structural, "1", "-1e6", "1e6", "greatest value"};
+    Param repeats{structural, "1", "1", "1000", "number of sweeps"};
+    Param amplitude{structural, "1", "-1e6", "1e6", "peak value"};
 
     void prepare(const Setup& setup) {
-        if (!(last > first)) setup.fail("the sweep must end at a higher frequency than it begins");
-        if (!(last < 0.5 * setup.rate())) setup.fail("the sweep must end below half the node's rate");
+        if (!(last > first)) setup.fail("'last' must be above 'first'");
+        if (!(last < 0.5 * setup.rate())) setup.fail("'last' must be below half the node's rate");
         sweep_ = {first, last, duration, std::min(0.02, 0.1 * duration)};
         period_ = std::llround((duration + pause) * setup.rate());
         count_ = period_ * std::llround(repeats);
