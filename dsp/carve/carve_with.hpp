@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Carving of a distance field by a saw blade, over any kind of field.
+// Carves a distance field with a saw blade; works on any type of field.
 #pragma once
 
 #include "dsp/carve/cutting_edge.hpp"
@@ -10,8 +10,8 @@
 
 namespace tactus::carve {
 
-/// See Carver. A Field adds to what CuttingEdge needs: `float get(i, j, k)`, `bool set(i, j, k, float)` (false: no room
-/// for more changes), `std::array<int, 3> size()`, `Vec3 origin()`, `Vec3 spacing()`.
+/// See Carver. In addition to CuttingEdge's requirements a Field has `float get(i, j, k)`, `bool set(i, j, k, float)`
+/// (false: the budget of changes is spent), `std::array<int, 3> size()`, `Vec3 origin()`, `Vec3 spacing()`.
 class CarveCore {
 public:
     CarveCore() = default;
@@ -51,7 +51,7 @@ public:
         return result;
     }
 
-    /// Takes over the law of advance (speed, references, exponent); the blade's shape stays.
+    /// Changes the law of advance (speed, references, exponent); the blade's shape stays.
     void set_law(const CarveSettings& law) noexcept {
         settings_.speed = law.speed;
         settings_.reference_force = law.reference_force;
@@ -66,11 +66,11 @@ public:
 
 private:
     static constexpr std::size_t chunk = 8;  // spans stamped together
-    static constexpr double near_voxels = 3.0;  // depth below the cut that is kept up at every update
-    static constexpr double least_cut = 0.05;  // voxels of way that wait for the next update
-    static constexpr double detour = 2e-5;  // m by which a path may be longer than what is cut out at once
+    static constexpr double near_voxels = 3.0;  // depth below the cut that every update refreshes
+    static constexpr double least_cut = 0.05;  // voxels of motion that wait for the next update
+    static constexpr double detour = 2e-5;  // m by which a path may exceed the chord that is cut in one step
 
-    /// Ends of a span where it was last cut out, in the bone's frame.
+    /// Ends of a span at its last cut, in the bone's frame.
     struct Ends {
         Vec3 a, b;
     };
@@ -87,7 +87,7 @@ private:
         for (std::size_t n = 0; n < cut_.size(); ++n) cut_[n] = deep_[n] = {nodes[n].at, nodes[n + 1].at};
         for (EdgeNode& node : nodes) {
             node.travel = 0.0;
-            node.fresh = true;  // whatever the edge touches when the saw starts is cut then
+            node.fresh = true;  // the material that the edge touches when the saw starts is then cut
         }
     }
 
@@ -116,7 +116,7 @@ private:
         return false;
     }
 
-    /// Removes what the edge swept since this was last done, and keeps the field a distance close to the new wall.
+    /// Removes the volume swept since the last call, and keeps the field a distance close to the new wall.
     template <class Field>
     void cut_out(Field& field, CarveResult& result) noexcept {
         const auto nodes = edge_.nodes();
@@ -137,7 +137,7 @@ private:
         const VoxelFraction fraction(field.spacing(), pose_.rotate({0, 0, 1}));
         bool whole = true;
         for (std::size_t c = 0; c < spans.size(); c += chunk) whole &= stamp(field, c, reach, fraction, result);
-        if (!whole) {  // what found no room is cut out again, from the same place
+        if (!whole) {  // cut again from the same place in the next update
             result.budget_hit = true;
             return;
         }
@@ -148,8 +148,8 @@ private:
         }
     }
 
-    /// Keeps the field a distance deeper down: one chunk at a time, the one whose edge has moved most since, and only
-    /// when that is more than a quarter of a voxel.
+    /// Refreshes the distance deeper down, one chunk at a time: the one whose edge has moved most since its last
+    /// refresh, if it moved more than a quarter of a voxel.
     template <class Field>
     void deepen(Field& field, CarveResult& result) noexcept {
         if (result.budget_hit) return;
@@ -177,7 +177,7 @@ private:
         for (std::size_t n = begin; n < end; ++n) deep_[n] = {nodes[n].at, nodes[n + 1].at};
     }
 
-    /// Gives the moved spans their ends, in a frame with x along the edge, so that a straight edge is level in it.
+    /// Transforms the ends of the moved spans to a frame with x along the edge, in which a straight edge is level.
     void lay_out(const std::vector<Ends>& last, double reach) noexcept {
         const auto nodes = edge_.nodes();
         const auto spans = swept_.spans();
@@ -221,14 +221,14 @@ private:
             high = glm::max(high, glm::max(glm::max(s.a0, s.b0), glm::max(s.a1, s.b1)) + reach);
         }
         if (low.x > high.x) return true;
-        // Neighbouring chunks share their border; a voxel belongs to one of them.
+        // Neighbouring chunks share their border; each voxel belongs to one of them.
         if (begin > 0) low.x = std::max(low.x, swept_.begin_of(begin));
         if (end < spans.size()) high.x = std::min(high.x, swept_.begin_of(end));
         return KerfStamp{frame_, 0.5 * settings_.kerf, swept_, fraction}.apply(field, low, high, result);
     }
 
-    /// What lies behind an edge that moves on is nearer to where the edge was, and was kept up then: how far against y
-    /// new values can come, within `reach`, is a matter of how much the way turns aside.
+    /// Voxels behind a moving edge are nearer to its old position and were refreshed then. How far against y new values
+    /// can reach, within `reach`, depends on how much the path turns sideways.
     static double behind(const SweptSpan& s, double reach) noexcept {
         const auto of = [reach](const Vec3& direction) {
             return direction.y > 0.0 ? reach * (std::abs(direction.x) + std::abs(direction.z)) / direction.y : reach;

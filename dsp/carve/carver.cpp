@@ -12,7 +12,7 @@ namespace tactus::carve {
 
 namespace {
 
-/// What CarveCore needs of a field: the bone as edited so far.
+/// Adapts the edited bone to the Field of CarveCore.
 struct EditedBone {
     volume::BoneEditor& bone;
     volume::BoneSnapshot now;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The effective cutting edge: where the saw has really come to, as opposed to where the blade is held.
+// The effective cutting edge: the position that the saw has reached, as opposed to where the blade is held.
 #pragma once
 
 #include "dsp/carve/settings.hpp"
@@ -14,19 +14,19 @@ namespace tactus::carve {
 /// One point of the edge, in the bone's frame, m.
 struct EdgeNode {
     Vec3 at;           ///< effective position of the front's centre
-    Vec3 target;       ///< where the blade holds it
-    bool cutting = false;  ///< bone held it back in the last step
-    double travel = 0.0;  ///< m moved since the path was last cut out
-    bool seated = false;  ///< false: the blade stands in bone where no air is near; it neither moves nor cuts
-    bool fresh = false;   ///< placed anew: no path leads here
+    Vec3 target;  ///< position given by the blade
+    bool cutting = false;  ///< bone limited its motion in the last step
+    double travel = 0.0;  ///< m moved since the path was last cut
+    bool seated = false;  ///< false: inside bone with no air near; it neither moves nor cuts
+    bool fresh = false;  ///< newly placed: no path leads here
 };
 
-/// The edge is a row of nodes one tooth pitch apart, longer than the blade by the stroke. Because the stroke exceeds the
-/// pitch, every place between is passed by a tooth, so the row is one continuous edge of width `kerf` with a round front.
-/// The blade's teeth end where that front is foremost; the nodes are its centre, half a kerf behind.
-/// Each node follows its target along the blade's y, then x, then z: through air at once, through bone no faster than
-/// the removal speed at the density ahead of it. A node beyond the bone's end is held back while bone is within one
-/// pitch of it, so that the edge between it and its neighbour does not cut what neither has.
+/// The edge is a row of nodes one tooth pitch apart, longer than the blade by the stroke. As the stroke exceeds the
+/// pitch, a tooth passes every point between nodes, so the row is one continuous edge of width `kerf` with a round
+/// front. The teeth are at the foremost points of that front; the nodes are its centres, half a kerf behind. Each node
+/// follows its target along the blade's y, then x, then z: in air at once, in bone at most at the removal speed for the
+/// density ahead of it. A node beyond the end of the bone is held back while bone is within one pitch of it, so that
+/// the edge between it and its neighbour does not cut bone that neither of them has cut.
 ///
 /// A Field has `double value(Vec3)`: distance, m, negative in bone; `double density(Vec3)`, kg/m³. Nothing allocates
 /// after construction.
@@ -47,7 +47,7 @@ public:
     std::span<const EdgeNode> nodes() const noexcept { return nodes_; }
     double pitch() const noexcept { return pitch_; }
 
-    /// Puts every node where the blade holds it, or behind that, against y, where it comes out of the bone.
+    /// Puts every node at its target, or behind it, against y, where it comes out of the bone.
     template <class Field>
     void place(const Field& field, const Pose& pose) noexcept {
         frame(pose);
@@ -57,8 +57,8 @@ public:
         }
     }
 
-    /// Moves the targets to `pose` and lets the nodes follow. `removal` is the speed times the density it is meant for,
-    /// kg/(m² s); 0 for a saw that does not run. Steps are at most 1 ms long.
+    /// Moves the targets to `pose` and lets the nodes follow. `removal` is the speed times the reference density,
+    /// kg/(m² s); 0 when the saw does not run. Steps are at most 1 ms long.
     template <class Field>
     void follow(const Field& field, const Pose& pose, double dt, double removal) noexcept {
         frame(pose);
@@ -67,7 +67,7 @@ public:
             EdgeNode& node = nodes_[n];
             const Vec3 from = node.target;
             const Vec3 to = local(pose, n);
-            if (glm::length(to - from) > std::max(fastest_hand * dt, 0.001)) {  // put elsewhere, not moved there
+            if (glm::length(to - from) > std::max(fastest_hand * dt, 0.001)) {  // repositioned, not moved there
                 node.target = to;
                 seat(field, node);
                 continue;
@@ -89,13 +89,13 @@ private:
     static constexpr double longest_step = 0.001;  // s
     static constexpr int most_steps = 64;
     static constexpr double fastest_hand = 3.0;  // m/s
-    static constexpr double reach = 0.030;  // m of bone out of which a blade put elsewhere is backed
-    static constexpr double most_aside = 0.010;  // m off its blade where a node can no longer belong to it
+    static constexpr double reach = 0.030;  // m of bone out of which a repositioned blade is moved back
+    static constexpr double most_aside = 0.010;  // m: a node farther off its blade is detached
     static constexpr int most_moves = 32;
 
     struct Front {
         double density = 0.0;  // kg/m³ of the bone the front touches; 0: none
-        double clear = 0.0;  // m of free way
+        double clear = 0.0;  // m of free distance
     };
 
     void frame(const Pose& pose) noexcept {
@@ -157,7 +157,7 @@ private:
     template <class Field>
     bool advance(const Field& field, EdgeNode& node, const Vec3& direction, const Vec3& side, const Vec3& neighbour,
                  double way, double time, double removal) const noexcept {
-        // In contact the interpolated distance ripples a little: it takes more to come free than to stay so.
+        // In contact the interpolated distance ripples: hysteresis between touching and free.
         const double slack = (node.cutting ? 0.15 : 0.02) * voxel_;
         for (int move = 0; move < most_moves && way > 1e-12; ++move) {
             const Front front = look(field, node.at, direction, side, neighbour, slack);
@@ -172,7 +172,7 @@ private:
         return false;
     }
 
-    /// Looks at three points of the round front (Gauss-Legendre places across the kerf) and at its middle one pitch to
+    /// Samples three points of the round front (Gauss–Legendre nodes across the kerf) and its middle one pitch to
     /// either side, all a quarter voxel below the surface of the swept body.
     template <class Field>
     Front look(const Field& field, const Vec3& at, const Vec3& direction, const Vec3& side, const Vec3& neighbour,
@@ -203,7 +203,7 @@ private:
             }
         }
         if (!(front.density >= 1.0)) front.density = 0.0;
-        // Bone without density gives way, but it may be thin: look again after a quarter voxel.
+        // Bone without density does not resist, but the region may be thin: sample again after a quarter voxel.
         front.clear = nearest > touching ? nearest + ahead_ : ahead_;
         return front;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes a swept edge out of a distance field.
+// Subtracts a swept edge from a distance field.
 #pragma once
 
 #include "dsp/carve/settings.hpp"
@@ -12,14 +12,14 @@
 
 namespace tactus::carve {
 
-/// d ← max(d, radius − distance to the swept edge), and the volume that is gone by it.
+/// d ← max(d, radius − distance to the swept edge), and the volume that this removes.
 struct KerfStamp {
     const Pose& frame;  ///< of the swept edge, in the bone's frame
     double radius;      ///< half the kerf, m
     const SweptEdge& swept;
     const VoxelFraction& fraction;
 
-    /// Over the voxels of a box in `frame`. False when the field had no room for all changes.
+    /// Over the voxels of a box in `frame`. False when the field could not take all changes.
     template <class Field>
     bool apply(Field& field, const Vec3& low, const Vec3& high, CarveResult& result) const noexcept {
         const std::array<int, 3> size = field.size();
@@ -54,7 +54,7 @@ struct KerfStamp {
     }
 
 private:
-    /// Shortens [from, to] to where start + i·step lies in the box.
+    /// Clips [from, to] to the part where start + i·step is in the box.
     static void clip(const Vec3& low, const Vec3& high, const Vec3& start, const Vec3& step, double& from,
                      double& to) noexcept {
         for (int axis = 0; axis < 3; ++axis) {

@@ -10,13 +10,13 @@ namespace tactus::carve {
 
 namespace {
 
-constexpr int side = volume::brick_side + 2;  // a brick and one sample around it
+constexpr int side = volume::brick_side + 2;  // a brick with a border of one sample
 constexpr std::array<int, 3> stride{1, side, side* side};
 constexpr double far_away = 1e9;
 constexpr double noticed = 5e-6;  // m: smaller changes are not written
 
 struct Block {
-    std::array<double, side * side * side> d, u;  // the field; the amount of the new one
+    std::array<double, side * side * side> d, u;  // the field; the magnitude of the new one
     std::array<bool, side * side * side> fixed;
     Vec3 spacing;
 
@@ -42,13 +42,13 @@ struct Block {
         return false;
     }
 
-    /// Smallest u that solves |∇u| = 1 against its lower neighbours.
+    /// Smallest u that solves the upwind scheme |∇u| = 1 with its lower neighbours.
     double solve(int at) const noexcept {
         const auto n = static_cast<std::size_t>(at);
         std::array<std::pair<double, double>, 3> lower;  // neighbour, spacing
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto step = static_cast<std::size_t>(stride[axis]);
-            // A neighbour across the surface lies on the other side of zero.
+            // A neighbour across the surface has the opposite sign.
             const auto seen = [&](std::size_t m) { return (d[m] <= 0.0) == (d[n] <= 0.0) ? u[m] : -u[m]; };
             lower[axis] = {std::min(seen(n - step), seen(n + step)), spacing[static_cast<int>(axis)]};
         }

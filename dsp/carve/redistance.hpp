@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes a distorted field a distance again, a few bricks at a time.
+// Re-distancing: makes a distorted field a distance again, a few bricks at a time.
 #pragma once
 
 #include "dsp/volume/bricks.hpp"
@@ -11,22 +11,22 @@
 
 namespace tactus::carve {
 
-/// Fast sweeping (Zhao 2005) over single bricks, taken from a queue in the order they were put in.
+/// Fast sweeping (Zhao 2005) over single bricks, taken from a first-in first-out queue.
 ///
-/// Samples beside the surface get |d|/|∇d| with the upwind gradient, which leaves the surface where it is; from there the
-/// Eikonal equation |∇d| = 1 is solved inside the brick, against the samples around it. Signs never change. A brick whose
-/// gradients all lie within 5 % of 1 is not touched; one that changes puts its neighbours into the queue. The carver
-/// leaves a field that needs none of this: it is for fields made by other means.
+/// Samples next to the surface get |d|/|∇d| with the upwind gradient, which keeps the surface in place; from there the
+/// Eikonal equation |∇d| = 1 is solved inside the brick, with the samples around it as boundary values. Signs never
+/// change. A brick whose gradients all lie within 5 % of 1 is skipped; one that changes adds its neighbours to the
+/// queue. The carver's own fields do not need this.
 class Redistance {
 public:
     /// `reach`: m from the surface up to which the field matters.
     void prepare(const volume::BoneEditor& bone, double reach);
 
-    /// Puts bricks at the end of the queue; those that wait already are left where they are. Wait-free.
+    /// Appends bricks to the queue, except those already in it. Wait-free.
     void add(std::span<const std::uint32_t> bricks) noexcept;
 
-    /// Works on at most `bricks` of the queue; returns how many still wait. Stops early where the editor has no room for
-    /// more changes. About 0.1 ms per brick.
+    /// Processes at most `bricks` of the queue; returns how many remain. Stops early when the editor's budget of
+    /// changes is spent. About 0.1 ms per brick.
     std::size_t tick(volume::BoneEditor& bone, int bricks) noexcept;
 
     std::size_t waiting() const noexcept { return count_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a saw blade is like, what it is told, and what it did.
+// Settings, input and result of carving.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -8,18 +8,18 @@
 
 namespace tactus::carve {
 
-/// One stretch of the blade's path. Blade frame: x along the blade (the stroke), y the direction it cuts in, towards the
+/// One step of the blade's path. Blade frame: x along the blade (the stroke), y the cutting direction, towards the
 /// bone, z normal to the blade; origin in the middle of the tooth edge. The pose is the blade's at the end of `dt`.
 struct CarveSample {
     Pose pose;
-    double dt = 0.001;  ///< s that lead to this pose
+    double dt = 0.001;  ///< s, duration of the step to this pose
     double thrust = 0.0;  ///< N, along y
     double rate = 0.0;  ///< strokes to and fro per second, Hz
     bool running = false;
 };
 
 /// A reciprocating saw. The default advance is that of cortical bone at 228 Hz: 40 mm/min (Yu 2023), with 7 N of thrust
-/// (Lannin 2011). It is inversely proportional to density and proportional to rate and (thrust)^force_exponent.
+/// (Lannin 2011). It is inversely proportional to density and proportional to rate and thrust^force_exponent.
 struct CarveSettings {
     double blade_length = 0.040;  ///< m, from the first tooth to the last
     double kerf = 0.001;  ///< m, width of the cut
@@ -30,17 +30,17 @@ struct CarveSettings {
     double reference_rate = 228.0;  ///< Hz
     double reference_density = 1800.0;  ///< kg/m³
     double force_exponent = 0.0;  ///< 0: advance does not depend on thrust
-    double depth = 0.003;  ///< m below a cut to which the field is kept a distance
+    double depth = 0.003;  ///< m below a cut down to which the field stays a distance
 };
 
-/// Where the removed bone's density classes end, kg/m³: 350, 700, 1200.
+/// Upper limits of the density classes of removed bone, kg/m³: 350, 700, 1200.
 inline constexpr std::array<double, 3> density_class_limits{350.0, 700.0, 1200.0};
 
 struct CarveResult {
     double removed_m3 = 0.0;
     std::array<double, 4> removed_by_density{};  ///< m³, see density_class_limits
     int dirty_bricks = 0;  ///< waiting to be published
-    bool budget_hit = false;  ///< some of the cut had to be left to the next update
+    bool budget_hit = false;  ///< part of the cut was left to the next update
 };
 
 }  // namespace tactus::carve

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The body that a moving edge sweeps, and the distance to it.
+// The body swept by a moving edge, and the distance to it.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -12,16 +12,16 @@
 
 namespace tactus::carve {
 
-/// A stretch of edge between two nodes, before (0) and after (1), m. Frame: x along the edge, y where the blade cuts.
+/// A piece of edge between two nodes, before (0) and after (1), m. Frame: x along the edge, y the cutting direction.
 struct SweptSpan {
     Vec3 a0, b0, a1, b1;
-    bool moved = false;  ///< false: nothing new is swept here
-    bool fresh = false;  ///< the edge was put here, it did not come from anywhere
+    bool moved = false;  ///< false: it sweeps nothing new
+    bool fresh = false;  ///< the edge was placed here; there is no path to it
 };
 
 /// Rounded sheet swept by a row of spans. Where neighbours differ in depth by more than their spacing, the edge between
-/// them is brought up towards the shallower one, to its level from twice the spacing on: the teeth that cut there pass
-/// both places, and the deeper one is in air.
+/// them is raised towards the shallower one, fully from twice the spacing on: the teeth that cut there pass both
+/// places, and the deeper one is in air.
 class SweptEdge {
 public:
     SweptEdge() = default;
@@ -29,7 +29,8 @@ public:
 
     std::span<SweptSpan> spans() noexcept { return spans_; }
 
-    /// Prepares the look-up after the spans were set; their x ascends. `reach`: m up to which distances must be right.
+    /// Prepares the look-up after the spans were set; their x must ascend. `reach`: m up to which distances must be
+    /// exact.
     void arrange(double reach) noexcept {
         std::size_t begin = spans_.size(), end = 0;
         for (std::size_t n = 0; n < spans_.size(); ++n) {
@@ -50,7 +51,7 @@ public:
         for (std::size_t b = 0; b < buckets_.size(); ++b) arrange(b, reach);
     }
 
-    /// x where span n begins, m, if spans are of equal length.
+    /// x at the start of span n, m, for spans of equal length.
     double begin_of(std::size_t n) const noexcept { return first_ + step_ * static_cast<double>(n); }
 
     /// Squared distance of a point in the spans' frame to the sheet, m², if it is less than `limit`, else `limit`.
@@ -71,7 +72,7 @@ private:
     struct Bucket {
         std::size_t begin = 0, end = 0;
         double low_y = 0, high_y = 0, low_z = 0, high_z = 0;
-        bool level = true;  ///< the edge runs along x: one projection finds the nearest point
+        bool level = true;  ///< the edge runs along x: one projection finds the closest point
     };
 
     std::size_t bucket_of(double x) const noexcept {
@@ -99,7 +100,7 @@ private:
             if (spans_[n].moved) steep = std::max(steep, slope(spans_[n]));
         }
         bucket.level = steep < 0.1;  // off by at most 0.5 % of the distance
-        // The nearest point of a sloping edge stands off by the sine of its slope.
+        // The closest point of a sloping edge is offset by the sine of its slope.
         const double margin = bucket.level ? -1e-9 : 1.2 * reach * steep / std::sqrt(1.0 + steep * steep);
         const double low = b == 0 ? -infinite : begin_of(b) - margin;
         const double high = b + 1 == buckets_.size() ? infinite : begin_of(b + 1) + margin;
@@ -127,7 +128,7 @@ private:
         return squared_length > 1e-18 ? std::clamp(glm::dot(p - from, displacement) / squared_length, 0.0, 1.0) : 1.0;
     }
 
-    /// Alternates between the two directions of the sheet; each projection can only come nearer.
+    /// Alternating projection between the two directions of the sheet; no projection increases the distance.
     static double squared(const SweptSpan& s, const Vec3& p, bool level) noexcept {
         const Vec3 along0 = s.b0 - s.a0, along1 = s.b1 - s.a1, forth = s.a1 - s.a0, twist = along1 - along0;
         double u = std::abs(along1.x) > 1e-9 ? std::clamp((p.x - s.a1.x) / along1.x, 0.0, 1.0) : 0.5;

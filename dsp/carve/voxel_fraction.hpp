@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much of a voxel is bone, from the distance at its centre.
+// Fraction of a voxel that is bone, from the distance at its centre.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -10,8 +10,8 @@
 
 namespace tactus::carve {
 
-/// Fraction of a box on the negative side of a plane at signed distance d from its centre. Summed over a grid it gives
-/// the exact volume below any plane with this normal, wherever the plane lies between the samples.
+/// Fraction of a box on the negative side of a plane at signed distance d from its centre. The sum over a grid is the
+/// exact volume below any plane with this normal, for any position of the plane relative to the samples.
 class VoxelFraction {
 public:
     /// `spacing`: the box, m. `normal`: of the plane, along the grid's axes.
@@ -39,7 +39,7 @@ public:
 private:
     static constexpr int steps = 128;
 
-    /// Distribution function of the sum of three uniform variables of widths w about zero.
+    /// Cumulative distribution of the sum of three uniform variables of widths w about zero.
     static double below(double t, const Vec3& w) noexcept {
         double sum = 0.0;
         for (int corner = 0; corner < 8; ++corner) {

@@ -21,8 +21,8 @@ BladePoints::BladePoints(const BladeShape& shape) {
 
 namespace {
 
-// Largest curvature of ½‖d‖₈² over 44 depths that change alike, and over 88 of which half change the other way:
-// 7·88^(1/4) = 21.4.
+// Largest curvature of ½‖d‖₈² over 44 depths that change in the same direction, and over 88 of which half change in the
+// opposite direction: 7·88^(1/4) = 21.4.
 constexpr double edge_margin = 4.0, face_margin = 22.0;
 
 struct Touch {
@@ -35,7 +35,7 @@ void push(std::span<const Touch> touches, double k, const Vec3& about, Wrench& i
     double deepest = 0.0;
     for (const Touch& touch : touches) deepest = std::max(deepest, touch.depth);
     if (deepest <= 0.0) return;
-    // Depths relative to the deepest: their eighth powers neither overflow nor vanish.
+    // Depths relative to the maximum: their eighth powers neither overflow nor underflow.
     double sum = 0.0;
     for (const Touch& touch : touches) {
         const double r = touch.depth / deepest, r4 = r * r * r * r;
@@ -62,7 +62,7 @@ BladeContact blade_contact(const volume::BoneSnapshot& bone, const BladePoints& 
     const double reach = std::min(bone.layout().far, std::max({spacing.x, spacing.y, spacing.z}));
     for (std::size_t i = 0; i < blade.local.size(); ++i) {
         const Vec3 position = tool.apply(blade.local[i]);
-        // The spline may dip below zero only where the cheap value nearly does.
+        // The B-spline can be negative only where the cheap interpolated value is small.
         if (!(bone.value(position) < reach)) continue;
         const volume::Sample sample = bone.smooth_sample(position);
         if (!sample.inside || sample.value >= 0.0) continue;

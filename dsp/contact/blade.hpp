@@ -9,8 +9,8 @@
 
 namespace tactus::contact {
 
-/// Blade frame: origin in the middle of the tooth edge, x along the blade (the stroke), y the cutting direction, towards
-/// the bone, z across the blade.
+/// Blade frame: origin in the middle of the tooth edge, x along the blade (the stroke), y the cutting direction,
+/// towards the bone, z across the blade.
 struct BladeShape {
     double length = 0.040;  ///< m, along x
     double height = 0.010;  ///< m, from the tooth edge back along −y
@@ -19,8 +19,8 @@ struct BladeShape {
 
 inline constexpr int blade_row = 44, blade_rows = 3, blade_point_count = blade_row * blade_rows;
 
-/// 132 points in three rows (thesis 6.2.2): the tooth edge, and half-way up both faces, so that a blade centred in its
-/// kerf feels no side force, a tilted one a torque and a pinched one both walls.
+/// 132 points in three rows (thesis 6.2.2): the tooth edge, and both faces at half height. A blade centred in its kerf
+/// feels no side force, a tilted blade a torque, and a pinched blade both walls.
 struct BladePoints {
     explicit BladePoints(const BladeShape& shape = {});
     std::array<Vec3, blade_point_count> local;
@@ -33,16 +33,16 @@ struct BladeContact {
     int count = 0;  ///< points in contact
 };
 
-/// Force of point i: k_i·|d|·∇d for d < 0, with the exact gradient of the interpolated distance, a
-/// quadratic B-spline: under a narrow kerf the gradient of a trilinear one would turn by 10° at every cell face.
+/// Force of point i: k_i·|d|·∇d for d < 0, with d and its exact gradient from a quadratic B-spline. Trilinear gradients
+/// would turn by 10° at every cell face under a narrow kerf.
 ///
-/// `stiffness` K (N/m) is the largest the hand can feel. Equal k for every point in contact would ring with 132 of
-/// them, and dividing by their number makes the force drop when one more just touches. Instead each family of points,
-/// the tooth edge and the two faces, has the energy ½·(K/c)·‖d‖₈², the 8-norm over its depths, so that
-/// k_i = (K/c)·(|d_i|/‖d‖₈)⁶. The force is conservative and continuous, never softens as points come in, and the
-/// curvature of the energy, the stiffness felt, stays below K: c = 4 for the edge, whose points are pushed back
-/// alike (one tooth alone gives K/4, a whole edge 0.64·K); c = 22 for the faces, which a kerf can pinch from both
-/// sides. Deterministic; a pose that is not finite gives nothing.
+/// `stiffness` K (N/m) is an upper bound of the stiffness that the hand feels. The same k for every point in contact
+/// would ring with 132 points, and k divided by the number of contacts makes the force drop when one more point
+/// touches. Therefore each family of points (tooth edge; two faces) has the energy ½·(K/c)·‖d‖₈², the 8-norm over its
+/// depths, so k_i = (K/c)·(|d_i|/‖d‖₈)⁶. The force is conservative and continuous and never softens as points come in;
+/// the curvature of the energy stays below K. c = 4 for the edge, whose points are pushed in one direction (one tooth
+/// alone gives K/4, the whole edge 0.64·K); c = 22 for the faces, which a kerf can pinch from both sides.
+/// Deterministic; a pose that is not finite gives no force.
 BladeContact blade_contact(const volume::BoneSnapshot& bone, const BladePoints& blade, const Pose& tool, const Vec3& about,
                            double stiffness) noexcept;
 

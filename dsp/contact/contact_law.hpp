@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Energy of one point of a pointshell as a function of its distance to another body.
+// Penalty energy of one pointshell point as a function of its distance to another body.
 #pragma once
 
 #include <algorithm>
@@ -8,28 +8,28 @@
 
 namespace tactus::contact {
 
-/// Where the force of a point looks.
+/// Direction of the force of a point.
 enum class ForceDirection : std::uint8_t {
     field_gradient,  ///< along the gradient of the interpolated distance: the exact derivative of the energy
     shell_normal,  ///< along the point's inward normal (thesis 2.4.4). Not the derivative of any energy: for comparison
 };
 
-/// What lies between the samples of a voxmap.
+/// Interpolation of a voxmap between its samples.
 enum class Interpolation : std::uint8_t {
-    trilinear,  ///< 8 samples; the gradient steps at cell faces
-    quadratic,  ///< quadratic B-spline over 27 samples; continuous gradient, moves a surface of curvature κ by ~κh²/4
+    trilinear,  ///< 8 samples; the gradient jumps at cell faces
+    quadratic,  ///< quadratic B-spline over 27 samples; continuous gradient, shifts a surface of curvature κ by ~κh²/4
 };
 
-/// How deep is pushed back how hard. With depth s = −distance, a point of weight w has the energy k·w·φ(s) with
+/// Force over penetration depth. At depth s = −distance, a point of weight w has the energy k·w·φ(s) with
 ///
 ///     φ''(s) = ramp of width 2·blend about 0, from 0 to 1; then 1; then from 1 to 0 over the second half of `saturation`,
 ///
-/// so that force and stiffness are continuous everywhere: φ = 0 up to blend outside of the surface, φ' = s once s is
-/// blend or more, and the force never exceeds k·w·saturation.
+/// Force and stiffness are continuous everywhere: φ = 0 until `blend` outside of the surface, φ' = s from the depth
+/// `blend` on, and the force never exceeds k·w·saturation.
 struct ContactLaw {
     double stiffness = 10e3;  ///< k: N/m per point; with by_area N/m per m² of surface
-    double blend = 0.03e-3;  ///< m, half the width of the blend about the surface; at least a nanometre counts
-    /// m: the force levels off at stiffness × this; must be over 2·blend. The default never saturates.
+    double blend = 0.03e-3;  ///< m, half the width of the blend zone at the surface; values below 1 nm act as 1 nm
+    /// m: the force levels off at stiffness × this; must exceed 2·blend. The default never saturates.
     double saturation = 1e6;
     bool by_area = false;  ///< the weight w of a point is its area (m²) instead of 1
     ForceDirection direction = ForceDirection::field_gradient;
@@ -42,7 +42,7 @@ struct DepthEnergy {
     Real energy, force, stiffness;
 };
 
-/// The same law in the precision of Real, with what does not depend on the depth worked out.
+/// The same law in the precision of Real, with precomputed constants.
 template <class Real>
 struct DepthLaw {
     Real start, width, inverse_width;  // blend: from −start over width
@@ -50,7 +50,7 @@ struct DepthLaw {
 
     explicit DepthLaw(const ContactLaw& law) noexcept {
         const double blend = std::max(law.blend, 1e-9);
-        // No sensible depth reaches a metre times this; floats hold its square.
+        // Larger than any real depth; its square fits a float.
         const double saturation = std::min(law.saturation, 1e9);
         start = static_cast<Real>(blend);
         width = static_cast<Real>(2.0 * blend);

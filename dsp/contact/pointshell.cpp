@@ -30,7 +30,7 @@ struct Box {
 
 double distance2(const Vec3& a, const Vec3& b) { return glm::dot(a - b, a - b); }
 
-/// Moves the `first_part` points that lie lowest along the longest axis to the front.
+/// Partitions the points along the longest axis: the `first_part` lowest come first (nth element).
 void split(std::span<std::uint32_t> order, std::size_t first_part, std::span<const SurfacePoint> points) {
     Box box;
     for (const std::uint32_t i : order) box.add(points[i].position);
@@ -43,7 +43,7 @@ void split(std::span<std::uint32_t> order, std::size_t first_part, std::span<con
                      });
 }
 
-/// How many points each of a node's children gets: whole chunks, shared out as evenly as they go.
+/// Number of points of each child of a node: whole chunks, distributed as evenly as possible.
 std::array<std::uint32_t, 4> shares(std::uint32_t points) {
     const std::uint32_t leaves = (points + chunk_points - 1) / chunk_points, parts = std::min(leaves, 4u);
     std::array<std::uint32_t, 4> share{};
@@ -55,7 +55,7 @@ std::array<std::uint32_t, 4> shares(std::uint32_t points) {
     return share;
 }
 
-/// The tree's nodes, level by level, and the points in the order of its leaves.
+/// The nodes of the tree, level by level, and the points in the order of its leaves.
 std::vector<ShellNode> grow(std::span<const SurfacePoint> points, Indices& order) {
     std::vector<ShellNode> nodes;
     nodes.push_back({.points = static_cast<std::uint32_t>(points.size())});
@@ -81,14 +81,14 @@ std::vector<ShellNode> grow(std::span<const SurfacePoint> points, Indices& order
     return nodes;
 }
 
-/// Points of a chunk, and how many points and how much area each stands for.
+/// Points of a chunk, and the number of points and area that each represents.
 struct Held {
     Indices index;
     std::vector<double> count, area;
 };
 
-/// At most 64 of the candidates, each as far as possible from those before it, the first being nearest to `start`.
-/// Every candidate counts for the chosen one that is nearest to it.
+/// At most 64 of the candidates by farthest-point sampling, starting with the one nearest to `start`. Each candidate is
+/// represented by the nearest chosen one.
 Held thinned(const Held& from, const std::vector<Vec3>& position, const Vec3& start) {
     const std::size_t all = from.index.size();
     if (all <= chunk_points) return from;
@@ -171,11 +171,11 @@ void fill_chunks(Pointshell& shell) {
 
 Pointshell make_pointshell(std::span<const SurfacePoint> points) {
     if (points.size() > (std::size_t(1) << 28))
-        throw Error("a pointshell holds at most 2^28 points; raise the spacing");
+        throw Error("a pointshell can hold at most 2^28 points; increase the spacing");
     for (std::size_t i = 0; i < points.size(); ++i)
         if (!is_finite(points[i].position) || !is_finite(points[i].normal) || !(points[i].area >= 0.0) ||
             !std::isfinite(points[i].area))
-            throw Error(fmt::format("point {} of a pointshell has a position, normal or area that is no number", i));
+            throw Error(fmt::format("point {} of a pointshell has a position, normal or area that is not finite", i));
     Pointshell shell;
     if (points.empty()) return shell;
     Indices order(points.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface of a body as points: what is tested against voxmaps.
+// Pointshell: the surface of a body as points, to be tested against voxmaps (McNeely, Puterbaugh and Troy 1999).
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -12,7 +12,7 @@
 
 namespace tactus::contact {
 
-/// What a point of the surface is. Other values are free for the user's own marks.
+/// Label of a surface point. Other values are free for the user.
 namespace surface_label {
 inline constexpr std::uint8_t none = 0, fracture = 1;
 }
@@ -20,34 +20,35 @@ inline constexpr std::uint8_t none = 0, fracture = 1;
 /// One point of a surface. Body frame, m.
 struct SurfacePoint {
     Vec3 position{0.0, 0.0, 0.0};
-    Vec3 normal{0.0, 0.0, 1.0};  ///< unit length, out of the body
-    double area = 0.0;           ///< m² of surface that it stands for
+    Vec3 normal{0.0, 0.0, 1.0};  ///< unit length, outwards
+    double area = 0.0;  ///< m² of surface that the point represents
     std::uint8_t label = surface_label::none;
 };
 
 inline constexpr int chunk_points = 64;
 
-/// Up to 64 neighbouring points, as the vector kernel reads them: offsets from the chunk's centre, which are small, so
-/// that single precision loses nothing. Places without a point have weight 0.
+/// Up to 64 neighbouring points in the layout of the vector kernel: small offsets from the chunk's centre, so that
+/// single precision suffices. Unused places have weight 0.
 struct alignas(64) ShellChunk {
     float x[chunk_points], y[chunk_points], z[chunk_points];  ///< m, body frame, from the node's centre
     float nx[chunk_points], ny[chunk_points], nz[chunk_points];  ///< outward normals
-    float count[chunk_points];  ///< points that this one stands for: 1 in a leaf
-    float area[chunk_points];   ///< m² that it stands for
+    float count[chunk_points];  ///< number of points that this one represents: 1 in a leaf
+    float area[chunk_points];  ///< m² that it represents
 };
 
-/// A node of the multiresolution tree. Its chunk holds all of its points if it is a leaf, else 64 points picked from
-/// its children's chunks, spread evenly, each standing for those nearest to it: a coarser shell nested in the finer.
+/// A node of the multiresolution tree. The chunk of a leaf holds all its points. The chunk of an inner node holds 64
+/// evenly spread points from its children's chunks, each representing those nearest to it: a coarser shell nested in
+/// the finer.
 struct ShellNode {
     Vec3 centre{0.0, 0.0, 0.0};   ///< one of its points, body frame, m
-    double radius = 0.0;          ///< greatest distance from the centre to any point below, m
-    std::uint32_t first_point = 0, points = 0;  ///< those below, adjacent in the shell's arrays
+    double radius = 0.0;  ///< greatest distance from the centre to any point of the node, m
+    std::uint32_t first_point = 0, points = 0;  ///< its points, adjacent in the shell's arrays
     std::uint32_t first_child = 0, children = 0;  ///< at most 4, adjacent in `nodes`; none in a leaf
-    std::uint32_t held = 0, below = 0;  ///< points in its chunk, and in those of its children together
+    std::uint32_t held = 0, below = 0;  ///< points in its chunk, and in its children's chunks together
 };
 
-/// Points of a surface in the order of a balanced k-d tree (Morton order with planes at medians), so that neighbours in
-/// space are neighbours in memory. Body frame, m. Made by make_pointshell; read only from then on.
+/// Surface points in the order of a balanced k-d tree (Morton order with planes at medians): neighbours in space are
+/// neighbours in memory. Body frame, m. Made by make_pointshell; read-only afterwards.
 struct Pointshell {
     static constexpr std::string_view wire_name = "pointshell";
 
@@ -66,8 +67,8 @@ struct Pointshell {
     SurfacePoint point(std::size_t i) const { return {position[i], normal[i], static_cast<double>(area[i]), label[i]}; }
 };
 
-/// Orders the points and builds the tree. The same points give the same shell. Normals are made unit length; one of no
-/// length stays zero. Throws Error for positions, normals or areas that are not finite, and areas below zero.
+/// Sorts the points and builds the tree; deterministic. Normals are scaled to unit length; a zero normal stays zero.
+/// Throws Error for positions, normals or areas that are not finite, and for negative areas.
 Pointshell make_pointshell(std::span<const SurfacePoint> points);
 
 }  // namespace tactus::contact

@@ -13,7 +13,7 @@ namespace tactus::contact {
 
 namespace {
 
-/// Samples around so many chunks are more than the caches next to a core hold.
+/// The samples around this many chunks exceed the caches next to a core.
 constexpr std::size_t many_chunks = 256;
 
 bool is_usable(const ContactPair& pair) noexcept {
@@ -23,7 +23,7 @@ bool is_usable(const ContactPair& pair) noexcept {
 
 Pose normalised(const Pose& pose) noexcept { return {pose.position, glm::normalize(pose.orientation)}; }
 
-/// One pair in double precision: from the shell's frame to the map's, and the reference point there.
+/// One pair in double precision: the transform from the shell's frame to the map's, and the reference point in the map.
 struct Relation {
     const Pointshell* shell = nullptr;
     const Voxmap* map = nullptr;
@@ -43,7 +43,7 @@ struct Relation {
         about = map_pose.inverse().apply(world_about);
     }
 
-    /// No point of the node reads less than this.
+    /// Lower bound of the distance at the node's points.
     double clearance(const ShellNode& node) const noexcept {
         return map->least_within(shift + rotation * node.centre, node.radius);
     }
@@ -64,7 +64,7 @@ struct Relation {
             }
         }
         frame.stiffness = static_cast<float>(law.stiffness);
-        // Both interpolants are means of samples around the point.
+        // Both interpolants are weighted means of samples around the point.
         frame.near = static_cast<float>(law.blend + map->steepness * glm::length(grid.spacing));
         frame.by_area = law.by_area;
         frame.by_normal = law.direction == ForceDirection::shell_normal;
@@ -95,7 +95,7 @@ struct Relation {
     }
 };
 
-/// Lanes of one pair in double precision.
+/// Sums of the lanes of one pair, in double precision.
 struct Totals {
     double value[kernel::sums][kernel::lanes] = {};
 
@@ -125,7 +125,7 @@ void put(ContactSum& sum, std::size_t row, std::size_t column, const Mat3& block
             sum.stiffness[6 * (row + i) + column + j] += block[static_cast<int>(j)][static_cast<int>(i)];
 }
 
-/// Turns a pair's sums into world axes and adds them.
+/// Rotates a pair's sums to world axes and adds them.
 void add(ContactSum& sum, const Totals& totals, const Relation& relation) noexcept {
     sum.energy += totals.sum(0);
     sum.total_force += totals.sum(1);
@@ -152,7 +152,7 @@ PointshellContact::PointshellContact(std::size_t most_nodes) {
     frontier_.reserve(most_nodes);
     next_.reserve(most_nodes);
     chosen_.reserve(most_nodes);
-    // Looks at the processor now, not in the first tick.
+    // Detects the processor now, not in the first tick.
     kernel::variant_in_use();
     kernel::LaneSums none;
     kernel::evaluate(kernel::PairFrame{ContactLaw{}}, {}, none);
@@ -163,7 +163,7 @@ std::size_t PointshellContact::choose(std::span<const ContactPair> pairs, double
     chosen_.clear();
     std::size_t left_out = 0, used = 0;
     Relation relation;
-    std::uint32_t related = std::numeric_limits<std::uint32_t>::max();  // the pair that `relation` is of
+    std::uint32_t related = std::numeric_limits<std::uint32_t>::max();  // the pair that `relation` belongs to
     const auto relate = [&](std::uint32_t pair) {
         if (pair != related) relation = Relation(pairs[pair], Vec3(0.0));
         related = pair;
@@ -180,7 +180,7 @@ std::size_t PointshellContact::choose(std::span<const ContactPair> pairs, double
         visit(frontier_, 0);
     }
     while (!frontier_.empty()) {
-        // What the next level would be at most; a node of the tree says how much more its children hold.
+        // Upper bound of the size of the next level; each node stores how many more points its children have.
         std::size_t more = 0, children = 0;
         for (const Entry& entry : frontier_) {
             const ShellNode& node = pairs[entry.pair].shell->nodes[entry.node];
@@ -188,7 +188,7 @@ std::size_t PointshellContact::choose(std::span<const ContactPair> pairs, double
             children += node.children;
         }
         const std::size_t room = chosen_.capacity();
-        // If not all can be refined the nearest are first; equal ones in the order of pairs and nodes.
+        // When not all can be refined, the nearest come first; ties in the order of pairs and nodes.
         if (used + more > budget || chosen_.size() + frontier_.size() + children > room)
             std::ranges::sort(frontier_, {}, [](const Entry& e) { return std::tuple(e.clearance, e.pair, e.node); });
         next_.clear();

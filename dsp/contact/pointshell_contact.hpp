@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contact of pointshells with voxmaps: energy, its gradient and its stiffness with respect to a small motion.
+// Pointshell-voxmap contact: energy, its gradient and its stiffness with respect to a small motion.
 //
 // The motion. One body moves; ξ = (v, ω) is a small motion of it about the world point `about`, along world axes,
 // v in m, ω in rad: every point x of the body goes to about + v + exp([ω]×)(x − about). For the pose (p, R) of a body
-// held at `about` = p that is p ← p + v, R ← exp([ω]×) R (in quaternions: exp(ω/2) · q). All of gradient and stiffness is
+// with `about` = p this is p ← p + v, R ← exp([ω]×) R (in quaternions: exp(ω/2) · q). Gradient and stiffness are taken
 // at ξ = 0, in the order v.x v.y v.z ω.x ω.y ω.z, in N, N·m (gradient) and N/m, N/rad, N·m/rad (stiffness).
 //
 // With d and n = ∇d the interpolated distance and gradient at point i in world axes, r its lever from `about` and
 // J = (n, r × n):
 //     energy    Σ k w φ(−d)                     gradient  Σ −k w φ'(−d) J = ∂E/∂ξ
-//     stiffness Σ k w φ''(−d) J Jᵀ              (Gauss–Newton: symmetric, never negative; curvature left out)
+//     stiffness Σ k w φ''(−d) J Jᵀ              (Gauss–Newton: symmetric, positive semidefinite; curvature left out)
 // The wrench on the moving body is −gradient, about `about`. In the thesis' mode n in J is the point's inward normal.
 #pragma once
 
@@ -33,7 +33,7 @@ struct ContactPair {
     Pose shell_pose;
     const Voxmap* map = nullptr;
     Pose map_pose;
-    /// Which of the two moves with ξ. With false the map does and the shell stands: gradient changes sign.
+    /// True: the shell moves with ξ. False: the map moves and the shell is fixed; the gradient changes sign.
     bool shell_moves = true;
 };
 
@@ -44,8 +44,8 @@ struct ContactSum {
     double total_force = 0.0;  ///< N, Σ k w φ' over the points: the scale of rounding errors
     double penetration = 0.0;  ///< m, of the deepest point, 0 when none is inside
     std::size_t in_contact = 0;  ///< points with a force
-    std::size_t evaluated = 0;  ///< points whose distance was looked up
-    bool reduced = false;  ///< the budget did not suffice: some points were represented by a coarser level
+    std::size_t evaluated = 0;  ///< points whose distance was evaluated
+    bool reduced = false;  ///< the budget was too small: a coarser level stands for some points
 
     /// On the moving body, about `about`, world axes.
     Wrench wrench() const noexcept {
@@ -53,24 +53,24 @@ struct ContactSum {
     }
 };
 
-/// Every point of every pair, in double precision, one after the other: what the vectorised form is measured against.
-/// Pairs with a pose that is no pose, without points or without a map are left out. Does not allocate.
+/// Reference implementation: every point of every pair, in double precision, sequentially; the vectorised form is
+/// tested against it. Skips pairs with an invalid pose, without points or without a map. Does not allocate.
 ContactSum contact_reference(std::span<const ContactPair> pairs, const Vec3& about, const ContactLaw& law) noexcept;
 
-/// What is to be computed; the rest of the sum stays zero. `energy` serves a line search.
+/// The parts to compute; the rest of the sum stays zero. `energy` is for line searches.
 enum class ContactParts : std::uint8_t { energy, all };
 
-/// The same sums, vectorised and culled. Results do not depend on the processor: every variant of the kernel does the
-/// same single-precision operations in the same order. Differs from the reference by less than 1e-5 of Σ|f|.
+/// The same sums, vectorised and culled. The result does not depend on the processor: every variant of the kernel does
+/// the same single-precision operations in the same order. Differs from the reference by less than 1e-5 of Σ|f|.
 class PointshellContact {
 public:
-    /// Room for `most_nodes` nodes: the sum of shell->nodes.size() over the pairs of a call. Memory is taken here and
-    /// not later; with less room the parts farthest apart stay coarse.
+    /// Capacity for `most_nodes` nodes: the sum of shell->nodes.size() over the pairs of a call. All memory is
+    /// allocated here; when the capacity is exceeded, the farthest parts stay coarse.
     explicit PointshellContact(std::size_t most_nodes);
 
-    /// At most `budget` points are evaluated, but at least the coarsest chunk of each pair that may touch (64 points).
-    /// When the budget is too small the tree is refined level by level, nearest parts first, and where it is not, a
-    /// coarser point stands for those around it: forces are then approximate, and may step when the choice changes.
+    /// Evaluates at most `budget` points, but at least the coarsest chunk (64 points) of each pair that may touch. When
+    /// the budget is too small, the tree is refined level by level, nearest parts first; elsewhere a coarser point
+    /// represents its neighbours: forces are then approximate, and may jump when the selection changes.
     ContactSum operator()(std::span<const ContactPair> pairs, const Vec3& about, const ContactLaw& law,
                           std::size_t budget = std::numeric_limits<std::size_t>::max(),
                           ContactParts parts = ContactParts::all) noexcept;
@@ -81,7 +81,7 @@ private:
         double clearance;
     };
 
-    /// Fills chosen_ with the nodes to be evaluated; returns how many of them had to stay coarse.
+    /// Fills chosen_ with the nodes to evaluate; returns how many of them had to stay coarse.
     std::size_t choose(std::span<const ContactPair> pairs, double blend, std::size_t budget) noexcept;
 
     std::vector<Entry> frontier_, next_, chosen_;

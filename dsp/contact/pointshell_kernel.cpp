@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-// Highway compiles what follows once per instruction set; this file includes itself for it.
+// Highway compiles the rest of this file once per instruction set; the file includes itself for that.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "dsp/contact/pointshell_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -86,7 +86,7 @@ HWY_EXPORT(evaluate_chunks);
 
 namespace {
 
-/// What was compiled and can run here, better ones first (their bits are lower).
+/// Compiled variants that can run here, best first (better ones have lower bits).
 std::int64_t usable() { return HWY_TARGETS & (hwy::SupportedTargets() | HWY_STATIC_TARGET); }
 
 std::int64_t forced = 0;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The inner loop of PointshellContact: chunks of a shell against one voxmap, in single precision on 16 lanes.
 //
-// Everything is relative to the chunk: cells are counted from the cell that its centre lies in and offsets are a few
-// cells, so single precision resolves about 1e-6 cells. On every processor point i goes to lane i mod 16, lanes are summed
-// in the order of the points, and products are rounded before they are added, so the sums have the same bits.
+// Everything is relative to the chunk: cells count from the cell of its centre and offsets are a few cells, so single
+// precision resolves about 1e-6 cells. On every processor point i goes to lane i mod 16, lanes are summed in the order
+// of the points, and products are rounded before they are added, so the sums have the same bits.
 #pragma once
 
 #include "dsp/contact/contact_law.hpp"
@@ -18,35 +18,35 @@
 namespace tactus::contact::kernel {
 
 inline constexpr std::size_t lanes = 16;
-/// In one call. Lanes are summed in single precision within a call: few enough to keep seven digits.
+/// Per call. Lanes are summed in single precision within a call: few enough to keep seven digits.
 inline constexpr std::size_t most_chunks = 32;
 
-/// What a pair has in common for all chunks. Map frame.
+/// Data of a pair that all chunks share. Map frame.
 struct PairFrame {
     explicit PairFrame(const ContactLaw& contact_law) noexcept : law(contact_law) {}
 
     const float* values = nullptr;  ///< of the voxmap
-    std::ptrdiff_t row = 0, plane = 0;  ///< samples from one to the next along y and z
+    std::ptrdiff_t row = 0, plane = 0;  ///< number of samples from one row and one plane to the next
     int size[3] = {};
     float rotation[9] = {};  ///< rows of the rotation from shell to map
     float cells[9] = {};  ///< the same, in cells per metre
     float spacing[3] = {}, per_spacing[3] = {};  ///< m and 1/m
     float stiffness = 0.0f;  ///< k
-    float near = 0.0f;  ///< the quadratic field may reach the surface only where the trilinear one is below this, m
+    float near = 0.0f;  ///< m: the quadratic field can reach the surface only where the trilinear one is below this
     bool by_area = false, by_normal = false, quadratic = false, saturates = false, energy_only = false;
     /// Prefetches the samples of the next chunk while one is computed: pays when the map does not fit the caches.
     bool prefetches = false;
     DepthLaw<float> law;
 };
 
-/// A chunk's place. Cells count from `cell`, the one that holds the chunk's centre.
+/// Position of a chunk. Cells count from `cell`, the one that holds the chunk's centre.
 struct ChunkFrame {
     const ShellChunk* chunk = nullptr;
     std::ptrdiff_t base = 0;  ///< index of the sample at `cell`
     int cell[3] = {};
     float fraction[3] = {};  ///< of the centre within its cell
     float lever[3] = {};  ///< m, from the reference point to the corner of `cell`, map frame
-    std::size_t rows = 0;  ///< of 16 points that are held
+    std::size_t rows = 0;  ///< rows of 16 points in the chunk
     bool border = false;  ///< some point may lie outside of the grid or next to its border
 };
 
@@ -65,7 +65,7 @@ void evaluate(const PairFrame& pair, std::span<const ChunkFrame> chunks, LaneSum
 /// Variants that this processor can run, best first, and the one in use. For tests and reports.
 std::vector<std::string_view> variants();
 std::string_view variant_in_use();
-/// Uses that variant from now on, "" for the best. False when this processor cannot run it. Not while others compute.
+/// Selects a variant, "" for the best. False when this processor cannot run it. Not while others compute.
 bool use_variant(std::string_view name);
 
 }  // namespace tactus::contact::kernel

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the points of a chunk lie in a voxmap and what the field is there, 16 lanes at a time.
+// Positions of a chunk's points in a voxmap and the interpolated field there, 16 lanes at a time.
 // Part of pointshell_kernel.cpp; compiled once per instruction set.
 #if defined(TACTUS_POINTSHELL_KERNEL_FIELD) == defined(HWY_TARGET_TOGGLE)
 #ifdef TACTUS_POINTSHELL_KERNEL_FIELD
@@ -31,7 +31,7 @@ struct Field {
     V value, x, y, z;  // m; gradient per cell
 };
 
-/// Where the points of a chunk lie, in cells from the chunk's cell.
+/// Positions of a chunk's points, in cells from the chunk's cell.
 struct Places {
     alignas(64) float x[points], y[points], z[points];  // position
     alignas(64) float fx[points], fy[points], fz[points];  // within the point's own cell
@@ -49,7 +49,7 @@ HWY_INLINE V dot(const float* row, V x, V y, V z) {
 
 HWY_INLINE V mix(V a, V b, V t) { return hn::Add(a, hn::Mul(hn::Sub(b, a), t)); }
 
-/// Cell along one axis. On the border what lies outside gets weight 0 and a cell that exists.
+/// Cell along one axis. At the border, neighbours outside get weight 0 and a valid index.
 template <bool border, bool nearest>
 HWY_INLINE V corner(V p, int cell, int size, V& weight) {
     const V shift = hn::Set(d, nearest ? 0.5f : 0.0f);
@@ -98,7 +98,7 @@ struct Corners {
     alignas(64) float low[2 * points], y[2 * points], z[2 * points], yz[2 * points];
 };
 
-/// Copies eight bytes from each of two places, which are two neighbouring samples each.
+/// Copies eight bytes (two neighbouring samples) from each of two addresses.
 HWY_INLINE void copy_pairs(const float* a, const float* b, float* to) {
 #if HWY_TARGET == HWY_SCALAR
     std::memcpy(to, a, 8);
@@ -176,7 +176,7 @@ HWY_INLINE void fetch_taps(const PairFrame& pair, const ChunkFrame& at, const Pl
     }
 }
 
-/// Weights of the quadratic B-spline and their slopes at t from the nearest sample.
+/// Weights of the quadratic B-spline and their derivatives at t from the nearest sample.
 struct Spline {
     V weight[3], slope[3];
 

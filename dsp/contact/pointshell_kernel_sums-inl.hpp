@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What points in a field push with, and the sums over them.
+// The contact law of the points, and the sums over them.
 // Part of pointshell_kernel.cpp; compiled once per instruction set.
 #if defined(TACTUS_POINTSHELL_KERNEL_SUMS) == defined(HWY_TARGET_TOGGLE)
 #ifdef TACTUS_POINTSHELL_KERNEL_SUMS
@@ -13,7 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tactus::contact::kernel::HWY_NAMESPACE {
 
-/// Points that push, row by row: energy, force, stiffness, direction and moment.
+/// Points with a force, row by row: energy, force, stiffness, direction and moment.
 struct Pushes {
     std::size_t rows = 0;
     alignas(64) float energy[batch], force[batch], stiffness[batch];
@@ -32,7 +32,7 @@ HWY_INLINE Law ramp(V x, float width, float inverse_width) {
             hn::Add(ramped, e), share};
 }
 
-/// Writes what the points at l do into the row of pushes being filled. True when any of them pushes.
+/// Writes the contribution of the points at l to the row that is being filled. True when any of them has a force.
 HWY_INLINE bool respond(const PairFrame& pair, const ChunkFrame& at, const Places& places, const Field& field,
                         std::size_t l, std::size_t lane, Pushes& pushes, LaneSums& into) {
     const V weight = load(places.weight + l), depth = hn::Neg(field.value);

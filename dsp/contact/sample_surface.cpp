@@ -19,11 +19,11 @@ namespace {
 
 constexpr double least_distance = 0.77;  // of the spacing; leaves about one point per spacing²
 constexpr double candidates_per_point = 10.0;
-constexpr double finest = 1.0 / 3.0;  // of the spacing, where the surface turns
-// Points whose normals differ by more lie on different sides of an edge or of a thin wall.
+constexpr double finest = 1.0 / 3.0;  // of the spacing, at high curvature
+// Points whose normals differ by more than this lie on different sides of an edge or of a thin wall.
 constexpr double same_side = -0.3;
 
-/// Points by the cube they lie in; a query visits those in the 27 cubes around a place.
+/// Spatial hash of points by cubes; a query visits the 27 cubes around a position.
 class Cubes {
 public:
     Cubes(std::size_t expected, double side) : side_(side), head_(std::bit_ceil(2 * expected + 1), none) {}
@@ -72,7 +72,7 @@ private:
 
 struct Candidates {
     std::vector<Vec3> position, normal;
-    std::vector<double> area, radius;  // radius: no accepted point may be nearer
+    std::vector<double> area, radius;  // radius: minimum distance of accepted points
 };
 
 double area_of_triangle(const geometry::TriangleSurface& s, const std::array<int, 3>& t, Vec3& normal) {
@@ -83,14 +83,14 @@ double area_of_triangle(const geometry::TriangleSurface& s, const std::array<int
     return 0.5 * twice;
 }
 
-/// Points at random on the triangles, in proportion to their area: each triangle gets the whole part of its share and
-/// hands on the rest, so small triangles are not forgotten.
+/// Random points on the triangles, in proportion to area: each triangle gets the integer part of its share and passes
+/// the remainder on, so that small triangles are not lost.
 Candidates scatter(const geometry::TriangleSurface& surface, double per_area, const SurfaceSampling& sampling) {
     const Random random{sampling.seed};
     Candidates made;
     double owed = 0.5;
     std::uint64_t draw = 0;
-    double unplaced = 0.0;  // area of triangles that got no point yet
+    double unplaced = 0.0;  // area of triangles without a point so far
     for (const auto& triangle : surface.triangles) {
         Vec3 normal;
         const double area = area_of_triangle(surface, triangle, normal);
@@ -126,8 +126,8 @@ void follow_curvature(Candidates& all, const SurfaceSampling& sampling) {
     }
 }
 
-/// Takes candidates in random order, each unless an accepted one is too near, then gives every candidate's area to the
-/// nearest accepted one.
+/// Poisson-disc sampling by dart throwing: visits candidates in random order and accepts each one that keeps the
+/// distance to accepted ones, then adds every candidate's area to the nearest accepted point.
 std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling& sampling) {
     const std::size_t count = all.position.size();
     std::vector<std::uint32_t> order(count);
@@ -159,7 +159,7 @@ std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling&
         double nearest = std::numeric_limits<double>::infinity();
         std::uint32_t owner = 0;
         cubes.around(all.position[i], sampling.spacing, [&](std::uint32_t k, double d2) {
-            // Equal distances go to the lower index, whatever the order of visits.
+            // Ties go to the lower index, for any order of visits.
             const bool better = d2 < nearest || (d2 == nearest && k < owner);
             if (better && glm::dot(all.normal[i], all.normal[kept[k]]) >= same_side) nearest = d2, owner = k;
             return true;
@@ -169,14 +169,14 @@ std::vector<SurfacePoint> thin_out(const Candidates& all, const SurfaceSampling&
     return points;
 }
 
-/// The smoothed gradient where it says something.
+/// The smoothed gradient, where it is reliable.
 Vec3 normal_in(const Voxmap& map, const Vec3& position, const Vec3& otherwise) {
     const Vec3 out = map.smooth_sample(position).gradient;
     const double steep = glm::length(out);
     return steep > 0.5 ? out / steep : otherwise;
 }
 
-/// With a map, the turn of the surface is told by its normals: those of triangles follow the noise of the samples.
+/// With a map, curvature comes from its normals: those of the triangles follow the noise of the samples.
 std::vector<SurfacePoint> spread(const geometry::TriangleSurface& surface, const SurfaceSampling& sampling, const Voxmap* map) {
     if (!(sampling.spacing > 0.0) || !std::isfinite(sampling.spacing))
         throw Error("the spacing of a pointshell must be positive");
@@ -217,7 +217,7 @@ std::vector<SurfacePoint> sample_surface(const volume::Grid& distance, const Sur
             const double steep2 = glm::dot(here.gradient, here.gradient);
             if (!here.inside || steep2 < 0.25) break;
             const Vec3 move = here.gradient * (here.value / steep2);
-            // Where the field has a kink a step may lead astray; the triangle's point is near enough.
+            // Where the field has a kink a step may go astray; the triangle's point is then close enough.
             if (glm::length(move) > 0.5 * glm::length(distance.spacing)) break;
             point.position -= move;
         }

@@ -45,7 +45,7 @@ std::vector<SurfacePoint> spread_over_ball(int count, double radius) {
 double Ball::distance(const Vec3& p) const { return glm::length(p) - radius; }
 
 std::vector<SurfacePoint> Ball::points(double spacing) const {
-    // Points of a triangular lattice stand for √3/2 of their spacing squared.
+    // Points of a triangular lattice represent √3/2 of their spacing squared.
     const double area = 4.0 * std::numbers::pi * radius * radius;
     return spread_over_ball(std::max(4, static_cast<int>(area / (0.866 * spacing * spacing))), radius);
 }
@@ -90,7 +90,7 @@ double Revolved::distance(const Vec3& p) const {
     for (std::size_t i = 0; i < profile.size(); ++i) {
         const glm::dvec2 a = profile[i], b = profile[(i + 1) % profile.size()], ab = b - a;
         if ((a.y > q.y) != (b.y > q.y) && q.x < a.x + (q.y - a.y) / ab.y * ab.x) inside = !inside;
-        // An edge on the axis is inside of the solid.
+        // An edge on the axis is inside the solid.
         if (a.x == 0.0 && b.x == 0.0) continue;
         const double length2 = glm::dot(ab, ab);
         const double t = length2 > 0.0 ? std::clamp(glm::dot(q - a, ab) / length2, 0.0, 1.0) : 0.0;
@@ -107,7 +107,7 @@ std::vector<SurfacePoint> Revolved::points(double spacing) const {
         if ((a.x == 0.0 && b.x == 0.0) || length == 0.0) continue;
         const glm::dvec2 out(ab.y / length, -ab.x / length);
         const int rings = parts(length, spacing);
-        // Rings begin at each corner, where two edges meet, and end one short of the next.
+        // Rings start at each corner, where two edges meet, and end one ring before the next corner.
         const bool closes = b.x == 0.0;
         for (int r = 0; r < rings + (closes ? 1 : 0); ++r) {
             const glm::dvec2 at = a + ab * (static_cast<double>(r) / rings);

@@ -17,7 +17,7 @@ namespace tactus::contact {
 
 namespace {
 
-// Where steps to the 26 neighbours are bounded by their length, a straight line is by this times its own:
+// Paths of steps to the 26 neighbours are longer than a straight line by at most this factor:
 // √(1 + (√2 − 1)² + (√3 − √2)²).
 constexpr double lattice_factor = 1.1284;
 constexpr std::size_t most_samples = std::size_t(1) << 30;
@@ -84,7 +84,7 @@ Voxmap make_voxmap(volume::Grid distance) {
 
 Voxmap make_voxmap(const volume::BoneSnapshot& bone) {
     volume::Grid grid = volume::to_grid(bone);
-    // Bricks reach beyond the band; cut there, so that the field does not jump where none is stored.
+    // Bricks extend beyond the band; the field is clamped there, so that it does not jump where none is stored.
     const auto far = static_cast<float>(bone.layout().far);
     for (float& d : grid.values) d = std::min(d, far);
     Voxmap map = make_voxmap(std::move(grid));
@@ -116,15 +116,17 @@ double Voxmap::least_within(const Vec3& position, double radius) const noexcept 
     const double outside2 = glm::dot(away, away);
     double radius2 = radius * radius;
     if (outside2 != 0.0) {
-        // Written so that a NaN is far away.
+        // The comparison treats NaN as far away.
         if (!(outside2 < radius2)) return far;
-        // What the grid holds of a ball about a point outside is in a smaller ball about the nearest point of the grid.
+        // The part of the grid inside a ball about an outside point lies in a smaller ball about the nearest point of
+        // the grid.
         radius2 -= outside2;
     }
-    // An interpolant is a mean of samples that are this far from where it is read, in the mean square.
+    // An interpolant is a weighted mean of samples; this is their root mean square distance from the evaluated
+    // position.
     const double spread2 = 0.25 * glm::dot(grid.spacing, grid.spacing);
     const double fall = steepness * (std::sqrt(radius2 + spread2) + std::sqrt(spread2));
-    // The nearest sample is at most half of a diagonal away, which is the spread.
+    // The nearest sample is at most half a cell diagonal away, which is the spread.
     const Vec3 cell = (nearest - grid.origin) / grid.spacing;
     const auto index = [](double x, int size) { return std::min(static_cast<int>(x + 0.5), size - 1); };
     const float value = grid.at(index(cell.x, grid.size[0]), index(cell.y, grid.size[1]), index(cell.z, grid.size[2]));
@@ -138,7 +140,7 @@ volume::Grid chamfer_distance(const volume::Grid& distance) {
         throw Error("the 3-4-5 distance needs cubic cells; resample the body first");
     if (distance.values.size() != distance.count()) throw Error("a distance grid is incomplete");
     const auto [nx, ny, nz] = distance.size;
-    // Steps to the nearest sample of the other side, for both sides at once.
+    // Distance in steps to the nearest sample of the other side, for both sides at once.
     std::vector<std::int32_t> steps(distance.count(), 1 << 28);
     const auto inside = [&](std::size_t n) { return distance.values[n] < 0.0f; };
     const auto pass = [&](int direction) {

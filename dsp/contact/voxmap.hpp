@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The distance field around a body on a dense grid: what pointshells are tested against.
+// Voxmap: the distance field around a body on a dense grid, against which pointshells are tested.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -10,34 +10,34 @@
 
 namespace tactus::contact {
 
-/// Signed distances to a body (m, negative inside) at the samples of a grid in the body's frame. Never changes.
-/// Between the samples it is interpolated, and gradients are exact derivatives of the interpolant, so forces made of
-/// them belong to an energy. Outside of the grid it reads `far` with gradient 0: leave a margin of some voxels around
-/// the surface, or make the field end where the body does not.
+/// Signed distances to a body (m, negative inside) at the samples of a grid in the body's frame. Immutable. Values are
+/// interpolated between samples and gradients are exact derivatives of the interpolant, so that forces made of them
+/// have an energy. Outside of the grid the value is `far` with gradient 0: leave a margin of some voxels around the
+/// surface, or let the field end where the body does not.
 struct Voxmap {
     static constexpr std::string_view wire_name = "voxmap";
 
     volume::Grid grid;             ///< at least 2 samples per axis
-    double far = 1.0;      ///< m, what is read outside of the grid
+    double far = 1.0;  ///< m, value outside of the grid
     double steepness = 1.0;  ///< greatest |difference| of neighbouring samples (26) per distance, at least 1
 
     /// Trilinear value and its exact gradient. `position` in the body's frame, m.
     volume::Sample sample(const Vec3& position) const noexcept;
     /// The same of a quadratic B-spline over 27 samples (border repeated): continuous gradient.
     volume::Sample smooth_sample(const Vec3& position) const noexcept;
-    /// No point within `radius` of `position` reads less than this from either interpolant: what a whole group of
-    /// points is left out by. Outside of the grid, the distance to the grid counts.
+    /// Lower bound of either interpolant within `radius` of `position`; culls whole groups of points. Outside of the
+    /// grid, the distance to the grid counts.
     double least_within(const Vec3& position, double radius) const noexcept;
 };
 
-/// Takes a distance grid as it is. Throws Error for less than 2 samples along an axis, spacings that are not positive,
-/// more than 2³⁰ samples and values that are not finite.
+/// Takes a distance grid unchanged. Throws Error for fewer than 2 samples along an axis, spacings that are not
+/// positive, more than 2³⁰ samples and values that are not finite.
 Voxmap make_voxmap(volume::Grid distance);
 
-/// Of one version of a bone: exact near its surface, `far` where it stores no bricks.
+/// From one version of a bone: exact near its surface, `far` where it stores no bricks.
 Voxmap make_voxmap(const volume::BoneSnapshot& bone);
 
-/// Samples any distance function `distance(Vec3) -> m` at the places of `layout` (whose values are not read).
+/// Samples a distance function `distance(Vec3) -> m` at the samples of `layout` (its values are not read).
 template <class Distance>
 Voxmap sample_voxmap(volume::Grid layout, const Distance& distance) {
     layout.values.resize(layout.count());
@@ -48,9 +48,9 @@ Voxmap sample_voxmap(volume::Grid layout, const Distance& distance) {
     return make_voxmap(std::move(layout));
 }
 
-/// The distance that the thesis used, for comparison: whole steps between samples, 3 along an axis, 4 and 5 along
-/// diagonals of faces and cells (Borgefors 1986), divided by 3 and counted from the middle between inside and outside,
-/// taken from the signs of `distance` alone. Needs cubic cells (within 0.1 %); throws Error otherwise.
+/// The distance of the thesis, for comparison: a 3-4-5 chamfer distance (Borgefors 1986; 3 along an axis, 4 and 5 along
+/// the diagonals of faces and cells), divided by 3 and measured from the middle between inside and outside samples.
+/// Uses the signs of `distance` only. Needs cubic cells (within 0.1 %); throws Error otherwise.
 volume::Grid chamfer_distance(const volume::Grid& distance);
 
 }  // namespace tactus::contact

@@ -34,7 +34,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
     const std::string* best = nullptr;
-    // Half of a long word may be wrong, or its beginning typed: beyond that a guess only confuses.
+    // More edits than half of the word's length give no useful suggestion.
     std::size_t least = std::max<std::size_t>(2, word.size() / 2) + 1;
     for (const std::string& candidate : candidates) {
         const bool prefix = word.size() >= 2 && (candidate.starts_with(word) || word.starts_with(candidate));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one exception type for bad input. Thrown only while things are loaded or prepared, never in a tick.
+// The one exception type for bad input. Thrown only while loading or preparing, never in a tick.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace tactus {
 
-/// Where in a text file something is; line and column count from 1, 0 means unknown.
+/// A place in a text file; line and column count from 1, 0 means unknown.
 struct SourceLocation {
     std::string file;
     int line = 0;

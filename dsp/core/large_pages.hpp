@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Large arrays that are read here and there: with pages of 2 MB the processor finds its way in them at once.
+// 2 MB pages for large arrays with random access: fewer misses of the address-translation cache (TLB).
 #pragma once
 
 #include <cstddef>
@@ -11,15 +11,15 @@
 
 namespace tactus {
 
-/// Asks for large pages under what has been reserved but not yet written: what it holds is lost. Only a hint; asks the
-/// system.
+/// Requests large pages for memory that was reserved but not yet written: its content is lost. Only a hint. Makes a
+/// system call.
 inline void prefer_large_pages([[maybe_unused]] void* data, [[maybe_unused]] std::size_t bytes) {
 #if defined(__linux__)
     constexpr std::uintptr_t page = std::uintptr_t(1) << 21;
     const auto begin = reinterpret_cast<std::uintptr_t>(data), first = (begin + page - 1) & ~(page - 1),
                end = (begin + bytes) & ~(page - 1);
     if (first >= end) return;
-    // Memory that was used before keeps its small pages; given back, it comes anew.
+    // Used memory keeps its small pages; released, it comes back with large ones.
     madvise(reinterpret_cast<void*>(first), end - first, MADV_DONTNEED);
     madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often which size occurred, in memory that does not grow.
+// Quantiles from a histogram of fixed size.
 #pragma once
 
 #include <algorithm>
@@ -17,10 +17,10 @@ public:
         ++total_;
         greatest_ = std::max(greatest_, x);
         const double at = x > 0.0 ? (std::log10(x) + 12.0) * per_decade : 0.0;
-        // Written so that what is no number falls into the last class.
+        // The comparison puts NaN in the last class.
         ++counts_[at < static_cast<double>(classes) ? static_cast<std::size_t>(std::max(at, 0.0)) : classes - 1];
     }
-    /// Upper end of the class that holds that share of the numbers, at most the greatest of them; 0 without any.
+    /// Upper limit of the class that contains this quantile, at most the greatest number added; 0 without numbers.
     double quantile(double share) const noexcept {
         const double wanted = share * static_cast<double>(total_);
         std::uint64_t below = 0;

@@ -8,7 +8,7 @@
 
 namespace tactus {
 
-/// How many real-time scopes the calling thread is inside of. Read by the test interposer.
+/// Number of real-time scopes that the calling thread is in. Read by the test interposer.
 extern thread_local constinit int realtime_depth;
 
 struct RealtimeScope {
@@ -18,8 +18,8 @@ struct RealtimeScope {
     RealtimeScope& operator=(const RealtimeScope&) = delete;
 };
 
-/// Denormal numbers read and written as zero on the calling thread: a decaying filter costs 20 times more on them.
-/// Every computing thread calls this, offline and while preparing too, so that results agree.
+/// Flushes denormal numbers to zero on the calling thread: they slow a decaying filter 20-fold. Every computing thread
+/// calls this, also offline and while preparing, so that results agree.
 inline void flush_denormals_to_zero() noexcept {
 #if defined(__SSE2__)
     _mm_setcsr(_mm_getcsr() | 0x8040);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bounded queue from one thread to another.
+// Lock-free single-producer single-consumer (SPSC) ring buffer.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace tactus {
 
-/// Queue for exactly one writing and one reading thread. Writer and reader each keep their own count on their own cache
-/// line with a remembered copy of the other's, so the lines travel between cores only when the copy runs out.
+/// Queue for exactly one writing and one reading thread. Each side keeps its counter on its own cache line, with a copy
+/// of the other's, so the lines move between cores only when the copy is exhausted.
 template <typename T>
 class Ring {
     static_assert(std::is_trivially_destructible_v<T>, "slots are overwritten without destructors");
@@ -68,8 +68,8 @@ public:
 
 private:
     struct alignas(64) Side {
-        std::atomic<std::uint64_t> count{0};  // values ever moved by this side
-        std::uint64_t other = 0;  // the other side's count when last looked at
+        std::atomic<std::uint64_t> count{0};  // number of values that this side has moved
+        std::uint64_t other = 0;  // copy of the other side's count
     };
 
     std::size_t mask_;

@@ -8,7 +8,7 @@
 
 namespace tactus {
 
-/// Rotation vector of `to` relative to `from`, world axes, shortest way: exp(θ) · from = to.
+/// Rotation vector of `to` relative to `from`, world axes, shortest rotation: exp(θ) · from = to.
 inline Vec3 rotation_between(const Quat& from, const Quat& to) noexcept {
     Quat q = to * glm::conjugate(from);
     if (q.w < 0.0) q = -q;
@@ -20,7 +20,7 @@ inline Vec3 rotation_between(const Quat& from, const Quat& to) noexcept {
 /// exp(θ): the rotation about θ by |θ|.
 inline Quat rotation_by(const Vec3& theta) noexcept {
     const double angle = glm::length(theta);
-    // The series keeps the quotient defined at rest; its error is below the last bit there.
+    // Near zero the series defines the quotient; its error is below one ulp there.
     const double half_sinc = angle < 1e-6 ? 0.5 - angle * angle / 48.0 : std::sin(0.5 * angle) / angle;
     return {std::cos(0.5 * angle), half_sinc * theta.x, half_sinc * theta.y, half_sinc * theta.z};
 }

@@ -11,7 +11,7 @@ namespace tactus {
 
 namespace {
 
-/// Sum over `count` samples, a multiple of 4, that start at a key of even index.
+/// Sum over `count` samples, a multiple of 4, with keys from an even index on.
 std::uint64_t sum_of_pairs(const float* samples, const std::uint32_t* keys, std::size_t count) noexcept {
 #if defined(__SSE2__)
     __m128i total = _mm_setzero_si128();

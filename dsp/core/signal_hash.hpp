@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Running 64-bit hash over the samples of a signal: made so that a block of samples is hashed by vector instructions and
-// any partition into blocks gives the same value.
+// Running 64-bit hash over the samples of a signal: vector instructions hash a block of samples, and any partition into
+// blocks gives the same value.
 #pragma once
 
 #include "dsp/core/hash.hpp"
@@ -12,9 +12,9 @@
 
 namespace tactus {
 
-/// To the raw bits of each sample a key is added, pairs are multiplied to 64 bits, and 256 samples make a sum (NH, Black
-/// et al. 1999, the core of UMAC); sums are chained. Sums of integers do not depend on the order, so lanes of a vector
-/// may be added as they come.
+/// Adds a key to the raw bits of each sample, multiplies pairs to 64 bits and sums 256 samples (NH, Black et al. 1999,
+/// the core of UMAC); the sums are chained. Integer sums do not depend on the order, so vector lanes may be added in
+/// any order.
 struct SignalHash {
     static constexpr std::size_t window = 256;
     using Keys = std::array<std::uint32_t, window>;
@@ -23,7 +23,7 @@ struct SignalHash {
     std::uint64_t sum = 0;
     std::uint32_t first_of_pair = 0;
 
-    /// The sample after `position` others. Wait-free.
+    /// Adds the sample number `position`. Wait-free.
     void add(std::uint64_t position, float sample) noexcept {
         const std::size_t at = position % window;
         const std::uint32_t keyed = std::bit_cast<std::uint32_t>(sample) + keys[at];
@@ -34,7 +34,7 @@ struct SignalHash {
         sum += std::uint64_t{first_of_pair} * keyed;
         if (at == window - 1) close();
     }
-    /// The `count` samples after `position` others. Wait-free.
+    /// Adds `count` samples from number `position` on. Wait-free.
     void add(std::uint64_t position, const float* samples, std::size_t count) noexcept;
 
     /// Hash of all `position` samples so far.

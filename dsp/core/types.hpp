@@ -51,7 +51,7 @@ inline bool is_finite(const Quat& q) {
 }
 inline bool is_finite(const Wrench& w) { return is_finite(w.force) && is_finite(w.torque); }
 
-/// True for a pose a device may deliver: every number finite and the quaternion of unit length within 1 %.
+/// True for a valid pose: every number finite and the quaternion of unit length within 1 %.
 inline bool is_valid(const Pose& pose) {
     return is_finite(pose.position) && is_finite(pose.orientation) &&
            std::abs(glm::dot(pose.orientation, pose.orientation) - 1.0) < 0.02;

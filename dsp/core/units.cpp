@@ -80,7 +80,7 @@ int eat_power(std::string_view& text) {
     int power = 0;
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), power);
     if (failure != std::errc{} || std::abs(power) > 9)
-        throw Error("a unit's power must be a small whole number, as in m^2");
+        throw Error("the exponent of a unit must be a small integer, as in m^2");
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
     return power;
 }
@@ -95,7 +95,7 @@ void multiply(Unit& into, const Unit& factor, int power) {
     into.factor *= std::pow(factor.factor, power);
     for (std::size_t i = 0; i < Dimension::base_count; ++i) {
         const int sum = into.dimension.exponent[i] + power * factor.dimension.exponent[i];
-        if (std::abs(sum) > 100) throw Error("the unit's power is out of range");
+        if (std::abs(sum) > 100) throw Error("the exponent of the unit is out of range");
         into.dimension.exponent[i] = static_cast<std::int8_t>(sum);
     }
 }
@@ -157,7 +157,7 @@ double parse_as(std::string_view text, std::string_view like) {
 
 std::string format_quantity(double si, std::string_view unit) {
     const double value = si / parse_unit(unit).factor;
-    // Twelve digits hide the last-bit noise of the conversion and keep every digit a user typed.
+    // Twelve digits hide the rounding of the conversion and keep every digit that a user typed.
     return unit.empty() ? fmt::format("{:.12g}", value) : fmt::format("{:.12g} {}", value, unit);
 }
 

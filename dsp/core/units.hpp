@@ -9,7 +9,7 @@
 
 namespace tactus {
 
-/// Exponents of the base units. Angle and CT number are kept apart so that Hz is not rad/s and HU is not a bare number.
+/// Exponents of the base units. Angle and CT number count as base units so that Hz is not rad/s and HU is not a number.
 struct Dimension {
     enum Base { metre, kilogram, second, ampere, radian, hounsfield, base_count };
     std::array<std::int8_t, base_count> exponent{};
@@ -19,16 +19,16 @@ struct Dimension {
 };
 
 struct Quantity {
-    double value = 0.0;  ///< in SI
+    double value = 0.0;  ///< in SI units
     Dimension dimension;
 };
 
 struct Unit {
-    double factor = 1.0;  ///< SI value of one of it
+    double factor = 1.0;  ///< SI value of one unit
     Dimension dimension;
 };
 
-/// A unit expression: factors separated by a space, '·' or '*', '/' divides by the next factor, '^n', '²' and '³' are
+/// Parses a unit: factors separated by a space, '·' or '*'; '/' divides by the next factor; '^n', '²' and '³' are
 /// powers. Throws Error naming the unknown unit.
 Unit parse_unit(std::string_view text);
 
@@ -36,10 +36,10 @@ Unit parse_unit(std::string_view text);
 Quantity parse_quantity(std::string_view text);
 
 /// SI value of `text`, which must have the dimension of `like` ("N/m", "Hz"; "" for a bare number). Throws Error with
-/// an example of what is expected.
+/// an example of the expected form.
 double parse_as(std::string_view text, std::string_view like);
 
-/// "800 N/m" for people: the SI value divided by the unit's factor, shortest form.
+/// "800 N/m": the SI value divided by the unit's factor, in shortest form, for display.
 std::string format_quantity(double si, std::string_view unit);
 
 }  // namespace tactus

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two springs between a hand and the proxy of what it holds, one for the place and one for the turn.
+// The two springs of a virtual coupling, translational and rotational, between the hand and the proxy of a held body.
 #pragma once
 
 #include "dsp/core/rotation.hpp"
@@ -12,7 +12,7 @@
 
 namespace tactus::coupling {
 
-/// A spring whose force stays at `limit` once it is stretched that far: energy ½ k u² up to there, straight on beyond.
+/// A spring with saturated force: energy ½ k u² until the force reaches `limit`, linear beyond.
 struct SaturatedSpring {
     double stiffness = 0.0;  ///< N/m or N·m/rad
     double limit = std::numeric_limits<double>::infinity();  ///< N or N·m
@@ -20,7 +20,7 @@ struct SaturatedSpring {
     struct Value {
         double energy = 0.0;   ///< J
         Vec3 force{0.0};       ///< d energy / d stretch
-        double curvature = 0.0;  ///< of the parabola that touches the energy and never lies below it
+        double curvature = 0.0;  ///< of a parabola that touches the energy and is never below it (majorant)
     };
 
     Value operator()(const Vec3& stretch) const noexcept {
@@ -34,8 +34,8 @@ struct CouplingSprings {
     SaturatedSpring linear{1000.0, 10.0}, angular{1.0, 0.5};
 };
 
-/// Rotation vector of `to` relative to `from`, of the two ways round the one that is nearer to `before`: a hand that turns
-/// on past half a turn keeps being pulled back the way it came.
+/// Rotation vector of `to` relative to `from`; of the two possible ones, the nearer to `before`: a hand that turns
+/// beyond half a turn is still pulled back the way it came.
 inline Vec3 rotation_near(const Quat& from, const Quat& to, const Vec3& before) noexcept {
     const Vec3 short_way = rotation_between(from, to);
     const double angle = glm::length(short_way);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dynamic coupling: the held body has mass, springs and dampers pull it to the hand, contact pushes it.
+// Dynamic virtual coupling: the held body has mass, springs and dampers pull it to the hand, contact pushes it.
 #pragma once
 
 #include "dsp/coupling/quasi_static.hpp"
@@ -9,7 +9,7 @@ namespace tactus::coupling {
 struct DynamicSettings {
     CouplingSprings springs;
     double mass = 0.1;               ///< kg
-    double inertia = 1e-4;           ///< kg·m², the same about every axis through the handle
+    double inertia = 1e-4;  ///< kg·m², the same about every axis through the handle
     double damping = 10.0;           ///< N·s/m between hand and body
     double angular_damping = 0.01;   ///< N·m·s/rad
     double step = 0.5e-3, reach = 0.05;  ///< m, as in QuasiStaticSettings
@@ -19,13 +19,13 @@ struct DynamicState {
     Pose proxy;
     Twist twist;
     Wrench wrench;  ///< on the hand: spring and damper
-    contact::ContactSum contact;  ///< where the last step began
+    contact::ContactSum contact;  ///< at the start of the last step
     bool hand_is_valid = true;
 };
 
-/// Backward Euler, linearised once per tick: one contact evaluation and one 6 × 6 system. The stiffness of contact and
-/// springs enters implicitly, so that no stiffness and no step makes it blow up; fast motion is damped in exchange. The
-/// gyroscopic torque of a body with equal inertias is none.
+/// Linearly implicit (backward) Euler: one contact evaluation and one 6 × 6 system per tick. The stiffness of contact
+/// and springs enters implicitly, so the step is stable for any stiffness and time step; fast motion is damped in
+/// exchange. With equal inertias the gyroscopic torque is zero.
 class DynamicCoupling {
 public:
     DynamicSettings settings;
@@ -48,7 +48,7 @@ public:
         turn_ = rotation_near(hand_.orientation, state_.proxy.orientation, turn_);
         const auto linear = s.springs.linear(state_.proxy.position - hand_.position);
         const auto angular = s.springs.angular(turn_);
-        // (M/h² + D/h + K) δ = M v/h + D v_hand − forces, for the way δ of this tick.
+        // (M/h² + D/h + K) δ = M v/h + D v_hand − forces, for the displacement δ of this tick.
         geometry::Matrix6 k = state_.contact.stiffness;
         geometry::Vector6 push{}, displacement{};
         for (int i = 0; i < 3; ++i) {

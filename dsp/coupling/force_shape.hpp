@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gain and soft limit of a force: the direction stays, the size levels off without a corner.
+// Gain and soft limit of a force: the direction stays, the magnitude saturates smoothly.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -10,7 +10,8 @@
 
 namespace tactus::coupling {
 
-/// Sizes up to `straight` pass; beyond, they approach `most` with a continuous slope. `most` ≤ `straight` cuts off there.
+/// Magnitudes up to `straight` pass; larger ones approach `most` with a continuous slope. Hard limit if `most` ≤
+/// `straight`.
 inline double soft_limit(double size, double straight, double most) noexcept {
     if (!(size > straight)) return size;
     if (!(most > straight)) return most;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A held body that is led to a place while it keeps touching what is in its way.
+// Guides a held body to a target while it stays in contact with obstacles.
 #pragma once
 
 #include "dsp/coupling/coupling_spring.hpp"
@@ -10,15 +10,15 @@
 
 namespace tactus::coupling {
 
-/// Contact of the held body and a second pair of saturated springs, to a target: the hand feels no more of them than they
-/// can pull, and can always pull harder.
+/// Contact of the held body plus a second pair of saturated springs to a target. The hand feels at most the springs'
+/// limits and can always pull harder.
 class GuidedContact {
 public:
     CouplingSprings springs{{1000.0, 8.0}, {1.0, 0.3}};
-    double share = 0.0;  ///< of the springs' energy that counts, 0 to 1
+    double share = 0.0;  ///< scale of the springs' energy, 0 to 1
     Pose target;  ///< of the handle
 
-    /// `contact` must live as long as this.
+    /// `contact` must outlive this object.
     explicit GuidedContact(HeldContact& contact) noexcept : contact_(contact) {}
 
     contact::ContactSum operator()(const Pose& handle, contact::ContactParts parts) noexcept {

@@ -10,10 +10,11 @@ namespace tactus::coupling {
 
 namespace {
 
-// A balanced tree of four children per node has a third more nodes than leaves, of which some are not full.
+// A tree with four children per node has a third more nodes than leaves; some leaves are not full.
 std::size_t nodes_of(std::size_t points) { return 2 * (points / contact::chunk_points + 1) + 64; }
 
-/// The way that no point of the shell can touch the map within. The upper levels of the shell's tree stand for it.
+/// Distance that every point of the shell can move without touching the map; computed from the upper levels of its
+/// tree.
 double clearance_of(const contact::ContactPair& pair, double enough) noexcept {
     constexpr std::size_t most_nodes = 96;
     const Pose into_map = pair.map_pose.inverse() * pair.shell_pose;

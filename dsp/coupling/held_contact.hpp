@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contact of the body in the hand with everything else of a scene, as the couplings ask for it.
+// Contact of the held body with all other bodies of a scene, in the form that the couplings use.
 #pragma once
 
 #include "dsp/contact/pointshell_contact.hpp"
@@ -14,20 +14,21 @@ namespace tactus::coupling {
 
 class HeldContact {
 public:
-    /// Room for pointshells of together `most_points` points; memory is taken here and not later.
+    /// Capacity for pointshells with `most_points` points in total; all memory is allocated here.
     explicit HeldContact(std::size_t most_points);
 
-    /// From now on: body `held` of `scene` (which must live meanwhile), standing at handle ∘ `grip`, against all others.
-    /// What is of one unit with it moves along, where it stands in `scene`, and touches what else there is.
-    /// `both_ways`: the points of the others are tried against the held body's distance too. A `held` that is no place
-    /// in the scene is not there and touches nothing.
+    /// Sets body `held` of `scene` (which must stay alive), at pose handle ∘ `grip`, against all others. Bodies of the
+    /// same unit move with it from their poses in `scene` and touch the others too. `both_ways`: also tests the others'
+    /// points against the held body's distance. When `held` is no valid place in the scene, nothing is held and nothing
+    /// touches.
     void set(const Scene& scene, int held, const Pose& grip, const contact::ContactLaw& law, bool both_ways,
              std::size_t budget = std::numeric_limits<std::size_t>::max()) noexcept;
 
     contact::ContactSum operator()(const Pose& handle, contact::ContactParts parts) noexcept;
-    /// m; see HeldContactLike. 0 when something may be touching.
+    /// m; see HeldContactLike. 0 when something may be in contact.
     double clearance(const Pose& handle) const noexcept;
-    /// Farthest point of the held body from the handle and root mean square distance, m; 0 without points.
+    /// Greatest distance of the held body's points from the handle, and their root mean square distance, m; 0 without
+    /// points.
     double reach() const noexcept;
     double gyration() const noexcept;
 
@@ -37,10 +38,10 @@ private:
 
     contact::PointshellContact kernel_;
     contact::ContactLaw law_;
-    // Half of the objects against the other half is the most there can be.
+    // The maximum number of pairs: one half of the objects against the other half.
     static constexpr std::size_t most_pairs = Scene::most_objects * Scene::most_objects / 2;
     std::array<contact::ContactPair, most_pairs> pairs_;
-    std::array<Pose, most_pairs> beside_;  ///< of the moving body of a pair in the frame of the held one
+    std::array<Pose, most_pairs> beside_;  ///< pose of a pair's moving body in the frame of the held one
     std::size_t count_ = 0, budget_ = 0;
     const contact::Pointshell* held_shell_ = nullptr;
     Pose grip_;

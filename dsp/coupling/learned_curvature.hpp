@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Gauss–Newton leaves out of the stiffness of a loaded contact: how the surfaces curve under their forces. It is
-// learned from how the balance changed over the steps that were tried, by symmetric updates of rank one (Conn, Gould and
-// Toint 1991) on top of the known part, as structured quasi-Newton methods do, and kept from tick to tick: a contact
-// that slides is much the same a millisecond later. Where gradients jump (a trilinear field at cell faces) what was
-// learned may mislead; it is used as long as it has mostly led downhill.
+// The part of a loaded contact's stiffness that Gauss–Newton neglects: the curvature of the surfaces times their
+// forces. Learned as in structured quasi-Newton methods from the change of the gradient over the tried steps, by
+// symmetric rank-one updates (SR1; Conn, Gould and Toint 1991) on top of the known part, and kept from tick to tick,
+// since a sliding contact changes little within a millisecond. Where gradients jump (a trilinear field at cell faces)
+// the learned part may mislead; it is used as long as it has mostly led downhill.
 #pragma once
 
 #include "dsp/geometry/symmetric6.hpp"
@@ -17,9 +17,9 @@ class LearnedCurvature {
 public:
     void forget() noexcept { extra_ = {}; }
 
-    /// Whether the next step should trust it. Now and then it is given another chance.
+    /// Whether the next step should use the learned part. After failures it is retried now and then.
     bool is_trusted() noexcept { return trust_ > 0 || ++passed_over_ % chance_every == 0; }
-    /// What came of a whole step that trusted it.
+    /// Reports the result of a whole step that used it.
     void judge(bool went_down) noexcept {
         trust_ = went_down ? std::min(trust_ + 1, most_trust) : std::max(trust_ - 2, -most_trust);
     }
@@ -30,8 +30,8 @@ public:
         return sum;
     }
 
-    /// Over the step s (m, rad) the gradient (N, N·m) changed by `change`, where `known` is the stiffness as far as it is
-    /// known. `lever` (m) weighs turns against shifts.
+    /// The gradient (N, N·m) changed by `change` over the step s (m, rad); `known` is the known stiffness. `lever` (m)
+    /// weighs rotations against translations.
     void learn(const geometry::Vector6& s, const geometry::Vector6& change, const geometry::Matrix6& known, double lever) noexcept {
         geometry::Vector6 rest{};
         double along = 0.0, rests = 0.0, steps = 0.0;
@@ -43,7 +43,7 @@ public:
             rests += rest[i] * rest[i] / (scale * scale);
             steps += s[i] * s[i] * scale * scale;
         }
-        // A rest nearly across the step says nothing about the curvature along it.
+        // SR1 safeguard: a remainder nearly orthogonal to the step holds no curvature along it.
         if (!(std::abs(along) > least_share * std::sqrt(rests * steps))) return;
         for (std::size_t i = 0; i < 6; ++i)
             for (std::size_t j = 0; j < 6; ++j) extra_[6 * i + j] += rest[i] * rest[j] / along;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does a scene give the hand more energy than it took, and a damper that takes it back.
+// Time-domain passivity observer and controller (TDPA).
 #pragma once
 
 #include "dsp/core/rotation.hpp"
@@ -12,19 +12,19 @@
 
 namespace tactus::coupling {
 
-/// Passivity observer and controller in the time domain (Hannaford and Ryu 2002), with the force of a tick held until
-/// the next: the energy that the hand put in so far, less what it got back. Below zero the scene is active.
+/// TDPA after Hannaford and Ryu (2002), for a force that is held during a tick: observes the net energy that the hand
+/// has put in. The scene is active when it is negative.
 class PassivityObserver {
 public:
     struct Value {
         Wrench wrench;         ///< on the hand, with the damper
-        double energy = 0.0;   ///< J, put in by the hand so far
+        double energy = 0.0;  ///< J, net energy put in by the hand so far
         double damping = 0.0;  ///< N·s/m, of the damper in this tick
     };
 
-    /// `wrench` on the hand is what is about to be held for `h` s, `hand` where the hand is now. The work of a held force
-    /// is known exactly by where the hand went. With `control`, a damper of at most `most_damping` along the hand's
-    /// movement takes back what is missing.
+    /// `wrench` will be held on the hand for `h` s; `hand` is its present pose. The work of a held force follows
+    /// exactly from the hand's displacement. With `control`, a damper of at most `most_damping` along the hand's
+    /// velocity dissipates the missing energy.
     Value operator()(const Wrench& wrench, const Pose& hand, double h, bool control, double most_damping) noexcept {
         Vec3 translation(0.0);
         if (is_valid(hand)) {

@@ -11,8 +11,8 @@ namespace tactus::coupling {
 
 namespace {
 
-/// Lagrange multipliers of the projection on the planes where all `count` gaps become zero; false when they depend on
-/// each other or one would have to pull.
+/// Lagrange multipliers of the projection onto the planes in which all `count` gaps become zero; false when the planes
+/// are linearly dependent or a multiplier would be negative.
 bool corner(const Vec3& goal, const Vec3& from, const ProxyPlane* const* active, int count, Vec3& point) {
     double a[3][3], b[3], x[3] = {};
     for (int i = 0; i < count; ++i) {

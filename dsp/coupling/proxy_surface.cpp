@@ -18,8 +18,8 @@ struct Reading {
     Vec3 gradient{0.0};
 };
 
-/// Outside of its grid a field goes on as the distance to the surface point next to where the grid ends, so that a ball
-/// may be larger than the margin of the field.
+/// Outside of its grid a field continues as the distance to the surface point next to where the grid ends, so that a
+/// ball may be larger than the margin of the field.
 Reading read(const contact::Voxmap& map, const Vec3& at) noexcept {
     const volume::Sample inside = map.smooth_sample(at);
     if (inside.inside || map.grid.values.empty()) return {inside.value, inside.gradient};
@@ -28,7 +28,7 @@ Reading read(const contact::Voxmap& map, const Vec3& at) noexcept {
     const Vec3 border = glm::clamp(at, grid.origin + skin, grid.origin + last * grid.spacing - skin);
     const volume::Sample sample = map.smooth_sample(border);
     const double slope2 = glm::dot(sample.gradient, sample.gradient);
-    // A body that reaches the border ends there.
+    // A body that reaches the border of its grid ends there.
     if (!sample.inside || sample.value <= 0.0) return {map.far, Vec3(0.0)};
     if (slope2 < 0.25) return {std::max(sample.value, glm::length(at - border)), Vec3(0.0)};
     const Vec3 away = at - (border - sample.gradient * (sample.value / slope2));
@@ -68,7 +68,7 @@ ProxySurface::Level ProxySurface::level(const Vec3& at, const ProxyShape& shape)
     Level level;
     level.room = (above - 2.0 * shape.texture_height) / steepness;
     const double steep = glm::length(reading.gradient);
-    // In the middle of a wall there is no way out to be seen.
+    // In the middle of a wall the gradient shows no way out.
     if (!(steep > 0.05)) return level;
     level.seen = true;
     const Vec3 normal = reading.gradient / steep;
@@ -106,7 +106,7 @@ double ProxySurface::free_distance(const Vec3& at, const Vec3& direction, double
     const Vec3 from = back.apply(at), along = back.rotate(direction) * length;
     const double share = triangles->sweep(from, along, shape.radius);
     if (!(share < 1.0)) return length;
-    // A little less, so that the next move does not begin within reach; never less than half.
+    // Slightly shortened, so that the next move does not start in contact; never below half.
     const Vec3 there = from + share * along;
     const geometry::TriangleTree::Near near = triangles->nearest(there, 2.0 * shape.radius);
     const double approach = -glm::dot(along, there - near.point) / (length * std::max(near.distance, 1e-12));

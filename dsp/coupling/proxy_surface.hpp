@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a ball-shaped proxy touches: a distance field or triangles, with waves on it if wanted.
+// The surface that a ball-shaped proxy touches: a distance field or triangles, with an optional wave texture.
 //
-// Triangles are exact: the proxy's centre stays outside of all that is nearer to them than its radius (Ruspini, Kolarov
-// and Khatib 1997), and a moving ball is stopped where it first touches one. A field has the level set of its radius for
-// a surface; it is followed in steps of half a voxel at most, each brought back to the level.
+// Triangles are exact: the proxy's centre stays outside of the points nearer to them than its radius (Ruspini, Kolarov
+// and Khatib 1997), and a moving ball stops where it first touches one. For a field, the surface is the level set at
+// the ball's radius; it is followed in steps of at most half a voxel, each projected back to the level.
 #pragma once
 
 #include "dsp/contact/voxmap.hpp"
@@ -15,36 +15,37 @@ namespace tactus::coupling {
 
 struct ProxyShape {
     double radius = 0.0;  ///< m, of the ball
-    double texture_height = 0.0;  ///< m, of waves that stand on the surface, from their mean to the top
-    double texture_length = 2e-3;  ///< m, of a wave, along each axis of the body
-    double step = 0.25e-3;  ///< m: farthest move along a field at a time; half a voxel at most in any case
+    double texture_height = 0.0;  ///< m, amplitude of the wave texture, from mean to crest
+    double texture_length = 2e-3;  ///< m, wavelength along each axis of the body
+    double step = 0.25e-3;  ///< m: maximum length of a step along a field; never more than half a voxel
 };
 
-/// One surface: a distance field, or triangles when there are any.
+/// One surface: its triangles if there are any, otherwise its distance field.
 struct ProxySurface {
     const contact::Voxmap* map = nullptr;
     const geometry::TriangleTree* triangles = nullptr;
     Pose pose;
 
-    /// How a field, or a surface with waves, looks from a place: one surface, round everywhere.
+    /// A field, or a surface with texture, seen from a position: one smooth surface.
     struct Level {
-        bool seen = false;  ///< there is a direction out of it
+        bool seen = false;  ///< a direction out of the body was found
         ProxyPlane plane;
-        double room = 0.0;  ///< m: a move of this length is surely free, whichever way it goes
+        double room = 0.0;  ///< m: a move of this length in any direction is free
     };
 
-    /// True for triangles without waves: nothing of `level` is needed then.
+    /// True for triangles without texture, which do not need `level`.
     bool is_exact(const ProxyShape& shape) const noexcept { return triangles && !(shape.texture_height > 0.0); }
     Level level(const Vec3& at, const ProxyShape& shape) const noexcept;
-    /// Farthest sensible move beyond what is free, m.
+    /// Maximum move beyond what is free, m.
     double stride(const ProxyShape& shape) const noexcept;
     /// Planes of all triangles that a ball at `at` touches.
     void touched(const Vec3& at, const ProxyShape& shape, ProxyPlanes& into) const noexcept;
-    /// How far a ball may go along the unit vector `direction` before it touches a triangle, m; at most `length`.
+    /// Distance that a ball can move along the unit vector `direction` before it touches a triangle, m; at most
+    /// `length`.
     double free_distance(const Vec3& at, const Vec3& direction, double length, const ProxyShape& shape) const noexcept;
 };
 
-inline constexpr double proxy_hover = 1e-7;  ///< m: how far off a surface a proxy is held
-inline constexpr double proxy_touch = 3e-7;  ///< m: what is nearer counts as touched
+inline constexpr double proxy_hover = 1e-7;  ///< m: distance at which a proxy is held off a surface
+inline constexpr double proxy_touch = 3e-7;  ///< m: nearer surfaces count as touched
 
 }  // namespace tactus::coupling

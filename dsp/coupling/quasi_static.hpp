@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Quasi-static coupling: a proxy of what the hand holds stands where the springs to the hand and the contact forces
-// balance. No mass, no time: every tick the energy
+// Quasi-static virtual coupling: finds the pose of the proxy of a held body at which the springs to the hand and the
+// contact forces balance. Without mass and time: each tick lowers the energy
 //
 //     E(proxy) = contact energy + ψ(p − p_hand) + ψ(log(R R_handᵀ))
 //
-// is lowered by Gauss–Newton steps on rigid motions with Armijo's rule, from the proxy of the tick before; what
-// Gauss–Newton leaves out is learned on the way (dsp/coupling/learned_curvature.hpp). It may stop after any iteration:
-// the proxy is always a pose and its energy has never risen. After Wan and McNeely 2003 and Barbič and James 2008, with
-// the contact's own energy in the place of forces along normals.
+// by Gauss–Newton steps on rigid motions with Armijo's rule, from the proxy of the previous tick; the curvature that
+// Gauss–Newton neglects is learned (dsp/coupling/learned_curvature.hpp). It may stop after any iteration: the proxy is
+// always a valid pose and its energy has never increased. After Wan and McNeely 2003 and Barbič and James 2008, with
+// the gradient of a contact energy in place of forces along normals.
 #pragma once
 
 #include "dsp/contact/pointshell_contact.hpp"
@@ -21,8 +21,8 @@
 
 namespace tactus::coupling {
 
-/// What the solver sees: contact of the held body at a trial pose of the handle, about the handle's origin, and a lower
-/// bound of the way that every point may go from there before it can touch anything.
+/// What the solver needs: contact of the held body at a trial pose of the handle, about the handle's origin, and a
+/// lower bound of the distance that every point can move from there before it touches anything.
 template <class T>
 concept HeldContactLike = requires(T& contact, const Pose& handle) {
     { contact(handle, contact::ContactParts::all) } -> std::same_as<contact::ContactSum>;
@@ -32,37 +32,37 @@ concept HeldContactLike = requires(T& contact, const Pose& handle) {
 struct QuasiStaticSettings {
     CouplingSprings springs;
     int iterations = 10;
-    int evaluations = 24;  ///< most of the contact in one tick, whatever they are for
-    double tolerance = 1e-3;  ///< N: balanced when the residual is below
-    /// m: farthest that one iteration moves any point beyond what is surely free. Half of the thinnest wall plus the
-    /// thinnest held part at most, or they pass through each other.
+    int evaluations = 24;  ///< maximum number of contact evaluations in a tick
+    double tolerance = 1e-3;  ///< N: balanced when the residual is below this
+    /// m: maximum motion of any point in one iteration beyond the free distance. At most half of the thinnest wall plus
+    /// the thinnest held part, or bodies pass through each other.
     double step = 0.5e-3;
-    /// m: farthest that any point moves in one tick beyond what the hand does. What would jump over an edge takes as many
-    /// ticks as that needs, so that the force of the springs changes by no more than they are stretched by it.
+    /// m: maximum motion of any point in one tick beyond the motion of the hand. A jump over an edge is spread over as
+    /// many ticks as needed, so that the spring force changes by no more than this stretches the springs.
     double slip = std::numeric_limits<double>::infinity();
-    double reach = 0.05;  ///< m, farthest point of the held body from the handle: what a turn moves
-    double gyration = 0.02;  ///< m: a torque counts as the force that makes it at this lever
+    double reach = 0.05;  ///< m, greatest distance of the held body's points from the handle: the lever of rotations
+    double gyration = 0.02;  ///< m: converts a torque to a force for the residual
 };
 
 struct QuasiStaticState {
     Pose proxy;  ///< of the handle
-    Wrench wrench;  ///< on the hand, about its own origin; equals the contact's about the proxy when balanced
+    Wrench wrench;  ///< on the hand, about its own origin; in balance equal to the contact's about the proxy
     contact::ContactSum contact;  ///< at the proxy
-    double residual = 0.0;  ///< N, of the balance
+    double residual = 0.0;  ///< N, of the force balance
     double energy = 0.0;  ///< J, of contact and springs
-    double energy_before = 0.0;  ///< J, of the last proxy under this tick's hand
+    double energy_before = 0.0;  ///< J, of the previous proxy with the hand of this tick
     int iterations = 0;  ///< steps taken
     int evaluations = 0;  ///< of the contact
     bool balanced = false;
-    bool is_slowed = false;  ///< `slip` ended the tick before it was balanced: the rest of the way is the next ticks'
-    bool hand_is_valid = true;  ///< false: its pose was no pose and the last good one holds
+    bool is_slowed = false;  ///< `slip` ended the tick before it was balanced; the next ticks do the rest
+    bool hand_is_valid = true;  ///< false: the pose of the hand was invalid and the last valid one is used
 };
 
 class QuasiStaticCoupling {
 public:
     QuasiStaticSettings settings;
 
-    /// Takes hold: no force, the proxy at the hand.
+    /// Starts holding: no force, the proxy at the hand.
     void reset(const Pose& hand) noexcept {
         state_ = {};
         state_.proxy = hand_ = is_valid(hand) ? hand : hand_;
@@ -99,7 +99,7 @@ public:
         state_.contact = now.contact;
         rotation_ = now.rotation;
         state_.wrench = {now.linear.force, now.angular.force};
-        // A scene that is no scene: better no force than a wrong one.
+        // An invalid scene gives no force.
         if (!std::isfinite(now.energy) || !is_finite(state_.wrench)) state_.wrench = {};
         return state_;
     }
@@ -139,7 +139,7 @@ private:
                          (g[3] * g[3] + g[4] * g[4] + g[5] * g[5]) / (lever * lever));
     }
 
-    /// As far as Gauss–Newton knows it.
+    /// The Gauss–Newton part.
     static geometry::Matrix6 stiffness(const Balance& b) noexcept {
         geometry::Matrix6 k = b.contact.stiffness;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -149,7 +149,7 @@ private:
         return k;
     }
 
-    /// One step downhill; false when none was found.
+    /// One descent step; false when none was found.
     template <class Contact>
     bool improve(Balance& now, Contact& contact) noexcept {
         const geometry::Matrix6 known = stiffness(now);
@@ -172,10 +172,10 @@ private:
 
     struct Step {
         geometry::Vector6 displacement{};
-        double slope = 0.0;  ///< of the energy along it, J
+        double slope = 0.0;  ///< derivative of the energy along the step, J
     };
 
-    /// False when there is none that leads down.
+    /// False when there is no descent direction.
     template <class Contact>
     bool find_step(Step& step, const geometry::Matrix6& k, const Balance& now, Contact& contact) const noexcept {
         geometry::Vector6 down{};
@@ -187,7 +187,7 @@ private:
         return step.slope < 0.0;
     }
 
-    /// Takes the step if it lowers the energy enough (Armijo 1966).
+    /// Takes the step if the energy decreases sufficiently (Armijo 1966).
     template <class Contact>
     bool try_step(const Step& step, const geometry::Matrix6& known, Balance& now, Contact& contact) noexcept {
         const Pose trial = moved(state_.proxy, step.displacement);
@@ -202,7 +202,7 @@ private:
         return true;
     }
 
-    /// m: no point of the body moves farther by this.
+    /// m: upper bound of any point's displacement by this motion.
     double travel_of(const Vec3& shift, const Vec3& rotation) const noexcept {
         return std::hypot(shift.x, shift.y, shift.z) +
                std::hypot(rotation.x, rotation.y, rotation.z) * std::max(settings.reach, 1e-6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies and where they stand: what contact and coupling look at.
+// Bodies and their poses, for contact and coupling.
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
@@ -18,15 +18,15 @@ class TriangleTree;
 namespace tactus::coupling {
 
 
-/// What can touch: the surface as points, the distance around it, or its triangles; in one frame, any may be missing.
-/// A handle: whoever made it keeps what it points at.
+/// A body for contact: surface points, distance field, or triangles; in one frame; any may be missing. Does not own
+/// them: the node that made the body does.
 struct Body {
     static constexpr std::string_view wire_name = "body";
 
     const contact::Pointshell* shell = nullptr;
     const contact::Voxmap* map = nullptr;
     const geometry::TriangleTree* triangles = nullptr;
-    Pose home;  ///< where its file has it: the frame of the body in the frame of the file
+    Pose home;  ///< frame of the body in the frame of its file
     std::int64_t version = 0;
     std::uint64_t content_hash = 0;
 };
@@ -34,11 +34,11 @@ struct Body {
 struct SceneObject {
     Body body;
     Pose pose;
-    int unit = -1;  ///< objects of one unit move as one and do not touch each other; -1: on its own
-    bool stands = true;  ///< others may be brought to it: it is where it belongs
+    int unit = -1;  ///< objects of one unit move together and do not touch each other; -1: none
+    bool stands = true;  ///< the object is placed: others may be fitted to it
 };
 
-/// Up to sixteen bodies with their poses, by value: whoever holds a scene holds one moment of it.
+/// Up to sixteen bodies with their poses, by value: a scene is a snapshot.
 struct Scene {
     static constexpr std::string_view wire_name = "scene";
     static constexpr std::size_t most_objects = 16;
@@ -49,7 +49,7 @@ struct Scene {
     std::uint64_t content_hash = 0;
 };
 
-/// Over the bodies and poses of a scene.
+/// Hash of the bodies and poses of a scene.
 inline std::uint64_t hash_of(const Scene& scene) noexcept {
     Hash hash;
     hash.add_word(scene.count);

@@ -11,7 +11,7 @@ namespace tactus::coupling {
 namespace {
 
 constexpr double point_radius = 1e-6;  // m
-constexpr double settled = 1e-9;  // m: a move that is shorter is none
+constexpr double settled = 1e-9;  // m: a shorter move counts as none
 constexpr int most_moves = 200;
 
 }  // namespace
@@ -64,7 +64,7 @@ bool SurfaceProxy::is_open(const Vec3& a, const View& from, const Vec3& b, const
         const ProxySurface::Level &here = from.levels[i], &there = to.levels[i];
         if (here.room > glm::length(b - a)) continue;
         if (here.seen && there.seen && glm::dot(here.plane.normal, there.plane.normal) > 0.0) continue;
-        // Two walls face each other, or two sides of one lie back to back: in the middle the field tells which.
+        // Two opposite walls, or both sides of a thin one: in the middle the field decides.
         const double middle = surfaces[i].level(0.5 * (a + b), shape_).room;
         if (middle < std::min(here.room, there.room)) return false;
     }
@@ -73,7 +73,7 @@ bool SurfaceProxy::is_open(const Vec3& a, const View& from, const Vec3& b, const
 
 Vec3 SurfaceProxy::lead(Vec3 from, const Vec3& goal, std::span<const ProxySurface> surfaces) const noexcept {
     View here = look(from, surfaces);
-    double share = 1.0;  // of the way that is tried: less where a move has led nowhere
+    double share = 1.0;  // of the distance to try: reduced after a move that made no progress
     for (int move = 0; move < most_moves; ++move) {
         Vec3 wanted = goal;
         if (settings.shading) wanted = nearest_within(goal, from, here.planes.shaded().all());
@@ -109,7 +109,7 @@ void SurfaceProxy::follow(std::span<const ProxySurface> surfaces) noexcept {
             const ProxySurface &now = surfaces[i], &then = seen_[i];
             if (now.map != then.map || now.triangles != then.triangles) continue;
             if (now.pose.position == then.pose.position && now.pose.orientation == then.pose.orientation) continue;
-            // Seen from the surface it is the proxy that moves.
+            // In the frame of the surface the proxy moves.
             const ProxySurface at_rest{now.map, now.triangles, {}};
             const Vec3 from = then.pose.inverse().apply(state_.proxy), to = now.pose.inverse().apply(state_.proxy);
             state_.proxy = now.pose.apply(lead(from, to, {&at_rest, 1}));
@@ -119,7 +119,7 @@ void SurfaceProxy::follow(std::span<const ProxySurface> surfaces) noexcept {
 }
 
 const ProxyState& SurfaceProxy::update(const Vec3& goal, std::span<const ProxySurface> surfaces) noexcept {
-    // Farther than any room: a fault, not a place.
+    // Farther than any room: an input fault.
     if (!is_finite(goal) || !(glm::length(goal) < 1e3)) return state_;
     if (!started_) reset(goal);
     surfaces = surfaces.first(std::min(surfaces.size(), most_surfaces));
@@ -138,7 +138,7 @@ const ProxyState& SurfaceProxy::update(const Vec3& goal, std::span<const ProxySu
         const double dynamic = std::min(settings.dynamic_friction, settings.static_friction);
         state_.sticks = behind <= settings.static_friction * depth;
         const Vec3 back = state_.sticks ? lag : lag * (dynamic * depth / behind);
-        // Back along the plane, then down on the surface again.
+        // Back along the plane, then project to the surface again.
         const Vec3 held = smooth + back;
         smooth = lead(lead(smooth, held + state_.normal * proxy_touch, surfaces), held - state_.normal * proxy_touch,
                       surfaces);

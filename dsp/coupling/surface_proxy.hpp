@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Three-degree-of-freedom proxies: a point or a ball that stays outside of what the hand enters (thesis 2.4.2–2.4.3).
+// Three-degree-of-freedom proxies: a point or a ball that stays outside of bodies that the hand enters (thesis
+// 2.4.2–2.4.3).
 //
-// The proxy goes from where it was towards the hand as far as surfaces let it, so it stays on the side it came from and
-// the force, a spring from hand to proxy, never turns over. Where it touches something it goes on to the place nearest
-// to the hand within the half-spaces of all that it touches (god-object: Zilles and Salisbury 1995; ball and shading of
-// facets: Ruspini, Kolarov and Khatib 1997), and no move goes through a surface, however far the hand has jumped.
-// Friction is a cone about that place; texture is waves that stand on the surface.
+// The proxy moves from its last position towards the hand as far as surfaces permit, so it stays on the side it came
+// from and the spring force from hand to proxy never reverses. In contact it moves to the point nearest to the hand
+// within the half-spaces of all touched surfaces (god-object: Zilles and Salisbury 1995; ball and force shading:
+// Ruspini, Kolarov and Khatib 1997). No move passes through a surface, however far the hand has jumped. Friction is a
+// cone about that point; texture is a wave on the surface.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -22,15 +23,15 @@ struct ProxySettings {
     double stiffness = 1000.0;  ///< N/m, between hand and proxy
     double max_force = 10.0;  ///< N
     double static_friction = 0.0, dynamic_friction = 0.0;  ///< coefficients; the second is at most the first
-    bool shading = true;  ///< facets of round triangle meshes feel round: forces along interpolated normals
+    bool shading = true;  ///< force shading: forces on round triangle meshes follow interpolated normals
 };
 
 struct ProxyState {
     Vec3 proxy{0.0};
     Vec3 force{0.0};  ///< N, on the hand
-    Vec3 normal{0.0};  ///< of what is touched, unit; zero when free
+    Vec3 normal{0.0};  ///< of the touched surface, unit; zero when free
     bool in_contact = false;
-    bool sticks = false;  ///< friction holds it
+    bool sticks = false;  ///< static friction holds it
 };
 
 class SurfaceProxy {
@@ -40,8 +41,8 @@ public:
     ProxySettings settings;
 
     void reset(const Vec3& at) noexcept;
-    /// Leads the proxy towards `goal`, m in the frame of the surfaces' poses. A goal that is no place leaves all as it
-    /// was. The first eight surfaces are heeded. One whose pose changes takes the proxy along and does not pass over it.
+    /// Moves the proxy towards `goal`, m in the frame of the surfaces' poses. Ignores a goal that is not finite. Uses
+    /// the first eight surfaces. A surface whose pose changes carries the proxy along and does not pass over it.
     const ProxyState& update(const Vec3& goal, std::span<const ProxySurface> surfaces) noexcept;
     const ProxyState& state() const noexcept { return state_; }
 
@@ -49,13 +50,13 @@ private:
     struct View {
         ProxyPlanes planes;
         std::array<ProxySurface::Level, most_surfaces> levels;
-        double deepest = 0.0;  ///< m, of what the proxy reaches into
+        double deepest = 0.0;  ///< m, greatest penetration of the proxy
     };
 
     View look(const Vec3& at, std::span<const ProxySurface> surfaces) const noexcept;
-    /// Back out of fields that a move has gone into.
+    /// Projects out of fields that a move has entered.
     Vec3 settle(Vec3 at, std::span<const ProxySurface> surfaces) const noexcept;
-    /// False when the way between the two places leads through a wall of a field.
+    /// False when the line between the two positions crosses a wall of a field.
     bool is_open(const Vec3& a, const View& from, const Vec3& b, const View& to,
                  std::span<const ProxySurface> surfaces) const noexcept;
     Vec3 lead(Vec3 from, const Vec3& goal, std::span<const ProxySurface> surfaces) const noexcept;

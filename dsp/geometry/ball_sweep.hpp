@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When a moving ball first touches a triangle.
+// Swept-sphere test: when a moving ball first touches a triangle.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -14,7 +14,7 @@ namespace tactus::geometry {
 
 namespace sweep_detail {
 
-/// First t ≥ 0 at which |m + t·translation| falls to `radius`; 2 when it never does.
+/// First t ≥ 0 at which |m + t·translation| equals `radius`; 2 when there is none.
 inline double falls_to(const Vec3& m, const Vec3& translation, double radius) noexcept {
     const double a = glm::dot(translation, translation), b = glm::dot(m, translation),
                  c = glm::dot(m, m) - radius * radius;
@@ -26,13 +26,14 @@ inline double falls_to(const Vec3& m, const Vec3& translation, double radius) no
 
 }  // namespace sweep_detail
 
-/// Share of the way from `from` to `from` + `translation` at which a ball first touches triangle abc, 0 to 1; 2 when it does not.
-/// One that reaches into the triangle already touches it at 0 when it goes further in, and not at all on its way out.
+/// Fraction of the motion from `from` to `from` + `translation` at which a ball first touches triangle abc, 0 to 1; 2:
+/// never. A ball that already overlaps the triangle touches it at 0 when it moves further in, and not at all when it
+/// moves out.
 inline double ball_meets(const Vec3& from, const Vec3& translation, double radius, const Vec3& a, const Vec3& b,
                          const Vec3& c) noexcept {
     const Vec3 nearest = closest_on_triangle(from, a, b, c), out = from - nearest;
     const double distance2 = glm::dot(out, out);
-    // The distance to a triangle is convex along a line: once it grows it goes on growing.
+    // The distance to a triangle is convex along a line: once it increases, it keeps increasing.
     const double approach = -glm::dot(translation, out);
     if (approach <= 0.0) return 2.0;
     if (distance2 <= radius * radius)

@@ -12,7 +12,7 @@ namespace tactus::geometry {
 
 namespace {
 
-/// One brick and what lies around it.
+/// One brick and its neighbourhood.
 struct BrickField {
     const volume::BoneSnapshot& bone;
     const float* samples;
@@ -24,7 +24,7 @@ struct BrickField {
         return bone.layout().origin + Vec3(first[0] + x, first[1] + y, first[2] + z) * bone.layout().spacing;
     }
 
-    /// A sample next to the brick; `otherwise` where none is stored.
+    /// A sample in or next to the brick; `otherwise` where none is stored.
     double around(int x, int y, int z, double otherwise) const noexcept {
         constexpr auto inside = [](int n) { return n >= 0 && n < volume::brick_side; };
         if (inside(x) && inside(y) && inside(z)) return static_cast<double>(at(x, y, z));
@@ -51,8 +51,8 @@ struct BrickField {
         return step / bone.layout().spacing;
     }
 
-    /// Of the bone below the surface; `inside` is the next sample that lies in the bone, which counts at sharp edges,
-    /// where the way down leads out again.
+    /// Density below the surface. `inside` is the next sample inside the bone; it serves at sharp edges, where the path
+    /// inwards leaves the bone again.
     double density(const Vec3& position, const Vec3& outwards, const Vec3& inside) const noexcept {
         const double voxel = bone.layout().spacing.x;
         double most = bone.density(inside);
@@ -90,7 +90,7 @@ void BrickSurface::make(const volume::BoneSnapshot& bone, std::uint32_t brick, S
     patch.triangles.clear();
     const float* samples = bone.root->distance[brick];
     if (!samples) return;
-    // Most bricks lie wholly within the bone or outside of it.
+    // Most bricks lie completely inside or outside the bone.
     const bool inside = samples[0] < 0.0f;
     if (std::all_of(samples, samples + volume::brick_samples, [inside](float d) { return (d < 0.0f) == inside; })) return;
     const volume::BrickLayout& layout = bone.layout();

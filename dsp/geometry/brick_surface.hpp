@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface of a bone, brick by brick: when it is carved, only the bricks that changed are made anew. Together the
-// triangles of all bricks are those of iso_surface over the whole bone, without a crack between bricks.
+// The surface of a bone by marching tetrahedra, brick by brick: after carving, only changed bricks are meshed again.
+// The triangles of all bricks together equal those of iso_surface over the whole bone; there are no cracks between
+// bricks.
 #pragma once
 
 #include "dsp/volume/bricks.hpp"
@@ -11,7 +12,7 @@
 
 namespace tactus::geometry {
 
-/// A vertex as graphics hardware takes it. m; normal of unit length times 32767; sRGB 0 to 255 and opacity.
+/// A vertex in the format of graphics hardware. m; normal of unit length times 32767; sRGB 0 to 255 and opacity.
 struct SurfaceVertex {
     std::array<float, 3> position{};
     std::array<std::int16_t, 4> normal{};
@@ -27,7 +28,7 @@ struct SurfacePatch {
     bool operator==(const SurfacePatch&) const = default;
 };
 
-/// What bone of a density looks like: porous core green, dense cortex white (thesis 6.2.2), a steady mixture between.
+/// Colour by density: porous core green, dense cortex white (thesis 6.2.2), linear in between.
 struct DensityColours {
     double core_density = 500.0, cortex_density = 1500.0;  ///< kg/m³
     Vec3 core{0.35, 0.68, 0.33}, cortex{0.96, 0.94, 0.88};  ///< sRGB, 0 to 1
@@ -35,13 +36,13 @@ struct DensityColours {
     Vec3 operator()(double density) const noexcept;
 };
 
-/// Keeps the memory it works in. One thread at a time.
+/// Keeps its working memory. Not thread-safe.
 class BrickSurface {
 public:
     DensityColours colours;
 
-    /// The surface within one brick (where distance is 0), in place of what `patch` held. Normals are the gradient of the
-    /// distance; a vertex is as dense as the densest within 3.5 voxels below it, because a scan blurs the rim of every
+    /// The surface within one brick (distance = 0), replacing the content of `patch`. Normals are the gradient of the
+    /// distance. A vertex takes the maximum density within 3.5 voxels below it, because a scan blurs the rim of every
     /// bone. A brick that is not stored has no surface.
     void make(const volume::BoneSnapshot& bone, std::uint32_t brick, SurfacePatch& patch);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The point of a triangle that is nearest to a given point.
+// Closest point on a triangle.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -16,8 +16,8 @@ inline Vec3 closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
     return length2 > 0.0 ? a + std::clamp(glm::dot(p - a, ab) / length2, 0.0, 1.0) * ab : a;
 }
 
-/// Nearest point of triangle abc to p, by the face when p projects into it and by its edges otherwise. A degenerate
-/// triangle counts as its edges.
+/// Closest point on triangle abc to p: on the face when p projects into it, otherwise on an edge. A degenerate triangle
+/// is treated as its edges.
 inline Vec3 closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 ab = b - a, ac = c - a, ap = p - a;
     const double g11 = glm::dot(ab, ab), g12 = glm::dot(ab, ac), g22 = glm::dot(ac, ac);

@@ -9,22 +9,22 @@ namespace tactus::geometry {
 
 namespace {
 
-// Of a voxel: a vertex this near the face between two parts lies on it. Far from the origin single precision moves it off
-// by more, up to half of this share of its coordinate.
+// In voxels: a vertex this close to a face between two parts lies on it. Far from the origin, single precision adds an
+// error of up to half of this share of the coordinate.
 constexpr double on_face = 2e-4, precision = 0x1p-23;
-// The vertex nearest to here stays. Not the very middle, from which the vertices of an even surface are equally far: which
-// of them stays must not depend on their order, which is another one in each part.
+// The vertex nearest to this point is kept. Not exactly the middle, from which vertices of a regular surface are
+// equally far: the choice must not depend on the order of vertices, which differs between parts.
 constexpr std::array middle{0.47, 0.52, 0.44};
 
-// Of a cell's side: how far a vertex may move off the surface. Levels add up to twice that.
+// In cell sides: how far a vertex may move off the surface. Levels add up to twice this.
 constexpr double most_off = 0.12;
 
 Vec3 position(const SurfaceVertex& v) {
     return {static_cast<double>(v.position[0]), static_cast<double>(v.position[1]), static_cast<double>(v.position[2])};
 }
 
-/// How far `b` lies off the plane through `a`, or `a` off that through `b`: what a move from one to the other changes of
-/// the outline. Along the surface it changes nothing.
+/// How far `b` lies off the plane through `a`, or `a` off the plane through `b`: the change of the outline when one
+/// vertex moves to the other. Motion within the surface does not change it.
 double off_surface(const SurfaceVertex& a, const SurfaceVertex& b) {
     const Vec3 way = position(b) - position(a);
     const auto along = [&](const SurfaceVertex& v) {
@@ -61,7 +61,7 @@ void CoarseSurface::merge(const SurfacePatch& fine, const SurfaceGrid& grid, int
     slots_.assign(std::bit_ceil(2 * fine.vertices.size() + 2), 0);
     now_.resize(fine.vertices.size());
     const Vec3 per_cell = 1.0 / (grid.voxel * static_cast<double>(factor));
-    // Cells are counted from far below, so that cutting off the decimals rounds down everywhere.
+    // Cells are counted from far below zero, so that truncation always rounds down.
     constexpr std::int64_t lowest = 1 << 19;
     const std::int64_t cells_per_part = grid.part / factor;
     const double part_per_cell = cells_per_part > 0 ? 1.0 / static_cast<double>(cells_per_part) : 0.0;

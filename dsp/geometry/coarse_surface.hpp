@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same surface with fewer triangles, for pictures in which those of the full one are about a pixel: vertices within one
-// cell of a grid become one of them (Rossignac and Borrel 1993), unless that changed the outline.
+// Simplifies a surface by vertex clustering (Rossignac and Borrel 1993), for pictures in which a triangle of the full
+// surface covers about a pixel. Vertices in one cell of a grid are merged unless that would change the outline.
 #pragma once
 
 #include "dsp/geometry/brick_surface.hpp"
@@ -11,23 +11,24 @@
 
 namespace tactus::geometry {
 
-/// The samples that a surface was made from.
+/// The grid that a surface was made from.
 struct SurfaceGrid {
-    Vec3 origin{0.0};  ///< a corner where parts meet, m
+    Vec3 origin{0.0};  ///< a corner between parts, m
     Vec3 voxel{1e-3};  ///< m
     int part = 0;  ///< voxels along the side of a part, such as a brick; 0: the surface is one part
 };
 
-/// Keeps the memory it works in. One thread at a time.
+/// Keeps its working memory. Not thread-safe.
 class CoarseSurface {
 public:
-    /// Voxels along the side of a cell, by level; those of a level lie within those of the next. All divide a part.
+    /// Voxels along the side of a cell, by level; cells of a level nest in those of the next. All divide a part.
     static constexpr std::array<int, 4> factors{1, 2, 4, 8};
     using Levels = std::array<SurfacePatch, factors.size()>;
 
-    /// What each level leaves of `fine`; valid until the next call. Every vertex stays within its cell and within a quarter
-    /// of a cell's side of the surface, and what stays is a vertex of `fine`. A body closed by several parts is closed
-    /// again: vertices on a face between two parts stay there, and both parts choose the same ones.
+    /// The simplified surface of each level; valid until the next call. A merged vertex stays within its cell and
+    /// within a quarter of the cell's side of the surface; every remaining vertex is a vertex of `fine`. Several parts
+    /// that form a closed body remain closed: vertices on the face between two parts stay there, and both parts choose
+    /// the same ones.
     const Levels& make(const SurfacePatch& fine, const SurfaceGrid& grid);
 
 private:

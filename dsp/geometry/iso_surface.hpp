@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of the surface where the samples of a grid cross a value.
+// Iso-surface of a grid by marching tetrahedra.
 #pragma once
 
 #include "dsp/volume/grid.hpp"
@@ -16,8 +16,8 @@ struct TriangleSurface {
 };
 
 /// The surface value == iso by marching tetrahedra (six per cell around its main diagonal), which has no ambiguous
-/// case: closed and two-manifold wherever it does not meet the border. Samples ≥ iso are inside when `inside_above`,
-/// samples < iso otherwise.
+/// case: closed and two-manifold except at the border of the grid. With `inside_above`, samples ≥ iso are inside;
+/// otherwise samples < iso.
 TriangleSurface iso_surface(const volume::Grid& grid, float iso, bool inside_above);
 
 }  // namespace tactus::geometry

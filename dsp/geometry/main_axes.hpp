@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directions along which points spread most and least.
+// Principal axes of a point set.
 #pragma once
 
 #include "dsp/core/types.hpp"

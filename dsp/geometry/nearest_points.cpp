@@ -8,7 +8,7 @@ namespace tactus::geometry {
 
 namespace {
 
-constexpr int tile = 16;  // columns that are fetched together
+constexpr int tile = 16;  // columns that are processed together
 
 struct Pass {
     const volume::Grid& layout;
@@ -17,10 +17,10 @@ struct Pass {
     int axis;
     int first_layer;
 
-    // What samples of an axis count from.
+    // Offset of the samples along an axis.
     int start(int other) const { return other == 2 ? first_layer : 0; }
 
-    // Where the columns of an axis stand that has not been passed yet: in the middle of the cells that hold the points.
+    // Offset of columns along an axis that has not been processed yet: the centres of the cells that hold the points.
     double place(int other, int index) const {
         return other > axis ? start(other) + index + 0.5 : start(other) + index;
     }
@@ -33,7 +33,7 @@ struct Pass {
             : in(length * tile), out(length * tile), point(length), apex(length), height(length), from(length) {}
     };
 
-    // Replaces in[n * tile] (point of cell n) by out[n * tile] (nearest point of sample n), n < length.
+    // For n < length, replaces in[n * tile] (point of cell n) by out[n * tile] (nearest point of sample n).
     void column(Envelope& e, int lane, int length, const glm::dvec3& at, int first, int second) const {
         const double h = layout.spacing[axis], h1 = layout.spacing[first], h2 = layout.spacing[second];
         int count = 0;
@@ -73,7 +73,7 @@ struct Pass {
         }
     }
 
-    // All columns of the slab where the outer of the other two axes has this index.
+    // All columns of the slab at this index of the outer axis.
     void slab(int outer_index) const {
         const int outer = axis == 2 ? 1 : 2, inner = axis == 0 ? 1 : 0;
         const int length = layout.size[static_cast<std::size_t>(axis)];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points near points.
+// Fixed-radius neighbour search.
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
@@ -17,20 +17,20 @@
 
 namespace tactus::geometry {
 
-/// Surface points sorted by cubes, so that those within the cubes' side of a point are found by binary search.
+/// Surface points sorted into cubes; a binary search finds those within one cube side of a point.
 class Neighbours {
 public:
-    /// `points` must live as long as this and not move; `side` in m.
+    /// `points` must outlive this object and must not move; `side` in m.
     Neighbours(std::span<const contact::SurfacePoint> points, double side) : points_(points), side_(side) {
         Vec3 low(std::numeric_limits<double>::infinity());
         for (const contact::SurfacePoint& p : points) low = glm::min(low, p.position);
-        // A cube of room on each side keeps all indices positive.
+        // A margin of one cube keeps all indices positive.
         origin_ = low - Vec3(2.0 * side);
         for (std::size_t i = 0; i < points.size(); ++i) sorted_.push_back({key_of(cell(points[i].position)), i});
         std::ranges::stable_sort(sorted_, {}, &Entry::key);
     }
 
-    /// Calls visit(index) for all points within the side of point i, itself among them, always in the same order.
+    /// Calls visit(index) for all points within `side` of point i, including i, in a fixed order.
     template <class Visit>
     void around(std::size_t i, const Visit& visit) const {
         const glm::i64vec3 c = cell(points_[i].position);
@@ -64,8 +64,8 @@ private:
     std::vector<Entry> sorted_;
 };
 
-/// Points that fulfil a condition and hang together, each with a neighbour within the side: one list of indices per
-/// patch, in the order of their first points.
+/// Connected components of the points that satisfy a condition; points within `side` of each other are neighbours. One
+/// list of indices per component, ordered by first point.
 template <class Condition>
 std::vector<std::vector<std::size_t>> patches_of(std::span<const contact::SurfacePoint> points, double side,
                                                  const Condition& belongs) {

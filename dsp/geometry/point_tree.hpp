@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nearest of many points, exactly.
+// Exact nearest-neighbour search in a k-d tree.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -17,8 +17,8 @@
 
 namespace tactus::geometry {
 
-/// A k-d tree without pointers: the median of a range of points, along the longest axis of their box, stands in its
-/// middle.
+/// An implicit k-d tree: the median of a range of points, along the longest axis of its bounding box, is stored in the
+/// middle of the range.
 class PointTree {
 public:
     explicit PointTree(std::span<const Vec3> points)
@@ -29,7 +29,7 @@ public:
 
     bool empty() const noexcept { return points_.empty(); }
 
-    /// Index of the nearest point; of none: 0. Does not allocate.
+    /// Index of the nearest point; 0 for an empty tree. Does not allocate.
     std::size_t nearest(const Vec3& place) const noexcept {
         Search search{place, std::numeric_limits<double>::infinity(), 0};
         look(search, 0, order_.size());

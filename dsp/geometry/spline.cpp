@@ -12,7 +12,7 @@ Spline::Spline(std::vector<double> x, std::vector<double> y) : x_(std::move(x)),
     if (n < 2 || y_.size() != n) throw Error("a spline needs at least two points");
     for (std::size_t i = 1; i < n; ++i)
         if (!(x_[i] > x_[i - 1])) throw Error("the places of a spline's points must increase");
-    // Tridiagonal equations of the second derivatives, eliminated downwards.
+    // Tridiagonal system for the second derivatives: forward elimination.
     std::vector<double> upper(n);
     for (std::size_t i = 1; i + 1 < n; ++i) {
         const double left = x_[i] - x_[i - 1], right = x_[i + 1] - x_[i];

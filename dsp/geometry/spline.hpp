@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A smooth curve through points that need not be evenly spaced.
+// Cubic spline interpolation on knots with any spacing.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,10 @@
 
 namespace tactus::geometry {
 
-/// Cubic spline with continuous curvature, straight at its ends; beyond them it goes on straight.
+/// Natural cubic spline (C²); extrapolates linearly beyond its ends.
 class Spline {
 public:
-    /// As many `y` as `x`, at least two; `x` strictly increasing. Allocates. Throws Error.
+    /// `x` and `y` have equal length, at least two; `x` strictly increasing. Allocates. Throws Error.
     Spline(std::vector<double> x, std::vector<double> y);
 
     struct Point {

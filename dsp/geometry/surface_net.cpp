@@ -10,12 +10,12 @@ namespace tactus::geometry {
 
 namespace {
 
-// The twelve edges of a cell whose eight samples are in or out, by their low corner and axis. Edges that cross hang together
-// around the faces of the cell, and each ring of them is one sheet with a vertex of its own. A face with in and out at
-// opposite corners is cut around each corner that is in: both cells that share the face see the same cuts, so that the
-// sheets of neighbours meet and leave no hole.
+// The edges of a cell that cross the surface, by the in/out state of its eight samples; an edge is named by its low
+// corner and axis. Crossing edges are linked around the faces of the cell; each closed ring is one sheet with its own
+// vertex. A face with inside samples at opposite corners is cut around each inside corner: both cells that share the
+// face get the same cuts, so that neighbouring sheets meet without a hole.
 struct Sheets {
-    std::array<int, 24> of_edge{};  // number of the sheet per 3 · low corner + axis, -1 where nothing crosses
+    std::array<int, 24> of_edge{};  // index of the sheet for 3 · low corner + axis; -1: no crossing
     int count = 0;
 
     Sheets() = default;
@@ -57,7 +57,7 @@ struct Sheets {
         return 3 * std::min(a, b) + (along == 4 ? 2 : along - 1);
     }
 
-    // Until the end a sheet is called after one of its edges.
+    // Until the end a sheet is identified by one of its edges.
     void join(int a, int b) {
         const int kept = of_edge[at(a)], dropped = of_edge[at(b)];
         if (kept < 0 || dropped < 0) return;
@@ -76,8 +76,8 @@ struct Netter {
     float iso;
     bool inside_above;
     SurfaceNet& net;
-    std::array<std::vector<int>, 2> vertex;  // the first per cell of this layer and the one before, or -1
-    std::vector<Sheets> sheets;  // per set of corners that are in
+    std::array<std::vector<int>, 2> vertex;  // first vertex per cell of this layer and the previous one, or -1
+    std::vector<Sheets> sheets;  // for each of the 256 in/out states
 
     bool is_in(int i, int j, int k) const { return (grid.at(i, j, k) >= iso) == inside_above; }
 
@@ -165,7 +165,7 @@ struct Netter {
     }
 };
 
-// Neighbours of each vertex along the sides of quads, each once.
+// Neighbours of each vertex along the sides of quads, without duplicates.
 struct Neighbours {
     std::vector<std::array<int, 6>> of;
 
@@ -176,7 +176,7 @@ struct Neighbours {
                 for (int axis = 0; axis < 3; ++axis) {
                     const auto n = static_cast<std::size_t>(axis);
                     const int step = net.cell[b][n] - net.cell[a][n];
-                    // Cells that share a face; diagonals of quads are no sides.
+                    // Sides join cells that share a face; diagonals of quads are not sides.
                     if (step == 0 || net.cell[b][(n + 1) % 3] != net.cell[a][(n + 1) % 3] ||
                         net.cell[b][(n + 2) % 3] != net.cell[a][(n + 2) % 3])
                         continue;

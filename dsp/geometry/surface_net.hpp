@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface of a label: one vertex per cell between samples that are in and samples that are out.
+// Surface nets (dual contouring of a binary volume): one vertex per cell between inside and outside samples.
 #pragma once
 
 #include "dsp/core/jobs.hpp"
@@ -15,16 +15,16 @@ struct SurfaceNet : TriangleSurface {
     std::vector<std::array<int, 3>> cell;  ///< per vertex: the cell's lowest sample
 };
 
-/// The net around the samples ≥ iso when `inside_above`, else around those < iso (Gibson 1998): every edge of the grid
-/// that crosses the surface becomes a quad of the four cells around it, two triangles, counter-clockwise from outside;
-/// vertices at the mean of their cell's crossings, one for each sheet that passes the cell. Samples that are in and touch
-/// across the diagonal of a face only are parted (Nielson 2004, dual marching cubes). Closed when no sample of the border
-/// is inside. Where sheets share a cell twice, an edge of the net can belong to four triangles.
+/// Surface net (Gibson 1998) around the samples ≥ iso when `inside_above`, else around those < iso: every grid edge
+/// that crosses the surface becomes a quad of the four cells around it, split in two triangles, counter-clockwise from
+/// outside. A vertex is the mean of its cell's crossings, one per sheet in the cell. Inside samples that touch only
+/// across the diagonal of a face are separated (dual marching cubes, Nielson 2004). The net is closed when no border
+/// sample is inside. Where two sheets share two cells, an edge can belong to four triangles.
 SurfaceNet surface_net(const volume::Grid& grid, float iso, bool inside_above);
 
-/// Takes the staircase off: `passes` times every vertex moves to the middle of its neighbours and back out a little
-/// (Taubin 1995), at most 0.6 of a cell from where it began, so that a wall one sample thick stays a wall. The volume is
-/// not kept.
+/// Taubin smoothing (1995), which removes the staircase: `passes` times, each vertex moves to the mean of its
+/// neighbours and partly back, at most 0.6 of a cell from its start, so that a wall one sample thick survives. The
+/// volume is not preserved.
 void relax(SurfaceNet& net, const volume::Grid& grid, int passes, const RunJobs& run = run_in_turn);
 
 }  // namespace tactus::geometry

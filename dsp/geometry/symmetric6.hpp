@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Symmetric positive 6 × 6 systems: three translations and three turns.
+// Solver for symmetric positive semidefinite 6 × 6 systems: three translations and three rotations.
 #pragma once
 
 #include <algorithm>
@@ -12,9 +12,9 @@ namespace tactus::geometry {
 using Vector6 = std::array<double, 6>;
 using Matrix6 = std::array<double, 36>;  ///< row by row
 
-/// Solves k x = b by LDLᵀ without pivoting. What no spring holds is given a little stiffness of its own, 1e-9 of the
-/// greatest of its kind (translations, turns), so that a singular matrix gives a finite x that leaves it where it is.
-/// Returns false, and x = 0, when the matrix is not positive all the same or not finite.
+/// Solves k x = b by LDLᵀ without pivoting. Adds 1e-9 of the largest diagonal entry of each kind (translations,
+/// rotations) to the diagonal: directions that no spring constrains then stay at rest, and a singular matrix gives a
+/// finite x. Returns false, with x = 0, when the matrix is still not positive or not finite.
 inline bool solve_symmetric6(Matrix6 k, const Vector6& b, Vector6& x) noexcept {
     for (std::size_t block = 0; block < 6; block += 3) {
         double greatest = 1e-3;
@@ -22,7 +22,7 @@ inline bool solve_symmetric6(Matrix6 k, const Vector6& b, Vector6& x) noexcept {
         for (std::size_t i = block; i < block + 3; ++i) k[7 * i] += 1e-9 * greatest;
     }
     x = b;
-    // Column by column: k becomes L below its diagonal and D on it.
+    // Column by column: L replaces the part of k below the diagonal, D the diagonal.
     for (std::size_t j = 0; j < 6; ++j) {
         const double pivot = k[7 * j];
         if (!(pivot > 0.0) || !std::isfinite(pivot)) {

@@ -19,7 +19,7 @@ struct SymmetricEigen {
 
 namespace jacobi {
 
-/// One rotation that makes m(p, q) zero.
+/// One Jacobi rotation, which makes m(p, q) zero.
 template <std::size_t N>
 void rotate(std::array<double, N * N>& m, std::array<std::array<double, N>, N>& vectors, std::size_t p,
             std::size_t q) noexcept {
@@ -45,7 +45,7 @@ void rotate(std::array<double, N * N>& m, std::array<std::array<double, N>, N>& 
 
 }  // namespace jacobi
 
-/// Eigenvalues and eigenvectors of the symmetric matrix `m` (row by row): twelve sweeps, far more than these sizes take.
+/// Eigenvalues and eigenvectors of the symmetric matrix `m` (row by row): twelve sweeps, more than these sizes need.
 template <std::size_t N>
 SymmetricEigen<N> symmetric_eigen(std::array<double, N * N> m) noexcept {
     std::array<std::array<double, N>, N> vectors{};

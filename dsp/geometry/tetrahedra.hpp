@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a surface passes one cell of a grid: marching tetrahedra, six per cell.
+// Marching tetrahedra for one cell of a grid, six tetrahedra per cell.
 #pragma once
 
 #include <algorithm>
@@ -9,20 +9,21 @@
 
 namespace tactus::geometry {
 
-// Corners are numbered by bits: 1 = +x, 2 = +y, 4 = +z. Every tetrahedron runs from 0 to 7, adding one bit at a time,
+// Corners are numbered by bits: 1 = +x, 2 = +y, 4 = +z. Every tetrahedron goes from 0 to 7 and adds one bit at a time,
 // so an edge always leads from a corner to one whose bits include it, and neighbouring cells share face diagonals.
-// The order of corners is turned where needed to make every tetrahedron right-handed.
+// Corners are ordered so that every tetrahedron is right-handed.
 inline constexpr std::array<std::array<int, 4>, 6> cell_tetrahedra{
     {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
 
-/// Where between two samples the surface passes, 0 to 1. Held off the samples: a vertex shared by many edges would make
-/// triangles without area.
+/// Position of the crossing between two samples, 0 to 1. It keeps a distance from the samples: a vertex shared by many
+/// edges would make triangles without area.
 inline double crossing(double low, double high, double iso) {
     return std::clamp((iso - low) / (high - low), 1e-3, 1.0 - 1e-3);
 }
 
-/// The triangles of one cell. Bit c of `inside` says that corner c is in; `vertex(from, to)` gives the vertex on the edge
-/// between two corners, `from` < `to`; `add(a, b, c)` takes a triangle, counter-clockwise seen from outside.
+/// The triangles of one cell. Bit c of `inside` says that corner c is inside; `vertex(from, to)` gives the vertex on
+/// the edge between two corners, `from` < `to`; `add(a, b, c)` receives a triangle, counter-clockwise seen from
+/// outside.
 template <class Vertex, class Add>
 void march_cell(unsigned inside, const Vertex& vertex_on, const Add& add_triangle) {
     const auto vertex = [&](int from, int to) { return from < to ? vertex_on(from, to) : vertex_on(to, from); };

@@ -39,12 +39,12 @@ bool meets(const Vec3& a, const Vec3& translation, double most, const Vec3& low,
     return from <= to;
 }
 
-/// Facets that meet at a smaller angle than this one are meant to be round.
+/// Facets that meet at a smaller angle than this belong to a round surface.
 constexpr double round_cosine = 0.94;
-/// Edges and areas below this part of the usual ones are left-overs, whose directions are those of rounding errors.
+/// Edges and areas below this share of the typical ones are slivers; rounding errors decide their directions.
 constexpr double sliver = 0.1;
 
-/// For each vertex one that stands for it and for all that are joined to it by edges shorter than `length`.
+/// For each vertex a representative of all vertices connected to it by edges shorter than `length`.
 std::vector<std::size_t> joined(const TriangleSurface& surface, double length) {
     std::vector<std::size_t> of(surface.vertices.size());
     std::iota(of.begin(), of.end(), std::size_t(0));
@@ -63,9 +63,9 @@ std::vector<std::size_t> joined(const TriangleSurface& surface, double length) {
     return of;
 }
 
-/// Unit normals at the corners of all triangles: the mean of those that meet there, by area, or zero where one of them
-/// stands off too far. Corners that all but coincide, as iso surfaces have them, count as one, and what slivers say does
-/// not count.
+/// Unit normals at the corners of all triangles: the area-weighted mean of the triangles that meet there, or zero where
+/// one of them deviates too much. Corners that nearly coincide, as in iso surfaces, are merged; slivers are
+/// ignored.
 std::vector<Vec3> corner_normals(const TriangleSurface& surface) {
     const auto at = [&](int v) { return surface.vertices[static_cast<std::size_t>(v)]; };
     std::vector<Vec3> face;
@@ -177,7 +177,7 @@ TriangleTree::Near TriangleTree::nearest(const Vec3& p, double within) const noe
             if (d2 < least2) least2 = d2, best = t;
         }
         if (node.count > 0) continue;
-        // The nearer child is looked at first.
+        // The nearer child is visited first.
         std::uint32_t a = at + 1, b = node.first;
         if (distance2(p, nodes_[a].low, nodes_[a].high) < distance2(p, nodes_[b].low, nodes_[b].high)) std::swap(a, b);
         stack[depth++] = a;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of a surface in a tree of boxes: how near, which ones, and what a moving ball meets first.
+// Triangles in an AABB tree: nearest point, triangles within a distance, first hit of a moving ball.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -12,23 +12,24 @@
 
 namespace tactus::geometry {
 
-/// Read only after construction; no query allocates. m, frame of the surface.
+/// Read-only after construction; no query allocates. m, frame of the surface.
 class TriangleTree {
 public:
     explicit TriangleTree(const TriangleSurface& surface);
 
     struct Near {
-        Vec3 point{0.0};  ///< of a triangle, nearest to where it was asked for
+        Vec3 point{0.0};  ///< the closest point on the triangles
         double distance = std::numeric_limits<double>::infinity();
-        /// Unit, interpolated between those of the corners; zero next to what bends too sharply to be meant as round.
+        /// Unit, interpolated between the corners' normals; zero next to sharp edges.
         Vec3 normal{0.0};
     };
-    /// The nearest point of all triangles that is nearer than `within`; infinitely far when there is none.
+    /// The closest point of all triangles that is nearer than `within`; infinite distance when there is none.
     Near nearest(const Vec3& p, double within = std::numeric_limits<double>::infinity()) const noexcept;
-    /// Points of triangles nearer than `within`, one per triangle, in the order of the tree, until `found` is full.
+    /// Closest points of triangles nearer than `within`, one per triangle, in the order of the tree, until `found` is
+    /// full.
     std::size_t all_near(const Vec3& p, double within, std::span<Near> found) const noexcept;
-    /// Share of the way from `from` to `from` + `translation` at which a ball first touches a triangle that it does not leave,
-    /// 0 to 1; 1 when it touches none.
+    /// Fraction of the motion from `from` to `from` + `translation` at which a ball first touches a triangle that it
+    /// does not leave, 0 to 1; 1 when it touches none.
     double sweep(const Vec3& from, const Vec3& translation, double radius) const noexcept;
 
     std::size_t size() const noexcept { return corners_.size() / 3; }
