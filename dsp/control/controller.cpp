@@ -12,7 +12,7 @@ constexpr double most_force = 1e6, most_position = 1e3;  // N, m
 
 }  // namespace
 
-/// Finding the limit takes hundreds of eigenvalues; where the object rests and which gain is wanted do not change it.
+/// The limit takes hundreds of eigenvalue estimates; it does not depend on the object's rest position or the gain.
 double AdmittanceControl::limit_for(const ControllerSettings& settings) const noexcept {
     LoopModel loop = settings.loop;
     ObjectSettings object = settings.object;
@@ -28,7 +28,7 @@ bool AdmittanceControl::set(const ControllerSettings& settings) noexcept {
     const double gain = settings.loop.gain > 0.0 ? settings.loop.gain : settings.gain_share * limit;
     if (!settings.allow_unstable && !(gain > 0.0 && gain < limit)) return false;
     if (engaged_) {
-        // Where both objects would go under the force of now: the difference is let go slowly.
+        // The difference of both objects' positions under the present force decays slowly.
         VirtualObject old = object_, made = object_;
         made.set(settings.object, settings.loop.period);
         offset_ += old.step(force_) - made.step(force_);
@@ -41,7 +41,7 @@ bool AdmittanceControl::set(const ControllerSettings& settings) noexcept {
 }
 
 double AdmittanceControl::tick(double force, double position, Fault sensed, int periods, bool slips) noexcept {
-    // What no finger can do would make the object overflow.
+    // Forces and positions beyond any finger's would make the object overflow.
     const bool sane = std::abs(force) < most_force && std::abs(position) < most_position;
     if (sensed == Fault::none && !sane) sensed = Fault::not_finite;
     if (sensed == Fault::none && fault_ == Fault::none && is_stuck(force, position, slips))
@@ -74,7 +74,7 @@ double AdmittanceControl::follow(double force, double position, int periods) noe
         const double before = wanted_;
         for (int n = 0; n < steps; ++n) object_.step(force);
         offset_ *= settings_.blend > 0.0 ? std::exp(-steps * period / settings_.blend) : 0.0;
-        // Far below what any encoder sees it is nothing, and must not become denormal.
+        // Below any encoder's resolution it becomes zero, so that it never becomes denormal.
         if (std::abs(offset_) < 1e-12) offset_ = 0.0;
         wanted_ = object_.position() + offset_;
         force_ = force;
@@ -87,7 +87,7 @@ double AdmittanceControl::follow(double force, double position, int periods) noe
 }
 
 bool AdmittanceControl::is_stuck(double force, double position, bool slips) noexcept {
-    // A motor that runs against a hand that strong may stand still in good health.
+    // A motor that works against such a strong hand may stall without a fault.
     const bool stalled = told_ * force < 0.0 && std::abs(force) >= settings_.stall_force;
     if (slips || stalled || std::abs(told_) < settings_.stuck_speed) {
         told_travel_ = seen_travel_ = 0.0;

@@ -11,15 +11,15 @@ namespace tactus::control {
 
 struct ControllerSettings {
     ObjectSettings object;
-    LoopModel loop;             ///< what is assumed of motor and hand; its gain 0: gain_share of the limit
+    LoopModel loop;  ///< model of motor and hand; gain 0: gain_share of the limit
     double gain_share = 0.5;    ///< of the limit, below 1
     double max_speed = 0.07;    ///< m/s
     double least_speed = 0.0;   ///< m/s, see PositionLoopSettings
-    double blend = 0.1;         ///< s, time constant with which a jump of the wanted position is let go
+    double blend = 0.1;  ///< s, time constant with which a jump of the wanted position decays
     bool allow_unstable = false;
-    double stuck_speed = 0.04;  ///< m/s; told to run faster than this …
-    double stuck_travel = 0.008;  ///< … and so far, m, while the encoder does not change at all, it is stuck …
-    double stall_force = 2.0;  ///< N … unless the hand holds against it with this much: then the motor may be stalled
+    double stuck_speed = 0.04;  ///< m/s; an encoder that does not change while the command is faster than this …
+    double stuck_travel = 0.008;  ///< … over this distance, m, counts as stuck …
+    double stall_force = 2.0;  ///< N … unless the hand resists with this force: then the motor may be stalled
 
     bool operator==(const ControllerSettings&) const = default;
 };
@@ -30,11 +30,11 @@ public:
     /// unstable and that is not allowed; the old ones stay. Real-time safe.
     bool set(const ControllerSettings& settings) noexcept;
 
-    /// Speed for the motor, m/s, after `periods` periods. `sensed` is what is wrong with the sensors; `slips`: the load
-    /// is stronger than the motor, so that a finger that stands still is no fault. On any fault the motor holds and the
-    /// first reason stays.
+    /// Speed for the motor, m/s, after `periods` periods. `sensed` is the fault of the sensors; `slips`: the load moves
+    /// the finger against the motor, so a finger at rest is no fault. On any fault the motor holds and the first reason
+    /// stays.
     double tick(double force, double position, Fault sensed, int periods, bool slips = false) noexcept;
-    /// Goes on after a fault when nothing is wrong any more, from where the finger is. Wait-free.
+    /// Resumes after a fault that has gone, from the finger's position. Wait-free.
     void recover() noexcept { asked_ = true; }
 
     double wanted() const noexcept { return wanted_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A measured elastic object: how far it gives under which force, on the way in and on the way out.
+// A measured elastic object: deflection over force, for loading and unloading.
 #pragma once
 
 #include <string>
@@ -8,18 +8,18 @@
 namespace tactus::control {
 
 /// Deflection over force, with hysteresis: while the force rises the object follows `loading`, while it falls
-/// `unloading`, and between the two curves it stands still (a play operator; Olsson 2012, Publication VI of the thesis,
-/// renders measured tables). Piecewise linear, beyond its ends along the outermost pieces.
+/// `unloading`, and between the two curves it rests (a play operator; Olsson 2012, Publication VI of the thesis,
+/// renders measured tables). Piecewise linear; the outermost pieces continue beyond its ends.
 struct DeflectionTable {
     std::vector<double> force;  ///< N, rising
-    std::vector<double> loading;  ///< m at each force, never falling
-    std::vector<double> unloading;  ///< m, nowhere below `loading`; equal to it: no hysteresis
+    std::vector<double> loading;  ///< m at each force, non-decreasing
+    std::vector<double> unloading;  ///< m, nowhere below `loading`; equal: no hysteresis
 
-    /// Where an object at `deflection` goes under `f`. Real-time safe.
+    /// New deflection under force `f` of an object at `deflection`. Real-time safe.
     double follow(double deflection, double f) const noexcept;
-    /// Force per distance where the table is softest, N/m.
+    /// Lowest stiffness of the table, N/m.
     double least_stiffness() const;
-    /// What is wrong with it, for people; empty when it can be used.
+    /// Message that says what is wrong; empty when the table is valid.
     std::string fault() const;
 };
 

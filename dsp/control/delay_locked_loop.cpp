@@ -33,10 +33,10 @@ void DelayLockedLoop::update(std::int64_t frames, std::int64_t steady_ns) noexce
         return start(frames, steady_ns);
     }
     const double error_ns = std::clamp(seen_ns, -furthest_ns, furthest_ns);
-    // Wide at first: the bandwidth falls as 1/age until it is that of the settled loop.
+    // The bandwidth starts wide and falls as 1/age to that of the settled loop.
     age_s_ += step_s;
     const double bandwidth = std::max(bandwidth_, 0.5 / std::max(age_s_, 0.5));
-    // Beyond 0.3 the loop would overshoot what it samples.
+    // Above 0.3 the loop would overshoot.
     const double omega = std::min(2.0 * std::numbers::pi * bandwidth * step_s, 0.3);
     time_ns_ = expected_ns + std::numbers::sqrt2 * omega * error_ns;
     frame_ns_ = std::clamp(frame_ns_ + omega * omega * error_ns / passed, nominal_ns_ / (1.0 + largest_rate_error),

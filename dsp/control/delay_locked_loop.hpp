@@ -1,38 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-// When a clock that is seen through jittered callbacks really ticks.
+// Delay-locked loop: the rate and phase of a clock that is observed through jittered callbacks.
 #pragma once
 
 #include <cstdint>
 
 namespace tactus::control {
 
-/// Second-order delay-locked loop over pairs (frames counted, time seen): a smooth time for every frame and the true
-/// duration of a frame. A constant difference of rates leaves no error in time. Callbacks may have any size, and any of
-/// them may be left out. After F. Adriaensen, "Using a DLL to filter time", LAC 2005; the loop starts wide and narrows,
-/// so that it locks within seconds.
+/// Second-order delay-locked loop over pairs (frame count, time): a smooth time for every frame and the true duration
+/// of a frame. A constant rate difference leaves no error in time. Callbacks may have any size and may be missing.
+/// After F. Adriaensen, "Using a DLL to filter time", LAC 2005; the loop starts wide and narrows, so that it locks
+/// within seconds.
 class DelayLockedLoop {
 public:
     /// `rate` is the nominal rate, Hz; `bandwidth` that of the settled loop, Hz.
     void prepare(double rate, double bandwidth = 0.05) noexcept;
 
-    /// `frames` had been counted at `steady_ns`. Counts and times rise; a pair that does not is ignored. A sample further
-    /// than 5 ms off counts as 5 ms off: one late wake-up tells little. After `longest_doubt_s` of such samples the
-    /// clock has jumped and the loop starts from there with the rate that it knows.
+    /// The count was `frames` at `steady_ns`. Counts and times must rise; a pair that does not is ignored. Deviations
+    /// are clamped to 5 ms: one late wake-up has little effect. After `longest_doubt_s` of such deviations the clock
+    /// counts as having jumped, and the loop restarts there with its present rate.
     void update(std::int64_t frames, std::int64_t steady_ns) noexcept;
 
-    /// Time at which that many frames are counted, ns of the steady clock. After the first `update`.
+    /// Time at which the count reaches that number of frames, ns of the steady clock. After the first `update`.
     double time_ns(std::int64_t frames) const noexcept {
         return time_ns_ + static_cast<double>(frames - frames_) * frame_ns_;
     }
     double frame_ns() const noexcept { return frame_ns_; }
-    /// Fraction by which the clock runs faster than its name says: 1e-6 is 1 ppm.
+    /// Relative rate deviation of the clock: 1e-6 is 1 ppm fast.
     double rate_error() const noexcept { return nominal_ns_ / frame_ns_ - 1.0; }
     bool has_started() const noexcept { return has_started_; }
     std::int64_t jumps() const noexcept { return jumps_; }
 
     static constexpr double longest_doubt_s = 0.5;
     static constexpr double furthest_ns = 5e6;
-    static constexpr double largest_rate_error = 1e-3;  ///< a clock further off is no clock of that rate
+    static constexpr double largest_rate_error = 1e-3;  ///< a clock that deviates more does not have that rate
 
 private:
     void start(std::int64_t frames, std::int64_t steady_ns) noexcept;

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double tau = 2.0 * std::numbers::pi;
 
-/// Amplitude and phase at `rate`, of samples that are not left out, by least squares with a constant: x ≈ c + Re(p e^jωt).
-/// Without gaps and over whole cycles this is the discrete Fourier sum.
+/// Amplitude and phase at `rate` of the included samples, by least squares with a constant: x ≈ c + Re(p e^jωt).
+/// Without gaps and over whole cycles this equals the discrete Fourier sum.
 std::complex<double> phasor(std::span<const double> x, double rate, double period,
                             std::span<const std::uint8_t> left_out) {
     double a[3][4] = {};
@@ -48,7 +48,7 @@ double share_of(std::span<const std::uint8_t> flags) {
            static_cast<double>(flags.size());
 }
 
-/// What is left after the mean and the first harmonics of the rate are taken away, rms.
+/// rms of the residual without the mean and the first harmonics of the rate.
 double beside_harmonics(std::vector<double> x, double rate, double period) {
     double mean = 0.0;
     for (const double v : x) mean += v;
@@ -114,7 +114,7 @@ Fidelity judge_fidelity(const RigSeries& all, const ObjectSettings& object, doub
         if (!std::isfinite(all.force[i]) || !std::isfinite(all.position[i]))
             throw Error(fmt::format("sample {} is not a finite number", i + 1));
     Fidelity f;
-    // The object forgets where it began long before the cycles that count.
+    // The object's initial state has decayed long before the cycles that are evaluated.
     const std::vector<double> response = ideal_response(all, object);
     const RigSeries s = last_cycles(all, rate, settle, f.cycles);
     std::vector<double> ideal(response.end() - static_cast<std::ptrdiff_t>(s.force.size()), response.end());
@@ -128,7 +128,7 @@ Fidelity judge_fidelity(const RigSeries& all, const ObjectSettings& object, doub
     f.rendered_stiffness = impedance.real();
     f.rendered_damping = impedance.imag() / (tau * rate);
     const auto kept = [&](std::size_t i) { return s.slips.empty() || !s.slips[i]; };
-    // A pure damper holds no position: where it began is not part of its feel.
+    // A pure damper has no rest position: its initial position does not matter.
     double drift = 0.0, count = 0.0;
     for (std::size_t i = 0; i < ideal.size(); ++i)
         if (kept(i)) {

@@ -6,7 +6,7 @@
 namespace tactus::control {
 namespace {
 
-/// `v` shortened to at most `length`. Scaled by its largest part first: squaring 1e200 N would overflow.
+/// `v` shortened to at most `length`. Scaled by its largest component first: the square of 1e200 N would overflow.
 Vec3 shorten(const Vec3& v, double length) noexcept {
     const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
     if (largest == 0.0) return v;
@@ -91,7 +91,7 @@ void ForceLimiter::watch_input(std::int64_t counter, bool valid) noexcept {
 
 Wrench ForceLimiter::fade(double elapsed_s) noexcept {
     faded_s_ += elapsed_s > 0.0 ? elapsed_s : period_s_;
-    // The margin keeps ten ticks of 1 ms from summing to just under 10 ms.
+    // The margin allows for rounding: ten ticks of 1 ms can sum to just under 10 ms.
     const double left = faded_s_ < limits_.fade_s * (1.0 - 1e-9) ? 1.0 - faded_s_ / limits_.fade_s : 0.0;
     return fade_from_ * left;
 }

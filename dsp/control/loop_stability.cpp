@@ -14,7 +14,7 @@ namespace {
 
 constexpr int most_delay = 8;
 
-/// Where the parts of the loop lie in its state.
+/// Indices of the loop's parts in its state.
 enum : std::size_t { finger, speed, wanted, wanted_speed, smoothed, told };
 
 using State = std::array<double, most_loop_states>;
@@ -40,7 +40,7 @@ State advance(const LoopModel& m, const HeldStep& object, int delay, const State
 }
 
 LoopModel with(LoopModel model, const ObjectSettings& object, bool in_contact) noexcept {
-    // Where no hand pushes back, the object stands outside of the loop, as a wall does.
+    // Without a hand stiffness the object is outside of the loop, like a wall.
     model.is_wall = (in_contact && object.kind == ObjectKind::wall) || !(model.hand_stiffness > 0.0);
     model.stiffness = in_contact ? object.stiffness : 0.0;
     model.damping = in_contact ? object.damping : object.free_damping;
@@ -72,7 +72,7 @@ LoopMatrix loop_matrix(const LoopModel& model) noexcept {
 
 namespace {
 
-/// Largest absolute row sum: no eigenvalue is larger.
+/// Largest absolute row sum: an upper bound of the spectral radius.
 double norm_of(const LoopMatrix& a) noexcept {
     double most = 0.0;
     for (std::size_t i = 0; i < a.size; ++i) {
@@ -86,7 +86,7 @@ double norm_of(const LoopMatrix& a) noexcept {
 /// ‖A^(2^n)‖^(1/2^n) for n up to `squarings`, or until `decided(log of it, share 1/2^n)`.
 template <class Decided>
 double log_radius(LoopMatrix a, int squarings, Decided&& decided) noexcept {
-    double scaled = 0.0, share = 1.0;  // log of what was divided out, per power of A
+    double scaled = 0.0, share = 1.0;  // logarithm of the removed scale, per power of A
     for (int n = 0;; ++n, share *= 0.5) {
         const double norm = norm_of(a);
         if (!(norm > 0.0)) return -std::numeric_limits<double>::infinity();
@@ -113,15 +113,15 @@ double spectral_radius(const LoopMatrix& matrix) noexcept {
 }
 
 bool is_stable(const LoopModel& model) noexcept {
-    // A power whose norm is below 1 proves that the loop is stable; one whose norm is a billion would need a
-    // transient that no such loop has.
+    // A power with norm below 1 proves stability; a norm of a billion would need a transient that no such loop
+    // has.
     const double margin = std::log1p(-1e-6);
     return log_radius(loop_matrix(model), 24,
                       [margin](double bound, double share) { return bound < margin || bound > 20.0 * share; }) < margin;
 }
 
 double gain_limit(LoopModel model) noexcept {
-    // Small gains are stable unless nothing is; from there the first crossing counts.
+    // Small gains are stable, or none is; the search then takes the first crossing.
     const auto stable_at = [&](double gain) {
         model.gain = gain;
         return is_stable(model);

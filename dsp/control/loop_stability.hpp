@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether an admittance loop is stable: hand, virtual object, sampled position loop, delay and motor as one linear
-// system, judged by its largest eigenvalue.
+// Stability of an admittance loop: hand, virtual object, sampled position loop, delay and motor as one linear system,
+// judged by its spectral radius.
 #pragma once
 
 #include "dsp/control/virtual_object.hpp"
@@ -10,17 +10,17 @@
 
 namespace tactus::control {
 
-/// The loop of thesis figure 39. Each period: force and position are sampled, the object moves by one exact step, the
-/// motor is told u = gain (x_d − x) + feed_forward · (x_d's velocity, smoothed), and does so `delay` periods later.
+/// The loop of thesis figure 39. Each period: force and position are sampled, the object makes one exact step, the
+/// motor gets u = gain (x_d − x) + feed_forward · (low-passed velocity of x_d), and follows it `delay` periods later.
 struct LoopModel {
     double period = 1.0 / 150.0;          ///< s
     double gain = 40.0;                   ///< 1/s
     int delay = 1;                        ///< whole periods between sample and motion, 0 to 8
     double motor_lag = 0.002;             ///< s, time constant of the motor's speed
-    double hand_stiffness = 380.0;        ///< N/m, the stiffest that may hold the finger
+    double hand_stiffness = 380.0;  ///< N/m, of the stiffest hand
     double feed_forward = 0.0;            ///< share of the object's velocity
     double feed_forward_lag = 0.0;        ///< s, time constant of its smoothing
-    bool is_wall = false;                 ///< the object does not move; stiffness, damping and mass mean nothing
+    bool is_wall = false;  ///< the object does not move; stiffness, damping and mass are ignored
     double stiffness = 1000.0, damping = 0.0, mass = 0.0;  ///< of the object: N/m, N·s/m, kg
 
     bool operator==(const LoopModel&) const = default;
@@ -33,22 +33,22 @@ struct LoopMatrix {
     std::size_t size = 0;
 };
 
-/// State from one period to the next.
+/// Transition matrix from one period to the next.
 LoopMatrix loop_matrix(const LoopModel& model) noexcept;
 
-/// Largest modulus of an eigenvalue, by Gelfand's formula: ‖A^(2^n)‖^(1/2^n). Real-time safe.
+/// Spectral radius by Gelfand's formula: ‖A^(2^n)‖^(1/2^n). Real-time safe.
 double spectral_radius(const LoopMatrix& matrix) noexcept;
 
-/// The largest eigenvalue is below 1 − 1e-6. Real-time safe.
+/// The spectral radius is below 1 − 1e-6. Real-time safe.
 bool is_stable(const LoopModel& model) noexcept;
 
-/// The gain, 1/s, up to which the loop is stable, whatever `model.gain` is; 0 when it never is. Real-time safe.
+/// Stability limit of the gain, 1/s, independent of `model.gain`; 0 when no gain is stable. Real-time safe.
 double gain_limit(LoopModel model) noexcept;
 
 /// The same for an ideal motor and a pure spring, in closed form: K dt < 2 sin(π/(2(2D+1))) / (1 + k_hand/k).
 double ideal_gain_limit(double period, int delay, double hand_stiffness, double stiffness) noexcept;
 
-/// The least gain limit over all that the object can be: in contact, and free before it when it is one-sided.
+/// The lowest gain limit over all states of the object: in contact, and free before it when it is one-sided.
 double gain_limit(const LoopModel& model, const ObjectSettings& object) noexcept;
 
 }  // namespace tactus::control

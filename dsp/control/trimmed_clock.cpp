@@ -7,7 +7,7 @@
 namespace tactus::control {
 
 std::int64_t TrimmedClock::when(Flicks time) const noexcept {
-    // The product with the deviation alone keeps full resolution after days.
+    // Multiplying only the deviation keeps full resolution after days.
     const std::int64_t passed_ns = nanoseconds(time - logical);
     return steady_ns + passed_ns + std::llround(static_cast<double>(passed_ns) * (slope - 1.0));
 }

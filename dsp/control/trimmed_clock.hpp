@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Logical time on the steady clock, bent so slowly towards another clock that nobody notices.
+// Logical time on the steady clock, slowly trimmed towards another clock.
 #pragma once
 
 #include "dsp/core/time.hpp"
@@ -8,20 +8,20 @@
 
 namespace tactus::control {
 
-/// A line through (logical, steady) with a slope near 1. Trimming bends it at its newest point and nowhere else: time
-/// never steps, never runs backwards, and never runs faster or slower than `furthest` says.
+/// A line through (logical, steady) with a slope near 1. Trimming changes its slope at the newest point only: time
+/// never jumps, never runs backwards, and its rate never deviates by more than `furthest`.
 struct TrimmedClock {
     static constexpr double furthest = 2e-3;  ///< largest deviation of the slope
-    static constexpr double pull_s = 5.0;     ///< time constant with which an error of phase is taken back
+    static constexpr double pull_s = 5.0;  ///< time constant with which a phase error is corrected
 
-    Flicks logical = 0;          ///< here the line was bent last
-    std::int64_t steady_ns = 0;  ///< and this is when
+    Flicks logical = 0;  ///< start of the present line
+    std::int64_t steady_ns = 0;  ///< its steady time
     double slope = 1.0;          ///< steady ns per logical ns
 
-    /// Steady time of a logical one, ns.
+    /// Steady time of a logical time, ns.
     std::int64_t when(Flicks time) const noexcept;
-    /// From logical time `at` on, runs with `slope` of the other clock (steady per logical) and takes back
-    /// `error_ns`: what the line is later than it should be.
+    /// From logical time `at` on, runs at `slope` of the other clock (steady per logical) and corrects `error_ns`, by
+    /// which the line is late.
     void trim(Flicks at, double other_slope, double error_ns) noexcept;
 };
 

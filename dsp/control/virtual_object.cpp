@@ -19,7 +19,7 @@ Square product(const Square& a, const Square& b) noexcept {
     return c;
 }
 
-/// e^A by scaling and squaring; the series is good to the last bit for the norm of at most 1/2 that scaling leaves.
+/// e^A by scaling and squaring; the series is exact to the last bit for norms up to 1/2, which the scaling ensures.
 Square exponential(Square a) noexcept {
     double norm = 0.0;
     for (const auto& row : a)
@@ -115,7 +115,7 @@ void VirtualObject::step_massless(double force) noexcept {
     x_ = leave_or_press(force, left);
 }
 
-/// From x ≥ 0 for `left` s: b ẋ + k x = F until x = 0, from where a pull moves the free finger.
+/// From x ≥ 0 for `left` s: b ẋ + k x = F until x = 0; from there a pull moves the free finger.
 double VirtualObject::leave_or_press(double force, double left) noexcept {
     const double k = settings_.stiffness, b = settings_.damping;
     double until_free = 0.0;  // without damping the object follows at once

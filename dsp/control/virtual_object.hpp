@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a finger on an admittance device feels: an object that the measured force deflects.
+// Virtual object of an admittance device: the measured force deflects it.
 #pragma once
 
 #include "dsp/control/deflection_table.hpp"
@@ -19,12 +19,12 @@ struct ObjectSettings {
     double stiffness = 1000.0;   ///< N/m
     double damping = 0.0;        ///< N·s/m
     double mass = 0.0;           ///< kg
-    bool one_sided = false;      ///< the object begins at `rest` and lies towards +; before it the finger is free
-    double rest = 0.0;           ///< m, where the object is without force
-    double free_damping = 20.0;  ///< N·s/m, what is felt before a one-sided object
+    bool one_sided = false;  ///< the object begins at `rest` and lies towards +; before it the finger is free
+    double rest = 0.0;  ///< m, position without force
+    double free_damping = 20.0;  ///< N·s/m, in front of a one-sided object
     const DeflectionTable* table = nullptr;
 
-    /// False for an object that any force would throw away at once: no stiffness, no damping and no mass.
+    /// False without stiffness, damping and mass: any force would give an infinite velocity.
     bool is_renderable() const noexcept;
     bool operator==(const ObjectSettings&) const = default;
 };
@@ -37,15 +37,15 @@ struct HeldStep {
 /// Exact for a force that is constant over `dt` s. Without mass v is not a state; without damping too, x = F/k.
 HeldStep held_step(double stiffness, double damping, double mass, double dt) noexcept;
 
-/// Advances an object under forces held for one period each; exact for massless objects, also where a one-sided one is
-/// met or left within the period. With mass, sides change at the ends of periods, and a wall takes all speed.
+/// Advances an object under forces that are held for one period each; exact for massless objects, also when a one-sided
+/// one is reached or left within the period. With mass, sides change at the ends of periods; a wall stops the motion.
 class VirtualObject {
 public:
-    /// Position and velocity stay as they are. Real-time safe.
+    /// Position and velocity are kept. Real-time safe.
     void set(const ObjectSettings& settings, double period_s) noexcept;
     /// Puts it at rest at `position`. Real-time safe.
     void place(double position) noexcept;
-    /// Where the force has moved it by the end of the period, m. Real-time safe.
+    /// Position at the end of the period under the force, m. Real-time safe.
     double step(double force) noexcept;
 
     double position() const noexcept { return x_ + settings_.rest; }
@@ -57,7 +57,7 @@ private:
 
     ObjectSettings settings_;
     HeldStep contact_, free_;
-    double dt_ = 1.0, x_ = 0.0, v_ = 0.0;  // x from `rest`
+    double dt_ = 1.0, x_ = 0.0, v_ = 0.0;  // x relative to `rest`
 };
 
 }  // namespace tactus::control

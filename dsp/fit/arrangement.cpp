@@ -5,7 +5,7 @@
 
 namespace tactus::fit {
 
-// Every group that lasts has two parts or more, so there are fewer of them than fragments; one more is being made.
+// Every finished group has two parts or more, so there are fewer groups than fragments; one more is being built.
 Arrangement::Arrangement(std::size_t fragments) : places_(fragments), groups_(fragments + 1) {}
 
 bool Arrangement::exists(int group) const noexcept {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the fragments of a case stand, and which of them move as one.
+// Poses of a case's fragments, and their groups.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -10,8 +10,8 @@
 
 namespace tactus::fit {
 
-/// Fragments with poses, in groups that may hold groups. Fragments and groups are numbered from 0. Memory is taken by
-/// the constructor and not later, so that a node may keep one.
+/// Fragments with poses, in nested groups. Fragments and groups are numbered from 0. Allocates in the constructor only,
+/// so that a node may own one.
 class Arrangement {
 public:
     static constexpr int none = -1;
@@ -19,7 +19,7 @@ public:
     struct Place {
         Pose pose;
         int group = none;
-        int fitted_to = none;  ///< the fragment that it was fitted to, as long as it has not moved off
+        int fitted_to = none;  ///< the fragment that it was fitted to, until it moves away
         bool locked = false, hidden = false;
     };
     struct Group {
@@ -34,40 +34,40 @@ public:
     bool is_locked(int fragment) const noexcept { return at(fragment).locked; }
     bool is_hidden(int fragment) const noexcept { return at(fragment).hidden; }
     int fitted_to(int fragment) const noexcept { return at(fragment).fitted_to; }
-    /// The innermost group of a fragment, the group that holds a group; `none` when there is none.
+    /// Innermost group of a fragment; parent of a group; `none` when there is none.
     int group_of(int fragment) const noexcept { return at(fragment).group; }
     int parent_of(int group) const noexcept { return groups_[static_cast<std::size_t>(group)].parent; }
     bool exists(int group) const noexcept;
     std::size_t most_groups() const noexcept { return groups_.size(); }
-    /// The group that holds all others of this fragment, or `none`.
+    /// The outermost group of the fragment, or `none`.
     int outermost(int fragment) const noexcept;
-    /// A fragment moves with itself and with all of its outermost group.
+    /// True for the fragment itself and all members of its outermost group.
     bool move_together(int a, int b) const noexcept;
-    /// A locked fragment holds all that move with it.
+    /// A locked fragment locks everything that moves with it.
     bool can_move(int fragment) const noexcept;
 
-    /// Places one fragment and leaves all others: what a recorded step says.
+    /// Places one fragment without its group: replays a recorded step.
     void place(int fragment, const Pose& pose) noexcept { at(fragment).pose = pose; }
-    /// It lies where it fits this one; `none`: it does not.
+    /// Records that the fragment fits this one; `none`: it fits none.
     void fit(int fragment, int partner) noexcept { at(fragment).fitted_to = partner; }
-    /// Moves a fragment to `pose` and all that move with it by the same motion; a pose that is none and what is locked
-    /// stay. What leaves its partner behind is fitted no more. Returns whether it moved.
+    /// Moves a fragment to `pose` and everything that moves with it by the same motion; ignores an invalid pose and
+    /// locked fragments. Fragments that leave their partner are no longer fitted. Returns whether it moved.
     bool move(int fragment, const Pose& pose) noexcept;
 
-    /// A new group of these fragments and all that move with them: groups among them stay and are held by it. Returns
-    /// its number, or `none` for less than two things to join.
+    /// Makes a group of these fragments and all that move with them: their groups become nested groups. Returns its
+    /// number, or `none` for fewer than two members.
     int join(std::span<const int> fragments) noexcept;
-    /// A fragment, or the outermost group that it is in, becomes part of a group. False when it is part of it already.
+    /// Adds a fragment, or its outermost group, to a group. False when it is already in it.
     bool add(int group, int fragment) noexcept;
-    /// A fragment leaves all groups. A group that is left with one part is none any more. False when it was in none.
+    /// Removes a fragment from all groups. A group with one part left is dissolved. False when it was in none.
     bool remove(int fragment) noexcept;
-    /// The parts of a group stand on their own again, or in the group that held it.
+    /// Dissolves a group: its parts move to the group above, or become independent.
     bool dissolve(int group) noexcept;
 
     void lock(int fragment, bool locked) noexcept { at(fragment).locked = locked; }
     void hide(int fragment, bool hidden) noexcept { at(fragment).hidden = hidden; }
 
-    // All that is known of a fragment and of a group, for those who remember what was.
+    // The complete state of a fragment and of a group, for undo.
     const Place& fragment(int n) const noexcept { return at(n); }
     const Group& group(int n) const noexcept { return groups_[static_cast<std::size_t>(n)]; }
     void restore(int fragment, const Place& place) noexcept { at(fragment) = place; }

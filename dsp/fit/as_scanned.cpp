@@ -9,7 +9,7 @@ namespace tactus::fit {
 
 namespace {
 
-/// Whether a point lies on the other's surface and looks against it, as gap_between has it.
+/// Whether a point lies on the other surface with opposite normals, as in gap_between.
 bool touches(const contact::SurfacePoint& point, const Pose& place, const contact::Voxmap& other,
              const AsScannedSettings& settings) noexcept {
     const volume::Sample here = other.sample(place.apply(point.position));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which motions a fit holds, from its stiffness.
+// Constraint analysis: which motions a fit constrains, from the eigenvectors of its stiffness.
 #pragma once
 
 #include "dsp/geometry/symmetric6.hpp"
@@ -7,8 +7,9 @@
 
 namespace tactus::fit {
 
-/// Fills `hold` and `free` of a fit. A turn counts as the way of a point `radius` from its axis (m), so that turns and
-/// translations compare; the stiffness is divided by the weight that takes part, which leaves the mean square slope.
+/// Fills `hold` and `free` of a fit. A rotation counts as the displacement at `radius` from its axis (m), which makes
+/// it comparable to translations; the stiffness is divided by the participating weight, which gives the mean square
+/// slope.
 void find_free(Fit& fit, const geometry::Matrix6& stiffness, double radius, double least_hold);
 
 }  // namespace tactus::fit

@@ -13,12 +13,12 @@ namespace tactus::fit {
 
 namespace {
 
-/// Painted points by themselves, and where each of them stands among all.
+/// The painted points and their indices among all points.
 struct Paint {
     std::vector<contact::SurfacePoint> points;
     std::vector<std::size_t> index;
     std::vector<Vec3> normal;     ///< averaged
-    std::vector<double> flatness;  ///< length of the average: 1 where all look one way
+    std::vector<double> flatness;  ///< length of the average: 1 where all normals agree
 };
 
 Paint paint_of(std::span<const contact::SurfacePoint> points, const FaceOptions& options) {
@@ -45,7 +45,7 @@ Paint paint_of(std::span<const contact::SurfacePoint> points, const FaceOptions&
 
 constexpr int none = -1;
 
-/// Faces grown from the flattest places on.
+/// Region growing: faces start at the flattest points.
 std::vector<int> grow(const Paint& paint, const geometry::Neighbours& touching, const FaceOptions& options,
                       int& count) {
     std::vector<std::size_t> order(paint.points.size());
@@ -81,7 +81,7 @@ std::vector<std::vector<std::size_t>> split_faces(std::span<const contact::Surfa
     std::vector<double> area(static_cast<std::size_t>(count), 0.0);
     for (std::size_t n = 0; n < face.size(); ++n) area[static_cast<std::size_t>(face[n])] += paint.points[n].area;
     const auto is_small = [&](int f) { return area[static_cast<std::size_t>(f)] < options.least_area; };
-    // Crumbs along the edges between faces, from their borders inwards.
+    // Small pieces along edges between faces are absorbed from their borders inwards.
     for (bool changed = true; changed;) {
         changed = false;
         for (std::size_t n = 0; n < face.size(); ++n) {

@@ -16,14 +16,14 @@ namespace tactus::fit {
 namespace {
 
 constexpr int spins = 24;
-constexpr std::size_t coarse_points = 160;  // of each side, about
+constexpr std::size_t coarse_points = 160;  // per side, approximately
 
 struct Candidate {
     Pose pose;  // between centres
     double score = 0.0;
 };
 
-/// The start, the same with the middles of the paints on each other and their normals opposed, and turns around that.
+/// Starts: the given pose, the same with centroids together and normals opposed, and rotations around that.
 std::vector<Pose> starts_near(const FitSurface& moving, const FitSurface& fixed, const Pose& start) {
     std::vector<Pose> starts{start, {Vec3(0.0), start.orientation}};
     const Quat flat_on = opposed(moving, fixed, start.orientation);
@@ -43,7 +43,7 @@ std::vector<Pose> starts_everywhere(const FitSurface& moving, const FitSurface& 
     return starts;
 }
 
-/// Best first; of those within `nearer` of each other only the best stays.
+/// Sorted best first; of those within `nearer` of each other only the best stays.
 void keep_distinct(std::vector<Candidate>& all, double gyration, double nearer) {
     std::ranges::stable_sort(all, std::ranges::greater{}, &Candidate::score);
     std::vector<Candidate> kept;
@@ -84,7 +84,7 @@ void fine(FitEnergy& energy, std::vector<Candidate>& candidates, std::size_t mos
     keep_distinct(candidates, energy.moving().gyration, 1e-3);
 }
 
-/// Thesis 6.1.2: pull of constant size, contact and the springs of a hand balance each millisecond; the hand gives way.
+/// Thesis 6.1.2: constant pull, contact and the springs of a hand are balanced each millisecond; the hand yields.
 Pose follow_thesis(FitEnergy& energy, const Pose& start, const FitSettings& settings, int& iterations) noexcept {
     energy.law = {};
     energy.law.kernel = FitKernel::steady;
@@ -115,7 +115,7 @@ std::string_view name_of(FitVerdict verdict) {
 }
 
 FitVerdict judge(const FitQuality& quality, bool is_free, double margin, const FitSettings& settings) noexcept {
-    // Surfaces that do not belong together cross each other: what is near is spread evenly over all distances.
+    // Unrelated surfaces cross each other: their nearby distances are spread evenly.
     if (quality.score < settings.least_score || quality.overlap < settings.least_overlap ||
         quality.rms > settings.most_rms * settings.sigma)
         return FitVerdict::no_match;
@@ -146,7 +146,7 @@ void widen_for(FitSettings& settings, const Vec3& spacing) noexcept {
     settings.finest = std::max(settings.finest, 0.6 * h);
     settings.sigma = std::max(settings.sigma, 0.5 * h);
     settings.polish = std::max(settings.polish, 0.3 * h);
-    // A few dozen voxels of any two surfaces lie on each other somewhere.
+    // A few dozen voxels of any two surfaces coincide somewhere.
     settings.least_overlap = std::max(settings.least_overlap, 60.0 * h * h);
 }
 
@@ -175,7 +175,7 @@ Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& star
             found[0].score = energy.quality(found[0].pose, settings.sigma).score;
         } else {
             found = coarse(energy, starts_near(moving, fixed, from), settings, fit.iterations);
-            // What the spins found within a hand's reach of the start counts as found from there.
+            // Results of the spins within reach of the start count as found from the start.
             for (const Candidate& c : elsewhere)
                 if (is_within_reach(c.pose, from, settings)) found.push_back(c);
             keep_distinct(found, radius, 1e-3);
@@ -207,7 +207,7 @@ Fit find_fit(std::span<const FitSurface> moving, std::span<const FitSurface> fix
     for (const FitSurface& m : moving)
         for (const FitSurface& f : fixed) {
             fits.push_back(find_fit(m, f, start, mode, settings_for(m, f)));
-            // The area that fits counts as well: a small patch finds its like on any large one.
+            // The fitted area is part of the score: a small patch finds a match on any large one.
             const auto worth = [](const Fit& fit) { return fit.quality.score * std::sqrt(fit.quality.overlap); };
             if (fits.size() > 1 && !(worth(fits.back()) > worth(fits[best]))) continue;
             best = fits.size() - 1;
@@ -219,7 +219,7 @@ Fit find_fit(std::span<const FitSurface> moving, std::span<const FitSurface> fix
     for (std::size_t n = 0; n < fits.size(); ++n) {
         fit.iterations += n == best ? 0 : fits[n].iterations;
         const Pose other = between_centres(*moving_face, *fixed_face, fits[n].pose);
-        // Patches that fit by chance are small: they count by what they cover of the best one.
+        // Patches that fit by chance are small: they are weighted by their overlap relative to the best one.
         const double area = std::min(1.0, fits[n].quality.overlap / std::max(fit.quality.overlap, 1e-12));
         if (n != best && pose_distance(other, chosen, moving_face->gyration) > 1e-3 && fit.quality.score > 0.0)
             fit.margin = std::min(fit.margin, std::max(0.0, 1.0 - area * fits[n].quality.score / fit.quality.score));

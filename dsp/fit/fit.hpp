@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Snap-to-fit without a hand: where two painted surfaces fit, and how sure that is.
+// Snap-to-fit without a hand: where two painted surfaces fit, and how reliable the fit is.
 //
-// The extended mode lowers the robust two-sided energy by Gauss-Newton steps of the coupling's own solver, with a scale
-// that narrows from 4 mm to 0.25 mm, from the start and from places around it, and keeps the pose that scores best. The
-// global mode starts from 24 spins about the normals instead, whatever the start. The thesis' mode follows its rule
-// (constant pull of the moving points, contact, a hand on springs that gives way in 50 ms).
+// The extended mode minimises the robust two-sided energy by Gauss–Newton steps of the coupling's solver, with a scale
+// that narrows from 4 mm to 0.25 mm, from the start and from poses around it, and keeps the pose with the best score.
+// The global mode starts from 24 spins about the normals, independent of the start. The thesis' mode follows its rule
+// (constant pull of the moving points, contact, a hand on springs that yields in 50 ms).
 #pragma once
 
 #include "dsp/fit/fit_energy.hpp"
@@ -20,38 +20,38 @@ namespace tactus::fit {
 enum class FitMode : std::uint8_t { thesis, extended, global };
 
 enum class FitVerdict : std::uint8_t {
-    fit,  ///< one pose, held in all directions
-    sliding,  ///< it may move along `free` without leaving the fit: flat, round or straight surfaces
-    ambiguous,  ///< another pose fits as well
+    fit,  ///< one pose, constrained in all directions
+    sliding,  ///< it can move along `free` and still fit: flat, round or straight surfaces
+    ambiguous,  ///< another pose fits equally well
     no_match,  ///< the surfaces do not belong together
-    blocked  ///< the surfaces fit, but bone would lie in bone
+    blocked  ///< the surfaces fit, but the bones would overlap
 };
 std::string_view name_of(FitVerdict verdict);
 
-/// A motion that the fit does not hold.
+/// A motion that the fit does not constrain.
 struct FreeDirection {
     bool is_rotation = false;
-    Vec3 axis{0.0};  ///< unit, fixed frame; of a turn about the moving paint's middle
+    Vec3 axis{0.0};  ///< unit, fixed frame; a rotation is about the middle of the moving paint
 };
 
 struct FitSettings {
     double widest = 4e-3, finest = 0.25e-3;  ///< m, scale of the robust kernel
-    double power = 3.0;  ///< of the collinearity once the scale is fine
-    double polish = 0.1e-3;  ///< m, scale of the last steps: where bone is lost, a wider one pulls into the gap
-    double polish_power = 6.0;  ///< of the collinearity in the last steps
-    double most_way = 25e-3, most_turn = 1.05;  ///< m and rad: an extended fit is no farther from its start
+    double power = 3.0;  ///< exponent of the collinearity at the finest scale
+    double polish = 0.1e-3;  ///< m, scale of the last steps: with lost bone, a wider one pulls into the gap
+    double polish_power = 6.0;  ///< exponent of the collinearity in the last steps
+    double most_way = 25e-3, most_turn = 1.05;  ///< m and rad: limits of an extended fit's motion from its start
     double outline = 0.3;  ///< weight of the outer contour
     double sigma = 0.2e-3;  ///< m, of the score
     double pull = 30.0;  ///< N, thesis: of all painted points together
-    double least_score = 0.25;  ///< below it nothing matches
-    double most_rms = 0.8;  ///< of the distances of what is covered, as share of sigma: above it nothing matches
-    double least_overlap = 0.0;  ///< m²; less of it is chance: nothing matches
+    double least_score = 0.25;  ///< below it the result is no_match
+    double most_rms = 0.8;  ///< rms distance within the overlap, as share of sigma: above it the result is no_match
+    double least_overlap = 0.0;  ///< m²; a smaller overlap is chance: no_match
     double least_margin = 0.1;  ///< to the second best pose, as share of the best score
-    double least_hold = 0.008;  ///< mean square slope along a direction that still holds it
+    double least_hold = 0.008;  ///< mean square slope along a direction that still counts as constrained
     double most_penetration = 0.5e-3;  ///< m
 };
 
-/// Coarse scans know their surfaces no better than their voxels: no scale stays finer than these tell.
+/// Coarse scans define their surfaces no better than their voxels: no scale stays finer than that.
 void widen_for(FitSettings& settings, const Vec3& spacing) noexcept;
 
 /// The defaults, widened for both fields.
@@ -64,25 +64,25 @@ struct Fit {
     FitVerdict verdict = FitVerdict::no_match;
     std::vector<FreeDirection> free;
     std::array<double, 6> hold{};  ///< mean square slope along the directions, ascending
-    int iterations = 0;  ///< steps of the solver, all starts together
+    int iterations = 0;  ///< steps of the solver, over all starts
 };
 
-/// What a fit is worth: the first of no_match, sliding (`is_free`), ambiguous (`margin`) and blocked that holds, or fit.
+/// Verdict: the first of no_match, sliding (`is_free`), ambiguous (`margin`) and blocked that applies, else fit.
 FitVerdict judge(const FitQuality& quality, bool is_free, double margin, const FitSettings& settings) noexcept;
 
-/// `start`: the moving body in the fixed body's frame, in the frames of their files. Deterministic.
+/// `start`: pose of the moving body in the fixed body's frame, both frames those of the files. Deterministic.
 Fit find_fit(const FitSurface& moving, const FitSurface& fixed, const Pose& start, FitMode mode,
              const FitSettings& settings = {});
 
-/// The best fit of any moving face to any fixed one; `margin` is to the next best pose of all pairs. Either may not be
+/// The best fit of any moving face to any fixed one; `margin` is to the next best pose of all pairs. Neither may be
 /// empty.
 Fit find_fit(std::span<const FitSurface> moving, std::span<const FitSurface> fixed, const Pose& start, FitMode mode);
 
-/// Lowers the energy from `start` at the fine scale alone: what accepts a fit that a hand still holds. Poses are those
+/// Minimises the energy from `start` at the finest scale only: refines a fit that a hand still holds. Poses are those
 /// of the bodies. Does not allocate beyond `energy`.
 Pose settle(FitEnergy& energy, const Pose& start, const FitSettings& settings, int* iterations = nullptr) noexcept;
 
-/// Between the frames of bodies and those of their paints' middles.
+/// Converts poses between the bodies' frames and those of their paints' middles.
 Pose between_centres(const FitSurface& moving, const FitSurface& fixed, const Pose& bodies);
 Pose between_bodies(const FitSurface& moving, const FitSurface& fixed, const Pose& centres);
 

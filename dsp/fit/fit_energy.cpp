@@ -12,7 +12,7 @@ namespace tactus::fit {
 namespace {
 
 constexpr double outline_reach2 = 9e-6;  // m²: partners 3 mm apart count half
-constexpr double outline_corner = 0.3e-3;  // m: beyond this a step of the outline pulls no harder
+constexpr double outline_corner = 0.3e-3;  // m: beyond this a step of the outline has constant force
 
 struct Pull {
     double energy, force, stiffness;  // per weight: force = d energy / d d
@@ -43,7 +43,7 @@ void add_point(contact::ContactSum& sum, double force, double stiffness, const V
     }
 }
 
-/// The lower triangle from the upper one.
+/// Copies the upper triangle to the lower one.
 void mirror(std::array<double, 36>& m) noexcept {
     for (std::size_t a = 0; a < 6; ++a)
         for (std::size_t b = 0; b < a; ++b) m[6 * a + b] = m[6 * b + a];
@@ -168,7 +168,7 @@ void FitEnergy::add(contact::ContactSum& sum, Side& side, const Pose& pose, cons
         }
         sum.energy += pull.energy;
         ++sum.evaluated;
-        // A field that moves pushes the standing point back: the same direction with the other sign.
+        // A moving field pushes the fixed point: the same direction with opposite sign.
         if (is_moving) {
             add_point(sum, pull.force, pull.stiffness, here.gradient, rotation * points.position[i]);
         } else {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The energy of two painted surfaces that are to fit, for the solver of the coupling.
+// The energy of two painted surfaces that should fit, for the solver of the coupling.
 //
-// A painted point at signed distance d of the other bone, with outward normal n and the other's gradient g there, counts
-// with w = share · max(0, −n·g)^power: surfaces that mate look against each other. Its energy is
+// A painted point at signed distance d of the other bone, with outward normal n and the other's gradient g there, has
+// the weight w = share · max(0, −n·g)^power: mating surfaces have opposite normals. Its energy is
 //
-//     robust       ½ K w s² d² / (s² + d²)       on both sides of the surface; what lies far beyond s hardly pulls
+//     robust       ½ K w s² d² / (s² + d²)       on both sides of the surface; points far beyond s have little force
 //     steady       F w · (d² / 2δ up to δ, then d − δ/2, up to `reach`)   for d > 0: a pull of constant size (thesis 6.1.2)
 //
-// with gradients of J = (g, r × g) and the stiffness of the touching parabola, as in pointshell_contact.hpp. The points of
-// the outline pull along ½(n_x + n_y) towards their nearest partner y, which is nought for two points of one circular arc,
-// so that a bent contour goes on without a step. The weights are those of the pose last looked at: within one solve they
-// stand, so that the energy has the gradient that is given.
+// with gradients of J = (g, r × g) and the stiffness of the touching parabola, as in pointshell_contact.hpp. The
+// points of the outline pull along ½(n_x + n_y) towards their nearest partner y, which is zero for two points of one
+// circular arc, so that a curved contour continues without a step. The weights are those of the last update: they are
+// constant within one solve, so that the energy has the stated gradient.
 #pragma once
 
 #include "dsp/contact/pointshell_contact.hpp"
@@ -24,7 +24,7 @@ namespace tactus::fit {
 
 enum class FitKernel : std::uint8_t { robust, steady };
 
-/// The halves of the energy that may be looked at apart: what the moving points find in the fixed field with the outline,
+/// The halves of the energy that can be evaluated separately: the moving points in the fixed field with the outline,
 /// and the fixed points in the moving field.
 enum class FitHalf : std::uint8_t { moving_points, fixed_points };
 
@@ -32,24 +32,24 @@ struct FitLaw {
     FitKernel kernel = FitKernel::robust;
     double strength = 10e3;  ///< robust: K, N/m over all points of a side; steady: F, N
     double scale = 0.5e-3;  ///< m, s of the robust kernel
-    double reach = 8e-3;  ///< m: no pull from farther away
+    double reach = 8e-3;  ///< m: maximum distance of a pull
     double soft = 0.3e-3;  ///< m, δ of the steady kernel
-    double power = 1.0;  ///< of the collinearity
-    bool two_sided = true;  ///< the fixed body's paint is tried against the moving body's field as well
+    double power = 1.0;  ///< exponent of the collinearity
+    bool two_sided = true;  ///< also tests the fixed body's paint against the moving body's field
     bool gated = true;  ///< only where the nearest surface is painted too
-    double outline = 0.0;  ///< weight of the outline against that of the paint
+    double outline = 0.0;  ///< weight of the outline relative to the paint
     double contact = 0.0;  ///< N/m for each moving point that is inside of the fixed bone
-    std::size_t stride = 1;  ///< every so many-th painted point takes part
+    std::size_t stride = 1;  ///< uses every n-th painted point
 };
 
 /// How well two surfaces fit at a pose.
 struct FitQuality {
     double score = 0.0;  ///< mean over both paints of collinearity · exp(−d² / 2σ²), 0 to 1
-    double covered = 0.0;  ///< share of both paints within 2σ of the other and looking against it
-    double rms = 0.0;  ///< m, of the distances of what is covered
+    double covered = 0.0;  ///< share of both paints within 2σ of the other and with opposite normals
+    double rms = 0.0;  ///< m, of the distances within the overlap
     double overlap = 0.0;  ///< m² of the moving paint that is covered
     double penetration = 0.0;  ///< m, exceeded by 1 % of the points of paint and outline of both sides
-    double gap = 0.0;  ///< m, mean signed distance of what is covered: positive when bone is missing between
+    double gap = 0.0;  ///< m, mean signed distance within the overlap: positive when bone is missing between
     double outline = 0.0;  ///< m, median step of the outer contour; 0 without an outline
 };
 
@@ -57,33 +57,33 @@ class FitEnergy {
 public:
     FitLaw law;
 
-    /// Both must live as long as this. Memory is taken here and not later.
+    /// Both surfaces must outlive this object. Allocates here only.
     FitEnergy(const FitSurface& moving, const FitSurface& fixed);
 
-    /// Room for other surfaces of up to so many points and outline points.
+    /// Reserves memory for other surfaces with up to this many points and outline points.
     void reserve(std::size_t points, std::size_t outline);
-    /// Two other surfaces; takes no memory when there is room.
+    /// Replaces the surfaces; does not allocate within the reserved memory.
     void rebind(const FitSurface& moving, const FitSurface& fixed) noexcept;
 
     const FitSurface& moving() const noexcept { return *moving_; }
     const FitSurface& fixed() const noexcept { return *fixed_; }
 
-    /// Takes weights and partners as they are at this pose: of the moving centre's frame in the fixed centre's.
+    /// Updates weights and partners for this pose of the moving centre's frame in the fixed centre's.
     void look(const Pose& pose) noexcept;
-    /// Energy, gradient and stiffness about the origin of the moving frame: what a coupling takes for a contact.
+    /// Energy, gradient and stiffness about the origin of the moving frame, in the form of a contact for a coupling.
     contact::ContactSum operator()(const Pose& pose, contact::ContactParts parts) noexcept;
-    /// The same for one half alone, looking anew on the way.
+    /// The same for one half, with its weights updated.
     contact::ContactSum look_at_half(FitHalf half, const Pose& pose) noexcept;
     double clearance(const Pose&) const noexcept { return 0.0; }
 
-    /// `sigma`, m: the distance at which a point counts 0.6. Takes no notice of the law.
+    /// `sigma`, m: distance at which a point counts 0.6. Ignores the law.
     FitQuality quality(const Pose& pose, double sigma) noexcept;
 
 private:
     struct Side {
         const FitSurface *points = nullptr, *field = nullptr;
         std::vector<double> weight;
-        std::vector<volume::Sample> seen;  ///< of the field, at `seen_at`, for one point in `seen_stride`; 0: for none
+        std::vector<volume::Sample> seen;  ///< of the field at `seen_at`, for every `seen_stride`-th point; 0: none
         Pose seen_at;
         std::size_t seen_stride = 0;
     };
@@ -92,7 +92,7 @@ private:
         double weight = 0.0;
     };
 
-    /// Reads the field at all points, unless they were read at this very pose last: most poses are asked about twice.
+    /// Samples the field at all points, unless the last call had the same pose: most poses are evaluated twice.
     void read(Side& side, const Pose& into) const noexcept;
     void look(Side& side, const Pose& into) noexcept;
     void link(const Pose& pose) noexcept;

@@ -13,7 +13,7 @@ namespace tactus::fit {
 
 namespace {
 
-/// One step of the solver from where it is, with the weights of that place. Returns how far it went, m.
+/// One step of the solver from its pose, with the weights of that pose. Returns the length of the step, m.
 double step_once(FitEnergy& energy, coupling::QuasiStaticCoupling& solver, int& iterations) noexcept {
     const Pose before = solver.state().proxy;
     energy.look(before);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps that a search for a fit is made of: starts, a scale that narrows, and how far apart two poses are.
+// Building blocks of a search for a fit: starts, a narrowing scale, and the distance of two poses.
 #pragma once
 
 #include "dsp/coupling/quasi_static.hpp"
@@ -10,41 +10,41 @@
 
 namespace tactus::fit {
 
-/// The scale of the robust kernel goes from `widest` to `finest` (m) in so many steps, and the power of the collinearity
-/// from 1 to `power`.
+/// The scale of the robust kernel narrows from `widest` to `finest` (m) in this many steps, and the exponent of the
+/// collinearity rises from 1 to `power`.
 struct Narrowing {
     double widest, finest;
     int stages;
     double power;
 };
 
-/// Springs that pull at nothing: the solver lowers the fit's energy alone. `gyration` of the moving paint, m.
+/// Springs without force: the solver minimises the fit's energy alone. `gyration` of the moving paint, m.
 coupling::QuasiStaticSettings free_solver(double gyration) noexcept;
 
-/// Every point takes part, or every so many-th so that about `points` of each side do (0: all).
+/// Selects every point, or every n-th so that about `points` of each side take part (0: all).
 void set_law(FitEnergy& energy, double outline, std::size_t points = 0) noexcept;
 
-/// Steps of the solver while the scale narrows, weights looked at anew before each. Poses are those of the centres.
+/// Solver steps while the scale narrows, with weights updated before each. Poses are those of the centres.
 Pose anneal(FitEnergy& energy, const Pose& start, const Narrowing& narrowing, int& iterations) noexcept;
 
-/// At the finest scale until the steps are done; then narrower still, to what the scans can tell.
+/// At the finest scale until the steps are done; then narrower, down to the resolution of the scans.
 Pose refine(FitEnergy& energy, const Pose& start, const FitSettings& settings, int& iterations) noexcept;
 
-/// How far the narrowing goes from `finest` on in step `step` of `polish_steps`: what stays of a bias that gaps of lost
-/// bone leave at a wide scale goes with the square of it.
+/// Factor on `finest` in step `step` of `polish_steps`: the bias that gaps of lost bone cause at a wide scale falls
+/// with its square.
 inline constexpr int polish_steps = 12;
 void set_polish(FitEnergy& energy, const FitSettings& settings, int step) noexcept;
 
-/// The shortest turn that takes direction `from` to `to`.
+/// The shortest rotation from direction `from` to `to`.
 Quat shortest_turn(const Vec3& from, const Vec3& to) noexcept;
 
-/// Of a mean normal; up when it is nought.
+/// Unit vector of a mean normal; up when it is zero.
 Vec3 direction_of(const Vec3& normal) noexcept;
 
-/// The moving paint's orientation with the mean normals opposed, by the shortest turn from `from`.
+/// The moving paint's orientation with the mean normals opposed, by the shortest rotation from `from`.
 Quat opposed(const FitSurface& moving, const FitSurface& fixed, const Quat& from) noexcept;
 
-/// m, of two poses of the same body: way of the middle, and turn at the gyration.
+/// m, distance of two poses of the same body: translation of the middle, plus rotation times the gyration.
 double pose_distance(const Pose& a, const Pose& b, double gyration) noexcept;
 
 }  // namespace tactus::fit
