@@ -12,7 +12,7 @@ namespace tactus::volume {
 
 namespace {
 
-/// The cell that holds a position, where in it, and its sample at the low corner, or null where none is stored.
+/// The cell that contains a position, the position within it, and its low-corner sample, or null where none is stored.
 struct BrickCell : GridCell {
     const float* corner = nullptr;
 
@@ -45,7 +45,7 @@ Sample BoneSnapshot::smooth_sample(const Vec3& position) const noexcept {
     const BrickLayout& grid = *root->layout;
     if (!find_cell(grid, root->distance, position).corner) return {grid.far, Vec3(0.0), false};
     const QuadraticSpline spline(grid.origin, grid.spacing, grid.size, position);
-    // Per axis: brick and place within it of the three samples.
+    // Per axis: brick of the three samples and their index within it.
     int brick[3][3], within[3][3];
     for (std::size_t axis = 0; axis < 3; ++axis)
         for (int n = 0; n < 3; ++n) {
@@ -125,7 +125,7 @@ BoneEditor::BoneEditor(const Grid& distance, const Grid& density, const BoneEdit
     }
     free_.reserve(extra + needed);
     for (std::size_t i = 0; i < extra; ++i) free_.push_back(take());
-    // A publication may wait in the consumer's hand while max_versions others are on their way.
+    // A consumer may hold one publication while max_versions others are in the queue.
     for (int i = 0; i < options.max_versions + 2; ++i) {
         roots_.push_back(std::make_unique<BoneRoot>(working_));
         free_roots_.push_back(roots_.back().get());
@@ -143,7 +143,7 @@ BoneEditor::BoneEditor(const Grid& distance, const Grid& density, const BoneEdit
 }
 
 float BoneEditor::get(int i, int j, int k) const noexcept {
-    // The last plane of samples lies in the last brick, as its ninth.
+    // The last plane of samples is the ninth of the last brick.
     const int bx = std::min(i >> 3, layout_.bricks[0] - 1), by = std::min(j >> 3, layout_.bricks[1] - 1),
               bz = std::min(k >> 3, layout_.bricks[2] - 1);
     const float* brick = working_.distance[static_cast<std::size_t>(layout_.brick_index(bx, by, bz))];
@@ -153,7 +153,7 @@ float BoneEditor::get(int i, int j, int k) const noexcept {
 
 float* BoneEditor::writable(int brick) noexcept {
     const auto b = static_cast<std::size_t>(brick);
-    // The editor owns every brick; the table is const only towards readers.
+    // The editor owns every brick; the table is const for readers only.
     auto* present = const_cast<float*>(working_.distance[b]);
     if (is_dirty_[b]) return present;
     float* copy = free_.back();
@@ -190,7 +190,7 @@ bool BoneEditor::set(int i, int j, int k, float value) noexcept {
 }
 
 BoneSnapshot BoneEditor::publish() noexcept {
-    // Without room for one more version the edits wait for the next publication.
+    // Without room for another version, the edits wait for the next publication.
     if (dirty_.empty() || free_roots_.empty()) {
         if (dirty_.empty()) changed_.clear();
         return current_;

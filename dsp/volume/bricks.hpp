@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bone in memory: distance and density in bricks, edited by one writer, read by any number of threads through
+// A bone in memory: distance and density in sparse bricks, edited by one writer, read by any number of threads through
 // immutable snapshots.
 //
-// A brick holds the 9 × 9 × 9 samples at the corners of 8 × 8 × 8 cells. Samples on the border between bricks are stored
-// in each of them (the apron), so that every interpolation touches one brick only. Bricks are copied when they are first
-// written after a publication; a snapshot is a table of pointers to bricks that nobody writes any more.
+// A brick holds the 9 × 9 × 9 samples at the corners of 8 × 8 × 8 cells. Samples on the border between bricks are
+// stored in each of them (the apron), so that every interpolation reads one brick only. Copy on write: a brick is
+// copied at its first write after a publication; a snapshot is a table of pointers to bricks that nobody writes any
+// more.
 #pragma once
 
 #include "dsp/core/hash.hpp"
@@ -23,46 +24,46 @@ namespace tactus::volume {
 inline constexpr int brick_cells = 8, brick_side = brick_cells + 1,
                      brick_samples = brick_side * brick_side * brick_side;
 
-/// How samples are spread over bricks. Frame: LPS, metres.
+/// Layout of the samples in bricks. Frame: LPS, metres.
 struct BrickLayout {
     std::array<int, 3> size{0, 0, 0};  ///< samples per axis
     std::array<int, 3> bricks{0, 0, 0};  ///< bricks per axis
     Vec3 origin{0.0, 0.0, 0.0}, spacing{0.0, 0.0, 0.0};
-    double far = 0.0;  ///< value where no brick is stored: the bone is at least so far away, m
+    double far = 0.0;  ///< value where no brick is stored: lower bound of the distance there, m
 
     int brick_index(int bx, int by, int bz) const { return (bz * bricks[1] + by) * bricks[0] + bx; }
     int brick_count() const { return bricks[0] * bricks[1] * bricks[2]; }
     static int sample_index(int x, int y, int z) { return (z * brick_side + y) * brick_side + x; }
 };
 
-/// One version of a bone: tables of bricks, null where everything is far.
+/// One version of a bone: tables of bricks, null where none is stored.
 struct BoneRoot {
     const BrickLayout* layout = nullptr;
     std::vector<const float*> distance, density;
 };
 
-/// No bone: far everywhere.
+/// An empty bone: `far` everywhere.
 extern const BoneRoot empty_bone;
 
 /// Value and exact gradient of the trilinear interpolant.
 struct Sample {
     double value = 0.0;  ///< m, negative inside the bone
     Vec3 gradient{0.0, 0.0, 0.0};  ///< m/m; points out of the bone
-    bool inside = false;  ///< false: outside what is stored, value = far, gradient 0
+    bool inside = false;  ///< false: outside of the stored bricks, value = far, gradient 0
 };
 
-/// Handle of one version, what travels on wires. Reading is wait-free.
+/// Handle of one version, the value on wires. Reading is wait-free.
 struct BoneSnapshot {
     static constexpr std::string_view wire_name = "bone";
 
     const BoneRoot* root = &empty_bone;
     std::int64_t version = 0;
-    std::uint64_t content_hash = 0;  ///< over all that ever changed, up to this version
+    std::uint64_t content_hash = 0;  ///< over all changes up to this version
 
     Sample sample(const Vec3& position) const noexcept;
     double value(const Vec3& position) const noexcept;
-    /// The same from a quadratic B-spline over 27 samples: its gradient is continuous, so forces made of it have no
-    /// steps at cell faces. It rounds what is curved: a surface of curvature κ moves by about κ·spacing²/4.
+    /// The same from a quadratic B-spline over 27 samples: its gradient is continuous, so forces made of it do not jump
+    /// at cell faces. It smooths curvature: a surface of curvature κ moves by about κ·spacing²/4.
     Sample smooth_sample(const Vec3& position) const noexcept;
     /// kg/m³, 0 where nothing is stored.
     double density(const Vec3& position) const noexcept;
@@ -70,13 +71,13 @@ struct BoneSnapshot {
 };
 
 struct BoneEditorOptions {
-    double band = 0.003;  ///< m: bricks wholly farther outside than this are not stored
+    double band = 0.003;  ///< m: bricks completely farther outside than this are not stored
     int max_dirty = 512;  ///< bricks that may change between two publications
-    int max_versions = 24;  ///< published versions that may be readable at one time
+    int max_versions = 24;  ///< published versions that may be readable at the same time
 };
 
-/// The single writer of a bone. Everything is allocated by the constructor: every version that is readable pins at
-/// most the bricks that changed after it, so 2·N + max_versions·max_dirty bricks are always enough.
+/// The single writer of a bone. Allocates in the constructor only: every readable version pins at most the bricks that
+/// changed after it, so 2·N + max_versions·max_dirty bricks always suffice.
 class BoneEditor {
 public:
     /// Both grids of equal size, at least 2 samples per axis. Throws Error otherwise.
@@ -86,29 +87,29 @@ public:
 
     const BrickLayout& layout() const noexcept { return layout_; }
 
-    /// Distance at a sample, as edited so far; `far` where no brick is stored.
+    /// Distance at a sample with all edits; `far` where no brick is stored.
     float get(int i, int j, int k) const noexcept;
-    /// Writes a sample into every brick that holds it. False, and nothing written, when no brick does or when the
-    /// budget of dirty bricks would be exceeded.
+    /// Writes a sample to every brick that holds it. False, without writing, when no brick does or when the budget of
+    /// changed bricks would be exceeded.
     bool set(int i, int j, int k, float value) noexcept;
-    /// Distance and density as edited so far, before publication.
+    /// Distance and density with all edits, before publication.
     BoneSnapshot working() const noexcept { return {&working_, version_, hash_.state}; }
 
     int dirty() const noexcept { return static_cast<int>(dirty_.size()); }
     int dirty_left() const noexcept { return options_.max_dirty - dirty(); }
 
     BoneSnapshot current() const noexcept { return current_; }
-    /// Makes what was edited the current version. Without edits the current version is returned again.
+    /// Publishes the edits as the current version. Without edits returns the current version again.
     BoneSnapshot publish() noexcept;
     /// Bricks that the last publication changed, ascending.
     std::span<const std::uint32_t> changed_bricks() const noexcept { return changed_; }
 
-    /// Versions before `oldest_readable` are read no more: bricks that only they hold are used again.
+    /// Versions before `oldest_readable` have no readers left: frees bricks that only they hold.
     void reclaim(std::int64_t oldest_readable) noexcept;
-    /// That version was published and then dropped: nobody ever reads it.
+    /// That version was published and then dropped: it has no readers.
     void forget(std::int64_t version) noexcept;
 
-    /// Bricks not in use, for tests and telemetry.
+    /// Free bricks, for tests and telemetry.
     std::size_t free_bricks() const noexcept { return free_.size(); }
 
 private:
@@ -141,7 +142,7 @@ private:
     BoneSnapshot current_;
 };
 
-/// The distance of a version as a dense grid again, for files and pictures.
+/// The distance of a version as a dense grid, for files and pictures.
 Grid to_grid(const BoneSnapshot& bone);
 
 }  // namespace tactus::volume

@@ -22,7 +22,7 @@ CompactSlice::CompactSlice(std::span<const float> values) {
         for (std::size_t n = 0; n < values.size(); ++n) {
             const auto whole = static_cast<std::int32_t>(values[n]);
             shorts_[n] = static_cast<std::int16_t>(whole - offset_);
-            // Every bit, also the sign of -0.
+            // Every bit, including the sign of -0.
             lost |= std::bit_cast<std::uint32_t>(static_cast<float>(whole)) ^ std::bit_cast<std::uint32_t>(values[n]);
         }
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A slice of a volume in as few bytes as keep every bit of its values.
+// Lossless compact storage of a slice of a volume.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace tactus::volume {
 
-/// Two bytes per value where all are whole numbers within 65536 of each other, as in nearly every CT; else four.
+/// Two bytes per value when all are integers within 65536 of each other, as in nearly every CT; otherwise four.
 class CompactSlice {
 public:
     CompactSlice() = default;

@@ -11,7 +11,7 @@ namespace tactus::volume {
 
 namespace {
 
-// Runs joined to those of the rows before them; the root of a part is its first run.
+// Union-find over runs; the root of a component is its first run.
 struct Joined {
     const RunRows& rows;
     std::vector<std::int32_t> parent = std::vector<std::int32_t>(rows.runs.size());
@@ -30,7 +30,7 @@ struct Joined {
         if (a != b) parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
     }
 
-    // Joins the runs of two rows where they overlap, counting `reach` samples more.
+    // Joins overlapping runs of two rows; `reach` samples extend the overlap.
     void join_rows(std::size_t one, std::size_t other, int reach) {
         std::size_t a = rows.start[one], b = rows.start[other];
         const std::size_t a_end = rows.start[one + 1], b_end = rows.start[other + 1];
@@ -62,7 +62,7 @@ struct Joined {
 
 float below(float iso) { return std::nextafter(iso, -std::numeric_limits<float>::infinity()); }
 
-// visit(run, its samples in a row of values) for the runs of the layers that `grey` holds.
+// visit(run, its samples in a row of values) for the runs of the layers in `grey`.
 template <typename Visit>
 void for_each_run(Grid& grey, const RunRows& rows, int first, Visit visit) {
     for (int k = 0; k < grey.size[2]; ++k)
@@ -72,7 +72,7 @@ void for_each_run(Grid& grey, const RunRows& rows, int first, Visit visit) {
         }
 }
 
-// What `components` leaves of each row.
+// The complement of `components` in each row.
 RunRows complement(const Components& components, std::size_t keep) {
     RunRows out{components.rows.size, {0}, {}};
     out.start.reserve(components.rows.start.size());

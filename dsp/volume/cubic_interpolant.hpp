@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Value and gradient between the samples of a grid, by Catmull and Rom's cubic along each axis.
+// Value and gradient between the samples of a grid, by Catmull–Rom cubics along each axis.
 #pragma once
 
 #include "dsp/volume/grid.hpp"
@@ -9,8 +9,8 @@
 
 namespace tactus::volume {
 
-/// Places are in samples from the grid's origin; outside, the border is repeated. Gradients are per m. Of a volume of
-/// `layers` layers the grid may hold only some, from `first` on; places count from the whole volume's first layer.
+/// Positions are in samples from the grid's origin; the border is repeated outside. Gradients are per m. The grid may
+/// hold some of the `layers` layers of a volume, from `first` on; positions count from the whole volume's first layer.
 struct CubicInterpolant {
     const Grid& grid;
     int first = 0, layers = grid.size[2];
@@ -22,10 +22,10 @@ struct CubicInterpolant {
 
     Sample operator()(const Vec3& at) const {
         Axis x(at.x, grid.size[0]), y(at.y, grid.size[1]), z(at.z, layers);
-        // Also safe where layers are asked for that are not held.
+        // Safe also for layers that are not held.
         for (int& layer : z.index) layer = std::clamp(layer - first, 0, grid.size[2] - 1);
         const bool inner = x.inner && y.inner && z.inner;
-        // Sums over y and z first, four neighbours along x side by side.
+        // Sums over y and z first, for four neighbours along x in parallel.
         float value[4] = {}, along_y[4] = {}, along_z[4] = {};
         for (int c = 0; c < 4; ++c)
             for (int b = 0; b < 4; ++b) {

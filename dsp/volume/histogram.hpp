@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often values occur, and where a histogram parts into two groups.
+// Histograms and Otsu's threshold.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace tactus::volume {
 
-/// Counts of values in bins of equal width between the least and the greatest.
+/// Counts of values in bins of equal width between minimum and maximum.
 struct Histogram {
     double low = 0.0, high = 0.0;
     std::vector<std::uint64_t> counts;
@@ -19,12 +19,12 @@ struct Histogram {
 };
 Histogram histogram_of(std::span<const float> values, std::size_t bins);
 
-/// Otsu's threshold (1979) among the bins from `first` on: the border that leaves the least variance within both groups.
-/// The index of the first bin above it; `first` when all values are in one bin.
+/// Otsu's threshold (1979) among the bins from `first` on: it minimises the variance within both groups. Returns the
+/// index of the first bin above it; `first` when all values are in one bin.
 std::size_t otsu(const Histogram& histogram, std::size_t first = 0);
 
-/// A value that parts bone from the rest of a CT: Otsu's method twice, once to take off the air and once more to split
-/// what is above. In a masked volume (zeros around the bone) half the median of what is above zero.
+/// A threshold between bone and the rest of a CT: Otsu's method twice, first to separate air, then to split the
+/// rest. In a masked volume (zeros around the bone): half the median of the values above zero.
 double suggested_threshold(std::span<const float> values, bool masked);
 
 }  // namespace tactus::volume

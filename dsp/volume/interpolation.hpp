@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Interpolation between the samples of a regular grid, and exact derivatives of the interpolant. Slopes are per cell:
-// who knows the spacing divides by it.
+// Interpolation between the samples of a regular grid, with exact derivatives of the interpolant. Slopes are per cell;
+// divide by the spacing for gradients.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -11,11 +11,11 @@
 
 namespace tactus::volume {
 
-/// The cell of a grid that holds a position, and where in it.
+/// The cell of a grid that contains a position, and the position within it.
 struct GridCell {
     int i = 0, j = 0, k = 0;
     double fx = 0.0, fy = 0.0, fz = 0.0;  ///< 0 to 1
-    bool inside = false;  ///< false: the position is outside of the grid, or no position
+    bool inside = false;  ///< false: the position is outside of the grid or not finite
 };
 
 /// `size` samples per axis from `origin` on; positions on the last plane belong to the last cell.
@@ -24,24 +24,24 @@ inline GridCell find_grid_cell(const Vec3& origin, const Vec3& spacing, const st
     const double x = (position.x - origin.x) / spacing.x;
     const double y = (position.y - origin.y) / spacing.y;
     const double z = (position.z - origin.z) / spacing.z;
-    // Written so that a NaN is outside, and so is an empty grid.
+    // The comparison treats NaN and an empty grid as outside.
     if (!(x >= 0.0 && y >= 0.0 && z >= 0.0 && x <= size[0] - 1 && y <= size[1] - 1 && z <= size[2] - 1)) return {};
     const int i = std::min(static_cast<int>(x), size[0] - 2), j = std::min(static_cast<int>(y), size[1] - 2),
               k = std::min(static_cast<int>(z), size[2] - 2);
     return {i, j, k, x - i, y - j, z - k, true};
 }
 
-/// A value between samples, and how it changes from cell to cell.
+/// An interpolated value and its derivative.
 struct Interpolated {
     double value;
     Vec3 slope;  ///< per cell
 };
 
-/// Between the eight samples at the corners of a cell.
+/// Trilinear interpolation between the eight samples of a cell.
 struct Trilinear {
     double c000, c100, c010, c110, c001, c101, c011, c111;
 
-    /// `corner` is the sample at the low corner; samples lie 1, `row` and `plane` apart along x, y and z.
+    /// `corner` is the sample at the low corner; samples are 1, `row` and `plane` apart along x, y and z.
     Trilinear(const float* corner, std::size_t row, std::size_t plane) noexcept
         : c000(static_cast<double>(corner[0])),
           c100(static_cast<double>(corner[1])),
@@ -69,13 +69,13 @@ private:
     static double mix(double a, double b, double t) noexcept { return a + (b - a) * t; }
 };
 
-/// Quadratic B-spline over the 27 samples around the nearest one, with continuous slope; at the border of the grid its
-/// samples are repeated.
+/// Quadratic B-spline over the 27 samples around the nearest one, with continuous slope; samples are repeated at the
+/// border of the grid.
 struct QuadraticSpline {
-    int index[3][3];  ///< per axis, of the three samples
+    int index[3][3];  ///< of the three samples, per axis
     double weight[3][3], slope[3][3];
 
-    /// Of a position inside of the grid.
+    /// For a position inside the grid.
     QuadraticSpline(const Vec3& origin, const Vec3& spacing, const std::array<int, 3>& size,
                     const Vec3& position) noexcept {
         for (int axis = 0; axis < 3; ++axis) {
@@ -93,7 +93,7 @@ struct QuadraticSpline {
         }
     }
 
-    /// `at(i, j, k)` is the sample that is i-th along x, j-th along y and k-th along z of those in `index`.
+    /// `at(i, j, k)` is the i-th sample along x, j-th along y and k-th along z of those in `index`.
     template <class At>
     Interpolated operator()(const At& at) const noexcept {
         double value = 0.0;

@@ -15,13 +15,13 @@ namespace tactus::volume {
 
 namespace {
 
-// Points of the surface, about one per cell that it crosses, with normals.
+// Points on the surface, about one per cell that it crosses, with normals.
 struct Points {
     std::vector<glm::vec3> at;      // samples from the origin
     std::vector<glm::vec3> normal;  // unit length in m, towards lower values
 };
 
-// A step along the gradient onto the surface, m, at most `reach` long so that a flat spot throws nothing away.
+// A Newton step along the gradient onto the surface, m, at most `reach` long to bound it where the gradient is small.
 Vec3 onto_surface(const CubicInterpolant::Sample& f, double iso, double reach) {
     const double steep = glm::dot(f.gradient, f.gradient);
     if (!(steep > 0.0)) return Vec3(0.0);
@@ -30,17 +30,17 @@ Vec3 onto_surface(const CubicInterpolant::Sample& f, double iso, double reach) {
     return length > reach ? step * (reach / length) : step;
 }
 
-// `grey` are layers of the volume from `first` on; all places count from the volume's first layer.
+// `grey` holds layers of the volume from `first` on; all positions count from the volume's first layer.
 struct Finder {
     const Grid& grey;
-    int first, layers;  // held from here on; of the whole volume
+    int first, layers;  // held from here on; number of layers in the whole volume
     float iso;
     CubicInterpolant f{grey, first, layers};
     double cell = std::min({grey.spacing.x, grey.spacing.y, grey.spacing.z});
     double widest = std::max({grey.spacing.x, grey.spacing.y, grey.spacing.z});
     glm::vec3 h{grey.spacing};
 
-    // The mean of the places where the cell's edges cross iso, moved onto the surface.
+    // The mean of the cell's edge crossings, moved onto the surface.
     std::optional<Vec3> point_in_cell(int i, int j, int k, const std::array<float, 8>& value) const {
         Vec3 sum(0.0);
         int count = 0;
@@ -82,8 +82,8 @@ struct Finder {
         }
     }
 
-    // Distance to the point of the surface nearest to `at`, from a near guess: steps onto the surface, and along it
-    // towards `at`, as long as the curvature seen so far asks for. Infinite when no point of the surface was met.
+    // Distance to the surface point nearest to `at`, from an initial guess: steps onto the surface, and along it
+    // towards `at`, as long as the estimated curvature requires. Infinite when no surface point was found.
     double refined(const Vec3& at, const Vec3& guess) const {
         Vec3 x = guess, moved(0.0), before(0.0);
         double best = std::numeric_limits<double>::infinity(), stretch = 1.0;
@@ -97,10 +97,10 @@ struct Finder {
             const double far = glm::length(towards);
             if (off < 2e-3 * cell) {
                 best = std::min(best, far);
-                // Straight below `at`: what is left aside lengthens by its square only.
+                // Directly below `at`, a sideways error changes the distance in second order only.
                 if (aside < 0.04 * far || aside < 2e-3 * cell) break;
             }
-            // On a convex surface a full step overshoots, in a hollow it falls short.
+            // On a convex surface a full step overshoots, on a concave one it falls short.
             if (const double length2 = glm::dot(moved, moved); length2 > 0.0)
                 stretch = std::clamp(length2 / std::max(glm::dot(before - along, moved), 1e-9 * length2), 0.2, 2.0);
             moved = along * std::min(stretch, 0.6 * cell / std::max(aside, 1e-30));
@@ -111,7 +111,7 @@ struct Finder {
     }
 };
 
-// What is known around the samples of some layers: grey values, and which point of the surface is nearest.
+// Data for the samples of some layers: grey values, and the index of the nearest surface point.
 struct Field {
     const Finder& finder;
     const Points& points;
@@ -127,7 +127,7 @@ struct Field {
         return glm::dot(d, d);
     }
 
-    // To the disc of half a cell's diagonal around a point, along its tangent plane.
+    // Distance to the disc of half a cell's diagonal around a point, in its tangent plane.
     float to_disc(const glm::vec3& at, std::int32_t id) const {
         const glm::vec3 d = (at - points.at[static_cast<std::size_t>(id)]) * finder.h;
         const float up = glm::dot(d, points.normal[static_cast<std::size_t>(id)]);
@@ -136,8 +136,8 @@ struct Field {
         return std::sqrt(up * up + over * over);
     }
 
-    // Points that may be nearest, the nearest first: what the sample, its neighbours and the places below it on the
-    // surface know.
+    // Candidates for the nearest point, nearest first: those of the sample, of its neighbours and of the cells below it
+    // on the surface.
     struct Candidates {
         std::array<std::int32_t, 3> id{-1, -1, -1};
         std::array<float, 3> apart2{};
@@ -186,7 +186,7 @@ struct Field {
         const auto place = [&](std::size_t n) { return points.at[static_cast<std::size_t>(found.id[n])]; };
         double least = finder.refined(Vec3(at), Vec3(place(0)));
         for (std::size_t n = 1; n < 3 && found.id[n] >= 0; ++n) {
-            // Another part of the surface: not beside the first, and no farther than its cell's corners allow.
+            // A different part of the surface: not next to the first, and no farther than its cell's corners allow.
             const glm::vec3 between = (place(n) - place(0)) * finder.h;
             const auto aside = 1.0 * finder.widest;
             if (glm::length(between) > 1.5f * static_cast<float>(finder.widest) &&
@@ -196,14 +196,14 @@ struct Field {
         return least;
     }
 
-    // All points that can count for a sample this far from the surface lie in the layers at hand: those below its feet
-    // are as far away once more.
+    // All points that can count for a sample at this distance from the surface lie in the available layers: those below
+    // its foot points are as far away again.
     bool is_sure(int k, double away) const {
         const double need = 2.0 * away + 6.0 * finder.widest, h = finder.grey.spacing.z;
         return (first == 0 || (k - first) * h >= need) && (end == finder.layers || (end - 1 - k) * h >= need);
     }
 
-    // Distances of layer k; false where more layers around it must be at hand.
+    // Distances of layer k; false when more layers around it are needed.
     bool layer(int k, float* out) const {
         const Grid& grid = finder.grey;
         for (int j = 0; j < grid.size[1]; ++j)
@@ -235,7 +235,7 @@ struct Field {
     }
 };
 
-// A volume's layers that are in memory, and the points of its surface that were found so far.
+// The layers of a volume in memory, and the surface points found so far.
 struct Slabs {
     const Grid& layout;
     float iso;
@@ -252,10 +252,10 @@ struct Slabs {
     int held_end() const { return first + held.size[2]; }
     Finder finder() const { return {held, first, layers(), iso}; }
 
-    // Around a sample in the band: where steps from a point near it can lead, with the cubic's own support.
+    // Margin for a sample in the band: range of the Newton steps from a nearby point, plus the cubic's support.
     int around() const { return static_cast<int>(std::ceil((10.0 * widest + 11.0 * cell) / layout.spacing.z)) + 3; }
 
-    // Holds the layers from `from` up to `end`, and knows the points of all cells below `end` - 3.
+    // Holds the layers from `from` up to `end`, with the points of all cells below `end` - 3.
     void hold(int from, int end) {
         from = std::max(from, first);
         end = std::min(end, layers());
@@ -291,7 +291,7 @@ struct Slabs {
         });
     }
 
-    // Those of the cells between the layers from `from` up to `end`.
+    // The points in the cells between the layers from `from` up to `end`.
     Points points_between(int from, int end) const {
         Points all;
         std::size_t count = 0;
@@ -306,7 +306,8 @@ struct Slabs {
         return all;
     }
 
-    // Distances of the layers from k0 up to k1 with points of `beside` layers on both sides; false if that is too few.
+    // Distances of the layers from k0 up to k1 with `beside` layers of points on both sides; false when these do not
+    // suffice.
     bool distances(int k0, int k1, int beside, Grid& out) {
         const int from = std::max(0, k0 - beside), end = std::min(layers(), k1 + beside);
         hold(k0 - around(), std::max(end + 3, k1 + around()));
@@ -322,7 +323,7 @@ struct Slabs {
     }
 };
 
-// The weights over three rows, in place; `before` is what stood in the row before, and becomes what stood in this one.
+// Applies the weights over three rows in place; `before` is the original previous row, and receives the original row.
 void smooth_row(float* row, const float* after, std::vector<float>& before) {
     for (std::size_t i = 0; i < before.size(); ++i) {
         const float here = row[i];

@@ -9,7 +9,7 @@ namespace tactus::volume {
 Grid outer_shell(const Grid& distance, double radius, const RunJobs& run) {
     Grid depth = distance;
     for (float& v : depth.values) v = -v;
-    // Far from the surface the samples need not be distances; now they are.
+    // Far from the surface the input need not be a distance; the re-computed field is one.
     depth = distance_to_iso(depth, 0.0f, run);
     for (float& v : depth.values) v = -v;
     const auto grown = static_cast<float>(-radius);

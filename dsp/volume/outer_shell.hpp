@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bone as its outside shows it, without the hollows that a threshold leaves in it.
+// The outside of a bone, without the hollows that a threshold leaves.
 #pragma once
 
 #include "dsp/core/jobs.hpp"
@@ -7,11 +7,11 @@
 
 namespace tactus::volume {
 
-/// Signed distance (m, negative inside) to the outside of {distance < 0}, on the same samples, which need to be distances
-/// near the surface only: closed by a ball of
-/// `radius` (m), hollows filled. What the outside reaches through openings of less than twice the radius, as marrow behind
-/// thin cortex, is inside. Creases are rounded by as much. The lattice has to go on for more than the radius around the
-/// bone; where it does not, the bone is open there.
+/// Signed distance (m, negative inside) to the outside of {distance < 0} on the same samples: a morphological closing
+/// by a ball of `radius` (m), with hollows filled. The input needs to be a distance near the surface only. Regions that
+/// open to the outside by less than twice the radius, such as marrow behind thin cortex, are inside. Concave edges are
+/// rounded by the radius. The grid must extend beyond the bone by more than the radius; where it does not, the bone is
+/// open there.
 Grid outer_shell(const Grid& distance, double radius, const RunJobs& run = run_in_turn);
 
 }  // namespace tactus::volume

@@ -44,7 +44,7 @@ Taps taps_of(const Grid& from, const Grid& layout, int axis, int row) {
     return taps_at(u, width, from.size[static_cast<std::size_t>(axis)]);
 }
 
-// Rows `wanted` of the result along an axis, of which `in` holds the rows of `whole` from `held` on.
+// Rows `wanted` of the result along an axis; `in` holds the rows of `whole` from `held` on.
 Grid along(const Grid& in, int held, const Grid& whole, const Grid& layout, int axis, LayerRange wanted,
            const RunJobs& run) {
     const auto a = static_cast<std::size_t>(axis);
@@ -53,7 +53,7 @@ Grid along(const Grid& in, int held, const Grid& whole, const Grid& layout, int 
     out.origin[axis] = layout.origin[axis] + wanted.first * layout.spacing[axis];
     out.spacing[axis] = layout.spacing[axis];
     out.values.assign(out.count(), 0.0f);
-    // Seen from this axis, a grid is `outer` blocks of size[axis] rows of `stride` neighbouring values.
+    // Along this axis a grid is `outer` blocks of size[axis] rows of `stride` adjacent values.
     std::size_t stride = 1, outer = 1;
     for (std::size_t n = 0; n < a; ++n) stride *= static_cast<std::size_t>(in.size[n]);
     for (std::size_t n = a + 1; n < 3; ++n) outer *= static_cast<std::size_t>(in.size[n]);
@@ -80,7 +80,7 @@ Grid along(const Grid& in, int held, const Grid& whole, const Grid& layout, int 
     return out;
 }
 
-// Nothing to interpolate along this axis, and nothing to leave out.
+// True when the axis needs no interpolation and no row is dropped.
 bool is_same(const Grid& grid, const Grid& layout, int axis) {
     return grid.size[static_cast<std::size_t>(axis)] == layout.size[static_cast<std::size_t>(axis)] &&
            grid.origin[axis] == layout.origin[axis] && grid.spacing[axis] == layout.spacing[axis];
@@ -93,7 +93,7 @@ LayerRange all_of(const Grid& layout, int axis) { return {0, layout.size[static_
 LayerRange layers_for(const Grid& from, const Grid& layout, LayerRange wanted) {
     if (is_same(from, layout, 2) || wanted.count < 1) return wanted;
     std::size_t low = std::numeric_limits<std::size_t>::max(), high = 0;
-    // Every row: one that meets a sample exactly needs no others, its neighbour does.
+    // All rows: an output that coincides with a sample needs no other row, but its neighbour does.
     for (int row = wanted.first; row < wanted.first + wanted.count; ++row)
         for (const std::size_t n : taps_of(from, layout, 2, row).index)
             low = std::min(low, n), high = std::max(high, n);

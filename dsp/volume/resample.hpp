@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples of one grid at the places of another.
+// Resamples a grid at the samples of another.
 #pragma once
 
 #include "dsp/core/jobs.hpp"
@@ -7,22 +7,22 @@
 
 namespace tactus::volume {
 
-/// Values of `grid` at the samples of `layout`, axis by axis with Catmull and Rom's cubic (border repeated). Along an
-/// axis where `layout` is coarser the cubic is widened to it, so that nothing aliases. Samples that both grids share
-/// along all axes keep their bits, and the memory when all of them do.
+/// Values of `grid` at the samples of `layout`, axis by axis with Catmull–Rom cubics (border repeated). Along an axis
+/// where `layout` is coarser the cubic is widened to it, against aliasing. Samples that both grids share along all axes
+/// keep their bits, and the memory when all of them do.
 Grid resampled(const Grid& grid, const Grid& layout);
 Grid resampled(Grid&& grid, const Grid& layout);
 
-/// Neighbouring layers of a volume.
+/// A range of layers of a volume.
 struct LayerRange {
     int first, count;
 };
 
-/// Layers of a volume like `from` that resampled_layers needs for those of `layout`.
+/// The layers of `from` that resampled_layers needs for those of `layout`.
 LayerRange layers_for(const Grid& from, const Grid& layout, LayerRange wanted);
 
-/// The same for some layers only, to the same bits: `grid` holds those that layers_for names. Values of `from` and
-/// `layout` are not read.
+/// The same for some layers, with the same bits: `grid` holds the layers that layers_for returns. The values of `from`
+/// and `layout` are not read.
 Grid resampled_layers(Grid grid, const Grid& from, const Grid& layout, LayerRange wanted,
                       const RunJobs& run = run_in_turn);
 

@@ -10,15 +10,15 @@ namespace tactus::volume {
 
 namespace {
 
-constexpr double far = 1.0;               // m, beyond the grid there is no bone
+constexpr double far = 1.0;  // m: distance outside of the grid, where there is no bone
 constexpr double deepest = 40e-3;         // m
-constexpr double least_thickness = 1e-3;  // m; thinner is noise of the segmentation
-constexpr double hollow_density = 200.0;  // kg/m³: below is air that was filled in
-constexpr double longest_hollow = 3e-3;   // m that may lie between two walls of one bone
+constexpr double least_thickness = 1e-3;  // m; less is noise of the segmentation
+constexpr double hollow_density = 200.0;  // kg/m³: below it, filled air
+constexpr double longest_hollow = 3e-3;  // m: longest gap between two walls of one bone
 constexpr std::size_t most_candidates = 12'000;
 constexpr int directions = 8;
 
-/// Value between the samples; `outside` beyond them.
+/// Interpolated value; `outside` beyond the grid.
 double value_at(const Grid& grid, const Vec3& p, double outside) {
     const Vec3 u = (p - grid.origin) / grid.spacing;
     int cell[3];
@@ -58,7 +58,7 @@ public:
 private:
     double d(const Vec3& p) const { return value_at(distance_, p, far); }
 
-    /// Samples near the surface on a lattice that is as fine as their number allows.
+    /// Samples near the surface, on a grid coarse enough to limit their number.
     std::vector<int> candidates() const {
         std::vector<int> found;
         for (double pitch = std::max(3e-3, coarse_);; pitch *= 1.5) {
@@ -74,7 +74,7 @@ private:
         }
     }
 
-    /// Differences over 1.5 mm to both sides: the blade meets the shape of the bone, not the roughness of its voxels.
+    /// Central differences over ±1.5 mm: the blade rests on the shape of the bone, not on voxel noise.
     Vec3 slope(const Vec3& p) const {
         const double e = std::max(1.5e-3, coarse_);
         Vec3 g;
@@ -88,7 +88,7 @@ private:
     }
 
     bool near_border(const Vec3& p) const {
-        // Import puts up to four layers of air around a bone that the scan cuts; its flat face lies inside of them.
+        // Import pads a bone that the scan cuts with up to four layers of air; its flat cut face lies inside of them.
         const Vec3 margin = 5.0 * distance_.spacing + Vec3(2e-3);
         const Vec3 last = distance_.position(distance_.size[0] - 1, distance_.size[1] - 1, distance_.size[2] - 1);
         for (int a = 0; a < 3; ++a)
@@ -96,7 +96,7 @@ private:
         return false;
     }
 
-    /// No bone nearer than `gap` from `from` along `direction` until the grid is left.
+    /// True when the ray from `from` along `direction` keeps `gap` from bone until it leaves the grid.
     bool is_open(const Vec3& from, const Vec3& direction, double gap) const {
         for (double t = 0.0; t < far;) {
             const double clear = d(from + direction * t);
@@ -112,7 +112,7 @@ private:
         for (double t = step_; t < deepest; t += step_) {
             const Vec3 at = p + feed * t;
             if (d(at) >= 0.0 && t > 2.0 * step_ + 0.5e-3) break;
-            // Its own surface is blurred in any scan: half a millimetre of it may look soft.
+            // A scan blurs the bone's own surface: half a millimetre may look soft.
             hollow = value_at(density_, at, 0.0) < hollow_density ? hollow + step_ : 0.0;
             if (hollow > longest_hollow) break;
             solid = t;
@@ -120,7 +120,7 @@ private:
         return solid > hollow ? solid - hollow : 0.0;
     }
 
-    /// Depth of the surface below the plane through `p`, seen along `feed` at `offset`; 6 mm when there is none.
+    /// Depth of the surface below the plane through `p`, along `feed` at `offset`; 6 mm when there is none.
     double drop(const Vec3& p, const Vec3& feed, const Vec3& offset) const {
         constexpr double span = 6e-3;
         double before = d(p + offset - feed * span);
@@ -132,12 +132,12 @@ private:
         return span;
     }
 
-    /// 1 for a surface that falls off alike to both sides along `axis`, 0 when it is 2 mm out of square.
+    /// 1 when the surface falls off equally to both sides along `axis`, 0 when it differs by 2 mm.
     double evenness(const Vec3& p, const Vec3& feed, const Vec3& axis, double arm) const {
         return 1.0 - std::min(1.0, std::abs(drop(p, feed, axis * arm) - drop(p, feed, -axis * arm)) / 2e-3);
     }
 
-    /// The blade and its travel above the bone touch nothing.
+    /// The blade and its travel above the bone are free.
     bool body_is_free(const Vec3& p, const Vec3& feed, const Vec3& stroke) const {
         for (const double height : {2e-3, 5e-3, request_.blade_height})
             for (double t = 0.0; t <= reach_; t += 2.5e-3)
@@ -146,7 +146,7 @@ private:
         return true;
     }
 
-    /// Width of the bone along the blade at a depth; negative when the blade would meet another bone beside it.
+    /// Width of the bone along the blade at a depth; negative when the blade would touch another bone beside it.
     double width(const Vec3& p, const Vec3& feed, const Vec3& stroke, double depth) const {
         const Vec3 middle = p + feed * depth;
         double sum = 0.0;
@@ -162,7 +162,7 @@ private:
         return sum;
     }
 
-    /// How much bone the cut leaves on both of its sides: a corner that is sawn off is no cut through the bone.
+    /// Amount of bone on both sides of the cut: cutting off a corner is no cut through the bone.
     double both_sides(const Vec3& middle, const Vec3& across) const {
         const auto holds = [&](double arm) { return d(middle + across * arm) < 0.0 && d(middle - across * arm) < 0.0; };
         return !holds(5e-3) ? 0.0 : holds(10e-3) ? 1.0 : 0.6;
@@ -186,7 +186,7 @@ private:
         const double depth_score = deep < request_.best_depth ? deep / request_.best_depth : request_.best_depth / deep;
         if (depth_score <= best_score_) return;
 
-        // The reference axis is the one that the feed is least along, so that it is never parallel.
+        // The reference axis is the one most nearly orthogonal to the feed, so that it is never parallel.
         const Vec3 size = glm::abs(feed);
         const Vec3 axis = size.x <= size.y && size.x <= size.z ? Vec3(1.0, 0.0, 0.0)
                           : size.y <= size.z                   ? Vec3(0.0, 1.0, 0.0)
@@ -208,7 +208,7 @@ private:
         score *= evenness(p, feed, stroke, std::clamp(0.4 * wide, 2e-3, 6e-3)) *
                  evenness(p, feed, glm::cross(feed, stroke), 2e-3);
         if (score <= best_score_) return;
-        // The hand and the handpiece come the way of the blade.
+        // Hand and handpiece approach along the blade's path.
         const Vec3 start = p - feed * (request_.blade_height + 2e-3);
         for (const double side : {-0.5, 0.5})
             if (!is_open(start + stroke * (side * request_.blade_length), -feed, 2e-3)) return;

@@ -15,7 +15,7 @@ namespace {
 struct Piece {
     int cell;  // in its layer
     std::int32_t triangle;
-    float apart2;  // of `at` from the cell's middle
+    float apart2;  // squared distance of `at` from the cell's middle
     glm::vec3 at;
 };
 
@@ -24,7 +24,7 @@ struct Pieces {
     const geometry::TriangleSurface& surface;
     const TriangleLayers& near;
 
-    // The pieces in the cells between layers k and k + 1 of samples.
+    // The pieces in the cells between sample layers k and k + 1.
     std::vector<Piece> layer(int k) const {
         std::vector<Piece> pieces;
         const double half_diagonal = 0.5 * glm::length(layout.spacing);

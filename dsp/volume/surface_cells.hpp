@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a surface of triangles meets a grid: which triangles come near a layer of samples, and which cells they cross.
+// Rasterises triangles to a grid: which triangles are near a layer of samples, and which cells they cross.
 #pragma once
 
 #include "dsp/core/jobs.hpp"
@@ -11,18 +11,18 @@
 
 namespace tactus::volume {
 
-/// Inclusive indices; empty when low > high.
+/// Index range, inclusive; empty when low > high.
 struct IndexBox {
     std::array<int, 3> low, high;
 };
 
-/// The samples of `layout` in the box around a triangle, made larger by `margin` (m) on all sides.
+/// The samples of `layout` in a triangle's bounding box enlarged by `margin` (m) on all sides.
 IndexBox samples_near(const Grid& layout, const std::array<Vec3, 3>& corners, double margin);
 
 std::array<Vec3, 3> corners_of(const geometry::TriangleSurface& surface, std::int32_t triangle);
 
-/// Triangles by layers of samples (third axis), each layer's in ascending order: those whose box, made larger by
-/// `margin` (m), reaches it. Layers are independent of each other, so they can be done on many threads.
+/// Triangles sorted by layers of samples (third axis), ascending in each layer: those whose bounding box, enlarged by
+/// `margin` (m), reaches it. Layers are independent, so they can be processed in parallel.
 class TriangleLayers {
 public:
     TriangleLayers(const Grid& layout, const geometry::TriangleSurface& surface, double margin);
@@ -36,9 +36,9 @@ private:
     std::vector<std::int32_t> triangles_;
 };
 
-/// The cells (between eight samples) that hold a piece of the surface. Cell n has a point at[n] of the surface, the
-/// nearest to its middle (in samples from the origin), and the triangles triangle[start[n]] … triangle[start[n + 1] − 1],
-/// of which the first holds that point.
+/// The cells (between eight samples) that contain a piece of the surface. Cell n has a surface point at[n], the nearest
+/// to its middle (in samples from the origin), and the triangles triangle[start[n]] … triangle[start[n + 1] − 1], the
+/// first of which contains that point.
 struct SurfaceCells {
     std::vector<glm::vec3> at;
     std::vector<std::size_t> start{0};
@@ -46,8 +46,8 @@ struct SurfaceCells {
 };
 SurfaceCells surface_cells(const Grid& layout, const geometry::TriangleSurface& surface, const RunJobs& run);
 
-/// The samples i of row (j, k), at most first … last, that lie within `reach` (m) of the plane through `corner` with the
-/// unit normal `normal`; `shift` moves the row (m). A zero normal leaves the range as it is.
+/// The samples i of row (j, k), within first … last, that lie within `reach` (m) of the plane through `corner` with the
+/// unit normal `normal`; `shift` offsets the row (m). A zero normal leaves the range unchanged.
 struct PlaneRow {
     Vec3 corner, normal;
     double reach;

@@ -15,7 +15,7 @@ namespace {
 
 double widest_of(const Grid& layout) { return std::max({layout.spacing.x, layout.spacing.y, layout.spacing.z}); }
 
-// What is known of each sample: the nearest triangle so far and its nearest point.
+// Per sample: the nearest triangle so far and its closest point.
 struct Feet {
     const Grid& layout;
     const geometry::TriangleSurface& surface;
@@ -37,7 +37,7 @@ struct Feet {
     }
 };
 
-// Every triangle is offered to the samples of a layer that it can be within reach of.
+// Tests every triangle against the samples of a layer within its reach.
 void offer_near(Feet& feet, const TriangleLayers& near, double reach, int k) {
     const Grid& layout = feet.layout;
     for (const std::int32_t triangle : near[k]) {
@@ -55,15 +55,15 @@ void offer_near(Feet& feet, const TriangleLayers& near, double reach, int k) {
     }
 }
 
-// Samples beyond the band, which are not known to be exact.
+// Samples beyond the band of exact distances.
 struct Far {
     Feet& feet;
     const SurfaceCells& cells;
     const std::vector<std::int32_t>& nearest;  // cell per sample
-    float band2, close2;                       // m², of the exact band and of what deserves a close look
+    float band2, close2;  // m², of the exact band and of the range of the exact search
     float cell2;                               // m², of two cells
 
-    // A first guess: the triangles of the cell that holds the nearest point, farther away only that point's.
+    // Initial guess: the triangles of the cell with the nearest point; farther away only that point's triangle.
     void guess(int k) const {
         const Grid& layout = feet.layout;
         for (int j = 0; j < layout.size[1]; ++j)
@@ -79,8 +79,8 @@ struct Far {
             }
     }
 
-    // Asks the six neighbours of each second sample of a row, those of one colour of a chessboard: theirs are of the other
-    // colour, so that all rows can be done at once. Returns whether anything became nearer.
+    // Propagates from the six neighbours of every second sample of a row (one colour of a chessboard): the neighbours
+    // have the other colour, so that all rows can be processed in parallel. Returns whether any distance decreased.
     bool ask_neighbours(int j, int k, int colour, bool closely) const {
         const Grid& layout = feet.layout;
         const auto& size = layout.size;
@@ -98,7 +98,7 @@ struct Far {
                     const auto other = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(sample) + step * stride[a]);
                     if (feet.triangle[other] == feet.triangle[sample]) continue;
                     const glm::vec3 d = feet.at[other] - here;
-                    // Nearby another triangle may be nearer although its point for the neighbour is not.
+                    // Close to the surface another triangle may be nearer, although its point for the neighbour is not.
                     const float wanted = closely && own < close2 ? own + cell2 : own * 0.9998f;
                     if (!(glm::dot(d, d) < wanted)) continue;
                     changed |= feet.offer(sample, layout.position(i, j, k), feet.triangle[other]);
@@ -109,7 +109,7 @@ struct Far {
     }
 };
 
-// Until nothing becomes nearer, but only in rows beside which something has.
+// Until no distance decreases; skips rows without changes beside them.
 void settle(const Far& far, const RunJobs& run) {
     constexpr int most_rounds = 60;
     const int rows = far.feet.layout.size[1], layers = far.feet.layout.size[2];
@@ -135,8 +135,8 @@ void settle(const Far& far, const RunJobs& run) {
     }
 }
 
-// Which side of the projected edge a → b the origin is on: ±1, and exactly opposite for b → a. The origin is thought
-// of as shifted by (ε², ε) where it would be on the edge; 0 only when the two ends coincide.
+// Side of the projected edge a → b on which the origin lies: ±1, and exactly opposite for b → a. Simulation of
+// simplicity: the origin is shifted by (ε², ε) when it is on the edge; 0 only when the ends coincide.
 int side(double ay, double az, double by, double bz) {
     const double area = ay * bz - az * by;
     if (area != 0.0) return area > 0.0 ? 1 : -1;
@@ -145,7 +145,7 @@ int side(double ay, double az, double by, double bz) {
     return 0;
 }
 
-// Marks in row (j, k) the sample from which on a triangle has been crossed along x.
+// Marks the sample in row (j, k) from which on a triangle has been crossed along x.
 void cross(const Grid& layout, const std::array<Vec3, 3>& corner, int j, int k, std::vector<std::int16_t>& crossings) {
     const Vec3 ray = layout.position(0, j, k);
     std::array<double, 3> y{}, z{};
@@ -159,7 +159,7 @@ void cross(const Grid& layout, const std::array<Vec3, 3>& corner, int j, int k, 
     const double x = (w0 * corner[0].x + w1 * corner[1].x + w2 * corner[2].x) / sum;
     const double first = std::ceil((x - layout.origin.x) / layout.spacing.x);
     if (first >= layout.size[0]) return;
-    // Entering through a triangle that looks towards -x (negative area in y, z) counts up.
+    // Entering through a triangle that faces -x (negative area in y, z) counts +1.
     std::int16_t& count = crossings[layout.index(first < 0.0 ? 0 : static_cast<int>(first), j, k)];
     count = static_cast<std::int16_t>(count - s0);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distance from the samples of a grid to triangles.
+// Distance from the samples of a grid to triangles, and winding numbers.
 #pragma once
 
 #include "dsp/core/jobs.hpp"
@@ -11,16 +11,16 @@
 namespace tactus::volume {
 
 /// Distance (m) of every sample of `layout` (its size, origin and spacing; values are not read) from the surface. Exact
-/// within one and a half of the widest cells. Farther away each sample starts from the triangles in the cell that holds
-/// the nearest point of the surface, one point per cell, and then takes over what its neighbours know until nothing
-/// becomes nearer by a ten-thousandth: within a tenth of a sample of brute force where tested. Infinite when no triangle
+/// within 1.5 of the widest cells. Farther away each sample starts from the triangles in the cell with the nearest
+/// surface point, one point per cell, and then takes over nearer triangles from its neighbours until no distance
+/// decreases by more than a ten-thousandth: within a tenth of a sample of brute force where tested. Infinite when no triangle
 /// reaches the grid. Uses 24 bytes per sample. The result does not depend on how jobs are run.
 std::vector<float> surface_distance(const Grid& layout, const geometry::TriangleSurface& surface,
                                     const RunJobs& run = run_in_turn);
 
-/// Winding number of a closed surface at each sample, by signed crossings along x: 1 inside a surface whose triangles
-/// are counter-clockwise from outside, 0 outside. Exact: samples on an edge or corner are decided by one consistent
-/// infinitesimal shift.
+/// Winding number of a closed surface at each sample, by signed crossings along x: 1 inside a surface with
+/// counter-clockwise triangles (seen from outside), 0 outside. Exact: a consistent infinitesimal shift decides samples
+/// on an edge or corner.
 std::vector<std::int16_t> winding_numbers(const Grid& layout, const geometry::TriangleSurface& surface,
                                           const RunJobs& run = run_in_turn);
 

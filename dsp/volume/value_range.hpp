@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What many values have in common.
+// Range and type of many values.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@ namespace tactus::volume {
 struct ValueRange {
     float low = 0.0f, high = 0.0f;
     std::size_t zeros = 0;
-    bool finite = true, whole = true;  ///< all are; whole: numbers without a fraction, and none beyond two billion
+    bool finite = true, whole = true;  ///< all finite; all integers of magnitude up to two billion
 };
 /// Of at least one value.
 ValueRange range_of(std::span<const float> values);
