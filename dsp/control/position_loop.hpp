@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inner loop of an admittance device: from where the finger should be to how fast the motor shall run.
+// Position loop of an admittance device: from the wanted position of the finger to the speed of the motor.
 #pragma once
 
 #include "dsp/signal/filter/one_pole.hpp"
@@ -14,15 +14,15 @@ struct PositionLoopSettings {
     double feed_forward = 0.0;      ///< share of the wanted velocity, 0: the loop of the thesis
     double feed_forward_lag = 0.0;  ///< s, of its smoothing
     double max_speed = 0.07;        ///< m/s
-    double least_speed = 0.0;       ///< m/s; the motor turns no slower than this. 0: it turns at any speed
-    int delay = 1;                  ///< periods from a sample to the motion that follows from it
+    double least_speed = 0.0;  ///< m/s, slowest speed that the motor can run at. 0: none
+    int delay = 1;  ///< periods from a sample to the resulting motion
 };
 
-/// u = K (x_d − x_s) + f · ẋ_d, limited to what the motor can do. Of a motor that turns no slower than `least_speed`, a
-/// command of less than half of that would be lost; so it is moved by single steps of one period at `least_speed`, each
-/// when the finger is more than half a step away and the step before has come to be seen.
+/// u = K (x_d − x_s) + f · ẋ_d, clamped to the motor's limits. A motor that cannot run slower than `least_speed` would
+/// lose commands below half of it; it is moved by single steps of one period at `least_speed` instead, each when the
+/// finger is more than half a step off and the previous step has become visible in the position.
 struct PositionLoop {
-    /// Share of a step by which the finger must be off. Above 1/2, so that no step is followed by one back.
+    /// Position error per step, above which a step is made. More than 1/2, so that no step is followed by one back.
     static constexpr double worth_a_step = 0.6;
 
     signal::OnePole smooth;
@@ -59,7 +59,7 @@ private:
         return std::copysign(std::min(s.least_speed, s.max_speed), error);
     }
 
-    int waits_ = 0;  // periods until a step is seen
+    int waits_ = 0;  // periods until a step is visible
 };
 
 }  // namespace tactus::control

@@ -84,7 +84,7 @@ void OrbitCamera::look_along(const Vec3& towards, const Vec3& up) {
 
 void OrbitCamera::orbit(double right, double up) {
     const Vec3 back = orientation * Vec3(0.0, 0.0, 1.0);
-    // Over a pole left and right would change places.
+    // Beyond a pole left and right would be swapped.
     const double height = std::asin(std::clamp(back.z, -1.0, 1.0));
     constexpr double pole = 1.5707;
     const double rise = std::clamp(height + up, -pole, pole) - height;
@@ -136,7 +136,7 @@ DepthRange depth_range(const Mat4& to_eye, const Bounds& scene) {
     const double slack = 0.02 * (far - near) + 1e-4;
     far += slack;
     if (!(far > 0.0)) return {};
-    // A 24-bit depth buffer still tells 1e-4 of the distance apart.
+    // A 24-bit depth buffer then still resolves 1e-4 of the distance.
     return {std::clamp(near - slack, far * 1e-4, far * 0.95), far};
 }
 

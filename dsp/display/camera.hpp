@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A camera that turns about what it looks at. World frame: LPS, so x is to the patient's left, y to the back, z up.
+// Orbit camera. World frame: LPS, so x is to the patient's left, y to the back, z up.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -15,19 +15,19 @@ namespace tactus::display {
 
 using Mat4 = glm::dmat4;
 
-/// What takes local coordinates to the surrounding frame.
+/// Matrix from local coordinates to the surrounding frame.
 Mat4 matrix_of(const Pose& pose);
 
-/// How the world gets into a picture: into the frame of the eye (x right, y up, z towards the eye), then to clip space.
+/// View and projection: world to eye frame (x right, y up, z towards the eye), then to clip space.
 struct Projection {
     Mat4 to_eye{1.0}, to_clip{1.0};
-    bool is_mirrored = false;  ///< triangles turn the other way around
+    bool is_mirrored = false;  ///< triangles have the opposite winding
 
-    /// Where a point is seen, in units of the picture: (−1, −1) lower left, (1, 1) upper right. Behind the eye: none.
+    /// Image position of a point: (−1, −1) lower left, (1, 1) upper right. None behind the eye.
     std::optional<glm::dvec2> seen(const Vec3& world) const;
 };
 
-/// Where to look from, by the number of a key: 1 front, 2 back, 3 left, 4 right, 5 top, 6 bottom, 7 iso.
+/// View directions by key number: 1 front, 2 back, 3 left, 4 right, 5 top, 6 bottom, 7 iso.
 enum class NamedView { front, back, left, right, top, bottom, iso };
 inline constexpr std::array<std::string_view, 7> view_names{"front", "back", "left", "right", "top", "bottom", "iso"};
 std::optional<NamedView> view_of_name(std::string_view name);
@@ -41,7 +41,7 @@ struct Bounds {
     void add(const Vec3& point);
     void add(const Bounds& other);
     Vec3 middle() const { return 0.5 * (low + high); }
-    double radius() const;  ///< of the ball around it
+    double radius() const;  ///< of the bounding sphere
     std::array<Vec3, 8> corners() const;
 };
 
@@ -58,27 +58,27 @@ public:
 
     /// Sets the direction; target and distance stay.
     void look_from(NamedView view);
-    /// Iso, from that of its four sides on which `tool` lies as seen from the middle of `box`: so that it is not hidden.
+    /// Iso view from the side of the middle of `box` on which `tool` lies, so that the tool is visible.
     void look_from_side_of(const Vec3& tool, const Bounds& box);
-    /// The same from any direction: `towards` is where the eye looks.
+    /// The same from any direction: `towards` is the viewing direction.
     void look_along(const Vec3& towards, const Vec3& up = {0.0, 0.0, 1.0});
-    /// The eye moves about the target: to the right about the world's z, and upwards. rad.
+    /// Orbits about the target: to the right about the world's z, and upwards. rad.
     void orbit(double right, double up);
-    /// What is seen moves with the hand: shares of the picture's height.
+    /// Pans: the scene follows the hand; in shares of the picture's height.
     void pan(double right, double up);
-    /// The distance is divided by `factor`.
+    /// Zooms: divides the distance by `factor`.
     void zoom(double factor);
-    /// Aims at the box and goes as near as all of it is in a picture of `aspect` = width / height. Nothing for an empty
-    /// one.
+    /// Fits the box into a picture of `aspect` = width / height, as near as possible. Does nothing for an empty
+    /// box.
     void fit(const Bounds& box, double aspect, double margin = 1.06);
 
-    /// At the depth of the target, in a picture so many pixels high.
+    /// Size of a pixel at the depth of the target, in a picture of this height in pixels.
     double metres_per_pixel(int height) const;
-    /// Depth is kept as tight around `scene` as it can be.
+    /// With the depth range as tight around `scene` as possible.
     Projection projection(double aspect, const Bounds& scene) const;
 };
 
-/// Nearest and farthest of `scene` along −z of an eye frame, with a margin, so that depth is as fine as it can be.
+/// Near and far planes for `scene` along −z of an eye frame, with a margin, for the best depth resolution.
 struct DepthRange {
     double near = 0.01, far = 10.0;  ///< m
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of a frame can be in a picture at all.
+// View-frustum culling.
 #pragma once
 
 #include "dsp/display/camera.hpp"
@@ -10,7 +10,7 @@
 
 namespace tactus::display {
 
-/// The space between the six planes of a picture, in the frame that `to_clip` starts from.
+/// The six planes of a view frustum, in the frame that `to_clip` starts from.
 class Frustum {
 public:
     explicit Frustum(const Mat4& to_clip) {
@@ -21,7 +21,7 @@ public:
         }
     }
 
-    /// False only for a box that lies wholly beyond one of the planes.
+    /// False only for a box completely beyond one of the planes.
     bool meets(const Bounds& box) const {
         for (const glm::dvec4& plane : planes_) {
             double most = plane.w;

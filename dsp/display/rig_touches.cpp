@@ -13,8 +13,8 @@ namespace {
 
 using Numbers = std::vector<std::size_t>;
 
-/// Fits a part by `fit`, which takes the numbers of touches and gives a function from a touch to how far it is off.
-/// Finds the touch to blame when one is farther off than the tolerance.
+/// Fits a part by `fit`, which takes indices of touches and returns a function from a touch to its residual.
+/// Finds the faulty touch when a residual exceeds the tolerance.
 template <class Fit>
 TouchedPart fitted(const std::string& what, const Numbers& touches, std::span<const RigTouch> all, std::size_t least,
                    double tolerance, const Fit& fit) {
@@ -39,7 +39,7 @@ TouchedPart fitted(const std::string& what, const Numbers& touches, std::span<co
     } catch (const Error& error) {
         refusal = error.message();
     }
-    // Whose absence makes the others agree best?
+    // Leave-one-out: without which touch do the others agree best?
     double best = tolerance, apart = 0.0;
     std::optional<std::size_t> blamed;
     for (const std::size_t left_out : touches) {
@@ -55,7 +55,7 @@ TouchedPart fitted(const std::string& what, const Numbers& touches, std::span<co
             blamed = left_out;
             apart = off(all[left_out]);
         } catch (const Error&) {
-            // These others decide nothing.
+            // These touches do not determine the part.
         }
     }
     if (blamed)
@@ -69,7 +69,7 @@ TouchedPart fitted(const std::string& what, const Numbers& touches, std::span<co
                     what, refusal, tolerance * 1e3));
 }
 
-/// The part of one kind, of one screen.
+/// The touches of one kind, of one screen.
 Numbers numbers_of(std::span<const RigTouch> touches, const auto& is_one) {
     Numbers numbers;
     for (std::size_t i = 0; i < touches.size(); ++i)
@@ -180,7 +180,7 @@ private:
         fit_.screens.emplace_back(name, found);
     }
 
-    /// A mirror shows only a screen that looks at it.
+    /// A mirror shows only a screen that faces it.
     static bool looks_at(const Plane& mirror, const Screen& screen) {
         const Vec3 middle = screen.low_left + 0.5 * (screen.right() + screen.up());
         return mirror.height(middle) * glm::dot(screen.normal(), mirror.normal) < 0.0;

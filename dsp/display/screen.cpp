@@ -21,7 +21,7 @@ void check(const Screen& screen) {
         throw Error("the edges of a screen must be square to each other within 1 deg; calibrate its corners again");
 }
 
-/// Bounds of a box that was moved.
+/// Bounds of a transformed box.
 Bounds moved(const Bounds& box, const Mat4& by) {
     Bounds moved;
     if (!box.empty())
@@ -73,7 +73,7 @@ Projection through_screen(const Screen& screen, const Vec3& eye, const Bounds& s
 
 Projection through_mirror(const Screen& screen, const Plane& mirror, const Vec3& eye, const Bounds& scene) {
     const Mat4 reflection = mirror.reflection();
-    // Light goes the same way from the reflected world to the reflected eye, straight through the screen as it stands.
+    // Light takes the same path from the reflected world to the reflected eye, straight through the screen.
     Projection projection = through_screen(screen, mirror.reflected(eye), moved(scene, reflection));
     projection.to_eye = projection.to_eye * reflection;
     projection.is_mirrored = true;
@@ -92,8 +92,8 @@ Pose DisplayRig::place_before(std::size_t screen, double away) const {
     const Vec3 middle = seen.low_left + 0.5 * (seen.right() + seen.up());
     if (!is_mirrored(screen)) return {middle + away * normal, glm::quat_cast(Mat3(right, up, normal))};
     const auto turned = [this](const Vec3& v) { return v - 2.0 * glm::dot(v, mirror->normal) * mirror->normal; };
-    // The image in the mirror has left and right swapped, or it stands on its head: whichever lets up be up, or, where
-    // the image lies flat, far be up.
+    // The mirror image has left and right swapped, or is upside down: chooses the one with up on top, or, where the
+    // image lies flat, far on top.
     const Vec3 high = turned(up), back = turned(normal);
     const double way = (std::abs(high.z) > 0.1 ? high.z : high.y) < 0.0 ? -1.0 : 1.0;
     return {mirror->reflected(middle + away * normal), glm::quat_cast(Mat3(-way * turned(right), way * high, back))};

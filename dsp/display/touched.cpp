@@ -16,10 +16,10 @@ namespace tactus::display {
 
 namespace {
 
-// Spread that counts as none, as a share of the largest: touches are good to about a millimetre in some centimetres.
+// Spread that counts as zero, relative to the largest: touches are accurate to about a millimetre in some centimetres.
 constexpr double thin = 0.02;
 
-/// Root mean square spread along the three principal axes, largest first, and the axes.
+/// Principal component analysis: root mean square spread along the three axes, largest first, and the axes.
 struct Spread {
     Vec3 mean{0.0};
     std::array<double, 3> along{};
@@ -154,7 +154,7 @@ ScreenFit fit_screen(std::span<const ScreenTouch> touches) {
     check_line(b, what);
     std::vector<TouchPair> pairs;
     for (const ScreenTouch& touch : touches) pairs.push_back({shown(touch), touch.touched});
-    // Nothing is known of the third axis: two made-up touches, whose answer is not looked at, make it solvable.
+    // The third axis is undetermined: two auxiliary touches, whose result is not used, make the system solvable.
     for (const double side : {-1.0, 1.0}) pairs.push_back({a.mean + Vec3(0.0, 0.0, side), b.mean});
     const Mat3 axes = linear_fit(pairs, a.mean, b.mean);
     const double width = glm::length(axes[0]), height = glm::length(axes[1]);
@@ -163,7 +163,7 @@ ScreenFit fit_screen(std::span<const ScreenTouch> touches) {
     if (!(std::abs(fit.skew_rad) < 0.0524))
         throw Error(fmt::format("{}: the touches are skewed by {:.1f} deg; was a mark mistaken for another?", what,
                                 fit.skew_rad * 57.29578));
-    // The skew is shared evenly between both axes.
+    // Orthogonalises both axes symmetrically.
     const Vec3 sum = glm::normalize(axes[0] / width + axes[1] / height),
                difference = glm::normalize(axes[0] / width - axes[1] / height);
     const double half = std::sqrt(0.5);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calibration from touched points: where a screen, a mirror and the workspace of a device are in the world of the viewer.
-// All fits are least squares; touches that do not decide the answer are refused by name.
+// Calibration from touched points: poses of a screen, a mirror and a device's workspace in the viewer's world.
+// All fits are least squares; they reject touches that do not determine the result, and say which.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -12,22 +12,22 @@
 
 namespace tactus::display {
 
-/// How well the touches agree with what was fitted, m.
+/// Residuals of a fit, m.
 struct TouchResidual {
     double rms = 0.0, worst = 0.0;
-    std::size_t worst_touch = 0;  ///< number of the touch that is farthest off
+    std::size_t worst_touch = 0;  ///< index of the touch with the greatest residual
 };
 
-/// One place known in two frames, m.
+/// One position in two frames, m.
 struct TouchPair {
     Vec3 from{0.0}, to{0.0};
 };
 
 struct RigidFit {
-    Pose pose;  ///< takes `from` to `to`
+    Pose pose;  ///< maps `from` to `to`
     TouchResidual residual;
 };
-/// The best rotation and translation (Horn 1987). Needs three touches that do not lie on a line. Throws Error.
+/// Rigid registration (Horn 1987). Needs three touches that are not collinear. Throws Error.
 RigidFit fit_rigid(std::span<const TouchPair> touches);
 
 struct AffineFit {
@@ -37,7 +37,7 @@ struct AffineFit {
 
     Vec3 apply(const Vec3& from) const { return linear * from + shift; }
 };
-/// The best affine map: takes up scales and skews of a device as well. Needs four touches that do not lie in a plane.
+/// Affine registration: includes scale and skew of a device. Needs four touches that are not coplanar.
 /// Throws Error.
 AffineFit fit_affine(std::span<const TouchPair> touches);
 
@@ -45,20 +45,20 @@ struct PlaneFit {
     Plane plane;  ///< through the mean of the touches; the normal points to the side of `towards`
     TouchResidual residual;
 };
-/// A mirror or table from points on it, at least three that do not lie on a line. Throws Error.
+/// Plane fit to points on a mirror or table, at least three that are not collinear. Throws Error.
 PlaneFit fit_plane(std::span<const Vec3> touches, const Vec3& towards);
 
-/// A touched mark of a screen: where it was shown, (0, 0) lower left, (1, 1) upper right, and where it was, m.
+/// A touched mark of a screen: where it was shown, (0, 0) lower left, (1, 1) upper right, and its position, m.
 struct ScreenTouch {
     glm::dvec2 shown{0.0};
     Vec3 touched{0.0};
 };
 struct ScreenFit {
-    Screen screen;  ///< a true rectangle
-    double skew_rad = 0.0;  ///< by which the touches' own axes were not square
+    Screen screen;  ///< an exact rectangle
+    double skew_rad = 0.0;  ///< deviation of the touches' own axes from a right angle
     TouchResidual residual;
 };
-/// Needs three marks that do not lie on a line. Throws Error also when the touches are skewed by more than 3°.
+/// Needs three marks that are not collinear. Throws Error also when the touches are skewed by more than 3°.
 ScreenFit fit_screen(std::span<const ScreenTouch> touches);
 
 }  // namespace tactus::display

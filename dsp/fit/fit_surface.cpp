@@ -18,16 +18,16 @@ namespace tactus::fit {
 namespace {
 
 constexpr std::size_t least_points = 30;
-constexpr double edge = 1.5e-3;  // m: nearer to the paint no point is taken for the outline
+constexpr double edge = 1.5e-3;  // m: points nearer to the paint are not part of the outline
 constexpr double across = 0.6;   // of an outline's normal along that of the paint, at most
-constexpr std::uint8_t own_label = 200;  // of the one face of several that is being made
+constexpr std::uint8_t own_label = 200;  // marks the one face of several that is being made
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 struct Box {
     Vec3 low{infinite}, high{-infinite};
 };
 
-/// At most `most` of the candidates, each as far as possible from those before it.
+/// Farthest-point sampling: at most `most` of the candidates, each as far as possible from those before it.
 std::vector<std::size_t> spread_evenly(const std::vector<Vec3>& candidates, std::size_t most) {
     std::vector<std::size_t> picks;
     std::vector<double> nearest(candidates.size(), infinite);
@@ -66,7 +66,7 @@ void take_paint(FitSurface& made, std::span<const contact::SurfacePoint> points,
     made.gyration = std::sqrt(made.gyration);
 }
 
-/// Samples of the field around the paint, on the lattice of `distance` or coarser.
+/// The grid of the field around the paint: that of `distance`, or coarser.
 volume::Grid layout_around(const FitSurface& made, const volume::Grid& distance, const FitSurfaceOptions& options) {
     Box box;
     for (const Vec3& p : made.position) {
@@ -89,7 +89,7 @@ volume::Grid layout_around(const FitSurface& made, const volume::Grid& distance,
     return layout;
 }
 
-/// Distances and paint at the samples of `field`. Returns how many samples came from the grid.
+/// Distances and paint at the samples of `field`. Returns the number of samples taken from the grid.
 std::size_t fill(volume::Grid& field, std::vector<std::uint8_t>& painted, const Vec3& centre,
                  const contact::Voxmap& source, std::span<const contact::SurfacePoint> points, std::uint8_t paint) {
     std::vector<glm::vec3> places;
@@ -115,8 +115,8 @@ std::size_t fill(volume::Grid& field, std::vector<std::uint8_t>& painted, const 
 }
 
 void take_outline(FitSurface& made, std::span<const contact::SurfacePoint> points, const FitSurfaceOptions& options) {
-    // Looking every painted point up for every other one would take long; a thinned paint is as good within half a
-    // millimetre.
+    // Distances to all painted points would take long; a thinned paint is accurate to half a millimetre,
+    // which suffices.
     std::vector<Vec3> paint;
     for (const std::size_t i : spread_evenly(made.position, 400)) paint.push_back(made.position[i]);
     const double steep = glm::length(made.mean_normal);
@@ -132,7 +132,7 @@ void take_outline(FitSurface& made, std::span<const contact::SurfacePoint> point
         if (point.label == options.paint || point.label == options.other_paint) continue;
         if (!(glm::length(point.normal) > 0.5)) continue;
         if (glm::any(glm::lessThan(p, box.low)) || glm::any(glm::greaterThan(p, box.high))) continue;
-        // The edge itself is rounded, and part of what was not painted may be fracture all the same.
+        // The edge itself is rounded, and some unpainted points may be fracture too.
         if (std::abs(glm::dot(glm::normalize(point.normal), axis)) > across) continue;
         double least = infinite;
         for (const Vec3& q : paint) least = std::min(least, glm::dot(p - q, p - q));
@@ -151,7 +151,7 @@ void take_outline(FitSurface& made, std::span<const contact::SurfacePoint> point
 bool FitSurface::is_painted_near(const Vec3& place) const noexcept {
     const Vec3 at = (place - field.grid.origin) / field.grid.spacing + Vec3(0.5);
     const auto& size = field.grid.size;
-    // Written so that a NaN is outside.
+    // The comparison treats NaN as outside.
     if (!(at.x >= 0.0 && at.y >= 0.0 && at.z >= 0.0 && at.x < size[0] && at.y < size[1] && at.z < size[2]))
         return false;
     return painted[field.grid.index(static_cast<int>(at.x), static_cast<int>(at.y), static_cast<int>(at.z))] != 0;

@@ -23,7 +23,7 @@ namespace {
 constexpr int spins = 16;
 constexpr std::size_t coarse_points = 160;
 
-/// One face as a surface of its own, with at most so many points.
+/// One face as a surface of its own, with at most this many points.
 FitSurface surface_of(const FragmentSurface& fragment, std::span<const std::size_t> face, std::size_t most) {
     FitSurfaceOptions options;
     options.reach = 6e-3;
@@ -47,8 +47,8 @@ FitSurface surface_of(const FragmentSurface& fragment, std::span<const std::size
 
 }  // namespace
 
-/// Several pairs of faces of one moving fragment, as the solver asks for one contact, each with an energy of the same
-/// number. Its handle stands at `centre` of the fragment, wherever its file has its origin.
+/// The contact of several face pairs of one moving fragment, as a single contact for the solver; pair n uses energy n.
+/// The handle is at `centre` of the fragment, for any origin of its file.
 class FragmentMatcher::Together {
 public:
     Together(FragmentMatcher& matcher, std::span<const Pair> pairs, std::span<const Pose> poses, const Vec3& centre)
@@ -148,7 +148,7 @@ FragmentMatcher::Solved FragmentMatcher::solve(const Pair& pair, std::span<const
     for (const Pose& start : starts) {
         Candidate c{anneal(e, start, {fit.widest, 2.0 * fit.finest, 24, fit.power}, steps), 0.0};
         c.score = e.quality(c.pose, 2.0 * fit.sigma).score;
-        // The same place again counts once.
+        // Equal poses count once.
         if (best[0].score >= 0.0 && pose_distance(c.pose, best[0].pose, gyration) < 1e-3) {
             if (c.score > best[0].score) best[0] = c;
         } else if (c.score > best[0].score) best[1] = best[0], best[0] = c;
@@ -199,8 +199,8 @@ const FragmentMatch& FragmentMatcher::near(int moving, std::span<const Pose> pos
         const Pose from = centres(pair, held, poses);
         const Vec3 about = direction_of(b.mean_normal);
         const Quat flat_on = opposed(a, b, from.orientation);
-        // Where it is; middles on each other as it is, flat on, and turned a little either way; and flat on where it
-        // is, also shifted: the middles of faces that share but a part do not belong on each other.
+        // Starts: the present pose; centroids together; normals opposed; small rotations of these; and normals opposed
+        // at the present position, also shifted, because centroids of partly overlapping faces do not coincide.
         const Vec3 beside = from.position - glm::dot(from.position, about) * about;
         const Vec3 across =
             glm::normalize(glm::cross(about, std::abs(about.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0)));
@@ -217,7 +217,7 @@ const FragmentMatch& FragmentMatcher::near(int moving, std::span<const Pose> pos
                                            {beside - v, flat_on}}};
         solved_.push_back(solve(pair, starts));
     }
-    // In their order of worth; a chance fit far from where the fragment is held is none that the hand meant.
+    // In order of score; a chance fit far from where the fragment is held is not what the hand intends.
     const auto worth = [this](const Solved& s) {
         return s.best.score *
                std::sqrt(std::min(faces_[s.pair.moving].surface.area, faces_[s.pair.fixed].surface.area));
@@ -284,7 +284,7 @@ const FragmentMatch& FragmentMatcher::search(int moving, std::span<const Pose> p
         found_ = match_;
         found_beside_ = poses[static_cast<std::size_t>(match_.partner)].inverse() * match_.pose;
     }
-    // Its partner may have been moved since.
+    // Its partner may have moved since.
     if (found_.partner != Arrangement::none)
         found_.pose = poses[static_cast<std::size_t>(found_.partner)] * found_beside_;
     return found_;
@@ -321,7 +321,7 @@ void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std:
     const FitSettings& fit = settings.fit;
     Pose at = world(best.pair, best.best.pose, poses);
     match_.partner = faces_[best.pair.fixed].fragment;
-    // All faces that lie well there take part.
+    // All faces that fit there take part.
     join(best, at, poses, stands);
     for (std::size_t n = 0; n < joined_.size(); ++n) set_law(energy(n, joined_[n]), 0.0, settings.most_points);
     const auto at_scale = [&](double scale) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of the fragments that stand does a fragment fit, and where: a solver for the background, in bounded time and
-// without memory of its own making once it is constructed.
+// Finds which placed fragments a fragment fits, and at which pose: a solver for a background thread, with bounded time
+// and without allocation after construction.
 //
-// A fragment from the middle of a bone has a face for each neighbour it broke from. Pairs of faces that are near and look
-// against each other where the fragment is held are fitted one by one, by the two-sided robust energy of fit_energy.hpp
-// with a scale that narrows. What fits best leads; then all faces that fit there are fitted together, so that an error of
-// one does not add to that of the next. When nothing near fits, every face is tried on every other in all ways round, a
-// pair or two at a time.
+// A fragment from the middle of a bone has a face for each neighbour it broke from. Pairs of nearby faces with opposed
+// normals are fitted one by one from the present pose, by the two-sided robust energy of fit_energy.hpp with a
+// narrowing scale. The best pair leads; then all faces that fit at its pose are fitted together, so that errors of
+// single pairs do not accumulate. When nothing nearby fits, every face is tried on every other with all rotations, a
+// pair or two per call.
 #pragma once
 
 #include "dsp/fit/arrangement.hpp"
@@ -19,7 +19,7 @@
 
 namespace tactus::fit {
 
-/// What is known of a fragment: the points of its whole surface, those of its fracture labelled, and its distances.
+/// Data of a fragment: its surface points with labelled fracture, and its distance field.
 struct FragmentSurface {
     std::span<const contact::SurfacePoint> points;
     const volume::Grid* distance = nullptr;
@@ -27,33 +27,33 @@ struct FragmentSurface {
 
 struct FragmentMatch {
     int moving = Arrangement::none, partner = Arrangement::none;
-    Pose pose;  ///< of the moving fragment, in the frame of the poses that were given
+    Pose pose;  ///< of the moving fragment, in the frame of the given poses
     FitVerdict verdict = FitVerdict::no_match;
-    FitQuality quality;  ///< of the pair of faces that leads
-    double margin = 0.0;  ///< to the second best pose, as share of the best score
-    int faces = 0;  ///< pairs of faces that were fitted together
+    FitQuality quality;  ///< of the leading pair of faces
+    double margin = 0.0;  ///< to the second best pose, as a share of the best score
+    int faces = 0;  ///< number of face pairs that were fitted together
 };
 
-/// Faces of a fragment from the middle are smaller than whole fractures: less of them has to match.
+/// Faces of a fragment from the middle are smaller than whole fractures: the required overlap is smaller.
 inline FitSettings settings_of_faces() noexcept {
     FitSettings settings;
     settings.widest = 3e-3;
     settings.outline = 0.0;
     settings.least_score = 0.2;
     settings.most_penetration = 0.6e-3;
-    // What chips leave of a bias adds up along a chain of pieces: half of what a single pair takes.
+    // Bias from chips accumulates along a chain of pieces: half of the limit for a single pair.
     settings.polish = 0.05e-3;
     return settings;
 }
 
 struct MatcherSettings {
     FitSettings fit = settings_of_faces();  ///< widened for the coarsest of the fragments' scans
-    double near = 15e-3;  ///< m: middles of faces that are tried on each other; the farthest that one is moved
-    double most_turn = 0.7;  ///< rad, the farthest that it is turned
-    double least_share = 0.5;  ///< of the leading score: what other faces must have to take part
-    std::size_t most_pairs = 6;  ///< of faces that one call fits, nearest first
-    std::size_t most_joined = 16;  ///< pairs of faces that are fitted together at most
-    std::size_t most_points = 700;  ///< of each face that take part
+    double near = 15e-3;  ///< m: greatest distance of the centroids of face pairs to try, and greatest displacement
+    double most_turn = 0.7;  ///< rad, greatest rotation
+    double least_share = 0.5;  ///< of the leading score: minimum for other faces to take part
+    std::size_t most_pairs = 6;  ///< maximum number of face pairs per call, nearest first
+    std::size_t most_joined = 16;  ///< maximum number of face pairs that are fitted together
+    std::size_t most_points = 700;  ///< maximum number of points per face
     std::size_t most_faces = 400;  ///< of all fragments; each takes some megabytes
 };
 
@@ -61,20 +61,20 @@ class FragmentMatcher {
 public:
     MatcherSettings settings;
 
-    /// Throws Error when a fragment's points and distances do not belong together, and when all have more than
-    /// `most_faces`. A fragment without paint fits nothing. Memory grows with the number of faces.
+    /// Throws Error when a fragment's points and distances do not match, and when all together have more than
+    /// `most_faces`. A fragment without paint fits nothing. Memory is proportional to the number of faces.
     explicit FragmentMatcher(std::span<const FragmentSurface> fragments, const MatcherSettings& wanted = {});
 
     std::size_t faces() const noexcept { return faces_.size(); }
     std::size_t faces_of(int fragment) const noexcept;
 
-    /// From where it is. `stands`: which fragments count as partners; the moving one does not.
+    /// Local search from the present poses. `stands`: fragments that count as partners, except the moving one.
     const FragmentMatch& near(int moving, std::span<const Pose> poses, std::span<const char> stands) noexcept;
-    /// Wherever it is: the next pair of faces in turn, in all ways round. Returns the best match since `begin_search`,
-    /// beside its partner wherever that is now; other fragments that stand: a new search.
+    /// Global search: tries the next pair of faces, with all rotations. Returns the best match since `begin_search`,
+    /// relative to its partner's present pose. When the set of placed fragments changes, the search restarts.
     const FragmentMatch& search(int moving, std::span<const Pose> poses, std::span<const char> stands) noexcept;
     void begin_search() noexcept;
-    /// Pairs of faces that `search` still has to try; 0: it starts over.
+    /// Number of face pairs that `search` still has to try; 0: it starts over.
     std::size_t left() const noexcept { return left_; }
 
 private:
@@ -106,7 +106,7 @@ private:
     bool same_search(int moving, std::span<const char> stands) noexcept;
 
     std::vector<Face> faces_;
-    std::vector<FitEnergy> energies_;  ///< the first for one pair at a time, all for those that are fitted together
+    std::vector<FitEnergy> energies_;  ///< the first for single pairs, all for pairs that are fitted together
     std::vector<Pair> pairs_;
     std::vector<Solved> solved_;
     std::vector<Pair> joined_;

@@ -11,7 +11,7 @@ namespace tactus::fit {
 
 namespace {
 
-/// The value below which `share` of the weights lie.
+/// Weighted quantile: the value below which `share` of the weights lie.
 double weighted_quantile(const std::vector<double>& values, const std::vector<double>& weights, double share) {
     std::vector<std::size_t> order(values.size());
     std::iota(order.begin(), order.end(), std::size_t{0});

@@ -15,7 +15,7 @@ void HeldFit::look(const Pose& handle, const Pose& moving, const Pose& fixed, do
     if (!energy_ || !(share > 0.0)) return forget();
     if (!halves_[1 - turn_].is_read) read(static_cast<FitHalf>(1 - turn_), handle, moving, fixed, share);
     read(static_cast<FitHalf>(turn_), handle, moving, fixed, share);
-    // One-sided, there is nothing to take turns with.
+    // A one-sided fit has one half only.
     turn_ = energy_->law.two_sided ? 1 - turn_ : 0;
 }
 

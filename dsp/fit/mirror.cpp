@@ -14,9 +14,9 @@ namespace {
 
 Mat3 reflection(const Vec3& normal) { return Mat3(1.0) - 2.0 * glm::outerProduct(normal, normal); }
 
-/// The direction that an improper rotation turns around: q n = −n.
+/// The rotation axis of an improper rotation: q n = −n.
 Vec3 turned_around(const Mat3& q) {
-    // Columns of (q + 1) span the plane across n; the two that stand most apart give it best.
+    // Columns of (q + 1) span the plane orthogonal to n; the two with the greatest angle are the most accurate.
     const Mat3 m = q + Mat3(1.0);
     Vec3 best(0.0);
     for (int a = 0; a < 3; ++a)
@@ -41,27 +41,27 @@ std::vector<contact::SurfacePoint> mirrored(std::span<const contact::SurfacePoin
 
 MirrorFit fit_mirror(std::span<const contact::SurfacePoint> healthy, std::span<const contact::SurfacePoint> broken,
                      const RegistrationSettings& settings) {
-    // Any mirror will do to begin with; the registration finds the rest.
+    // Any initial mirror will do; the registration finds the rest.
     const MirrorPlane first;
     std::vector<contact::SurfacePoint> other = mirrored(healthy, first);
-    // Planes at the points stand for the surface between them, so not all are needed.
+    // The points' tangent planes represent the surface between them, so a subset suffices.
     const std::size_t stride = other.size() / 40'000 + 1;
     std::size_t kept = 0;
     for (std::size_t n = 0; n < other.size(); n += stride) other[kept++] = other[n];
     other.resize(kept);
     const RegistrationTarget target(other);
     MirrorFit fit;
-    // The broken side is part of what the mirrored one has, so its points are laid on that.
+    // The broken side is a part of the mirrored side, so its points are registered to that.
     fit.registration = register_from_anywhere(broken, other, target, settings);
     const Pose onto = fit.registration.pose.inverse();
     const Mat3 q = glm::mat3_cast(onto.orientation) * reflection(first.normal);
     Vec3 n = turned_around(q);
     if (n[std::abs(n.x) > 0.5 ? 0 : std::abs(n.y) > 0.5 ? 1 : 2] < 0.0) n = -n;
-    // The middle between a point and its image lies in the plane.
+    // The midpoint of a point and its image lies in the plane.
     const Vec3 image_of_origin = onto.apply(first.reflect(Vec3(0.0)));
     fit.plane = {n, 0.5 * glm::dot(n, image_of_origin)};
     const Quat rotation = glm::normalize(glm::quat_cast(q * reflection(n)));
-    // pose(reflect(x)) = onto(first.reflect(x)) for all x, so also where the mirror leaves x in place.
+    // pose(reflect(x)) = onto(first.reflect(x)) for all x, hence also for points that the mirror maps to themselves.
     const Vec3 fixed_point = fit.plane.offset * n;
     fit.pose = {onto.apply(first.reflect(fixed_point)) - rotation * fixed_point, rotation};
     const Vec3 angle = rotation_between({1.0, 0.0, 0.0, 0.0}, rotation);

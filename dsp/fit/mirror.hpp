@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The healthy side as a target: mirrored, and laid on what is left of the broken one.
+// Mirrors the healthy side of a body and registers it to the broken side, as a target.
 #pragma once
 
 #include "dsp/fit/registration.hpp"
@@ -18,19 +18,19 @@ struct MirrorPlane {
     Vec3 reflect_direction(const Vec3& d) const { return d - 2.0 * glm::dot(normal, d) * normal; }
 };
 
-/// The points on the other side of the mirror, normals outwards, then moved by `pose`.
+/// Mirrored points with outward normals, then moved by `pose`.
 std::vector<contact::SurfacePoint> mirrored(std::span<const contact::SurfacePoint> points, const MirrorPlane& plane,
                                             const Pose& pose = {});
 
 struct MirrorFit {
-    MirrorPlane plane;  ///< of the body, in the frame of both
-    Pose pose;  ///< what is left to do after the mirror: the body's own asymmetry and how it lay in the scanner
+    MirrorPlane plane;  ///< symmetry plane of the body, in the frame of both
+    Pose pose;  ///< residual motion after the mirror: asymmetry of the body and its pose in the scanner
     double rotation = 0.0, glide = 0.0;  ///< rad and m of that pose
     Registration registration;       ///< of the broken side's points to the mirrored healthy side
 };
 
-/// Mirrors the healthy side and lays it on the broken one's main part: p ↦ pose(reflect(p)). The plane comes from the
-/// data: it is the one mirror for which least is left to do. Throws Error without points.
+/// Mirrors the healthy side and registers it to the main part of the broken one: p ↦ pose(reflect(p)). The plane is
+/// estimated from the data: it minimises the residual motion. Throws Error without points.
 MirrorFit fit_mirror(std::span<const contact::SurfacePoint> healthy, std::span<const contact::SurfacePoint> broken,
                      const RegistrationSettings& settings = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The registration that most programs have, to compare with.
+// Point-to-point ICP, as a reference for comparison.
 #pragma once
 
 #include "dsp/fit/registration.hpp"
@@ -8,15 +8,15 @@
 
 namespace tactus::fit {
 
-/// What plain ICP of points says, for comparison: the nearest points' distances, not those of the surfaces.
+/// Result of plain ICP: residuals are distances of points, not of surfaces.
 struct PointRegistration {
     Pose pose;
     double to_points = 0.0, to_surface = 0.0;  ///< m, medians over the moving points
     int steps = 0;
 };
 
-/// Point-to-point ICP with the nearest `share` of the pairs. Along smooth surfaces it stops short: every point lies near
-/// some other one long before it lies on its own. Throws Error without points. Deterministic.
+/// Point-to-point ICP with the nearest `share` of the pairs. Along smooth surfaces it converges too early: every point
+/// is near some other one before it is at its own. Throws Error without points. Deterministic.
 PointRegistration register_points(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed,
                                   const Pose& start, double share = 0.8);
 

@@ -34,7 +34,7 @@ struct Spread {
     double gyration = 0.0;
 };
 
-/// Middle and main axes of the surface.
+/// Centroid and principal axes of the surface.
 Spread spread_of(std::span<const contact::SurfacePoint> points) {
     Spread spread;
     double area = 0.0;
@@ -57,7 +57,7 @@ std::vector<contact::SurfacePoint> thinned(std::span<const contact::SurfacePoint
     return some;
 }
 
-/// Of all points from the surface, ascending.
+/// Distances of all points from the surface, ascending.
 std::vector<double> distances(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed,
                               const Pose& pose) {
     std::vector<double> all;
@@ -102,7 +102,7 @@ Pose anneal(const std::vector<contact::SurfacePoint>& moving, const Registration
                 for (std::size_t b = 0; b < 6; ++b) k[6 * a + b] += weight * row[a] * row[b];
             }
         }
-        // Scaled to numbers that the solver's floor for what nothing holds is small against.
+        // Scaled so that the solver's regularisation is negligible.
         double greatest = 0.0;
         for (std::size_t a = 0; a < 3; ++a) greatest = std::max(greatest, k[7 * a]);
         if (!(greatest > 0.0)) break;
@@ -117,7 +117,7 @@ Pose anneal(const std::vector<contact::SurfacePoint>& moving, const Registration
     return pose;
 }
 
-/// How much of a surface lies on the target: mean of exp(−d² / 2s²).
+/// Coverage of the target: mean of exp(−d² / 2s²).
 double lies_on(const std::vector<contact::SurfacePoint>& points, const RegistrationTarget& fixed, const Pose& pose,
                double s) {
     double sum = 0.0, area = 0.0;
@@ -129,7 +129,7 @@ double lies_on(const std::vector<contact::SurfacePoint>& points, const Registrat
     return sum / area;
 }
 
-/// The eight parts of a surface about its middle, along its main axes.
+/// The eight octants of a surface about its centroid, along its principal axes.
 std::array<std::vector<contact::SurfacePoint>, 8> parts_of(const std::vector<contact::SurfacePoint>& points) {
     const Spread spread = spread_of(points);
     std::array<std::vector<contact::SurfacePoint>, 8> parts;
@@ -178,12 +178,13 @@ Registration register_surface(std::span<const contact::SurfacePoint> moving, con
         return made;
     };
     const Registration far = from_scale(settings.widest, settings.finest);
-    // A part that is displaced turns the whole as long as it is within sight: what lies well already is found from near.
+    // A displaced part rotates the whole while it is within the kernel's reach: continue from near with a narrow
+    // kernel.
     const Registration near = from_scale(0.5 * settings.finest, 0.5 * settings.finest);
     Registration best = near.median < far.median ? near : far;
     if (!settings.by_parts) return best;
-    // Where much of it is elsewhere the whole lies between two places. Each part by itself finds one of them, and the
-    // place where most of the whole lies on the target is the one.
+    // When a large part is elsewhere, the whole lies between two poses. Each octant alone finds one of them; the pose
+    // that covers most of the target wins.
     const double tight = 0.25 * settings.finest;
     double most = lies_on(some, fixed, best.pose, tight);
     const Pose from = best.pose;
@@ -217,7 +218,8 @@ Registration register_from_anywhere(std::span<const contact::SurfacePoint> movin
     coarse.by_parts = false;
     Registration best;
     for (int n = 0; n < 24; ++n) {
-        // Main axes along each other in the four ways that are turns, each also turned about the longest by sixths.
+        // Aligns the principal axes in the four proper ways, each also rotated about the longest axis in steps of a
+        // sixth.
         Mat3 axes = to.axes;
         if (n & 1) axes[0] = -axes[0], axes[1] = -axes[1];
         const Quat about = glm::angleAxis(2.0 * std::numbers::pi * (n / 2) / 12.0, to.axes[0]);
@@ -231,7 +233,7 @@ Registration register_from_anywhere(std::span<const contact::SurfacePoint> movin
 
 namespace {
 
-/// The patch with the most area of what is marked and hangs together with gaps below `gap`.
+/// The connected patch of marked points (gaps below `gap`) with the greatest area.
 std::vector<std::size_t> largest_patch(std::span<const contact::SurfacePoint> points, const std::vector<char>& marked,
                                        double gap) {
     const auto patches = geometry::patches_of(points, gap, [&](std::size_t n) { return marked[n] != 0; });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lays one surface on another of the same shape: a registration, not a fit of fractures.
+// Rigid registration of one surface to another of the same shape; for fractures see fit.hpp.
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
@@ -12,10 +12,10 @@
 namespace tactus::fit {
 
 struct RegistrationSettings {
-    double widest = 20e-3, finest = 1e-3;  ///< m, scale of the robust kernel: what lies far beyond it hardly pulls
+    double widest = 20e-3, finest = 1e-3;  ///< m, scale of the robust kernel: points far beyond it have little weight
     int stages = 60;
-    std::size_t most_points = 4000;  ///< of the moving surface that take part, spread over the list
-    bool by_parts = false;  ///< much of it may lie elsewhere than the rest: the place that most of it agrees on
+    std::size_t most_points = 4000;  ///< maximum number of points of the moving surface, evenly chosen from the list
+    bool by_parts = false;  ///< a large part may be displaced: finds the pose that most of the surface supports
 };
 
 struct Registration {
@@ -25,7 +25,7 @@ struct Registration {
     double covered = 0.0;            ///< share of the moving points within twice the finest scale
 };
 
-/// What is registered to. Distances are to the tangent plane of the nearest point, for points are sparse.
+/// Target of a registration. Distances are to the tangent plane of the nearest point, because points are sparse.
 class RegistrationTarget {
 public:
     /// Throws Error without points.
@@ -34,7 +34,7 @@ public:
     std::size_t nearest(const Vec3& place) const noexcept { return tree_.nearest(place); }
     const Vec3& position(std::size_t n) const noexcept { return positions_[n]; }
     const Vec3& normal(std::size_t n) const noexcept { return normals_[n]; }
-    /// m, of a place from the surface: to the nearest point's plane, or to the point when it is far from it.
+    /// m, distance of a position from the surface: to the nearest point's plane, or to the point when it is far away.
     double distance(const Vec3& place) const noexcept;
 
 private:
@@ -45,22 +45,22 @@ private:
 /// m, median distance of the points at `pose` from the fixed surface. Throws Error without points.
 double median_distance(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed, const Pose& pose);
 
-/// Robust point-to-plane registration with a scale that narrows, from `start`. A point counts only where its normal is
-/// within 60 degrees of the one it is laid on. Throws Error without points. Deterministic.
+/// Robust point-to-plane ICP with a narrowing scale, from `start`. Uses only points whose normal is within 60 degrees
+/// of that of their target. Throws Error without points. Deterministic.
 Registration register_surface(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed, const Pose& start,
                               const RegistrationSettings& settings = {});
 
-/// The best of registrations from 24 starts: middles on each other, main axes along each other in all ways and between.
+/// The best of registrations from 24 starts: centroids together, principal axes aligned in all ways, and between these.
 Registration register_from_anywhere(std::span<const contact::SurfacePoint> moving, std::span<const contact::SurfacePoint> fixed_points,
                                     const RegistrationTarget& fixed, const RegistrationSettings& settings = {});
 
-/// Points of the moving surface at `pose` that lie farther than `away` (m) from the fixed one and hang together with
-/// gaps below `gap`: the largest such patch by area, grown by `margin` over its neighbours.
+/// Points of the moving surface at `pose` that are farther than `away` (m) from the fixed one: the largest connected
+/// patch by area (gaps below `gap`), dilated by `margin`.
 std::vector<std::size_t> displaced_region(std::span<const contact::SurfacePoint> moving, const Pose& pose,
                                           const RegistrationTarget& fixed, double away, double gap, double margin);
 
-/// The largest patch of points that lie within `away` (m) of the fixed surface at pose `own`, and nearer to it there than
-/// at `rest` by `nearer` (m): all that moved with a part whose place is known.
+/// The largest patch of points within `away` (m) of the fixed surface at pose `own`, and nearer to it there than at
+/// `rest` by `nearer` (m): all points that moved with a part of known pose.
 std::vector<std::size_t> region_nearer(std::span<const contact::SurfacePoint> moving, const Pose& rest, const Pose& own,
                                        const RegistrationTarget& fixed, double nearer, double away, double gap);
 

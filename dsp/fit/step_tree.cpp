@@ -8,7 +8,7 @@ namespace tactus::fit {
 namespace {
 
 bool same(const Arrangement::Place& a, const Arrangement::Place& b) noexcept {
-    // By bits: what is undone is the same to the last of them.
+    // Bitwise: undo restores exactly the same values.
     return std::memcmp(&a.pose, &b.pose, sizeof(Pose)) == 0 && a.group == b.group && a.fitted_to == b.fitted_to &&
            a.locked == b.locked && a.hidden == b.hidden;
 }
@@ -46,7 +46,7 @@ void StepTree::put(int step, int before, const Arrangement& from, const Arrangem
 
 void StepTree::stand(HistoryPlace place) {
     place_ = place;
-    // One step may move all; most move few.
+    // One step may move all fragments; most steps move few.
     places_.reserve(places_.size() + 2 * most_ + fragments_);
     groups_.reserve(groups_.size() + most_ + fragments_ + 1);
 }

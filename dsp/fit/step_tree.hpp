@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps of an arrangement that a tick may undo: each knows what it changed, so the way back is as short as the step.
+// Undo tree of an arrangement for use in a tick: each step stores what it changed, so undo costs as much as the step.
 #pragma once
 
 #include "dsp/fit/arrangement.hpp"
@@ -10,28 +10,28 @@
 
 namespace tactus::fit {
 
-/// The tree of history.hpp with what each step changed. Memory is taken by the constructor: a run that does more steps
-/// than there is room for forgets how to undo those before, and counts on.
+/// The tree of history.hpp with the changes of each step. Allocates in the constructor only: a run with more steps than
+/// its capacity can no longer undo the oldest ones, and goes on counting.
 class StepTree {
 public:
-    /// Room for `most` steps besides the `known` ones, which are to be put first.
+    /// Capacity for `most` steps besides the `known` ones, which must be added first.
     StepTree(std::size_t fragments, std::size_t known, std::size_t most);
 
-    /// Step `step` of the known ones leads from one arrangement to the next.
+    /// Adds known step `step`, which leads from one arrangement to the next.
     void put(int step, int before, const Arrangement& from, const Arrangement& to);
-    /// Where the known steps stand.
+    /// Sets the current place among the known steps.
     void stand(HistoryPlace place);
 
-    /// A new step at the head. Its number is what `count` was before.
+    /// Adds a step at the head. Its number is the previous `count`.
     void add(const Arrangement& from, const Arrangement& to) noexcept;
-    /// One step back or on, in `now`, which is where the head is. False at the end of the way.
+    /// Undoes or redoes one step in `now`, the arrangement at the head. False at the end of the branch.
     bool undo(Arrangement& now) noexcept;
     bool redo(Arrangement& now) noexcept;
 
     int count() const noexcept { return first_ + static_cast<int>(steps_.size()); }
-    /// Number of the step that was done last, -1: none.
+    /// Number of the last step done, -1: none.
     int head() const noexcept { return place_.head < 0 ? root_ : place_.head + first_; }
-    /// Steps from the first one to the head.
+    /// Number of steps from the first one to the head.
     int done() const noexcept;
 
 private:
@@ -46,19 +46,19 @@ private:
     };
     Step changes(const Arrangement& from, const Arrangement& to) noexcept;
     void forget() noexcept;
-    /// What the step changed, as it was on one side of it.
+    /// State before or after the step of what it changed.
     template <class Side>
     void restore(const Step& step, Arrangement& now, Side side) const noexcept;
 
-    std::vector<int> before_;  // within this, as history.hpp has it
+    std::vector<int> before_;  // indices within this object, see history.hpp
     std::vector<Step> steps_;
     std::vector<Change<Arrangement::Place>> places_;
     std::vector<Change<Arrangement::Group>> groups_;
     std::size_t fragments_, most_;
-    HistoryPlace place_;  // within this
-    int first_ = 0;       // number of the first step that is kept
-    int root_ = -1;       // of the one that it follows
-    int forgotten_ = 0;   // steps on the way to that
+    HistoryPlace place_;  // index within this object
+    int first_ = 0;  // number of the first stored step
+    int root_ = -1;  // the step before it
+    int forgotten_ = 0;  // number of steps before the first stored one
 };
 
 }  // namespace tactus::fit

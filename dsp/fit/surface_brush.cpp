@@ -19,7 +19,7 @@ SurfaceBrush::SurfaceBrush(std::vector<contact::SurfacePoint> points)
     }
     if (points_.empty()) low = high = Vec3(0.0);
     origin_ = low;
-    // No more cubes than points.
+    // At most one cube per point.
     for (;; side_ *= 1.25) {
         double count = 1.0;
         for (int axis = 0; axis < 3; ++axis) count *= std::floor((high[axis] - low[axis]) / side_) + 1.0;
@@ -48,7 +48,7 @@ SurfaceBrush::Cell SurfaceBrush::cell_of(const Vec3& p) const noexcept {
     Cell c{};
     for (int axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
-        // What lies outside belongs to the outermost cubes.
+        // Positions outside are clamped to the outermost cubes.
         c[a] = static_cast<int>(std::clamp((p[axis] - origin_[axis]) / side_, 0.0, static_cast<double>(size_[a] - 1)));
     }
     return c;
@@ -93,7 +93,7 @@ void SurfaceBrush::stroke(const Vec3& middle, double radius, std::uint8_t label)
 
 double SurfaceBrush::distance(const Vec3& place) const noexcept {
     double least = farthest * farthest;
-    // Wider and wider, until nothing beyond can be nearer.
+    // Expands the search until nothing beyond can be nearer.
     for (double reach = side_; !points_.empty(); reach = std::min(2.0 * reach, farthest)) {
         cubes(cell_of(place - Vec3(reach)), cell_of(place + Vec3(reach)), [&](std::size_t i) {
             for (std::uint32_t n = cubes_[i].first; n < cubes_[i].end; ++n) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surface nets (dual contouring of a binary volume): one vertex per cell between inside and outside samples.
+// Surface nets (Gibson 1998): one vertex per cell between inside and outside samples.
 #pragma once
 
 #include "dsp/core/jobs.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulated hand on a device: a rigid mass that springs and dampers pull towards where the operator wants it, pushed
-// by the force of the device.
+// A simulated hand on a device: a rigid mass, pulled by springs and dampers to the pose that the operator intends, and
+// pushed by the force of the device.
 #pragma once
 
 #include "dsp/core/rotation.hpp"
@@ -11,14 +11,14 @@
 
 namespace tactus::simulate {
 
-/// Where the operator wants the hand, and how it moves there.
+/// Intended pose and motion of the hand.
 struct Intention {
     Pose pose;
     Twist twist;
 };
 
 /// Hand, handpiece and moving parts of the device. Defaults: a 0.2 kg handpiece in a precision grip, 800 N/m and
-/// 15 N·s/m (critical damping ratio 0.6); all of it assumptions within the range published for hands.
+/// 15 N·s/m (damping ratio 0.6); all are assumptions within the range published for hands.
 struct HandDynamics {
     double mass = 0.2;               ///< kg
     double inertia = 4e-4;           ///< kg·m², the same about every axis
@@ -28,8 +28,8 @@ struct HandDynamics {
     double angular_damping = 0.04;   ///< N·m·s/rad
 };
 
-/// State of the hand. `step` is the implicit midpoint rule: stable for any stiffness and step, and without damping of
-/// its own, so a wall rendered too stiff shows as the instability it is.
+/// State of the hand. `step` is the implicit midpoint rule: stable for any stiffness and step, and without numerical
+/// damping, so that a wall rendered too stiff shows its instability.
 struct Hand {
     HandDynamics dynamics;
     Pose pose;
@@ -57,9 +57,9 @@ struct Hand {
 /// Longest internal step of a hand, s.
 inline constexpr double hand_substep_s = 0.25e-3;
 
-/// Moves `hand` through `elapsed_s` in equal steps of at most `hand_substep_s`, with the force held. `intend(h, force,
-/// pose)` advances the operator by h and returns the intention in the middle of that step. A force that is not finite
-/// is taken as none: a broken wrench must not break the hand too.
+/// Advances `hand` by `elapsed_s` in equal steps of at most `hand_substep_s`, with the force held. `intend(h, force,
+/// pose)` advances the operator by h and returns the intention in the middle of that step. A non-finite force counts as
+/// zero, so that a broken wrench does not break the hand.
 template <typename Intend>
 void advance(Hand& hand, Intend& intend, const Wrench& force, double elapsed_s) noexcept {
     if (!(elapsed_s > 0.0)) return;

@@ -11,7 +11,7 @@ namespace tactus::simulate {
 
 namespace {
 
-constexpr double work_radius = 0.015;  // m around the median position where a hand is taken to be at work
+constexpr double work_radius = 0.015;  // m around the median position: the hand is at work there
 
 double quantile(std::vector<double> values, double q) {
     std::ranges::sort(values);
@@ -41,7 +41,7 @@ void align_to_rest(std::span<TrajectorySample> samples, const Vec3& feed, double
         if (glm::length(off - feed * depth) > work_radius) continue;
         depths.push_back(depth);
         const Quat& q = sample.pose.orientation;
-        // q and −q are one rotation: add them up on one side.
+        // q and −q are the same rotation: add them with equal sign.
         rotation = rotation + q * (glm::dot(q, first) < 0.0 ? -1.0 : 1.0);
     }
     const double deep = depths.empty() ? 0.0 : quantile(std::move(depths), 0.95);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded hand was somewhere else: bring it to where the tool rests here.
+// Moves a recorded hand path to the resting tool.
 #pragma once
 
 #include "dsp/simulate/trajectory.hpp"
@@ -8,10 +8,10 @@
 
 namespace tactus::simulate {
 
-/// Moves a recording as a whole. Where the hand worked, within 15 mm aside of its median position, its deepest
-/// twentieth along `feed` (unit vector) then lies beyond `reach` (m) from the origin, the median aside of the origin
-/// is 0 and the mean orientation there is no rotation. Shape, timing and every relative motion stay as recorded.
-/// Nothing happens to an empty recording.
+/// Rigid motion of a whole recording. Where the hand worked, within 15 mm sideways of its median position, its deepest
+/// twentieth along `feed` (unit vector) then lies beyond `reach` (m) from the origin, the sideways median is 0 and the
+/// mean orientation is the identity. Shape, timing and relative motion do not change. An empty recording stays
+/// empty.
 void align_to_rest(std::span<TrajectorySample> samples, const Vec3& feed, double reach);
 
 }  // namespace tactus::simulate

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An operator who follows a list of targets: press, slide, turn, insert.
+// A simulated operator that follows a list of targets: press, slide, rotate, insert.
 #pragma once
 
 #include "dsp/simulate/hand.hpp"
@@ -12,20 +12,20 @@
 
 namespace tactus::simulate {
 
-/// Where the hand means to be at a time. Device frame.
+/// Intended pose of the hand at a time. Device frame.
 struct HandTarget {
     double time = 0.0;  ///< s
     Pose pose;
 };
 
-/// A small circling of the hand about where it means to be, and a nodding about the x and y axes.
+/// Circular motion of the hand about the intended pose, and rotation about the x and y axes.
 struct HandWiggle {
     double amplitude = 0.0;  ///< m, along x and y
     double rotation = 0.0;       ///< rad
     double rate = 1.5;       ///< Hz
 };
 
-/// Moves from target to target with minimum jerk; before the first and after the last it stays there.
+/// Minimum-jerk motion from target to target; rests before the first and after the last.
 class ScriptOperator {
 public:
     /// `targets` in order of their times, at least one.
@@ -43,7 +43,7 @@ public:
 
     Intention at(double t) const noexcept {
         Intention intended = on_the_way(t);
-        // Comes in over the first second.
+        // Fades in over the first second.
         const double grown = std::clamp(t, 0.0, 1.0), growth = t > 0.0 && t < 1.0 ? 1.0 : 0.0;
         const double w = 2.0 * std::numbers::pi * wiggle_.rate, v = 1.3 * w;
         intended.pose.position += grown * wiggle_.amplitude * Vec3(std::sin(w * t), std::sin(v * t), 0.0);
@@ -74,7 +74,7 @@ private:
                 {speed * translation, speed * rotation}};
     }
 
-    std::shared_ptr<const std::vector<HandTarget>> targets_;  // shared by the copy that `prepare` goes back to
+    std::shared_ptr<const std::vector<HandTarget>> targets_;  // shared with the copy that `prepare` restores
     HandWiggle wiggle_;
     double time_ = 0.0;
 };

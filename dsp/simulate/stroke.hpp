@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a simulated operator intends: approach, press, long strokes while feeding into the material, retract.
+// Intention of a simulated operator who saws: approach, press, long strokes while feeding into the material, retract.
 #pragma once
 
 #include "dsp/simulate/hand.hpp"
@@ -9,28 +9,28 @@
 
 namespace tactus::simulate {
 
-/// The path of one cut in the device frame. Thrust is no input: it emerges where the feed meets resistance.
+/// The path of one cut in the device frame. Thrust is not prescribed: it results from the resistance to the feed.
 struct StrokePlan {
     Pose start;                            ///< clear of the material
     Vec3 stroke_axis{1.0, 0.0, 0.0};       ///< unit, along the blade
     Vec3 feed_axis{0.0, 0.0, -1.0};        ///< unit, into the material
     double stroke_amplitude = 8e-3;        ///< m
     double stroke_rate = 0.7;              ///< Hz
-    double thrust = 7.0;                   ///< N at which the operator stops pushing further
-    double feed_speed = 30e-3;             ///< m/s when nothing resists
-    double depth = 30e-3;                  ///< m along feed_axis from start; the hand there means: through, retract
+    double thrust = 7.0;  ///< N at which the operator stops feeding
+    double feed_speed = 30e-3;  ///< m/s without resistance
+    double depth = 30e-3;  ///< m along feed_axis from start; when the hand reaches it, the cut is through: retract
     double retract_speed = 40e-3;          ///< m/s
-    double feed_at = 0.5;                  ///< s: leaves the start pose
+    double feed_at = 0.5;  ///< s: leaves the start pose
     double stroke_at = 1.0;                ///< s: strokes begin; they reach full length within a second
     double retract_at = 60.0;              ///< s: retracts even if not through
-    double trigger_on = 0.3;               ///< s
-    double trigger_off = 1e9;              ///< s: released then, or when back at the start pose
+    double trigger_on = 0.3;  ///< s
+    double trigger_off = 1e9;  ///< s: trigger released then, or when back at the start pose
     Tremor tremor{};
 };
 
-/// The operator's side of a cut. The intended depth advances at feed_speed · (1 − felt / thrust): a muscle that yields
-/// as the felt force nears its goal. In a material that gives way at speed v the thrust settles at
-/// thrust · (1 − v / feed_speed), whatever the stiffness of the contact.
+/// Model of the operator during a cut. The intended depth advances at feed_speed · (1 − felt / thrust): a muscle that
+/// yields as the felt force nears its goal. In a material that is removed at speed v the thrust settles at
+/// thrust · (1 − v / feed_speed), for any stiffness of the contact.
 class StrokeOperator {
 public:
     explicit StrokeOperator(const StrokePlan& plan = {}) : plan_(plan) {}
@@ -57,7 +57,7 @@ public:
         return time_ >= plan_.trigger_on && time_ < plan_.trigger_off && !(retracting_ && depth_ <= 0.0);
     }
     bool is_retracting() const noexcept { return retracting_; }
-    double felt_thrust() const noexcept { return felt_; }      ///< N, as the muscles sense it
+    double felt_thrust() const noexcept { return felt_; }  ///< N, as sensed
     double intended_depth() const noexcept { return depth_; }  ///< m
     double time() const noexcept { return time_; }             ///< s
 
@@ -72,7 +72,7 @@ private:
         if (!retracting_ && (time_ >= plan_.retract_at || reached >= plan_.depth)) {
             retracting_ = true;
             retract_from_ = time_;
-            // From the hand, not from where it was pushing to: an operator lets go before pulling out.
+            // From the hand's position, not from the intended depth: an operator releases before pulling out.
             depth_ = std::min(depth_, std::max(reached, 0.0));
         }
         if (retracting_) return std::max(-plan_.retract_speed, -depth_ / h);
@@ -95,7 +95,7 @@ private:
         speed = plan_.stroke_amplitude * (gain_rate * std::sin(rate * since) + gain * rate * std::cos(rate * since));
     }
 
-    /// Half a cosine from 0 to 1 within ease_s.
+    /// Half-cosine ramp from 0 to 1 within ease_s.
     static void ease(double since, double& value, double& rate) noexcept {
         const double pi = std::numbers::pi;
         const bool rising = since < ease_s;

@@ -12,7 +12,7 @@ namespace {
 Quat orientation_of(const double* value) { return {value[3], value[4], value[5], value[6]}; }
 Vec3 position_of(const double* value) { return {value[0], value[1], value[2]}; }
 
-/// Peak speed over mean speed of a minimum-jerk move.
+/// Peak speed over mean speed of a minimum-jerk motion.
 constexpr double jerk_peak = 1.875;
 
 }  // namespace
@@ -54,7 +54,7 @@ TrajectoryPlayer::TrajectoryPlayer(std::span<const TrajectorySample> samples, st
     if (spans_.empty()) spans_.push_back({0.0, 0.0, 0, Piece::hold});
 }
 
-/// Second derivatives of the natural spline through knots first..last: a tridiagonal system, solved by elimination.
+/// Second derivatives of the natural spline through knots first..last: tridiagonal system (Thomas algorithm).
 void TrajectoryPlayer::fit(std::size_t first, std::size_t last, std::span<const TrajectorySample> samples) {
     if (last < first + 2) return;
     const auto step = [&](std::size_t i) { return samples[i + 1].time - samples[i].time; };
@@ -108,7 +108,7 @@ Intention TrajectoryPlayer::on(const Piece& piece, double time) const noexcept {
         const double bend_slope = (1.0 - 3.0 * w * w) * from.second[c] + (3.0 * u * u - 1.0) * to.second[c];
         speed[c] = (to.value[c] - from.value[c]) / span + bend_slope * h6;
     }
-    // ω = 2 q̇ q⁻¹ for any length of q once the part along q is left out, which the vector part does by itself.
+    // ω = 2 q̇ q⁻¹ for any length of q without the part along q, which only affects the scalar part.
     const Quat q = orientation_of(value), rate = orientation_of(speed) * glm::inverse(q);
     return {{position_of(value), glm::normalize(q)}, {position_of(speed), 2.0 * Vec3(rate.x, rate.y, rate.z)}};
 }

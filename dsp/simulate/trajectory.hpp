@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plays a recorded 6-DOF path at any rate: splines inside the recording, easing across its gaps.
+// Plays a recorded 6-DOF path at any rate: splines within segments, minimum-jerk moves across gaps.
 #pragma once
 
 #include "dsp/simulate/hand.hpp"
@@ -16,9 +16,9 @@ struct TrajectorySample {
     Pose pose;
 };
 
-/// Limits of what playing may add to a recording.
+/// Limits of the motion that is added to a recording.
 struct TrajectoryRules {
-    double max_gap_s = 0.05;          ///< longer pauses between samples are gaps: never bridged by the spline
+    double max_gap_s = 0.05;  ///< longer pauses between samples are gaps, which the spline does not bridge
     double max_speed = 0.1;           ///< m/s while easing from the end of one segment to the start of the next
     double max_angular_speed = 1.5;   ///< rad/s while easing
 };
@@ -26,25 +26,25 @@ struct TrajectoryRules {
 /// A state on the path.
 struct TrajectoryState {
     Intention intention;
-    bool gap = false;   ///< holding or easing: nothing was recorded here
+    bool gap = false;  ///< holding or easing: not recorded
     bool done = false;  ///< past the end; the last pose holds
 };
 
-/// Natural cubic splines (C²) through each segment, in position and in the four numbers of the quaternion, which are
-/// normalised after interpolation: at the spacing of a recording the path differs from the great arc by its third order.
-/// In a gap the last pose holds, then a minimum-jerk move leads to the next segment's start. Where the gap is too
-/// short for the speed limits, what follows is played later by what is missing.
+/// Natural cubic splines (C²) through each segment, in position and in the four numbers of the quaternion, normalised
+/// after interpolation: at the spacing of a recording the deviation from the great arc is of third order. In a gap the
+/// last pose is held, then a minimum-jerk motion leads to the start of the next segment. When the gap is too short for
+/// the speed limits, the rest is delayed.
 class TrajectoryPlayer {
 public:
     TrajectoryPlayer() = default;
 
-    /// `samples` have strictly increasing times; `breaks` are indices of samples that begin a segment whatever the
+    /// `samples` have strictly increasing times; `breaks` are indices of samples that start a segment for any
     /// spacing. Time 0 is the first sample. Allocates. Throws Error when there is no sample.
     TrajectoryPlayer(std::span<const TrajectorySample> samples, std::span<const std::size_t> breaks,
                      const TrajectoryRules& rules);
 
-    /// State at `time` s of playing time; before 0 and after the end the ends hold. `hint` is where the last call
-    /// ended; it makes a forward walk constant-time and does not change the result.
+    /// State at `time` s of playing time; constant before 0 and after the end. `hint` is the result of the last call;
+    /// it makes forward playing constant-time and does not change the result.
     TrajectoryState at(double time, std::size_t& hint) const noexcept;
 
     double duration() const noexcept { return spans_.empty() ? 0.0 : spans_.back().end; }

@@ -11,8 +11,8 @@
 
 namespace tactus::simulate {
 
-/// Noise limited to 8–12 Hz: eight tones per axis with random phases, one at a random frequency in each 0.5 Hz. A
-/// function of time alone, so it does not depend on how a run is cut into ticks.
+/// Noise band-limited to 8–12 Hz: eight tones per axis with random phases, one at a random frequency in each 0.5 Hz. A
+/// function of time only, so it does not depend on the partition of a run into ticks.
 struct Tremor {
     static constexpr int tones = 8;
     static constexpr double low_hz = 8.0, high_hz = 12.0;

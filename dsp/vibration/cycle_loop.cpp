@@ -16,7 +16,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Windowed sinc with `half` zero crossings on each side (Blackman window), tabulated finely and read linearly.
+/// Windowed sinc with `half` zero crossings on each side (Blackman window), finely tabulated with linear interpolation.
 struct Kernel {
     static constexpr int steps = 512;
     int half;
@@ -40,7 +40,7 @@ struct Kernel {
 
 constexpr int reading_half = 8, taps = 2 * reading_half;
 
-/// The kernel for reading between samples, one row of taps per fraction of a sample, so that a row is read in one go.
+/// Interpolation kernel with one row of taps per fraction of a sample, so that a row is contiguous.
 struct ReadingTable {
     static constexpr int steps = 512;
     std::vector<float> rows = std::vector<float>((steps + 1) * taps);
@@ -59,7 +59,7 @@ struct ReadingTable {
         const auto part = static_cast<float>(position - row);
         const float* const here = rows.data() + row * taps;
         const float* const next = here + taps;
-        // Four sums side by side, for the sake of vector units.
+        // Four parallel sums, for vector units.
         float lanes[4] = {0.0f, 0.0f, 0.0f, 0.0f};
         for (int tap = 0; tap < taps; tap += 4)
             for (int lane = 0; lane < 4; ++lane) {
@@ -72,7 +72,7 @@ struct ReadingTable {
 
 const ReadingTable reading;
 
-/// The sound at a position (in samples) with everything above `cutoff` (1 is half the sample rate) taken away.
+/// The low-passed sound at a position (in samples); `cutoff` 1 is half the sample rate.
 double read_filtered(std::span<const float> samples, const Kernel& kernel, double position, double cutoff) {
     const double reach = kernel.half / cutoff;
     const auto count = static_cast<std::ptrdiff_t>(samples.size());
@@ -122,7 +122,7 @@ CycleLoop::CycleLoop(std::span<const float> samples, double sample_rate, double 
         const double alike = correlation(samples, 0, end, fade_in);
         if (alike > best + 1e-3) best = alike, cycles_ = n;
     }
-    // The loop proper begins after the lead-in of fade_cycles, which its end is faded into.
+    // The loop itself begins after the lead-in of fade_cycles, into which its end is cross-faded.
     const double length = static_cast<double>(cycles_) * period;
     count_ = static_cast<std::size_t>(std::llround(length * output_rate / sample_rate));
     samples_per_cycle_ = static_cast<double>(count_) / static_cast<double>(cycles_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A seamless loop of a whole number of cycles, read by cycle instead of by time.
+// A seamless loop of a whole number of cycles, indexed by cycle instead of time.
 #pragma once
 
 #include <array>
@@ -10,17 +10,17 @@
 
 namespace tactus::vibration {
 
-/// Made from a recording of something that repeats `reciprocation_rate` times per second. The loop is stored at about
-/// the output's sample rate with a whole number of samples, so that it closes without a gap.
+/// Made from a recording of a process with `reciprocation_rate` cycles per second. The loop is stored near the output's
+/// sample rate with a whole number of samples, so that it closes without a gap.
 class CycleLoop {
 public:
-    static constexpr int orders = 8;               ///< harmonics by which loops are aligned and compared
-    static constexpr double longest = 20.0;        ///< s; of a longer record the first part is used
+    static constexpr int orders = 8;  ///< number of harmonics used to align and compare loops
+    static constexpr double longest = 20.0;  ///< s; only the first part of a longer record is used
     static constexpr std::size_t fewest_cycles = 8;
 
-    /// Rates in Hz. The number of cycles is the one, among the longest, after which the sound repeats itself best;
-    /// the end is cross-faded into what precedes the start. Sound above 0.42 × output rate is removed, so playing 15 %
-    /// faster does not fold. Throws Error when the record is shorter than 8 cycles.
+    /// Rates in Hz. Among the longest loops, chooses the number of cycles after which the sound repeats itself best;
+    /// the end is cross-faded into the sound before the start. Content above 0.42 × output rate is removed, so that
+    /// playing 15 % faster does not alias. Throws Error when the record is shorter than 8 cycles.
     CycleLoop(std::span<const float> samples, double sample_rate, double reciprocation_rate, double output_rate);
 
     /// The sample at a phase in cycles, any number ≥ 0 (windowed sinc of 16 points).
@@ -29,11 +29,11 @@ public:
     double power() const { return power_; }  ///< mean square
     std::size_t cycles() const { return cycles_; }
 
-    /// Shifts the phase so that the harmonics agree as well as possible with those of `reference`.
+    /// Shifts the phase for the best agreement of the harmonics with those of `reference`.
     void align(const CycleLoop& reference);
 
-    /// Correlation coefficient of two loops played on one phase, from their harmonics: 1 when they repeat each other,
-    /// 0 for noise, not below −0.5 (a fade between opposites would need unbounded gain).
+    /// Correlation coefficient of two loops played at the same phase, from their harmonics: 1 for equal loops, 0 for
+    /// noise; at least −0.5 (a fade between opposites would need unbounded gain).
     friend double likeness(const CycleLoop& a, const CycleLoop& b);
 
 private:
@@ -46,7 +46,7 @@ private:
 
 double likeness(const CycleLoop& a, const CycleLoop& b);
 
-/// Common gain for a sum of two with weights 1 − x and x and that correlation, so that the power follows
+/// Gain for a sum of two signals with weights 1 − x and x and that correlation, so that the power is
 /// (1 − x) power_a + x power_b.
 double fade_gain(double x, double power_a, double power_b, double correlation);
 

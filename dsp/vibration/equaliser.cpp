@@ -24,7 +24,7 @@ void check(const FrequencyResponse& response, const EqualiserDesign& design) {
         throw Error("the equaliser's band must be at least an octave, above 0 Hz");
     if (!(2.2 * design.highest <= design.rate))
         throw Error(fmt::format("a rate of {:g} Hz is too low for a band up to {:g} Hz", design.rate, design.highest));
-    // A third of an octave short is close enough to hold the last measured value.
+    // Up to a third of an octave beyond the measurement, the last value is held.
     if (response.hz.front() > 1.26 * design.lowest || response.hz.back() < design.highest / 1.26)
         throw Error(fmt::format("the response covers {:.4g} to {:.4g} Hz, the equaliser's band is {:g} to {:g} Hz",
                                 response.hz.front(), response.hz.back(), design.lowest, design.highest));
@@ -46,7 +46,7 @@ double mean_gain(const FrequencyResponse& response, double lowest, double highes
     return std::exp(sum / count);
 }
 
-/// β(f) relative to g²: small in the band, 1 an octave below and half an octave above, straight in log β between.
+/// β(f) relative to g²: small in the band, 1 an octave below and half an octave above, linear in log β in between.
 double regularisation(double f, const EqualiserDesign& design) {
     const double below = std::log2(design.lowest / f), above = std::log2(f / design.highest) / std::log2(1.5);
     const double outside = std::clamp(std::max(below, above), 0.0, 1.0);
@@ -85,7 +85,8 @@ std::complex<double> Equaliser::gain(double frequency) const {
 Equaliser design_equaliser(const FrequencyResponse& response, const EqualiserDesign& design) {
     check(response, design);
     const auto count = static_cast<std::size_t>(std::llround(design.length * design.rate));
-    // The inverse of a sharp resonance rings longer than what is kept of it: compute it on a longer circle.
+    // The inverse of a sharp resonance is longer than the filter: compute it with a longer transform against time
+    // aliasing.
     const std::size_t size = std::bit_ceil(8 * count);
     const bool linear = design.kind == EqualiserKind::linear_phase;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A filter that undoes what an actuator does to a vibration, within its band and with bounded gain.
+// Inverse filter of an actuator's response, within its band and with bounded gain.
 #pragma once
 
 #include "dsp/vibration/frequency_response.hpp"
@@ -10,15 +10,15 @@
 namespace tactus::vibration {
 
 enum class EqualiserKind {
-    minimum_phase,  ///< adds at most 2 ms: for what a hand drives
-    linear_phase,   ///< undoes the phase as well, and adds half its length: for what is known beforehand
+    minimum_phase,  ///< adds at most 2 ms: for signals driven by a hand
+    linear_phase,  ///< also corrects the phase and adds half its length: for signals known beforehand
 };
 
 struct EqualiserDesign {
     EqualiserKind kind = EqualiserKind::minimum_phase;
-    double rate = 48000.0;         ///< of the signal that will be filtered, Hz
-    double lowest = 45.0;          ///< Hz: the band that is made flat ...
-    double highest = 1000.0;       ///< ... and beyond which the filter lets go within an octave or less
+    double rate = 48000.0;  ///< of the signal to be filtered, Hz
+    double lowest = 45.0;  ///< Hz: the band to equalise ...
+    double highest = 1000.0;  ///< ... beyond which the filter fades out within an octave or less
     double length = 0.128;         ///< of the impulse response, s
     double greatest_gain = 10.0;   ///< of the filter: 20 dB
     double regularisation = 1e-4;  ///< β in the band, relative to the squared mean gain of the actuator
@@ -27,13 +27,13 @@ struct EqualiserDesign {
 struct Equaliser {
     EqualiserKind kind = EqualiserKind::minimum_phase;
     double rate = 48000.0;     ///< Hz
-    double delay = 0.0;        ///< s that it adds
+    double delay = 0.0;  ///< latency of the filter, s
     double lowest = 0.0, highest = 0.0;  ///< the band, Hz
-    double mean_gain = 1.0;    ///< of the actuator in the band: what actuator and equaliser together have
-    std::string unit;          ///< of `mean_gain`, "m/s^2 per V"; for the reader
+    double mean_gain = 1.0;  ///< of the actuator in the band: the gain of actuator and equaliser together
+    std::string unit;  ///< of `mean_gain`, "m/s^2 per V"; for display
     std::vector<float> taps;   ///< impulse response
 
-    /// Of the filter at a frequency in Hz.
+    /// Complex gain of the filter at a frequency in Hz.
     std::complex<double> gain(double frequency) const;
 };
 

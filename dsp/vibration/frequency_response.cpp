@@ -51,7 +51,7 @@ std::vector<double> minimum_phase(std::span<const double> hz, std::span<const do
     for (std::size_t i = 0; i < count; ++i) u[i] = std::log(hz[i]);
     for (std::size_t i = 0; i + 1 < count; ++i)
         slope[i] = std::log(magnitude[i + 1] / magnitude[i]) / (u[i + 1] - u[i]);
-    // ∫ ln coth(|v|/2) dv from 0 to x: π²/4 − 2 Σ e^{−kx}/k² over odd k, which converges slowly near 0; there the
+    // ∫ ln coth(|v|/2) dv from 0 to x: π²/4 − 2 Σ e^{−kx}/k² over odd k; the series converges slowly near 0, where the
     // integrand is ln(2/v) + v²/12 − 7v⁴/1440.
     const auto area = [](double x) {
         const double size = std::abs(x);
@@ -69,7 +69,7 @@ std::vector<double> minimum_phase(std::span<const double> hz, std::span<const do
     };
     const double whole = pi * pi / 4.0;
     for (std::size_t i = 0; i < count; ++i) {
-        // Between two frequencies the slope is constant, so the integral over each interval is exact.
+        // The slope is constant between two frequencies, so the integral over each interval is exact.
         double sum = slope.front() * (area(u.front() - u[i]) + whole) + slope.back() * (whole - area(u.back() - u[i]));
         for (std::size_t k = 0; k + 1 < count; ++k) sum += slope[k] * (area(u[k + 1] - u[i]) - area(u[k] - u[i]));
         phase[i] = sum / pi;
@@ -85,7 +85,7 @@ Resonance fit_resonance(const FrequencyResponse& response, double lowest, double
     for (std::size_t i = 0; i < response.hz.size(); ++i) {
         const double f = response.hz[i], size = std::abs(response.gain[i]);
         if (f < lowest || f > highest || !(size > 0.0)) continue;
-        // What noise rules says nothing; each octave counts alike.
+        // Ignores frequencies dominated by noise; octaves have equal weight.
         const double width =
             std::log(response.hz[std::min(i + 1, response.hz.size() - 1)] / response.hz[i ? i - 1 : 0]);
         const double trust = response.coherence.empty() ? 1.0 : std::pow(response.coherence[i], 4);
@@ -107,7 +107,7 @@ Resonance fit_resonance(const FrequencyResponse& response, double lowest, double
             weights += points[i].weight;
         }
         double middle = sum / weights;
-        // The constant gain follows the majority: a weighted mean under the same forgiving loss, by reweighting.
+        // Robust constant gain: a weighted mean under the same robust loss, by iterative reweighting.
         for (int round = 0; round < 5; ++round) {
             sum = weights = 0.0;
             for (std::size_t i = 0; i < points.size(); ++i) {
@@ -125,7 +125,7 @@ Resonance fit_resonance(const FrequencyResponse& response, double lowest, double
         for (std::size_t i = 0; i < points.size(); ++i) sum += points[i].weight * std::log1p(left[i] * left[i]);
         return sum;
     };
-    // rms of what a straight line over log frequency leaves.
+    // rms of the residual of a straight line over log frequency.
     const auto line_error = [&] {
         double w = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
         for (const Point& p : points) {

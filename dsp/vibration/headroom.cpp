@@ -12,7 +12,7 @@ namespace tactus::vibration {
 
 namespace {
 
-/// Power per bin of the whole record under a Hann window.
+/// Power per bin of the whole record with a Hann window.
 std::vector<double> powers(std::span<const double> samples, std::size_t size) {
     std::vector<double> windowed(samples.begin(), samples.end()), out;
     const double turn = 2.0 * std::numbers::pi / static_cast<double>(samples.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the limits of an actuator leave of a vibration that is to be played.
+// Effect of an actuator's limits on a vibration.
 #pragma once
 
 #include <span>
@@ -9,20 +9,20 @@ namespace tactus::vibration {
 
 struct BandLoss {
     double hz = 0.0;       ///< true centre of the third-octave band
-    double lost_db = 0.0;  ///< level that the limit takes away, at least 0
+    double lost_db = 0.0;  ///< level that the limit removes, at least 0
 };
 
 struct Headroom {
-    double peak = 0.0;              ///< greatest drive asked for, V
-    double headroom_db = 0.0;       ///< limit over peak; below 0 the limit cuts
-    double limited_fraction = 0.0;  ///< share of the samples that are cut
+    double peak = 0.0;  ///< peak of the wanted drive, V
+    double headroom_db = 0.0;  ///< limit over peak; negative: the limit clips
+    double limited_fraction = 0.0;  ///< share of clipped samples
     std::vector<BandLoss> losses;   ///< bands from 40 Hz to 1 kHz within 30 dB of the strongest that lose 0.1 dB
 };
 
-/// Drives an amplifier that cuts hard at ±`limit` V with `drive` (V, at `rate` Hz). Allocates.
+/// Clips `drive` (V, at `rate` Hz) at ±`limit` V. Allocates.
 Headroom headroom(std::span<const double> drive, double rate, double limit);
 
-/// Greatest voltage that the limits allow: the amplifier's, or that which drives the greatest current through the coil.
+/// Highest permitted voltage: the amplifier's limit, or that of the coil's current limit.
 double voltage_within(double voltage_limit, double current_limit, double resistance);
 
 }  // namespace tactus::vibration

@@ -52,7 +52,7 @@ Spectra transform(const SweepRun& run, std::span<const float> captured, double r
     return spectra;
 }
 
-/// What is left of the answers around `hz` after the delay: cross-spectrum and powers, averaged under a Hann window.
+/// Cross-spectrum and powers of the responses around `hz` with the delay removed, averaged with a Hann window.
 struct Average {
     Complex cross = 0.0;
     double drive = 0.0, answer = 0.0;
@@ -83,7 +83,7 @@ Average average(const Spectra& spectra, double hz, double width, double delay) {
     return sum;
 }
 
-/// Where the impulse response within the swept band is strongest, s.
+/// Time of the impulse response's peak within the swept band, s.
 double coarse_delay(const SweepRun& run, const Spectra& spectra, double rate) {
     Spectrum cross(spectra.drive.size());
     double greatest = 0.0;
@@ -91,7 +91,7 @@ double coarse_delay(const SweepRun& run, const Spectra& spectra, double rate) {
     for (std::size_t k = 1; k < cross.size(); ++k) {
         const double f = static_cast<double>(k) * spectra.step;
         if (f < run.sweep.first || f > run.sweep.last) continue;
-        // A window over the octaves keeps the ringing of the band's edges small beside the peak.
+        // A window over the octaves reduces the ringing of the band's edges beside the peak.
         const double place = std::log(f / run.sweep.first) / std::log(run.sweep.last / run.sweep.first);
         const double window = std::sin(pi * place);
         for (const Spectrum& answer : spectra.answers)
@@ -107,14 +107,14 @@ double coarse_delay(const SweepRun& run, const Spectra& spectra, double rate) {
     return static_cast<double>(peak) / rate;
 }
 
-/// What the phase says beyond minimum phase: the slope over frequency of the rest, s.
+/// Delay beyond minimum phase: slope of the excess phase over frequency, s.
 double excess_delay(const FrequencyResponse& response) {
     std::vector<double> magnitude;
     for (const Complex& gain : response.gain)
         magnitude.push_back(std::max(std::abs(gain), std::numeric_limits<double>::min()));
     const std::vector<double> least = minimum_phase(response.hz, magnitude);
     const std::vector<double> phase = unwrapped_phase(response.gain);
-    // A straight line through the rest; its value at 0 Hz is a polarity and stays in the response.
+    // Linear regression; the intercept at 0 Hz is a polarity and stays in the response.
     double w = 0.0, wf = 0.0, wff = 0.0, wp = 0.0, wfp = 0.0;
     const double low = 2.0 * response.hz.front(), high = 0.5 * response.hz.back();
     for (std::size_t i = 0; i < phase.size(); ++i) {
@@ -136,12 +136,12 @@ Identified identify(const SweepRun& run, std::span<const float> captured, double
           run.repeats >= 1 && run.amplitude != 0.0))
         throw Error("a sweep needs at least an octave, below half the sample rate, and an amplitude");
     const Spectra spectra = transform(run, captured, rate);
-    // Wide enough to shut out the second order, which lies lead(2) earlier, and to hold a few dozen bins; as a window
+    // Wide enough to reject the second order, which lies lead(2) earlier, and to hold a few dozen bins; as a window
     // in time this keeps ±1/width around the linear response.
     const double width = std::max({2.5, 1.5 / sweep.lead(2), 12.0 * spectra.step});
     Identified out;
     FrequencyResponse& response = out.response;
-    // The fades and the averaging spoil the outermost frequencies.
+    // Fades and averaging distort the outermost frequencies.
     const double first = sweep.first + width, last = sweep.last - width;
     const int count = static_cast<int>(std::floor(std::log2(last / first) * per_octave)) + 1;
     for (int i = 0; i < count; ++i) response.hz.push_back(first * std::exp2(static_cast<double>(i) / per_octave));
@@ -159,7 +159,7 @@ Identified identify(const SweepRun& run, std::span<const float> captured, double
     measure(coarse_delay(run, spectra, rate));
     measure(response.latency + excess_delay(response));
 
-    // The linear response is far stronger and must not leak in: a wider average shuts it out better.
+    // The linear response is far stronger and must not leak in: a wider average rejects it better.
     const double wide = 3.0 * width;
     for (int order = 2; order <= highest_order; ++order) {
         Distortion& distortion = out.distortions.emplace_back();

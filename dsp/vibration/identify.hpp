@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A system's response, coherence, latency and distortion from what comes back of an exponential sweep.
+// System identification with an exponential sweep: response, coherence, latency and distortion.
 #pragma once
 
 #include "dsp/vibration/frequency_response.hpp"
@@ -10,7 +10,7 @@
 
 namespace tactus::vibration {
 
-/// How the sweep was played.
+/// Parameters of the played sweep.
 struct SweepRun {
     ExponentialSweep sweep;
     double amplitude = 1.0;  ///< of the drive
@@ -18,10 +18,10 @@ struct SweepRun {
     int repeats = 1;
 };
 
-/// Distortion of one order, at the exciting frequencies of the response.
+/// Distortion of one order, at the excitation frequencies of the response.
 struct Distortion {
     int order = 2;
-    /// Amplitude at order × hz over that at hz, when a sine of hz excites; NaN where the sweep does not reach.
+    /// Amplitude at order × hz over that at hz, for a sine of hz; NaN where the sweep does not reach.
     std::vector<double> ratio;
 };
 
@@ -30,10 +30,10 @@ struct Identified {
     std::vector<Distortion> distortions;  ///< orders 2, 3, ...
 };
 
-/// Identifies what made `captured` (samples at `rate` Hz, from the instant the first sweep began) of the sweep. The
-/// cross-spectrum is averaged over all repeats and over a few Hz around each of the `per_octave` frequencies: what does
-/// not repeat, and what lies at other times than the linear response, as distortion does, averages out and lowers the
-/// coherence. Throws Error when the record is too short or holds nothing of the sweep. Allocates.
+/// Identifies the system that produced `captured` (samples at `rate` Hz, from the start of the first sweep) from the
+/// sweep. Averages the cross-spectrum over all repeats and over a few Hz around each of the `per_octave` frequencies:
+/// parts that do not repeat, or lie at other times than the linear response, as distortion does, cancel and lower the
+/// coherence. Throws Error when the record is too short or does not contain the sweep. Allocates.
 Identified identify(const SweepRun& run, std::span<const float> captured, double rate, int highest_order = 5,
                     int per_octave = 48);
 

@@ -53,7 +53,7 @@ double refine_rate(std::span<const float> samples, double sample_rate, double ra
         for (int k = 1; k <= orders && k * f < 0.3 * low.rate; ++k) sum += line_power(low.samples, k * f / low.rate);
         return sum;
     };
-    // The main lobe of the highest order is 4/(duration × orders) wide: step a quarter of it, then close in.
+    // The main lobe of the highest order is 4/(duration × orders) wide: search with a quarter of it, then refine.
     const double step = low.rate / count / orders;
     const int reach = std::clamp(static_cast<int>(range * rate / step), 1, 400);
     const double stride = std::max(step, range * rate / reach);

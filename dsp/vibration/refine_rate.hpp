@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rate of repetition that is known roughly, made exact from the sound.
+// Refines an approximate repetition rate from the sound.
 #pragma once
 
 #include <span>
 
 namespace tactus::vibration {
 
-/// The rate within ±`range` (a ratio) of `rate` at which the lines of order 1 to `orders` of the Hann-windowed samples
-/// together are strongest, exact to a small part of 1/duration for a steady sound: the phase of the whole record counts,
-/// which the averaged spectrum that `fit_comb` reads has lost. Only sound below about 1.5 kHz counts. Returns `rate`
+/// The rate within ±`range` (a ratio) of `rate` that maximises the summed power of orders 1 to `orders` of the
+/// Hann-windowed samples; for a steady sound exact to a small fraction of 1/duration: it uses the phase of the whole
+/// record, which the averaged spectrum of `fit_comb` does not have. Uses content below about 1.5 kHz. Returns `rate`
 /// unchanged when the record is shorter than 8 periods. Allocates.
 double refine_rate(std::span<const float> samples, double sample_rate, double rate, double range, int orders = 6);
 

@@ -14,8 +14,8 @@ namespace tactus::vibration {
 
 namespace {
 
-constexpr double stand_in_level = 0.25;  // −12 dB: cutting recordings in place of free air
-constexpr double same_rate = 1.03;       // recorded rates within this ratio are loads of one rate
+constexpr double stand_in_level = 0.25;  // −12 dB: cutting recordings used as free air
+constexpr double same_rate = 1.03;  // recorded rates within this ratio count as one rate
 
 double ratio(double a, double b) noexcept { return a > b ? a / b : b / a; }
 
@@ -133,7 +133,7 @@ void SawVoice::aim(Layer& layer, double share) noexcept {
 
 void SawVoice::choose_layers(double load) noexcept {
     for (const std::size_t i : active()) layers_[i].target = 0.0;
-    // Below and above are the recorded loads on both sides of this one; equal outside the recorded range.
+    // `below` and `above` are the recorded loads on both sides of this one; equal outside the recorded range.
     Layer *below = nullptr, *above = nullptr;
     for (const std::size_t i : choose_group().layers) {
         Layer& layer = layers_[i];
@@ -157,7 +157,7 @@ double SawVoice::mix() noexcept {
     std::size_t* const end = active_.data() + active_count_;
     active_count_ = static_cast<std::size_t>(std::remove_if(active_.data(), end, silent) - active_.data());
     if (active_count_ == 1) {
-        // One alone sounds at its own level, whatever its weight.
+        // A single layer plays at its own level, whatever its weight.
         const Layer& alone = layers_[active_.front()];
         return alone.weight > 0.0 ? alone.amplitude * loops_[alone.loop](cycles_) : 0.0;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exponential sine sweep: its distortion of order n looks like the sweep itself, a known time earlier.
+// Exponential sine sweep (Farina 2000): its distortion of order n equals the sweep at a known earlier time.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ struct ExponentialSweep {
         return gain * std::sin(2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
     }
 
-    /// How much earlier than the linear response the one of distortion order n lies after deconvolution, s.
+    /// Lead of distortion order n over the linear response after deconvolution, s.
     double lead(int order) const noexcept { return growth() * std::log(static_cast<double>(order)); }
 };
 

@@ -10,6 +10,8 @@ struct GripperOutput {
     static constexpr auto about =
         "Drives a gripper's motors, and the servo of a rig that holds it. After a fault the motors hold until "
         "'recover' changes.";
+
+    In<double> finger_speed{"positive closes the finger", "m/s"};
     In<double> thumb_speed{optional, "of the thumb part; unconnected: the thumb part holds", "m/s"};
     In<double> cord{optional, "position of the rig's servo at the end of the tick: test_rig.cord", "m"};
     In<double> fault{optional, "number of a fault upstream, which holds the motors: admittance_controller.reason"};

@@ -12,6 +12,8 @@ struct HeldWeight {
     static constexpr auto about =
         "A weight on a table below the hand. A firm grip lifts it and the hand feels its weight; with a weak grip it "
         "slides out of the fingers.";
+
+    In<Pose> hand{"in the device frame", "m"};
     In<Twist> hand_twist{optional, "velocity of the hand", "m/s, rad/s"};
     In<double> grip_force{"with which each finger presses", "N"};
     Out<Wrench> wrench{"on the hand", "N, N m"};

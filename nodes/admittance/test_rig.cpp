@@ -11,6 +11,8 @@ struct TestRig {
     static constexpr auto about =
         "Test rig: a servo swings a cord with two springs that hold the finger of a gripper (thesis 6.3.4.1). Connect "
         "'cord' to gripper_output.cord.";
+
+    In<double> finger{optional, "position of the finger, for the spring force", "m"};
     Out<double> cord{"position of the cord at the end of this tick", "m"};
     Out<double> spring_force{"of the springs on a finger at that position, with the cord as it is now", "N"};
     Out<double> swing_rate{"present rate of the swing", "Hz"};

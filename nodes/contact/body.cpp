@@ -13,6 +13,8 @@ struct Body {
     static constexpr auto about =
         "Makes a body for a scene from a bone: surface points and a distance field. Its frame has the axes of the file "
         "and the centroid of the points as its origin.";
+
+    Out<tactus::coupling::Body> body{"for a scene"};
     Out<double> count{"number of surface points"};
     Asset<bone::Bone> bone{"the bone"};
     Param spacing{structural, "0 mm", "0 mm", "20 mm",

@@ -12,6 +12,8 @@ struct Insertion {
     static constexpr auto about =
         "Measures a peg-in-hole task: depth, force and straightness. z is the axis of both; the peg's tip is its "
         "origin, and the hole extends along -z from its origin.";
+
+    In<Pose> peg{"pose of the peg's tip", "m"};
     In<Pose> hole{optional, "pose of the middle of the hole's mouth; unconnected: the origin", "m"};
     In<Wrench> wrench{"on the hand", "N, N m"};
     Out<double> depth{"of the tip below the hole's mouth", "m"};

@@ -12,6 +12,8 @@ struct Scene {
     static constexpr auto about =
         "Combines up to four bodies and their poses into one scene: place 0 is body 'a', place 1 body 'b', and so on. "
         "A body has the pose of its file plus its offset, unless a wire gives its pose or a hand has moved it.";
+
+    In<coupling::Body> a{"place 0"};
     In<coupling::Body> b{optional, "place 1"};
     In<coupling::Body> c{optional, "place 2"};
     In<coupling::Body> d{optional, "place 3"};

@@ -13,6 +13,7 @@ namespace tactus::nodes {
 
 struct Shape {
     static constexpr auto about = "An analytic body: ball, box, upright cylinder, or round block with a hole.";
+
     Out<coupling::Body> body{"for a scene"};
     Choice kind{
         {"ball", "box", "cylinder", "hole"},

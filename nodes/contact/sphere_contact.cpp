@@ -8,6 +8,7 @@ namespace tactus::nodes {
 struct SphereContact {
     static constexpr auto about =
         "Contact of a ball on the tool with a fixed ball: force = stiffness × depth, along the line of centres.";
+
     In<Pose> pose{"of the tool; its ball is centred at the origin", "m"};
     Out<Wrench> wrench{"on the tool, about its origin", "N, N m"};
     Out<double> penetration{"depth of the tool's ball in the fixed ball", "m"};

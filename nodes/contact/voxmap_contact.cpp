@@ -13,6 +13,8 @@ struct VoxmapContact {
     static constexpr auto about =
         "Pointshell contact of one body of a scene with the distance fields of all others, at a given pose; the force "
         "is proportional to depth. For use without a coupling node; coupling nodes compute their own contact.";
+
+    In<Pose> pose{"of the body", "m"};
     In<tactus::coupling::Scene> scene{"the bodies"};
     Out<Wrench> wrench{"on the body, about its origin", "N, N m"};
     Out<double> stiffness{"of all touching points together, along the stiffest of the three axes", "N/m"};

@@ -10,6 +10,8 @@ struct DirectCoupling {
         "Direct coupling: the body is rigidly attached to the hand. The contact force is scaled so that the stiffness "
         "of all points together stays below a limit. A thin wall can be passed through; a proxy prevents that (thesis "
         "2.4.2).";
+
+    In<Wrench> contact{"on the body, about the origin of the hand: voxmap_contact.wrench", "N, N m"};
     In<double> contact_stiffness{"of all touching points together: voxmap_contact.stiffness", "N/m"};
     Out<Wrench> wrench{"on the hand", "N, N m"};
     Param stiffness{"0.8 N/mm", "0 N/mm", "20 N/mm",

@@ -14,6 +14,8 @@ struct DynamicCoupling {
     static constexpr auto about =
         "Dynamic virtual coupling: springs and dampers pull a body with mass to the hand, and contact pushes it. One "
         "implicit Euler step per tick.";
+
+    In<Pose> device{"pose of the hand in the scene", "m"};
     In<tactus::coupling::Scene> scene{"the bodies, with the held one among them"};
     In<Twist> device_twist{optional, "velocity of the hand in the scene; unconnected: the damper takes it as zero",
                            "m/s, rad/s"};

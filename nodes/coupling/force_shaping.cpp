@@ -11,6 +11,8 @@ namespace tactus::nodes {
 struct ForceShaping {
     static constexpr auto about =
         "Shapes a wrench for a device: gain, low-pass against vibration, and a soft limit below that of a device.";
+
+    In<Wrench> in{"the wrench to shape", "N, N m"};
     Out<Wrench> wrench{"the shaped wrench", "N, N m"};
     Param gain{"1", "0", "10", "factor of force and torque"};
     Param straight_force{"6 N", "0 N", "100 N", "smaller forces pass unchanged"};

@@ -11,6 +11,8 @@ struct Grasp {
     static constexpr auto about =
         "Grasps the body nearest to the hand while the trigger is held, with the body's pose relative to the hand "
         "kept, and releases it afterwards. Forces fade in and out.";
+
+    In<Pose> hand{"pose of the hand in the scene", "m"};
     In<tactus::coupling::Scene> scene{"the bodies that can be grasped"};
     In<bool> trigger{"true: hold"};
     Out<double> held{"place of the held body in the scene until its force has faded; -1: none"};

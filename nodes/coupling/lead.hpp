@@ -18,8 +18,9 @@ struct LeadParameters {
     Param lead_speed{"50 mm/s", "0.1 mm/s", "10 m/s",
                      "speed limit of a body that is guided or settles, beyond the motion of the hand: when it slips "
                      "over an edge, the force changes no faster than the spring's stiffness times this"};
-};
-TACTUS_GROUP(fade, lead_speed, loose)
+    Param loose{"8 mm", "0.1 mm", "100 mm",
+                "a hand that moves farther than this while the body settles holds it again"};
+    TACTUS_GROUP(fade, lead_speed, loose)
 };
 
 class Lead {

@@ -11,6 +11,8 @@ struct PassivityObserver {
     static constexpr auto about =
         "Passivity observer and controller (time-domain passivity approach, Hannaford and Ryu 2002): sums the energy "
         "that the hand puts in; when it is negative, adds as much damping as is missing.";
+
+    In<Wrench> in{"computed wrench on the hand", "N, N m"};
     In<Pose> hand{"pose of the hand in the frame of the wrench", "m"};
     Out<Wrench> wrench{"on the hand, with the damping force", "N, N m"};
     Out<double> energy{"put in by the hand so far; negative: the scene is active", "J"};

@@ -8,6 +8,8 @@ struct PointProxy {
     static constexpr auto about =
         "God-object (Zilles and Salisbury 1995): a point that stays outside of all bodies while the hand moves into "
         "them, and a spring between the two.";
+
+    In<Pose> device{"pose of the hand in the scene; only its position is used", "m"};
     In<tactus::coupling::Scene> scene{"the bodies"};
     Out<Wrench> wrench{"on the hand, about its origin; no torque", "N, N m"};
     Out<Pose> proxy{"position of the proxy, with the orientation of the hand", "m"};

@@ -21,6 +21,8 @@ struct QuasiStaticCoupling {
         "Quasi-static virtual coupling in six degrees of freedom: each tick solves for the pose of the held body in "
         "which the springs to the hand and the contact forces balance; the hand feels the springs. A second pair of "
         "springs can pull the body to a target; the hand can always overcome them.";
+
+    In<Pose> device{"pose of the hand in the scene", "m"};
     In<tactus::coupling::Scene> scene{"the bodies, with the held one among them"};
     In<Pose> grip{optional, "pose of the held body in the frame of the hand; unconnected: 'grip_at'", "m"};
     In<bool> holding{optional, "false: the body stays where it was released; unconnected: true"};

@@ -21,6 +21,8 @@ struct SnapToFit {
         "Snap-to-fit: quasi-static coupling of a held fragment whose painted fracture surface is pulled to that of "
         "another fragment. Each tick solves for the balance of pull, contact and springs; the hand can always overcome "
         "the pull. Without paint on both fragments there is no pull.";
+
+    In<Pose> device{"pose of the hand in the scene", "m"};
     In<tactus::coupling::Scene> scene{"the fragments and all other bodies"};
     In<Pose> grip{optional, "pose of the held body in the frame of the hand; unconnected: its own frame", "m"};
     In<bool> holding{optional, "false: the body stays where it was released; unconnected: true"};
@@ -42,6 +44,8 @@ struct SnapToFit {
     Choice mode{{"extended", "thesis"},
                 "extended: robust two-sided energy with a narrowing scale; thesis: constant pull of the held "
                 "fragment's points"};
+    Param force{"10 N", "0 N", "100 N", "limit of the pull of all painted points together"};
+    Param reach{"4 mm", "0.1 mm", "12 mm", "maximum distance of the pull"};
     LeadParameters led;
     SolverParameters solver;
     ContactParameters contact;

@@ -8,6 +8,8 @@ struct SphereProxy {
     static constexpr auto about =
         "A ball that stays outside of all bodies while the hand moves into them, and a spring between the two "
         "(Ruspini, Kolarov and Khatib 1997). It cannot enter a gap narrower than itself.";
+
+    In<Pose> device{"pose of the hand in the scene; only its position is used", "m"};
     In<tactus::coupling::Scene> scene{"the bodies"};
     Out<Wrench> wrench{"on the hand, about its origin; no torque", "N, N m"};
     Out<Pose> proxy{"position of the ball's centre, with the orientation of the hand", "m"};

@@ -8,6 +8,8 @@ struct Spring {
     static constexpr auto about =
         "A spring and a damper between the device and an object, in position and in orientation. All poses and "
         "velocities must be in the same frame.";
+
+    In<Pose> device{"pose of the device", "m"};
     In<Pose> object{"pose of the object", "m"};
     In<Twist> device_twist{optional, "velocity of the device, for the damper", "m/s, rad/s"};
     In<Twist> object_twist{optional, "velocity of the object, for the damping", "m/s, rad/s"};

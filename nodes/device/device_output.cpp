@@ -15,6 +15,8 @@ struct DeviceOutput {
     static constexpr auto about =
         "Sends a force to the hand: checked, limited, ramped in, and faded to zero on any fault. The limits of the "
         "device apply too.";
+    static constexpr NodeRole role = NodeRole::hand_sink;
+
     In<Wrench> wrench{"on the hand, about the handle, device frame", "N, N m"};
     Out<Wrench> applied{"the wrench that the device is given", "N, N m"};
     Out<bool> engaged{"forces are on"};
@@ -29,6 +31,8 @@ struct DeviceOutput {
         structural, "1 s", "0 s", "1 h",
         "forces may ramp in again after ticks and samples were good for this long after a timing or sample fault; 0 s: "
         "never. After a non-finite force they stay off"};
+    Param engage_time{structural, "100 ms", "0 ms", "10 s", "duration of the ramp once forces are small"};
+
     void prepare(const Setup& setup) {
         port_ = &setup.outside->device(device.value, DeviceUse::drive, device.where);
         control::ForceLimits limits;

@@ -7,6 +7,7 @@ namespace tactus::nodes {
 struct DeviceWrench {
     static constexpr auto about =
         "Transforms a wrench on the tool to the hand: device axes, torque about the handle, equal power on both sides.";
+
     In<Wrench> wrench{"on the tool, about its origin, scene axes", "N, N m"};
     In<Pose> tool{"pose of the tool in the scene: workspace.pose", "m"};
     In<Pose> frame{"device axes at the handle, in the scene: workspace.frame", "m"};

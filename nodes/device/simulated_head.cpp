@@ -11,6 +11,8 @@ struct SimulatedHead {
     static constexpr auto about =
         "A simulated head tracker for 'run --view --head' and 'render --head': the head sways about a position and "
         "looks at a point.";
+
+    Out<Pose> pose{"point between the eyes; x leads to the right eye, y up, z away from the target", "m"};
     Vector position{"0 mm, -450 mm, 400 mm", "centre of the sway, in the viewer's world"};
     Vector look_at{"0 mm, 0 mm, 0 mm", "target of the eyes, in the viewer's world"};
     Vector sway{"100 mm, 30 mm, 40 mm", "amplitude along x, y and z"};

@@ -15,6 +15,8 @@ struct Workspace {
         "Maps the device into the scene and the tool into the hand. With a bone, it finds a site for a saw cut and "
         "puts the resting tool in front of it. While 'clutch' is held, the hand moves and the tool stays; while 'turn' "
         "is held, the scene turns and shifts with the hand. Forces go back through device_wrench.";
+    static constexpr NodeRole role = NodeRole::placement;
+
     In<Pose> device{"pose of the handle in the device frame", "m"};
     In<bool> clutch{optional, "held: the hand moves and the tool stays"};
     In<bool> turn{optional, "held: the scene turns and shifts with the hand"};
@@ -32,6 +34,8 @@ struct Workspace {
         "-90 deg, 0 deg, 0 deg",
         "of the tool in the frame of the handle: about x first, then y, then z; the default makes a blade cut towards "
         "-z of the device"};
+    Param clearance{structural, "5 mm", "0 mm", "100 mm", "from the resting tool to the bone"};
+
     void prepare(const Setup& setup) {
         placement_ = {{origin, coupling::rotation_xyz(rotation)}, scale, {grip, coupling::rotation_xyz(grip_rotation)}};
         holds_ = turns_ = false;

@@ -15,6 +15,8 @@ struct Brush {
     static constexpr auto about =
         "Paints the surface of a fragment with the device: points within the brush are labelled fracture, or "
         "unlabelled while erasing. The painted bone is written to the run folder.";
+
+    In<Pose> tool{"pose whose origin is the centre of the brush, in the scene", "m"};
     In<bool> paint{"label points within the brush as fracture"};
     In<bool> erase{optional, "remove the label of points within the brush; takes precedence over 'paint'"};
     In<Pose> body{optional, "pose of the fragment's file frame in the scene; unconnected: the identity", "m"};

@@ -21,6 +21,8 @@ struct CaseScene {
         "The fragments of a plan as one scene. The held fragment and its group follow the coupling. Releasing, "
         "settling, joining, splitting, locking and hiding are steps that can be undone, as are the steps already in "
         "the plan. Every step is written to the plan's file soon after it is done.";
+
+    In<Pose> moved{optional, "pose that the coupling gives the body at place 'which'", "m"};
     In<double> which{optional, "place of the held body; -1: none"};
     In<bool> holding{optional, "the body is held; when it is released it stays where it was last"};
     In<Pose> target{optional, "pose of the held body for the fit: fragment_matcher.target", "m"};

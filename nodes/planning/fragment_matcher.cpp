@@ -19,6 +19,8 @@ struct FragmentMatcher {
         "Searches in the background for a fit of the held fragment to the placed ones: from its present pose, on all "
         "faces together; if none fits nearby, each of its faces on each other face in turn. A fit that only repeats "
         "the position in the scan is reported as ambiguous.";
+
+    In<tactus::coupling::Scene> scene{"case_scene.scene of the same plan"};
     In<double> held{"place of the held fragment; -1: none"};
     In<bool> engaged{optional, "search; unconnected: true"};
     Out<Pose> target{"pose of the held fragment for the fit, in the scene; its present pose while there is none", "m"};

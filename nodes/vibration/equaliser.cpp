@@ -26,6 +26,8 @@ struct Equaliser {
             setup.fail(fmt::format(
                 "the equaliser was made for {:g} Hz and this node runs at {:g} Hz; repeat 'tactus equalise' with "
                 "--rate {:g}",
+                filter->rate, setup.rate(), setup.rate()));
+        fir_ = signal::Fir(filter->taps);
         delay_ = static_cast<std::size_t>(std::llround(filter->delay * filter->rate));
     }
 

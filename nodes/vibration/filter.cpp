@@ -9,6 +9,8 @@ struct Filter {
     static constexpr auto about =
         "Second-order filter (biquad). A non-finite sample counts as 0; frequencies above half the rate act as just "
         "below.";
+
+    In<Signal> in{"the signal"};
     Out<Signal> out{"the filtered signal"};
     Choice kind{{"lowpass", "highpass", "bandpass", "notch"}, "filter type"};
     Param frequency{"1 kHz", "0.1 Hz", "1 MHz", "corner frequency, or centre frequency of bandpass and notch"};

@@ -11,6 +11,8 @@ struct SpectralMonitor {
     static constexpr auto about =
         "Compares the spectra of an output and a reference while a patch runs; delays do not matter. Put it in a slow "
         "group of its own.";
+
+    Batch<Signal> reference{"the reference, wired 'as batch' from the audio group"};
     Batch<Signal> output{"the output, wired 'as batch' from the audio group"};
     Out<bool> alike{"distance, likeness and worst band are within their limits"};
     Out<double> distance{"log-spectral distance, 40 to 500 Hz, dB"};

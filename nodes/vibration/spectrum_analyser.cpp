@@ -14,6 +14,8 @@ struct SpectrumAnalyser {
     static constexpr auto about =
         "Analyses a signal while a patch runs: level, strongest spectral line and fundamental frequency. Put it in a "
         "slow group of its own.";
+
+    Batch<Signal> in{"the signal, wired 'as batch' from the audio group"};
     Out<double> level{"root mean square in the band, in the unit of the signal"};
     Out<double> strongest{"frequency of the strongest line in the band; 0: no line above the noise", "Hz"};
     Out<double> fundamental{"fundamental frequency of the harmonic lines; 0: none", "Hz"};

@@ -51,8 +51,8 @@ double weighted_acceleration(const Spectrum& density) {
     double sum = 0.0;
     const auto weight = [&](std::size_t k) { return std::norm(hand_arm_weighting(density.frequency(k))); };
     for (std::size_t k = 1; k < density.power.size(); ++k) {
-        // A Hann window spreads power with a variance of a third of a bin squared; what the curve's bend makes of that
-        // is taken off again.
+        // A Hann window spreads power with a variance of a third of a bin squared; the curvature of the weighting turns
+        // that into a bias, which is subtracted.
         const double bent = (8.0 * weight(k) - weight(k - 1) - weight(k + 1)) / 6.0;
         sum += density.power[k] * bent;
     }

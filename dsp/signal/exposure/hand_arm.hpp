@@ -12,14 +12,14 @@
 
 namespace tactus::signal {
 
-/// Wh at `frequency` (Hz): band limits, then acceleration to velocity. 1 would be unweighted.
+/// Wh at `frequency` (Hz): band limits, then the acceleration-velocity transition. 1 means unweighted.
 std::complex<double> hand_arm_weighting(double frequency);
 
-/// Borders of the one-third octaves 6.3 Hz to 1250 Hz, which the weighted value is made of: 10^0.75 and 10^3.15 Hz.
+/// Limits of the one-third octave bands 6.3 Hz to 1250 Hz of the weighted value: 10^0.75 and 10^3.15 Hz.
 inline constexpr double hand_arm_lowest = 5.623413251903491, hand_arm_highest = 1412.5375446227544;
 
-/// Wh as a filter (bilinear transform of its three sections): within 0.3 % of the definition from 6.3 to 1000 Hz at 44.1 kHz and
-/// above, 8 % off at 8 kHz.
+/// Wh as a filter (bilinear transform of its three sections): within 0.3 % of the definition from 6.3 to 1000 Hz at
+/// 44.1 kHz and above, 8 % off at 8 kHz.
 class HandArmFilter {
 public:
     explicit HandArmFilter(double rate);
@@ -39,7 +39,7 @@ inline constexpr double reference_day = 8.0 * 3600.0;  ///< s
 inline constexpr double action_value = 2.5;  ///< m/s² A(8): employers must act
 inline constexpr double limit_value = 5.0;  ///< m/s² A(8): never to be exceeded
 
-/// One tool on one day.
+/// Exposure to one tool on one day.
 struct HandArmOperation {
     double acceleration = 0.0;  ///< vibration total value a_hv, m/s²
     double duration = 0.0;  ///< of contact per day, s

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Second-order filters: the analog prototypes of Bristow-Johnson's cookbook through the bilinear transform, warped so
+// Biquad filters: the analog prototypes of Bristow-Johnson's cookbook through the bilinear transform, prewarped so
 // that the given frequency is exact.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace tactus::signal {
 struct BiquadCoefficients {
     double b0 = 1.0, b1 = 0.0, b2 = 0.0, a1 = 0.0, a2 = 0.0;
 
-    /// Gain and phase at `frequency` (Hz) when run at `rate` (Hz).
+    /// Complex gain at `frequency` (Hz) when run at `rate` (Hz).
     std::complex<double> response(double frequency, double rate) const {
         const std::complex<double> z = std::polar(1.0, -2.0 * std::numbers::pi * frequency / rate);
         return (b0 + z * (b1 + z * b2)) / (1.0 + z * (a1 + z * a2));
@@ -27,7 +27,7 @@ inline constexpr double butterworth_q = std::numbers::sqrt2 / 2.0;
 namespace detail {
 struct Warped {
     double cosine, alpha;
-    /// Frequencies outside what the rate can carry are moved to its border, so that a live parameter cannot blow up.
+    /// Clamps frequencies to what the rate can carry, so that a live parameter cannot make the filter unstable.
     Warped(double frequency, double rate, double q) noexcept {
         const double w = 2.0 * std::numbers::pi * std::clamp(frequency / rate, 1e-7, 0.4999);
         cosine = std::cos(w);
@@ -46,7 +46,7 @@ inline BiquadCoefficients lowpass(double frequency, double rate, double q = butt
     return detail::normalised(side, 2.0 * side, side, 1.0 + w.alpha, -2.0 * w.cosine, 1.0 - w.alpha);
 }
 
-/// The mirror image of `lowpass`: rises 12 dB per octave up to `frequency`, gain 1 above.
+/// Counterpart of `lowpass`: rises 12 dB per octave up to `frequency`, gain 1 above.
 inline BiquadCoefficients highpass(double frequency, double rate, double q = butterworth_q) noexcept {
     const detail::Warped w(frequency, rate, q);
     const double side = (1.0 + w.cosine) / 2.0;
@@ -65,7 +65,7 @@ inline BiquadCoefficients notch(double frequency, double rate, double q) noexcep
     return detail::normalised(1.0, -2.0 * w.cosine, 1.0, 1.0 + w.alpha, -2.0 * w.cosine, 1.0 - w.alpha);
 }
 
-/// One section, transposed direct form II. New coefficients may be set at any time; the state stays.
+/// One section in transposed direct form II. New coefficients may be set at any time; the state stays.
 struct Biquad {
     BiquadCoefficients coefficients;
     double s1 = 0.0, s2 = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A long filter of finite impulse response, computed directly: no added delay, the same cost at every sample.
+// Direct-form FIR filter: no latency of its own, the same cost at every sample.
 #pragma once
 
 #include <array>
@@ -9,14 +9,14 @@
 
 namespace tactus::signal {
 
-/// y[n] = Σ taps[k] x[n − k]. The sum has a fixed order of `lanes` partial sums, which compilers turn into vector
-/// instructions without changing a bit of the result.
+/// y[n] = Σ taps[k] x[n − k]. The sum has a fixed order of `lanes` partial sums, which compilers vectorise without
+/// changing a bit of the result.
 class Fir {
 public:
     static constexpr std::size_t lanes = 16;
 
     Fir() : Fir(std::array{1.0f}) {}
-    /// Allocates. No taps act as the single tap 0.
+    /// Allocates. Without taps it acts as the single tap 0.
     explicit Fir(std::span<const float> taps)
         : length_((taps.size() + lanes - 1) / lanes * lanes + (taps.empty() ? lanes : 0)),
           reversed_(length_, 0.0f),
@@ -26,7 +26,7 @@ public:
 
     /// One sample. Wait-free, allocates nothing.
     float operator()(float x) noexcept {
-        // Written twice, so that the last `length_` samples always lie in one piece.
+        // Stored twice, so that the last `length_` samples are always contiguous.
         history_[at_] = history_[at_ + length_] = x;
         at_ = at_ + 1 == length_ ? 0 : at_ + 1;
         const float* oldest = history_.data() + at_;
@@ -38,7 +38,7 @@ public:
         return sum;
     }
 
-    /// The input `delay` samples ago, 0 the newest; less than the number of taps.
+    /// The input `delay` samples ago, 0 the newest; must be less than the number of taps.
     float past(std::size_t delay) const noexcept { return history_[at_ + length_ - 1 - delay]; }
 
 private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// First-order low-pass and what is made of it: smoother and envelope follower.
+// First-order low-pass; smoother and envelope follower.
 #pragma once
 
 #include <algorithm>
@@ -8,13 +8,13 @@
 
 namespace tactus::signal {
 
-/// Share of the way that a first-order lag goes in one step of `dt` (both in s): 1 − e^(−dt/τ); 1 for τ ≤ 0.
+/// Step response of a first-order lag after `dt` (both in s): 1 − e^(−dt/τ); 1 for τ ≤ 0.
 inline double lag_share(double time_constant, double dt) noexcept {
     return time_constant > 0.0 ? -std::expm1(-dt / time_constant) : 1.0;
 }
 
-/// y += share (x − y). The step response is exactly that of the analog lag; −3 dB at 1/(2πτ) while that is far below
-/// the rate. It never overshoots.
+/// y += share (x − y). The step response equals that of the analog lag; −3 dB at 1/(2πτ) while that is far below the
+/// rate. Never overshoots.
 struct OnePole {
     double share = 1.0, y = 0.0;
 
@@ -27,7 +27,7 @@ struct OnePole {
     double operator()(double x) noexcept { return y += share * (x - y); }
 };
 
-/// Follows |x|: rises with the attack time constant, falls with the release time constant (s).
+/// Follows |x| with separate time constants for rise (attack) and fall (release), s.
 struct EnvelopeFollower {
     double attack_share = 1.0, release_share = 1.0, y = 0.0;
 

@@ -7,8 +7,8 @@
 
 namespace tactus::signal {
 
-/// Sine whose phase is kept in 2^-64 cycles: it neither drifts nor depends on how calls are grouped into blocks, and a
-/// frequency may change at any sample without a jump of phase.
+/// Sine whose phase is an integer in 2^-64 cycles: it does not drift, does not depend on the partition into blocks, and
+/// is continuous when the frequency changes.
 struct SineOscillator {
     double rate = 48000.0;    ///< samples per second
     std::uint64_t phase = 0;  ///< 2^64 is one cycle
@@ -22,7 +22,7 @@ struct SineOscillator {
 
 private:
     static std::uint64_t increment(double cycles) noexcept {
-        // Whole cycles do not matter; NaN and infinity leave the phase where it is.
+        // Removes whole cycles; NaN and infinity leave the phase unchanged.
         const double part = cycles - std::nearbyint(cycles);
         return part >= -0.5 && part < 0.5 ? static_cast<std::uint64_t>(static_cast<std::int64_t>(part * 0x1.0p64))
                : part == 0.5              ? std::uint64_t{1} << 63

@@ -5,11 +5,11 @@
 
 namespace tactus::signal {
 
-/// Moves towards its target by at most `step` per call and then stays exactly on it.
+/// Moves towards its target by at most `step` per call and then stays exactly at it.
 struct Ramp {
     double step = 1.0, value = 0.0;
 
-    /// Crosses a distance of `span` in `seconds`; at once for 0 s.
+    /// Covers a distance of `span` in `seconds`; immediately for 0 s.
     static Ramp over(double span, double seconds, double rate, double start = 0.0) noexcept {
         const double count = seconds * rate;
         return {count > 1.0 ? span / count : span, start};

@@ -13,13 +13,13 @@ namespace tactus::signal {
 
 namespace {
 
-/// A clock that is coarser than the samples gives several the same time.
+/// A clock coarser than the samples gives several samples the same time.
 std::vector<double> spread_equal_times(std::span<const double> times) {
     std::vector<double> spread(times.begin(), times.end());
     for (std::size_t i = 0; i < spread.size();) {
         std::size_t end = i + 1;
         while (end < times.size() && times[end] == times[i]) ++end;
-        // The last run has no next time: its samples keep the step of the run before it.
+        // The last run has no next time: its samples keep the step of the previous run.
         const std::size_t before = i > 0 ? i - 1 : 0;
         const double step =
             end < times.size() ? (times[end] - times[i]) / static_cast<double>(end - i) : spread[i] - spread[before];

@@ -28,8 +28,8 @@ double bessel(double x) {
 
 constexpr std::size_t table_size = 16384;
 
-/// Low-pass of gain 1 with its edge at `cutoff` cycles per sample (Kaiser window): one side, so fine that reading it
-/// between its values errs by −100 dB.
+/// One side of a low-pass kernel of gain 1 with its edge at `cutoff` cycles per sample (Kaiser window), tabulated so
+/// finely that linear interpolation has an error of −100 dB.
 std::vector<double> kernel_table(double cutoff) {
     const double beta = 0.1102 * (attenuation - 8.7);
     std::vector<double> table(table_size + 2);
@@ -41,7 +41,7 @@ std::vector<double> kernel_table(double cutoff) {
     return table;
 }
 
-/// At a distance in samples from the middle of a kernel that ends at `reach`.
+/// The kernel at a distance in samples from the middle; it ends at `reach`.
 double value_at(const std::vector<double>& table, double reach, double x) {
     const double u = std::abs(x) / reach * table_size;
     if (u >= table_size) return 0.0;
@@ -49,7 +49,7 @@ double value_at(const std::vector<double>& table, double reach, double x) {
     return table[i] + (table[i + 1] - table[i]) * (u - static_cast<double>(i));
 }
 
-/// The kernel's values around a position that lies `fraction` of a sample after a sample.
+/// The taps of the kernel for a position `fraction` of a sample after a sample.
 void fill(const std::vector<double>& table, double kernel_reach, double fraction, std::ptrdiff_t reach,
           std::vector<double>& taps) {
     taps.clear();
@@ -76,7 +76,7 @@ ResamplingStream::ResamplingStream(std::size_t frames, double from, double to, d
     : begin_(start * from), step_(from / to), size_(static_cast<std::ptrdiff_t>(frames)) {
     if (!(from > 0.0 && to > 0.0 && std::isfinite(from) && std::isfinite(to) && std::isfinite(start)))
         throw Error("resampling needs two positive rates");
-    // The Kaiser window's transition is this wide, in cycles per lower rate; its end may just touch 0.6.
+    // Width of the Kaiser window's transition, in cycles per lower rate; its end may just reach 0.6.
     const double cutoff = 0.5 * std::min(1.0, to / from);
     kernel_ = kernel_table(cutoff);
     kernel_reach_ = half_width / (2.0 * cutoff);
@@ -126,7 +126,7 @@ void ResamplingStream::push(std::span<const Sample> samples, std::vector<double>
         const std::ptrdiff_t count = std::min<std::ptrdiff_t>(2 * reach_, size_ - first) - a;
         const double* at = held_.data() + (first + a - held_from_);
         taps += a;
-        // Four partial sums in a fixed order: faster, and the same bits everywhere.
+        // Four partial sums in a fixed order: faster, with the same bits everywhere.
         double sums[4] = {};
         std::ptrdiff_t j = 0;
         for (; j + 4 <= count; j += 4)

@@ -14,7 +14,7 @@ namespace tactus::signal {
 
 namespace {
 
-/// sinc(u) under a Blackman window of 16 zero crossings on each side, tabulated.
+/// Tabulated sinc(u) with a Blackman window of 16 zero crossings on each side.
 class Kernel {
 public:
     static constexpr double reach = 16.0;
@@ -49,7 +49,7 @@ std::vector<double> resample_over_angle(std::span<const double> record, double r
     const auto count = static_cast<std::size_t>(std::max(0.0, turns) * static_cast<double>(per_turn));
     for (std::size_t j = 0; j < count; ++j) {
         const auto [time, period] = rotation(first_turn + static_cast<double>(j) / static_cast<double>(per_turn));
-        // Zero crossings of the kernel lie at the samples, or at the new spacing where that is wider.
+        // The kernel's zero crossings are at the samples, or at the new spacing when that is wider.
         const double spacing = std::max(1.0, rate * period / static_cast<double>(per_turn)), place = time * rate;
         const double from = std::max(0.0, std::ceil(place - Kernel::reach * spacing));
         const double to = std::min(last - 1.0, std::floor(place + Kernel::reach * spacing));
@@ -85,7 +85,7 @@ OrderSpectrum order_spectrum(std::span<const double> record, double rate, const 
     for (int order = 1; order <= highest; ++order) {
         const std::size_t bin = static_cast<std::size_t>(order) * together;
         if (bin >= out.amplitude.size()) break;
-        // Flat-top lines are five bins wide on each side; the floor lies half-way to the neighbours.
+        // Flat-top lines are five bins wide on each side; the noise floor is read half-way to the neighbouring orders.
         std::vector<double> around;
         for (std::size_t k = bin - together / 2 - 1; k <= bin - together / 2 + 1; ++k)
             around.push_back(out.amplitude[k]);

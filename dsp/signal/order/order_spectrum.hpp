@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A record over the angle of a machine instead of over time: a run-up stands still, each order is one line.
+// Order tracking: a spectrum over revolutions instead of time, in which each order of a varying speed is one line.
 #pragma once
 
 #include "dsp/signal/order/rotation.hpp"
@@ -10,8 +10,8 @@
 
 namespace tactus::signal {
 
-/// `record` (samples per second `rate`) at evenly spaced angles, `per_turn` values per revolution, over the whole turns
-/// that lie inside the record. Low-passed on the way to what `per_turn` can carry: flat up to 0.39 · per_turn orders. Allocates.
+/// `record` (samples per second `rate`) resampled at `per_turn` evenly spaced angles per revolution, over the whole
+/// turns in the record. Low-passed for `per_turn`: flat up to 0.39 · per_turn orders. Allocates.
 std::vector<double> resample_over_angle(std::span<const double> record, double rate, const Rotation& rotation,
                                         std::size_t per_turn);
 
@@ -25,12 +25,12 @@ struct OrderSpectrum {
     std::vector<double> amplitude;  ///< peak; value i is at order i · step
     double step = 0.0;  ///< orders
     std::size_t segments = 0;
-    double turns = 0.0;  ///< revolutions that were used
+    double turns = 0.0;  ///< number of revolutions used
     std::vector<OrderLevel> orders;  ///< 1, 2, … highest
 };
 
-/// Flat-top windows over whole numbers of turns (32, fewer for a short record; at least 8). Throws Error when the record
-/// holds fewer than 8 turns.
+/// Flat-top windows over whole numbers of turns (32; at least 8 for a short record). Throws Error when the record has
+/// fewer than 8 turns.
 OrderSpectrum order_spectrum(std::span<const double> record, double rate, const Rotation& rotation, int highest);
 
 }  // namespace tactus::signal

@@ -15,7 +15,7 @@ namespace tactus::signal {
 
 namespace {
 
-/// Power at a place between two bins of a zero-padded spectrum.
+/// Power at a position between two bins of a zero-padded spectrum.
 double between(std::span<const double> power, double bin) {
     const auto k = static_cast<std::size_t>(bin);
     if (k + 1 >= power.size()) return 0.0;
@@ -23,8 +23,8 @@ double between(std::span<const double> power, double bin) {
     return (1.0 - share) * power[k] + share * power[k + 1];
 }
 
-/// Mean over the orders of the level above the frame's floor: one missing order costs as much as others bring. A low
-/// order counts for more than a high one, or half the rate would explain the same lines as well.
+/// Mean level of the orders above the frame's noise floor. Low orders have more weight, or half the rate would explain
+/// the same lines equally well.
 double salience(std::span<const double> power, double floor, double bins_per_hz, double frequency, int orders) {
     double sum = 0.0, weights = 0.0;
     for (int k = 1; k <= orders; ++k) {
@@ -59,7 +59,7 @@ Rotation rotation_from_tacho(std::span<const double> tacho, double rate, double 
 Rotation rotation_at(double frequency, double seconds) { return {{0.0, seconds * frequency}, {0.0, seconds}}; }
 
 Rotation Ridge::rotation(double seconds) const {
-    // Revolutions: the rate integrated by trapezoids, from the first sample to the last.
+    // Revolutions: trapezoidal integral of the rate, from the first sample to the last.
     std::vector<double> turns{0.0}, times{0.0};
     for (std::size_t i = 0; i <= time.size(); ++i) {
         const double t = i < time.size() ? time[i] : seconds;
@@ -101,7 +101,7 @@ Ridge track_ridge(std::span<const double> record, double rate, const RidgeSettin
         sorted.assign(power.begin() + 1, power.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(top, 3)));
         const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
         std::nth_element(sorted.begin(), middle, sorted.end());
-        // Without noise, the window's own skirts must not count as orders.
+        // Without noise, the window's side lobes must not count as orders.
         const double strongest = *std::max_element(sorted.begin(), sorted.end());
         return std::max({*middle, 1e-4 * strongest, 1e-300});
     };
@@ -114,7 +114,7 @@ Ridge track_ridge(std::span<const double> record, double rate, const RidgeSettin
                 for (std::ptrdiff_t step = -reach; step <= reach; ++step) {
                     const auto b = static_cast<std::ptrdiff_t>(c) + step;
                     if (b < 0 || b >= static_cast<std::ptrdiff_t>(count)) continue;
-                    // A small price for change keeps the path straight through noise.
+                    // A small cost of changes keeps the path straight through noise.
                     const double value = score[static_cast<std::size_t>(b)] -
                                          0.3 * std::abs(static_cast<double>(step)) / static_cast<double>(reach);
                     if (value > best) best = value, origin = static_cast<std::size_t>(b);
@@ -140,7 +140,7 @@ Ridge track_ridge(std::span<const double> record, double rate, const RidgeSettin
         }
         ridge.time.push_back((static_cast<double>(i * hop) + 0.5 * static_cast<double>(frame)) / rate);
         ridge.frequency.push_back(0.5 * (a + b));
-        // Of the orders that the record can hold.
+        // Counts only orders below half the sample rate.
         const double held = static_cast<double>(power.size()) / (0.5 * (a + b) * bins_per_hz);
         const int there = std::clamp(static_cast<int>(held), 1, settings.orders);
         ridge.prominence_db +=

@@ -20,10 +20,10 @@ constexpr double pi = std::numbers::pi;
 constexpr double floor_ratio = 1e-6;       // −60 dB
 constexpr double search = 5e-3;            // s around the whitened peak
 constexpr double chance = 1e-3;
-// A Hann window makes neighbouring bins depend on each other: as if there were fewer.
+// A Hann window correlates neighbouring bins: the effective number of bins is lower.
 constexpr double hann_independence = 1.0 / 1.5;
 
-/// Half cosines at both ends: leakage of a record's ends would correlate with that of any other.
+/// Half-cosine fades at both ends: spectral leakage of the ends would correlate between any two records.
 std::vector<double> windowed(std::span<const double> samples, std::size_t count) {
     std::vector<double> out(count);
     for (std::size_t i = 0; i < count; ++i)
@@ -32,7 +32,7 @@ std::vector<double> windowed(std::span<const double> samples, std::size_t count)
     return out;
 }
 
-/// Value at a lag in samples; negative lags stand at the end.
+/// Value at a lag in samples; negative lags are stored at the end.
 double at(const std::vector<double>& circle, std::ptrdiff_t lag) {
     const auto size = static_cast<std::ptrdiff_t>(circle.size());
     return circle[static_cast<std::size_t>((lag % size + size) % size)];
@@ -79,7 +79,7 @@ Alignment align_takes(std::span<const double> reference, std::span<const double>
         white[k] = plain[k] / std::abs(plain[k]);
         kept += 1.0;
     }
-    // What is kept are bins of the padded transform; as many values were free as the record alone would have.
+    // The kept bins are those of the padded transform; the degrees of freedom are those of the unpadded record.
     kept *= static_cast<double>(common) / static_cast<double>(size);
     if (kept < 2.0) return found;
     const std::vector<double> whitened = samples_of(white);
@@ -88,7 +88,7 @@ Alignment align_takes(std::span<const double> reference, std::span<const double>
     const double bins = kept * static_cast<double>(size) / static_cast<double>(common);
     const double height = std::abs(at(whitened, coarse)) * static_cast<double>(size) / (2.0 * bins);
     found.significance = height * std::sqrt(2.0 * kept * hann_independence);
-    // Peaks of the correlation of a band are about 1/(2 × bandwidth) apart.
+    // Correlation peaks of a band are about 1/(2 × bandwidth) apart.
     const double trials = std::max(1.0, 4.0 * longest * (highest - lowest));
     const double needed = std::sqrt(2.0 * std::log(2.0 * trials / chance));
     found.significant = found.significance > needed;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fractional-octave bands out of a power spectrum.
+// Fractional-octave bands of a power spectrum.
 #pragma once
 
 #include "dsp/signal/spectrum/welch.hpp"
@@ -11,12 +11,12 @@ struct Band {
     double power = 0.0;                          ///< mean square in the band, unit²
 };
 
-/// One-third octaves with exact centres 10^(n/10) Hz (IEC 61260-1), from a density spectrum: bins count by the share of
-/// their width inside the band. Bands narrower than two bins or reaching beyond the spectrum are left out.
+/// One-third octaves with exact centres 10^(n/10) Hz (IEC 61260-1), from a density spectrum: bins are weighted by the
+/// fraction of their width inside the band. Omits bands narrower than two bins or beyond the spectrum.
 std::vector<Band> third_octaves(const Spectrum& density);
 
-/// Mean square between two frequencies (Hz) of a density with bin k at k × `df` Hz; a bin that straddles a border counts by
-/// its share.
+/// Mean square between two frequencies (Hz) of a density with bin k at k × `df` Hz; a bin on a border is weighted by
+/// its fraction.
 double band_power(std::span<const double> density, double df, double low, double high);
 double band_power(const Spectrum& density, double low, double high);
 

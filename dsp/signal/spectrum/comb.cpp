@@ -16,7 +16,8 @@ struct Weighted {
     double frequency, weight;
 };
 
-/// The teeth fitted to the lines near them, weighted by amplitude (strongest first); twice, as the fit moves the far teeth.
+/// Least-squares fit of the teeth to nearby lines, weighted by amplitude (strongest first); twice, as the far teeth
+/// move.
 CombFit fit(std::span<const Weighted> lines, double frequency, double df) {
     CombFit comb{frequency, 0.0, 0.0};
     double total = 0.0, explained = 0.0, chance = 0.0;
@@ -43,11 +44,11 @@ CombFit fit(std::span<const Weighted> lines, double frequency, double df) {
     int last = 0;
     for (int i = 1; i <= most_teeth; ++i)
         if (teeth[i] > 0.0) last = i;
-    // Thirty decibels below the strongest line a tooth is there, much weaker it is an accident.
+    // A tooth within 30 dB of the strongest line is present; a much weaker one is an accident.
     const double whole = 0.03 * lines.front().weight;
     double there = 0.0, wanted = 0.0;
     for (int i = 1; i <= last; ++i) {
-        // A low tooth that is missing says more than a high one.
+        // A missing low tooth costs more than a missing high one.
         const double weight = 1.0 / std::sqrt(i);
         wanted += weight;
         there += weight * std::min(1.0, teeth[i] / whole);
@@ -56,7 +57,7 @@ CombFit fit(std::span<const Weighted> lines, double frequency, double df) {
     return comb;
 }
 
-/// The strongest lines, by amplitude: what is felt and what a fault of the rate would move; the weakest of many are
+/// The strongest lines, by amplitude: they dominate what is felt and the error of the rate; the weakest of many are
 /// clutter.
 struct StrongestLines {
     static constexpr std::size_t most = 24;

@@ -19,9 +19,9 @@ namespace tactus::signal {
 
 namespace {
 
-constexpr double rate = 8000.0;  // Hz: everything here lies below 1 kHz
+constexpr double rate = 8000.0;  // Hz: the comparison uses frequencies below 1 kHz
 constexpr double touch_end = 500.0;
-constexpr double shortest = 0.5, stretch = 60.0;  // s: of a take, and of what is aligned
+constexpr double shortest = 0.5, stretch = 60.0;  // s: minimum length of a take; length used for alignment
 constexpr double silence = 1e-5;  // of the peak
 // Segments for distance and cosine, coherence, bands, lines.
 constexpr std::size_t coarse = 1024, middle = 2048, fine = 4096, sharp = 8192;
@@ -30,15 +30,15 @@ constexpr double lowest_rate = 60.0, highest_rate = 400.0;  // of a saw, Hz
 
 double decibel(double power_ratio) { return 10.0 * std::log10(power_ratio); }
 
-/// A take at the common rate, piece by piece.
+/// A take resampled to the common rate, in pieces.
 class Stream {
 public:
-    /// `start`: s of the take's clock where it begins. `speed`: by how much faster the take was than it shall be.
+    /// `start`: s, position in the take. `speed`: ratio of the take's speed to the wanted one.
     Stream(const Take& take, double start, double speed = 1.0)
         : blocks_(take.open()), resampling_(take.frames, take.rate / speed, rate, start) {}
 
     std::size_t size() const { return resampling_.frames(); }
-    /// The next `most` samples, fewer only at the end. Good until the next call.
+    /// The next `most` samples; fewer at the end only. Valid until the next call.
     std::span<const double> next(std::size_t most) {
         ready_.erase(ready_.begin(), ready_.begin() + static_cast<std::ptrdiff_t>(given_));
         while (ready_.size() < most) {
@@ -64,12 +64,12 @@ double variance(std::span<const double> samples) {
     return square / static_cast<double>(samples.size());
 }
 
-/// The same stretch of both takes.
+/// The same section of both takes.
 struct Stretch {
     std::vector<double> reference, output;
 };
 
-/// Where both are loudest, of stretches of that many samples, one after another; all of takes that are no longer.
+/// The loudest of consecutive sections of this many samples; the whole of shorter takes.
 Stretch loudest_stretch(const Take& reference, const Take& output, std::size_t length) {
     Stream r(reference, 0.0), d(output, 0.0);
     Stretch best;
@@ -84,18 +84,18 @@ Stretch loudest_stretch(const Take& reference, const Take& output, std::size_t l
     }
 }
 
-/// What is compared: both takes from where they begin together, the output in the reference's polarity and at its speed.
+/// The takes to compare: from their common start on, the output with the reference's polarity and speed.
 struct Pair {
     const Take& reference;
     const Take& output;
     double reference_start = 0.0, output_start = 0.0;  // s
     double speed = 1.0, sign = 1.0;
-    std::size_t common = 0;  // samples of both; 0: all that each has
+    std::size_t common = 0;  // samples of both; 0: all of each
 
     std::size_t reference_size() const { return size_of(Stream(reference, reference_start)); }
     std::size_t output_size() const { return size_of(Stream(output, output_start, speed)); }
     WelchSettings settings(std::size_t segment) const {
-        // Whichever take is shorter holds four segments.
+        // The shorter take has four segments.
         const std::size_t longest = std::bit_floor(std::min(reference_size(), output_size()) / 4);
         WelchSettings settings;
         settings.rate = rate;
@@ -103,7 +103,7 @@ struct Pair {
         settings.overlap = settings.segment / 2;
         return settings;
     }
-    /// Calls `use` with pieces of both, as long as each other until one of them ends.
+    /// Calls `use` with equally long pieces of both until one ends.
     template <class Use>
     void read(const Use& use) const {
         Stream r(reference, reference_start), d(output, output_start, speed);
@@ -133,7 +133,7 @@ struct SpectraOfBoth {
     }
 };
 
-/// Power in the band. Throws Error when that is nothing beside the greatest value, as in a constant.
+/// Power in the band. Throws Error when it is negligible relative to the peak, as for a constant.
 double power_in_band(double peak, const Spectrum& density, const Comparison& result, const char* name) {
     const double power = band_power(density, result.lowest, result.highest);
     if (!(std::sqrt(power) > silence * peak))
@@ -141,7 +141,7 @@ double power_in_band(double peak, const Spectrum& density, const Comparison& res
     return power;
 }
 
-/// Hz; 0 when the lines are of no one rate.
+/// Hz; 0 when the lines have no common fundamental.
 double rate_of_strokes(const Spectrum& density) {
     const Comb comb = fit_comb(density, lowest_rate, highest_rate);
     return comb.confidence >= sure_of_comb ? comb.best.frequency : 0.0;
@@ -229,7 +229,7 @@ void score_over_time(const Pair& pair, SpectrogramSimilarity& spectrograms, Comp
     const CrossSpectra cross = crossed->spectra();
     result.coherence = cross.coherence();
     result.coherence_step = cross.df;
-    // Only where the reference has something to say; between its lines there is noise of other origin.
+    // Only where the reference has signal: between its lines there is unrelated noise.
     double greatest = 0.0, sum = 0.0, count = 0.0;
     const auto in_band = [&](std::size_t k) {
         return cross.frequency(k) >= result.lowest && cross.frequency(k) <= result.highest;
@@ -273,7 +273,7 @@ Comparison compare(const Take& reference, const Take& output, const ComparisonOp
     result.alignment =
         align_takes(loud.reference, loud.output, rate, result.lowest, result.highest, options.longest_delay);
 
-    // A take that is in memory already need not be read again.
+    // A take in memory is read once only.
     const auto kept = [&](const Take& take, const std::vector<double>& samples) {
         return Stream(take, 0.0).size() == samples.size() ? Take(std::span<const double>(samples), rate) : take;
     };
@@ -292,13 +292,13 @@ Comparison compare(const Take& reference, const Take& output, const ComparisonOp
     result.output_hz = rate_of_strokes(sharp_output);
     const double ratio = result.output_hz / result.reference_hz;
     const bool one_saw = std::abs(ratio - 1.0) < speed_range;
-    // Both rates known and near each other: the output is brought to the reference's.
+    // Both rates are known and similar: the output is resampled to the reference's.
     if (one_saw && !result.alignment.significant && std::abs(ratio - 1.0) >= 1e-5)
         pair.speed = result.speed_ratio = ratio;
     SpectrogramSimilarity spectrograms(rate, result.lowest, result.highest);
     score_spectra(pair, options, spectrograms, result);
     score_over_time(pair, spectrograms, result);
-    // Of a saw at another speed, the orders are compared, each take at its own.
+    // For a saw at another speed the orders are compared, each take at its own rate.
     result.harmonic_error_db = harmonic_error(sharp_reference, result.reference_hz, sharp_output,
                                               one_saw ? result.output_hz : result.reference_hz, result.highest);
     result.lines = match_lines(sharp_reference, sharp_output, std::pow(10.0, result.gain_db / 20.0), result.speed_ratio,

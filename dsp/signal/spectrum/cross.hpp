@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What two channels taken at the same time have in common: cross-spectrum, coherence, response.
+// Cross-spectrum, coherence and frequency response of two channels recorded simultaneously.
 #pragma once
 
 #include "dsp/signal/spectrum/welch.hpp"
@@ -17,32 +17,32 @@ struct CrossSpectra {
     double effective_segments = 0.0;
 
     double frequency(std::size_t bin) const { return static_cast<double>(bin) * df; }
-    /// |Pxy|²/(Pxx Pyy), 0 … 1; 0 where a channel is silent. Of K averages of unrelated noise it is about 1/K; fewer
-    /// than 4 segments throw Error, as one segment always gives 1.
+    /// |Pxy|²/(Pxx Pyy), 0 … 1; 0 where a channel is silent. About 1/K for K averages of unrelated noise; throws Error
+    /// for fewer than 4 segments, as one segment always gives 1.
     std::vector<double> coherence() const;
-    /// Pxy/Pxx: response from x to y when noise is added to y.
+    /// H1 = Pxy/Pxx: response from x to y, unbiased by noise in y.
     std::vector<std::complex<double>> h1() const;
-    /// Pyy/conj(Pxy): response from x to y when noise is added to x.
+    /// H2 = Pyy/conj(Pxy): response from x to y, unbiased by noise in x.
     std::vector<std::complex<double>> h2() const;
     /// Standard deviation of |H1| relative to it, per bin: √((1−γ²)/(2γ²K)).
     std::vector<double> response_deviation() const;
 };
 
-/// Both records must be of one length; only the mean is an average here (settings.averaging is not used). Allocates.
-/// Throws Error when the lengths differ or the settings make no sense.
+/// Both records must have the same length; averages by the mean (settings.averaging is ignored). Allocates.
+/// Throws Error when the lengths differ or the settings are invalid.
 template <class T>
 CrossSpectra cross_spectra(std::span<const T> x, std::span<const T> y, WelchSettings settings);
 
-/// The same for records that come in pieces, in memory that does not grow.
+/// The same for records that come in pieces, in constant memory.
 template <class T>
 class CrossStream {
 public:
-    /// Throws Error when the settings make no sense.
+    /// Throws Error when the settings are invalid.
     explicit CrossStream(const WelchSettings& settings);
 
-    /// As many samples of each. Allocates nothing.
+    /// Equally many samples of each. Does not allocate.
     void push(std::span<const T> x, std::span<const T> y);
-    /// Of what was pushed so far. Allocates.
+    /// From all samples pushed so far. Allocates.
     CrossSpectra spectra() const;
 
 private:

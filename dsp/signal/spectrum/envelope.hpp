@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How loud a band is from moment to moment: the beat of teeth and impacts stands in it, not in the band's own lines.
+// Envelope of a band (amplitude demodulation): shows the rate of teeth and impacts, which the band's own lines do not.
 #pragma once
 
 #include "dsp/signal/filter/biquad.hpp"
@@ -10,8 +10,8 @@
 
 namespace tactus::signal {
 
-/// Moves the middle of a band to 0 Hz, keeps ± half its width (8th-order Butterworth) and takes the magnitude: the
-/// amplitude of what lies in the band, at a lower rate.
+/// Shifts the middle of a band to 0 Hz, low-passes at half its width (8th-order Butterworth) and takes the magnitude:
+/// the amplitude of the band, at a lower rate.
 class BandEnvelope {
 public:
     /// Band edges and rate in Hz, 0 < low < high < rate/2. Values come every `step()` samples.
@@ -24,7 +24,7 @@ public:
     }
 
     std::size_t step() const noexcept { return step_; }
-    double rate() const noexcept { return rate_ / static_cast<double>(step_); }  ///< Hz of what comes out
+    double rate() const noexcept { return rate_ / static_cast<double>(step_); }  ///< Hz of the output
 
     /// Takes a sample; true when `value` is new.
     bool operator()(double x, double& value) noexcept {

@@ -22,7 +22,7 @@ std::complex<T> root_of_unity(std::size_t k, std::size_t n) {
     return {static_cast<T>(std::cos(angle)), static_cast<T>(-std::sin(angle))};
 }
 
-// Beyond it KissFFT's general radix, p² products for p values, costs more than the chirp.
+// Above this, KissFFT's general radix, with p² products for p values, costs more than the chirp transform.
 constexpr std::size_t largest_radix = 31;
 
 bool is_smooth(std::size_t n) {
@@ -35,7 +35,7 @@ bool is_smooth(std::size_t n) {
 
 namespace detail {
 
-/// What KissFFT computes with. Interleaved parts are std::complex of it.
+/// The number type of KissFFT. Interleaved values are std::complex of it.
 template <class V>
 struct KissNumber {
     using type = V;
@@ -55,7 +55,7 @@ struct FftPlan<T, V>::Kiss {
     static_assert(sizeof(Complex) == 2 * sizeof(V));
 
     explicit Kiss(std::size_t n) : fft(n, false) {
-        // Its general radix enlarges a buffer when first used: do that here.
+        // KissFFT's general radix allocates a buffer at first use: trigger that here.
         const std::vector<Complex> silence(n);
         std::vector<Complex> out(n);
         fft.transform(silence.data(), out.data());
@@ -68,7 +68,7 @@ struct FftPlan<T, V>::Kiss {
     kissfft<typename KissNumber<V>::type> fft;
 };
 
-/// exp(−πik²/n), the transform of its conjugate, and two rooms for what is convolved with it.
+/// exp(−πik²/n), the transform of its conjugate, and two work arrays for the convolution.
 template <class T, class V>
 struct FftPlan<T, V>::Chirp {
     std::size_t length;
@@ -96,7 +96,7 @@ FftPlan<T, V>::FftPlan(std::size_t n) : n_(n) {
         for (const std::size_t at : {k, (length - k) % length}) a[2 * at] = turn.real(), a[2 * at + 1] = -turn.imag();
     }
     const T* spectrum = plan(a.data(), b.data());
-    // The inner transform back is scaled here.
+    // Includes the scale of the inner inverse transform.
     for (std::size_t i = 0; i < 2 * length; ++i) chirp_->kernel.push_back(spectrum[i] / static_cast<T>(length));
 }
 
@@ -134,7 +134,7 @@ V* FftPlan<T, V>::through_chirp(V* a) noexcept {
     }
     std::fill(u + 2 * n_, u + 2 * length, V{});
     (*kiss_)(u, v);
-    // Real and imaginary part change places: the transform that follows is then the inverse, in the same places.
+    // Swaps real and imaginary parts: the following forward transform is then the inverse, in place.
     for (std::size_t i = 0; i < 2 * length; i += 2) {
         const V re = v[i] * kernel[i] - v[i + 1] * kernel[i + 1];
         const V im = v[i] * kernel[i + 1] + v[i + 1] * kernel[i];
@@ -171,7 +171,7 @@ const V* RealFftPlan<T, V>::forward() noexcept {
         }
         return plan_(a, b_.data());
     }
-    // Even and odd samples were one complex series of half the length: take its transform apart.
+    // Even and odd samples formed one complex series of half the length: separate their transforms.
     V* z = plan_(a, b_.data());
     const T half = T{0.5};
     const std::size_t last = n_ / 2;
@@ -196,7 +196,7 @@ const V* RealFftPlan<T, V>::forward() noexcept {
 
 template <class T, class V>
 const V* RealFftPlan<T, V>::inverse(const V* spectrum) noexcept {
-    // The forward plan with re and im exchanged is the inverse.
+    // The forward plan with re and im swapped is the inverse.
     V *a = a_.data(), *b = b_.data();
     if (n_ % 2 != 0) {
         a[1] = spectrum[0];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Discrete Fourier transforms of any length, in float or double, by KissFFT. It is given lengths whose prime factors are
-// at most 31; others take the chirp way (Bluestein 1970) through a power of two, so none is slow.
+// Discrete Fourier transforms of any length, in float or double, by KissFFT. KissFFT computes lengths whose prime
+// factors are at most 31; other lengths use the chirp transform (Bluestein 1970) through a power of two, so none is
+// slow.
 #pragma once
 
 #include "dsp/signal/spectrum/lanes.hpp"
@@ -16,7 +17,7 @@ namespace tactus::signal {
 namespace detail {
 
 /// The complex transform on interleaved parts (re, im, re, im, …). `V` is T, or Lanes<T> for several at once. Allocates
-/// when made or copied, not when used; not for two threads at once, as KissFFT keeps a scratch buffer.
+/// when made or copied, not when used; not thread-safe, as KissFFT keeps a scratch buffer.
 template <class T, class V>
 class FftPlan {
 public:
@@ -27,7 +28,7 @@ public:
     FftPlan& operator=(const FftPlan& other);
     FftPlan& operator=(FftPlan&&) noexcept;
 
-    /// Transforms `a`, using `b` (2n values each, apart); the result stands in the one that is returned.
+    /// Transforms `a`, with `b` as work memory (2n values each, not overlapping); returns the one with the result.
     V* operator()(V* a, V* b) noexcept;
 
 private:
@@ -48,11 +49,11 @@ public:
     explicit RealFftPlan(std::size_t n);
 
     std::size_t size() const noexcept { return n_; }
-    /// Where the n real values belong; the transforms spoil them.
+    /// Input array of n real values; the transforms overwrite it.
     V* input() noexcept { return a_.data(); }
-    /// n/2 + 1 complex values, interleaved, of what stands in input(); good until the next call.
+    /// n/2 + 1 complex values, interleaved: the transform of input(); valid until the next call.
     const V* forward() noexcept;
-    /// From n/2 + 1 complex values, interleaved, to n real ones times n (n/2 for even n).
+    /// Inverse, from n/2 + 1 interleaved complex values to n real ones, scaled by n (n/2 for even n).
     const V* inverse(const V* spectrum) noexcept;
 
 private:
@@ -64,14 +65,14 @@ private:
 
 }  // namespace detail
 
-/// Complex transform of length n ≥ 1. Allocates when made, not when used; not for two threads at once.
+/// Complex transform of length n ≥ 1. Allocates when made, not when used; not thread-safe.
 template <class T>
 class Fft {
 public:
     explicit Fft(std::size_t n) : n_(n), plan_(n), a_(2 * n), b_(2 * n) {}
 
     std::size_t size() const noexcept { return n_; }
-    /// X[k] = Σ x[i] exp(−2πi·ik/n). Both spans hold n values and may be the same.
+    /// X[k] = Σ x[i] exp(−2πi·ik/n). Both spans hold n values and may be identical.
     void forward(std::span<const std::complex<T>> x, std::span<std::complex<T>> spectrum) noexcept;
     /// The inverse of forward: x[i] = 1/n Σ X[k] exp(+2πi·ik/n).
     void inverse(std::span<const std::complex<T>> spectrum, std::span<std::complex<T>> x) noexcept;
@@ -82,18 +83,18 @@ private:
     std::vector<T> a_, b_;
 };
 
-/// Real transform of length n ≥ 1. Allocates when made, not when used; not for two threads at once.
+/// Real transform of length n ≥ 1. Allocates when made, not when used; not thread-safe.
 template <class T>
 class RealFft {
 public:
     explicit RealFft(std::size_t n) : plan_(n) {}
 
     std::size_t size() const noexcept { return plan_.size(); }
-    /// Number of complex values: 0 Hz up to half the rate, n/2 + 1.
+    /// Number of complex values from 0 Hz to half the rate: n/2 + 1.
     std::size_t bins() const noexcept { return plan_.size() / 2 + 1; }
     /// `x`: n values; `spectrum`: bins() values.
     void forward(std::span<const T> x, std::span<std::complex<T>> spectrum) noexcept;
-    /// The inverse of forward. Imaginary parts at 0 Hz and (even n) at half the rate count as zero.
+    /// The inverse of forward. Ignores imaginary parts at 0 Hz and (even n) at half the rate.
     void inverse(std::span<const std::complex<T>> spectrum, std::span<T> x) noexcept;
 
 private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lanes as the number type of a template library: std::complex and KissFFT compute with it as with T, lane by lane.
+// Lanes as the scalar type of a template library: std::complex and KissFFT use it like T, lane by lane.
 #pragma once
 
 #include "dsp/signal/spectrum/lanes.hpp"
@@ -8,8 +8,9 @@
 
 namespace tactus::signal {
 
-/// Lanes<T> that are made from one number (all lanes equal) and read as one (the first lane): so the constants that a
-/// library takes from std::acos, std::exp or std::cos are computed in T. Values that differ by lane must stay in it.
+/// Lanes<T> that can be made from one number (all lanes equal) and read as one (the first lane): constants that a
+/// library computes with std::acos, std::exp or std::cos are computed in T. Values that differ by lane must not be read
+/// as one.
 template <class T>
 struct LaneScalar {
     Lanes<T> lanes;
@@ -34,7 +35,7 @@ struct LaneScalar {
     friend LaneScalar operator/(LaneScalar a, LaneScalar b) { return a /= b; }
 };
 
-// Beside a plain number: without these the operator above and the built-in one, on the first lane, fit equally well.
+// For operations with a plain number: otherwise the operator above and the built-in one are ambiguous.
 template <class T, class Number>
     requires std::is_arithmetic_v<Number>
 LaneScalar<T> operator*(Number a, LaneScalar<T> b) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values side by side in one machine register: several segments are transformed at once, with the same bits as alone.
+// SIMD vectors: several segments are transformed at once, with the same bits as one by one.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ struct LaneType<float> {
     using type = float __attribute__((vector_size(16)));
 };
 
-/// 16 bytes: what every x86-64 and every AArch64 has.
+/// 16 bytes: available on every x86-64 and AArch64.
 template <class T>
 using Lanes = typename LaneType<T>::type;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a record is before any spectrum: mean, level, peak, and whether it was cut at full scale.
+// Statistics of a record in the time domain: mean, level, peak and clipping.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ public:
     void push(std::span<const double> samples) noexcept {
         for (const double x : samples) {
             ++count_;
-            // Welford's recurrence: no loss when a large offset lies under a small vibration.
+            // Welford's recurrence: stays accurate for a small vibration on a large offset.
             const double from_mean = x - mean_;
             mean_ += from_mean / static_cast<double>(count_);
             squares_ += from_mean * (x - mean_);
@@ -23,7 +23,7 @@ public:
                 quantum_ = std::fmin(quantum_, step);
             if (count_ == 1 || x < low_) low_ = x, at_low_ = {};
             if (count_ == 1 || x > high_) high_ = x, at_high_ = {};
-            // Coarse steps round a wave's top; it stays there not much longer than on the step before.
+            // Coarse quantisation makes short runs at a wave's top, not much longer than on the step before.
             const std::size_t needed = quantum_ > 1e-3 * (high_ - low_) ? 6 * dwell_ + 1 : 3;
             at_low_.take(x == low_, needed);
             at_high_.take(x == high_, needed);
@@ -41,8 +41,8 @@ public:
     /// Largest distance from zero.
     double largest() const noexcept { return std::fmax(std::fabs(high_), std::fabs(low_)); }
     double crest() const noexcept { return rms() > 0.0 ? peak() / rms() : 0.0; }
-    /// Samples in runs of three or more at the highest or lowest value: a wave cut off. The top of a wave in coarse steps
-    /// is none unless the run is much longer than the one before. 0 for a constant record.
+    /// Clipped samples: those in runs of three or more at the maximum or minimum. Runs at the top of a coarsely
+    /// quantised wave do not count unless they are much longer than the run before. 0 for a constant record.
     std::size_t clipped() const noexcept { return high_ > low_ ? at_low_.clipped + at_high_.clipped : 0; }
 
 private:
@@ -56,7 +56,7 @@ private:
             else if (run > needed) ++clipped;
         }
     };
-    std::size_t count_ = 0, dwell_ = 1;  // samples; equal ones in a row up to the last
+    std::size_t count_ = 0, dwell_ = 1;  // samples; length of the present run of equal ones
     Limit at_low_, at_high_;
     double last_ = 0.0, quantum_ = std::numeric_limits<double>::infinity();
     double mean_ = 0.0, squares_ = 0.0, low_ = 0.0, high_ = 0.0;

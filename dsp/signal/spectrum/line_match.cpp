@@ -26,13 +26,13 @@ const SpectralLine* nearest(const std::vector<SpectralLine>& lines, double hz, d
     return best;
 }
 
-/// Power of an order: within a hundredth of its frequency, at least three bins to each side.
+/// Power of an order: within 1 % of its frequency, and at least three bins to each side.
 double order_power(const Spectrum& density, double hz) {
     const double reach = std::max(0.01 * hz, 3.0 * density.df);
     return band_power(density, hz - reach, hz + reach);
 }
 
-/// Level of the spectrum around a frequency as if it were one line, dB of amplitude.
+/// Level of the spectrum around a frequency, taken as one line, dB of amplitude.
 double level_near(const Spectrum& density, double hz) {
     const double within = tolerance(density, hz);
     return decibel(2.0 * band_power(density, hz - within, hz + within));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines of two spectra, and which of them belong together.
+// Matches the lines of two spectra.
 #pragma once
 
 #include "dsp/signal/spectrum/lines.hpp"
@@ -12,19 +12,21 @@ namespace tactus::signal {
 /// Level of a line's amplitude, dB re 1 of the record's unit.
 double level_db(const SpectralLine& line);
 
-/// Largest deviation of the orders' level differences from their mean, dB: orders of the two fundamentals up to
-/// `highest` that stand 6 dB above their neighbourhood in the reference and lie within 40 dB of its strongest. None with fewer than 2 of them.
+/// Greatest deviation of the orders' level differences from their mean, dB: orders of the two fundamentals up to
+/// `highest` that are 6 dB above their neighbourhood in the reference and within 40 dB of its strongest. None with
+/// fewer than 2 of them.
 std::optional<double> harmonic_error(const Spectrum& reference, double reference_hz, const Spectrum& output,
                                      double output_hz, double highest);
 
 struct MatchedLines {
-    std::vector<SpectralLine> in_both;  ///< as the reference has them
-    std::vector<SpectralLine> only_in_reference;  ///< and the output, with its gain, is 6 dB softer there
-    std::vector<SpectralLine> only_in_output;  ///< and the reference is 6 dB softer there
+    std::vector<SpectralLine> in_both;  ///< values of the reference
+    std::vector<SpectralLine> only_in_reference;  ///< the output, with its gain, is 6 dB lower there
+    std::vector<SpectralLine> only_in_output;  ///< the reference is 6 dB lower there
 };
 
-/// Lines within 60 dB of the strongest, by frequency. They match within 0.3 % or two bins, whichever is more, at their own frequencies or at equal speed: `speed_ratio` is
-/// the output's over the reference's. `gain` multiplies the output's amplitudes.
+/// Lines within 60 dB of the strongest, by frequency. They match within 0.3 % or two bins, whichever is more, at equal
+/// frequencies or equal orders: `speed_ratio` is the output's over the reference's. `gain` multiplies the output's
+/// amplitudes.
 MatchedLines match_lines(const Spectrum& reference, const Spectrum& output, double gain, double speed_ratio,
                          double lowest, double highest);
 

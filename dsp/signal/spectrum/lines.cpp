@@ -74,7 +74,7 @@ double detection_threshold_db(const Spectrum& spectrum) {
     // Quantile 1 − 10⁻⁶ of the mean of K exponential powers over their median (Wilson and Hilferty 1931).
     const double part = 1.0 / (9.0 * std::max(1.0, spectrum.effective_segments));
     const double tail = std::pow(1.0 - part + 4.75 * std::sqrt(part), 3.0), median = std::pow(1.0 - part, 3.0);
-    // A line between two bins counts for up to 1.42 dB more than its stronger bin.
+    // Scalloping: a line between two bins is up to 1.42 dB stronger than its stronger bin.
     return std::max(10.0, decibels(tail / median) + 1.42);
 }
 
@@ -89,7 +89,7 @@ std::vector<Harmonic> harmonic_table(const Spectrum& spectrum, double fundamenta
     const double highest = spectrum.df * static_cast<double>(spectrum.power.size() - 2);
     for (int order = 1; order <= orders && fundamental > 0.0 && order * fundamental < highest; ++order) {
         const double place = order * fundamental;
-        // A rate that wavers moves its high orders most.
+        // A varying rate shifts the high orders most.
         const double reach = std::min(1.5 * spectrum.df + 0.005 * place, 0.4 * fundamental);
         Harmonic harmonic;
         static_cast<SpectralLine&>(harmonic) = line_near(spectrum, place, reach);
@@ -119,14 +119,14 @@ std::vector<HumLine> find_hum(const Spectrum& spectrum, double fundamental) {
             line.mains = mains;
             line.order = order;
             const auto top = static_cast<std::size_t>(std::lround(line.frequency / spectrum.df));
-            // A steady line is as narrow as the window; a hump of noise or of a wavering rate is not.
+            // A steady line is as narrow as the window's main lobe; noise or a varying rate is wider.
             const double skirt = std::max(spectrum.power[top - 3], spectrum.power[top + 3]);
             const bool narrow = spectrum.power[top] > 4.0 * skirt;
             const bool in_place = std::abs(line.frequency - place) <= 0.5 * spectrum.df + 0.002 * place;
             if (line.snr_db >= threshold && narrow && in_place) family.push_back(line);
         }
         const bool founded = std::any_of(family.begin(), family.end(), [](const HumLine& h) { return h.order <= 3; });
-        // 300 and 600 Hz belong to both: the family that comes second does not repeat them.
+        // 300 and 600 Hz belong to both families: the second one skips them.
         for (const HumLine& line : family)
             if (founded && std::none_of(found.begin(), found.end(), [&](const HumLine& other) {
                     return std::abs(other.mains * other.order - line.mains * line.order) == 0;

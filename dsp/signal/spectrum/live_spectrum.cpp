@@ -11,7 +11,7 @@ namespace tactus::signal {
 
 namespace {
 
-constexpr double loudest = 1e12;  // beyond it the power of a segment would overflow a float
+constexpr double loudest = 1e12;  // the power of a segment would overflow a float above it
 
 }  // namespace
 
@@ -67,7 +67,7 @@ void LiveSpectrum::take_segment() noexcept {
         const double sides = k == 0 || (k == last && even) ? 1.0 : 2.0;
         spectrum_.power[k] += share * (sides * scale_ * (re * re + im * im) - spectrum_.power[k]);
     }
-    // A fading memory of share α scatters like 2/α − 1 equal segments.
+    // An exponential average with share α has the variance of 2/α − 1 equal segments.
     spectrum_.effective_segments = independence_ * std::min(static_cast<double>(spectrum_.segments), 2.0 / share - 1.0);
 }
 

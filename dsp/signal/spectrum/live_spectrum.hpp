@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A spectrum that follows what vibrates now: for displays and scores while a patch runs.
+// Running spectrum, for displays and scores while a patch runs.
 #pragma once
 
 #include "dsp/signal/spectrum/fft.hpp"
@@ -12,18 +12,18 @@
 
 namespace tactus::signal {
 
-/// Hann segments, half overlapping, their means taken out, in float. Until `memory` has passed, the spectrum is that of
-/// `welch` over all that came; from then on older segments fade with that time constant.
+/// Hann segments with 50 % overlap, mean removed, in float. Until `memory` has passed, the spectrum equals that of
+/// `welch` over all samples; then older segments decay with that time constant.
 class LiveSpectrum {
 public:
     LiveSpectrum() : LiveSpectrum(48000.0, 64, 1.0) {}
     /// `rate` in Hz, `segment` in samples (≥ 4), `memory` in s. Allocates.
     LiveSpectrum(double rate, std::size_t segment, double memory);
 
-    /// Any number of samples; one that is not finite counts as silence. Returns how many segments became whole.
-    /// Wait-free, allocates nothing.
+    /// Any number of samples; a non-finite one counts as 0. Returns the number of completed segments. Wait-free, does
+    /// not allocate.
     int push(std::span<const float> samples) noexcept;
-    /// Density; `segments` says how many came since the start, `effective_segments` how many are still remembered.
+    /// Density; `segments` counts all since the start, `effective_segments` those in the average.
     const Spectrum& spectrum() const noexcept { return spectrum_; }
 
 private:

@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// How strong a vibration must be to be felt, over frequency.
+// Perceptual threshold of vibration over frequency.
 #pragma once
 
 namespace tactus::signal {
 
-/// Parametric threshold of touch used for vibrotactile quality scores (Noll et al. 2021; the constants of vibromaf):
-/// dB, −77 at 250 Hz, where touch is keenest, rising to both sides; above about 781 Hz it stays at 0. It is meant for a
-/// recording of full scale ±1, not for a physical unit.
+/// Parametric vibrotactile threshold used for quality scores (Noll et al. 2021; constants of vibromaf): dB, minimum −77
+/// at 250 Hz, rising to both sides; 0 above about 781 Hz. For recordings with full scale ±1, not for a physical unit.
 double touch_threshold_db(double hz) noexcept;
-/// The same without its end: above 781 Hz it goes on rising.
+/// The same without the limit: above 781 Hz it keeps rising.
 double touch_curve_db(double hz) noexcept;
 
-/// What the threshold curve is taken to be a threshold of. Published thresholds are flat in acceleration from 40 to
-/// 250 Hz and fall 12 dB per octave in displacement; the curve above falls like displacement, although programs apply
-/// it to acceleration.
+/// The quantity that the threshold curve refers to. Published thresholds are flat in acceleration from 40 to 250 Hz and
+/// fall 12 dB per octave in displacement; the curve above falls like displacement, although programs apply it to
+/// acceleration.
 enum class ThresholdUnit {
-    displacement,  ///< the curve holds for displacement; an acceleration is integrated twice before
-    acceleration,  ///< the curve is applied to the acceleration itself
-    none,  ///< every frequency counts alike
+    displacement,  ///< the curve applies to displacement; an acceleration is integrated twice first
+    acceleration,  ///< the curve applies to the acceleration itself
+    none,  ///< all frequencies have equal weight
 };
 
-/// How much a component of an acceleration at `hz` weighs in the hand, dB relative to one at 250 Hz.
+/// Perceptual weight of a component of an acceleration at `hz`, dB relative to one at 250 Hz.
 double touch_weight_db(double hz, ThresholdUnit unit) noexcept;
 
 }  // namespace tactus::signal

@@ -7,7 +7,7 @@ namespace tactus::signal {
 
 namespace {
 
-/// Eight partial sums: independent of each other, so that they run in parallel, and fixed in order.
+/// Eight independent partial sums, which run in parallel, in a fixed order.
 template <class T>
 double mean_of(const T* x, std::size_t n) noexcept {
     double part[8] = {};
@@ -23,7 +23,7 @@ struct Line {
     double middle = 0.0, slope = 0.0;  // value at the middle of the segment; per sample
 };
 
-/// The straight line of least squared distance.
+/// Least-squares line.
 template <class T>
 Line line_through(const T* x, std::size_t n) noexcept {
     Line line{mean_of(x, n), 0.0};

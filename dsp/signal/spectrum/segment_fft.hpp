@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every estimate of the Welch family does to a segment: take out its trend, taper it, transform it. As many
+// The segment processing of all Welch estimates: remove the trend, apply the window, transform. Handles as many
 // segments at once as a register has lanes.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace tactus::signal {
 
-/// What is subtracted from each segment before it is tapered.
+/// Trend that is subtracted from each segment before the window.
 enum class Detrend { none, constant, linear };
 
 template <class T>
@@ -24,11 +24,11 @@ public:
 
     std::size_t length() const noexcept { return window_.size(); }
     std::size_t bins() const noexcept { return window_.size() / 2 + 1; }
-    /// The window as used: rounded to T.
+    /// The window, rounded to T.
     std::span<const T> window() const noexcept { return window_; }
 
-    /// `starts`: where up to `lanes` segments begin. Returns bins() complex values, interleaved, one lane per segment;
-    /// lanes without a segment are zero. Good until the next call.
+    /// `starts`: start of up to `lanes` segments. Returns bins() complex values, interleaved, one lane per segment;
+    /// unused lanes are zero. Valid until the next call.
     const Lanes<T>* operator()(std::span<const T* const> starts) noexcept;
 
 private:

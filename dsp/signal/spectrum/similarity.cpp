@@ -48,7 +48,7 @@ Block standardised(const Block& samples) {
     return out;
 }
 
-/// Projection of the output on the reference.
+/// Projection coefficient of the output on the reference.
 template <class Block>
 double likeness(const Block& reference, const Block& output) {
     double product = 0.0, power = 0.0;
@@ -68,7 +68,7 @@ WaveformSimilarity similarity_of(std::span<const double> reference, std::span<co
 
 template <class Use>
 void each_band_error(const SpectrumPair& pair, double lowest, double highest, double gain, const Use& use) {
-    // Half a percent of tolerance: the band called 40 Hz has its true centre at 39.8 Hz.
+    // 0.5 % tolerance: the nominal 40 Hz band has its exact centre at 39.8 Hz.
     const int first = static_cast<int>(std::ceil(10.0 * std::log10(lowest * 0.99)));
     const int last = static_cast<int>(std::floor(10.0 * std::log10(highest * 1.01)));
     const auto level = [&](std::span<const double> density, int n) {
@@ -128,15 +128,15 @@ double third_octave_max_error(const SpectrumPair& pair, double lowest, double hi
 
 WaveformSimilarity::WaveformSimilarity() {
     constexpr double rate = 8000.0;
-    // As published: the grid runs from 0 to the rate inclusive, its lower half is used, and the first value above 0 holds
-    // for the rest.
+    // As published: the grid runs from 0 to the rate inclusive, its lower half is used, and the values from the first
+    // one above 0 on are held.
     for (std::size_t k = 0; k < block; ++k)
         threshold_[k] = k > 0 && threshold_[k - 1] > 0.0
                             ? threshold_[k - 1]
                             : touch_curve_db(rate * static_cast<double>(k) / (2.0 * block - 1.0));
 }
 
-/// Levels of the orthonormal cosine transform above the threshold of touch, dB.
+/// Levels of the orthonormal discrete cosine transform above the tactile threshold, dB.
 WaveformSimilarity::Block WaveformSimilarity::perceived(const Block& samples) const {
     const auto spectrum = spectrum_of(samples, 2 * block);
     Block levels;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How alike two vibrations are. No score tells it alone: a plain log-spectral distance of an idling saw compares the
-// noise between its lines, SPQI collapses when one line near 250 Hz differs, ST-SIM needs the two to be aligned.
+// Similarity scores of two vibrations. No single score suffices: a plain log-spectral distance of an idling saw
+// compares the noise between its lines, SPQI collapses when one line near 250 Hz differs, ST-SIM needs aligned takes.
 #pragma once
 
 #include "dsp/signal/spectrum/perception.hpp"
@@ -13,12 +13,12 @@
 
 namespace tactus::signal {
 
-/// Correlation coefficient of what is added to it.
+/// Correlation coefficient of the added pairs.
 struct Pearson {
     double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
 
     void add(double a, double b) { n += 1.0, x += a, y += b, xx += a * a, yy += b * b, xy += a * b; }
-    /// 0 when one of the two never changes.
+    /// 0 when one of the two is constant.
     double value() const;
 };
 
@@ -28,12 +28,12 @@ struct SpectrumPair {
     double step = 1.0;  ///< Hz
 };
 
-/// Root mean square of the level differences from `lowest` to `highest` Hz, dB, both levels cut 40 dB below the
-/// strongest bin of the reference there, the output multiplied by `gain` before.
+/// Root mean square of the level differences from `lowest` to `highest` Hz, dB, with both levels floored 40 dB below
+/// the strongest bin of the reference there; the output is first multiplied by `gain`.
 double log_spectral_distance(const SpectrumPair& pair, double lowest, double highest, double gain = 1.0);
 
-/// Cosine between the amplitude spectra from `lowest` to `highest` Hz: 1 for the same shape. `unit` weighs as touch
-/// does. 0 when one of them is silent.
+/// Cosine similarity of the amplitude spectra from `lowest` to `highest` Hz; 1: same shape. `unit` selects perceptual
+/// weights. 0 when one of them is silent.
 double spectral_cosine(const SpectrumPair& pair, double lowest, double highest,
                        ThresholdUnit unit = ThresholdUnit::none);
 
@@ -42,26 +42,27 @@ struct BandError {
     double error_db = 0.0;  ///< level of the output less that of the reference
 };
 
-/// Errors of the third-octave bands with centres from `lowest` to `highest` Hz (the reference within 40 dB of its
-/// strongest band there), the output multiplied by `gain` before. A band without output errs by −60 dB at most.
+/// Errors of the third-octave bands with centres from `lowest` to `highest` Hz (where the reference is within 40 dB of
+/// its strongest band); the output is first multiplied by `gain`. The error of a band without output is limited to −60
+/// dB.
 std::vector<BandError> third_octave_errors(const SpectrumPair& pair, double lowest, double highest, double gain = 1.0);
 
-/// The largest of them, without its sign. Allocates nothing.
+/// The greatest absolute error. Does not allocate.
 double third_octave_max_error(const SpectrumPair& pair, double lowest, double highest, double gain = 1.0) noexcept;
 
-/// Scores of two takes that were aligned, both at 8 kHz, in pieces and in memory that does not grow.
+/// Scores of two aligned takes, both at 8 kHz, in pieces and in constant memory.
 class WaveformSimilarity {
 public:
     WaveformSimilarity();
 
-    /// As many samples of each.
+    /// Equally many samples of each.
     void push(std::span<const double> reference, std::span<const double> output);
 
-    /// Spectral-temporal similarity: blocks of 512 samples, orthonormal cosine transform, levels above the threshold of
-    /// touch through a normal distribution of 12 dB; temporal^(2/3) × spectral^(1/3). 1 when they are the same, 0 when
-    /// the temporal part is negative.
+    /// Spectral-temporal similarity (ST-SIM): blocks of 512 samples, orthonormal DCT, levels above the tactile
+    /// threshold through a normal distribution of 12 dB; temporal^(2/3) × spectral^(1/3). 1 for equal takes, 0 when the
+    /// temporal part is negative.
     double st_sim() const;
-    /// Spectral perceptual quality index on the same blocks, 0 to 1.
+    /// Spectral perceptual quality index (SPQI) on the same blocks, 0 to 1.
     double spqi() const;
     /// 10 log10 of the power of the reference over that of the difference.
     double signal_to_noise_db() const;
@@ -77,26 +78,26 @@ private:
     double spectral_ = 0.0, temporal_ = 0.0, quality_ = 0.0, signal_ = 0.0, noise_ = 0.0;
 };
 
-/// The same of takes in memory; the shorter one counts. Allocate.
+/// The same for takes in memory, over the length of the shorter one. Allocate.
 double st_sim(std::span<const double> reference, std::span<const double> output);
 double spqi(std::span<const double> reference, std::span<const double> output);
 double signal_to_noise_db(std::span<const double> reference, std::span<const double> output);
 
-/// Correlation coefficient of two spectrograms in dB, each cut 40 dB below its strongest point: Hann windows of 21 ms, a
-/// quarter apart. The takes come in pieces, twice, as the strongest points must be known before.
+/// Correlation coefficient of two spectrograms in dB, each floored 40 dB below its maximum: Hann windows of 21 ms with
+/// a step of a quarter. The takes are pushed twice in pieces, as the first pass finds the maxima.
 class SpectrogramSimilarity {
 public:
     /// Of takes at `rate` Hz, from `lowest` to `highest` Hz.
     SpectrogramSimilarity(double rate, double lowest, double highest);
 
-    /// As many samples of each.
+    /// Equally many samples of each.
     void push(std::span<const double> reference, std::span<const double> output);
-    /// To be called when all of both came, the first and the second time.
+    /// Call when both takes are complete, after the first and the second pass.
     void end_of_pass();
     double value() const { return pearson_.value(); }
 
 private:
-    /// Columns of one take: the powers of the bins in the band.
+    /// Columns of one take: powers of the bins in the band.
     struct Columns {
         SegmentFft<double> transform;
         std::vector<double> waiting, powers;
@@ -112,7 +113,7 @@ private:
     Pearson pearson_;
 };
 
-/// The same of takes in memory, over their common length. Allocates.
+/// The same for takes in memory, over their common length. Allocates.
 double spectrogram_similarity(std::span<const double> reference, std::span<const double> output, double rate,
                               double lowest, double highest);
 

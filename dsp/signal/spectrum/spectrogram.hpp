@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Power over time and frequency, in a fixed number of columns however long the record is.
+// Spectrogram with a fixed number of columns for records of any length.
 #pragma once
 
 #include "dsp/signal/spectrum/segment_fft.hpp"
@@ -14,10 +14,10 @@ class Spectrogram {
 public:
     static constexpr std::size_t most_columns = 1024;
 
-    /// Hann segments of `segment` samples, half overlapping; `rate` in Hz.
+    /// Hann segments of `segment` samples with 50 % overlap; `rate` in Hz.
     Spectrogram(std::size_t segment, double rate);
 
-    /// Any number of samples. When the columns are full, neighbours are averaged and each is twice as long from then.
+    /// Any number of samples. When the columns are full, pairs are averaged, which doubles the duration of a column.
     void push(std::span<const double> samples);
 
     std::size_t bins() const noexcept { return transform_.bins(); }

@@ -9,7 +9,7 @@ namespace tactus::signal {
 
 namespace {
 
-/// The transform of the last size: records and blocks of one length come one after another.
+/// Caches the plan of the last size: consecutive records and blocks often have one length.
 RealFft<double>& transform_of(std::size_t size) {
     static thread_local std::unique_ptr<RealFft<double>> kept;
     if (!kept || kept->size() != size) kept = std::make_unique<RealFft<double>>(size);

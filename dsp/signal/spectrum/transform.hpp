@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole records to their spectra and back, for analysis offline.
+// Spectra of whole records and their inverse, for offline analysis.
 #pragma once
 
 #include <complex>
@@ -9,11 +9,11 @@
 
 namespace tactus::signal {
 
-/// Discrete Fourier transform Σ x[n] e^{−2πi kn/size} for k = 0 … size/2 of the samples, filled up with zeros. `size`
-/// is even, best a product of small primes, and not below the number of samples. Allocates.
+/// Discrete Fourier transform Σ x[n] e^{−2πi kn/size} for k = 0 … size/2 of the zero-padded samples. `size` is even,
+/// best a product of small primes, and not below the number of samples. Allocates.
 std::vector<std::complex<double>> spectrum_of(std::span<const double> samples, std::size_t size);
 
-/// The real samples of such a half spectrum (bins 0 … size/2): the inverse of `spectrum_of`. Allocates.
+/// Real samples from a half spectrum (bins 0 … size/2): the inverse of `spectrum_of`. Allocates.
 std::vector<double> samples_of(std::span<const std::complex<double>> half);
 
 }  // namespace tactus::signal

@@ -23,8 +23,8 @@ WelchSettings hann(double rate, std::size_t segment, std::size_t overlap) {
     return settings;
 }
 
-/// Half a second, in segments short enough that a wavering line stays one and long enough to part the lines of a saw.
-/// A record that is shorter fills none, and needs no room for one.
+/// Half a second, in segments short enough to keep a varying line together and long enough to resolve the lines of a
+/// saw. A shorter record fills none and needs no memory for one.
 WelchSettings block_settings(double rate, std::size_t frames) {
     const double longest = std::min(0.25 * rate, static_cast<double>(frames));
     const std::size_t segment = std::bit_floor(static_cast<std::size_t>(std::max(64.0, longest)));
@@ -99,7 +99,7 @@ void VibrationAnalysis::end_block() {
     const Spectrum spectrum = block_.spectrum();
     if (!spectrum.power.empty()) {
         const Comb comb = fit_comb(spectrum, settings_.lowest, settings_.highest);
-        // A blow rings at many frequencies at once: ripples of its spectrum are no lines.
+        // An impact excites many frequencies at once: the ripples of its spectrum are no lines.
         double all = 1e-300, most = 0.0;
         for (const double movement : movement_) all += movement, most = std::max(most, movement);
         if (comb.confidence > 0.1 && most < 0.4 * all) seconds_.push_back({comb.best.frequency, comb.confidence});
@@ -141,7 +141,7 @@ FundamentalEstimate VibrationAnalysis::fundamental(const Spectrum& lines) const 
             std::max(out.confidence, std::min(1.0, out.confidence + 0.5 * share_near(out.frequency, 0.01) - 0.35));
         return out;
     }
-    // The rate wavers: the whole record's spectrum smears its lines, the seconds do not.
+    // With a varying rate the spectrum of the whole record smears the lines; those of short sections do not.
     double all = 0.0, sum = 0.0, trust = 0.0;
     for (const Second& second : heard) all += second.confidence;
     for (const Second& second : heard) {
@@ -167,7 +167,7 @@ VibrationReport VibrationAnalysis::report() const {
     out.spectrogram = spectrogram_;
     if (out.lines.power.size() < 8) return out;
     out.fundamental = fundamental(out.lines);
-    // Less trust than this is what noise gets.
+    // Noise reaches lower confidences than this.
     if (out.fundamental.confidence < 0.1) out.fundamental.frequency = 0.0;
     out.harmonics = harmonic_table(out.lines, out.fundamental.frequency, settings_.orders);
     out.peaks = strongest(find_lines(out.lines, 2.0 * out.lines.df, settings_.psd.rate));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything that is asked of one channel of a vibration record, gathered in one pass and in bounded memory.
+// Complete analysis of one channel of a vibration record, in one pass and bounded memory.
 #pragma once
 
 #include "dsp/signal/spectrum/bands.hpp"
@@ -16,25 +16,25 @@
 namespace tactus::signal {
 
 struct AnalysisSettings {
-    WelchSettings psd;                       ///< the spectrum that is shown; its rate is the record's
-    double lowest = 20.0, highest = 500.0;   ///< Hz: where the fundamental may lie
+    WelchSettings psd;  ///< of the displayed spectrum; its rate is the record's
+    double lowest = 20.0, highest = 500.0;  ///< Hz: range of the fundamental
     int orders = 10;
-    std::optional<std::pair<double, double>> envelope;  ///< Hz: band whose envelope is analysed
+    std::optional<std::pair<double, double>> envelope;  ///< Hz: band of the envelope analysis
     bool spectrogram = false;
 };
 
 struct FundamentalEstimate {
-    double frequency = 0.0;   ///< Hz; 0: nothing repeats
+    double frequency = 0.0;  ///< Hz; 0: not periodic
     double confidence = 0.0;  ///< 0 … 1
-    bool steady = false;      ///< one rate throughout; otherwise `frequency` is the one in the middle of its path
-    double low = 0.0, high = 0.0;      ///< Hz: the middle 80 % of the path, by half seconds
-    std::vector<CombFit> rivals;       ///< other rates that explain the lines nearly as well
+    bool steady = false;  ///< constant rate; otherwise `frequency` is the median of its path
+    double low = 0.0, high = 0.0;  ///< Hz: the middle 80 % of the path, in half seconds
+    std::vector<CombFit> rivals;  ///< other rates that explain the lines nearly as well
 };
 
 struct VibrationReport {
     Level level;
-    Spectrum psd;    ///< density, as asked for
-    Spectrum lines;  ///< density, Hann, mean: what lines and bands were read from
+    Spectrum psd;  ///< density, with the given settings
+    Spectrum lines;  ///< density, Hann, mean: the source of lines and bands
     FundamentalEstimate fundamental;
     std::vector<Harmonic> harmonics;
     std::vector<SpectralLine> peaks;  ///< the strongest 20, by frequency
@@ -46,11 +46,11 @@ struct VibrationReport {
 
 class VibrationAnalysis {
 public:
-    /// `frames`: how long the record will be. Throws Error when the settings make no sense.
+    /// `frames`: length of the record. Throws Error when the settings are invalid.
     VibrationAnalysis(const AnalysisSettings& settings, std::size_t frames);
 
     void push(std::span<const double> samples);
-    /// What follows does not continue what was pushed: no segment spans the place.
+    /// Marks a gap: no segment spans it.
     void gap();
     VibrationReport report() const;
 
@@ -67,7 +67,7 @@ private:
         double frequency, confidence;
     };
     std::vector<Second> seconds_;
-    std::array<double, 8> movement_{};  // squared steps in the eighths of a block
+    std::array<double, 8> movement_{};  // squared differences in the eighths of a block
     double last_ = 0.0;
     std::optional<BandEnvelope> envelope_;
     std::optional<WelchStream<double>> envelope_spectrum_;

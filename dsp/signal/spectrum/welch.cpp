@@ -16,8 +16,8 @@ namespace tactus::signal {
 
 namespace {
 
-// Sums are taken over groups of segments and then over groups: the same however a record is cut into pieces or work
-// is spread, and more exact than one long sum.
+// Sums over groups of segments, then over groups: independent of how a record is cut into pieces or work is
+// distributed, and more accurate than one long sum.
 constexpr std::size_t group_segments = 64;
 
 double start_of(Averaging averaging) {
@@ -90,7 +90,7 @@ Spectrum scaled(std::vector<double> power, std::span<const T> window, const Welc
     switch (settings.averaging) {
         case Averaging::mean: out.effective_segments = effective_segments(w, settings.step(), segments); break;
         case Averaging::median:
-            // The median of exponentially distributed powers scatters 1/ln 2 times as much as their mean.
+            // The median of exponentially distributed powers has a standard deviation 1/ln 2 times that of their mean.
             out.effective_segments =
                 effective_segments(w, settings.step() * (segments / std::max<std::size_t>(kept, 1)), kept) *
                 std::numbers::ln2 * std::numbers::ln2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Power spectra by averaging over segments (Welch 1967), in the conventions of scipy.signal.welch.
+// Power spectra by Welch's method (1967): averages over segments, in the conventions of scipy.signal.welch.
 #pragma once
 
 #include "dsp/signal/spectrum/segment_fft.hpp"
@@ -13,8 +13,8 @@ namespace tactus::signal {
 
 enum class Averaging {
     mean,
-    median,  ///< divided by its bias for noise; deaf to a few loud segments
-    maximum, ///< the largest each bin ever was
+    median,  ///< divided by its bias for noise; robust against a few loud segments
+    maximum,  ///< maximum of each bin
     minimum,
 };
 
@@ -32,19 +32,19 @@ struct WelchSettings {
     Scaling scaling = Scaling::density;
 
     std::size_t step() const { return segment - overlap; }
-    /// Whole segments in so many samples; the rest at the end is dropped.
+    /// Number of whole segments in this many samples; the remainder is dropped.
     std::size_t segments_in(std::size_t samples) const {
         return samples < segment ? 0 : (samples - segment) / step() + 1;
     }
 };
 
-/// One-sided: power at negative frequencies is added, except at 0 Hz and (even segments) at half the rate.
+/// One-sided: includes the power at negative frequencies, except at 0 Hz and (even segments) at half the rate.
 struct Spectrum {
     std::vector<double> power;   ///< per bin, in unit² or unit²/Hz
     double df = 0.0;             ///< Hz between bins; bin k lies at k·df
-    double noise_bandwidth = 0;  ///< Hz of the window: power as spectrum / power as density
-    std::size_t segments = 0;    ///< that were averaged
-    /// Independent segments that would scatter as much: segments, less what their overlap repeats.
+    double noise_bandwidth = 0;  ///< Hz, equivalent noise bandwidth of the window: power as spectrum / power as density
+    std::size_t segments = 0;  ///< number of averaged segments
+    /// Number of independent segments with the same variance (accounts for the overlap).
     double effective_segments = 0.0;
 
     double frequency(std::size_t bin) const { return static_cast<double>(bin) * df; }
@@ -52,41 +52,41 @@ struct Spectrum {
     double relative_deviation() const;
 };
 
-/// Segments that scatter like `segments` overlapping ones: Welch's variance formula for this window and step.
+/// Effective number of segments for `segments` overlapping ones: Welch's variance formula for this window and step.
 double effective_segments(std::span<const double> window, std::size_t step, std::size_t segments);
 
-/// scipy's correction: the mean over the median of `segments` powers of noise.
+/// scipy's bias correction: median over mean of `segments` powers of noise.
 double median_bias(std::size_t segments);
 
-/// The longest power of two within 0.75 s that leaves at least eight half-overlapping segments of `frames`, but at
-/// least 64; the whole record when that is shorter still.
+/// The longest power of two within 0.75 s that gives at least eight half-overlapping segments of `frames`, but at least
+/// 64; the whole record when it is shorter.
 std::size_t suggested_segment(double rate, std::size_t frames);
 
-/// Runs a function for 0 … count−1, in any order or at once.
+/// Runs a function for 0 … count−1, in any order or concurrently.
 using ForEach = std::function<void(std::size_t count, const std::function<void(std::size_t)>&)>;
 
-/// Spectrum of a record that is in memory, in double or float. A record shorter than a segment is one segment; an
-/// empty one gives no bins. The result does not depend on `for_each`, which may spread the work over threads.
-/// Allocates. Throws Error when the settings make no sense.
+/// Spectrum of a record in memory, in double or float. A record shorter than a segment is one segment; an empty one
+/// gives no bins. The result does not depend on `for_each`, which may use several threads. Allocates. Throws Error when
+/// the settings are invalid.
 template <class T>
 Spectrum welch(std::span<const T> record, WelchSettings settings, const ForEach& for_each = {});
 
-/// The same for a record that comes in pieces, of any sizes, in memory that does not grow: the median keeps at most
-/// `most_median_segments` segments, every 2ᵏth of a long record.
+/// The same for a record that comes in pieces, in constant memory: the median keeps at most `most_median_segments`
+/// segments, every 2ᵏth of a long record.
 template <class T>
 class WelchStream {
 public:
     static constexpr std::size_t most_median_segments = 1024;
 
-    /// Throws Error when the settings make no sense.
+    /// Throws Error when the settings are invalid.
     explicit WelchStream(const WelchSettings& settings);
 
     /// Any number of samples. Allocates only for the median.
     void push(std::span<const T> samples);
-    /// What is pushed next does not continue what came before: no segment spans the place.
+    /// Marks a gap: no segment spans it.
     void forget_waiting();
     std::size_t segments() const noexcept { return segments_; }
-    /// The spectrum of what was pushed so far. Allocates. Without a whole segment: no bins.
+    /// The spectrum of all samples pushed so far. Allocates. Without a whole segment: no bins.
     Spectrum spectrum() const;
 
 private:
@@ -101,7 +101,7 @@ private:
     std::size_t keep_every_ = 1;
 };
 
-/// Checks what both forms need. Throws Error.
+/// Validates the settings for both forms. Throws Error.
 void check(const WelchSettings& settings);
 
 }  // namespace tactus::signal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One simulated finger part of a gripper: its motor, what pulls at it, and its sensors.
+// One simulated finger of a gripper: motor, load and sensors.
 #pragma once
 
 #include "dsp/simulate/gripper/rig.hpp"
@@ -15,11 +15,11 @@
 
 namespace tactus::simulate {
 
-/// A hand in the gripper that squeezes and lets go: it wants its finger `travel` m in from `from` to `until` s.
+/// A simulated hand that squeezes and releases: it moves its finger in by `travel` m between `from` and `until` s.
 struct Squeeze {
     double from = 0.5, until = 1e9;  ///< s
     double travel = 0.0;             ///< m
-    double rise = 0.4;               ///< s, within which it closes and opens
+    double rise = 0.4;  ///< s, duration of closing and opening
 
     double at(double time) const noexcept {
         const auto eased = [this](double t) {
@@ -36,18 +36,18 @@ inline constexpr int most_command_delay = 8;
 
 struct Finger {
     std::variant<WalkingMotor, WaveMotor> motor;
-    bool on_rig = true;              ///< the cord pulls; else the hand does
+    bool on_rig = true;  ///< loaded by the cord; else by the hand
     RigSprings rig;
     double hand_stiffness = 300.0;   ///< N/m, of a hand that squeezes
     Squeeze squeeze;
     Quantiser encoder, gauge;        ///< m, N
-    int delay = 1;                   ///< whole periods until a command acts, 0 to 8
+    int delay = 1;  ///< whole periods from a command to its effect, 0 to 8
 
-    double position = 0.0;           ///< m, the truth; towards + the finger closes
-    double force = 0.0;              ///< N, the truth, on the finger
+    double position = 0.0;  ///< m, true value; + closes the finger
+    double force = 0.0;  ///< N, true value, on the finger
     bool slipped = false;            ///< within the last `advance`
 
-    /// Through `elapsed` s, told to run at `wanted` m/s, while the cord goes on to `cord_end`.
+    /// Advances by `elapsed` s at the command `wanted` m/s, while the cord moves to `cord_end`.
     void advance(double wanted, double cord_end, double elapsed, bool free) noexcept {
         if (!(elapsed > 0.0)) return;
         for (std::size_t d = most_command_delay; d > 0; --d) told_[d] = told_[d - 1];
@@ -55,7 +55,7 @@ struct Finger {
         const double command = told_[static_cast<std::size_t>(std::clamp(delay, 0, most_command_delay))];
         const int steps = std::max(1, static_cast<int>(std::ceil(elapsed / finger_substep_s - 1e-6)));
         const double h = elapsed / steps;
-        // The servo runs smoothly from one target to the next: a cubic with the slopes of neighbouring targets.
+        // The servo interpolates between targets: cubic Hermite with the slopes of neighbouring targets.
         const double slope_begin = cord_slope_, slope_end = 1.5 * (cord_end - cord_) - 0.5 * slope_begin;
         slipped = false;
         for (int i = 0; i < steps; ++i) {

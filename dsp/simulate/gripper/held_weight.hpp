@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A weight that stands on a table until fingers grip it hard enough to lift it.
+// A weight on a table that fingers can grip and lift.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -17,13 +17,13 @@ struct WeightSettings {
     double stiffness = 600.0;   ///< N/m of the grip
     double damping = 8.0;       ///< N·s/m of the grip
     double gravity = 9.81;      ///< m/s², towards −z
-    double table = 0.0;         ///< m, height of the object's origin when it stands
+    double table = 0.0;  ///< m, height of the object's origin when it rests
 };
 
-/// Point mass. Two fingers that press with N each hold it with at most 2 μ N; a stronger pull slides through them.
+/// Point mass. Two fingers that press with N each hold at most 2 μ N (Coulomb friction); beyond that it slides.
 struct HeldWeight {
     Vec3 position{0.0}, velocity{0.0};
-    Vec3 grip{0.0};       ///< of the object in the hand's frame of axes, where it was taken
+    Vec3 grip{0.0};  ///< grip point of the object, in the hand's axes
     bool held = false, slides = false;
 
     /// Force on the hand after `dt` s (semi-implicit Euler).
@@ -46,10 +46,10 @@ struct HeldWeight {
         const double depth = s.table - position.z;
         Vec3 force = pull - Vec3(0.0, 0.0, s.mass * s.gravity);
         if (depth > 0.0) {
-            constexpr double sink = 0.5e-3;  // m that the weight sinks into the table under its own load
+            constexpr double sink = 0.5e-3;  // m: penetration of the table under the weight's own load
             const double k = s.mass * s.gravity / sink;
             force.z += std::max(0.0, k * depth - 1.4 * std::sqrt(k * s.mass) * velocity.z);
-            force.x -= velocity.x * s.mass / dt * 0.5;  // the table does not let it slide
+            force.x -= velocity.x * s.mass / dt * 0.5;  // the table stops sliding
             force.y -= velocity.y * s.mass / dt * 0.5;
         }
         velocity += force * (dt / s.mass);

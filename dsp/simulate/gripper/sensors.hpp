@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sensors of a gripper: what they add to the truth, and how a strain gauge is calibrated.
+// Sensor models of a gripper: quantisation, noise, and calibration of a strain gauge.
 #pragma once
 
 #include "dsp/core/random.hpp"
@@ -10,7 +10,7 @@
 
 namespace tactus::simulate {
 
-/// Counts in steps of `step` with normal noise before counting.
+/// Quantises in steps of `step` after adding normal noise.
 struct Quantiser {
     double step = 0.0;   ///< 0: none
     double noise = 0.0;  ///< rms, in the unit of the value
@@ -26,14 +26,14 @@ struct Quantiser {
 /// y = slope x + offset by least squares.
 struct LineFit {
     double slope = 1.0, offset = 0.0;
-    double r_squared = 1.0;       ///< share of the variance that the line explains
-    double worst_residual = 0.0;  ///< of one point, in the unit of y: how far from linear
+    double r_squared = 1.0;  ///< coefficient of determination
+    double worst_residual = 0.0;  ///< greatest residual, in the unit of y: nonlinearity
 
     double operator()(double x) const noexcept { return slope * x + offset; }
 };
 
-/// A strain gauge's constant from readings under known forces (thesis 6.3.1). Needs two points with different x; else a
-/// slope of 0. Sums in the order of the points.
+/// Calibrates a strain gauge from readings under known forces (thesis 6.3.1). Needs two points with different x;
+/// otherwise the slope is 0. Sums in the order of the points.
 LineFit fit_line(std::span<const double> x, std::span<const double> y) noexcept;
 
 }  // namespace tactus::simulate
