@@ -41,7 +41,8 @@ struct SnapToFit {
     Asset<bone::Bone> fixed{"the one it is drawn to"};
     Param held{"1", "-1", "15", "place of the held body in the scene; grasp drives it"};
     Param target{"0", "0", "15", "place of the other fragment"};
-    Choice mode{{"extended", "thesis"}, "extended: both paints, robust, narrowing; thesis: a steady pull of one"};
+    Choice mode{{"extended", "baseline", "thesis"},
+                "extended: both paints, robust, narrowing; baseline: a steady pull of one (thesis: its old name)"};
     Param force{"10 N", "0 N", "100 N", "the pull of all painted points together, at most"};
     Param reach{"4 mm", "0.1 mm", "12 mm", "no pull from farther away"};
     LeadParameters led;
@@ -142,7 +143,7 @@ private:
             energy_->law.stride = std::max<std::size_t>(1, moving_paint_->position.size() / 300);
             score_ = energy_
                          ->quality(fit::between_centres(*moving_paint_, *fixed_paint_,
-                                                   fixed_file.inverse() * (now.proxy * moving_file)),
+                                                        fixed_file.inverse() * (now.proxy * moving_file)),
                                    0.2e-3)
                          .score;
             energy_->law.stride = 1;

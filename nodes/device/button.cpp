@@ -8,8 +8,8 @@ namespace tactus::nodes {
 
 struct Button {
     static constexpr auto about =
-        "A button for what the device has none for: pressed for a moment whenever 'press' changes, as by 'tactus set "
-        "undo.press=1' and next time 'tactus set undo.press=2', and as long as 'hold' is 1.";
+        "A button for what the device has none for: pressed for a moment whenever 'press' changes, as by 'tactus "
+        "trigger undo', and as long as 'hold' is 1.";
 
     Out<bool> pressed{"for 20 ms after each change of press, and while it is held"};
     Param press{"0", "-1e9", "1e9", "any other number than before is a press"};

@@ -20,8 +20,9 @@ constexpr double plain_screen_height = 0.3;  // m, where no rig says more
 
 display::StereoMode parse_stereo(const std::string& text) {
     if (const auto mode = display::stereo_of_name(text)) return *mode;
-    throw Error(fmt::format("stereo takes {}, not '{}'{}", fmt::join(display::stereo_names, ", "), text,
-                            did_you_mean(text, std::vector<std::string>(display::stereo_names.begin(), display::stereo_names.end()))));
+    throw Error(fmt::format(
+        "stereo takes {}, not '{}'{}", fmt::join(display::stereo_names, ", "), text,
+        did_you_mean(text, std::vector<std::string>(display::stereo_names.begin(), display::stereo_names.end()))));
 }
 
 Vec3 parse_offset(const std::string& text) {
@@ -38,7 +39,7 @@ Sight::Sight(const SightChoice& choice) : stereo(parse_stereo(choice.stereo)), h
     if (!choice.rig.empty()) use_rig(choice.rig);
     if (choice.offset.empty()) return;
     if (!rig_)
-        throw Error("--offset moves what is seen against what is felt: it needs a --rig, which says where that is");
+        throw Error("--offset moves what is seen against what is felt: it needs a --display, which says where that is");
     set_offset(parse_offset(choice.offset));
 }
 
@@ -131,8 +132,8 @@ std::vector<Vec3> Sight::eyes_for(std::size_t screen, const display::DisplayRig&
     return {eyes.left, eyes.right};
 }
 
-std::vector<display::DrawnView> Sight::views(std::size_t screen, const display::OrbitCamera& camera, const display::Bounds& scene, int width,
-                                    int height) {
+std::vector<display::DrawnView> Sight::views(std::size_t screen, const display::OrbitCamera& camera,
+                                             const display::Bounds& scene, int width, int height) {
     const display::StereoMode mode = mode_of(screen);
     if (!rig_ && (head.empty() || !head_pose_)) return display::views_of(camera, scene, width, height, mode);
     last_.resize(screens());
@@ -160,11 +161,13 @@ std::vector<display::DrawnView> Sight::views(std::size_t screen, const display::
     return display::views_of(last_[screen], width, height, mode, text_of(screen));
 }
 
-void add_legend(display::Image& image, const display::Legend& legend, std::span<const display::DrawnView> views, display::Turned turned) {
+void add_legend(display::Image& image, const display::Legend& legend, std::span<const display::DrawnView> views,
+                display::Turned turned) {
     // Eyes that share the whole picture share the legend.
     for (std::size_t i = 0; i < views.size(); ++i) {
         const display::DrawnView& view = views[i];
-        const bool is_drawn = std::ranges::any_of(views.first(i), [&](const display::DrawnView& v) { return v.x == view.x; });
+        const bool is_drawn =
+            std::ranges::any_of(views.first(i), [&](const display::DrawnView& v) { return v.x == view.x; });
         if (!is_drawn) display::add_legend(image, legend, view.x, view.width, turned);
     }
 }
