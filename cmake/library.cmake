@@ -25,7 +25,7 @@ add_custom_command(
   OUTPUT ${equaliser}.toml
   COMMAND ${CMAKE_COMMAND} -E make_directory ${CMAKE_BINARY_DIR}/library/equalisers
   COMMAND ${CMAKE_COMMAND} -E env TSAN_OPTIONS=ignore_noninstrumented_modules=1 $<TARGET_FILE:tactus> measure
-          saw-vibration --in actuator.drive --out handle.out --amplitude 100 -o ${equaliser}.csv --json > ${equaliser}.json
+          saw-vibration --in actuator.drive --probe handle.out --amplitude 100 -o ${equaliser}.csv --json > ${equaliser}.json
   COMMAND ${CMAKE_COMMAND} -E env TSAN_OPTIONS=ignore_noninstrumented_modules=1 $<TARGET_FILE:tactus> equalise
           ${equaliser}.csv -o ${equaliser}.toml --kind linear --volts 0.004 --json >> ${equaliser}.json
   DEPENDS tactus ${PROJECT_SOURCE_DIR}/assets/library/patches/saw-vibration.toml ${PROJECT_SOURCE_DIR}/assets/library/patches/parts/handle.toml

@@ -11,8 +11,10 @@ command -v python3 >/dev/null || { echo "docs/generate.sh: needs python3" >&2; e
 
 "$tactus" nodes --json | python3 "$docs/nodes_page.py" "$docs/../nodes/catalogue.cpp" >"$folder/nodes.md"
 
-# The names under "Subcommands:".
-verbs_of() { "$tactus" "$@" --help | sed -n '/^Subcommands:/,$p' | sed -n 's/^  \([a-z-][a-z-]*\).*/\1/p'; }
+# The names under the headings that follow the options.
+verbs_of() {
+    "$tactus" "$@" --help | awk '/^[A-Z].*:$/ { verbs = $0 !~ /^(Positionals|Options):$/ } verbs && /^  [a-z]/ { print $1 }'
+}
 
 # section LEVEL VERB ...: heading and help, without empty lines at both ends.
 section() {

@@ -49,7 +49,7 @@ def print_node(node, family):
 
 
 def main():
-    nodes = {node["type"]: node for node in json.load(sys.stdin)}
+    nodes = {node["type"]: node for node in json.load(sys.stdin)["rows"]}
     families = {}
     with open(sys.argv[1], encoding="utf-8") as catalogue:
         for name, family in re.findall(r"X\((\w+), (\w+)\)", catalogue.read()):

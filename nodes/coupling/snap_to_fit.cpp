@@ -41,9 +41,9 @@ struct SnapToFit {
     Asset<bone::Bone> fixed{"the other fragment, with painted points"};
     Param held{"1", "-1", "15", "place of the held body in the scene; connect grasp.held"};
     Param target{"0", "0", "15", "place of the other fragment"};
-    Choice mode{{"extended", "thesis"},
-                "extended: robust two-sided energy with a narrowing scale; thesis: constant pull of the held "
-                "fragment's points"};
+    Choice mode{{"extended", "baseline", "thesis"},
+                "extended: robust two-sided energy with a narrowing scale; baseline: constant pull of the held "
+                "fragment's points (thesis: its old name)"};
     Param force{"10 N", "0 N", "100 N", "limit of the pull of all painted points together"};
     Param reach{"4 mm", "0.1 mm", "12 mm", "maximum distance of the pull"};
     LeadParameters led;

@@ -8,8 +8,8 @@ namespace tactus::nodes {
 
 struct Button {
     static constexpr auto about =
-        "A button that is not on the device: pressed for 20 ms whenever 'press' changes, for example by 'tactus set "
-        "undo.press=1' and then 'tactus set undo.press=2', and for as long as 'hold' is 1.";
+        "A button that is not on the device: pressed for 20 ms whenever 'press' changes, as 'tactus trigger undo' "
+        "changes it, and for as long as 'hold' is 1.";
 
     Out<bool> pressed{"true for 20 ms after each change of 'press', and while 'hold' is above 0.5"};
     Param press{"0", "-1e9", "1e9", "change the number to press once"};

@@ -10,6 +10,7 @@
 #include "tools/bench/snap_live.hpp"
 #include "tools/bench/snap_peers.hpp"
 #include "tools/bench/snap_whole_case.hpp"
+#include "tools/command/old_words.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 
 #include <fmt/format.h>
@@ -73,7 +74,7 @@ struct Tally {
 using Tallies = std::map<std::string, Tally>;
 
 constexpr std::pair<const char*, fit::FitMode> modes[] = {
-    {"extended", fit::FitMode::extended}, {"global", fit::FitMode::global}, {"thesis", fit::FitMode::thesis}};
+    {"extended", fit::FitMode::extended}, {"global", fit::FitMode::global}, {"baseline", fit::FitMode::thesis}};
 constexpr IcpKind peers[] = {IcpKind::point, IcpKind::plane, IcpKind::generalised};
 constexpr IcpSchedule schedules[] = {IcpSchedule::unlimited, IcpSchedule::trimmed, IcpSchedule::annealed};
 
@@ -110,7 +111,8 @@ void try_all(const FracturePair& pair, const IcpTarget& target, const Pose& star
             const std::int64_t begin = run::thread_ns();
             const Pose pose = run_icp(pair.moving, target, centres, kind, schedule);
             tallies[fmt::format("{} {}", name_of(kind), name_of(schedule))].add(
-                pair, fit::between_bodies(pair.moving, pair.fixed, pose), 1e-9 * static_cast<double>(run::thread_ns() - begin));
+                pair, fit::between_bodies(pair.moving, pair.fixed, pose),
+                1e-9 * static_cast<double>(run::thread_ns() - begin));
         }
 }
 
@@ -288,32 +290,36 @@ int bench_snap(const SnapBenchChoice& choice) {
         if (!choice.json) print_live(more);
         rows.insert(rows.end(), more.begin(), more.end());
     }
-    if (choice.json) fmt::print("{}\n", rows.dump(2));
+    if (choice.json) fmt::print("{}\n", Json{{"version", 1}, {"rows", rows}}.dump(2));
     return done;
 }
 
 Verb snap_verb() {
-    return {
-        "snap", "success of snap-to-fit on simulated fractures, beside ICP", [](VerbOptions& verb) -> Action {
-            const auto choice = std::make_shared<SnapBenchChoice>();
-            const std::vector<std::string> methods{"extended", "global", "thesis", "icp_point", "icp_plane", "gicp"};
-            verb.add("--seed", choice->seed, "of the first fracture").shows_default();
-            verb.add("--seeds", choice->seeds, "so many fractures of each kind").shows_default().range(1, 10'000);
-            verb.add("--trials", choice->trials, "starts for each fracture and distance")
-                .shows_default()
-                .range(1, 1000);
-            verb.add("--case", choice->cases,
-                     "clean, chipped25, chipped30, spilled, both, fine or live (default: all of these); twelve, "
-                     "twelve-kerf, twelve-missing: a jaw in twelve pieces, by the matcher")
-                .separated_by(',');
-            verb.add("--method", choice->methods, "extended, global, thesis, icp_point, icp_plane, gicp (default: all)")
-                .separated_by(',')
-                .one_of(methods);
-            verb.add("--bone", choice->bone, "what is broken (default: the bundled jaw)");
-            verb.flag("--pushed", choice->pushed, "starts are moved apart until bone does not lie in bone");
-            verb.flag("--json", choice->json, "as JSON");
-            return [choice] { return bench_snap(*choice); };
-        }};
+    return {"snap", "success of snap-to-fit on simulated fractures, beside ICP", [](VerbOptions& verb) -> Action {
+                const auto choice = std::make_shared<SnapBenchChoice>();
+                const std::vector<std::string> methods{"extended",  "global",    "baseline",
+                                                       "icp_point", "icp_plane", "gicp"};
+                verb.add("--seed", choice->seed, "of the first fracture").shows_default();
+                verb.add("--seeds", choice->seeds, "so many fractures of each kind").shows_default().range(1, 10'000);
+                verb.add("--trials", choice->trials, "starts for each fracture and distance")
+                    .shows_default()
+                    .range(1, 1000);
+                verb.add("--case", choice->cases,
+                         "clean, chipped25, chipped30, spilled, both, fine or live (default: all of these); twelve, "
+                         "twelve-kerf, twelve-missing: a jaw in twelve pieces, by the matcher")
+                    .separated_by(',');
+                verb.add("--method", choice->methods,
+                         "extended, global, baseline, icp_point, icp_plane, gicp (default: all)")
+                    .separated_by(',')
+                    .one_of(methods);
+                verb.add("--bone", choice->bone, "what is broken (default: the bundled jaw)");
+                verb.flag("--pushed", choice->pushed, "starts are moved apart until bone does not lie in bone");
+                verb.flag("--json", choice->json, "as JSON");
+                verb.old([](std::vector<std::string>& words) {
+                    command::rename_value(words, "--method", "thesis", "baseline");
+                });
+                return [choice] { return bench_snap(*choice); };
+            }};
 }
 
 }  // namespace tactus::bench

@@ -51,8 +51,9 @@ std::vector<LiveTicks> bench_snap_live() {
     options.spacing *= 0.82;  // about 5,000 painted points on both together
     const std::vector<bone::Bone> bones = library::make_fragments(options);
     const fit::FitSurface moving = fit::make_live_fit_surface(bones[1].points, bones[1].distance),
-                     fixed = fit::make_live_fit_surface(bones[0].points, bones[0].distance);
-    const contact::Pointshell shells[] = {contact::make_pointshell(bones[0].points), contact::make_pointshell(bones[1].points)};
+                          fixed = fit::make_live_fit_surface(bones[0].points, bones[0].distance);
+    const contact::Pointshell shells[] = {contact::make_pointshell(bones[0].points),
+                                          contact::make_pointshell(bones[1].points)};
     const contact::Voxmap maps[] = {contact::make_voxmap(bones[0].distance), contact::make_voxmap(bones[1].distance)};
     coupling::Scene scene;
     scene.count = 2;
@@ -83,7 +84,7 @@ std::vector<LiveTicks> bench_snap_live() {
         std::ranges::sort(seconds);
         const auto at = [&](double share) { return seconds[static_cast<std::size_t>(share * (all_ticks - 1))] * 1e3; };
         const auto in_time = std::ranges::count_if(seconds, [](double s) { return s < 0.5e-3; });
-        rows.push_back({mode == fit::FitMode::extended ? "extended" : "thesis",
+        rows.push_back({mode == fit::FitMode::extended ? "extended" : "baseline",
                         moving.position.size() + fixed.position.size(), all_ticks,
                         static_cast<double>(in_time) / all_ticks, at(0.5), at(0.99), evaluations / all_ticks});
     }

@@ -10,7 +10,7 @@ namespace tactus::bench {
 
 /// One mode: pull, contact and coupling together, processor time of one thread.
 struct LiveTicks {
-    std::string method;  ///< "extended", "thesis"
+    std::string method;  ///< "extended", "baseline"
     std::size_t painted_points = 0;  ///< of both fragments together, about 5,000
     int ticks = 0;
     double in_time = 0.0;  ///< share of ticks under 0.5 ms

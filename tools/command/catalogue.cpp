@@ -3,35 +3,36 @@
 #include "tools/command/catalogue.hpp"
 
 // name, folder, heading of the help text
-#define TACTUS_VERBS(X)                  \
-    X(run, run, run_and_patch)           \
-    X(render, run, run_and_patch)        \
-    X(check, run, run_and_patch)         \
-    X(draw, run, run_and_patch)          \
-    X(nodes, machine, run_and_patch)     \
-    X(set, run, run_and_patch)           \
-    X(trigger, run, run_and_patch)       \
-    X(replay, run, run_and_patch)        \
-    X(view, run, run_and_patch)          \
-    X(spectrum, vibration, vibrations)   \
-    X(orders, vibration, vibrations)     \
-    X(compare, vibration, vibrations)    \
-    X(validate, vibration, vibrations)   \
-    X(measure, vibration, vibrations)    \
-    X(equalise, vibration, vibrations)   \
-    X(exposure, vibration, vibrations)   \
-    X(import, bones, bones)              \
-    X(info, bones, bones)                \
-    X(export, bones, bones)              \
-    X(register, bones, bones)            \
-    X(fracture, bones, fractures)        \
-    X(fracture_surface, bones, fractures)\
-    X(snap, bones, fractures)            \
-    X(plan, planning, fractures)         \
-    X(gripper, grippers, grippers)       \
-    X(calibrate, displays, displays)     \
-    X(devices, machine, machine)         \
-    X(bench, machine, machine)
+#define TACTUS_VERBS(X)                   \
+    X(run, run, run_and_patch)            \
+    X(render, run, run_and_patch)         \
+    X(check, run, run_and_patch)          \
+    X(draw, run, run_and_patch)           \
+    X(nodes, machine, run_and_patch)      \
+    X(set, run, run_and_patch)            \
+    X(trigger, run, run_and_patch)        \
+    X(replay, run, run_and_patch)         \
+    X(view, run, run_and_patch)           \
+    X(spectrum, vibration, vibrations)    \
+    X(orders, vibration, vibrations)      \
+    X(compare, vibration, vibrations)     \
+    X(validate, vibration, vibrations)    \
+    X(measure, vibration, vibrations)     \
+    X(equalise, vibration, vibrations)    \
+    X(exposure, vibration, vibrations)    \
+    X(import, bones, bones)               \
+    X(info, bones, bones)                 \
+    X(export, bones, bones)               \
+    X(register, bones, bones)             \
+    X(fracture, bones, fractures)         \
+    X(fracture_surface, bones, fractures) \
+    X(snap, bones, fractures)             \
+    X(plan, planning, fractures)          \
+    X(gripper, grippers, grippers)        \
+    X(calibrate, displays, displays)      \
+    X(devices, machine, machine)          \
+    X(bench, machine, machine)            \
+    X(generate, machine, machine)
 
 #define TACTUS_PLAN_VERBS(X)      \
     X(plan_new, planning)         \
@@ -84,6 +85,10 @@ const Verbs& all_verbs() {
 
 #undef TACTUS_LIST
 #define TACTUS_LIST(name, folder) name##_verb(),
+
+Program tactus_program() {
+    return {"tactus", "Tactus: patches of nodes for haptics, from 60 Hz to audio rate", all_verbs()};
+}
 
 const Verbs& plan_verbs() {
     static const Verbs all{TACTUS_PLAN_VERBS(TACTUS_LIST)};

@@ -8,6 +8,8 @@ namespace tactus::command {
 
 /// In the order of the help text.
 const Verbs& all_verbs();
+/// The command itself.
+Program tactus_program();
 /// Those of 'plan'.
 const Verbs& plan_verbs();
 

@@ -12,7 +12,5 @@ int main(int argc, char** argv) {
             ::close(handle);
             break;
         }
-    return tactus::command::command_line(
-        {"tactus", "Tactus: patches of nodes for haptics, from 60 Hz to audio rate", tactus::command::all_verbs()},
-        argc, argv);
+    return tactus::command::command_line(tactus::command::tactus_program(), argc, argv);
 }

@@ -29,8 +29,12 @@ bool is_bare_number(const std::string& text) {
 /// What stands for the value in help texts.
 std::string name_of_unit(const std::string& unit) {
     const Dimension dimension = parse_unit(unit).dimension;
-    for (const auto& [like, name] : {std::pair{"s", "TIME"}, {"Hz", "FREQUENCY"}, {"m", "LENGTH"}, {"m^2", "AREA"},
-                                     {"deg", "ANGLE"}, {"kg", "MASS"}})
+    for (const auto& [like, name] : {std::pair{"s", "TIME"},
+                                     {"Hz", "FREQUENCY"},
+                                     {"m", "LENGTH"},
+                                     {"m^2", "AREA"},
+                                     {"deg", "ANGLE"},
+                                     {"kg", "MASS"}})
         if (parse_unit(like).dimension == dimension) return name;
     return "QUANTITY";
 }
@@ -53,8 +57,8 @@ std::pair<double, double> parse_band(const std::string& text, const std::string&
         low = 0.0;  // said below
     }
     if (!(low > 0.0) || !(high > low) || !std::isfinite(high))
-        throw Error(fmt::format("{} takes LOW:HIGH in Hz, as in {} 200:600 or \"200 Hz:1 kHz\", not '{}'", option, option,
-                                text));
+        throw Error(fmt::format("{} takes LOW:HIGH in Hz, as in {} 200:600 or \"200 Hz:1 kHz\", not '{}'", option,
+                                option, text));
     return {low, high};
 }
 

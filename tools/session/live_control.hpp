@@ -18,7 +18,8 @@ namespace tactus::session {
 class LiveControl {
 public:
     /// `say` tells the user of edits and of why one was not made.
-    LiveControl(run::Engine& engine, PatchChoice choice, compile::AssetCache& assets, std::function<void(const std::string&)> say);
+    LiveControl(run::Engine& engine, PatchChoice choice, compile::AssetCache& assets,
+                std::function<void(const std::string&)> say);
 
     /// From LiveOptions::watch.
     void tend();

@@ -153,8 +153,9 @@ std::string summary_text(const run::Engine& engine, const Report& report, double
         text += fmt::format("  sound on {}: {}\n", card->name(), describe_sound(*card));
     for (const auto& slot : engine.outside().devices)
         for (const io::DeviceFault& fault : slot->guard.faults())
-            text += fmt::format("  fault of {} at {:.3f} s: {}; {:.2g} N faded to nothing\n", slot->name,
-                                tactus::seconds(fault.tick * slot->period), control::describe(fault.reason), fault.force_N);
+            text +=
+                fmt::format("  fault of {} at {:.3f} s: {}; {:.2g} N faded to nothing\n", slot->name,
+                            tactus::seconds(fault.tick * slot->period), control::describe(fault.reason), fault.force_N);
     for (const std::string& notice : engine.outside().notices) text += fmt::format("  note: {}\n", notice);
     return text;
 }

@@ -99,9 +99,9 @@ TEST_CASE("frames come at even times, whole, and do not depend on threads") {
     const Folder folder;
     const std::string command =
         "render touch-sphere --seconds 1.5 --frames 3 --size 200x120 --out " + folder.path.string();
-    REQUIRE(folder.tactus(command + "/a --threads 1").code == 0);
+    REQUIRE(folder.tactus(command + "/a --jobs 1").code == 0);
     ::setenv("LP_NUM_THREADS", "1", 1);
-    const Outcome again = folder.tactus(command + "/b --threads 4 --json");
+    const Outcome again = folder.tactus(command + "/b --jobs 4 --json");
     ::unsetenv("LP_NUM_THREADS");
     REQUIRE(again.code == 0);
     CHECK(again.out.find("frame_0003.png") != std::string::npos);
@@ -245,7 +245,7 @@ stereo = "mono"
             fmt::format("\"head.position={} mm, {} mm, {} mm\"", head.x * 1e3, head.y * 1e3, head.z * 1e3);
         const Outcome outcome =
             folder.tactus("render " + (folder.path / "still.toml").string() +
-                          " --seconds 0.1 --frames 1 --stereo side-by-side --rig " +
+                          " --seconds 0.1 --frames 1 --stereo side-by-side --display " +
                           (folder.path / "rig.toml").string() + " --head head.pose --set " + at_head +
                           " --size 1280x720 --overwrite --out " + (folder.path / "out").string());
         INFO(outcome.err);
@@ -283,9 +283,9 @@ low_left  = "-260 mm, 0 mm, -150 mm"
 low_right = "260 mm, 0 mm, -150 mm"
 high_left = "-260 mm, 0 mm, 150 mm"
 )");
-    const std::string render = "render " + (folder.path / "still.toml").string() + " --seconds 0.1 --frames 1 --rig " +
-                               (folder.path / "rig.toml").string() + " --size 800x300 --overwrite --out " +
-                               (folder.path / "out").string();
+    const std::string render = "render " + (folder.path / "still.toml").string() +
+                               " --seconds 0.1 --frames 1 --display " + (folder.path / "rig.toml").string() +
+                               " --size 800x300 --overwrite --out " + (folder.path / "out").string();
     const auto picture = [&](const std::string& how) {
         REQUIRE(folder.tactus(render + " " + how).code == 0);
         return Pixels(folder.path / "out/frame_0001.png");

@@ -104,16 +104,16 @@ TEST_CASE("the command line opens the windows of a rig, and a driver without two
     folder.write("rig.toml", rig);
     folder.write("script", "until 0.3\nframes 5\nscreenshot rig.png\nstop\nuntil over\nclose\n");
     const std::string run = "run patch.toml --view --view-script script --audio file --overwrite --out out --json ";
-    const Outcome through = on(display, folder, run + "--rig rig.toml --head head.pose --offset study");
+    const Outcome through = on(display, folder, run + "--display rig.toml --head head.pose --offset study");
     INFO(through.err);
     CHECK(through.code == 0);
     // Without buffers for two eyes it says so in the window and shows them side by side.
     CHECK(on(display, folder, run + "--stereo quad-buffer").code == 0);
-    CHECK(on(display, folder, run + "--rig nowhere.toml").code == 2);
+    CHECK(on(display, folder, run + "--display nowhere.toml").code == 2);
     CHECK(on(display, folder, run + "--stereo cross-eyed").err.find("side-by-side") != std::string::npos);
     // A monitor that is not there is told, and the run goes on.
     folder.write("far.toml", std::string(rig) + "monitor = 9\n");
-    CHECK(on(display, folder, run + "--rig far.toml").code == 0);
+    CHECK(on(display, folder, run + "--display far.toml").code == 0);
 }
 
 TEST_CASE("an edit that leaves nothing in space closes the scene, and one that undoes it shows it again") {
@@ -156,7 +156,7 @@ TEST_CASE("a window that draws a rig changes no bit of what a patch computes") {
     folder.write("rig.toml", rig);
     const auto [seen, late] =
         hash_of(display, folder,
-                "run patch.toml --view --rig rig.toml --head head.pose --seconds 1 --audio file --out out --json");
+                "run patch.toml --view --display rig.toml --head head.pose --seconds 1 --audio file --out out --json");
     const auto plain = hash_of(display, folder, "render patch.toml --seconds 1 --out plain --json").first;
     if (late > 0) WARN("the machine was too busy for the live run to keep its schedule");
     else CHECK(seen == plain);

@@ -84,20 +84,35 @@ Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<FractureChoice>();
     verb.add("bone", choice->bone, "bone file, or anything that import reads").required();
     verb.add("-o,--out", choice->out, "folder for the fragments and truth.json").required();
-    verb.add("--pieces", choice->settings.pieces, "how many").shows_default().range(2, 200);
+    verb.add("--pieces", choice->settings.pieces, "number of pieces").shows_default().range(2, 200);
     verb.add("--seed", choice->settings.seed, "another seed, another fracture").shows_default();
     verb.add("--chips", choice->chips, "share of each fracture that is chipped off one side, %").range(0.0, 90.0);
-    verb.add("--kerf", choice->kerf, "bone lost all along the fractures, mm").range(0.0, 5.0);
-    verb.add("--missing", choice->settings.missing, "so many of the smallest pieces are lost").range(0, 198);
-    verb.add("--roughness", choice->roughness, "root mean square relief, mm").shows_default().range(0.0, 5.0);
-    verb.add("--voxel", choice->voxel, "of the scan, mm").shows_default().range(0.1, 3.0);
-    verb.add("--blur", choice->blur, "of the scan, standard deviation, mm").shows_default().range(0.0, 3.0);
-    verb.add("--noise", choice->noise, "of the scan, standard deviation, % of bone's contrast")
+    verb.add("--kerf", choice->kerf, "bone lost all along the fractures, mm").unit("mm").range(0.0, 5.0);
+    verb.add("--missing", choice->settings.missing, "number of the smallest pieces that are lost").range(0, 198);
+    verb.add("--roughness", choice->roughness, "root mean square relief, mm")
+        .unit("mm")
+        .shows_default()
+        .range(0.0, 5.0);
+    verb.add("--voxel", choice->voxel, "voxel size of the scan, mm").unit("mm").shows_default().range(0.1, 3.0);
+    verb.add("--blur", choice->blur, "blur of the scan, standard deviation, mm")
+        .unit("mm")
+        .shows_default()
+        .range(0.0, 3.0);
+    verb.add("--noise", choice->noise, "noise of the scan, standard deviation, % of the contrast of bone")
         .shows_default()
         .range(0.0, 20.0);
-    verb.add("--spread", choice->spread, "how far fragments are moved, mm").shows_default().range(0.0, 1000.0);
-    verb.add("--turn", choice->turn, "how far fragments are turned, degrees").shows_default().range(0.0, 180.0);
-    verb.add("--points", choice->spacing, "spacing of the surface points, mm").shows_default().range(0.1, 5.0);
+    verb.add("--spread", choice->spread, "how far fragments are moved, mm")
+        .unit("mm")
+        .shows_default()
+        .range(0.0, 1000.0);
+    verb.add("--turn", choice->turn, "how far fragments are turned, degrees")
+        .unit("deg")
+        .shows_default()
+        .range(0.0, 180.0);
+    verb.add("--points", choice->spacing, "spacing of the surface points, mm")
+        .unit("mm")
+        .shows_default()
+        .range(0.1, 5.0);
     verb.flag("--json", choice->json, "print truth.json as well");
     return [choice] { return fracture(*choice); };
 }

@@ -97,12 +97,16 @@ Action add(VerbOptions& verb) {
     verb.add("--main", settings.main,
              "the fragment of the same scan that the unbroken bone is laid on first (default: this one)")
         .needs(intact);
-    verb.add("--reach", choice->reach, "how far that may be, mm").shows_default().range(0.1, 100.0);
+    verb.add("--reach", choice->reach, "greatest distance to --facing or --intact, mm")
+        .unit("mm")
+        .shows_default()
+        .range(0.1, 100.0);
     verb.flag("--keep", settings.keep, "start from the paint that the bone file has; without any, from the proposal");
     verb.add("--roughness", settings.roughness, "from which on a place is broken: mean of 1 - cos of normals")
         .shows_default()
         .range(0.0, 1.0);
     verb.add("--least-area", choice->least_area, "smaller patches are left out, mm² (default: 20, with --intact 50)")
+        .unit("mm^2")
         .range(0.0, 1e5);
     verb.flag("--json", choice->json, "as JSON");
     return [choice] { return fracture_surface(*choice); };

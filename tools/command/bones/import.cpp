@@ -48,8 +48,8 @@ std::string text_of(const bone::ImportSummary& s) {
     return text;
 }
 
-int import_label_map(const ImportChoice& choice, const bone::ImportOptions& options, const bone::ImportProgress& progress,
-                     LiveLine& line) {
+int import_label_map(const ImportChoice& choice, const bone::ImportOptions& options,
+                     const bone::ImportProgress& progress, LiveLine& line) {
     bone::check_output(options, choice.out);
     std::vector<bone::ImportedBone> made = bone::import_labels(options, progress);
     line.clear();
@@ -106,14 +106,15 @@ std::pair<double, double> rescale_of(const std::string& text) {
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<ImportChoice>();
     verb.add("input", choice->input, "the file").required();
-    verb.add("-o,--out", choice->out, "the bone, an OpenVDB file").required();
-    verb.add("--threshold", choice->threshold, "CT number from which on there is bone, HU").shows_default();
+    verb.add("-o,--out", choice->out, "OpenVDB file for the bone").required();
+    verb.add("--threshold", choice->threshold, "CT number from which on there is bone, HU").unit("HU").shows_default();
     verb.add("--crop", choice->crop, "x0:x1,y0:y1,z0:z1 in mm, LPS");
     verb.add("--component", choice->component, "largest, all, or how many of the largest").shows_default();
     verb.add("--unit", choice->unit, "unit of a mesh: mm, cm or m").one_of({"mm", "cm", "m"});
     verb.call<double>(
-        "--spacing,--isotropic", [choice](const double& mm) { choice->spacing = mm * 1e-3; },
-        "resample to this grid spacing, mm");
+            "--spacing,--isotropic", [choice](const double& mm) { choice->spacing = mm * 1e-3; },
+            "resample to this grid spacing, mm")
+        .unit("mm");
     verb.add("--series", choice->series, "DICOM: the series to take, by its UID or the end of it");
     verb.call<std::string>(
         "--hu-calibration",
@@ -130,8 +131,9 @@ Action add(VerbOptions& verb) {
         },
         "scanner numbers to HU: SLOPE,INTERCEPT");
     verb.call<double>(
-        "--pointshell", [choice](const double& mm) { choice->pointshell = mm * 1e-3; },
-        "also spread points over the surface for contact, this far apart, mm");
+            "--pointshell", [choice](const double& mm) { choice->pointshell = mm * 1e-3; },
+            "also spread points over the surface for contact, this far apart, mm")
+        .unit("mm");
     verb.flag("--by-curvature", choice->pointshell_by_curvature, "points closer together where the surface turns");
     verb.add("--label", choice->label, "the file is a label map: a label's number or name, or all; a bone each");
     verb.add("--ct", choice->ct, "the CT a label map was drawn on: grey values for surface and density");

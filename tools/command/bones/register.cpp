@@ -88,10 +88,14 @@ Action add(VerbOptions& verb) {
     verb.flag("--region", settings.region,
               "also find the part that lies elsewhere than the rest, and lay it on its place by itself");
     verb.add("--away", choice->away, "from which distance on a point lies elsewhere, mm")
+        .unit("mm")
         .shows_default()
         .range(0.01, 100.0);
-    verb.add("--gap", choice->gap, "points of a region are no farther apart, mm").shows_default().range(0.1, 100.0);
-    verb.add("--margin", choice->margin, "by which a region is grown, mm").shows_default().range(0.0, 100.0);
+    verb.add("--gap", choice->gap, "points of a region are no farther apart, mm")
+        .unit("mm")
+        .shows_default()
+        .range(0.1, 100.0);
+    verb.add("--margin", choice->margin, "by which a region is grown, mm").unit("mm").shows_default().range(0.0, 100.0);
     verb.flag("--json", choice->json, "as JSON");
     return [choice] { return register_surfaces(*choice); };
 }

@@ -2,6 +2,7 @@
 // One fit of two fragments, with its verdict.
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/command/old_words.hpp"
 #include "tools/command/options.hpp"
 #include "tools/command/pose_text.hpp"
 #include "tools/exit_code.hpp"
@@ -42,7 +43,7 @@ study::FragmentPaint strokes_of(const Json& strokes, const char* side, const std
 study::SnapSettings settings_of(const SnapChoice& choice) {
     study::SnapSettings settings = choice.settings;
     if (!choice.start.empty()) settings.start = pose_of_text(choice.start, "--start");
-    settings.mode = choice.mode == "thesis"   ? fit::FitMode::thesis
+    settings.mode = choice.mode == "baseline" ? fit::FitMode::thesis
                     : choice.mode == "global" ? fit::FitMode::global
                                               : fit::FitMode::extended;
     if (const auto comma = choice.paint.find(','); comma != std::string::npos) {
@@ -121,10 +122,11 @@ Action add(VerbOptions& verb) {
              "'fracture-surface': MOVING.json,FIXED.json")
         .shows_default();
     verb.add("--start", choice->start, "X,Y,Z,QW,QX,QY,QZ in mm: where the moving one is (default: as filed)");
-    verb.add("--mode", choice->mode, "thesis and extended start from there, global from anywhere")
-        .one_of({"thesis", "extended", "global"})
+    verb.add("--mode", choice->mode, "extended and baseline (Olsson 2015) start from there, global from anywhere")
+        .one_of({"extended", "global", "baseline"})
         .shows_default();
     verb.flag("--json", choice->json, "as JSON");
+    verb.old([](std::vector<std::string>& words) { rename_value(words, "--mode", "thesis", "baseline"); });
     return [choice] { return snap(*choice); };
 }
 

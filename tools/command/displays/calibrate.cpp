@@ -42,14 +42,15 @@ std::unique_ptr<HapticDevice> open(const std::string& driver, const std::vector<
         options.push_back({one.substr(0, equals), one.substr(equals + 1), {}});
     }
     tactus::Options all(fmt::format("device '{}'", driver), std::move(options));
-    auto device =
-        haptic::open_haptic_device(driver, {}, all, [](const std::string& name) { return std::filesystem::path(name); });
+    auto device = haptic::open_haptic_device(driver, {}, all,
+                                             [](const std::string& name) { return std::filesystem::path(name); });
     all.finish();
     return device;
 }
 
 /// The touches of a device, or those of a file.
-std::vector<display::RigTouch> touches_of(const CalibrateChoice& choice, const display::RigFile& base, const display::RigFitOptions& options) {
+std::vector<display::RigTouch> touches_of(const CalibrateChoice& choice, const display::RigFile& base,
+                                          const display::RigFitOptions& options) {
     if (!choice.touches.empty()) return display::load_touches(choice.touches);
     std::vector<display::RigTouch> steps = study::calibration_steps(choice.settings);
     study::check_screens(choice.settings, base);
@@ -114,14 +115,14 @@ int calibrate(const CalibrateChoice& choice) {
                                .dump(2));
     else
         fmt::print(
-            "{}all {} touches: {:.2f} mm rms, {:.2f} mm worst\n{} is written; use it with 'run --view --rig {}'\n",
+            "{}all {} touches: {:.2f} mm rms, {:.2f} mm worst\n{} is written; use it with 'run --view --display {}'\n",
             text, all.count, all.rms * 1e3, all.worst * 1e3, choice.out.string(), choice.out.string());
     return done;
 }
 
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<CalibrateChoice>();
-    verb.add("-o,--out", choice->out, "the rig, TOML").required();
+    verb.add("-o,--out", choice->out, "TOML file for the display").required();
     const Option device =
         verb.add("--device", choice->device, "driver of the device that touches; 'devices' lists them");
     verb.add("--touches", choice->touches, "a CSV of touches instead of a device").excludes(device);
@@ -145,7 +146,7 @@ Action add(VerbOptions& verb) {
     verb.flag("--affine", choice->settings.affine, "take up scales and skews of the device");
     verb.add("--tolerance", choice->settings.tolerance, "a touch farther off what the others say is refused")
         .shows_default();
-    verb.add("--base", choice->base, "a rig that stays as it is where nothing is touched");
+    verb.add("--base", choice->base, "display file whose values are kept where nothing is touched");
     verb.add("--keep", choice->keep, "write the touches as CSV, for --touches");
     verb.flag("--json", choice->json, "as JSON");
     verb.check([choice = choice.get()] {
@@ -159,7 +160,7 @@ Action add(VerbOptions& verb) {
 
 Verb calibrate_verb() {
     return {"calibrate",
-            "find where screens, mirror and device stand, by touching them with the device: a file for --rig", add};
+            "find where screens, mirror and device stand, by touching them with the device: a file for --display", add};
 }
 
 }  // namespace tactus::command

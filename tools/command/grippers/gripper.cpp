@@ -95,7 +95,8 @@ Action add(VerbOptions& verb) {
 
 Verb gripper_verb() {
     return {.name = "gripper",
-            .about = "measure how faithfully a gripper renders objects: motors, objects, rates and amplitudes on a test rig",
+            .about =
+                "measure how faithfully a gripper renders objects: motors, objects, rates and amplitudes on a test rig",
             .add = add,
             .old_name = "rig"};
 }

@@ -106,7 +106,7 @@ int nodes(const std::string& wanted, bool json) {
         if (wanted.empty() || type->name == wanted) list.push_back(describe(*type));
     }
     if (list.empty()) throw Error(fmt::format("no node type '{}'{}", wanted, did_you_mean(wanted, names)));
-    if (json) fmt::print("{}\n", list.dump(2));
+    if (json) fmt::print("{}\n", Json{{"version", 1}, {"rows", list}}.dump(2));
     else if (!wanted.empty()) print_whole(list.front());
     else
         for (const Json& node : list) fmt::print("{:<16} {}\n", text_of(node, "type"), text_of(node, "about"));

@@ -51,8 +51,8 @@ std::vector<Landmark> landmarks_of(const std::vector<contact::SurfacePoint>& poi
     constexpr const char* names[] = {"left", "right", "posterior", "anterior", "superior", "inferior"};
     for (int axis = 0; axis < 3; ++axis)
         for (const double sign : {1.0, -1.0}) {
-            const auto farthest =
-                std::ranges::max_element(points, {}, [&](const contact::SurfacePoint& p) { return sign * p.position[axis]; });
+            const auto farthest = std::ranges::max_element(
+                points, {}, [&](const contact::SurfacePoint& p) { return sign * p.position[axis]; });
             marks.push_back({names[2 * axis + (sign < 0.0 ? 1 : 0)], farthest->position});
         }
     return marks;
@@ -118,7 +118,7 @@ int export_plan(const ExportChoice& choice) {
         const cases::PlanFragment& fragment = plan.fragments[n];
         const Pose& pose = state.arrangement.pose(static_cast<int>(n));
         mesh::ColouredSurface surface{study::surface_of_file(cases::file_of(fragment.file, folder), loaded[n].bone),
-                                fragment.colour};
+                                      fragment.colour};
         for (Vec3& v : surface.surface.vertices) v = pose.apply(v);
         const std::string mesh = names[n] + "." + choice.format;
         mesh::write_mesh({&surface, 1}, choice.out / mesh);
@@ -140,7 +140,7 @@ int export_plan(const ExportChoice& choice) {
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<ExportChoice>();
     add_plan_options(verb, *choice);
-    verb.add("--out", choice->out, "folder").required();
+    verb.add("-o,--out", choice->out, "folder for meshes and tables").required();
     verb.add("--format", choice->format, "of the meshes").one_of({"stl", "ply"}).shows_default();
     return [choice] { return export_plan(*choice); };
 }

@@ -44,7 +44,7 @@ int settle(const SettleChoice& choice) {
             rows.push_back(match_json<nlohmann::ordered_json>(plan, found));
             if (!choice.json) print_match(plan, found);
         }
-    if (choice.json) fmt::print("{}\n", rows.dump(2));
+    if (choice.json) fmt::print("{}\n", nlohmann::ordered_json{{"version", 1}, {"rows", rows}}.dump(2));
     return all_fit ? done : answer_is_no;
 }
 

@@ -146,7 +146,8 @@ int check(const CheckChoice& choice) {
         // What only `prepare` can find: devices, file names, sizes.
         if (problems.empty()) {
             const run::Engine engine(std::move(*plan), run::EngineOptions{});
-            json["paths"] = paths_json(engine.plan(), analyse::force_loops(engine.plan(), damping_of(engine.outside())));
+            json["paths"] =
+                paths_json(engine.plan(), analyse::force_loops(engine.plan(), damping_of(engine.outside())));
             json["admittance_loops"] = loops_json(engine.nodes());
             json["warnings"] = engine.outside().notices;
         }
@@ -180,6 +181,9 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb check_verb() { return {"check", "find errors; list groups, latencies and stiffness limits; exit code 1: too stiff or unstable", add}; }
+Verb check_verb() {
+    return {"check", "find errors; list groups, latencies and stiffness limits; exit code 1: too stiff or unstable",
+            add};
+}
 
 }  // namespace tactus::command

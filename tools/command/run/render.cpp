@@ -119,35 +119,36 @@ int render(const RenderChoice& choice) {
 namespace {
 
 void add_frame_options(VerbOptions& verb, FrameChoice& choice) {
-    const Option frames =
-        verb.add("--frames", choice.frames, "pictures of the scene, evenly over the time: frame_0001.png, ...")
-            .range(1, 100000);
+    const Option frames = verb.add("--frames", choice.frames,
+                                   "number of pictures of the scene, evenly over the time: frame_0001.png, ...")
+                              .range(1, 100000);
     const auto add = [&](const char* name, std::string& value, const char* about) {
         verb.add(name, value, about).shows_default().needs(frames);
     };
     add("--view-from", choice.view_from, "front, back, left, right, top, bottom or iso");
-    add("--size", choice.size, "of the pictures, WIDTHxHEIGHT");
-    add("--clip", choice.clip, "take away what is above along an axis: x, -y, \"z=12 mm\"");
+    add("--size", choice.size, "size of the pictures in pixels, WIDTHxHEIGHT");
+    add("--clip", choice.clip, "cut the scene open along an axis: x, -y, \"z=12 mm\"");
     add_sight_options(verb, choice.sight, &frames);
 }
 
 Action add_render(VerbOptions& verb) {
     const auto choice = std::make_shared<RenderChoice>();
     add_patch_options(verb, *choice);
-    verb.add("--seconds", choice->seconds, "logical time to render, s").shows_default().range(1e-3, 1e6);
-    verb.add("--out", choice->out, "folder for what comes out").required();
-    verb.flag("--overwrite", choice->overwrite, "write over results that the folder holds");
-    verb.add("--threads", choice->threads, "threads, 0: one per core").range(0, 64);
-    verb.add("--block", choice->block, "most samples per call, or 'random'; the output is the same");
-    verb.add("--log", choice->log, "repeat the timing decisions of a live run");
-    verb.add("--record", choice->record, "keep the run as a take, a folder that 'replay' repeats");
+    verb.add("--seconds", choice->seconds, "logical time to render, s").unit("s").shows_default().range(1e-3, 1e6);
+    verb.add("-o,--out", choice->out, "folder for the results").required();
+    verb.flag("--overwrite", choice->overwrite, "replace results that the folder already holds");
+    verb.add("--jobs", choice->threads, "threads, 0: one per core").range(0, 64);
+    verb.old("--threads", "--jobs");
+    verb.add("--block", choice->block, "most samples per call, or 'random'; does not change the output");
+    verb.add("--log", choice->log, "repeat the timing decisions of a live run, a file of 'run --log'");
+    verb.add("--record", choice->record, "record the run as a take, a folder that 'replay' repeats");
     add_frame_options(verb, choice->frames);
-    verb.flag("--json", choice->json, "print the summary");
+    verb.flag("--json", choice->json, "print the summary as JSON");
     return [choice] { return render(*choice); };
 }
 
 }  // namespace
 
-Verb render_verb() { return {"render", "run a patch on a virtual clock, as fast as it goes", add_render}; }
+Verb render_verb() { return {"render", "run a patch offline, as fast as possible", add_render}; }
 
 }  // namespace tactus::command

@@ -155,9 +155,9 @@ namespace {
 Action add_replay(VerbOptions& verb) {
     const auto choice = std::make_shared<ReplayChoice>();
     verb.add("take", choice->take, "folder that --record made").required();
-    verb.add("--out", choice->out, "folder for the results of the run: sounds, traces, bones, summary.json");
-    verb.flag("--overwrite", choice->overwrite, "write over results that the folder holds");
-    verb.flag("--anyway", choice->anyway, "although assets have changed since");
+    verb.add("-o,--out", choice->out, "folder for the results: sounds, traces, bones, summary.json");
+    verb.flag("--overwrite", choice->overwrite, "replace results that the folder already holds");
+    verb.flag("--anyway", choice->anyway, "replay although assets have changed since");
     verb.flag("--json", choice->json, "as JSON");
     return [choice] { return replay(*choice); };
 }

@@ -67,23 +67,25 @@ namespace {
 Action add_run(VerbOptions& verb) {
     const auto choice = std::make_shared<view::ViewedRunChoice>();
     add_patch_options(verb, *choice);
-    verb.add("--seconds", choice->seconds, "stop after so much logical time, s").range(1e-3, 1e6);
+    verb.add("--seconds", choice->seconds, "stop after this logical time, s").unit("s").range(1e-3, 1e6);
     verb.add("--dilate", choice->dilate, "real seconds per logical second").range(0.01, 1000.0);
     verb.add("--audio", choice->audio,
-             "where sound goes: part of a card's name, default, file or none (else: a card if there is one)");
-    verb.add("--audio-margin", choice->audio_margin, "sound that waits for the card when a thread is late, ms")
+             "sound output: part of a card's name, default, file or none (default: a card if there is one)");
+    verb.add("--audio-margin", choice->audio_margin, "sound kept ready for the card when a thread is late, ms")
+        .unit("ms")
         .shows_default()
         .range(1.0, 2000.0);
-    verb.add("--out", choice->out, "folder for what comes out (default: PATCH-run, or PATCH-run-2 and so on)");
-    verb.flag("--overwrite", choice->overwrite, "write over results that the folder holds");
-    verb.add("--log", choice->log, "write what timing decided, for 'render --log'");
-    verb.add("--record", choice->record, "keep the run as a take, a folder that 'replay' repeats");
+    verb.add("-o,--out", choice->out, "folder for the results (default: PATCH-run, or PATCH-run-2 and so on)");
+    verb.flag("--overwrite", choice->overwrite, "replace results that the folder already holds");
+    verb.add("--log", choice->log, "write the timing decisions to this file, for 'render --log'");
+    verb.add("--record", choice->record, "record the run as a take, a folder that 'replay' repeats");
     verb.flag("--json", choice->json, "print the summary as JSON and nothing else");
     const Option window =
-        verb.flag("--view", choice->view.wanted, "open a window: the patch, its values, the scene; edits run at once");
-    verb.flag("--keep-running", choice->view.keep_running, "closing the window leaves the run alive").needs(window);
+        verb.flag("--view", choice->view.wanted,
+                  "open a window with the patch, its values and the scene; edits take effect at once");
+    verb.flag("--keep-running", choice->view.keep_running, "the run goes on when the window is closed").needs(window);
     add_view_options(verb, choice->view);
-    verb.flag("!--no-edits", choice->edits, "neither watch the patch file nor listen to 'set'");
+    verb.flag("!--no-edits", choice->edits, "do not watch the patch file, and refuse 'set' and 'trigger'");
     return [choice] { return run(*choice); };
 }
 

@@ -10,18 +10,21 @@ void add_sight_options(VerbOptions& verb, picture::SightChoice& choice, const Op
         return option;
     };
     add("--stereo", choice.stereo, "mono, side-by-side, anaglyph; windows: quad-buffer as well").shows_default();
-    add("--head", choice.head, "a pose output that is the viewer's head; without --rig before a screen 0.3 m high");
-    add("--rig", choice.rig,
-        "where screens, mirror and device stand, as 'calibrate' writes it: what is seen is where it is felt");
-    add("--offset", choice.offset, "of what is seen against what is felt: none, study (0.3 m), \"X mm, Y mm, Z mm\"");
+    add("--head", choice.head,
+        "NODE.PORT, a pose output: the viewer's head; without --display it is in front of a screen 0.3 m high");
+    add("--display", choice.rig,
+        "file of 'calibrate', or a name in the library: where screens, mirror and device stand; shows objects where "
+        "they "
+        "are felt");
+    verb.old("--rig", "--display");
+    add("--offset", choice.offset, "shift of the picture against the touch: none, study (0.3 m), \"X mm, Y mm, Z mm\"");
 }
 
 void add_view_options(VerbOptions& verb, view::ViewChoice& choice) {
-    verb.add("--view-script", choice.script, "do in the window what the lines of this file say");
-    verb.add("--reference", choice.reference, "sound file whose spectrum stands beneath the signals'");
+    verb.add("--view-script", choice.script, "run the commands in this file in the window");
+    verb.add("--reference", choice.reference, "sound file whose spectrum is drawn below those of the signals");
     add_sight_options(verb, choice.sight, nullptr);
-    verb.add("--view-scale", choice.scale, "size of letters and controls (default: as the screen says)")
-        .range(0.5, 4.0);
+    verb.add("--view-scale", choice.scale, "scale of text and controls (default: that of the screen)").range(0.5, 4.0);
 }
 
 }  // namespace tactus::command

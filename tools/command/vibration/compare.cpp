@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 
 namespace tactus::command {
 
@@ -49,21 +50,17 @@ table::LogSelection selection_for(const CompareChoice& choice, std::size_t file)
     return selection;
 }
 
-int compare_one(const CompareChoice& choice, const study::CompareSettings& settings) {
-    if (!choice.plot.empty() && !choice.plot.ends_with(".svg") && !choice.plot.ends_with(".png"))
-        throw Error(choice.plot + ": a figure is written as .svg or .png");
-    const ComparedPair pair = study::compare_files(settings);
-    if (!choice.plot.empty()) picture::write_figure(picture::draw_comparison(pair), choice.plot);
-    if (!choice.report.empty()) file::write_whole_file(choice.report, picture::comparison_page(pair));
-    if (!choice.table.empty()) file::write_whole_file(choice.table, comparison_table(std::span(&pair, 1), {}));
-    if (choice.json) fmt::print("{}", comparison_json(pair));
-    else print(pair);
-    return pair.verdict.passed() ? done : answer_is_no;
-}
-
 struct Count {
     std::size_t passed = 0, failed = 0, bad = 0;
 };
+
+/// `failures`: what was wrong with each, empty where nothing was.
+Count count_of(std::span<const ComparedPair> pairs, std::span<const std::string> failures) {
+    Count count;
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        ++(!failures[i].empty() ? count.bad : pairs[i].verdict.passed() ? count.passed : count.failed);
+    return count;
+}
 
 std::string page_of(const std::vector<ComparedPair>& pairs, const std::vector<std::string>& failures,
                     std::size_t passed) {
@@ -80,8 +77,7 @@ std::string page_of(const std::vector<ComparedPair>& pairs, const std::vector<st
     return html::page(fmt::format("{} pairs of vibrations", pairs.size()), body);
 }
 
-std::string json_of(const std::vector<ComparedPair>& pairs, const std::vector<std::string>& failures,
-                    const Count& count) {
+std::string json_of(std::span<const ComparedPair> pairs, const std::vector<std::string>& failures, const Count& count) {
     nlohmann::ordered_json json{{"verdict", count.bad + count.failed == 0 ? "pass" : "fail"},
                                 {"passed", count.passed},
                                 {"failed", count.failed},
@@ -94,6 +90,21 @@ std::string json_of(const std::vector<ComparedPair>& pairs, const std::vector<st
         json["pairs"].push_back(std::move(row));
     }
     return json.dump(2);
+}
+
+int compare_one(const CompareChoice& choice, const study::CompareSettings& settings) {
+    if (!choice.plot.empty() && !choice.plot.ends_with(".svg") && !choice.plot.ends_with(".png"))
+        throw Error(choice.plot + ": a figure is written as .svg or .png");
+    const ComparedPair pair = study::compare_files(settings);
+    if (!choice.plot.empty()) picture::write_figure(picture::draw_comparison(pair), choice.plot);
+    if (!choice.report.empty()) file::write_whole_file(choice.report, picture::comparison_page(pair));
+    if (!choice.table.empty()) file::write_whole_file(choice.table, comparison_table(std::span(&pair, 1), {}));
+    if (choice.json) {
+        const std::vector<std::string> no_failure(1);
+        const std::span<const ComparedPair> pairs(&pair, 1);
+        fmt::print("{}\n", json_of(pairs, no_failure, count_of(pairs, no_failure)));
+    } else print(pair);
+    return pair.verdict.passed() ? done : answer_is_no;
 }
 
 int compare_many(const CompareChoice& choice, const study::CompareSettings& settings) {
@@ -119,10 +130,8 @@ int compare_many(const CompareChoice& choice, const study::CompareSettings& sett
             picture::write_figure(picture::draw_comparison(pairs[i]),
                                   fs::path(choice.plot) / (varied.filename().string() + ".svg"));
         });
-    Count count;
-    count.bad = tell_failures(failures);
-    for (std::size_t i = 0; i < pairs.size(); ++i) count.passed += failures[i].empty() && pairs[i].verdict.passed();
-    count.failed = pairs.size() - count.passed - count.bad;
+    const Count count = count_of(pairs, failures);
+    tell_failures(failures);
     if (!choice.table.empty()) file::write_whole_file(choice.table, comparison_table(pairs, failures));
     if (!choice.report.empty()) file::write_whole_file(choice.report, page_of(pairs, failures, count.passed));
     if (choice.json) fmt::print("{}\n", json_of(pairs, failures, count));
@@ -147,7 +156,8 @@ Action add(VerbOptions& verb) {
     verb.add("reference", settings.reference, "sound file or CSV log of what was wanted, or a folder").required();
     verb.add("output", settings.output, "sound file or CSV log of what came out, or a folder: files are paired by name")
         .required();
-    verb.add("--thresholds", choice->thresholds, "TOML file of what must be reached; keys and defaults: docs/reference/tables.md");
+    verb.add("--thresholds", choice->thresholds,
+             "TOML file of what must be reached; keys and defaults: docs/reference/tables.md");
     verb.add("--plot", choice->plot, "a figure, .svg or .png; of folders a folder, of SVG");
     verb.add("--report", choice->report, "figure, tables and how they were computed in one HTML file");
     verb.add("--table", choice->table, "a row per pair, CSV");
@@ -165,11 +175,14 @@ Action add(VerbOptions& verb) {
         .one_each();
     verb.add("--time-unit", choice->time_unit, "of CSV logs: s, ms, us or ns").one_of({"s", "ms", "us", "ns"});
     verb.add("--actuator", settings.actuator, "state the level gap of this actuator at its limits, of m/s^2");
-    verb.add("--mass", settings.mass, "that the actuator shakes, kg").shows_default();
+    verb.add("--mass", settings.mass, "mass that the actuator shakes, kg").unit("kg").shows_default();
     verb.add("--touch", choice->touch, "what the threshold of touch is a threshold of")
         .shows_default()
         .one_of({"displacement", "acceleration", "none"});
-    verb.add("--max-delay", settings.longest_delay, "greatest delay looked for, s").shows_default().range(0.001, 100.0);
+    verb.add("--max-delay", settings.longest_delay, "greatest delay looked for, s")
+        .unit("s")
+        .shows_default()
+        .range(0.001, 100.0);
     verb.flag("--json", choice->json, "as JSON");
     return [choice] { return compare(*choice); };
 }

@@ -46,10 +46,12 @@ void print_headroom(const char* name, const vibration::Headroom& h, double limit
 
 int equalise(const EqualiseChoice& choice) {
     study::EqualiseSettings settings = choice.settings;
-    settings.design.kind = choice.kind == "linear" ? vibration::EqualiserKind::linear_phase : vibration::EqualiserKind::minimum_phase;
+    settings.design.kind =
+        choice.kind == "linear" ? vibration::EqualiserKind::linear_phase : vibration::EqualiserKind::minimum_phase;
     settings.design.greatest_gain = std::pow(10.0, choice.greatest_boost_db / 20.0);
     const study::Equalisation made = study::equalise(settings);
-    sound::save_equaliser(made.equaliser, made.title.empty() ? settings.response.stem().string() : made.title, choice.out);
+    sound::save_equaliser(made.equaliser, made.title.empty() ? settings.response.stem().string() : made.title,
+                          choice.out);
     const vibration::Equaliser& equaliser = made.equaliser;
     const study::Flatness& flat = made.flat;
     const vibration::ActuatorModel& actuator = *made.actuator;
@@ -102,18 +104,19 @@ Action add(VerbOptions& verb) {
     study::EqualiseSettings& settings = choice->settings;
     vibration::EqualiserDesign& design = settings.design;
     verb.add("response", settings.response, "file of 'tactus measure', or a table of Hz, dB and degrees").required();
-    verb.add("-o,--out", choice->out, "the filter, TOML").required();
+    verb.add("-o,--out", choice->out, "TOML file for the filter").required();
     verb.add("--kind", choice->kind, "minimum: adds at most 2 ms; linear: undoes the phase, adds half its length")
         .shows_default()
         .one_of({"minimum", "linear"});
-    verb.add("--rate", design.rate, "of the node that will use it, Hz").shows_default();
-    verb.add("--from", design.lowest, "band to be made flat, Hz").shows_default();
-    verb.add("--to", design.highest, "and its upper end, Hz").shows_default();
-    verb.add("--length", design.length, "of the impulse response, s").shows_default();
+    verb.add("--rate", design.rate, "sample rate of the node that will use the filter, Hz").unit("Hz").shows_default();
+    verb.band("--band", design.lowest, design.highest, "band to be made flat, Hz");
+    verb.add("--from", design.lowest, "lower end of the band, Hz").hidden();
+    verb.add("--to", design.highest, "upper end of the band, Hz").hidden();
+    verb.add("--length", design.length, "length of the impulse response, s").unit("s").shows_default();
     verb.add("--max-boost", choice->greatest_boost_db, "greatest gain of the filter, dB")
         .shows_default()
         .range(0.0, 60.0);
-    verb.add("--regularisation", design.regularisation, "share of the mean power gain below which it lets go")
+    verb.add("--regularisation", design.regularisation, "share of the mean power gain below which nothing is boosted")
         .shows_default()
         .range(0.0, 1.0);
     verb.add("--actuator", settings.actuator, "whose voltage and current limits count").shows_default();

@@ -80,9 +80,9 @@ std::string table_row(const Operation& one) {
     };
     return fmt::format("{},{}{},{},{},{},{},{},{},{},{},\n", csv_field(one.file), axes,
                        one.three_axes ? fmt::format("{}", one.total()) : std::string(),
-                       signal::daily_exposure(std::array{signal::HandArmOperation{one.total(), one.duration}}), one.duration,
-                       minutes(signal::action_value), minutes(signal::limit_value), one.calibrated, signal::hand_arm_lowest, one.band_high,
-                       csv_field(notes));
+                       signal::daily_exposure(std::array{signal::HandArmOperation{one.total(), one.duration}}),
+                       one.duration, minutes(signal::action_value), minutes(signal::limit_value), one.calibrated,
+                       signal::hand_arm_lowest, one.band_high, csv_field(notes));
 }
 
 void write_table(const ExposureChoice& choice, const std::vector<Operation>& operations,
@@ -116,8 +116,9 @@ void print_table(const std::vector<Operation>& operations) {
     for (const Operation& one : operations)
         if (!one.file.empty())
             fmt::print("{:<{}}  {:>9.3g}  {:>9.3g}  {:>8.0f}  {:>18}  {}{}\n", one.file, width, one.total(),
-                       signal::daily_exposure(std::array{signal::HandArmOperation{one.total(), one.duration}}), one.duration / 60.0,
-                       reached(signal::action_value, one.total()), reached(signal::limit_value, one.total()),
+                       signal::daily_exposure(std::array{signal::HandArmOperation{one.total(), one.duration}}),
+                       one.duration / 60.0, reached(signal::action_value, one.total()),
+                       reached(signal::limit_value, one.total()),
                        one.band_high < 1250.0 || !one.three_axes || !one.calibrated ? "  (see --table)" : "");
 }
 
@@ -138,22 +139,17 @@ int exposure(const ExposureChoice& choice) {
         });
     const bool bad = tell_failures(failures) > 0;
     if (!choice.table.empty()) write_table(choice, operations, files, failures);
-    if (bad && files.size() == 1) return bad_input;
+    if (bad && files.size() == 1 && !choice.json) return bad_input;
     // A day with a file missing has none.
     std::optional<double> a8;
     if (!bad) a8 = study::exposure_of_day(operations);
     const double day = a8.value_or(0.0);
     if (choice.json) {
-        Json json;
-        if (files.size() == 1) {
-            json = operation_json(operations.front());
-        } else {
-            json = {{"a8", a8 ? Json(day) : Json()}, {"operations", Json::array()}};
-            for (std::size_t i = 0; i < files.size(); ++i)
-                json["operations"].push_back(failures[i].empty()
-                                                 ? operation_json(operations[i])
-                                                 : Json{{"file", files[i].string()}, {"error", failures[i]}});
-        }
+        Json json{{"a8", a8 ? Json(day) : Json()}, {"operations", Json::array()}};
+        for (std::size_t i = 0; i < files.size(); ++i)
+            json["operations"].push_back(failures[i].empty()
+                                             ? operation_json(operations[i])
+                                             : Json{{"file", files[i].string()}, {"error", failures[i]}});
         json["years_to_white_fingers"] = day > 0.0 ? Json(signal::years_to_white_fingers(day)) : Json(nullptr);
         fmt::print("{}\n", json.dump(2));
         return bad ? bad_input : done;
@@ -166,7 +162,7 @@ int exposure(const ExposureChoice& choice) {
         fmt::print("A(8) {:.3g} m/s^2: {}\n", day,
                    day > signal::limit_value    ? "above the limit value, 5"
                    : day > signal::action_value ? "above the action value, 2.5"
-                                        : "below the action value, 2.5");
+                                                : "below the action value, 2.5");
     else
         fmt::print(
             "no A(8) of the day: {}\n",

@@ -79,35 +79,54 @@ int measure(const MeasureChoice& choice) {
     return done;
 }
 
+/// `--out` was the port and `--csv` the file: so it is where a port is fed and none is probed.
+void port_was_out(std::vector<std::string>& words) {
+    const auto is = [](const char* option) {
+        return
+            [option](const std::string& word) { return word == option || word.starts_with(std::string(option) + "="); };
+    };
+    const bool is_old = std::ranges::any_of(words, is("--in")) && std::ranges::none_of(words, is("--probe"));
+    for (std::string& word : words)
+        if (is_old && is("--out")(word)) word.replace(0, 5, "--probe");
+        else if (is("--csv")(word)) word.replace(0, 5, "--out");
+}
+
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<MeasureChoice>();
     study::MeasureSettings& settings = choice->settings;
     verb.add("patch", settings.patch.patch, "patch file, or a name in the library");
     verb.add("--in", settings.in, "NODE.PORT that the sweep feeds (an input) or replaces (an output)");
-    verb.add("--out", settings.out_port, "NODE.PORT, the output that is recorded");
+    verb.add("--probe", settings.out_port, "NODE.PORT, the output that is recorded");
     verb.add("--device", settings.device, "a sound card instead: part of its name, or 'default'");
     verb.add("--output-channel", settings.output_channel, "of the card, from 1").shows_default();
     verb.add("--input-channel", settings.input_channel, "of the card, from 1").shows_default();
-    verb.add("--rate", settings.rate, "of the card, Hz").shows_default().range(1e3, 1e6);
-    verb.add("-o,--csv", choice->csv, "the response, CSV").shows_default();
-    verb.add("--first", settings.first, "first frequency, Hz").shows_default().range(0.1, 1e5);
-    verb.add("--last", settings.last, "last frequency, Hz").shows_default().range(0.1, 1e5);
-    verb.add("--duration", settings.duration, "of the sweep, s").shows_default().range(0.1, 1e3);
-    verb.add("--pause", settings.pause, "silence after it, s").shows_default().range(0.05, 1e2);
-    verb.add("--repeats", settings.repeats, "sweeps, averaged").shows_default().range(1, 1000);
-    verb.add("--amplitude", settings.amplitude, "of the sweep, in the unit of what it feeds; card: of full scale")
+    verb.add("--rate", settings.rate, "sample rate of the card, Hz").unit("Hz").shows_default().range(1e3, 1e6);
+    verb.add("-o,--out", choice->csv, "CSV file for the response").shows_default();
+    verb.band("--band", settings.first, settings.last, "first and last frequency of the sweep, Hz");
+    verb.add("--duration", settings.duration, "duration of the sweep, s").unit("s").shows_default().range(0.1, 1e3);
+    verb.add("--pause", settings.pause, "silence after the sweep, s").unit("s").shows_default().range(0.05, 1e2);
+    verb.add("--repeats", settings.repeats, "number of sweeps, averaged").shows_default().range(1, 1000);
+    verb.add("--amplitude", settings.amplitude,
+             "amplitude of the sweep, in the unit of the port it feeds; card: of full scale")
         .shows_default();
-    verb.add("--fit-from", settings.fit_lowest, "where the resonance is looked for, Hz").shows_default();
-    verb.add("--fit-to", settings.fit_highest, "and up to where, Hz").shows_default();
+    verb.band("--fit-band", settings.fit_lowest, settings.fit_highest, "where the resonance is looked for, Hz");
     add_override_options(verb, settings.patch);
     verb.flag("--json", choice->json, "as JSON");
+    verb.add("--first", settings.first, "first frequency, Hz").range(0.1, 1e5).hidden();
+    verb.add("--last", settings.last, "last frequency, Hz").range(0.1, 1e5).hidden();
+    verb.add("--fit-from", settings.fit_lowest, "where the resonance is looked for, Hz").hidden();
+    verb.add("--fit-to", settings.fit_highest, "and up to where, Hz").hidden();
+    verb.old(port_was_out);
+    verb.check([&settings] {
+        if (settings.first < 0.1 || settings.last > 1e5) throw Error("--band takes frequencies from 0.1 Hz to 100 kHz");
+    });
     return [choice] { return measure(*choice); };
 }
 
 }  // namespace
 
 Verb measure_verb() {
-    return {"measure", "sweep through a patch or a sound card: response, resonance, distortion, latency", add};
+    return {"measure", "sweep a patch or a sound card: frequency response, resonance, distortion, latency", add};
 }
 
 }  // namespace tactus::command

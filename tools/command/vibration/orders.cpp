@@ -21,7 +21,6 @@ using Json = nlohmann::ordered_json;
 
 struct OrdersChoice : RecordChoice {
     study::OrdersSettings settings;
-    std::string range = "20:400";  // LOW:HIGH in Hz
     std::filesystem::path csv;
 };
 
@@ -91,8 +90,6 @@ int orders(const OrdersChoice& choice) {
     const std::filesystem::path& file = choice.files.front();
     study::OrdersSettings settings = choice.settings;
     settings.record = choice.record;
-    if (settings.tacho == 0 && !settings.fixed)
-        about_file(file, [&] { settings.range = parse_band(choice.range, "--range"); });
     const study::Orders found = study::analyse_orders(file, settings);
     if (!choice.csv.empty()) about_file(file, [&] { file::write_whole_file(choice.csv, csv_of(found)); });
     fmt::print("{}", choice.json ? json_of(file.string(), found) : text_of(file.string(), found));
@@ -105,8 +102,12 @@ Action add(VerbOptions& verb) {
     add_record_options(verb, *choice, "a sound file or CSV log");
     const Option tacho = verb.add("--tacho", settings.tacho, "channel of the tachometer, from 1").range(1, 1024);
     verb.add("--pulses", settings.pulses, "of the tachometer, per revolution").shows_default().range(0.01, 1e5);
-    verb.add("--rate", settings.fixed, "the rate, when it is known and constant, Hz").range(0.01, 1e6).excludes(tacho);
-    verb.add("--range", choice->range, "LOW:HIGH in Hz: where a rate to be tracked may lie").shows_default();
+    verb.add("--rate", settings.fixed, "the rate, when it is known and constant, Hz")
+        .unit("Hz")
+        .range(0.01, 1e6)
+        .excludes(tacho);
+    verb.band("--band", settings.range.first, settings.range.second, "where a rate to be tracked may lie, Hz");
+    verb.old("--range", "--band");
     verb.add("--orders", settings.highest, "highest order").shows_default().range(1, 200);
     verb.add("--csv", choice->csv, "amplitude over orders");
     return [choice] { return orders(*choice); };

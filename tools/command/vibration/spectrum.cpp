@@ -89,7 +89,7 @@ void print_json(const std::vector<fs::path>& files, const std::vector<Outcome>& 
         if (failures[i].empty()) all.push_back(nlohmann::ordered_json::parse(outcomes[i].text));
         else all.push_back({{"file", files[i].string()}, {"error", failures[i]}});
     }
-    fmt::print("{}\n", all.dump(2));
+    fmt::print("{}\n", nlohmann::ordered_json{{"version", 1}, {"rows", all}}.dump(2));
 }
 
 int spectrum(const SpectrumChoice& choice) {
@@ -104,7 +104,7 @@ int spectrum(const SpectrumChoice& choice) {
             outcomes[i] = analyse(files[i], choice, many, progress);
         });
     const bool bad = tell_failures(failures) > 0;
-    if (many && choice.json) print_json(files, outcomes, failures);
+    if (choice.json) print_json(files, outcomes, failures);
     else
         for (const Outcome& outcome : outcomes) fmt::print("{}", outcome.text);
     if (!choice.table.empty()) {
@@ -120,9 +120,10 @@ int spectrum(const SpectrumChoice& choice) {
         for (std::size_t i = 0; i < files.size(); ++i)
             body += failures[i].empty() ? outcomes[i].section
                                         : fmt::format("<p class=\"fail\">{}</p>\n", html::escaped(failures[i]));
-        file::write_whole_file(choice.report, html::page(many ? "Vibration of " + std::to_string(files.size()) + " records"
-                                                        : files.front().filename().string(),
-                                                   body + picture::analysis_method(method_of(choice))));
+        file::write_whole_file(choice.report,
+                               html::page(many ? "Vibration of " + std::to_string(files.size()) + " records"
+                                               : files.front().filename().string(),
+                                          body + picture::analysis_method(method_of(choice))));
     }
     return bad ? bad_input : done;
 }
@@ -143,7 +144,7 @@ Action add(VerbOptions& verb) {
     verb.add("--scaling", words.scaling, "density: unit^2/Hz, spectrum: unit^2")
         .shows_default()
         .one_of({"density", "spectrum"});
-    verb.add("--envelope", choice->envelope, "LOW:HIGH in Hz: spectrum of this band's envelope");
+    verb.add("--envelope", choice->envelope, "LOW:HIGH in Hz: spectrum of the envelope of this band");
     verb.add("--fundamental", choice->fundamental, "LOW:HIGH in Hz: where the fundamental may lie").shows_default();
     verb.add("--orders", choice->orders, "rows of the harmonic table").shows_default().range(1, 200);
     verb.add("--csv", choice->csv, "frequency and spectrum per channel; for several files a folder");

@@ -113,9 +113,12 @@ Action add(VerbOptions& verb) {
         .one_each()
         .range(-80.0, 40.0);
     verb.add("--saw", settings.saw, "the node that plays (default: the only one of type saw)");
-    verb.add("--out", settings.out_port,
+    verb.add("--probe", settings.out_port,
              "NODE.PORT, the handle's vibration (default: what is recorded as handle.wav, or the actuator's)");
-    verb.add("--seconds", settings.seconds, "that are compared of each run").shows_default().range(0.5, 600.0);
+    verb.add("--seconds", settings.seconds, "time that is compared of each run, s")
+        .unit("s")
+        .shows_default()
+        .range(0.5, 600.0);
     verb.add("--thresholds", choice->thresholds, "TOML file of what must be reached, as of compare");
     verb.add("--touch", choice->touch, "what the threshold of touch is a threshold of")
         .shows_default()
@@ -125,6 +128,7 @@ Action add(VerbOptions& verb) {
     verb.add("--table", choice->table, "a row per run, CSV");
     verb.add("--jobs", choice->jobs, "runs at a time, 0: one per core").range(0, 256);
     verb.flag("--json", choice->json, "as JSON");
+    verb.old("--out", "--probe");
     return [choice] { return validate(*choice); };
 }
 

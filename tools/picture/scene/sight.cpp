@@ -39,7 +39,7 @@ Sight::Sight(const SightChoice& choice) : stereo(parse_stereo(choice.stereo)), h
     if (!choice.rig.empty()) use_rig(choice.rig);
     if (choice.offset.empty()) return;
     if (!rig_)
-        throw Error("--offset moves what is seen against what is felt: it needs a --rig, which says where that is");
+        throw Error("--offset moves what is seen against what is felt: it needs a --display, which says where that is");
     set_offset(parse_offset(choice.offset));
 }
 

@@ -4,11 +4,11 @@
 #include "assets/sound/sound.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/run/engine.hpp"
-#include "tools/study/patch_measure.hpp"
 #include "graph/patch/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/session/scratch_folder.hpp"
+#include "tools/study/patch_measure.hpp"
 
 #include <fmt/format.h>
 
@@ -88,9 +88,10 @@ Answer through_card(const MeasureSettings& settings, const vibration::SweepRun& 
     for (std::size_t i = lead; i < samples.size(); ++i)
         samples[i] =
             static_cast<float>(run.amplitude * run.sweep(static_cast<double>((i - lead) % period) / settings.rate));
-    audio::Captured captured = audio::play_and_capture({settings.device == "default" ? "" : settings.device, settings.rate,
-                                          settings.output_channel - 1, settings.input_channel - 1},
-                                         samples, progress);
+    audio::Captured captured =
+        audio::play_and_capture({settings.device == "default" ? "" : settings.device, settings.rate,
+                                 settings.output_channel - 1, settings.input_channel - 1},
+                                samples, progress);
     Answer answer{{captured.samples.begin() + static_cast<std::ptrdiff_t>(lead), captured.samples.end()},
                   settings.rate,
                   "sound card " + captured.device,
@@ -129,7 +130,7 @@ double mean_coherence(const vibration::FrequencyResponse& response, double lowes
 
 Measurement measure(const MeasureSettings& settings, const Progress& progress) {
     if (settings.patch.patch.empty() == settings.device.empty())
-        throw Error("measure takes a patch with --in and --out, or --device for a sound card");
+        throw Error("measure takes a patch with --in and --probe, or --device for a sound card");
     const vibration::SweepRun run = sweep_of(settings);
     Answer answer = settings.device.empty() ? through_patch(settings, progress) : through_card(settings, run, progress);
     Measurement found;
@@ -139,7 +140,8 @@ Measurement measure(const MeasureSettings& settings, const Progress& progress) {
     found.lowest = std::max(2.0 * settings.first, response.hz.front());
     found.highest = std::min(0.5 * settings.last, response.hz.back());
     found.fit_highest = std::min(settings.fit_highest, response.hz.back());
-    found.resonance = vibration::fit_resonance(response, std::max(settings.fit_lowest, response.hz.front()), found.fit_highest);
+    found.resonance =
+        vibration::fit_resonance(response, std::max(settings.fit_lowest, response.hz.front()), found.fit_highest);
     found.orders = summarise(found.response.identified, found.lowest, found.highest);
     found.coherence = mean_coherence(response, found.lowest, found.highest);
     return found;

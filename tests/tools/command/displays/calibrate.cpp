@@ -276,7 +276,7 @@ TEST_CASE("a calibration that cannot be trusted writes nothing and says which to
 TEST_CASE("what a rig has no place for is said before the run") {
     const Folder folder;
     const std::string render = "render touch-sphere --seconds 0.05 --frames 1 --out " + (folder.path / "out").string();
-    CHECK(folder.tactus(render + " --rig nowhere.toml").code == 2);
-    CHECK(folder.tactus(render + " --offset study").err.find("--rig") != std::string::npos);
+    CHECK(folder.tactus(render + " --display nowhere.toml").code == 2);
+    CHECK(folder.tactus(render + " --offset study").err.find("--display") != std::string::npos);
     CHECK(folder.tactus(render + " --stereo quad-buffer").err.find("side-by-side") != std::string::npos);
 }

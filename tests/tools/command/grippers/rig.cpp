@@ -16,7 +16,7 @@ using tactus::test::slurp;
 namespace {
 
 json rig(const Folder& folder, const std::string& what, const std::string& out = "out") {
-    const Outcome o = folder.tactus("rig " + what + " --json --out " + (folder.path / out).string());
+    const Outcome o = folder.tactus("gripper " + what + " --json --out " + (folder.path / out).string());
     INFO(o.err);
     REQUIRE(o.code == 0);
     return json::parse(o.out);
@@ -32,11 +32,11 @@ const json& row_of(const json& answer, const std::string& motor, const std::stri
     return answer;
 }
 
-json rendered(const Folder& folder, const std::string& patch, const std::string& more) {
+json rendered(const Folder& folder, const std::string& patch, const std::string& more, int code = 0) {
     const Outcome o =
         folder.tactus("render " + patch + " --overwrite --out " + (folder.path / "out").string() + " " + more);
     INFO(o.err);
-    REQUIRE(o.code == 0);
+    REQUIRE(o.code == code);
     return json::parse(slurp(folder.path / "out/summary.json"));
 }
 
@@ -133,18 +133,18 @@ TEST_CASE("rig: what it measured is judged the same when it is read back, and so
 TEST_CASE("rig: what cannot be judged is refused with a reason") {
     const Folder folder;
     const std::string out = " --out " + (folder.path / "o").string();
-    const Outcome no_gripper = folder.tactus("rig touch-sphere" + out);
+    const Outcome no_gripper = folder.tactus("gripper touch-sphere" + out);
     CHECK(no_gripper.code == 2);
     CHECK(no_gripper.err.find("gripper_input") != std::string::npos);
     const Outcome bad_matrix =
-        folder.tactus("rig gripper-wqsm --matrix " + folder.write("m.toml", "rates = [\"1 mm\"]").string() + out);
+        folder.tactus("gripper gripper-wqsm --matrix " + folder.write("m.toml", "rates = [\"1 mm\"]").string() + out);
     CHECK(bad_matrix.code == 2);
     CHECK(bad_matrix.err.find("m.toml:1") != std::string::npos);
-    const Outcome no_column = folder.tactus("rig " + folder.write("x.csv", "time_s,force\n0,1\n").string() + out);
+    const Outcome no_column = folder.tactus("gripper " + folder.write("x.csv", "time_s,force\n0,1\n").string() + out);
     CHECK(no_column.code == 2);
     CHECK(no_column.err.find("no column") != std::string::npos);
-    const Outcome unknown =
-        folder.tactus("rig gripper-wqsm --matrix " + folder.write("n.toml", "motors = [\"linear\"]").string() + out);
+    const Outcome unknown = folder.tactus("gripper gripper-wqsm --matrix " +
+                                          folder.write("n.toml", "motors = [\"linear\"]").string() + out);
     CHECK(unknown.code == 2);
     CHECK(unknown.err.find("linear") != std::string::npos);
 }
@@ -167,7 +167,8 @@ TEST_CASE("gripper patches: planted faults hold the motor and are told") {
                                 "--seconds 6 --set rig.swings=\"1 Hz\" --set rig.peak_to_peak=\"50 mm\" --set "
                                 "devices.wqsm.holding_force=\"20 N\" "
                                 "--set devices.wqsm.fault=" +
-                                    std::string(fault) + " --set devices.wqsm.fault_at=\"2.1 s\"");
+                                    std::string(fault) + " --set devices.wqsm.fault_at=\"2.1 s\"",
+                                3);
         CAPTURE(fault, s["object"].dump());
         CHECK(s["object"]["faults"] == 1.0);
         CHECK(s["object"]["fault"].get<std::string>().find(words) != std::string::npos);
@@ -179,8 +180,8 @@ TEST_CASE("gripper patches: planted faults hold the motor and are told") {
 TEST_CASE("gripper patches: one hash on any threads and blocks, and live when nothing is late") {
     const Folder folder;
     for (const char* patch : {"gripper-wqsm", "gripper-twum", "gripper-on-arm"}) {
-        const json one = rendered(folder, patch, "--seconds 1 --threads 1");
-        CHECK(rendered(folder, patch, "--seconds 1 --threads 3 --block random")["output_hash"] == one["output_hash"]);
+        const json one = rendered(folder, patch, "--seconds 1 --jobs 1");
+        CHECK(rendered(folder, patch, "--seconds 1 --jobs 3 --block random")["output_hash"] == one["output_hash"]);
         const Outcome live =
             folder.tactus("run " + std::string(patch) +
                           " --seconds 1 --dilate 4 --audio none --no-edits --json --overwrite --record " +

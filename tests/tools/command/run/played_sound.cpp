@@ -252,7 +252,7 @@ TEST_CASE("a server that dies leaves a run that ends by itself, silent, with fad
     server.end(SIGKILL);
     const Outcome outcome = playing.get();
     INFO(outcome.err);
-    REQUIRE(outcome.code == 0);
+    REQUIRE(outcome.code == 3);
     const json summary = json::parse(slurp(folder.path / "live/summary.json"));
     INFO(summary["sound"].dump() << summary["notices"].dump());
     CHECK(summary["sound"][0]["losses"] == 1);

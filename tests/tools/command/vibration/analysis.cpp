@@ -22,6 +22,12 @@ namespace {
 
 struct Outcome : tactus::test::Outcome {
     json answer() const { return json::parse(out); }
+    /// Of the only file.
+    json only(const char* list) const {
+        const json rows = answer()[list];
+        REQUIRE(rows.size() == 1);
+        return rows[0];
+    }
 };
 
 struct Folder : tactus::test::Folder {
@@ -76,7 +82,7 @@ TEST_CASE("spectrum reports what its contract names, in calibrated units") {
         "spectrum saw.wav --json --full-scale '20 m/s^2' --csv "
         "psd.csv --envelope 200:700");
     REQUIRE(outcome.code == 0);
-    const json answer = outcome.answer();
+    const json answer = outcome.only("rows");
     CHECK(answer["sample_rate_hz"] == 48000.0);
     CHECK(answer["duration_s"] == 6.0);
     CHECK(answer["psd"]["units"] == "(m/s^2)^2/Hz");
@@ -121,7 +127,7 @@ TEST_CASE("a batch goes on past a bad file, says so, and writes one table") {
     folder.sound("set/c.flac", tones({{120.0, 0.5}}, 2.0), 1, 48000, SF_FORMAT_FLAC | SF_FORMAT_PCM_16);
     const Outcome outcome = folder.tactus("spectrum set --json --jobs 2 --table t.csv");
     CHECK(outcome.code == 2);
-    const json answer = outcome.answer();
+    const json answer = outcome.answer()["rows"];
     REQUIRE(answer.size() == 3);
     CHECK(answer[0]["channels"][0]["fundamental_hz"].get<double>() == Approx(100.0).margin(0.05));
     CHECK(answer[1]["error"].get<std::string>().find("b.wav") != std::string::npos);
@@ -136,7 +142,7 @@ TEST_CASE("odd records get an answer that says what is odd") {
         const Outcome outcome = folder.tactus("spectrum --json " + arguments);
         CAPTURE(arguments, outcome.err);
         REQUIRE(outcome.code == 0);
-        return outcome.answer()["channels"][0];
+        return outcome.only("rows")["channels"][0];
     };
     const auto warns = [](const json& channel, const char* of) {
         return channel["warnings"].dump().find(of) != std::string::npos;
@@ -165,11 +171,11 @@ TEST_CASE("odd records get an answer that says what is odd") {
     for (const double v : mono)
         for (int c = 0; c < 7; ++c) seven.push_back(v * c);
     folder.sound("seven.wav", seven, 7, 3000, SF_FORMAT_WAV | SF_FORMAT_PCM_24);
-    const json answer = folder.tactus("spectrum --json seven.wav").answer();
+    const json answer = folder.tactus("spectrum --json seven.wav").only("rows");
     REQUIRE(answer["channels"].size() == 7);
     CHECK(warns(answer["channels"][0], "silent"));
     CHECK(answer["channels"][1]["fundamental_hz"].get<double>() == Approx(100.0).margin(0.05));
-    CHECK(folder.tactus("spectrum --json --channel 2,3 seven.wav").answer()["channels"].size() == 2);
+    CHECK(folder.tactus("spectrum --json --channel 2,3 seven.wav").only("rows")["channels"].size() == 2);
 }
 
 TEST_CASE("records that cannot be used end with one error and exit code 2") {
@@ -200,7 +206,7 @@ TEST_CASE("an uneven log is resampled and says how far it can be trusted") {
         text += fmt::format("{},{:.6f}\n", t, 100.0 * std::sin(2.0 * std::numbers::pi * 33.0 * t * 1e-3));
     }
     folder.text("log.csv", text);
-    const json answer = folder.tactus("spectrum --json --calibration '0.01 m/s^2' log.csv").answer();
+    const json answer = folder.tactus("spectrum --json --calibration '0.01 m/s^2' log.csv").only("rows");
     CHECK(answer["log"]["nyquist_hz"].get<double>() == Approx(0.5 * answer["sample_rate_hz"].get<double>()));
     CHECK(answer["log"]["usable_hz"].get<double>() == Approx(1000.0 / 12.0).epsilon(0.01));
     CHECK(answer["channels"][0]["fundamental_hz"].get<double>() == Approx(33.0).margin(0.05));
@@ -219,7 +225,7 @@ TEST_CASE(
     CHECK(folder.tactus("exposure saw.wav").code == 2);
     const Outcome outcome = folder.tactus("exposure saw.wav --json --full-scale '100 m/s^2' --duration '30 min'");
     REQUIRE(outcome.code == 0);
-    const json answer = outcome.answer();
+    const json answer = outcome.only("operations");
   // 500 rad/s is the norm's check point: weight 0.2020.
     const double wanted = 50.0 / std::sqrt(2.0) * 0.2020;
     CHECK(answer["a_hw"][0].get<double>() == Approx(wanted).epsilon(1e-3));
@@ -232,7 +238,7 @@ TEST_CASE(
     CHECK(answer["band_hz"][1].get<double>() > 1250.0);
 
     folder.sound("slow.wav", tones({{80.0, 0.5}}, 4.0, 2000.0), 1, 2000);
-    const json slow = folder.tactus("exposure slow.wav --json --uncalibrated").answer();
+    const json slow = folder.tactus("exposure slow.wav --json --uncalibrated").only("operations");
     CHECK(slow["a_hv"].is_null());
     CHECK(slow["calibrated"] == false);
     CHECK(slow["lower_bound"] == true);
@@ -299,10 +305,11 @@ TEST_CASE("orders and exposure answer odd records or refuse them with one line")
         }
 
     const auto weighted = [&](const char* file) {
-        const Outcome outcome = folder.tactus(fmt::format("exposure --json --channel 1 --full-scale '1 m/s^2' {}", file));
+        const Outcome outcome =
+            folder.tactus(fmt::format("exposure --json --channel 1 --full-scale '1 m/s^2' {}", file));
         CAPTURE(file, outcome.err);
         REQUIRE(outcome.code == 0);
-        return outcome.answer()["a_hw"][0].get<double>();
+        return outcome.only("operations")["a_hw"][0].get<double>();
     };
     const double wanted = weighted("good.wav");
     folder.sound("silent.wav", std::vector<double>(96000));

@@ -33,7 +33,7 @@ struct SoundShape {
 };
 
 fs::path sound_of(const Folder& folder, const std::string& name, const std::function<double(double)>& value,
-               const SoundShape& shape = {}) {
+                  const SoundShape& shape = {}) {
     SF_INFO info{};
     info.samplerate = shape.rate;
     info.channels = shape.channels;
@@ -65,7 +65,10 @@ json compared(const Folder& folder, const std::string& arguments, int code) {
     const Outcome outcome = folder.tactus("compare --json " + arguments);
     INFO(outcome.err);
     REQUIRE(outcome.code == code);
-    return json::parse(outcome.out);
+    const json answer = json::parse(outcome.out);
+    REQUIRE(answer["pairs"].size() == 1);
+    CHECK(answer["verdict"] == answer["pairs"][0]["verdict"]);
+    return answer["pairs"][0];
 }
 
 }  // namespace
@@ -74,7 +77,7 @@ TEST_CASE("measure finds the actuator's resonance in a patch; equalise makes a f
     const Folder folder;
     const std::string csv = (folder.path / "response.csv").string(), filter = (folder.path / "filter.toml").string();
     const Outcome measured =
-        folder.tactus("measure saw-training --in saw.signal --out actuator.signal --amplitude 100 --json -o " + csv);
+        folder.tactus("measure saw-training --in saw.signal --probe actuator.signal --amplitude 100 --json -o " + csv);
     INFO(measured.err);
     REQUIRE(measured.code == 0);
     const json result = json::parse(measured.out);
@@ -108,7 +111,7 @@ TEST_CASE("a sweep that drives the actuator into its limit shows it as distortio
     const Folder folder;
     const std::string csv = (folder.path / "response.csv").string();
     const auto third_order = [&](const char* amplitude) {
-        const Outcome measured = folder.tactus(std::string("measure saw-training --in actuator.drive --out "
+        const Outcome measured = folder.tactus(std::string("measure saw-training --in actuator.drive --probe "
                                                            "actuator.voltage --json --amplitude ") +
                                                amplitude + " -o " + csv);
         INFO(measured.err);
@@ -179,7 +182,8 @@ TEST_CASE("two takes of one saw pass with null where scores need one recording; 
 
 TEST_CASE("a person reads the verdict first, then why; a figure is written as its name says") {
     const Folder folder;
-    const std::string a = sound_of(folder, "a.wav", saw(233.0)).string(), b = sound_of(folder, "b.wav", saw(150.0)).string();
+    const std::string a = sound_of(folder, "a.wav", saw(233.0)).string(),
+                      b = sound_of(folder, "b.wav", saw(150.0)).string();
     const std::string svg = (folder.path / "f.svg").string(), png = (folder.path / "f.png").string();
     const Outcome text = folder.tactus("compare " + a + " " + b + " --plot " + svg);
     CHECK(text.code == 1);
@@ -242,8 +246,9 @@ TEST_CASE("compare answers or says what is wrong with a file, once, and ends wit
     refused(sound_of(folder, "silent.wav", [](double) { return 0.0; }), "output is silent");
     refused(sound_of(folder, "constant.wav", [](double) { return 0.5; }), "output is silent");
     refused(sound_of(folder, "one.wav", saw(233.0), {.seconds = 1.0 / 48000.0}), "shorter than 0.5 s");
-    refused(sound_of(folder, "nan.wav", [](double t) { return t > 1.0 ? std::numeric_limits<double>::quiet_NaN() : 0.1; }),
-            "NaN");
+    refused(
+        sound_of(folder, "nan.wav", [](double t) { return t > 1.0 ? std::numeric_limits<double>::quiet_NaN() : 0.1; }),
+        "NaN");
     refused(sound_of(folder, "slow.wav", saw(30.0), {.rate = 200}), "too low");
     const std::string bytes = slurp(good);
     refused(folder.write("cut.wav", bytes.substr(0, bytes.size() / 2)), "cut short");
@@ -259,13 +264,13 @@ TEST_CASE("compare answers or says what is wrong with a file, once, and ends wit
     passes(sound_of(folder, "k192.wav", saw(233.0, 0.3, 3), {.rate = 192000}));
     passes(sound_of(folder, "k3.wav", saw(233.0, 0.3, 3), {.rate = 3000}));
     passes(sound_of(folder, "seven.wav",
-                 [s = saw(233.0, 0.3, 3), value = 0.0, channel = 0](double t) mutable {
-                     if (channel++ % 7 == 0) value = s(t);
-                     return value;
-                 },
-                 {.channels = 7}));
-    const Outcome clipped = against(
-        sound_of(folder, "clipped.wav", [s = saw(233.0)](double t) mutable { return std::clamp(3.0 * s(t), -1.0, 1.0); }));
+                    [s = saw(233.0, 0.3, 3), value = 0.0, channel = 0](double t) mutable {
+                        if (channel++ % 7 == 0) value = s(t);
+                        return value;
+                    },
+                    {.channels = 7}));
+    const Outcome clipped = against(sound_of(
+        folder, "clipped.wav", [s = saw(233.0)](double t) mutable { return std::clamp(3.0 * s(t), -1.0, 1.0); }));
     CHECK(clipped.code != 2);
     CHECK(clipped.out.find("clipped") != std::string::npos);
 }
@@ -287,13 +292,13 @@ TEST_CASE("compare reads logs as it reads sounds, each with its own columns, and
     const std::string whole = log("a.csv", "time_ms,flag,accel\n", 0.0, 6.0, 0.0);
     const std::string parted = log("b.csv", "when_ms,flag,value\n", 1.0, 9.0, 0.5);
     const std::string wave = sound_of(folder, "a.wav",
-                                   [](double t) {
-                                       double y = 0.0;
-                                       for (int k = 1; k <= 3; ++k)
-                                           y += 0.3 * std::sin(2.0 * std::numbers::pi * k * 120.0 * t + k * k) / k;
-                                       return y;
-                                   },
-                                   {.seconds = 5.0})
+                                      [](double t) {
+                                          double y = 0.0;
+                                          for (int k = 1; k <= 3; ++k)
+                                              y += 0.3 * std::sin(2.0 * std::numbers::pi * k * 120.0 * t + k * k) / k;
+                                          return y;
+                                      },
+                                      {.seconds = 5.0})
                                  .string();
     const json same = compared(folder, whole + " " + wave + " --time-column time_ms --column accel", 0);
     CHECK(same["fundamental_hz"]["reference"].get<double>() == Approx(120.0).margin(0.1));
@@ -331,20 +336,20 @@ TEST_CASE("measure and equalise refuse what makes no sense with one line") {
     const std::pair<std::string, std::string> slips[] = {
         {"measure", "--device"},
         {"measure saw-vibration", "--in NODE.PORT"},
-        {"measure saw-vibration --in actuator --out handle.out", "NODE.PORT"},
-        {"measure saw-vibration --in actuator.driv --out handle.out", "did you mean 'drive'?"},
-        {"measure saw-vibration --in actuatr.drive --out handle.out", "did you mean 'actuator'?"},
-        {"measure saw-vibration --in actuator.drive --out actuator.drive", "is an input"},
-        {"measure saw-vibration --in felt.in --out saw.signal", "no signal 'in'"},
-        {"measure saw-vibration --in handle.in --out handle.out", "leads to several ports"},
-        {"measure saw-vibration --in speaker.signal --out handle.out", "no wires lead"},
-        {"measure saw-vibration --in actuator.drive --out handle.out --last 30000", "half the node's rate"},
-        {"measure saw-vibration --in actuator.drive --out handle.out --first 50 --last 20", "higher"},
-        {"measure none --in a.b --out c.d", "no patch 'none'"},
+        {"measure saw-vibration --in actuator --probe handle.out", "NODE.PORT"},
+        {"measure saw-vibration --in actuator.driv --probe handle.out", "did you mean 'drive'?"},
+        {"measure saw-vibration --in actuatr.drive --probe handle.out", "did you mean 'actuator'?"},
+        {"measure saw-vibration --in actuator.drive --probe actuator.drive", "is an input"},
+        {"measure saw-vibration --in felt.in --probe saw.signal", "no signal 'in'"},
+        {"measure saw-vibration --in handle.in --probe handle.out", "leads to several ports"},
+        {"measure saw-vibration --in speaker.signal --probe handle.out", "no wires lead"},
+        {"measure saw-vibration --in actuator.drive --probe handle.out --band 20:30000", "half the node's rate"},
+        {"measure saw-vibration --in actuator.drive --probe handle.out --band 50:20", "LOW:HIGH"},
+        {"measure none --in a.b --probe c.d", "no patch 'none'"},
         {"equalise " + (folder.path / "none.csv").string() + " -o f.toml", "none.csv"},
         {"equalise " + folder.write("x.csv", "1 2\n").string() + " -o f.toml", "3 frequencies"},
         {"equalise " + table + " -o f.toml --actuator none", "known are"},
-        {"equalise " + table + " -o f.toml --from 5", "covers"},
+        {"equalise " + table + " -o f.toml --band 5:400", "covers"},
         {"equalise " + table + " -o f.toml --rate 100", "too low"},
         {"equalise " + table + " -o /nowhere/f.toml", "/nowhere"},
     };

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes manual pages and completions, for packages.
+#include "assets/file/whole_file.hpp"
+#include "tools/command/catalogue.hpp"
+#include "tools/command/manual.hpp"
+#include "tools/exit_code.hpp"
+
+#include <filesystem>
+#include <memory>
+
+namespace tactus::command {
+
+namespace {
+
+struct GenerateChoice {
+    std::string what;
+    std::filesystem::path folder;
+};
+
+int generate(const GenerateChoice& choice) {
+    const VerbPage pages = pages_of(tactus_program());
+    std::filesystem::create_directories(choice.folder);
+    if (choice.what == "man")
+        for (const auto& [name, text] : man_pages(pages)) file::write_whole_file(choice.folder / name, text);
+    else if (choice.what == "bash") file::write_whole_file(choice.folder / "tactus.bash", bash_completion(pages));
+    else if (choice.what == "zsh") file::write_whole_file(choice.folder / "_tactus", zsh_completion(pages));
+    else file::write_whole_file(choice.folder / "tactus.fish", fish_completion(pages));
+    return done;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<GenerateChoice>();
+    verb.add("what", choice->what, "what to write").required().one_of({"man", "bash", "zsh", "fish"});
+    verb.add("folder", choice->folder, "where to write it; made if missing").required();
+    return [choice] { return generate(*choice); };
+}
+
+}  // namespace
+
+Verb generate_verb() {
+    return {
+        .name = "generate", .about = "write manual pages, or the completion of a shell", .add = add, .is_hidden = true};
+}
+
+}  // namespace tactus::command
