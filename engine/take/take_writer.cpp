@@ -25,11 +25,11 @@ namespace {
 constexpr auto flush_every = std::chrono::milliseconds(500);
 
 /// Opens its file with the first values: until then it is not known at which activation the output begins.
-class TakeEnd : public io::StreamEnd {
+class TakeSink : public io::Sink {
 public:
     using Opened = std::function<void(const TakeStreamInfo&)>;
     using Finished = std::function<void(const std::string& file, std::int64_t frames)>;
-    TakeEnd(fs::path folder, TakeStreamInfo info, const ValueType& type, Opened opened, Finished finished)
+    TakeSink(fs::path folder, TakeStreamInfo info, const ValueType& type, Opened opened, Finished finished)
         : folder_(std::move(folder)),
           info_(std::move(info)),
           type_(type),
@@ -213,7 +213,8 @@ void TakeWriter::device(const build::DeviceSlot& slot) {
              .dump());
 }
 
-std::unique_ptr<io::Stream> TakeWriter::stream(const std::string& port, const ValueType& type, const run::GroupRuntime& group) {
+std::unique_ptr<io::Stream> TakeWriter::stream(const std::string& port, const ValueType& type,
+                                               const run::GroupRuntime& group) {
     TakeStreamInfo info;
     info.port = port;
     info.group = group.plan->name;
@@ -245,7 +246,7 @@ std::unique_ptr<io::Stream> TakeWriter::stream(const std::string& port, const Va
         const std::lock_guard lock(writing_);
         frames_[file] = frames;
     };
-    return std::make_unique<io::Stream>(format, std::make_unique<TakeEnd>(folder_, info, type, opened, finished));
+    return std::make_unique<io::Stream>(format, std::make_unique<TakeSink>(folder_, info, type, opened, finished));
 }
 
 void TakeWriter::edit(std::int64_t number, Flicks when, const patch::Patch& patch) {

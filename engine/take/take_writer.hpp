@@ -11,7 +11,7 @@
 #pragma once
 
 #include "assets/file/growing_file.hpp"
-#include "engine/io/outside.hpp"
+#include "engine/io/host.hpp"
 #include "engine/io/streams.hpp"
 #include "engine/take/take_stream.hpp"
 #include "engine/take/timing_log.hpp"
@@ -34,7 +34,6 @@ class GroupRuntime;
 }
 
 namespace tactus::take {
-
 
 /// Of take.json; takes of another one are refused.
 constexpr int take_format = 2;

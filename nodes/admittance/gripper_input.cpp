@@ -24,7 +24,7 @@ struct GripperInput {
     Param stale_after{structural, "25 ms", "0 ms", "10 s", "without a new sample for so long the sensor is gone"};
 
     void prepare(const Setup& setup) {
-        port_ = &setup.outside->device(device.value, DeviceUse::read, device.where);
+        port_ = &setup.host->device(device.value, DeviceUse::read, device.where);
         if (port_->info.fingers == 0) setup.fail("the device is no gripper; use device_input");
         read(0.0);
     }

@@ -24,7 +24,7 @@ struct GripperOutput {
     Param drive_limit{"3 kHz", "1 Hz", "1 MHz", "drive cycles per second at full speed"};
 
     void prepare(const Setup& setup) {
-        port_ = &setup.outside->device(device.value, DeviceUse::drive, device.where);
+        port_ = &setup.host->device(device.value, DeviceUse::drive, device.where);
         if (port_->info.fingers == 0) setup.fail("the device is no gripper; use device_output");
         asked_ = recover;
         port_->motors = {};
@@ -65,7 +65,9 @@ private:
         return most > 0.0 && std::max(std::abs(first), std::abs(second)) > most ? control::Fault::beyond_drive_limit
                                                                                 : control::Fault::none;
     }
-    control::Fault upstream() const noexcept { return fault.connected ? control::fault_of_number(fault.get()) : control::Fault::none; }
+    control::Fault upstream() const noexcept {
+        return fault.connected ? control::fault_of_number(fault.get()) : control::Fault::none;
+    }
 
     DevicePort* port_ = nullptr;
     double asked_ = 0.0, held_s_ = 0.0;

@@ -24,7 +24,7 @@ struct Grasp {
     Param fade{"50 ms", "0 ms", "10 s", "in which the force comes in and goes out"};
     Param fixed{"1", "0", "16", "so many places from the first cannot be taken"};
 
-    void prepare(const Setup&) { tell(); }
+    void prepare(const Setup&) { publish(); }
 
     void process(const Tick& tick) noexcept {
         const bool wanted = trigger.get() && is_valid(hand.get());
@@ -33,7 +33,7 @@ struct Grasp {
         was_wanted_ = wanted;
         const double change = fade > 0.0 ? tick.elapsed_seconds() / fade : 1.0;
         strength_ = std::clamp(strength_ + (holds_ ? change : -change), 0.0, 1.0);
-        tell();
+        publish();
         // Told once more with no force, so that whoever follows sees the end of it.
         if (!holds_ && strength_ == 0.0) place_ = -1;
     }
@@ -55,7 +55,7 @@ private:
         holds_ = true;
     }
 
-    void tell() noexcept {
+    void publish() noexcept {
         held = place_;
         grip = grip_;
         holding = holds_;

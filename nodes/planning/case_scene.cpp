@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/arrangement.hpp"
-#include "dsp/fit/step_tree.hpp"
 #include "dsp/fit/fit.hpp"
+#include "dsp/fit/step_tree.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
 #include "nodes/contact/body_parts.hpp"
@@ -66,16 +66,16 @@ struct CaseScene {
         tree_->stand(plan->plan.place());
         if (!file.value.empty()) {
             keeper_ = std::make_shared<StepKeeper>(plan->plan, setup.period);
-            stream_ = &setup.outside->record({file.value, "", &step_row_type, setup.period, keeper_}, setup.where);
+            stream_ = &setup.host->record({file.value, "", &step_row_type, setup.period, keeper_}, setup.where);
         }
         arrange_scene();
-        tell();
+        publish();
     }
 
     void process(const Tick& tick) noexcept {
         follow(tick);
         press(tick);
-        tell();
+        publish();
     }
 
     void report(Report& report) const {
@@ -95,7 +95,8 @@ private:
         for (contact::SurfacePoint& p : points) p.position -= middle;
         volume::Grid field = bone.distance;
         field.origin -= middle;
-        return std::make_shared<const BodyParts>(contact::make_pointshell(points), contact::make_voxmap(std::move(field)),
+        return std::make_shared<const BodyParts>(contact::make_pointshell(points),
+                                                 contact::make_voxmap(std::move(field)),
                                                  Pose{middle, {1.0, 0.0, 0.0, 0.0}}, false);
     }
 
@@ -294,7 +295,7 @@ private:
         object.stands = now_->is_locked(fragment) || now_->fitted_to(fragment) != fit::Arrangement::none;
     }
 
-    void tell() noexcept {
+    void publish() noexcept {
         if (is_changed_) {
             ++scene_.version;
             scene_.content_hash = coupling::hash_of(scene_);

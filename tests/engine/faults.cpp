@@ -29,7 +29,8 @@ DeviceSample pressing(std::int64_t count) {
     return sample;
 }
 
-std::string patch_text(const std::string& fault, int at, const std::string& stall = "0 ms", const std::string& more = "") {
+std::string patch_text(const std::string& fault, int at, const std::string& stall = "0 ms",
+                       const std::string& more = "") {
     return PatchText{{{"hand", "device_input", "1 kHz", {{"device", "faulty"}}},
                       {"plant", "planted", "1 kHz", {{"fault", fault}, {"at", std::to_string(at)}, {"stall", stall}}},
                       {"out",
@@ -61,7 +62,7 @@ struct Outcome {
 };
 
 Outcome run_patch(const std::string& toml, double length, const std::function<DeviceSample(std::int64_t)>& hand,
-            const std::optional<std::filesystem::path>& live_log = {}) {
+                  const std::optional<std::filesystem::path>& live_log = {}) {
     Outcome outcome;
     outcome.given.reserve(100'000);
     Performance performance;
@@ -75,7 +76,7 @@ Outcome run_patch(const std::string& toml, double length, const std::function<De
     run::Engine engine(compile_text(toml), options);
     if (live_log) engine.run_live({.dilate = 1.0, .log = live_log, .stop = nullptr, .watch = {}});
     else engine.render(1);
-    for (const auto& slot : engine.outside().devices)
+    for (const auto& slot : engine.host().devices)
         outcome.faults.assign(slot->guard.faults().begin(), slot->guard.faults().end());
     for (const auto& group : engine.groups())
         if (group->plan->name == "200 Hz") {
@@ -220,7 +221,8 @@ TEST_CASE("a stalled tick loses the hand to the watchdog, which fades it; the ot
         }
         if (must_be_taken) {
             CHECK(taken);
-            CHECK(std::ranges::any_of(o.faults, [](const io::DeviceFault& f) { return f.reason == control::Fault::late_commit; }));
+            CHECK(std::ranges::any_of(
+                o.faults, [](const io::DeviceFault& f) { return f.reason == control::Fault::late_commit; }));
         }
         // At the end of the run nothing is left on the hand.
         CHECK(force_at(o, o.given.size() - 1) == 0.0);
