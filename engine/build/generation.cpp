@@ -12,8 +12,8 @@
 
 namespace tactus::build {
 
-GenerationBuilder::GenerationBuilder(compile::Plan plan, const Generation* before, Workshop& workshop)
-    : before_(before), workshop_(workshop), made_(std::make_unique<Generation>()) {
+GenerationBuilder::GenerationBuilder(compile::Plan plan, const Generation* before, BuildContext& context)
+    : before_(before), context_(context), made_(std::make_unique<Generation>()) {
     made_->plan = std::move(plan);
     made_->number = before ? before->number + 1 : 0;
 }
@@ -68,8 +68,8 @@ void GenerationBuilder::form_groups() {
     for (const compile::PlanGroup& group : plan().groups) {
         int frames = 1;
         if (group.has_audio)
-            frames = workshop_.block > 0 ? workshop_.block
-                                         : static_cast<int>(std::max<Flicks>(1, plan().patch.quantum / group.period));
+            frames = context_.block > 0 ? context_.block
+                                        : static_cast<int>(std::max<Flicks>(1, plan().patch.quantum / group.period));
         std::shared_ptr<run::GroupRuntime> runtime;
         if (const auto found = old_groups.find(group.name); found != old_groups.end()) {
             const auto& old = found->second;
@@ -79,9 +79,9 @@ void GenerationBuilder::form_groups() {
         }
         made_->group_is_new.push_back(!runtime);
         if (!runtime) {
-            if (workshop_.next_group > std::numeric_limits<std::uint16_t>::max())
+            if (context_.next_group > std::numeric_limits<std::uint16_t>::max())
                 throw Error("edits of this run have made more rate groups than its log can tell apart; start anew");
-            runtime = std::make_shared<run::GroupRuntime>(group, workshop_.next_group++, frames);
+            runtime = std::make_shared<run::GroupRuntime>(group, context_.next_group++, frames);
         }
         group_index_.emplace(runtime.get(), static_cast<int>(made_->groups.size()));
         made_->groups.push_back(std::move(runtime));
@@ -126,17 +126,16 @@ void GenerationBuilder::prepare() {
     for (std::size_t i = 0; i < plan().nodes.size(); ++i)
         if (const auto& cards = made_->nodes[i]->uses.cards; made_->survived[i])
             playing.insert(playing.end(), cards.begin(), cards.end());
-    workshop_.outside.keep_cards(std::move(playing));
+    context_.host.keep_cards(std::move(playing));
     for (std::size_t i = 0; i < plan().nodes.size(); ++i) {
         if (made_->survived[i]) continue;
         const compile::PlanNode& node = plan().nodes[i];
         const run::GroupRuntime& group = group_of(node);
-        workshop_.outside.prepare_for(group.index, group.plan->period, made_->nodes[i]->uses);
+        context_.host.prepare_for(group.index, group.plan->period, made_->nodes[i]->uses);
         Hash seed;
         seed.add_word(plan().patch.seed);
         seed.add_text(node.name);
-        const Setup setup{node.name,        node.where,   group.plan->period,
-                          group.max_frames, seed.value(), &workshop_.outside};
+        const Setup setup{node.name, node.where, group.plan->period, group.max_frames, seed.value(), &context_.host};
         node.type->prepare(made_->nodes[i]->instance.get(), setup);
     }
 }
@@ -155,9 +154,9 @@ bool Generation::settled() const {
     return std::ranges::all_of(links, [](const auto& link) { return link->settled(); });
 }
 
-std::unique_ptr<Generation> build_generation(compile::Plan plan, const Generation* before, Workshop& workshop) {
+std::unique_ptr<Generation> build_generation(compile::Plan plan, const Generation* before, BuildContext& context) {
     flush_denormals_to_zero();
-    return GenerationBuilder(std::move(plan), before, workshop).build();
+    return GenerationBuilder(std::move(plan), before, context).build();
 }
 
 }  // namespace tactus::build

@@ -4,9 +4,9 @@
 #pragma once
 
 #include "engine/build/group_program.hpp"
-#include "engine/run/group_runtime.hpp"
+#include "engine/io/host.hpp"
 #include "engine/observe/observer.hpp"
-#include "engine/io/outside.hpp"
+#include "engine/run/group_runtime.hpp"
 #include "graph/compile/plan.hpp"
 
 #include <functional>
@@ -29,13 +29,13 @@ struct LiveNode {
     std::vector<Input*> inputs;
     std::vector<Output*> outputs;
     std::map<std::string, Param*> params;
-    io::OutsideUses uses;  ///< what its prepare asked for
+    io::HostUses uses;  ///< what its prepare asked for
     std::vector<std::shared_ptr<observe::ObservedPort>> seen;  ///< as outputs, when there is an observer
 };
 
 /// What the generations of one run share. Used by one builder at a time.
-struct Workshop {
-    io::EngineOutside& outside;
+struct BuildContext {
+    io::EngineHost& host;
     int block = 0;  ///< most samples per call of an audio group, 0: the patch's quantum
     bool hash = true;  ///< keep hashes of all outputs
     std::map<std::pair<const ValueType*, std::string>, std::pair<std::shared_ptr<const void>, std::vector<std::byte>>>
@@ -66,6 +66,6 @@ struct Generation {
 };
 
 /// Builds what follows `before` (null: nothing). Assets must be loaded. What runs is not touched. Throws Error.
-std::unique_ptr<Generation> build_generation(compile::Plan plan, const Generation* before, Workshop& workshop);
+std::unique_ptr<Generation> build_generation(compile::Plan plan, const Generation* before, BuildContext& context);
 
 }  // namespace tactus::build

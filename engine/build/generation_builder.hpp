@@ -21,12 +21,14 @@ namespace tactus::build {
 /// self goes on is never prepared: it only shows how the inputs of that one are to be wired.
 class GenerationBuilder {
 public:
-    GenerationBuilder(compile::Plan plan, const Generation* before, Workshop& workshop);
+    GenerationBuilder(compile::Plan plan, const Generation* before, BuildContext& context);
     std::unique_ptr<Generation> build();
 
 private:
     compile::Plan& plan() { return made_->plan; }
-    run::GroupRuntime& group_of(const compile::PlanNode& node) { return *made_->groups[static_cast<std::size_t>(node.group)]; }
+    run::GroupRuntime& group_of(const compile::PlanNode& node) {
+        return *made_->groups[static_cast<std::size_t>(node.group)];
+    }
     GroupProgram& program_of(int group) { return *made_->programs[static_cast<std::size_t>(group)]; }
     GroupProgram& program_of(const run::GroupRuntime* runtime) { return program_of(group_index_.at(runtime)); }
     template <class T>
@@ -75,7 +77,7 @@ private:
     void index_before();
 
     const Generation* before_;
-    Workshop& workshop_;
+    BuildContext& context_;
     std::unique_ptr<Generation> made_;
     // What is looked up by node, wire or group, so that a plan of n nodes takes n steps.
     std::unordered_map<std::string_view, std::size_t> nodes_before_;         // by name, in `before_`

@@ -58,20 +58,20 @@ void GenerationBuilder::add_step(GroupProgram& program, std::size_t index, bool 
         output.port = running.outputs[k];
         output.is_signal = &type == &value::signal;
         output.name = node.name + "." + node.outputs[k].name;
-        if (workshop_.take) output.take = workshop_.take(output.name, type, *running.group);
-        if (workshop_.observer) output.seen = &observed(running, k, output.name);
+        if (context_.take) output.take = context_.take(output.name, type, *running.group);
+        if (context_.observer) output.seen = &observed(running, k, output.name);
         if (type.version) program.snapshots.push_back(static_cast<SnapshotOutput*>(running.outputs[k]));
     }
-    program.hashes_outputs = workshop_.hash;
-    program.records_outputs = workshop_.take || workshop_.observer;
+    program.hashes_outputs = context_.hash;
+    program.records_outputs = context_.take || context_.observer;
 }
 
 observe::ObservedPort& GenerationBuilder::observed(LiveNode& node, std::size_t output, const std::string& name) {
     if (node.seen.size() <= output) {
         const run::GroupRuntime& group = *node.group;
         node.seen.push_back(
-            workshop_.observer->open({name, group.plan->period, group.plan->has_audio ? group.max_frames : 1},
-                                     *node.outputs[output]->type, node.outputs[output]->data));
+            context_.observer->open({name, group.plan->period, group.plan->has_audio ? group.max_frames : 1},
+                                    *node.outputs[output]->type, node.outputs[output]->data));
     }
     return *node.seen[output];
 }

@@ -64,7 +64,7 @@ void GenerationBuilder::allocate() {
 
 run::Link& GenerationBuilder::link_for(const compile::PlanWire& wire) {
     const compile::PlanNode &from = plan().nodes[static_cast<std::size_t>(wire.from_node)],
-                   &to = plan().nodes[static_cast<std::size_t>(wire.to_node)];
+                            &to = plan().nodes[static_cast<std::size_t>(wire.to_node)];
     const compile::PlanGroup& producer = plan().groups[static_cast<std::size_t>(from.group)];
     const Flicks latency = compile::wire_latency(producer, wire);
     auto& known = links_made_[{&group_of(from), &group_of(to), latency}];
@@ -83,7 +83,7 @@ void GenerationBuilder::connect_constant(const compile::PlanWire& wire) {
     Input& input =
         *plan().nodes[static_cast<std::size_t>(wire.to_node)].inputs[static_cast<std::size_t>(wire.to_input)].port;
     const patch::PatchAsset* asset = assets_.at(wire.asset);
-    auto& [owner, handle] = workshop_.constants[{input.type, asset->path.string()}];
+    auto& [owner, handle] = context_.constants[{input.type, asset->path.string()}];
     if (!owner) {
         handle.resize(input.type->size);
         try {
@@ -95,7 +95,8 @@ void GenerationBuilder::connect_constant(const compile::PlanWire& wire) {
     input.data = handle.data();
 }
 
-void GenerationBuilder::connect_delay(const compile::PlanWire& wire, const Output& source, Input* target, int group_index) {
+void GenerationBuilder::connect_delay(const compile::PlanWire& wire, const Output& source, Input* target,
+                                      int group_index) {
     const run::GroupRuntime& group = *made_->groups[static_cast<std::size_t>(group_index)];
     DelayLine& line = *program_of(group_index).delays.emplace_back(std::make_unique<DelayLine>());
     line.type = source.type;
@@ -192,7 +193,7 @@ void GenerationBuilder::finish_links() {
             continue;
         }
         new_links_.insert(link.get());
-        link->id = workshop_.next_link++;
+        link->id = context_.next_link++;
         link->continued = same > 0 ? old : nullptr;
         link->prepare(link_slack, ring_frames(*link->producer), ring_frames(*link->consumer),
                       before_ ? run::Link::unknown : 0);

@@ -36,7 +36,7 @@ bool SoundCard::write(std::int64_t first, const void* values, std::size_t count,
     return lost == 0;
 }
 
-bool SoundCard::tend(std::int64_t now_ns, Flicks reached, control::TrimmedClock* clock) {
+bool SoundCard::service(std::int64_t now_ns, Flicks reached, control::TrimmedClock* clock) {
     const AudioProgress progress = sink_->progress();
     largest_ = progress.largest;
     if (progress.frames != seen_frames_ || seen_ns_ == 0) {

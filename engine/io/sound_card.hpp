@@ -27,7 +27,7 @@ public:
     // Control thread.
     /// Looks at what the card did. Trims `clock` when given one. True at the moment when the card turns out to be lost:
     /// no callback came for `longest_silence_ns`.
-    bool tend(std::int64_t now_ns, Flicks reached, control::TrimmedClock* clock);
+    bool service(std::int64_t now_ns, Flicks reached, control::TrimmedClock* clock);
     void close() { sink_->close(); }
 
     const std::string& name() const { return sink_->name(); }

@@ -20,9 +20,9 @@ namespace {
 constexpr std::size_t ring_bytes = std::size_t{1} << 20;
 constexpr std::size_t longest_piece = 4096;  // values of one write
 
-class SoundEnd : public StreamEnd {
+class SoundFileSink : public Sink {
 public:
-    SoundEnd(const std::filesystem::path& path, const StreamFormat& format)
+    SoundFileSink(const std::filesystem::path& path, const StreamFormat& format)
         : writer_(path, 1, static_cast<int>(std::lround(rate_of(format.period)))) {}
 
     void take(std::int64_t first, const std::byte* values, std::size_t count) override {
@@ -39,9 +39,9 @@ private:
     std::int64_t next_ = 0;
 };
 
-class CsvEnd : public StreamEnd {
+class CsvSink : public Sink {
 public:
-    CsvEnd(std::filesystem::path path, const StreamFormat& format)
+    CsvSink(std::filesystem::path path, const StreamFormat& format)
         : path_(std::move(path)),
           part_(path_.string() + ".part"),
           file_(std::make_unique<file::GrowingFile>(part_, path_)),
@@ -53,7 +53,7 @@ public:
         file_->append(header + "\n");
         row_.resize(type_.columns.size());
     }
-    ~CsvEnd() override {
+    ~CsvSink() override {
         if (!file_) return;
         file_.reset();
         std::error_code ignored;
@@ -99,16 +99,16 @@ private:
 
 }  // namespace
 
-std::unique_ptr<StreamEnd> make_sound_end(const std::filesystem::path& path, const StreamFormat& format) {
-    return std::make_unique<SoundEnd>(path, format);
+std::unique_ptr<Sink> make_sound_file_sink(const std::filesystem::path& path, const StreamFormat& format) {
+    return std::make_unique<SoundFileSink>(path, format);
 }
-std::unique_ptr<StreamEnd> make_csv_end(const std::filesystem::path& path, const StreamFormat& format) {
-    return std::make_unique<CsvEnd>(path, format);
+std::unique_ptr<Sink> make_csv_sink(const std::filesystem::path& path, const StreamFormat& format) {
+    return std::make_unique<CsvSink>(path, format);
 }
 
-Stream::Stream(StreamFormat format, std::unique_ptr<StreamEnd> end)
+Stream::Stream(StreamFormat format, std::unique_ptr<Sink> sink)
     : format_(std::move(format)),
-      end_(std::move(end)),
+      sink_(std::move(sink)),
       ring_(std::make_unique<Ring<std::byte>>(ring_bytes)),
       packed_(sizeof(Piece) + longest_piece * format_.type->size),
       drained_(longest_piece * format_.type->size) {}
@@ -143,7 +143,7 @@ void Stream::drain() {
         ring_->pop(drained_.data(), piece.count * format_.type->size);
         if (!loss_.empty()) continue;
         try {
-            end_->take(piece.first, drained_.data(), piece.count);
+            sink_->take(piece.first, drained_.data(), piece.count);
         } catch (const Error& error) {
             lose(error);
         }
@@ -154,7 +154,7 @@ void Stream::drain() {
 void Stream::lose(const Error& error) {
     loss_ = error.message();
     try {
-        end_->finish();
+        sink_->finish();
     } catch (const Error& another) {
         if (another.message() != loss_) loss_ += fmt::format("; {}", another.message());
     }
@@ -168,15 +168,15 @@ std::string Stream::loss() {
 void Stream::finish() {
     drain();
     const std::lock_guard lock(draining_);
-    if (!end_) return;
+    if (!sink_) return;
     if (loss_.empty()) {
         try {
-            end_->finish();
+            sink_->finish();
         } catch (const Error& error) {
             loss_ = error.message();
         }
     }
-    end_.reset();
+    sink_.reset();
     ring_.reset();
     packed_ = std::vector<std::byte>();
     drained_ = std::vector<std::byte>();

@@ -19,27 +19,27 @@
 
 namespace tactus::io {
 
-/// Where the values of a stream end. Called by one thread at a time, never in a tick.
-class StreamEnd {
+/// Where the values of a stream go. Called by one thread at a time, never in a tick.
+class Sink {
 public:
-    virtual ~StreamEnd() = default;
+    virtual ~Sink() = default;
     /// Values of activations first, first + 1, …; activations that never ran are missing. Throws Error when they cannot be
     /// kept; then only `finish` is called.
     virtual void take(std::int64_t first, const std::byte* values, std::size_t count) = 0;
     /// Completes the file, as far as it goes when `take` had failed; throws Error.
     virtual void finish() = 0;
     /// What the user should know, once; mostly nothing.
-    virtual std::string news() { return {}; }
+    virtual std::string take_message() { return {}; }
 };
 
 /// A sound file: one float channel, silence where activations are missing.
-std::unique_ptr<StreamEnd> make_sound_end(const std::filesystem::path& path, const StreamFormat& format);
+std::unique_ptr<Sink> make_sound_file_sink(const std::filesystem::path& path, const StreamFormat& format);
 /// A CSV file: a line of column names with units, then time in s and the values.
-std::unique_ptr<StreamEnd> make_csv_end(const std::filesystem::path& path, const StreamFormat& format);
+std::unique_ptr<Sink> make_csv_sink(const std::filesystem::path& path, const StreamFormat& format);
 
 class Stream : public RecordStream {
 public:
-    Stream(StreamFormat format, std::unique_ptr<StreamEnd> end);
+    Stream(StreamFormat format, std::unique_ptr<Sink> sink);
 
     /// Keeps activations from … until − 1 of those that are written. Before anybody writes.
     void begin_at(std::int64_t from) { from_ = from; }
@@ -48,17 +48,17 @@ public:
     std::int64_t until() const noexcept { return until_.load(std::memory_order_relaxed); }
     bool write(std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept override;
 
-    /// Moves what has gathered to its end. Any thread outside of a tick. An end that fails is completed as far as it goes
+    /// Moves what has gathered to the sink. Any thread outside of a tick. A sink that fails is completed as far as it goes
     /// and gets nothing more.
     void drain();
     /// True when less than half of the ring is left.
     bool wants_drain() const noexcept { return ring_ && ring_->size() * 2 > ring_->capacity(); }
     /// Completes the file and gives back all memory. Nobody writes any more; again: nothing.
     void finish();
-    bool is_finished() const { return !end_; }
+    bool is_finished() const { return !sink_; }
     /// Why the rest of this stream is not kept; empty: it is.
     std::string loss();
-    std::string news() const { return end_ ? end_->news() : std::string(); }
+    std::string take_message() const { return sink_ ? sink_->take_message() : std::string(); }
 
     const StreamFormat& format() const { return format_; }
     std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
@@ -73,7 +73,7 @@ private:
     void lose(const Error& error);
 
     StreamFormat format_;
-    std::unique_ptr<StreamEnd> end_;
+    std::unique_ptr<Sink> sink_;
     std::unique_ptr<Ring<std::byte>> ring_;
     std::vector<std::byte> packed_, drained_;  // of the writer, of the drainer
     std::mutex draining_;

@@ -31,14 +31,14 @@ void Engine::edit(std::function<compile::Plan()> make, std::function<void(const 
     waiting_ = WaitingEdit{std::move(make), std::move(told)};
 }
 
-void Engine::tend_edits() {
+void Engine::service_edits() {
     retire();
     if (building_.valid()) {
         if (building_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
         try {
             hand_over(building_.get());
         } catch (const std::exception& error) {
-            outside_.discard();
+            host_.discard();
             EditOutcome outcome;
             outcome.error = error.what();
             if (making_->told) making_->told(outcome);
@@ -51,13 +51,13 @@ void Engine::tend_edits() {
     building_ = std::async(std::launch::async, [this] {
         compile::Plan plan = making_->make();
         // A take numbers groups and links in the order in which plans were taken up: those that fail leave no gap.
-        const int group = workshop_.next_group, link = workshop_.next_link;
+        const int group = context_.next_group, link = context_.next_link;
         try {
-            outside_.begin(plan.patch);
-            return build::build_generation(std::move(plan), now_.get(), workshop_);
+            host_.begin(plan.patch);
+            return build::build_generation(std::move(plan), now_.get(), context_);
         } catch (...) {
-            workshop_.next_group = group;
-            workshop_.next_link = link;
+            context_.next_group = group;
+            context_.next_link = link;
             throw;
         }
     });
@@ -124,7 +124,7 @@ void Engine::close_ended() {
     list_open_taps();
     std::unordered_set<const RecordStream*> in_use;
     for (const auto& node : now_->nodes) in_use.insert(node->uses.streams.begin(), node->uses.streams.end());
-    for (const auto& stream : outside_.streams)
+    for (const auto& stream : host_.streams)
         if (!in_use.contains(stream.get())) stream->finish();
 }
 

@@ -41,14 +41,14 @@ std::uint64_t hash_of(const patch::Patch& patch) {
 Engine::Engine(compile::Plan plan, const EngineOptions& options)
     : options_(options),
       plan_hash_(hash_of(plan.patch)),
-      outside_(options.folder, options.live, options.audio),
-      workshop_{.outside = outside_,
-                .block = options.block,
-                .hash = options.hash,
-                .constants = {},
-                .take = {},
-                .observer = options.observer} {
-    if (options_.devices) outside_.imitate(*options_.devices);
+      host_(options.folder, options.live, options.audio),
+      context_{.host = host_,
+               .block = options.block,
+               .hash = options.hash,
+               .constants = {},
+               .take = {},
+               .observer = options.observer} {
+    if (options_.devices) host_.imitate(*options_.devices);
     if (options_.take && !options_.tap) {
         options_.tap = [this](const std::string& port, const ValueType& type, const GroupRuntime& group) {
             return options_.take->stream(port, type, group);
@@ -56,14 +56,14 @@ Engine::Engine(compile::Plan plan, const EngineOptions& options)
         wants_record_ = records_ = was_recorded_ = options_.record_values;
     } else records_ = true;
     if (options_.tap)
-        workshop_.take = [this](const std::string& port, const ValueType& type, const GroupRuntime& group) {
+        context_.take = [this](const std::string& port, const ValueType& type, const GroupRuntime& group) {
             return records_ ? tap_of(port, type, group) : nullptr;
         };
     if (options_.replay && options_.replay->plan_hash != plan_hash_)
         throw Error("the timing log was made with another patch or other settings; replay needs the same");
     if (options_.take) options_.take->begin(plan.patch, plan_hash_);
-    outside_.begin(plan.patch);
-    now_ = build::build_generation(std::move(plan), nullptr, workshop_);
+    host_.begin(plan.patch);
+    now_ = build::build_generation(std::move(plan), nullptr, context_);
     keep_opened();
     adopt_groups(*now_, 0);
     for (std::size_t g = 0; g < now_->groups.size(); ++g) now_->groups[g]->scheduled.push_back(now_->programs[g].get());
@@ -78,10 +78,10 @@ RecordStream* Engine::tap_of(const std::string& port, const ValueType& type, con
 
 /// What the nodes of a new generation opened belongs to the run from now on.
 void Engine::keep_opened() {
-    const std::size_t known = outside_.devices.size();
-    outside_.keep();
-    for (std::size_t i = known; options_.take && i < outside_.devices.size(); ++i)
-        options_.take->device(*outside_.devices[i]);
+    const std::size_t known = host_.devices.size();
+    host_.keep();
+    for (std::size_t i = known; options_.take && i < host_.devices.size(); ++i)
+        options_.take->device(*host_.devices[i]);
     list_open_taps();
 }
 
@@ -138,8 +138,8 @@ void Engine::add_log(GroupRuntime& group) {
 }
 
 void Engine::schedule(compile::Plan plan, Flicks when) {
-    outside_.begin(plan.patch);
-    std::unique_ptr<build::Generation> next = build::build_generation(std::move(plan), now_.get(), workshop_);
+    host_.begin(plan.patch);
+    std::unique_ptr<build::Generation> next = build::build_generation(std::move(plan), now_.get(), context_);
     keep_opened();
     adopt_groups(*next, when);
     for (std::size_t g = 0; g < next->groups.size(); ++g) next->groups[g]->scheduled.push_back(next->programs[g].get());
@@ -223,7 +223,7 @@ Report Engine::report() const {
 }
 
 void Engine::drain_streams() {
-    for (const auto& stream : outside_.streams) stream->drain();
+    for (const auto& stream : host_.streams) stream->drain();
     for (io::Stream* tap : open_taps_) tap->drain();
 }
 
@@ -271,11 +271,11 @@ void Engine::complete_log() {
 void Engine::note_loss(const std::string& loss) {
     if (loss.empty() || std::ranges::find(losses_, loss) != losses_.end()) return;
     losses_.push_back(loss);
-    outside_.notices.push_back(fmt::format("not written to its end: {}", loss));
+    host_.notices.push_back(fmt::format("not written to its end: {}", loss));
 }
 
 void Engine::note_losses() {
-    for (const auto& stream : outside_.streams) note_loss(stream->loss());
+    for (const auto& stream : host_.streams) note_loss(stream->loss());
     // Whoever builds a plan adds to the list of all taps.
     for (io::Stream* tap : open_taps_) note_loss(tap->loss());
     for (const Tap& tap : ending_taps_)
@@ -286,9 +286,9 @@ void Engine::note_losses() {
 }
 
 void Engine::complete() {
-    for (const auto& stream : outside_.streams) stream->finish();
+    for (const auto& stream : host_.streams) stream->finish();
     for (io::Stream* tap : open_taps_) tap->finish();
-    for (const auto& card : outside_.cards) card->close();
+    for (const auto& card : host_.cards) card->close();
     for (auto& [name, tap] : taps_) ending_taps_.push_back(std::move(tap));
     taps_.clear();
     if (options_.take) {

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "engine/build/generation.hpp"
+#include "engine/io/host.hpp"
 #include "engine/run/group_runtime.hpp"
-#include "engine/io/outside.hpp"
 #include "engine/take/take_writer.hpp"
 #include "graph/compile/plan.hpp"
 
@@ -30,7 +30,8 @@ struct EngineOptions {
     bool random_blocks = false;  ///< calls of random length up to `block`, for tests
     std::optional<std::filesystem::path> folder;  ///< where recordings go, none: nowhere
     const take::TimingLog* replay = nullptr;  ///< repeat what timing decided in a live run
-    const std::vector<io::RecordedDevice>* devices = nullptr;  ///< stand-ins for the devices of the run that is repeated
+    const std::vector<io::RecordedDevice>* devices =
+        nullptr;  ///< stand-ins for the devices of the run that is repeated
     take::TakeWriter* take = nullptr;  ///< records the run
     bool record_values = true;  ///< the take has them from the beginning; else from `Engine::record` on
     std::uint64_t longest_journal = std::uint64_t{4} << 30;  ///< bytes of decisions kept while no values are recorded
@@ -126,7 +127,7 @@ public:
     const std::vector<std::shared_ptr<GroupRuntime>>& groups() const { return groups_; }
     /// Those of the plan that runs. Control thread.
     const std::vector<std::shared_ptr<build::LiveNode>>& nodes() const { return now_->nodes; }
-    const io::EngineOutside& outside() const { return outside_; }
+    const io::EngineHost& host() const { return host_; }
     std::uint64_t plan_hash() const { return plan_hash_; }
     std::int64_t edits() const { return now_->number; }
     /// Logical time that every group has reached, s.
@@ -150,19 +151,19 @@ private:
     void complete_log();
     void note_losses();
     void note_loss(const std::string& loss);
-    void tend_cards();
+    void service_cards();
     void drain_log();
     void complete_render();
     void offline_worker(const std::vector<GroupRuntime*>& mine, std::uint64_t seed);
     void live_worker(GroupRuntime& group);
     void start_thread(GroupRuntime& group);
-    void tend_pause();
-    void tend_record();
+    void service_pause();
+    void service_record();
     void begin_record();
     void end_record();
     void give_up_journal(const std::string& why);
     RecordStream* tap_of(const std::string& port, const ValueType& type, const GroupRuntime& group);
-    void tend_edits();
+    void service_edits();
     void hand_over(std::unique_ptr<build::Generation> next);
     void retire();
     void close_ended();
@@ -173,8 +174,8 @@ private:
 
     EngineOptions options_;
     std::uint64_t plan_hash_ = 0;
-    io::EngineOutside outside_;
-    build::Workshop workshop_;
+    io::EngineHost host_;
+    build::BuildContext context_;
     struct Tap {
         std::unique_ptr<io::Stream> stream;
         const GroupRuntime* group;

@@ -147,7 +147,7 @@ Engine::Pausing Engine::pausing() const {
 
 /// Nobody is asked to stop at once: a pause begins a little ahead of the furthest group, so that all stand at one logical
 /// time; and it ends with a clock that was set to go on from there.
-void Engine::tend_pause() {
+void Engine::service_pause() {
     const Pausing state = pausing();
     if (state == Pausing::runs && wants_pause_) {
         const Flicks stop = furthest() + pause_lead;
@@ -166,14 +166,14 @@ void Engine::tend_pause() {
 }
 
 /// The clock follows the first card that is there. When one is lost, all hands are let go of once.
-void Engine::tend_cards() {
+void Engine::service_cards() {
     bool follows = false;
-    for (const auto& card : outside_.cards) {
+    for (const auto& card : host_.cards) {
         // Sound at another pace than that of its card cannot be followed.
         control::TrimmedClock* const line = follows || live_->dilate != 1.0 || live_->stood ? nullptr : &live_->line;
-        if (card->tend(steady_ns(), furthest(), line)) {
-            for (const auto& slot : outside_.devices) slot->guard.ask_fade();
-            outside_.notices.push_back(
+        if (card->service(steady_ns(), furthest(), line)) {
+            for (const auto& slot : host_.devices) slot->guard.ask_fade();
+            host_.notices.push_back(
                 fmt::format("{} was lost at {:.1f} s: no callback came for {} ms; forces faded "
                             "once and the run went on silent",
                             card->name(), seconds(furthest()), io::SoundCard::longest_silence_ns / 1'000'000));
@@ -188,15 +188,15 @@ void Engine::run_live(const LiveOptions& options) {
     for (const auto& group : groups_)
         if ((log_ || options_.take) && !group->log) add_log(*group);
     if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
-        outside_.notices.push_back(
+        host_.notices.push_back(
             "memory could not be locked: a page fault may delay a tick (run as root or raise RLIMIT_MEMLOCK)");
     LiveRun run;
     live_ = &run;
     run.dilate = options.dilate;
     Watchdog watchdog;
     const auto watch_devices = [&] {
-        while (watchdog.watched() < outside_.devices.size()) {
-            build::DeviceSlot& slot = *outside_.devices[watchdog.watched()];
+        while (watchdog.watched() < host_.devices.size()) {
+            build::DeviceSlot& slot = *host_.devices[watchdog.watched()];
             slot.guard.set_limit(commit_limit_ns(slot, run.dilate));
             watchdog.watch(slot);
         }
@@ -214,13 +214,14 @@ void Engine::run_live(const LiveOptions& options) {
             drain_log();
             drain_streams();
             note_losses();
-            for (const auto& stream : outside_.streams)
-                if (std::string news = stream->news(); !news.empty()) outside_.notices.push_back(std::move(news));
-            tend_pause();
-            tend_record();
-            tend_edits();
+            for (const auto& stream : host_.streams)
+                if (std::string message = stream->take_message(); !message.empty())
+                    host_.notices.push_back(std::move(message));
+            service_pause();
+            service_record();
+            service_edits();
             watch_devices();
-            tend_cards();
+            service_cards();
             if (options.watch) options.watch();
         } catch (...) {
             fail(std::current_exception());
@@ -245,7 +246,7 @@ void Engine::run_live(const LiveOptions& options) {
     drain_log();
     drain_streams();
     if (run.refused)
-        outside_.notices.push_back(
+        host_.notices.push_back(
             "real-time priority was refused: expect late ticks (run as root or raise RLIMIT_RTPRIO)");
     if (std::ranges::any_of(groups_, [](const auto& group) { return group->log_overflow.load(); })) {
         constexpr const char* why = "the timing log could not keep up; the run cannot be repeated";

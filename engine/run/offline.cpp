@@ -48,7 +48,7 @@ void Engine::offline_worker(const std::vector<GroupRuntime*>& mine, std::uint64_
         earliest->telemetry.execution.add((std::chrono::steady_clock::now() - before).count());
         generation_.fetch_add(1, std::memory_order_release);
         generation_.notify_all();
-        for (const auto& stream : outside_.streams)
+        for (const auto& stream : host_.streams)
             if (stream->wants_drain()) stream->drain();
         for (io::Stream* tap : open_taps_)
             if (tap->wants_drain()) tap->drain();

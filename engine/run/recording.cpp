@@ -23,7 +23,7 @@ void Engine::record(bool wanted) {
     wants_record_ = wanted;
 }
 
-void Engine::tend_record() {
+void Engine::service_record() {
     if (!options_.take) return;
     if (!was_recorded_ && options_.take->size() > options_.longest_journal)
         return give_up_journal(fmt::format("its journal has grown beyond {} MB", options_.longest_journal >> 20));
@@ -68,7 +68,7 @@ void Engine::end_record() {
 void Engine::give_up_journal(const std::string& why) {
     options_.take = nullptr;
     wants_record_ = records_;
-    outside_.notices.push_back(fmt::format("this run can no longer be recorded: {}", why));
+    host_.notices.push_back(fmt::format("this run can no longer be recorded: {}", why));
 }
 
 }  // namespace tactus::run

@@ -19,11 +19,11 @@ bool same_bits(const double* a, const double* b, std::size_t count) {
     });
 }
 
-class CompareEnd : public io::StreamEnd {
+class CompareSink : public io::Sink {
 public:
     /// `stretches`: the streams of that output, in the order of their times.
-    CompareEnd(TakeComparison& comparison, const Take& take, std::vector<TakeStreamInfo> stretches,
-               const ValueType& type)
+    CompareSink(TakeComparison& comparison, const Take& take, std::vector<TakeStreamInfo> stretches,
+                const ValueType& type)
         : comparison_(comparison),
           folder_(take.folder),
           stretches_(std::move(stretches)),
@@ -85,7 +85,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<io::Stream> TakeComparison::tap(const std::string& port, const ValueType& type, const run::GroupRuntime& group) {
+std::unique_ptr<io::Stream> TakeComparison::tap(const std::string& port, const ValueType& type,
+                                                const run::GroupRuntime& group) {
     std::vector<TakeStreamInfo> stretches;
     for (const TakeStreamInfo& stream : take_.streams)
         if (stream.port == port && stream.group_number == group.index && stream.type == type.name)
@@ -96,7 +97,8 @@ std::unique_ptr<io::Stream> TakeComparison::tap(const std::string& port, const V
     format.file = stretches.front().file;
     format.type = &type;
     format.period = stretches.front().period;
-    return std::make_unique<io::Stream>(format, std::make_unique<CompareEnd>(*this, take_, std::move(stretches), type));
+    return std::make_unique<io::Stream>(format,
+                                        std::make_unique<CompareSink>(*this, take_, std::move(stretches), type));
 }
 
 void TakeComparison::count(std::uint64_t values) {

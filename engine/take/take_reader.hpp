@@ -2,7 +2,7 @@
 // Reading a take back, see engine/take/take_writer.hpp.
 #pragma once
 
-#include "engine/io/outside.hpp"
+#include "engine/io/host.hpp"
 #include "engine/take/take_stream.hpp"
 #include "engine/take/take_writer.hpp"
 #include "engine/take/timing_log.hpp"

@@ -25,12 +25,12 @@ namespace {
 constexpr auto flush_every = std::chrono::milliseconds(500);
 
 /// Opens its file with the first values: until then it is not known at which activation the output begins.
-class TakeEnd : public io::StreamEnd {
+class TakeSink : public io::Sink {
 public:
     using Opened = std::function<void(const TakeStreamInfo&)>;
     using Finished = std::function<void(const std::string& file, std::int64_t frames)>;
     using Cut = std::function<void()>;
-    TakeEnd(fs::path folder, TakeStreamInfo info, const ValueType& type, Opened opened, Finished finished, Cut cut)
+    TakeSink(fs::path folder, TakeStreamInfo info, const ValueType& type, Opened opened, Finished finished, Cut cut)
         : folder_(std::move(folder)),
           info_(std::move(info)),
           type_(type),
@@ -264,7 +264,7 @@ std::unique_ptr<io::Stream> TakeWriter::stream(const std::string& port, const Va
         frames_[file] = frames;
     };
     const auto cut = [this] { has_cut_stream_ = true; };
-    return std::make_unique<io::Stream>(format, std::make_unique<TakeEnd>(folder_, info, type, opened, finished, cut));
+    return std::make_unique<io::Stream>(format, std::make_unique<TakeSink>(folder_, info, type, opened, finished, cut));
 }
 
 void TakeWriter::edit(std::int64_t number, Flicks when, const patch::Patch& patch) {

@@ -12,7 +12,7 @@
 #pragma once
 
 #include "assets/file/growing_file.hpp"
-#include "engine/io/outside.hpp"
+#include "engine/io/host.hpp"
 #include "engine/io/streams.hpp"
 #include "engine/take/take_stream.hpp"
 #include "engine/take/timing_log.hpp"

@@ -2,9 +2,9 @@
 // What a node sees: `Setup` while it prepares, `Tick` while it runs, `Report` when the run is over.
 #pragma once
 
+#include "dsp/control/force_limiter.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/time.hpp"
-#include "dsp/control/force_limiter.hpp"
 #include "graph/node/device.hpp"
 
 #include <any>
@@ -82,10 +82,10 @@ struct StreamFormat {
     std::shared_ptr<StreamKeeper> keeper{};  ///< who writes the file; none: the engine does
 };
 
-/// The interfaces through which `prepare` sees what is outside of the patch.
-class Outside {
+/// What `prepare` asks for from outside of the patch: devices, recordings, sound.
+class Host {
 public:
-    virtual ~Outside() = default;
+    virtual ~Host() = default;
     /// The haptic device of that name ("" = the only one), opened on first use. Throws Error.
     virtual DevicePort& device(const std::string& name, DeviceUse use, const SourceLocation& where) = 0;
     virtual RecordStream& record(const StreamFormat& format, const SourceLocation& where) = 0;
@@ -99,7 +99,7 @@ struct Setup {
     Flicks period = 0;  ///< of its group
     int max_frames = 1;  ///< most activations one call may run
     std::uint64_t seed = 0;  ///< for its random numbers; differs per node
-    Outside* outside = nullptr;
+    Host* host = nullptr;
 
     double rate() const { return rate_of(period); }
     [[noreturn]] void fail(const std::string& message) const { throw Error(where, message); }

@@ -77,7 +77,7 @@ struct AdmittanceController {
         name_ = setup.name;
         seen_ = wanted_settings;
         asked_ = recover;
-        tell(0.0);
+        publish(0.0);
     }
 
     void process(const Tick& tick) noexcept {
@@ -97,7 +97,7 @@ struct AdmittanceController {
         }
         held_s_ += control_.fault() != control::Fault::none ? tick.elapsed_seconds() : 0.0;
         saturated_s_ += control_.saturated() ? tick.elapsed_seconds() : 0.0;
-        tell(speed);
+        publish(speed);
     }
 
     void report(Report& report) const {
@@ -143,7 +143,7 @@ private:
         return fault.connected ? control::fault_of_number(fault.get()) : control::Fault::none;
     }
 
-    void tell(double speed) noexcept {
+    void publish(double speed) noexcept {
         velocity = speed;
         wanted = control_.wanted();
         saturated = control_.saturated();

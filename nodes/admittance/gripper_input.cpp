@@ -26,7 +26,7 @@ struct GripperInput {
                       "a sensor without a new sample for this long counts as lost"};
 
     void prepare(const Setup& setup) {
-        port_ = &setup.outside->device(device.value, DeviceUse::read, device.where);
+        port_ = &setup.host->device(device.value, DeviceUse::read, device.where);
         if (port_->info.fingers == 0) setup.fail("the device is not a gripper; use device_input");
         read(0.0);
     }

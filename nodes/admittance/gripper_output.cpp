@@ -24,7 +24,7 @@ struct GripperOutput {
     Param drive_limit{"3 kHz", "1 Hz", "1 MHz", "drive cycles per second at full speed"};
 
     void prepare(const Setup& setup) {
-        port_ = &setup.outside->device(device.value, DeviceUse::drive, device.where);
+        port_ = &setup.host->device(device.value, DeviceUse::drive, device.where);
         if (port_->info.fingers == 0) setup.fail("the device is not a gripper; use device_output");
         asked_ = recover;
         port_->motors = {};

@@ -24,13 +24,13 @@ struct TestRig {
     Param spring{internal, "0.19 N/mm", "0 N/mm", "10 N/mm", "of each of the two springs"};
     Param pretension{"35 mm", "0 mm", "1 m", "stretch of each spring at rest; beyond it one spring is slack"};
 
-    void prepare(const Setup&) { tell(0.0, swings); }
+    void prepare(const Setup&) { publish(0.0, swings); }
 
     void process(const Tick& tick) noexcept {
         const double rate = rate_at(tick.time_seconds());
         const double now = swing_.at(0.5 * peak_to_peak);
         fastest_ = std::max(fastest_, simulate::peak_cord_speed(peak_to_peak, rate));
-        tell(now, rate);
+        publish(now, rate);
         cord = swing_.advance(0.5 * peak_to_peak, rate, tick.elapsed_seconds());
     }
 
@@ -44,7 +44,7 @@ private:
         if (!(sweep_to > 0.0) || !(swings > 0.0)) return swings;
         return swings * std::pow(sweep_to / swings, std::clamp(time / sweep_time, 0.0, 1.0));
     }
-    void tell(double now, double rate) noexcept {
+    void publish(double now, double rate) noexcept {
         cord = now;
         swing_rate = rate;
         spring_force = finger.connected ? simulate::RigSprings{spring, pretension}.force(now, finger) : 0.0;

@@ -29,9 +29,9 @@ struct Body {
         }
         if (parts_->shell.empty()) setup.fail("bone '" + bone.name + "' has no surface");
         name_ = setup.name;
-        tell();
+        publish();
     }
-    void process(const Tick&) noexcept { tell(); }
+    void process(const Tick&) noexcept { publish(); }
 
     void report(Report& report) const { report.set(name_, "points", static_cast<double>(parts_->shell.size())); }
 
@@ -53,7 +53,7 @@ private:
             std::make_shared<const BodyParts>(contact::make_pointshell(points), contact::make_voxmap(std::move(field)),
                                               Pose{middle, {1.0, 0.0, 0.0, 0.0}}, triangles);
     }
-    void tell() noexcept {
+    void publish() noexcept {
         body = parts_->body();
         count = static_cast<double>(parts_->shell.size());
     }

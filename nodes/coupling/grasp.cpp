@@ -23,7 +23,7 @@ struct Grasp {
     Param fade{"50 ms", "0 ms", "10 s", "time in which the force fades in and out"};
     Param fixed{"1", "0", "16", "number of places, from place 0 on, that cannot be grasped"};
 
-    void prepare(const Setup&) { tell(); }
+    void prepare(const Setup&) { publish(); }
 
     void process(const Tick& tick) noexcept {
         const bool wanted = trigger.get() && is_valid(hand.get());
@@ -32,7 +32,7 @@ struct Grasp {
         was_wanted_ = wanted;
         const double change = fade > 0.0 ? tick.elapsed_seconds() / fade : 1.0;
         strength_ = std::clamp(strength_ + (holds_ ? change : -change), 0.0, 1.0);
-        tell();
+        publish();
         // One more tick with strength 0, so that nodes downstream see the end.
         if (!holds_ && strength_ == 0.0) place_ = -1;
     }
@@ -54,7 +54,7 @@ private:
         holds_ = true;
     }
 
-    void tell() noexcept {
+    void publish() noexcept {
         held = place_;
         grip = grip_;
         holding = holds_;

@@ -16,7 +16,7 @@ struct AudioOutput {
     Param full_scale{"1", "1e-6", "1e6", "signal value (SI) that drives the card fully; larger values are clipped"};
 
     void prepare(const Setup& setup) {
-        stream_ = &setup.outside->audio({setup.name + ".wav", "", &value::signal, setup.period}, setup.where);
+        stream_ = &setup.host->audio({setup.name + ".wav", "", &value::signal, setup.period}, setup.where);
         block_.resize(static_cast<std::size_t>(setup.max_frames));
         name_ = setup.name;
     }

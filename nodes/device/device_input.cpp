@@ -17,7 +17,7 @@ struct DeviceInput {
     Text device{"", "name of an entry of [devices]; empty: the only one"};
 
     void prepare(const Setup& setup) {
-        port_ = &setup.outside->device(device.value, DeviceUse::read, device.where);
+        port_ = &setup.host->device(device.value, DeviceUse::read, device.where);
         read();
     }
     void process(const Tick&) noexcept { read(); }

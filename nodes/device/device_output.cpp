@@ -34,7 +34,7 @@ struct DeviceOutput {
     Param engage_time{structural, "100 ms", "0 ms", "10 s", "duration of the ramp once forces are small"};
 
     void prepare(const Setup& setup) {
-        port_ = &setup.outside->device(device.value, DeviceUse::drive, device.where);
+        port_ = &setup.host->device(device.value, DeviceUse::drive, device.where);
         control::ForceLimits limits;
         limits.max_force = lower_limit(max_force, port_->info.max_force);
         limits.max_torque = lower_limit(max_torque, port_->info.max_torque);

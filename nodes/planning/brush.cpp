@@ -35,15 +35,15 @@ struct Brush {
         if (start_clean)
             for (contact::SurfacePoint& p : points) p.label = contact::surface_label::none;
         brush_ = std::make_unique<fit::SurfaceBrush>(std::move(points));
-        tell(fit::SurfaceBrush::farthest);
+        publish(fit::SurfaceBrush::farthest);
     }
 
     void process(const Tick&) noexcept {
-        if (!is_valid(tool.get()) || (body.connected && !is_valid(body.get()))) return tell(distance_);
+        if (!is_valid(tool.get()) || (body.connected && !is_valid(body.get()))) return publish(distance_);
         const Vec3 middle = body.connected ? body->inverse().apply(tool->position) : tool->position;
         if (erase.connected && erase.get()) brush_->stroke(middle, radius, contact::surface_label::none);
         else if (paint.get()) brush_->stroke(middle, radius, contact::surface_label::fracture);
-        tell(brush_->distance(middle));
+        publish(brush_->distance(middle));
     }
 
     void report(Report& report) const {
@@ -55,7 +55,7 @@ struct Brush {
     }
 
 private:
-    void tell(double away) noexcept {
+    void publish(double away) noexcept {
         distance_ = away;
         painted = static_cast<double>(brush_->labelled());
         area = brush_->area();

@@ -68,16 +68,16 @@ struct CaseScene {
         tree_->stand(plan->plan.place());
         if (!file.value.empty()) {
             keeper_ = std::make_shared<StepKeeper>(plan->plan, setup.period);
-            stream_ = &setup.outside->record({file.value, "", &step_row_type, setup.period, keeper_}, setup.where);
+            stream_ = &setup.host->record({file.value, "", &step_row_type, setup.period, keeper_}, setup.where);
         }
         arrange_scene();
-        tell();
+        publish();
     }
 
     void process(const Tick& tick) noexcept {
         follow(tick);
         press(tick);
-        tell();
+        publish();
     }
 
     void report(Report& report) const {
@@ -297,7 +297,7 @@ private:
         object.stands = now_->is_locked(fragment) || now_->fitted_to(fragment) != fit::Arrangement::none;
     }
 
-    void tell() noexcept {
+    void publish() noexcept {
         if (is_changed_) {
             ++scene_.version;
             scene_.content_hash = coupling::hash_of(scene_);

@@ -17,7 +17,7 @@ struct Record {
             setup.fail("record cannot write a " + std::string(in.type->name) + "; it has no columns of numbers");
         is_signal_ = in.type == &value::signal;
         const std::string name = file.value.empty() ? setup.name + (is_signal_ ? ".wav" : ".csv") : file.value;
-        stream_ = &setup.outside->record({name, unit.value, in.type, setup.period}, setup.where);
+        stream_ = &setup.host->record({name, unit.value, in.type, setup.period}, setup.where);
     }
 
     void process(const Tick& tick) noexcept {

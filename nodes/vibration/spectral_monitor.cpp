@@ -31,13 +31,13 @@ struct SpectralMonitor {
         comparison_ = signal::LiveComparison(reference_rate, output_rate, memory);
         name_ = setup.name;
         scores_ = comparison_.scores();
-        tell();
+        publish();
     }
 
     void process(const Tick& tick) noexcept {
         const int whole = comparison_.push_reference(reference.values()) + comparison_.push_output(output.values());
         if (whole > 0) scores_ = comparison_.scores();
-        tell();
+        publish();
         if (scores_.heard) heard_s_ += tick.elapsed_seconds();
         if (alike.get()) alike_s_ += tick.elapsed_seconds();
     }
@@ -54,7 +54,7 @@ struct SpectralMonitor {
 private:
     static constexpr double least_rate = 223.0;  // Hz
 
-    void tell() noexcept {
+    void publish() noexcept {
         distance = scores_.lsd_db;
         likeness = scores_.cosine_500;
         worst_band = scores_.third_octave_max_db;

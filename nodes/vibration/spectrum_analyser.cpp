@@ -33,11 +33,11 @@ struct SpectrumAnalyser {
         spectrum_ = signal::LiveSpectrum(rate, samples, memory);
         comb_ = {};
         name_ = setup.name;
-        tell({});
+        publish({});
     }
 
     void process(const Tick&) noexcept {
-        if (spectrum_.push(in.values()) > 0) tell(spectrum_.spectrum());
+        if (spectrum_.push(in.values()) > 0) publish(spectrum_.spectrum());
     }
 
     void report(Report& report) const {
@@ -60,7 +60,7 @@ struct SpectrumAnalyser {
     }
 
 private:
-    void tell(const signal::Spectrum& now) noexcept {
+    void publish(const signal::Spectrum& now) noexcept {
         level = std::sqrt(signal::band_power(now, lowest, highest));
         signal::SpectralLine top;
         if (now.segments > 0)

@@ -34,7 +34,7 @@ const std::string replaced = held("other", "\"hand.pose -> other.device\",\n\"pl
 
 /// Force on the hand at every tick of 600, with an edit at 300 ms.
 std::vector<double> forces(const std::string& edited) {
-    struct Sink : io::StreamEnd {
+    struct Sink : io::Sink {
         explicit Sink(std::vector<double>& forces_) : forces(forces_) {}
         void take(std::int64_t, const std::byte* values, std::size_t count) override {
             for (std::size_t i = 0; i < count; ++i)

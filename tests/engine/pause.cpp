@@ -61,7 +61,8 @@ TEST_CASE("a pause fades the force, stops logical time for all groups, and repla
             folder = scratch("pause");
             faults = hiccups = 0;
         }
-        take::TakeWriter take(folder, {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 0.8, .live = true});
+        take::TakeWriter take(folder,
+                              {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 0.8, .live = true});
         run::EngineOptions options;
         options.seconds = 0.8;
         options.live = true;
@@ -90,7 +91,7 @@ TEST_CASE("a pause fades the force, stops logical time for all groups, and repla
         CHECK(stage == 3);
         CHECK(engine.pausing() == run::Engine::Pausing::runs);
         live_hashes = engine.port_hashes();
-        for (const auto& slot : engine.outside().devices)
+        for (const auto& slot : engine.host().devices)
             for (const io::DeviceFault& fault : slot->guard.faults()) {
                 const bool is_at_pause = std::abs(static_cast<double>(fault.tick) * 1e-3 - stood_at) < 0.02;
                 (is_at_pause ? faults : hiccups) += 1;

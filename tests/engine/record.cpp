@@ -20,8 +20,9 @@ namespace {
 take::TakeAbout about() { return {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 1.0, .live = true}; }
 
 /// A run of a second whose control thread does at each time what is written beside it.
-run::Engine::PortHashes run_with(const std::filesystem::path& folder, std::map<double, std::function<void(run::Engine&)>> deeds,
-                            const std::function<void(run::EngineOptions&)>& choose = {}) {
+run::Engine::PortHashes run_with(const std::filesystem::path& folder,
+                                 std::map<double, std::function<void(run::Engine&)>> deeds,
+                                 const std::function<void(run::EngineOptions&)>& choose = {}) {
     take::TakeWriter take(folder, about());
     run::EngineOptions options;
     options.seconds = 1.0;
@@ -130,7 +131,7 @@ TEST_CASE("a journal that grows too long is given up, and only recording is refu
                [&](run::Engine& e) {
                    CHECK_THROWS_WITH(e.record(true), Catch::Contains("begin it anew"));
                    was_refused = true;
-                   notices = e.outside().notices;
+                   notices = e.host().notices;
                }}},
              [](run::EngineOptions& options) { options.longest_journal = 100; });
     CHECK(was_refused);

@@ -38,7 +38,7 @@ bool MemoryStream::write(std::int64_t first, const void* values, std::size_t cou
     return true;
 }
 
-DevicePort& FakeOutside::device(const std::string& name, DeviceUse use, const SourceLocation&) {
+DevicePort& FakeHost::device(const std::string& name, DeviceUse use, const SourceLocation&) {
     auto& port = devices[name];
     driven = driven || use == DeviceUse::drive;
     if (!port) {
@@ -49,11 +49,11 @@ DevicePort& FakeOutside::device(const std::string& name, DeviceUse use, const So
     return *port;
 }
 
-RecordStream& FakeOutside::record(const StreamFormat& format, const SourceLocation&) {
+RecordStream& FakeHost::record(const StreamFormat& format, const SourceLocation&) {
     return *records.emplace_back(std::make_unique<MemoryStream>(format, 1 << 21));
 }
 
-RecordStream& FakeOutside::audio(const StreamFormat& format, const SourceLocation&) {
+RecordStream& FakeHost::audio(const StreamFormat& format, const SourceLocation&) {
     return *sounds.emplace_back(std::make_unique<MemoryStream>(format, 1 << 21));
 }
 
@@ -109,8 +109,7 @@ NodeHarness::NodeHarness(const NodeType& type, Options options)
         Input& port = *input.port;
         port.connected = true;
         if (port.kind == InputKind::any) port.type = options_.any;
-        takes_blocks_ |= port.kind == InputKind::stream ||
-                         (port.kind == InputKind::any && port.type == &value::signal);
+        takes_blocks_ |= port.kind == InputKind::stream || (port.kind == InputKind::any && port.type == &value::signal);
     }
     for (const OutputSlot& output : members_->outputs) takes_blocks_ |= output.port->type == &value::signal;
     for (auto& [name, asset] : members_->assets)
@@ -209,7 +208,7 @@ void NodeHarness::prepare() {
     setup.period = options_.period;
     setup.max_frames = static_cast<int>(frames);
     setup.seed = options_.seed;
-    setup.outside = &outside;
+    setup.host = &host;
     type_.prepare(node_, setup);
 }
 
@@ -233,7 +232,7 @@ void NodeHarness::fill_inputs(std::int64_t first, int frames) {
             input.function(takes_blocks_ ? first - first % hold : first, input.buffer.data());
         }
     }
-    for (auto& [name, port] : outside.devices) device_feed(first, *port);
+    for (auto& [name, port] : host.devices) device_feed(first, *port);
 }
 
 void NodeHarness::spoil_signals() {
@@ -300,9 +299,9 @@ const std::vector<std::byte>& NodeHarness::trace(const std::string& name) const 
 
 std::uint64_t NodeHarness::output_hash() const {
     Hash all = hash_;
-    for (const auto& list : {std::cref(outside.records), std::cref(outside.sounds)})
+    for (const auto& list : {std::cref(host.records), std::cref(host.sounds)})
         for (const auto& stream : list.get()) all.add_bytes(stream->bytes.data(), stream->used);
-    for (const auto& [name, port] : outside.devices) all.add_bytes(&port->wrench, sizeof(Wrench));
+    for (const auto& [name, port] : host.devices) all.add_bytes(&port->wrench, sizeof(Wrench));
     return all.value();
 }
 

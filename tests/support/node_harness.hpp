@@ -35,7 +35,7 @@ struct MemoryStream final : RecordStream {
     bool gapless = true;
 };
 
-struct FakeOutside final : Outside {
+struct FakeHost final : Host {
     DevicePort& device(const std::string& name, DeviceUse use, const SourceLocation& where) override;
     RecordStream& record(const StreamFormat& format, const SourceLocation& where) override;
     RecordStream& audio(const StreamFormat& format, const SourceLocation& where) override;
@@ -122,7 +122,7 @@ public:
 
     bool takes_blocks() const { return takes_blocks_; }
     bool takes_any() const;
-    FakeOutside outside;
+    FakeHost host;
 
     /// The values of a device before each activation; by default they follow the feed.
     std::function<void(std::int64_t, DevicePort&)> device_feed;

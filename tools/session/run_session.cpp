@@ -27,7 +27,7 @@ constexpr double for_ever = 86400.0;
 void check_log(const run::Engine& engine, const fs::path& log, const fs::path& folder) {
     std::error_code ignored;
     const fs::path file = fs::weakly_canonical(log, ignored);
-    for (const auto& stream : engine.outside().streams)
+    for (const auto& stream : engine.host().streams)
         if (!log.empty() && file == fs::weakly_canonical(folder / stream->format().file, ignored))
             throw Error(fmt::format("--log {}: a recording of the patch goes to this file", log.string()));
 }

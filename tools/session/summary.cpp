@@ -102,9 +102,9 @@ std::string summary_json(const run::Engine& engine, const Report& report, double
                                          {"max_us", node.max_us},
                                          {"share", node.share}});
     json["sound"] = Json::array();
-    for (const auto& card : engine.outside().cards) json["sound"].push_back(card_json(*card));
+    for (const auto& card : engine.host().cards) json["sound"].push_back(card_json(*card));
     json["faults"] = Json::array();
-    for (const auto& slot : engine.outside().devices)
+    for (const auto& slot : engine.host().devices)
         for (const io::DeviceFault& fault : slot->guard.faults())
             json["faults"].push_back({{"device", slot->name},
                                       {"reason", control::describe(fault.reason)},
@@ -112,7 +112,7 @@ std::string summary_json(const run::Engine& engine, const Report& report, double
                                       {"force_N", fault.force_N}});
     json["signals"] = Json::array();
     Json all = Json::array();
-    for (const auto& stream : engine.outside().streams) {
+    for (const auto& stream : engine.host().streams) {
         const StreamFormat& format = stream->format();
         if (format.file.empty()) continue;
         all.push_back(format.file);
@@ -123,7 +123,7 @@ std::string summary_json(const run::Engine& engine, const Report& report, double
     for (const std::string& file : files) all.push_back(file);
     json["files"] = all;
     json["lost"] = losses;
-    json["notices"] = engine.outside().notices;
+    json["notices"] = engine.host().notices;
     return json.dump(2) + "\n";
 }
 
@@ -149,14 +149,14 @@ std::string summary_text(const run::Engine& engine, const Report& report, double
                             100.0 * number(report, "coupling", "balanced"));
     if (report.sections.contains("carve"))
         text += fmt::format("  removed {:.1f} mm³\n", number(report, "carve", "removed_mm3"));
-    for (const auto& card : engine.outside().cards)
+    for (const auto& card : engine.host().cards)
         text += fmt::format("  sound on {}: {}\n", card->name(), describe_sound(*card));
-    for (const auto& slot : engine.outside().devices)
+    for (const auto& slot : engine.host().devices)
         for (const io::DeviceFault& fault : slot->guard.faults())
             text +=
                 fmt::format("  fault of {} at {:.3f} s: {}; {:.2g} N faded to nothing\n", slot->name,
                             tactus::seconds(fault.tick * slot->period), control::describe(fault.reason), fault.force_N);
-    for (const std::string& notice : engine.outside().notices) text += fmt::format("  note: {}\n", notice);
+    for (const std::string& notice : engine.host().notices) text += fmt::format("  note: {}\n", notice);
     return text;
 }
 

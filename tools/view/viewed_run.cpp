@@ -99,7 +99,7 @@ void ViewedRun::look_at(RunSession& session) {
     status.time = engine.progress_seconds();
     status.edits = engine.edits();
     status.is_recording = engine.is_recording();
-    for (const auto& notices = engine.outside().notices; told_notices_ < notices.size(); ++told_notices_)
+    for (const auto& notices = engine.host().notices; told_notices_ < notices.size(); ++told_notices_)
         say(notices[told_notices_]);
     for (const auto& group : engine.groups()) {
         if (group->is_over()) continue;
@@ -107,7 +107,7 @@ void ViewedRun::look_at(RunSession& session) {
         status.force = std::max(status.force, group->telemetry.force_N.load(std::memory_order_relaxed));
     }
     for (const auto& node : engine.nodes()) status.nodes.push_back(status_of(*node));
-    for (const auto& slot : engine.outside().devices)
+    for (const auto& slot : engine.host().devices)
         for (const io::DeviceFault& fault : slot->guard.faults())
             status.faults.push_back(fmt::format("{} at {:.1f} s: {}", slot->name, seconds(fault.tick * slot->period),
                                                 control::describe(fault.reason)));

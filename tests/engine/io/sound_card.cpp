@@ -73,7 +73,7 @@ TEST_CASE("what finds no room is counted, and the clock still knows which frame 
     CHECK(bench.sink->statistics().frames_dropped == 936);
     control::TrimmedClock clock{0, 0, 1.0};
     bench.sink->ask(64, 1'000'000);
-    bench.card->tend(1'000'000, 0, &clock);
+    bench.card->service(1'000'000, 0, &clock);
     // Frame 1000 comes next, at 20.8 ms of a clock that has come to 1 ms: it is much too late.
     CHECK(bench.card->follower().excess_s() == Approx(0.001 - (1000 + 240 + 64) / 48000.0).margin(1e-6));
     CHECK(clock.slope == Approx(1.0 - control::TrimmedClock::furthest));
@@ -85,15 +85,15 @@ TEST_CASE("a card that asks for nothing is lost after half a second, once, and f
     const std::int64_t ms = 1'000'000;
     bench.write(0, 480);
     bench.sink->ask(64, 10 * ms);
-    CHECK_FALSE(bench.card->tend(11 * ms, 0, &clock));
-    CHECK_FALSE(bench.card->tend(509 * ms, 0, &clock));
-    CHECK(bench.card->tend(512 * ms, 77, &clock));
+    CHECK_FALSE(bench.card->service(11 * ms, 0, &clock));
+    CHECK_FALSE(bench.card->service(509 * ms, 0, &clock));
+    CHECK(bench.card->service(512 * ms, 77, &clock));
     CHECK(bench.card->is_lost());
     CHECK(bench.card->lost_at() == 77);
     CHECK(clock.slope == 1.0);
-    CHECK_FALSE(bench.card->tend(5000 * ms, 0, &clock));
+    CHECK_FALSE(bench.card->service(5000 * ms, 0, &clock));
     bench.sink->ask(64, 5001 * ms);
-    CHECK_FALSE(bench.card->tend(5002 * ms, 0, &clock));
+    CHECK_FALSE(bench.card->service(5002 * ms, 0, &clock));
     CHECK_FALSE(bench.card->is_lost());
     CHECK(bench.card->losses() == 1);
 }
@@ -101,8 +101,8 @@ TEST_CASE("a card that asks for nothing is lost after half a second, once, and f
 TEST_CASE("a card that never asked is lost as well") {
     const Bench bench;
     control::TrimmedClock clock{0, 0, 1.0};
-    CHECK_FALSE(bench.card->tend(1, 0, &clock));
-    CHECK(bench.card->tend(600'000'000, 0, &clock));
+    CHECK_FALSE(bench.card->service(1, 0, &clock));
+    CHECK(bench.card->service(600'000'000, 0, &clock));
 }
 
 TEST_CASE("readers of the run's clock see whole lines only") {

@@ -27,7 +27,7 @@ struct Deeds {
 };
 
 /// Has room for so many values.
-struct SmallEnd : io::StreamEnd {
+struct SmallEnd : io::Sink {
     SmallEnd(Deeds& deeds, int room) : deeds_(deeds), room_(room) {}
     void take(std::int64_t, const std::byte*, std::size_t) override {
         ++deeds_.takes;
@@ -95,7 +95,7 @@ TEST_CASE("a stream whose end fails is completed once, says why, and takes what 
 }
 
 TEST_CASE("a stream that cannot be completed says why and throws nothing") {
-    struct Stuck : io::StreamEnd {
+    struct Stuck : io::Sink {
         void take(std::int64_t, const std::byte*, std::size_t) override {}
         void finish() override { throw Error("x.csv: cannot be renamed"); }
     };
@@ -136,9 +136,9 @@ TEST_CASE("a table and a sound on a small disk are whole files of what had room"
     {
         const SmallFiles small(100'003);
         StreamFormat format = numbers();
-        io::Stream rows(format, io::make_csv_end(table, format));
+        io::Stream rows(format, io::make_csv_sink(table, format));
         format.type = &value::signal;
-        io::Stream samples(format, io::make_sound_end(sound, format));
+        io::Stream samples(format, io::make_sound_file_sink(sound, format));
         const std::vector<float> ones(1000, 1.0F);
         for (int n = 0; n < 100; ++n) {
             for (int tick = 0; tick < 1000; ++tick) give(rows, n * 1000 + tick);

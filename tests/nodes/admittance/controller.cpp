@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/core/error.hpp"
 #include "dsp/control/force_limiter.hpp"
+#include "dsp/core/error.hpp"
 #include "tests/support/node_harness.hpp"
 
 #include <catch2/catch.hpp>
@@ -118,7 +118,8 @@ TEST_CASE("feed-forward takes away the lag behind a steadily moving object") {
 }
 
 TEST_CASE("a force that is not a number, or a sensor that is gone, stops the motor for its reason until asked") {
-    for (const control::Fault why : {control::Fault::not_finite, control::Fault::invalid_input, control::Fault::stale_input}) {
+    for (const control::Fault why :
+         {control::Fault::not_finite, control::Fault::invalid_input, control::Fault::stale_input}) {
         Held held;
         held.node.prepare();
         held.tick();
@@ -200,21 +201,21 @@ TEST_CASE("a gripper's output refuses what its motor may not, and goes on when a
     node.prepare();
     const auto given = [&] {
         node.run(1);
-        return node.outside.devices.begin()->second->motors.speed[0];
+        return node.host.devices.begin()->second->motors.speed[0];
     };
     CHECK(given() == 0.05);
     for (const double bad : {0.071, -1.0, static_cast<double>(NAN)}) {
         speed = bad;
         CHECK(given() == 0.0);
-        CHECK(node.outside.devices.begin()->second->fault ==
+        CHECK(node.host.devices.begin()->second->fault ==
               (std::isnan(bad) ? control::Fault::not_finite : control::Fault::beyond_drive_limit));
         speed = 0.02;
         CHECK(given() == 0.0);
         node.set("recover", std::isnan(bad) ? "3" : bad > 0.0 ? "1" : "2");
         CHECK(given() == 0.02);
-        CHECK(node.outside.devices.begin()->second->fault == control::Fault::none);
+        CHECK(node.host.devices.begin()->second->fault == control::Fault::none);
     }
-    node.outside.devices.begin()->second->hold_off = true;
+    node.host.devices.begin()->second->hold_off = true;
     CHECK(given() == 0.0);
 }
 

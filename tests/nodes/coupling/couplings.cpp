@@ -202,7 +202,7 @@ TEST_CASE("a shaped wrench stays below its limits and keeps its direction") {
 
 TEST_CASE("a device of three degrees of freedom is given no torque and says so") {
     NodeHarness node("device_output", servo);
-    DevicePort& port = node.outside.device("", DeviceUse::drive, {});
+    DevicePort& port = node.host.device("", DeviceUse::drive, {});
     port.info.actuates_torque = false;
     node.feed<Wrench>("wrench",
                       [](std::int64_t k) { return k < 200 ? Wrench{} : Wrench{{0.0, 0.0, 1.0}, {0.0, 0.2, 0.0}}; });

@@ -68,8 +68,8 @@ TEST_CASE("device_output bounds what reaches the hand and tells what it was aske
     CHECK(applied[999].force.x == Approx(6.0));
     for (std::size_t k = 1; k < applied.size(); ++k)
         REQUIRE(std::abs(applied[k].force.x - applied[k - 1].force.x) <= 1.0 + 1e-12);
-    CHECK(node.outside.devices.at("")->wrench.force.x == applied.back().force.x);
-    CHECK(node.outside.driven);
+    CHECK(node.host.devices.at("")->wrench.force.x == applied.back().force.x);
+    CHECK(node.host.driven);
     const Report report = node.report();
     CHECK(number_of(report, "force", "max_N") == Approx(6.0));
     CHECK(number_of(report, "force", "raw_max_N") == Approx(40.0));
@@ -79,7 +79,7 @@ TEST_CASE("device_output bounds what reaches the hand and tells what it was aske
 
 TEST_CASE("device_output takes the device's own limit when that is lower") {
     NodeHarness node("device_output", servo);
-    node.outside.device("", DeviceUse::read, {}).info.max_force = 3.0;
+    node.host.device("", DeviceUse::read, {}).info.max_force = 3.0;
     node.device_feed = [](std::int64_t k, DevicePort& port) { port.sample = sample_at(0.0, k); };
     node.feed<Wrench>("wrench", [](std::int64_t k) { return k < 300 ? Wrench{} : Wrench{{8.0, 0.0, 0.0}, {}}; });
     node.prepare();

@@ -20,8 +20,8 @@ TEST_CASE("record writes every sample of a signal, in order, to a sound file nam
     node.set("unit", "m/s^2").feed<float>("in", [](std::int64_t k) { return static_cast<float>(k); });
     node.prepare();
     node.run(5000, 7);
-    REQUIRE(node.outside.records.size() == 1);
-    const test::MemoryStream& stream = *node.outside.records[0];
+    REQUIRE(node.host.records.size() == 1);
+    const test::MemoryStream& stream = *node.host.records[0];
     CHECK(stream.format.file == "node.wav");
     CHECK(stream.format.unit == "m/s^2");
     CHECK(stream.gapless);
@@ -37,7 +37,7 @@ TEST_CASE("record writes one value per tick of anything else, to a table") {
     node.feed<Wrench>("in", [](std::int64_t k) { return Wrench{{static_cast<double>(k), 0.0, 0.0}, {}}; });
     node.prepare();
     node.run(100);
-    const test::MemoryStream& stream = *node.outside.records[0];
+    const test::MemoryStream& stream = *node.host.records[0];
     CHECK(stream.format.file == "node.csv");
     CHECK(stream.values<Wrench>().size() == 100);
     CHECK(stream.values<Wrench>()[42].force.x == 42.0);
@@ -50,7 +50,7 @@ TEST_CASE("sound beyond full scale is cut, NaN is silence, and both are counted"
     });
     node.prepare();
     node.run(100, 3);
-    const auto samples = node.outside.sounds.at(0)->values<float>();
+    const auto samples = node.host.sounds.at(0)->values<float>();
     REQUIRE(samples.size() == 100);
     CHECK(samples[0] == 0.5f);
     CHECK(samples[1] == 1.0f);

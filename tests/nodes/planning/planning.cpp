@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The nodes of a planning session: scene of a case, matcher, brush, and the coupling that is led.
-#include "assets/library/fragments.hpp"
 #include "assets/cases/step_row.hpp"
+#include "assets/library/fragments.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "graph/node/assets.hpp"
@@ -94,7 +94,7 @@ struct Session {
     /// What the rows come to that left the node.
     cases::CasePlan plan() const {
         cases::RunSteps steps(broken()->plan);
-        const auto& stream = *node.outside.records[0];
+        const auto& stream = *node.host.records[0];
         for (const cases::StepRow& row : stream.values<cases::StepRow>()) steps.add(row, 0.0);
         return steps.plan();
     }

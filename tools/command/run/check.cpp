@@ -87,9 +87,9 @@ Json loops_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes) {
 }
 
 /// Damping of a device by its name in the patch, N·s/m; "" is the only one.
-std::function<double(const std::string&)> damping_of(const io::EngineOutside& outside) {
-    return [&outside](const std::string& name) {
-        for (const auto& slot : outside.devices)
+std::function<double(const std::string&)> damping_of(const io::EngineHost& host) {
+    return [&host](const std::string& name) {
+        for (const auto& slot : host.devices)
             if (name.empty() || slot->name == name) return slot->port.info.damping;
         return 0.0;
     };
@@ -147,9 +147,9 @@ int check(const CheckChoice& choice) {
         if (problems.empty()) {
             const run::Engine engine(std::move(*plan), run::EngineOptions{});
             json["paths"] =
-                paths_json(engine.plan(), analyse::force_loops(engine.plan(), damping_of(engine.outside())));
+                paths_json(engine.plan(), analyse::force_loops(engine.plan(), damping_of(engine.host())));
             json["admittance_loops"] = loops_json(engine.nodes());
-            json["warnings"] = engine.outside().notices;
+            json["warnings"] = engine.host().notices;
         }
     } catch (const Error& error) {
         problems.list.push_back(error);

@@ -16,7 +16,7 @@ namespace tactus::study {
 namespace {
 
 /// Keeps the values of one output as numbers.
-class KeptValues : public io::StreamEnd {
+class KeptValues : public io::Sink {
 public:
     KeptValues(const ValueType& type, std::vector<double>& into) : type_(type), into_(into) {}
     void take(std::int64_t, const std::byte* values, std::size_t count) override {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/io/outside.hpp"
+#include "engine/io/host.hpp"
 
 #include "devices/audio/portaudio.hpp"
 #include "devices/haptic/catalogue.hpp"
-#include "engine/io/kept_end.hpp"
+#include "engine/io/async_sink.hpp"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ namespace tactus::io {
 
 namespace {
 
-class NowhereEnd : public StreamEnd {
+class NullSink : public Sink {
 public:
     void take(std::int64_t, const std::byte*, std::size_t) override {}
     void finish() override {}
@@ -51,10 +51,10 @@ bool same_settings(const std::vector<OptionText>& a, const std::vector<OptionTex
 
 }  // namespace
 
-EngineOutside::EngineOutside(std::optional<std::filesystem::path> folder, bool live, AudioChoice audio)
+EngineHost::EngineHost(std::optional<std::filesystem::path> folder, bool live, AudioChoice audio)
     : folder_(std::move(folder)), live_(live), audio_(std::move(audio)) {}
 
-void EngineOutside::begin(const patch::Patch& patch) {
+void EngineHost::begin(const patch::Patch& patch) {
     patch_ = patch;
     files_opened_.clear();
     files_before_.clear();
@@ -66,7 +66,7 @@ void EngineOutside::begin(const patch::Patch& patch) {
                             fmt::format("device '{}' is open; its settings take effect at the next start", name));
 }
 
-void EngineOutside::keep() {
+void EngineHost::keep() {
     for (auto& slot : opened_.devices) {
         const auto declared = std::ranges::find(patch_.devices, slot->name, &patch::PatchDevice::name);
         if (declared != patch_.devices.end()) device_settings_.emplace_back(slot->name, declared->settings);
@@ -78,9 +78,9 @@ void EngineOutside::keep() {
     opened_ = {};
 }
 
-void EngineOutside::discard() { opened_ = {}; }
+void EngineHost::discard() { opened_ = {}; }
 
-std::string EngineOutside::device_name(const std::string& wanted, const SourceLocation& where) const {
+std::string EngineHost::device_name(const std::string& wanted, const SourceLocation& where) const {
     if (!wanted.empty()) return wanted;
     if (patch_.devices.size() == 1) return patch_.devices.front().name;
     if (devices.size() + opened_.devices.size() == 1)
@@ -88,14 +88,14 @@ std::string EngineOutside::device_name(const std::string& wanted, const SourceLo
     throw Error(where, "which device is meant? Name it, as in device = \"simulated\"");
 }
 
-build::DeviceSlot* EngineOutside::find_device(const std::string& name) const {
+build::DeviceSlot* EngineHost::find_device(const std::string& name) const {
     for (const auto* list : {&devices, &opened_.devices})
         for (const auto& slot : *list)
             if (slot->name == name) return slot.get();
     return nullptr;
 }
 
-DevicePort& EngineOutside::use_device(build::DeviceSlot& slot, DeviceUse use, const SourceLocation& where) {
+DevicePort& EngineHost::use_device(build::DeviceSlot& slot, DeviceUse use, const SourceLocation& where) {
     if (slot.group != group_)
         throw Error(where, fmt::format("device '{}' is used in two groups; its nodes must share one rate, and keep it "
                                        "while the patch runs",
@@ -109,7 +109,7 @@ DevicePort& EngineOutside::use_device(build::DeviceSlot& slot, DeviceUse use, co
     return slot.port;
 }
 
-DevicePort& EngineOutside::device(const std::string& wanted, DeviceUse use, const SourceLocation& where) {
+DevicePort& EngineHost::device(const std::string& wanted, DeviceUse use, const SourceLocation& where) {
     const std::string name = device_name(wanted, where);
     if (build::DeviceSlot* slot = find_device(name)) return use_device(*slot, use, where);
     const auto declared = std::ranges::find(patch_.devices, name, &patch::PatchDevice::name);
@@ -133,8 +133,8 @@ DevicePort& EngineOutside::device(const std::string& wanted, DeviceUse use, cons
         if (!live_ && haptic::is_real_driver(is_declared ? declared->driver : name))
             throw Error(is_declared ? declared->where : where,
                         fmt::format("device '{}' is hardware and keeps its own time; use 'tactus run'", name));
-        slot->device = haptic::open_haptic_device(is_declared ? declared->driver : name, is_declared ? declared->where : where,
-                                          options, resolve);
+        slot->device = haptic::open_haptic_device(is_declared ? declared->driver : name,
+                                                  is_declared ? declared->where : where, options, resolve);
         options.finish();
     }
     slot->device->prepare(seconds(period_));
@@ -148,7 +148,7 @@ DevicePort& EngineOutside::device(const std::string& wanted, DeviceUse use, cons
     return use_device(*opened_.devices.back(), use, where);
 }
 
-RecordStream& EngineOutside::record(const StreamFormat& wanted, const SourceLocation& where) {
+RecordStream& EngineHost::record(const StreamFormat& wanted, const SourceLocation& where) {
     if (wanted.file.empty() || wanted.file.find('/') != std::string::npos || wanted.file.starts_with('.'))
         throw Error(where, fmt::format("'{}' is not a file name; recordings go to the folder of the run", wanted.file));
     if (folder_ && is_of_run(wanted.file))
@@ -166,20 +166,21 @@ RecordStream& EngineOutside::record(const StreamFormat& wanted, const SourceLoca
     const bool is_sound = format.type == &value::signal;
     if (!is_sound && format.type->columns.empty())
         throw Error(where, fmt::format("a {} cannot be recorded as numbers", format.type->name));
-    std::unique_ptr<StreamEnd> end = std::make_unique<NowhereEnd>();
+    std::unique_ptr<Sink> sink = std::make_unique<NullSink>();
     if (folder_ && format.keeper) {
         format.keeper->open((*folder_ / format.file).string());
-        end = std::make_unique<KeptEnd>(format.keeper, format.type->size);
+        sink = std::make_unique<AsyncSink>(format.keeper, format.type->size);
     } else if (folder_)
-        end = is_sound ? make_sound_end(*folder_ / format.file, format) : make_csv_end(*folder_ / format.file, format);
+        sink = is_sound ? make_sound_file_sink(*folder_ / format.file, format)
+                        : make_csv_sink(*folder_ / format.file, format);
     files_opened_.insert(format.file);
-    opened_.streams.push_back(std::make_unique<Stream>(format, std::move(end)));
+    opened_.streams.push_back(std::make_unique<Stream>(format, std::move(sink)));
     uses_->streams.push_back(opened_.streams.back().get());
     return *opened_.streams.back();
 }
 
 /// One whose node an edit took away: it plays on, and only one thread ever writes to it.
-SoundCard* EngineOutside::spare_card(const StreamFormat& format) const {
+SoundCard* EngineHost::spare_card(const StreamFormat& format) const {
     for (const auto& card : cards)
         if (!card->is_lost() && card->serves(group_, format.period) &&
             std::ranges::find(cards_in_use_, card.get()) == cards_in_use_.end())
@@ -187,12 +188,12 @@ SoundCard* EngineOutside::spare_card(const StreamFormat& format) const {
     return nullptr;
 }
 
-RecordStream& EngineOutside::audio(const StreamFormat& format, const SourceLocation& where) {
+RecordStream& EngineHost::audio(const StreamFormat& format, const SourceLocation& where) {
     if (!live_ || audio_.device == "file") return record(format, where);
     if (audio_.device == "none") {
         StreamFormat unheard = format;
         unheard.file.clear();
-        opened_.streams.push_back(std::make_unique<Stream>(unheard, std::make_unique<NowhereEnd>()));
+        opened_.streams.push_back(std::make_unique<Stream>(unheard, std::make_unique<NullSink>()));
         uses_->streams.push_back(opened_.streams.back().get());
         return *opened_.streams.back();
     }

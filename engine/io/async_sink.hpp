@@ -16,15 +16,15 @@ namespace tactus::io {
 
 /// Values go to the keeper as they come and are saved at once, those that came meanwhile together. What cannot be saved
 /// is tried again every second, and at last by `finish`; the run goes on.
-class KeptEnd : public StreamEnd {
+class AsyncSink : public Sink {
 public:
     /// `size` in bytes of a value; the keeper is open.
-    KeptEnd(std::shared_ptr<StreamKeeper> keeper, std::size_t size);
-    ~KeptEnd() override;
+    AsyncSink(std::shared_ptr<StreamKeeper> keeper, std::size_t size);
+    ~AsyncSink() override;
 
     void take(std::int64_t first, const std::byte* values, std::size_t count) override;
     void finish() override;
-    std::string news() override;
+    std::string take_message() override;
 
 private:
     struct Piece {
@@ -40,7 +40,7 @@ private:
     std::mutex lock_;
     std::condition_variable changed_;
     std::vector<Piece> waiting_;
-    std::string news_;
+    std::string message_;
     bool is_over_ = false, has_failed_ = false;
     std::thread thread_;
 };

@@ -25,7 +25,7 @@ struct RecordedDevice {
 };
 
 /// What a node asked for.
-struct OutsideUses {
+struct HostUses {
     std::vector<std::pair<build::DeviceSlot*, DeviceUse>> devices;
     std::vector<SoundCard*> cards;
     std::vector<const RecordStream*> streams;
@@ -40,10 +40,10 @@ struct AudioChoice {
     bool is_required() const { return !device.empty() && device != "file" && device != "none"; }
 };
 
-class EngineOutside : public Outside {
+class EngineHost : public Host {
 public:
     /// Without a folder nothing is written: streams end nowhere. `live` allows real devices and sound cards.
-    EngineOutside(std::optional<std::filesystem::path> folder, bool live, AudioChoice audio = {});
+    EngineHost(std::optional<std::filesystem::path> folder, bool live, AudioChoice audio = {});
 
     DevicePort& device(const std::string& name, DeviceUse use, const SourceLocation& where) override;
     RecordStream& record(const StreamFormat& format, const SourceLocation& where) override;
@@ -54,7 +54,7 @@ public:
     /// Cards of nodes that go on; the others are given to nodes that are prepared anew.
     void keep_cards(std::vector<SoundCard*> in_use) { cards_in_use_ = std::move(in_use); }
     /// Which group the node being prepared belongs to, and where to note what it asks for.
-    void prepare_for(int group, Flicks period, OutsideUses& uses) {
+    void prepare_for(int group, Flicks period, HostUses& uses) {
         group_ = group;
         period_ = period;
         uses_ = &uses;
@@ -90,7 +90,7 @@ private:
     std::optional<std::vector<RecordedDevice>> recorded_;
     Opened opened_;
     std::unordered_set<std::string> files_opened_, files_before_;  ///< recordings since `begin`, and those of the run
-    OutsideUses* uses_ = nullptr;
+    HostUses* uses_ = nullptr;
     std::vector<SoundCard*> cards_in_use_;
     std::vector<std::pair<std::string, std::vector<OptionText>>> device_settings_;
     std::optional<std::filesystem::path> folder_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/io/kept_end.hpp"
+#include "engine/io/async_sink.hpp"
 
 #include "dsp/core/error.hpp"
 
@@ -16,18 +16,18 @@ constexpr std::chrono::seconds before_another_try{1};
 
 }  // namespace
 
-KeptEnd::KeptEnd(std::shared_ptr<StreamKeeper> keeper, std::size_t size)
+AsyncSink::AsyncSink(std::shared_ptr<StreamKeeper> keeper, std::size_t size)
     : keeper_(std::move(keeper)), size_(size), thread_([this] { work(); }) {}
 
-KeptEnd::~KeptEnd() { stop(); }
+AsyncSink::~AsyncSink() { stop(); }
 
-void KeptEnd::take(std::int64_t first, const std::byte* values, std::size_t count) {
+void AsyncSink::take(std::int64_t first, const std::byte* values, std::size_t count) {
     const std::lock_guard lock(lock_);
     waiting_.push_back({first, {values, values + count * size_}});
     changed_.notify_one();
 }
 
-void KeptEnd::keep(const std::vector<Piece>& pieces) {
+void AsyncSink::keep(const std::vector<Piece>& pieces) {
     for (const Piece& piece : pieces) keeper_->take(piece.first, piece.values.data(), piece.values.size() / size_);
     std::string said;
     try {
@@ -39,10 +39,10 @@ void KeptEnd::keep(const std::vector<Piece>& pieces) {
         has_failed_ = true;
     }
     const std::lock_guard lock(lock_);
-    if (!said.empty()) news_ = std::move(said);
+    if (!said.empty()) message_ = std::move(said);
 }
 
-void KeptEnd::work() {
+void AsyncSink::work() {
     for (;;) {
         std::vector<Piece> pieces;
         {
@@ -57,7 +57,7 @@ void KeptEnd::work() {
     }
 }
 
-void KeptEnd::stop() {
+void AsyncSink::stop() {
     if (!thread_.joinable()) return;
     {
         const std::lock_guard lock(lock_);
@@ -67,14 +67,14 @@ void KeptEnd::stop() {
     thread_.join();
 }
 
-void KeptEnd::finish() {
+void AsyncSink::finish() {
     stop();
     keeper_->finish();
 }
 
-std::string KeptEnd::news() {
+std::string AsyncSink::take_message() {
     const std::lock_guard lock(lock_);
-    return std::exchange(news_, {});
+    return std::exchange(message_, {});
 }
 
 }  // namespace tactus::io

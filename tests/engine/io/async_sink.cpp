@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/io/kept_end.hpp"
+#include "engine/io/async_sink.hpp"
 
 #include "dsp/core/error.hpp"
 
@@ -44,8 +44,8 @@ struct Notes : StreamKeeper {
     }
 };
 
-void give(io::KeptEnd& end, std::int64_t first, std::vector<double> values) {
-    end.take(first, reinterpret_cast<const std::byte*>(values.data()), values.size());
+void give(io::AsyncSink& sink, std::int64_t first, std::vector<double> values) {
+    sink.take(first, reinterpret_cast<const std::byte*>(values.data()), values.size());
 }
 
 bool soon(const std::function<bool()>& is_so) {
@@ -60,31 +60,31 @@ bool soon(const std::function<bool()>& is_so) {
 
 TEST_CASE("what is kept is saved by a thread of its own, in order, without being asked") {
     const auto notes = std::make_shared<Notes>();
-    io::KeptEnd end(notes, sizeof(double));
-    give(end, 1, {1.0, 2.0});
-    give(end, 5, {3.0});
+    io::AsyncSink sink(notes, sizeof(double));
+    give(sink, 1, {1.0, 2.0});
+    give(sink, 5, {3.0});
     REQUIRE(soon([&] { return notes->safe == 3; }));
-    end.finish();
+    sink.finish();
     CHECK(notes->saved == std::vector<double>{101.0, 102.0, 503.0});
     CHECK(notes->by != std::this_thread::get_id());
     CHECK(notes->is_finished);
-    CHECK(end.news().empty());
+    CHECK(sink.take_message().empty());
 }
 
 TEST_CASE("what cannot be saved is said once, tried again, and nothing of it is lost") {
     const auto notes = std::make_shared<Notes>();
     notes->is_full = true;
-    io::KeptEnd end(notes, sizeof(double));
-    give(end, 0, {1.0});
-    std::string news;
-    REQUIRE(soon([&] { return !(news = end.news()).empty(); }));
-    CHECK(news == "no room; it is tried again every second");
-    give(end, 0, {2.0});
+    io::AsyncSink sink(notes, sizeof(double));
+    give(sink, 0, {1.0});
+    std::string message;
+    REQUIRE(soon([&] { return !(message = sink.take_message()).empty(); }));
+    CHECK(message == "no room; it is tried again every second");
+    give(sink, 0, {2.0});
     REQUIRE(soon([&] { return notes->tries >= 3; }));
-    CHECK(end.news().empty());
+    CHECK(sink.take_message().empty());
     notes->is_full = false;
-    REQUIRE(soon([&] { return !(news = end.news()).empty(); }));
+    REQUIRE(soon([&] { return !(message = sink.take_message()).empty(); }));
     CHECK(notes->safe == 2);
     notes->is_full = true;
-    CHECK_THROWS_WITH(end.finish(), "no room");
+    CHECK_THROWS_WITH(sink.finish(), "no room");
 }
