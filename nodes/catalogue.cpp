@@ -13,13 +13,13 @@
     X(BladeContact, contact)            \
     X(Body, contact)                    \
     X(Brush, planning)                  \
-    X(Button, device)                    \
+    X(Button, device)                   \
     X(Carve, contact)                   \
     X(CaseScene, planning)              \
-    X(Constant, math)                  \
-    X(DeviceInput, device)               \
-    X(DeviceOutput, device)              \
-    X(DeviceWrench, device)              \
+    X(Constant, math)                   \
+    X(DeviceInput, device)              \
+    X(DeviceOutput, device)             \
+    X(DeviceWrench, device)             \
     X(DirectCoupling, coupling)         \
     X(DynamicCoupling, coupling)        \
     X(Envelope, vibration)              \
@@ -44,15 +44,15 @@
     X(Saw, vibration)                   \
     X(Scene, contact)                   \
     X(Shape, contact)                   \
-    X(SimulatedHead, device)             \
-    X(Sine, math)                      \
+    X(SimulatedHead, device)            \
+    X(Sine, math)                       \
     X(SnapToFit, coupling)              \
     X(SpectralMonitor, vibration)       \
     X(SpectrumAnalyser, vibration)      \
     X(SphereContact, contact)           \
     X(SphereProxy, coupling)            \
     X(Spring, coupling)                 \
-    X(Sweep, vibration)                     \
+    X(Sweep, vibration)                 \
     X(TestRig, admittance)              \
     X(VoxmapContact, contact)           \
     X(Workspace, device)

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // make_library OUT_DIR: computes the bundled bones and the bundled saw, which are not kept in the repository.
+#include "assets/cases/plan_file.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/library/broken_mandible.hpp"
 #include "assets/library/fragments.hpp"
 #include "assets/library/mandible.hpp"
 #include "assets/library/saw_recordings.hpp"
-#include "assets/cases/plan_file.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>

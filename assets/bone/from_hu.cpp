@@ -2,10 +2,10 @@
 #include "assets/bone/from_hu.hpp"
 
 #include "dsp/core/error.hpp"
-#include "dsp/volume/components.hpp"
-#include "dsp/volume/iso_distance.hpp"
 #include "dsp/volume/compact_slice.hpp"
+#include "dsp/volume/components.hpp"
 #include "dsp/volume/grid_part.hpp"
+#include "dsp/volume/iso_distance.hpp"
 
 #include <fmt/format.h>
 
@@ -137,7 +137,7 @@ struct Source {
         for (int k = 0; k < layers(); k += at_once) {
             const int count = std::min(at_once, layers() - k), below = std::min(passes, k);
             volume::Grid slab = hu.layers(k - below, std::min(count + below + passes, layers() - k + below),
-                                  {{0, 0}, {hu.layout.size[0] - 1, hu.layout.size[1] - 1}});
+                                          {{0, 0}, {hu.layout.size[0] - 1, hu.layout.size[1] - 1}});
             std::array<int, 2> low{}, high{};
             if (passes > 0) box_of(slab, low, high);
             if (passes > 0 && high[0] >= 0) {
@@ -295,7 +295,8 @@ SparseHuBone sparse_bone_from_hu(const HuLayers& hu, const BoneSurface& surface,
     result.components = found.voxels.size();
     const Box box = room_around(found, surface.keep, hu.layout);
     const volume::Components components = moved_into(std::exchange(found, {}), box);
-    const volume::RunRows no_hollows{components.rows.size, std::vector<std::size_t>(components.rows.start.size(), 0), {}};
+    const volume::RunRows no_hollows{
+        components.rows.size, std::vector<std::size_t>(components.rows.start.size(), 0), {}};
     const volume::RunRows hollows = surface.fill ? volume::hollows_of(components, surface.keep) : no_hollows;
     Room room{source, box, components, hollows, surface.keep};
     const Vec3& h = hu.layout.spacing;

@@ -108,7 +108,8 @@ Bone import_mesh(const ImportOptions& options, const ImportReport& report, Impor
     bone.provenance["calibration"] = options.mesh_density
                                          ? fmt::format("assumed: density = {} kg/m3 throughout", *options.mesh_density)
                                          : assumed_density_law();
-    bone.provenance["file_frame"] = fmt::format("{}{}", volume::name_of(origin.frame), origin.frame_stated ? "" : " (assumed)");
+    bone.provenance["file_frame"] =
+        fmt::format("{}{}", volume::name_of(origin.frame), origin.frame_stated ? "" : " (assumed)");
     bone.provenance["unit"] = fmt::format("{} m{}", unit, options.unit ? "" : " (assumed)");
     return bone;
 }

@@ -45,7 +45,8 @@ std::size_t parse_component(const std::string& text);
 void check_layout(const volume::Grid& layout, double most);
 
 /// What a line given for scanner numbers makes them. Throws Error when the numbers cannot be HU and none is.
-void require_hu(volume::ScanVolume& about, const volume::Tally& tally, const ImportOptions& options, const std::filesystem::path& file);
+void require_hu(volume::ScanVolume& about, const volume::Tally& tally, const ImportOptions& options,
+                const std::filesystem::path& file);
 
 /// Fills in frame, size, volume, area and densities. Throws Error for a bone without a sample inside.
 void measure(const Bone& bone, ImportSummary& summary);

@@ -5,10 +5,10 @@
 #include "assets/bone/from_hu.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/geometry/surface_net.hpp"
 #include "dsp/volume/cubic_interpolant.hpp"
 #include "dsp/volume/resample.hpp"
 #include "dsp/volume/surface_distance.hpp"
-#include "dsp/geometry/surface_net.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -182,7 +182,8 @@ void keep_volume(volume::Grid& distance, const volume::Grid& mask, double voxels
                     distance.values[n] = std::min(distance.values[n], static_cast<float>(-0.02 * cell));
         const geometry::TriangleSurface surface = geometry::iso_surface(distance, 0.0f, false);
         if (surface.triangles.empty()) return;
-        const double outwards = std::clamp((wanted - mesh::volume_of(surface)) / mesh::area_of(surface), -0.5 * cell, 0.5 * cell);
+        const double outwards =
+            std::clamp((wanted - mesh::volume_of(surface)) / mesh::area_of(surface), -0.5 * cell, 0.5 * cell);
         for (float& d : distance.values) d -= static_cast<float>(outwards);
     }
 }

@@ -32,7 +32,7 @@ std::vector<int> labels_in(const volume::Grid& labels);
 /// values cross the level that splits the two sides best, the surface goes to that crossing instead. Density from the
 /// CT, without one as in a mesh. `voxels` (may be null) takes the number of labelled samples. Throws Error for a label
 /// without samples.
-Bone bone_of_label(const volume::Grid& labels, const volume::Segment& segment, const LabelBone& how, const RunJobs& run = run_in_turn,
-                   std::size_t* voxels = nullptr);
+Bone bone_of_label(const volume::Grid& labels, const volume::Segment& segment, const LabelBone& how,
+                   const RunJobs& run = run_in_turn, std::size_t* voxels = nullptr);
 
 }  // namespace tactus::bone

@@ -164,8 +164,8 @@ struct Chip {
 };
 
 /// Bites along the crack, each off one of its sides, until they cover the share.
-std::vector<Chip> chips_of(const volume::Grid& solid, const Split& split, const Crack& crack, const BreakOptions& options,
-                           const Random& random) {
+std::vector<Chip> chips_of(const volume::Grid& solid, const Split& split, const Crack& crack,
+                           const BreakOptions& options, const Random& random) {
     std::vector<Chip> chips;
     std::vector<bool> covered(split.surface.size(), false);
     std::size_t count = 0;
@@ -187,7 +187,8 @@ std::vector<Chip> chips_of(const volume::Grid& solid, const Split& split, const 
     return chips;
 }
 
-volume::Grid side_of(const volume::Grid& solid, const Split& split, bool behind, const std::vector<Chip>& chips, double kerf) {
+volume::Grid side_of(const volume::Grid& solid, const Split& split, bool behind, const std::vector<Chip>& chips,
+                     double kerf) {
     volume::Grid part = solid;
     for (std::size_t n = 0; n < part.values.size(); ++n) {
         if (std::isnan(split.side[n])) continue;

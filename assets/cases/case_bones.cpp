@@ -2,8 +2,8 @@
 #include "assets/cases/case_bones.hpp"
 
 #include "assets/bone/import.hpp"
-#include "assets/cases/propose_paint.hpp"
 #include "assets/cases/plan_file.hpp"
+#include "assets/cases/propose_paint.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 
@@ -29,8 +29,8 @@ FragmentBone fragment_bone(const PlanFragment& fragment, const std::filesystem::
         std::vector<contact::SurfacePoint>& points = loaded.bone.points;
         if (points.empty()) points = contact::sample_surface(loaded.bone.distance, {});
         if (points.empty()) throw Error("has no surface");
-        loaded.was_painted =
-            std::ranges::any_of(points, [](const contact::SurfacePoint& p) { return p.label == contact::surface_label::fracture; });
+        loaded.was_painted = std::ranges::any_of(
+            points, [](const contact::SurfacePoint& p) { return p.label == contact::surface_label::fracture; });
         if (!loaded.was_painted && paint == Paint::or_proposed) propose_fracture(points);
     } catch (const Error& error) {
         const bool is_bone = bone::file_of_bone(fragment.file).extension() == ".vdb";

@@ -60,8 +60,8 @@ void place(const CasePlan& plan, const PlanStep& step, PlanState& state) {
         }
     if (!step.fit) return;
     const auto partner = std::ranges::find(plan.fragments, step.fit->partner, &PlanFragment::name);
-    a.fit(step.fragments[0],
-          partner == plan.fragments.end() ? fit::Arrangement::none : static_cast<int>(partner - plan.fragments.begin()));
+    a.fit(step.fragments[0], partner == plan.fragments.end() ? fit::Arrangement::none
+                                                             : static_cast<int>(partner - plan.fragments.begin()));
     fit_of(step.fragments[0]) = step.fit;
 }
 
@@ -200,7 +200,8 @@ void add_step(CasePlan& plan, PlanState& state, PlanStep step) {
 
 std::string free_group_name(const PlanState& state) {
     for (int n = 1;; ++n)
-        if (std::string name = fmt::format("group {}", n); state.find_group(name) == fit::Arrangement::none) return name;
+        if (std::string name = fmt::format("group {}", n); state.find_group(name) == fit::Arrangement::none)
+            return name;
 }
 
 int find_fragment(const CasePlan& plan, std::string_view name) {

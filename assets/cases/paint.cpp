@@ -7,7 +7,8 @@
 
 namespace tactus::cases {
 
-std::size_t paint_fracture(std::span<contact::SurfacePoint> points, const contact::Voxmap& bone, const Pose& into_bone, double spill) {
+std::size_t paint_fracture(std::span<contact::SurfacePoint> points, const contact::Voxmap& bone, const Pose& into_bone,
+                           double spill) {
     constexpr double depth = 0.3e-3;
     std::vector<Vec3> inside;
     for (contact::SurfacePoint& p : points) {

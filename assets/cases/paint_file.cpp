@@ -3,10 +3,10 @@
 
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/geometry/point_tree.hpp"
 #include "dsp/fit/faces.hpp"
 #include "dsp/fit/surface_brush.hpp"
 #include "dsp/geometry/neighbours.hpp"
+#include "dsp/geometry/point_tree.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -90,7 +90,8 @@ void paint_from_file(std::span<contact::SurfacePoint> points, const std::filesys
     paint_from_text(points, file::read_whole_file(path), path.string(), keep);
 }
 
-void paint_from_text(std::span<contact::SurfacePoint> points, std::string_view text, const std::string& file, bool keep) {
+void paint_from_text(std::span<contact::SurfacePoint> points, std::string_view text, const std::string& file,
+                     bool keep) {
     const Json json = Json::parse(text, nullptr, false);
     if (!json.is_object() || (!json.contains("paint") && !json.contains("erase")))
         throw Error(fmt::format(

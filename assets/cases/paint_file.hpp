@@ -18,7 +18,8 @@ namespace tactus::cases {
 void paint_from_file(std::span<contact::SurfacePoint> points, const std::filesystem::path& path, bool keep = false);
 
 /// The same of a file's text; `file` is its name in messages.
-void paint_from_text(std::span<contact::SurfacePoint> points, std::string_view text, const std::string& file, bool keep = false);
+void paint_from_text(std::span<contact::SurfacePoint> points, std::string_view text, const std::string& file,
+                     bool keep = false);
 
 /// A painted face, for people: m.
 struct PaintedFace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/cases/plan_keeper.hpp"
 
-#include "assets/file/whole_file.hpp"
 #include "assets/cases/plan_file.hpp"
+#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>

@@ -2,8 +2,8 @@
 #include "assets/cases/propose_paint.hpp"
 
 #include "dsp/core/error.hpp"
-#include "dsp/geometry/point_tree.hpp"
 #include "dsp/geometry/neighbours.hpp"
+#include "dsp/geometry/point_tree.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -95,8 +95,8 @@ std::size_t propose_facing(std::span<contact::SurfacePoint> points, std::span<co
     return label_patches(points, faces, patch_gap(points), options.least_area);
 }
 
-std::size_t propose_inside(std::span<contact::SurfacePoint> points, const fit::RegistrationTarget& intact, const Pose& place,
-                           const IntactOptions& options) {
+std::size_t propose_inside(std::span<contact::SurfacePoint> points, const fit::RegistrationTarget& intact,
+                           const Pose& place, const IntactOptions& options) {
     std::vector<std::uint8_t> inside(points.size(), 0), broken(points.size(), 0);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Vec3 at = place.apply(points[i].position);
@@ -119,14 +119,16 @@ std::size_t propose_inside(std::span<contact::SurfacePoint> points, const fit::R
     return label_patches(points, broken, patch_gap(points), options.least_area);
 }
 
-std::size_t keep_patches_near(std::span<contact::SurfacePoint> points, std::span<const contact::SurfacePoint> other, double reach) {
+std::size_t keep_patches_near(std::span<contact::SurfacePoint> points, std::span<const contact::SurfacePoint> other,
+                              double reach) {
     const geometry::PointTree tree = tree_of(other);
     const auto is_near = [&](std::size_t i) {
         return glm::length(other[tree.nearest(points[i].position)].position - points[i].position) < reach;
     };
     std::size_t count = 0;
-    for (const auto& patch : geometry::patches_of(points, patch_gap(points),
-                                        [&](std::size_t i) { return points[i].label == contact::surface_label::fracture; }))
+    for (const auto& patch : geometry::patches_of(points, patch_gap(points), [&](std::size_t i) {
+             return points[i].label == contact::surface_label::fracture;
+         }))
         if (std::ranges::any_of(patch, is_near)) count += patch.size();
         else
             for (const std::size_t i : patch) points[i].label = contact::surface_label::none;

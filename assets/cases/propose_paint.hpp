@@ -45,11 +45,12 @@ struct IntactOptions {
 /// the fragment belongs. `place` takes the points there. Finds broken bone however smooth it is and wherever it lies,
 /// and what differs between the sides of a body as well. Other labels are taken off. Returns how many points are
 /// labelled.
-std::size_t propose_inside(std::span<contact::SurfacePoint> points, const fit::RegistrationTarget& intact, const Pose& place,
-                           const IntactOptions& options = {});
+std::size_t propose_inside(std::span<contact::SurfacePoint> points, const fit::RegistrationTarget& intact,
+                           const Pose& place, const IntactOptions& options = {});
 
 /// Takes the label off patches that nowhere come within `reach` (m) of the other fragment's points, as they lie in the
 /// scan. Returns how many points stay labelled. Throws Error when `other` has no points.
-std::size_t keep_patches_near(std::span<contact::SurfacePoint> points, std::span<const contact::SurfacePoint> other, double reach);
+std::size_t keep_patches_near(std::span<contact::SurfacePoint> points, std::span<const contact::SurfacePoint> other,
+                              double reach);
 
 }  // namespace tactus::cases

@@ -36,8 +36,8 @@ double value_noise(const Random& random, const Vec3& at) {
         const auto i = static_cast<std::uint64_t>(static_cast<std::int64_t>(cell.x) + x + 4096);
         const auto j = static_cast<std::uint64_t>(static_cast<std::int64_t>(cell.y) + y + 4096);
         const auto k = static_cast<std::uint64_t>(static_cast<std::int64_t>(cell.z) + z + 4096);
-        const double weight = smooth_step(x ? t.x : 1.0 - t.x) * smooth_step(y ? t.y : 1.0 - t.y) *
-                              smooth_step(z ? t.z : 1.0 - t.z);
+        const double weight =
+            smooth_step(x ? t.x : 1.0 - t.x) * smooth_step(y ? t.y : 1.0 - t.y) * smooth_step(z ? t.z : 1.0 - t.z);
         sum += weight * (2.0 * random.uniform(i << 40 | j << 20 | k) - 1.0);
     }
     return sum;

@@ -92,7 +92,8 @@ Mesh load_mesh(const std::filesystem::path& path, double scale, MeshOrigin* orig
                                     : read_obj(bytes, file);
     check_numbers(text.surface, file);
     MeshOrigin found{text.frame.value_or(volume::Frame::lps), text.frame.has_value(), 0};
-    for (Vec3& v : text.surface.vertices) v = (found.frame == volume::Frame::ras ? volume::turned_about_z(v) : v) * scale;
+    for (Vec3& v : text.surface.vertices)
+        v = (found.frame == volume::Frame::ras ? volume::turned_about_z(v) : v) * scale;
     found.without_area = join_equal_points(text.surface);
     if (text.surface.triangles.empty()) throw Error(fmt::format("{}: holds no triangles", file));
     if (origin) *origin = found;

@@ -30,7 +30,8 @@ Mesh load_mesh(const std::filesystem::path& path, double scale = 1.0, MeshOrigin
 /// The zero surface of a signed distance (m, negative inside) with normals from its gradient.
 Mesh surface_of(const volume::Grid& distance);
 
-double volume_of(const geometry::TriangleSurface& mesh);  ///< m³, positive when triangles look outwards; mesh must be closed
+double volume_of(
+    const geometry::TriangleSurface& mesh);  ///< m³, positive when triangles look outwards; mesh must be closed
 double area_of(const geometry::TriangleSurface& mesh);    ///< m²
 
 /// How the triangles hang together. Watertight: every edge has two triangles that pass it in opposite directions.

@@ -4,8 +4,8 @@
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/volume/cubic_interpolant.hpp"
 #include "dsp/geometry/surface_net.hpp"
+#include "dsp/volume/cubic_interpolant.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -109,8 +109,9 @@ void write_mesh(std::span<const ColouredSurface> surfaces, const std::filesystem
 
 geometry::TriangleSurface export_surface(const volume::Grid& distance) {
     geometry::SurfaceNet net = geometry::surface_net(distance, 0.0f, false);
-    geometry::TriangleSurface surface = topology_of(net).is_watertight() ? static_cast<geometry::TriangleSurface>(std::move(net))
-                                                               : geometry::iso_surface(distance, 0.0f, false);
+    geometry::TriangleSurface surface = topology_of(net).is_watertight()
+                                            ? static_cast<geometry::TriangleSurface>(std::move(net))
+                                            : geometry::iso_surface(distance, 0.0f, false);
     settle(surface, distance);
     return surface;
 }

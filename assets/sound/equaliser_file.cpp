@@ -41,15 +41,16 @@ std::string text(const toml::node& node, const std::filesystem::path& path) {
 
 }  // namespace
 
-void save_equaliser(const vibration::Equaliser& equaliser, const std::string& title, const std::filesystem::path& path) {
+void save_equaliser(const vibration::Equaliser& equaliser, const std::string& title,
+                    const std::filesystem::path& path) {
     std::ostringstream quoted;
     quoted << toml::value<std::string>(title);
     std::string out = fmt::format(
         "# An equaliser: a filter for the 'equaliser' node.\n"
         "title     = {}\nkind      = \"{}\"\nrate      = \"{} Hz\"\ndelay     = \"{} s\"\n"
         "band      = [\"{} Hz\", \"{} Hz\"]\nmean_gain = {}\nunit      = \"{}\"\ntaps = [\n",
-        quoted.str(), equaliser.kind == vibration::EqualiserKind::linear_phase ? "linear_phase" : "minimum_phase", equaliser.rate,
-        equaliser.delay, equaliser.lowest, equaliser.highest, equaliser.mean_gain, equaliser.unit);
+        quoted.str(), equaliser.kind == vibration::EqualiserKind::linear_phase ? "linear_phase" : "minimum_phase",
+        equaliser.rate, equaliser.delay, equaliser.lowest, equaliser.highest, equaliser.mean_gain, equaliser.unit);
     for (std::size_t i = 0; i < equaliser.taps.size(); ++i)
         out += fmt::format("{:.9e},{}", equaliser.taps[i], i % 8 == 7 ? "\n" : " ");
     file::write_whole_file(path, out + "]\n");
@@ -66,7 +67,8 @@ vibration::Equaliser load_equaliser(const std::filesystem::path& path) {
             const std::string kind = text(node, path);
             if (kind != "linear_phase" && kind != "minimum_phase")
                 throw Error(location(node, path), "'kind' is \"minimum_phase\" or \"linear_phase\"");
-            out.kind = kind == "linear_phase" ? vibration::EqualiserKind::linear_phase : vibration::EqualiserKind::minimum_phase;
+            out.kind = kind == "linear_phase" ? vibration::EqualiserKind::linear_phase
+                                              : vibration::EqualiserKind::minimum_phase;
         } else if (name == "rate") {
             out.rate = quantity(node, path, "Hz");
         } else if (name == "delay") {

@@ -224,7 +224,8 @@ std::vector<float> dicom_samples(const std::vector<DicomImage>& images) {
         const std::size_t each = static_cast<std::size_t>(first.rows) * static_cast<std::size_t>(first.columns);
         if (picture.GetBufferLength() != each * images.size() * bytes) refuse("not as many samples as its header says");
         // Its bytes as GDCM keeps them, as they are handed out, and as float.
-        file::require_room(double(picture.GetBufferLength()) * (2.0 + sizeof(float) / double(bytes)), file, "its samples");
+        file::require_room(double(picture.GetBufferLength()) * (2.0 + sizeof(float) / double(bytes)), file,
+                           "its samples");
         std::vector<char> buffer(picture.GetBufferLength());
         if (!picture.GetBuffer(buffer.data())) refuse("damaged or cut short");
         std::vector<float> values(each * images.size());

@@ -56,9 +56,12 @@ void MeshPool::describe_vertices() const {
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, index_buffer_);
     if (vertex_buffer_ == 0) return;
     const auto at = [](std::size_t offset) { return reinterpret_cast<const void*>(offset); };
-    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(geometry::SurfaceVertex), at(offsetof(geometry::SurfaceVertex, position)));
-    glVertexAttribPointer(1, 3, GL_SHORT, GL_TRUE, sizeof(geometry::SurfaceVertex), at(offsetof(geometry::SurfaceVertex, normal)));
-    glVertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(geometry::SurfaceVertex), at(offsetof(geometry::SurfaceVertex, colour)));
+    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(geometry::SurfaceVertex),
+                          at(offsetof(geometry::SurfaceVertex, position)));
+    glVertexAttribPointer(1, 3, GL_SHORT, GL_TRUE, sizeof(geometry::SurfaceVertex),
+                          at(offsetof(geometry::SurfaceVertex, normal)));
+    glVertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(geometry::SurfaceVertex),
+                          at(offsetof(geometry::SurfaceVertex, colour)));
     for (GLuint location = 0; location < 3; ++location) glEnableVertexAttribArray(location);
 }
 
@@ -169,7 +172,9 @@ std::size_t MeshPool::level_for(const Parts& parts, const Mat4& to_clip, int wid
     const Vec3& voxel = parts.grid->voxel;
     const double voxel_pixels = std::max({voxel.x, voxel.y, voxel.z}) * pixels_per_m;
     std::size_t level = 0;
-    while (level < geometry::CoarseSurface::factors.size() && geometry::CoarseSurface::factors[level] * voxel_pixels <= grain) ++level;
+    while (level < geometry::CoarseSurface::factors.size() &&
+           geometry::CoarseSurface::factors[level] * voxel_pixels <= grain)
+        ++level;
     return level;
 }
 

@@ -4,8 +4,8 @@
 // drawn with fewer triangles where the picture may.
 #pragma once
 
-#include "dsp/geometry/brick_surface.hpp"
 #include "dsp/display/camera.hpp"
+#include "dsp/geometry/brick_surface.hpp"
 #include "dsp/geometry/coarse_surface.hpp"
 
 #include <array>

@@ -13,7 +13,8 @@ void add_triangle(geometry::SurfacePatch& patch, const Vec3& a, const Vec3& b, c
                   double opacity = 1.0);
 void add_ball(geometry::SurfacePatch& patch, const Vec3& centre, double radius, const Vec3& colour);
 /// Between two opposite corners, in a frame.
-void add_box(geometry::SurfacePatch& patch, const Vec3& low, const Vec3& high, const Vec3& colour, const Pose& frame = {});
+void add_box(geometry::SurfacePatch& patch, const Vec3& low, const Vec3& high, const Vec3& colour,
+             const Pose& frame = {});
 /// Shaft and head, the tip at `to`; nothing when both ends are one.
 void add_arrow(geometry::SurfacePatch& patch, const Vec3& from, const Vec3& to, double radius, const Vec3& colour);
 /// Three thin arrows: x red, y green, z blue.

@@ -141,7 +141,8 @@ std::unique_ptr<HapticDevice> open_walking_gripper(Options& options, const hapti
 
 std::unique_ptr<HapticDevice> open_wave_gripper(Options& options, const haptic::PathResolver&) {
     static const std::array<std::string, 3> controls{"phase", "frequency", "amplitude"};
-    static constexpr std::array control_of{simulate::WaveControl::phase, simulate::WaveControl::frequency, simulate::WaveControl::amplitude};
+    static constexpr std::array control_of{simulate::WaveControl::phase, simulate::WaveControl::frequency,
+                                           simulate::WaveControl::amplitude};
     simulate::Finger finger = read_finger(options);
     simulate::WaveMotor motor;
     simulate::WaveMotorSettings& s = motor.settings;

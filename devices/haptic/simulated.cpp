@@ -35,7 +35,9 @@ struct Sawing {
     simulate::StrokeOperator moves;
 
     explicit Sawing(const simulate::StrokePlan& given) : plan(given), moves(given) {}
-    simulate::Intention operator()(double h, const Wrench& force, const Pose& hand) noexcept { return moves(h, force, hand); }
+    simulate::Intention operator()(double h, const Wrench& force, const Pose& hand) noexcept {
+        return moves(h, force, hand);
+    }
     Pose start() const { return plan.start; }
     std::uint32_t buttons() const noexcept { return moves.trigger() ? button_trigger : 0; }
 };

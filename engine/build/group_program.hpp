@@ -6,8 +6,8 @@
 #include "dsp/core/hash.hpp"
 #include "dsp/core/signal_hash.hpp"
 #include "engine/io/device_guard.hpp"
-#include "engine/run/link.hpp"
 #include "engine/observe/telemetry.hpp"
+#include "engine/run/link.hpp"
 #include "graph/node/device.hpp"
 #include "graph/node/setup.hpp"
 
@@ -27,7 +27,6 @@ class GroupRuntime;
 }
 
 namespace tactus::build {
-
 
 /// A number that drives a parameter before its node's step: from the same group, or gliding from another.
 struct Drive {

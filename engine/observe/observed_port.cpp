@@ -86,7 +86,8 @@ void BoneFeed::mark(std::uint32_t brick) noexcept {
     waiting_.push_back(brick);
 }
 
-bool BoneFeed::see(std::int64_t index, const volume::BoneSnapshot& now, bool was_watched, Ring<std::byte>& ring) noexcept {
+bool BoneFeed::see(std::int64_t index, const volume::BoneSnapshot& now, bool was_watched,
+                   Ring<std::byte>& ring) noexcept {
     const std::vector<const float*>& bricks = now.root->distance;
     if (bricks.size() != sent_.size()) return true;
     if (now.version == version_ && first_waiting_ == waiting_.size() && is_complete_) return true;

@@ -33,7 +33,8 @@ void GroupRuntime::hold_off() noexcept {
 void GroupRuntime::apply_pause(Pace pace) noexcept {
     bool wanted = is_paused_;
     if (replayed) {
-        if (const take::TimingRecord* logged = replayed_at(take::TimingKind::fade, 1, next_)) wanted = logged->value != 0;
+        if (const take::TimingRecord* logged = replayed_at(take::TimingKind::fade, 1, next_))
+            wanted = logged->value != 0;
     } else if (pause) {
         wanted = pause->holds_off(next_ * plan->period);
     }

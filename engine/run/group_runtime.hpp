@@ -4,8 +4,8 @@
 
 #include "dsp/core/ring.hpp"
 #include "engine/build/group_program.hpp"
-#include "engine/run/pause_window.hpp"
 #include "engine/observe/telemetry.hpp"
+#include "engine/run/pause_window.hpp"
 #include "engine/take/timing_log.hpp"
 #include "graph/compile/plan.hpp"
 
@@ -98,7 +98,8 @@ public:
 private:
     int cut(int frames) const noexcept;
     bool has_room(int frames) const noexcept;
-    const take::TimingRecord* replayed_at(take::TimingKind kind, std::uint32_t source, std::int64_t tick) const noexcept;
+    const take::TimingRecord* replayed_at(take::TimingKind kind, std::uint32_t source,
+                                          std::int64_t tick) const noexcept;
     void apply_parameters() noexcept;
     void hold_off() noexcept;
     void apply_pause(Pace pace) noexcept;
@@ -115,7 +116,8 @@ private:
     void hash_outputs(const build::Step& step, int frames) noexcept;
     void record_outputs(const build::Step& step, int frames) noexcept;
     void publish(int frames, Pace pace) noexcept;
-    void note(take::TimingKind kind, int source, std::int64_t count, std::int64_t value, const DeviceSample* sample) noexcept;
+    void note(take::TimingKind kind, int source, std::int64_t count, std::int64_t value,
+              const DeviceSample* sample) noexcept;
 
     static constexpr int timed_every = 64;  ///< nodes are timed in one call of so many
 

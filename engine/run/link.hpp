@@ -56,7 +56,9 @@ public:
     void prepare(Flicks slack, int producer_frames, int consumer_frames, std::int64_t first = 0);
 
     /// Index that consumer activation `j` reads when all is in time.
-    std::int64_t wanted(std::int64_t j) const { return compile::source_index(j, consumer_period, latency, producer_period); }
+    std::int64_t wanted(std::int64_t j) const {
+        return compile::source_index(j, consumer_period, latency, producer_period);
+    }
     /// First activation after `j` that wants another index.
     std::int64_t window_end(std::int64_t j) const {
         return ceil_div((wanted(j) + 1) * producer_period + latency, consumer_period);

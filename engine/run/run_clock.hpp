@@ -32,8 +32,9 @@ public:
     /// Any thread. False, and `line` as it was, while no whole line is there: none yet, or one is being set. Wait-free.
     bool try_get(control::TrimmedClock& line) const noexcept {
         const std::uint64_t version = version_.load(std::memory_order_acquire);
-        const control::TrimmedClock now{logical_.load(std::memory_order_acquire), steady_ns_.load(std::memory_order_acquire),
-                               slope_.load(std::memory_order_acquire)};
+        const control::TrimmedClock now{logical_.load(std::memory_order_acquire),
+                                        steady_ns_.load(std::memory_order_acquire),
+                                        slope_.load(std::memory_order_acquire)};
         if (version == 0 || version % 2 == 1 || version_.load(std::memory_order_relaxed) != version) return false;
         line = now;
         return true;

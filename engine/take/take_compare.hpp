@@ -2,8 +2,8 @@
 // Compares every value that a repetition publishes with those of the take, bit by bit, while it runs.
 #pragma once
 
-#include "engine/run/group_runtime.hpp"
 #include "engine/io/streams.hpp"
+#include "engine/run/group_runtime.hpp"
 #include "engine/take/take_reader.hpp"
 
 #include <cstdint>

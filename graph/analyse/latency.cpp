@@ -10,7 +10,8 @@
 
 namespace tactus::analyse {
 
-Flicks worst_age(const compile::PlanGroup& producer, const compile::PlanGroup& consumer, const compile::PlanWire& wire) {
+Flicks worst_age(const compile::PlanGroup& producer, const compile::PlanGroup& consumer,
+                 const compile::PlanWire& wire) {
     // j·Pc − L runs through every multiple of the common divisor modulo Pp, so the oldest value has waited
     // Pp − gcd on top of the latency, plus what L itself is off that grid.
     const Flicks latency = compile::wire_latency(producer, wire);

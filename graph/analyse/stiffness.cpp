@@ -74,7 +74,8 @@ private:
 
 }  // namespace
 
-std::vector<ForceLoop> force_loops(const compile::Plan& plan, const std::function<double(const std::string&)>& damping) {
+std::vector<ForceLoop> force_loops(const compile::Plan& plan,
+                                   const std::function<double(const std::string&)>& damping) {
     DrivenParams driven;
     for (const compile::PlanWire& wire : plan.wires)
         if (wire.param) driven.insert(wire.param);

@@ -74,8 +74,9 @@ void add_element(Editing& editing, const WireText& wire) {
     const TomlEntry* list = editing.spans().find({"wires"});
     if (!list) {
         const std::string lines = fmt::format("wires = [{0}  {1},{0}]{0}", newline, toml_quoted(joined(wire, 0)));
-        std::size_t at = editing.spans().headers.empty() ? text.size()
-                                                         : patch::line_start(text, editing.spans().headers.front().span.begin);
+        std::size_t at = editing.spans().headers.empty()
+                             ? text.size()
+                             : patch::line_start(text, editing.spans().headers.front().span.begin);
         for (const TomlEntry& entry : editing.spans().entries)
             if (entry.header < 0) at = patch::line_end(text, entry.span.end);
         const bool ends_line = at == 0 || text[at - 1] == '\n';
@@ -94,8 +95,8 @@ void add_element(Editing& editing, const WireText& wire) {
     const std::size_t end = has_comma ? last.comma.end : last.value.end;
     const std::string made = toml_quoted(joined(wire, arrow_column(wires.back().text)));
     const std::size_t behind = patch::line_end(text, end);
-    const bool has_own_line = patch::is_blank(
-        text.substr(patch::line_start(text, last.value.begin), last.value.begin - patch::line_start(text, last.value.begin)));
+    const bool has_own_line = patch::is_blank(text.substr(
+        patch::line_start(text, last.value.begin), last.value.begin - patch::line_start(text, last.value.begin)));
     if (!has_own_line || bracket < behind) return editing.replace({end, end}, (has_comma ? " " : ", ") + made);
     const std::string line = patch::indent_of(text, last.value.begin) + made + (has_comma ? "," : "") + newline;
     editing.replace({behind, behind}, line);

@@ -178,7 +178,8 @@ void Editing::insert(const Path& owner, std::string_view name, const std::string
 }
 
 void Editing::remove(const TomlEntry& entry) {
-    if (entry.parent < 0) return replace({patch::line_start(text_, entry.span.begin), patch::line_end(text_, entry.span.end)}, "");
+    if (entry.parent < 0)
+        return replace({patch::line_start(text_, entry.span.begin), patch::line_end(text_, entry.span.end)}, "");
     const TomlEntry *before = nullptr, *behind = nullptr;
     for (const TomlEntry& other : spans_.entries) {
         if (other.parent != entry.parent) continue;
@@ -196,7 +197,8 @@ bool Editing::remove_one(const Path& path) {
         TextSpan block{patch::line_start(text_, spans_.headers[h].span.begin), patch::line_end(text_, last_of(h))};
         // Of the empty lines around it one set is enough.
         if (block.begin == 0 || patch::is_empty_line(text_, patch::line_start(text_, block.begin - 1)))
-            while (block.end < text_.size() && patch::is_empty_line(text_, block.end)) block.end = patch::line_end(text_, block.end);
+            while (block.end < text_.size() && patch::is_empty_line(text_, block.end))
+                block.end = patch::line_end(text_, block.end);
         replace(block, "");
         return true;
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/edit/patch_paths.hpp"
 
-#include "graph/patch/sub_patch.hpp"
 #include "graph/edit/toml_spans.hpp"
+#include "graph/patch/sub_patch.hpp"
 
 #include <algorithm>
 #include <ranges>

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "assets/bone/bone.hpp"
-#include "assets/table/deflection_file.hpp"
-#include "assets/sound/equaliser_file.hpp"
 #include "assets/cases/case_bones.hpp"
+#include "assets/sound/equaliser_file.hpp"
 #include "assets/sound/recording_set.hpp"
+#include "assets/table/deflection_file.hpp"
 #include "graph/node/param.hpp"
 
 namespace tactus {

@@ -39,7 +39,8 @@ private:
 
 }  // namespace
 
-SignalEnd find_signal(const Patch& patch, const std::string& text, std::string_view option, compile::Catalogue catalogue) {
+SignalEnd find_signal(const Patch& patch, const std::string& text, std::string_view option,
+                      compile::Catalogue catalogue) {
     const SourceLocation where{fmt::format("{} {}", option, text), 0, 0};
     const std::size_t dot = text.find('.');
     if (dot == std::string::npos || dot == 0 || dot + 1 == text.size()) throw Error(where, "write NODE.PORT");

@@ -19,7 +19,8 @@ struct SignalEnd {
 
 /// "actuator.signal" → that port of that node. `option` is what the command line calls it, for messages. Throws Error
 /// when there is none, or it carries no signal.
-SignalEnd find_signal(const Patch& patch, const std::string& text, std::string_view option, compile::Catalogue catalogue);
+SignalEnd find_signal(const Patch& patch, const std::string& text, std::string_view option,
+                      compile::Catalogue catalogue);
 
 /// Leaves only the nodes of those names and what leads to them, in the order of the patch.
 void keep_what_leads_to(std::vector<std::string> names, Patch& patch);

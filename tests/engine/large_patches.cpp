@@ -65,7 +65,8 @@ std::string voices(int nodes) {
 compile::Plan compiled(const std::string& text) {
     patch::Problems problems;
     const patch::Patch patch = patch::read_patch(text, "large.toml", problems);
-    std::optional<compile::Plan> plan = problems.empty() ? compile::compile(patch, nodes::catalogue(), problems) : std::nullopt;
+    std::optional<compile::Plan> plan =
+        problems.empty() ? compile::compile(patch, nodes::catalogue(), problems) : std::nullopt;
     for (const Error& problem : problems.list) UNSCOPED_INFO(problem.what());
     REQUIRE(plan);
     return std::move(*plan);

@@ -118,7 +118,8 @@ rate = "4 Hz"
 )";
     const auto hash = [&](int threads, bool random_blocks) {
         patch::Problems problems;
-        std::optional<compile::Plan> plan = compile::compile(patch::read_patch(text, "test.toml", problems), nodes::catalogue(), problems);
+        std::optional<compile::Plan> plan =
+            compile::compile(patch::read_patch(text, "test.toml", problems), nodes::catalogue(), problems);
         for (const Error& error : problems.list) FAIL(error.what());
         run::EngineOptions options;
         options.seconds = 3.0;

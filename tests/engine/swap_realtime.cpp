@@ -14,7 +14,7 @@ TEST_CASE("taking a plan over, setting a parameter and recording a take are real
     const auto folder = scratch("swaps");
     {
         take::TakeWriter take(folder,
-                        {.patch_file = "swaps.toml", .overrides = {}, .seed = {}, .seconds = 1.0, .live = false});
+                              {.patch_file = "swaps.toml", .overrides = {}, .seed = {}, .seconds = 1.0, .live = false});
         run::EngineOptions options;
         options.take = &take;
         run::Engine engine(compile_text(edited(0)), options);

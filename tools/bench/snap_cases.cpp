@@ -57,7 +57,8 @@ const std::vector<FractureCase>& fracture_cases() {
 }
 
 FracturePair make_fracture_pair(const volume::Grid& bone, const FractureKind& kind, std::uint64_t seed) {
-    const std::vector<volume::Grid> solids = cases::break_bone(bone, {.seed = seed, .roughness = kind.roughness, .chips = kind.chips});
+    const std::vector<volume::Grid> solids =
+        cases::break_bone(bone, {.seed = seed, .roughness = kind.roughness, .chips = kind.chips});
     const contact::Voxmap map = contact::make_voxmap(bone);
     Piece moving = scan_piece(solids[0], map, kind, 2 * seed), fixed = scan_piece(solids[1], map, kind, 2 * seed + 1);
     return {std::move(moving.points), std::move(moving.surface), std::move(fixed.surface),

@@ -50,7 +50,8 @@ std::string_view name_of(IcpSchedule schedule) {
     return names[static_cast<std::size_t>(schedule)];
 }
 
-Pose run_icp(const fit::FitSurface& moving, const IcpTarget& target, const Pose& start, IcpKind kind, IcpSchedule schedule) {
+Pose run_icp(const fit::FitSurface& moving, const IcpTarget& target, const Pose& start, IcpKind kind,
+             IcpSchedule schedule) {
     const fit::FitSurface& fixed = target.surface();
     Pose pose = start;
     std::vector<Match> matches(moving.position.size());

@@ -2,8 +2,8 @@
 // Iterative closest point in its usual forms, which snap-to-fit is measured against.
 #pragma once
 
-#include "dsp/geometry/point_tree.hpp"
 #include "dsp/fit/fit_surface.hpp"
+#include "dsp/geometry/point_tree.hpp"
 
 #include <string_view>
 #include <vector>
@@ -32,6 +32,7 @@ private:
 };
 
 /// From `start` (between the middles of the paints) to where it settles, at most 100 iterations.
-Pose run_icp(const fit::FitSurface& moving, const IcpTarget& fixed, const Pose& start, IcpKind kind, IcpSchedule schedule);
+Pose run_icp(const fit::FitSurface& moving, const IcpTarget& fixed, const Pose& start, IcpKind kind,
+             IcpSchedule schedule);
 
 }  // namespace tactus::bench

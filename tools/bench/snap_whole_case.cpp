@@ -85,8 +85,8 @@ WholeCaseResult put_together(const bone::Bone& bone, const WholeCase& kind, std:
     WholeCaseResult result;
     for (int n = 0; n < seeds; ++n)
         put_together_once(
-            library::break_mandible(bone,
-                           {.seed = seed + static_cast<std::uint64_t>(n), .kerf = kind.kerf, .missing = kind.missing}),
+            library::break_mandible(
+                bone, {.seed = seed + static_cast<std::uint64_t>(n), .kerf = kind.kerf, .missing = kind.missing}),
             result);
     return result;
 }

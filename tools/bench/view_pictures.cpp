@@ -20,7 +20,8 @@ PictureCosts picture_costs(const volume::Grid& distance, const volume::Grid& den
     {
         const volume::BoneEditor editor(distance, density, {.band = 2.2e-3, .max_dirty = 1, .max_versions = 1});
         const volume::BrickLayout& layout = editor.layout();
-        picture.meshes.push_back({meshes.make({layout.origin, layout.spacing, volume::brick_cells}), {}, 1.0, true, true});
+        picture.meshes.push_back(
+            {meshes.make({layout.origin, layout.spacing, volume::brick_cells}), {}, 1.0, true, true});
         geometry::BrickSurface mesher;
         geometry::SurfacePatch patch;
         for (std::uint32_t b = 0; b < static_cast<std::uint32_t>(layout.brick_count()); ++b) {
@@ -36,7 +37,8 @@ PictureCosts picture_costs(const volume::Grid& distance, const volume::Grid& den
     near.zoom(5.0);
     const auto cost = [&](const char* what, const display::OrbitCamera& camera, double grain) {
         picture.grain = grain;
-        const auto views = display::views_of(camera, picture.bounds, costs.width, costs.height, display::StereoMode::mono);
+        const auto views =
+            display::views_of(camera, picture.bounds, costs.width, costs.height, display::StereoMode::mono);
         maker.draw(picture, views);
         double best = 1e30;
         for (int round = 0; round < std::max(rounds, 2); ++round) {

@@ -27,10 +27,10 @@ public:
     /// The number may have a unit: "2 min" for unit("s"). Without one it is in `unit`, which is that of the value, too.
     Option& unit(const std::string& unit);
     Option& one_of(const std::vector<std::string>& all);  ///< of these texts
-    Option& one_each();                                   ///< of several values each has the option's name before it
-    Option& separated_by(char delimiter);                 ///< several values in one text
-    Option& count(int values);                            ///< exactly so many values
-    Option& count(int least, int most);                   ///< of values
+    Option& one_each();  ///< of several values each has the option's name before it
+    Option& separated_by(char delimiter);  ///< several values in one text
+    Option& count(int values);  ///< exactly so many values
+    Option& count(int least, int most);  ///< of values
     Option& needs(const Option& other);
     Option& excludes(const Option& other);
     Option& about(const std::string& text);
@@ -42,8 +42,8 @@ private:
 
 /// What a verb still understands although no help text shows it.
 struct OldSpellings {
-    std::vector<std::pair<std::string, std::string>> renamed;    ///< option before, option now
-    std::function<void(std::vector<std::string>&)> rewrite;      ///< of all words behind the verb; may be null
+    std::vector<std::pair<std::string, std::string>> renamed;  ///< option before, option now
+    std::function<void(std::vector<std::string>&)> rewrite;  ///< of all words behind the verb; may be null
 };
 
 /// What a verb takes. What it reads into must live until the verb has run.
@@ -96,9 +96,9 @@ struct Verb {
     const Verbs& (*verbs)() = nullptr;
     /// Runs another program with all arguments behind the verb. Null otherwise.
     int (*forward)(const std::vector<std::string>& arguments) = nullptr;
-    const char* job = "";            ///< heading in the help text; "": that of all
+    const char* job = "";  ///< heading in the help text; "": that of all
     const char* old_name = nullptr;  ///< understood as well, and not shown
-    bool is_hidden = false;          ///< no help text shows it
+    bool is_hidden = false;  ///< no help text shows it
 };
 
 /// A program that is a list of verbs.

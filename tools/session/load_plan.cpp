@@ -80,8 +80,9 @@ fs::path find_patch(const std::string& name) { return find_bundled(name, "patch"
 
 fs::path find_rig(const std::string& name) { return find_bundled(name, "rig", "rigs"); }
 
-std::optional<compile::Plan> plan_of(patch::Patch patch, const patch::PatchOverrides& overrides, std::optional<std::uint64_t> seed,
-                            compile::AssetCache* assets, patch::Problems& problems) {
+std::optional<compile::Plan> plan_of(patch::Patch patch, const patch::PatchOverrides& overrides,
+                                     std::optional<std::uint64_t> seed, compile::AssetCache* assets,
+                                     patch::Problems& problems) {
     patch::read_parts(patch);
     patch::apply_overrides(patch, overrides, problems);
     if (seed) patch.seed = *seed;
@@ -93,13 +94,14 @@ std::optional<compile::Plan> plan_of(patch::Patch patch, const patch::PatchOverr
 }
 
 std::optional<compile::Plan> read_plan(const PatchChoice& choice, patch::Problems& problems) {
-    return plan_of(patch::load_patch(find_patch(choice.patch), problems), choice.overrides, choice.seed, nullptr, problems);
+    return plan_of(patch::load_patch(find_patch(choice.patch), problems), choice.overrides, choice.seed, nullptr,
+                   problems);
 }
 
 compile::Plan load_plan(const PatchChoice& choice, compile::AssetCache& assets) {
     patch::Problems problems;
-    std::optional<compile::Plan> plan =
-        plan_of(patch::load_patch(find_patch(choice.patch), problems), choice.overrides, choice.seed, &assets, problems);
+    std::optional<compile::Plan> plan = plan_of(patch::load_patch(find_patch(choice.patch), problems), choice.overrides,
+                                                choice.seed, &assets, problems);
     throw_problems(problems);
     return std::move(*plan);
 }
@@ -122,7 +124,8 @@ void throw_problems(const patch::Problems& problems) {
     throw Error(lines.back());
 }
 
-std::unique_ptr<take::TakeWriter> make_take(const PatchChoice& choice, const fs::path& folder, double seconds, bool live) {
+std::unique_ptr<take::TakeWriter> make_take(const PatchChoice& choice, const fs::path& folder, double seconds,
+                                            bool live) {
     take::TakeAbout about{find_patch(choice.patch), choice.overrides, choice.seed, seconds, live};
     // A take is replayed from any folder.
     for (std::string& asset : about.overrides.assets)

@@ -26,8 +26,9 @@ std::filesystem::path find_rig(const std::string& name);
 
 /// The plan of a patch: what the command line overrides, `seed` when given, compiled; with its assets when there is a
 /// cache. Problems are collected, those of reading among them; with any, there may be no plan.
-std::optional<compile::Plan> plan_of(patch::Patch patch, const patch::PatchOverrides& overrides, std::optional<std::uint64_t> seed,
-                            compile::AssetCache* assets, patch::Problems& problems);
+std::optional<compile::Plan> plan_of(patch::Patch patch, const patch::PatchOverrides& overrides,
+                                     std::optional<std::uint64_t> seed, compile::AssetCache* assets,
+                                     patch::Problems& problems);
 
 /// Reads and compiles, without assets. Problems are collected.
 std::optional<compile::Plan> read_plan(const PatchChoice& choice, patch::Problems& problems);
@@ -42,8 +43,8 @@ std::vector<std::string> problem_lines(const patch::Problems& problems);
 void throw_problems(const patch::Problems& problems);
 
 /// A take of a run of that patch. Throws Error when the folder cannot be made or holds a take already.
-std::unique_ptr<take::TakeWriter> make_take(const PatchChoice& choice, const std::filesystem::path& folder, double seconds,
-                                      bool live);
+std::unique_ptr<take::TakeWriter> make_take(const PatchChoice& choice, const std::filesystem::path& folder,
+                                            double seconds, bool live);
 
 /// Makes `folder` and checks that files can be written to it. Throws Error.
 void make_output_folder(const std::filesystem::path& folder);

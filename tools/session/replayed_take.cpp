@@ -14,8 +14,8 @@ namespace {
 
 compile::Plan plan_in(const take::Take& take, const std::string& text, compile::AssetCache& assets) {
     patch::Problems problems;
-    std::optional<compile::Plan> plan = plan_of(patch::read_patch(text, take.about.patch_file, problems), take.about.overrides,
-                                       take.about.seed, &assets, problems);
+    std::optional<compile::Plan> plan = plan_of(patch::read_patch(text, take.about.patch_file, problems),
+                                                take.about.overrides, take.about.seed, &assets, problems);
     if (!problems.empty()) throw problems.list.front();
     return std::move(*plan);
 }

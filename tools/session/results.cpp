@@ -50,7 +50,8 @@ display::Image picture_of(const bone::Bone& bone, const std::string& name, const
     display::OrbitCamera camera;
     camera.look_along(towards, std::abs(towards.z) < 0.9 ? Vec3(0.0, 0.0, 1.0) : Vec3(0.0, -1.0, 0.0));
     camera.fit(picture.bounds, static_cast<double>(width) / height, 1.2);
-    display::Image image = maker.draw(picture, display::views_of(camera, picture.bounds, width, height, display::StereoMode::mono));
+    display::Image image =
+        maker.draw(picture, display::views_of(camera, picture.bounds, width, height, display::StereoMode::mono));
     display::Legend legend;
     legend.title = name;
     legend.scales.push_back(display::density_scale(mesher.colours));

@@ -75,11 +75,11 @@ double number(const Report& report, const char* section, const char* key, double
 
 std::vector<std::string> unrecovered(const run::Engine& engine) {
     std::vector<std::string> lines;
-    for (const auto& slot : engine.outside().devices)
+    for (const auto& slot : engine.host().devices)
         if (const control::Fault fault = slot->port.fault;
             fault != control::Fault::none && fault != control::Fault::late_commit)
             lines.push_back(fmt::format("fault of {} at the end of the run: {}", slot->name, control::describe(fault)));
-    for (const auto& card : engine.outside().cards)
+    for (const auto& card : engine.host().cards)
         if (card->is_lost()) lines.push_back(fmt::format("{} was lost", card->name()));
     return lines;
 }

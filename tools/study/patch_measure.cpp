@@ -17,7 +17,7 @@ const std::string sweep_name = "measure_sweep", record_name = "measure_record";
 
 MeasuredPatch measured_patch(const patch::Patch& patch, const MeasuredPath& path, compile::Catalogue catalogue) {
     const patch::SignalEnd in = patch::find_signal(patch, path.in, "--in", catalogue),
-                    out = patch::find_signal(patch, path.out, "--out", catalogue);
+                           out = patch::find_signal(patch, path.out, "--out", catalogue);
     const SourceLocation where{fmt::format("--in {} --out {}", path.in, path.out), 0, 0};
     if (out.is_input) throw Error(where, fmt::format("'{}' is an input; --out takes what a node puts out", path.out));
     if (in.node->group != out.node->group ||
@@ -35,7 +35,8 @@ MeasuredPatch measured_patch(const patch::Patch& patch, const MeasuredPath& path
     if (in.is_input) {
         std::erase_if(measured.wires,
                       [&](const patch::PatchWire& w) { return w.to_node == in.node->name && w.to_port == in.port; });
-        measured.wires.push_back({sweep_name, "signal", in.node->name, in.port, patch::WireMode::hold, false, 0, where});
+        measured.wires.push_back(
+            {sweep_name, "signal", in.node->name, in.port, patch::WireMode::hold, false, 0, where});
     } else {
         for (patch::PatchWire& wire : measured.wires)
             if (wire.from_node == in.node->name && wire.from_port == in.port)

@@ -43,7 +43,8 @@ std::string recorded_as(const patch::Patch& patch, std::string_view file) {
 
 }  // namespace
 
-SawPath find_saw_path(const patch::Patch& patch, const std::string& saw, const std::string& out, compile::Catalogue catalogue) {
+SawPath find_saw_path(const patch::Patch& patch, const std::string& saw, const std::string& out,
+                      compile::Catalogue catalogue) {
     const SourceLocation where{patch.file.string(), 0, 0};
     SawPath path{saw, out, {}};
     if (saw.empty()) {
@@ -67,7 +68,8 @@ SawPath find_saw_path(const patch::Patch& patch, const std::string& saw, const s
     return path;
 }
 
-SteadyPatch steady_patch(const patch::Patch& patch, const SawPath& path, const SteadySaw& steady, compile::Catalogue catalogue) {
+SteadyPatch steady_patch(const patch::Patch& patch, const SawPath& path, const SteadySaw& steady,
+                         compile::Catalogue catalogue) {
     const SourceLocation where{patch.file.string(), 0, 0};
     SteadyPatch made{patch, out_name + ".wav", {}};
     patch::Patch& p = made.patch;

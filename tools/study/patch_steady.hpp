@@ -18,7 +18,8 @@ struct SawPath {
 
 /// Finds what the names leave open: the only node of type 'saw'; what is recorded as handle.wav, or else what the only
 /// actuator does. Throws Error naming the options --saw and --out when that is not clear.
-SawPath find_saw_path(const patch::Patch& patch, const std::string& saw, const std::string& out, compile::Catalogue catalogue);
+SawPath find_saw_path(const patch::Patch& patch, const std::string& saw, const std::string& out,
+                      compile::Catalogue catalogue);
 
 /// How the saw runs.
 struct SteadySaw {
@@ -36,6 +37,7 @@ struct SteadyPatch {
 
 /// The saw's load, trigger and rate no longer come from wires; of the patch only the nodes remain that lead to
 /// `path.out`. Throws Error when no wires lead from the saw to it.
-SteadyPatch steady_patch(const patch::Patch& patch, const SawPath& path, const SteadySaw& saw, compile::Catalogue catalogue);
+SteadyPatch steady_patch(const patch::Patch& patch, const SawPath& path, const SteadySaw& saw,
+                         compile::Catalogue catalogue);
 
 }  // namespace tactus::study

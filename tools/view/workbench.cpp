@@ -55,7 +55,7 @@ bool Draft::is_complete() const {
 Workbench::Workbench(const RunChoice& choice) : choice_(choice) {
     const fs::path file = find_patch(choice.patch);
     editor_ = std::make_unique<edit::PatchEditor>(file::read_whole_file(file), file,
-                                            [this](std::string_view text) { return check(text); });
+                                                  [this](std::string_view text) { return check(text); });
     if (const auto problem = check(editor_->text())) tell(*problem, true);
     adopt();
     last_take_ = choice.record;
@@ -228,8 +228,8 @@ std::optional<std::string> Workbench::objection(const std::string& from, const s
     patch::Problems problems;
     try {
         const std::string text = edit::with_wire(editor_->text(), {from, to, {}});
-        plan_of(patch::read_patch(without_mark(text), editor_->file(), problems), choice_.overrides, choice_.seed, nullptr,
-                problems);
+        plan_of(patch::read_patch(without_mark(text), editor_->file(), problems), choice_.overrides, choice_.seed,
+                nullptr, problems);
     } catch (const Error& error) {
         return error.what();
     }

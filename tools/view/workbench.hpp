@@ -4,9 +4,9 @@
 
 #include "engine/observe/observer.hpp"
 #include "graph/compile/load_assets.hpp"
+#include "graph/compile/plan.hpp"
 #include "graph/edit/patch_edit.hpp"
 #include "graph/edit/patch_editor.hpp"
-#include "graph/compile/plan.hpp"
 #include "tools/session/run_choice.hpp"
 #include "tools/view/patch/patch_picture.hpp"
 #include "tools/view/viewed_run.hpp"

@@ -55,7 +55,8 @@ bool Workbench::save_as(const std::string& name) {
         if (name.empty()) throw Error("a file needs a name");
         fs::path file = fs::absolute(name);
         if (file.extension() != ".toml") file += ".toml";
-        if (session::is_of_library(file)) throw Error(fmt::format("{}: belongs to the library; choose another", file.string()));
+        if (session::is_of_library(file))
+            throw Error(fmt::format("{}: belongs to the library; choose another", file.string()));
         if (fs::exists(fs::symlink_status(file)))
             throw Error(fmt::format("{}: is there already; choose another name", file.string()));
         const fs::path folder = fs::absolute(editor_->file()).parent_path();

@@ -90,8 +90,7 @@ void CrossStream<T>::push(std::span<const T> x, std::span<const T> y) {
         take(SegmentFft<T>::lanes);
         const std::size_t used = SegmentFft<T>::lanes * settings_.step();
         for (std::vector<T>* waiting : {&waiting_x_, &waiting_y_})
-            std::copy(waiting->begin() + static_cast<std::ptrdiff_t>(used), waiting->end(),
-                      waiting->begin());
+            std::copy(waiting->begin() + static_cast<std::ptrdiff_t>(used), waiting->end(), waiting->begin());
         held_ -= used;
     }
 }

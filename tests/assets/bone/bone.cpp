@@ -140,7 +140,8 @@ TEST_CASE("a bone of several is loaded by name, and a name is asked for when it 
     bones[1].distance.values[0] = 42.0f;
     bone::save_bones(bones, folder / "two.vdb");
     CHECK(bone::load_bone(folder / "two.vdb#fragment").distance.values[0] == 42.0f);
-    CHECK_THROWS_WITH(bone::load_bone(folder / "two.vdb"), Contains("2 bones (main, fragment)") && Contains("two.vdb#main"));
+    CHECK_THROWS_WITH(bone::load_bone(folder / "two.vdb"),
+                      Contains("2 bones (main, fragment)") && Contains("two.vdb#main"));
     CHECK_THROWS_WITH(bone::load_bone(folder / "two.vdb#fragmnt"), Contains("did you mean 'fragment'?"));
     CHECK_THROWS_WITH(bone::load_bone(folder / "two.vdb#"), Contains("no bone ''"));
     CHECK_THROWS_WITH(bone::load_bone(folder / "absent.vdb#main"), Contains("no such file"));

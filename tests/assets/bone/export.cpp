@@ -91,7 +91,8 @@ TEST_CASE("several bones go into one mesh file, and what cannot be written is re
     CHECK_THROWS_WITH(mesh::write_mesh(std::vector<mesh::ColouredSurface>{{surface, {}}}, folder / "ball.obj"),
                       Contains(".stl or .ply"));
     CHECK_THROWS_WITH(mesh::write_mesh({}, folder / "none.stl"), Contains("no triangles"));
-    CHECK_THROWS_AS(mesh::write_mesh(std::vector<mesh::ColouredSurface>{{surface, {}}}, folder / "absent" / "ball.stl"), Error);
+    CHECK_THROWS_AS(mesh::write_mesh(std::vector<mesh::ColouredSurface>{{surface, {}}}, folder / "absent" / "ball.stl"),
+                    Error);
     CHECK_FALSE(std::filesystem::exists(folder / "none.stl"));
 }
 

@@ -119,7 +119,8 @@ TEST_CASE("a slanted wall little more than one voxel thick stays a wall without 
     const Shape truth = wall(0.7 * mm);
     const volume::Grid labels = labelled(truth, Vec3(0.5 * mm));
     const bone::Bone bone = bone::bone_of_label(labels, {}, {});
-    CHECK(mesh::volume_of(mesh::surface_of(bone.distance)) == Approx(count_of(labels, 1.0f) * voxel_volume(labels)).epsilon(0.1));
+    CHECK(mesh::volume_of(mesh::surface_of(bone.distance)) ==
+          Approx(count_of(labels, 1.0f) * voxel_volume(labels)).epsilon(0.1));
     // Along the middle of the wall everything is inside.
     const Vec3 n = glm::normalize(Vec3(1.0, 0.6, 0.4)), u = glm::normalize(glm::cross(n, Vec3(0, 0, 1))),
                v = glm::cross(n, u);
@@ -159,7 +160,8 @@ TEST_CASE("with a CT the surface goes to its grey values, also through noise and
         CHECK(seen.name == "label 3");
         // The same CT taken by its threshold.
         const bone::Bone direct = bone::bone_from_hu(hu, {640.0f, 1, true}).bone;
-        CHECK(mesh::volume_of(mesh::surface_of(seen.distance)) == Approx(mesh::volume_of(mesh::surface_of(direct.distance))).epsilon(0.01));
+        CHECK(mesh::volume_of(mesh::surface_of(seen.distance)) ==
+              Approx(mesh::volume_of(mesh::surface_of(direct.distance))).epsilon(0.01));
     }
 }
 
@@ -171,7 +173,7 @@ TEST_CASE("between two labels grey values are not asked: each ends where the oth
         return whole(p) >= 0.0 ? 0.0 : half(p) < 0.0 ? 1.0 : 2.0;
     });
     const volume::Grid hu = sampled(layout(spacing, far_off, {44, 44, 44}),
-                            [&](const Vec3& p) { return std::clamp(300.0 - 1e6 * whole(p), -1000.0, 1400.0); });
+                                    [&](const Vec3& p) { return std::clamp(300.0 - 1e6 * whole(p), -1000.0, 1400.0); });
     double volume = 0.0;
     for (const int label : {1, 2}) {
         const bone::Bone bone = bone::bone_of_label(labels, {label, "", {}}, {{}, &hu, false});

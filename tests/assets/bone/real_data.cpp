@@ -56,9 +56,21 @@ const std::vector<Scan> scans{
      1022,
      volume::HuKind::calibrated,
      {{300, 476522}, {700, 334896}}},
-    {"ct/skull_saw_kerf_block.nrrd", {84, 240, 60}, {0.45117, 0.45117, 1.0}, -1024, 1024, volume::HuKind::calibrated, {}},
+    {"ct/skull_saw_kerf_block.nrrd",
+     {84, 240, 60},
+     {0.45117, 0.45117, 1.0},
+     -1024,
+     1024,
+     volume::HuKind::calibrated,
+     {}},
     {"fragments/hip003_ct.nrrd", {176, 156, 237}, {0.9707, 0.9707, 1.0}, -69, 1439, volume::HuKind::masked, {}},
-    {"fragments/hip003_intact_side_ct.nrrd", {146, 169, 240}, {0.9707, 0.9707, 1.0}, -63, 1373, volume::HuKind::masked, {}},
+    {"fragments/hip003_intact_side_ct.nrrd",
+     {146, 169, 240},
+     {0.9707, 0.9707, 1.0},
+     -63,
+     1373,
+     volume::HuKind::masked,
+     {}},
 };
 
 struct Surface {

@@ -65,7 +65,7 @@ TEST_CASE("assets: the pieces of a broken bone make up the bone, less kerf and c
 TEST_CASE("assets: the same seed breaks alike, another seed otherwise") {
     const volume::Grid whole = bar();
     const std::vector<volume::Grid> a = cases::break_bone(whole, {.pieces = 3, .seed = 5}),
-                            b = cases::break_bone(whole, {.pieces = 3, .seed = 5});
+                                    b = cases::break_bone(whole, {.pieces = 3, .seed = 5});
     REQUIRE(a.size() == b.size());
     for (std::size_t n = 0; n < a.size(); ++n) CHECK(a[n].values == b[n].values);
     CHECK(cases::break_bone(whole, {.pieces = 3, .seed = 6})[0].values != a[0].values);
@@ -143,7 +143,8 @@ TEST_CASE("assets: what lies inside of the unbroken bone is the break, however s
     CHECK(cases::propose_inside(guess, intact, placement.inverse()) > 200);
     double painted = 0.0, both = 0.0, proposed = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const bool truly = points[i].label == contact::surface_label::fracture, guessed = guess[i].label != contact::surface_label::none;
+        const bool truly = points[i].label == contact::surface_label::fracture,
+                   guessed = guess[i].label != contact::surface_label::none;
         painted += truly ? points[i].area : 0.0;
         proposed += guessed ? points[i].area : 0.0;
         both += truly && guessed ? points[i].area : 0.0;
@@ -157,7 +158,8 @@ TEST_CASE("assets: what lies inside of the unbroken bone is the break, however s
         CHECK(cases::keep_patches_near(guess, other, 1.0 * mm) == labelled);
         for (contact::SurfacePoint& p : other) p.position += Vec3(0.2, 0.0, 0.0);
         CHECK(cases::keep_patches_near(guess, other, 10.0 * mm) == 0);
-        CHECK(std::ranges::none_of(guess, [](const contact::SurfacePoint& p) { return p.label != contact::surface_label::none; }));
+        CHECK(std::ranges::none_of(
+            guess, [](const contact::SurfacePoint& p) { return p.label != contact::surface_label::none; }));
         CHECK_THROWS_AS(cases::keep_patches_near(guess, {}, 1.0), Error);
     }
     SECTION("the unbroken bone itself has nothing inside of it") {

@@ -49,7 +49,9 @@ cases::PlanStep meaning(cases::StepKind kind, std::vector<int> fragments, std::s
     return step;
 }
 
-void put(cases::CasePlan& plan, int fragment, const Pose& pose) { cases::add_step(plan, cases::placing(plan, fragment, pose, "hand")); }
+void put(cases::CasePlan& plan, int fragment, const Pose& pose) {
+    cases::add_step(plan, cases::placing(plan, fragment, pose, "hand"));
+}
 
 /// Every kind of step, an undone branch and a second alternative.
 cases::CasePlan eventful() {
@@ -133,10 +135,14 @@ TEST_CASE("a grouped fragment takes its group along, and the step says where eac
 TEST_CASE("a step that cannot be is refused and leaves the plan as it was") {
     cases::CasePlan plan = eventful();
     const std::string text = cases::plan_text(plan);
-    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::add, {0}, "chim")), Catch::Contains("did you mean 'chin'"));
-    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::group, {1, 2}, "x")), Catch::Contains("move together already"));
-    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::group, {0, 1}, "chin")), Catch::Contains("already"));
-    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::hide, {4})), Catch::Contains("no fragment number 4"));
+    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::add, {0}, "chim")),
+                      Catch::Contains("did you mean 'chin'"));
+    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::group, {1, 2}, "x")),
+                      Catch::Contains("move together already"));
+    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::group, {0, 1}, "chin")),
+                      Catch::Contains("already"));
+    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::hide, {4})),
+                      Catch::Contains("no fragment number 4"));
     CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::hide, {1, 1})), Catch::Contains("twice"));
     CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::remove, {0})), Catch::Contains("in no group"));
     CHECK_THROWS_WITH(put(plan, 1, any_pose(1)), Catch::Contains("locked"));
@@ -193,11 +199,13 @@ TEST_CASE("a file that is gone or has changed since is named, and names of fragm
     cases::CasePlan plan;
     cases::add_fragment(plan, "left", file, file.parent_path(), Vec3(1.0));
     CHECK(plan.fragments[0].file == "bone.stl");
-    CHECK_THROWS_WITH(cases::add_fragment(plan, "left", file, file.parent_path(), Vec3(1.0)), Catch::Contains("another name"));
+    CHECK_THROWS_WITH(cases::add_fragment(plan, "left", file, file.parent_path(), Vec3(1.0)),
+                      Catch::Contains("another name"));
     CHECK(cases::changed_files(plan, file.parent_path()).empty());
     file::write_whole_file(file, "two");
     REQUIRE(cases::changed_files(plan, file.parent_path()).size() == 1);
-    CHECK_THAT(cases::changed_files(plan, file.parent_path())[0], Catch::Contains("not the one that the plan was made with"));
+    CHECK_THAT(cases::changed_files(plan, file.parent_path())[0],
+               Catch::Contains("not the one that the plan was made with"));
     std::filesystem::remove(file);
     CHECK_THAT(cases::changed_files(plan, file.parent_path())[0], Catch::Contains("is missing"));
 }

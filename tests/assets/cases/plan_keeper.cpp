@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/cases/plan_keeper.hpp"
 
-#include "assets/file/whole_file.hpp"
 #include "assets/cases/plan_file.hpp"
+#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
 
@@ -150,5 +150,6 @@ TEST_CASE("two keepers of one plan: the second is refused until the first has en
         CHECK_THROWS_WITH(cases::PlanKeeper(two(), file), Catch::Contains("another program is changing this plan"));
     }
     CHECK_NOTHROW(cases::PlanKeeper(two(), file));
-    CHECK_THROWS_WITH(cases::PlanKeeper(two(), folder / "none" / "case.plan.json"), Catch::Contains("cannot be changed"));
+    CHECK_THROWS_WITH(cases::PlanKeeper(two(), folder / "none" / "case.plan.json"),
+                      Catch::Contains("cannot be changed"));
 }

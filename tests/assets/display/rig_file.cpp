@@ -97,9 +97,10 @@ TEST_CASE("assets: a display rig that cannot be is refused with its line") {
 }
 
 TEST_CASE("assets: touches come back from their file, and a bad line is named") {
-    std::vector<display::RigTouch> touches{{display::RigTouch::Of::workspace, {}, {}, {0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}},
-                                  {display::RigTouch::Of::image, "monitor", {0.1, 0.9}, {-0.1, 0.0, 1.0 / 3.0}, {}},
-                                  {display::RigTouch::Of::mirror, {}, {}, {0.0, 0.0, 0.001}, {}}};
+    std::vector<display::RigTouch> touches{
+        {display::RigTouch::Of::workspace, {}, {}, {0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}},
+        {display::RigTouch::Of::image, "monitor", {0.1, 0.9}, {-0.1, 0.0, 1.0 / 3.0}, {}},
+        {display::RigTouch::Of::mirror, {}, {}, {0.0, 0.0, 0.001}, {}}};
     const TextFile file(display::touches_text(touches));
     const auto back = display::load_touches(file.path);
     REQUIRE(back.size() == 3);

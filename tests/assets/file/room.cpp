@@ -2,8 +2,8 @@
 #include "assets/file/room.hpp"
 
 #include "assets/file/whole_file.hpp"
-#include "assets/table/sample_log.hpp"
 #include "assets/sound/sound.hpp"
+#include "assets/table/sample_log.hpp"
 #include "assets/table/trajectory.hpp"
 #include "assets/volume/scan_volume.hpp"
 #include "dsp/core/error.hpp"

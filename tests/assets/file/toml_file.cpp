@@ -4,9 +4,9 @@
 #include "assets/display/rig_file.hpp"
 #include "assets/sound/equaliser_file.hpp"
 #include "assets/sound/recording_set.hpp"
-#include "tools/study/rig_matrix.hpp"
 #include "assets/table/thresholds.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
+#include "tools/study/rig_matrix.hpp"
 
 #include <catch2/catch.hpp>
 

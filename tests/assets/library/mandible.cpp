@@ -29,4 +29,6 @@ TEST_CASE("the bundled mandible is one closed piece of plausible size with a den
     CHECK(core / core_count == Approx(450.0).margin(120.0));
 }
 
-TEST_CASE("the bundled mandible is the same every time") { CHECK(library::mandible_hu().values == library::mandible_hu().values); }
+TEST_CASE("the bundled mandible is the same every time") {
+    CHECK(library::mandible_hu().values == library::mandible_hu().values);
+}

@@ -201,7 +201,8 @@ TEST_CASE("a big-endian and a text PLY with polygons give the same mesh") {
     }
     file::write_whole_file(folder / "big.ply", big);
     file::write_whole_file(folder / "text.ply", ply_of(ball, "none"));
-    CHECK(mesh::volume_of(mesh::load_mesh(folder / "big.ply")) == Approx(mesh::volume_of(mesh::load_mesh(folder / "text.ply"))).epsilon(1e-6));
+    CHECK(mesh::volume_of(mesh::load_mesh(folder / "big.ply")) ==
+          Approx(mesh::volume_of(mesh::load_mesh(folder / "text.ply"))).epsilon(1e-6));
     for (std::size_t length = 0; length < big.size(); length += 1 + big.size() / 31) {
         file::write_whole_file(folder / "cut.ply", big.substr(0, length));
         CHECK_THROWS_AS(mesh::load_mesh(folder / "cut.ply"), Error);

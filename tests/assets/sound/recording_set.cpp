@@ -96,7 +96,8 @@ TEST_CASE("without full_scale a set is uncalibrated, and the two do not mix") {
 
 TEST_CASE("a rate that nobody states is heard") {
     const Folder folder;
-    const sound::RecordingSet set = folder.load("[[recording]]\nfile = \"a.wav\"\nstate = \"cutting\"\nload = \"7 N\"\n");
+    const sound::RecordingSet set =
+        folder.load("[[recording]]\nfile = \"a.wav\"\nstate = \"cutting\"\nload = \"7 N\"\n");
     CHECK(set.recordings[0].rate_estimated);
     CHECK(set.recordings[0].rate == Approx(200.0).margin(0.05));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/table/number_table.hpp"
-#include "assets/table/deflection_file.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/table/deflection_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
 
@@ -39,8 +39,8 @@ TEST_CASE("deflections come in millimetres; a calibration is a regression that m
     CHECK(foam.follow(0.0, 1.0) == Approx(2e-3));
     CHECK_THROWS_WITH(table::load_deflection_table(write("bad.csv", "force_N,loading_mm,unloading_mm\n0,0,0\n0,1,1\n")),
                       Catch::Contains("must rise"));
-    const simulate::LineFit fit =
-        table::load_force_calibration(write("gauge.csv", "reading,force_N\n100,0\n510,1\n508,1\n920,2\n-310,-1\n101,0\n"));
+    const simulate::LineFit fit = table::load_force_calibration(
+        write("gauge.csv", "reading,force_N\n100,0\n510,1\n508,1\n920,2\n-310,-1\n101,0\n"));
     CHECK(fit.slope == Approx(1.0 / 410.0).epsilon(2e-3));
     CHECK(fit(100.0) == Approx(0.0).margin(5e-3));
     CHECK_THROWS_WITH(table::load_force_calibration(write("two.csv", "reading,force_N\n1,0\n2,1\n")),

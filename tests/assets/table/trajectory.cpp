@@ -111,7 +111,8 @@ TEST_CASE("a recording of a haptic device plays at 1 kHz near its own speed") {
         WARN("skipped: TACTUS_SHARED_DATA does not name a folder with trajectories/omni_scalpel_trials_a.csv");
         return;
     }
-    const table::Trajectory t = table::read_trajectory(std::filesystem::path(data) / "trajectories/omni_scalpel_trials_a.csv");
+    const table::Trajectory t =
+        table::read_trajectory(std::filesystem::path(data) / "trajectories/omni_scalpel_trials_a.csv");
     CHECK(t.samples.size() == 2207);
     const simulate::TrajectoryPlayer player(t.samples, t.breaks, t.rules());
     CHECK(player.gaps() == 5);

@@ -23,7 +23,9 @@ bool are_there() {
     return false;
 }
 
-std::vector<float> samples_of(const std::string& name) { return volume::dicom_samples(volume::dicom_images(folder / name)); }
+std::vector<float> samples_of(const std::string& name) {
+    return volume::dicom_samples(volume::dicom_images(folder / name));
+}
 
 double sum_of(const std::vector<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 

@@ -150,7 +150,7 @@ TEST_CASE("a folder of several series asks which, and takes the one that is name
     write_dicom_folder(v, place.folder / "a");
     write_dicom_folder(v, place.folder / "b", other);
     CHECK_THROWS_WITH(volume::read_volume(place.folder.path), Contains("2 series") && Contains("--series") &&
-                                                          Contains("9.8.7  5 images") && Contains("1.2.3.4"));
+                                                                  Contains("9.8.7  5 images") && Contains("1.2.3.4"));
     check_same(volume::read_volume(place.folder.path, {"9.8.7"}), v);
     CHECK_THROWS_WITH(volume::read_volume(place.folder.path, {"5.5"}), Contains("names 0"));
     other.image_type = "ORIGINAL\\PRIMARY\\LOCALIZER";
@@ -303,10 +303,13 @@ TEST_CASE("raw samples that look like gzip, big-endian ones and those in a file 
     for (std::size_t n = 0; n < samples.size(); n += 2) std::swap(samples[n], samples[n + 1]);
     header.replace(header.find("little"), 6, "big");
     place.write("samples.raw", samples);
-    const volume::Grid apart = volume::lps_grid(volume::read_volume(place.write("v.nhdr", header + "data file: samples.raw\n")));
+    const volume::Grid apart =
+        volume::lps_grid(volume::read_volume(place.write("v.nhdr", header + "data file: samples.raw\n")));
     CHECK(apart.values == read.values);
-    CHECK(volume::lps_grid(volume::read_volume(place.write("big.nrrd", header + "\n" + samples))).values == read.values);
-    CHECK_THROWS_WITH(volume::read_volume(place.write("cut.nrrd", header + "\n" + samples.substr(2))), Contains("cut short"));
+    CHECK(volume::lps_grid(volume::read_volume(place.write("big.nrrd", header + "\n" + samples))).values ==
+          read.values);
+    CHECK_THROWS_WITH(volume::read_volume(place.write("cut.nrrd", header + "\n" + samples.substr(2))),
+                      Contains("cut short"));
 }
 
 TEST_CASE("a DICOM file of a kind with frames that does not count them is refused") {

@@ -100,7 +100,8 @@ bool has_near(const display::Image& image, int x, int y, bool wanted) {
 TEST_CASE("a picture of what moves has far fewer triangles, its outline off by one pixel at most, and no cracks") {
     if (!can_render()) return;
     Scene scene;
-    for (const display::NamedView from : {display::NamedView::iso, display::NamedView::front, display::NamedView::left, display::NamedView::top})
+    for (const display::NamedView from :
+         {display::NamedView::iso, display::NamedView::front, display::NamedView::left, display::NamedView::top})
         for (const double zoom : {0.25, 0.5, 1.0, 1.6}) {
             scene.camera.look_from(from);
             scene.camera.fit(scene.picture.bounds, static_cast<double>(width) / height);

@@ -86,7 +86,8 @@ TEST_CASE("the nearer mesh hides the farther, and up is up") {
 TEST_CASE("edges are smooth: a pixel on the rim is a mixture") {
     if (!can_render()) return;
     const std::array scene{sphere({0.0, 0.0, 0.0}, 1.0, {0.0, 0.0, 0.0})};
-    const display::Image image = display::render_picture(scene, display::fit_view({-2, -2, -2}, {2, 2, 2}, {0, 1, 0}), 101, 101);
+    const display::Image image =
+        display::render_picture(scene, display::fit_view({-2, -2, -2}, {2, 2, 2}, {0, 1, 0}), 101, 101);
     int mixed = 0;
     for (int y = 0; y < 101; ++y)
         for (int x = 0; x < 101; ++x) mixed += image.pixel(x, y)[0] > 120 && image.pixel(x, y)[0] < 190;
@@ -121,6 +122,7 @@ TEST_CASE("a PNG file appears whole or not at all") {
     std::ifstream(path, std::ios::binary).read(signature.data(), 8);
     CHECK(signature == "\x89PNG\r\n\x1a\n");
     CHECK_FALSE(std::filesystem::exists(path + ".part"));
-    CHECK_THROWS_AS(display::write_png({2, 1, {255, 0, 0, 0, 255, 0}}, (folder / "missing/picture.png").string()), Error);
+    CHECK_THROWS_AS(display::write_png({2, 1, {255, 0, 0, 0, 255, 0}}, (folder / "missing/picture.png").string()),
+                    Error);
     std::filesystem::remove_all(folder);
 }

@@ -62,7 +62,9 @@ struct TwoBalls {
     std::vector<display::DrawnView> views(display::StereoMode mode = display::StereoMode::mono) const {
         return display::views_of(camera, picture.bounds, 240, 160, mode);
     }
-    display::Image draw(display::StereoMode mode = display::StereoMode::mono) { return maker.draw(picture, views(mode)); }
+    display::Image draw(display::StereoMode mode = display::StereoMode::mono) {
+        return maker.draw(picture, views(mode));
+    }
 };
 
 int count(const display::Image& image, bool (*what)(const std::uint8_t*)) {
@@ -212,7 +214,8 @@ TEST_CASE("a million triangles are drawn") {
     picture.bounds.add(Vec3(0.08, 0.04, 0.08));
     display::OrbitCamera camera;
     camera.fit(picture.bounds, 4.0 / 3.0);
-    CHECK(count(maker.draw(picture, display::views_of(camera, picture.bounds, 160, 120, display::StereoMode::mono)), is_red) > 3000);
+    CHECK(count(maker.draw(picture, display::views_of(camera, picture.bounds, 160, 120, display::StereoMode::mono)),
+                is_red) > 3000);
 }
 
 TEST_CASE("an empty scene is background, and an empty bone has no triangles") {

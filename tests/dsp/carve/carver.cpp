@@ -20,13 +20,13 @@ std::unique_ptr<volume::BoneEditor> bone_of(double density, int max_dirty = 512)
     const DenseField field = block();
     volume::Grid rho = field.grid;
     std::ranges::fill(rho.values, static_cast<float>(density));
-    return std::make_unique<volume::BoneEditor>(field.grid, rho,
-                                        volume::BoneEditorOptions{.band = 0.003, .max_dirty = max_dirty, .max_versions = 4});
+    return std::make_unique<volume::BoneEditor>(
+        field.grid, rho, volume::BoneEditorOptions{.band = 0.003, .max_dirty = max_dirty, .max_versions = 4});
 }
 
 /// Cuts and publishes after every call, as a node does; versions are given back at once.
-carve::CarveResult saw_through(carve::Carver& carver, volume::BoneEditor& editor, std::span<const carve::CarveSample> samples,
-                        std::size_t per_call) {
+carve::CarveResult saw_through(carve::Carver& carver, volume::BoneEditor& editor,
+                               std::span<const carve::CarveSample> samples, std::size_t per_call) {
     carve::CarveResult sum;
     for (std::size_t n = 0; n < samples.size(); n += per_call) {
         const auto part = carver.update(editor, samples.subspan(n, std::min(per_call, samples.size() - n)));

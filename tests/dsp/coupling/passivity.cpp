@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/coupling/passivity.hpp"
 
-#include "dsp/coupling/force_shape.hpp"
 #include "dsp/core/quantile.hpp"
+#include "dsp/coupling/force_shape.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pegs, thin plates and broken bones: the couplings where they are hard.
 #include "assets/library/fragments.hpp"
-#include "dsp/coupling/held_contact.hpp"
 #include "dsp/core/quantile.hpp"
+#include "dsp/coupling/held_contact.hpp"
 #include "tests/dsp/coupling/held.hpp"
 
 #include <catch2/catch.hpp>
@@ -87,7 +87,8 @@ Insertion insert(double clearance) {
         const double depth = n < 1500 ? -3.0 * mm + 24.0 * mm * t / 1.5 : 21.0 * mm - 24.0 * mm * (t - 1.5) / 1.5;
         const Vec3 shake = 0.8 * mm * Vec3(std::sin(w * t), std::sin(1.3 * w * t), 0.0);
         const Vec3 nod = 2.0 * degree * Vec3(std::sin(1.3 * w * t), std::sin(w * t), 0.0);
-        const coupling::QuasiStaticState& now = rig.update({Vec3(0.0, 0.0, 30.0 * mm - depth) + shake, rotation_by(nod)});
+        const coupling::QuasiStaticState& now =
+            rig.update({Vec3(0.0, 0.0, 30.0 * mm - depth) + shake, rotation_by(nod)});
         REQUIRE(is_finite(now.wrench));
         const Vec3 tip = (now.proxy * grip).position;
         result.depth = std::max(result.depth, -tip.z);

@@ -89,7 +89,7 @@ TEST_CASE("dsp: exact touches give the exact map, also one that stretches, and s
 TEST_CASE("dsp: the corners of a screen and the plane of a mirror come out of noisy touches within 1 mm") {
     Toucher toucher;
     const display::Screen true_screen{placed.apply({-0.1, 0.0, -0.06}), placed.apply({0.1, 0.0, -0.06}),
-                             placed.apply({-0.1, 0.0, 0.06})};
+                                      placed.apply({-0.1, 0.0, 0.06})};
     double worst = 0.0, worst_mirror = 0.0;
     for (int study = 0; study < 50; ++study) {
         std::vector<display::ScreenTouch> marks;

@@ -97,7 +97,8 @@ TEST_CASE("a drive that is not a number counts as none and does not stay") {
     for (int i = 0; i < 1000; ++i) {
         const bool odd = i % 3 == 0;
         const double x = std::sin(0.05 * i);
-        const vibration::ActuatorOutput a = bad(odd ? (i % 2 ? std::nan("") : std::numeric_limits<double>::infinity()) : x);
+        const vibration::ActuatorOutput a =
+            bad(odd ? (i % 2 ? std::nan("") : std::numeric_limits<double>::infinity()) : x);
         const vibration::ActuatorOutput b = good(odd ? 0.0 : x);
         REQUIRE(a.acceleration == b.acceleration);
         REQUIRE(a.voltage == b.voltage);

@@ -77,7 +77,8 @@ TEST_CASE("on the plant it was made for, an equaliser makes the saw's vibration 
         show(std::string(saw.name) + " before", before);
         CHECK(before.harmonic_error_db.value() > 2.0);
         CHECK(before.third_octave_max_db > 3.5);
-        for (const vibration::EqualiserKind kind : {vibration::EqualiserKind::minimum_phase, vibration::EqualiserKind::linear_phase}) {
+        for (const vibration::EqualiserKind kind :
+             {vibration::EqualiserKind::minimum_phase, vibration::EqualiserKind::linear_phase}) {
             const bool linear = kind == vibration::EqualiserKind::linear_phase;
             INFO(saw.name << (linear ? ", linear phase" : ", minimum phase"));
             const signal::Comparison after = played(wanted, equalised(wanted, kind), {});
@@ -108,7 +109,8 @@ TEST_CASE("on a plant that has drifted since, an equaliser still improves every 
             INFO(drift.name << ", " << saw.name);
             const std::vector<float> wanted = saw.take();
             const signal::Comparison before = played(wanted, wanted, plant);
-            const signal::Comparison after = played(wanted, equalised(wanted, vibration::EqualiserKind::linear_phase), plant);
+            const signal::Comparison after =
+                played(wanted, equalised(wanted, vibration::EqualiserKind::linear_phase), plant);
             show(std::string(drift.name) + ", " + saw.name + " before", before);
             show(std::string(drift.name) + ", " + saw.name + " after", after);
             CHECK(after.lsd_db < before.lsd_db);
@@ -148,7 +150,8 @@ TEST_CASE(
     for (const Saw& saw : saws) {
         INFO(saw.name);
         const std::vector<float> wanted = saw.take();
-        const signal::Comparison after = played(wanted, equalised(wanted, vibration::EqualiserKind::linear_phase, anew), other);
+        const signal::Comparison after =
+            played(wanted, equalised(wanted, vibration::EqualiserKind::linear_phase, anew), other);
         show(std::string("other handle, measured anew, ") + saw.name, after);
         CHECK(after.lsd_db < (saw.cutting ? 1.0 : 0.2));
         CHECK(after.third_octave_max_db < 2.0);

@@ -49,7 +49,8 @@ TEST_CASE("an equaliser of either kind makes the plant it was made for flat with
     none.taps = {1.0f};
     none.mean_gain = 1.0;
     CHECK(deviation(plant, none, 50.0, 900.0) > 10.0);
-    for (const vibration::EqualiserKind kind : {vibration::EqualiserKind::minimum_phase, vibration::EqualiserKind::linear_phase}) {
+    for (const vibration::EqualiserKind kind :
+         {vibration::EqualiserKind::minimum_phase, vibration::EqualiserKind::linear_phase}) {
         const vibration::Equaliser equaliser = vibration::design_equaliser(response, {.kind = kind});
         CHECK(deviation(plant, equaliser, 60.0, 950.0) < 1.0);
         CHECK(equaliser.taps.size() == 6144);
@@ -59,7 +60,8 @@ TEST_CASE("an equaliser of either kind makes the plant it was made for flat with
 TEST_CASE("a minimum-phase equaliser answers within 2 ms; a linear-phase one leaves a pure delay of half its length") {
     const test::Plant plant;
     const vibration::FrequencyResponse response = identified(plant);
-    const vibration::Equaliser quick = vibration::design_equaliser(response, {.kind = vibration::EqualiserKind::minimum_phase});
+    const vibration::Equaliser quick =
+        vibration::design_equaliser(response, {.kind = vibration::EqualiserKind::minimum_phase});
     CHECK(quick.delay <= 2e-3);
     // Most of what comes out has come out by then: energy of the chain's answer to an impulse.
     std::vector<float> impulse(9600);
@@ -76,7 +78,8 @@ TEST_CASE("a minimum-phase equaliser answers within 2 ms; a linear-phase one lea
     }
     CHECK(early > 0.8 * all);
 
-    const vibration::Equaliser exact = vibration::design_equaliser(response, {.kind = vibration::EqualiserKind::linear_phase});
+    const vibration::Equaliser exact =
+        vibration::design_equaliser(response, {.kind = vibration::EqualiserKind::linear_phase});
     CHECK(exact.delay == Approx(0.064));
     for (double f = 80.0; f < 900.0; f *= 1.1) {
         const std::complex<double> whole =

@@ -134,7 +134,8 @@ TEST_CASE("cutting begins above the upper load and ends below the lower one") {
 
 TEST_CASE("a recording is not played more than 15 % off its rate while a nearer one is there, and changes only once") {
     const auto slow = tone(150.0, 1.0), middle = tone(190.0, 0.0), fast = tone(233.0, 0.3);
-    const vibration::SawRecording recordings[] = {{slow, 48000.0, 150.0}, {middle, 48000.0, 190.0}, {fast, 48000.0, 233.0}};
+    const vibration::SawRecording recordings[] = {
+        {slow, 48000.0, 150.0}, {middle, 48000.0, 190.0}, {fast, 48000.0, 233.0}};
     const double recorded[] = {150.0, 190.0, 233.0};
     vibration::SawVoice voice;
     voice.prepare(48000.0, recordings, {.spin_up_time = 0.0, .spin_down_time = 0.0});
@@ -222,7 +223,8 @@ TEST_CASE("a saw without usable recordings is refused") {
     const vibration::SawRecording short_one[] = {{brief, 48000.0, 233.0}};
     CHECK_THROWS_AS(voice.prepare(48000.0, short_one), Error);
     const auto good = tone(233.0, 0.0);
-    const vibration::SawRecording no_rate[] = {{good, 48000.0, 0.0}}, backwards[] = {{good, 48000.0, 233.0, 0, false, 1, 9, 4}};
+    const vibration::SawRecording no_rate[] = {{good, 48000.0, 0.0}},
+                                  backwards[] = {{good, 48000.0, 233.0, 0, false, 1, 9, 4}};
     CHECK_THROWS_AS(voice.prepare(48000.0, no_rate), Error);
     CHECK_THROWS_AS(voice.prepare(48000.0, backwards), Error);
     const vibration::SawRecording fine[] = {{good, 48000.0, 233.0}};

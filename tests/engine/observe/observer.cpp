@@ -238,7 +238,9 @@ TEST_CASE("a live run goes on alike under an observer that comes, goes and reads
     std::thread viewer([&] {
         Flicks last = -1;
         for (int n = 0; !stop; ++n) {
-            watch_everything(observer, n % 8 == 7 ? observe::Watch::nothing : n % 3 == 0 ? observe::Watch::every : observe::Watch::latest);
+            watch_everything(observer, n % 8 == 7   ? observe::Watch::nothing
+                                       : n % 3 == 0 ? observe::Watch::every
+                                                    : observe::Watch::latest);
             observer.advance();
             if (const auto value = observer.latest<Pose>("a.pose")) {
                 rises = rises && value->when >= last;

@@ -113,8 +113,8 @@ TEST_CASE("a storm of edits under load is repeated to the bit from its take") {
     std::int64_t told = 0, failed = 0;
     run::Engine::PortHashes live_hashes;
     {
-        take::TakeWriter take(folder,
-                        {.patch_file = "storm.toml", .overrides = {}, .seed = {}, .seconds = 3600.0, .live = true});
+        take::TakeWriter take(
+            folder, {.patch_file = "storm.toml", .overrides = {}, .seed = {}, .seconds = 3600.0, .live = true});
         run::EngineOptions options;
         options.seconds = 3600.0;
         options.live = true;
@@ -153,7 +153,8 @@ TEST_CASE("a parameter set from outside holds two quanta later, and the take rep
     run::Engine::PortHashes live_hashes;
     Flicks asked_at = 0, holds_at = 0;
     {
-        take::TakeWriter take(folder, {.patch_file = "set.toml", .overrides = {}, .seed = {}, .seconds = 0.4, .live = true});
+        take::TakeWriter take(folder,
+                              {.patch_file = "set.toml", .overrides = {}, .seed = {}, .seconds = 0.4, .live = true});
         run::EngineOptions options;
         options.seconds = 0.4;
         options.live = true;

@@ -2,8 +2,8 @@
 #include "graph/edit/patch_edit.hpp"
 
 #include "dsp/core/random.hpp"
-#include "graph/patch/patch.hpp"
 #include "graph/edit/patch_editor.hpp"
+#include "graph/patch/patch.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -221,7 +221,8 @@ TEST_CASE("an edit that does not compile is refused with the reason and changes 
         return std::nullopt;
     });
     const auto set = [&](const char* value) {
-        return editor.apply([value](std::string_view text) { return edit::with_setting(text, "tone", "frequency", value); });
+        return editor.apply(
+            [value](std::string_view text) { return edit::with_setting(text, "tone", "frequency", value); });
     };
     CHECK(set("bad") == "bad is not allowed");
     CHECK(editor.text() == plain);
@@ -249,7 +250,8 @@ TEST_CASE("random edits taken back give the bytes there were, and made again tho
                     case 0: return edit::with_setting(text, name, "gain", std::to_string(pick(9)) + " dB");
                     case 1: return edit::without_setting(text, name, "gain");
                     case 2:
-                        return edit::with_node(text, {name, "gain", "48 kHz", "", {}, {{other + ".out", name + ".in", ""}}});
+                        return edit::with_node(text,
+                                               {name, "gain", "48 kHz", "", {}, {{other + ".out", name + ".in", ""}}});
                     case 3: return edit::without_node(text, name);
                     case 4: return edit::with_wire(text, {name + ".out", other + ".in", pick(2) ? "linear" : ""});
                     case 5: return edit::without_wire(text, name + ".in");

@@ -147,7 +147,8 @@ TEST_CASE("several problems are told together, in the order of the file") {
 }
 
 TEST_CASE("a patch written on another system reads the same") {
-    const patch::Patch patch = patch_of("\xEF\xBB\xBFtitle = \"x\"\r\n[nodes.a]\r\ntype = \"t\"\r\nrate = \"1 Hz\"\r\n");
+    const patch::Patch patch =
+        patch_of("\xEF\xBB\xBFtitle = \"x\"\r\n[nodes.a]\r\ntype = \"t\"\r\nrate = \"1 Hz\"\r\n");
     CHECK(patch.title == "x");
     CHECK(patch.nodes.at(0).rate == "1 Hz");
     CHECK(patch.nodes.at(0).type_where.line == 3);

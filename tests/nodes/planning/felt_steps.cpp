@@ -33,7 +33,8 @@ struct Broken {
     Pose beside;  ///< of the right half
 
     explicit Broken(std::uint64_t seed) {
-        auto bones = library::make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 1.0 * mm, .seed = seed});
+        auto bones =
+            library::make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 1.0 * mm, .seed = seed});
         left = std::make_shared<const bone::Bone>(std::move(bones[0]));
         right = std::make_shared<const bone::Bone>(std::move(bones[1]));
         scene.count = 2;

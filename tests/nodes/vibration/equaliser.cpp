@@ -14,7 +14,8 @@ using test::NodeHarness;
 
 namespace {
 
-std::shared_ptr<const vibration::Equaliser> filter_of(std::vector<float> taps, double delay = 0.0, double rate = 48000.0) {
+std::shared_ptr<const vibration::Equaliser> filter_of(std::vector<float> taps, double delay = 0.0,
+                                                      double rate = 48000.0) {
     vibration::Equaliser equaliser;
     equaliser.taps = std::move(taps);
     equaliser.delay = delay;

@@ -50,7 +50,8 @@ TEST_CASE("a cut is in the next picture, and only its bricks were meshed") {
     volume::BoneEditor editor(ball(0.01), density, {.band = 0.002});
     observe::Observer observer;
     const volume::BoneSnapshot initial = editor.current();
-    const auto port = observer.open({"carve.bone", at_60_hz, 1}, value::snapshot<volume::BoneSnapshot>, bytes_of(initial));
+    const auto port =
+        observer.open({"carve.bone", at_60_hz, 1}, value::snapshot<volume::BoneSnapshot>, bytes_of(initial));
     display::PictureMaker maker(64, 64);
     SceneOutline outline;
     outline.bones = {{"carve.bone"}};

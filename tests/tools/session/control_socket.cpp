@@ -110,7 +110,8 @@ TEST_CASE("only sockets of processes that are gone are removed") {
             CHECK(fs::exists(fs::symlink_status(runtime.sockets / kept)));
         }
         CHECK(slurp(runtime.sockets / "notes.txt") == "text");
-        CHECK(session::ControlFolder(session::ControlFolder::Missing::leave).listening() == std::vector<int>{::getpid()});
+        CHECK(session::ControlFolder(session::ControlFolder::Missing::leave).listening() ==
+              std::vector<int>{::getpid()});
     }
     CHECK_FALSE(fs::exists(runtime.sockets / own));
 }

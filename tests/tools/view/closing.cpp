@@ -99,7 +99,8 @@ TEST_CASE("a patch of the library that is saved in the window gets a name, and t
     folder.write("script",
                  "set hand_out.max_force \"8 N\"\n! save\nframes 3\nscreenshot name.png\npress \"save as\"\nframes "
                  "3\nset hand_out.max_force \"7 N\"\nsave\ncheck\nclose\n");
-    const Outcome done = on(display, folder, "run touch-sphere --view --audio file --overwrite --out out --view-script script");
+    const Outcome done =
+        on(display, folder, "run touch-sphere --view --audio file --overwrite --out out --view-script script");
     INFO(done.err);
     CHECK(done.code == 0);
     CHECK(slurp(folder.path / "touch-sphere.toml").find("\"7 N\"") != std::string::npos);

@@ -23,7 +23,8 @@ namespace {
 
 compile::Plan plan_of_text(const std::string& text) {
     patch::Problems problems;
-    std::optional<compile::Plan> plan = compile::compile(patch::read_patch(text, "p.toml", problems), nodes::catalogue(), problems);
+    std::optional<compile::Plan> plan =
+        compile::compile(patch::read_patch(text, "p.toml", problems), nodes::catalogue(), problems);
     for (const Error& error : problems.list) FAIL(error.what());
     return std::move(*plan);
 }

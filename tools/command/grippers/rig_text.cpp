@@ -39,21 +39,22 @@ Json row_json(const RigRow& row) {
     const bool good = row.failure.empty();
     const auto number = [good](double v) { return good ? finite(v) : Json(); };
     Json json = cell_json(row.cell);
-    json.update({{"gain_error_db", finite(f.gain_error_db)},
-                 {"phase_error_deg", finite(f.phase_error_deg)},
-                 {"nrmse", finite(f.nrmse)},
-                 {"rendered_stiffness_N_per_mm", number(f.rendered_stiffness * 1e-3)},
-                 {"rendered_damping_Ns_per_mm", number(f.rendered_damping * 1e-3)},
-                 {"slip", f.slip_share > 0.0},
-                 {"saturated", f.saturated_share > 0.0},
-                 {"slip_share", number(f.slip_share)},
-                 {"saturated_share", number(f.saturated_share)},
-                 {"penetration_mm", row.cell.object.kind == control::ObjectKind::wall ? number(f.penetration * 1e3) : Json()},
-                 {"position_error_rms_mm", number(f.position_rms_error * 1e3)},
-                 {"limit_cycle_rms_mm", number(f.limit_cycle_rms * 1e3)},
-                 {"force_N", number(std::abs(f.force))},
-                 {"position_mm", number(std::abs(f.position) * 1e3)},
-                 {"peak_speed_mm_s", number(f.speed_peak * 1e3)}});
+    json.update(
+        {{"gain_error_db", finite(f.gain_error_db)},
+         {"phase_error_deg", finite(f.phase_error_deg)},
+         {"nrmse", finite(f.nrmse)},
+         {"rendered_stiffness_N_per_mm", number(f.rendered_stiffness * 1e-3)},
+         {"rendered_damping_Ns_per_mm", number(f.rendered_damping * 1e-3)},
+         {"slip", f.slip_share > 0.0},
+         {"saturated", f.saturated_share > 0.0},
+         {"slip_share", number(f.slip_share)},
+         {"saturated_share", number(f.saturated_share)},
+         {"penetration_mm", row.cell.object.kind == control::ObjectKind::wall ? number(f.penetration * 1e3) : Json()},
+         {"position_error_rms_mm", number(f.position_rms_error * 1e3)},
+         {"limit_cycle_rms_mm", number(f.limit_cycle_rms * 1e3)},
+         {"force_N", number(std::abs(f.force))},
+         {"position_mm", number(std::abs(f.position) * 1e3)},
+         {"peak_speed_mm_s", number(f.speed_peak * 1e3)}});
     if (!good) json["failure"] = row.failure;
     return json;
 }
@@ -138,7 +139,7 @@ std::string rig_text(const RigReport& report) {
             row.cell.rate, row.cell.amplitude * 1e3, show(f.gain_error_db, 1.0, "{:.2f}"),
             show(f.phase_error_deg, 1.0, "{:.1f}"), show(f.nrmse, 100.0, "{:.1f}"),
             row.cell.object.kind == control::ObjectKind::wall ? fmt::format("gave {:.3g} mm", f.penetration * 1e3)
-                                                     : fmt::format("{:.4g}", f.rendered_stiffness * 1e-3),
+                                                              : fmt::format("{:.4g}", f.rendered_stiffness * 1e-3),
             f.slip_share > 0.0 ? "  slips" : "", f.saturated_share > 0.0 ? "  saturated" : "");
     }
     out += fmt::format("  peak speed of the cord at 1 Hz: {:.2f} mm/s\n", report.peak_cord_speed * 1e3);

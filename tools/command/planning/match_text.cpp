@@ -11,8 +11,8 @@ void print_match(const cases::CasePlan& plan, const study::PlanMatch& found) {
     if (match.partner == fit::Arrangement::none) fmt::print("{}: nothing near looks against it\n", name(match.moving));
     else
         fmt::print("{} to {}: {}, {} faces, score {:.2f}, margin {:.2f}, {:.0f} mm² on each other, {:.3f} mm rms{}\n",
-                   name(match.moving), name(match.partner), fit::name_of(match.verdict), match.faces, match.quality.score,
-                   match.margin, match.quality.overlap * 1e6, match.quality.rms * 1e3,
+                   name(match.moving), name(match.partner), fit::name_of(match.verdict), match.faces,
+                   match.quality.score, match.margin, match.quality.overlap * 1e6, match.quality.rms * 1e3,
                    match.verdict == fit::FitVerdict::fit ? "" : "; it stays where it was");
     if (found.as_scanned) fmt::print("{}\n", as_scanned_note);
 }

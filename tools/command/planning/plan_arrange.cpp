@@ -32,7 +32,9 @@ int arrange(const ArrangeChoice& choice) {
     step.kind = kind_of(choice.kind);
     step.by = "command";
     step.fragments = numbers_of_fragments(plan, choice.names);
-    step.group = step.kind == cases::StepKind::group && choice.group.empty() ? cases::free_group_name(cases::state_of(plan)) : choice.group;
+    step.group = step.kind == cases::StepKind::group && choice.group.empty()
+                     ? cases::free_group_name(cases::state_of(plan))
+                     : choice.group;
     study::do_step(plan, std::move(step), choice.plan);
     return show_change(choice);
 }

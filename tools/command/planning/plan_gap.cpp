@@ -42,7 +42,8 @@ int gap(const PlanChoice& choice) {
     if (!choice.names.empty() && choice.names.size() != 2) throw Error("'plan gap' takes two fragments, or none");
     const std::filesystem::path folder = choice.plan.parent_path();
     std::optional<std::pair<int, int>> pair;
-    if (!choice.names.empty()) pair = {cases::find_fragment(plan, choice.names[0]), cases::find_fragment(plan, choice.names[1])};
+    if (!choice.names.empty())
+        pair = {cases::find_fragment(plan, choice.names[0]), cases::find_fragment(plan, choice.names[1])};
     const std::vector<study::PlanGap> gaps = study::plan_gaps(plan, folder, pair);
     if (choice.json) fmt::print("{}\n", json_of(plan, gaps).dump(2));
     else print(plan, gaps);

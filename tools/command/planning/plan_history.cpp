@@ -13,7 +13,8 @@ struct HistoryChoice : PlanChoice {
     int steps = 1;
 };
 
-int go(const HistoryChoice& choice, fit::HistoryPlace (*way)(std::span<const int>, fit::HistoryPlace), const char* end) {
+int go(const HistoryChoice& choice, fit::HistoryPlace (*way)(std::span<const int>, fit::HistoryPlace),
+       const char* end) {
     study::OpenPlan open(choice.plan);
     cases::CasePlan& plan = open.plan;
     const auto before = plan.before();

@@ -40,7 +40,7 @@ void add_file_of(cases::CasePlan& plan, const std::string& text, const fs::path&
     }
     for (auto& [own, path] : found) {
         cases::add_fragment(plan, is_named ? name : own, path, folder,
-                     bone::label_colour(static_cast<int>(plan.fragments.size()) + 1));
+                            bone::label_colour(static_cast<int>(plan.fragments.size()) + 1));
         // Metres, open surfaces and broken files come out now, not in the middle of a session.
         study::load_fragment(plan.fragments.back(), folder);
     }

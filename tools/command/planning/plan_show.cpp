@@ -43,7 +43,8 @@ Json json_of(const cases::CasePlan& plan, const std::vector<std::string>& proble
               {"alternatives", Json::array()},
               {"current", plan.alternatives[static_cast<std::size_t>(plan.current)].name},
               {"steps_done", fit::steps_to(before, plan.place().head).size()},
-              {"steps_to_redo", fit::steps_to(before, plan.place().tip).size() - fit::steps_to(before, plan.place().head).size()},
+              {"steps_to_redo",
+               fit::steps_to(before, plan.place().tip).size() - fit::steps_to(before, plan.place().head).size()},
               {"steps_in_all", plan.steps.size()},
               {"mirror", nullptr},
               {"problems", problems}};
@@ -65,7 +66,7 @@ Json json_of(const cases::CasePlan& plan, const std::vector<std::string>& proble
         json["groups"].push_back(
             {{"name", state.group_names[static_cast<std::size_t>(g)]},
              {"in", parent == fit::Arrangement::none ? Json(nullptr)
-                                                : Json(state.group_names[static_cast<std::size_t>(parent)])}});
+                                                     : Json(state.group_names[static_cast<std::size_t>(parent)])}});
     }
     for (const cases::PlanAlternative& a : plan.alternatives)
         json["alternatives"].push_back({{"name", a.name}, {"steps", fit::steps_to(before, a.place.head).size()}});

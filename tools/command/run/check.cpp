@@ -146,8 +146,7 @@ int check(const CheckChoice& choice) {
         // What only `prepare` can find: devices, file names, sizes.
         if (problems.empty()) {
             const run::Engine engine(std::move(*plan), run::EngineOptions{});
-            json["paths"] =
-                paths_json(engine.plan(), analyse::force_loops(engine.plan(), damping_of(engine.host())));
+            json["paths"] = paths_json(engine.plan(), analyse::force_loops(engine.plan(), damping_of(engine.host())));
             json["admittance_loops"] = loops_json(engine.nodes());
             json["warnings"] = engine.host().notices;
         }

@@ -17,9 +17,9 @@ namespace tactus::picture {
 namespace {
 
 // Told apart in grey and by eyes that mix red and green.
-constexpr display::Colour reference_colour{0x1F, 0x4E, 0x9E}, output_colour{0xE0, 0x7B, 0x10}, added_colour{0xB8, 0x1D, 0x24},
-    pass_colour{0x1B, 0x7A, 0x3D}, ink{0x22, 0x26, 0x2E}, soft{0x6B, 0x72, 0x80}, limit_colour{0x8A, 0x8F, 0x99},
-    band_colour{0x9A, 0xA3, 0xB2};
+constexpr display::Colour reference_colour{0x1F, 0x4E, 0x9E}, output_colour{0xE0, 0x7B, 0x10},
+    added_colour{0xB8, 0x1D, 0x24}, pass_colour{0x1B, 0x7A, 0x3D}, ink{0x22, 0x26, 0x2E}, soft{0x6B, 0x72, 0x80},
+    limit_colour{0x8A, 0x8F, 0x99}, band_colour{0x9A, 0xA3, 0xB2};
 
 constexpr double left = 64.0, right = 300.0, panel_width = 560.0, gap = 34.0;
 constexpr double picture_width = 352.0, picture_height = 150.0;
@@ -102,7 +102,8 @@ void draw_spectra(display::Figure& figure, const signal::Comparison& c, double y
     }
 }
 
-void draw_bands(display::Figure& figure, const signal::Comparison& c, const table::Thresholds& thresholds, double y, double height, bool last) {
+void draw_bands(display::Figure& figure, const signal::Comparison& c, const table::Thresholds& thresholds, double y,
+                double height, bool last) {
     const double limit = thresholds.third_octave_max_db.value_or(0.0);
     double reach = 6.0;
     for (const signal::BandError& band : c.third_octaves) reach = std::max(reach, std::abs(band.error_db));
@@ -136,8 +137,10 @@ std::string number(double value) {
     return fmt::format("{:.{}f}", value, std::abs(value) < 10.0 ? 3 : 1);
 }
 
-void draw_table(display::Figure& figure, const signal::Comparison& c, const study::Verdict& verdict, double x, double y) {
-    const auto row = [&](const std::string& name, const std::string& value, const std::string& limit, display::Colour colour) {
+void draw_table(display::Figure& figure, const signal::Comparison& c, const study::Verdict& verdict, double x,
+                double y) {
+    const auto row = [&](const std::string& name, const std::string& value, const std::string& limit,
+                         display::Colour colour) {
         figure.text({x, y}, name, 11.0, colour);
         figure.text({x + 190.0, y}, value, 11.0, colour, display::TextAnchor::end);
         figure.text({x + 262.0, y}, limit, 11.0, soft, display::TextAnchor::end);

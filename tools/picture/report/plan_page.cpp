@@ -4,9 +4,9 @@
 #include "assets/mesh/mesh.hpp"
 #include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/geometry/iso_surface.hpp"
 #include "dsp/fit/gap.hpp"
 #include "dsp/fit/registration.hpp"
+#include "dsp/geometry/iso_surface.hpp"
 #include "tools/picture/report/html_report.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 #include "tools/study/bones/surface_file.hpp"
@@ -65,16 +65,19 @@ struct Box {
     }
 };
 
-std::string picture_of(const std::vector<display::PictureMesh>& meshes, const Vec3& direction, const std::string& caption) {
+std::string picture_of(const std::vector<display::PictureMesh>& meshes, const Vec3& direction,
+                       const std::string& caption) {
     Box box;
     for (const display::PictureMesh& mesh : meshes) box.take(mesh);
     if (!(box.low.x <= box.high.x)) return "<p>Nothing is shown.</p>\n";
-    display::View view = display::fit_view(box.low, box.high, direction, Vec3(0.0, 0.0, 1.0), static_cast<double>(width) / height);
+    display::View view =
+        display::fit_view(box.low, box.high, direction, Vec3(0.0, 0.0, 1.0), static_cast<double>(width) / height);
     view.eye = view.target + (view.eye - view.target) * 0.85;
     return fmt::format(
         "<figure><img alt=\"{0}\" width=\"{1}\" src=\"data:image/png;base64,{2}\"><figcaption "
         "class=\"small\">{0}</figcaption></figure>\n",
-        html::escaped(caption), width, base64(display::png_bytes(display::render_picture(meshes, view, width, height))));
+        html::escaped(caption), width,
+        base64(display::png_bytes(display::render_picture(meshes, view, width, height))));
 }
 
 /// Blue where bones lie in each other, white where they touch, red where a millimetre gapes, grey where nothing is
@@ -107,7 +110,8 @@ std::vector<display::PictureMesh> scene_of(const Case& c, const cases::PlanState
 }
 
 std::string pictures(const Case& c) {
-    const std::vector<display::PictureMesh> scanned = scene_of(c, cases::state_of(c.plan, -1)), planned = scene_of(c, c.state);
+    const std::vector<display::PictureMesh> scanned = scene_of(c, cases::state_of(c.plan, -1)),
+                                            planned = scene_of(c, c.state);
     return "<h2>Pictures</h2>\n<div class=\"two\">\n" +
            picture_of(scanned, Vec3(0.25, 1.0, -0.35), "As scanned, from the front") +
            picture_of(planned, Vec3(0.25, 1.0, -0.35), "As planned, from the front") +
@@ -168,7 +172,8 @@ std::string fragments_table(const Case& c) {
         else out += "<td>–</td><td>–</td><td></td><td></td><td></td><td></td>";
         const int number = static_cast<int>(n);
         std::string marks;
-        for (int g = c.state.arrangement.group_of(number); g != fit::Arrangement::none; g = c.state.arrangement.parent_of(g))
+        for (int g = c.state.arrangement.group_of(number); g != fit::Arrangement::none;
+             g = c.state.arrangement.parent_of(g))
             marks += (marks.empty() ? "in " : ", in ") + c.state.group_names[static_cast<std::size_t>(g)];
         if (c.state.arrangement.is_locked(number)) marks += " locked";
         if (c.state.arrangement.is_hidden(number)) marks += " hidden";
@@ -201,7 +206,8 @@ std::string gaps(const Case& c) {
     for (std::size_t i = 0; i < c.fragments.size(); ++i)
         for (std::size_t j = i + 1; j < c.fragments.size(); ++j) {
             if (!c.is_shown(i) || !c.is_shown(j)) continue;
-            const fit::SurfaceGap gap = fit::gap_between(c.fragments[i].bone.points, c.pose(i), c.fragments[j].map, c.pose(j));
+            const fit::SurfaceGap gap =
+                fit::gap_between(c.fragments[i].bone.points, c.pose(i), c.fragments[j].map, c.pose(j));
             if (!(gap.facing_area > 5e-6)) continue;
             rows += fmt::format(
                 "<tr><td>{}</td><td>{}</td><td class=\"n\">{:.0f}</td><td class=\"n\">{:.0f}</td><td "
@@ -242,8 +248,8 @@ std::string steps(const Case& c) {
 std::string alternatives(const cases::CasePlan& plan) {
     std::string out = "<h2>Alternatives</h2>\n<ul>\n";
     for (const cases::PlanAlternative& a : plan.alternatives)
-        out +=
-            fmt::format("<li>{}: {} steps</li>\n", html::escaped(a.name), fit::steps_to(plan.before(), a.place.head).size());
+        out += fmt::format("<li>{}: {} steps</li>\n", html::escaped(a.name),
+                           fit::steps_to(plan.before(), a.place.head).size());
     return out + "</ul>\n";
 }
 
@@ -262,7 +268,8 @@ std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragme
     c.plan = plan;
     c.state = cases::state_of(c.plan);
     c.fragments = std::move(fragments);
-    for (const study::CaseFragment& fragment : c.fragments) c.meshes.push_back(mesh::surface_of(fragment.bone.distance));
+    for (const study::CaseFragment& fragment : c.fragments)
+        c.meshes.push_back(mesh::surface_of(fragment.bone.distance));
     std::string pages;
     try {
         pages = pictures(c) + gaps(c);

@@ -32,7 +32,8 @@ void PlotPanel::axes(double value_step, const std::string& unit, bool name_frequ
             figure_.line({{x_of(hz), y_}, {x_of(hz), bottom}}, grid, 0.8);
             const bool named = i == 1 || i == 2 || i == 3 || i == 5 || (i == 4 && decade < 50.0);
             if (name_frequencies && named)
-                figure_.text({x_of(hz), bottom + 14.0}, fmt::format("{:g}", hz), 11.0, ink, display::TextAnchor::middle);
+                figure_.text({x_of(hz), bottom + 14.0}, fmt::format("{:g}", hz), 11.0, ink,
+                             display::TextAnchor::middle);
         }
     const double first = std::ceil(value_.lowest / value_step - 1e-9) * value_step;
     for (double value = first; value <= value_.highest + 1e-9; value += value_step) {

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::array<display::Colour, 4> colours{
     {{0x1F, 0x4E, 0x9E}, {0xB8, 0x1D, 0x24}, {0x1B, 0x7A, 0x3D}, {0x8A, 0x5A, 0x00}}};
-constexpr display::Colour grid{0xE3, 0xE6, 0xEA}, frame{0x55, 0x5B, 0x66}, ink{0x22, 0x26, 0x2E}, soft{0x6B, 0x72, 0x80};
+constexpr display::Colour grid{0xE3, 0xE6, 0xEA}, frame{0x55, 0x5B, 0x66}, ink{0x22, 0x26, 0x2E},
+    soft{0x6B, 0x72, 0x80};
 
 struct Scale {
     double low, high;
@@ -49,16 +50,20 @@ struct Axes {
     double x, y, width, height;
     Scale across, up;
 
-    display::FigurePoint at(double a, double b) const { return {x + width * across.share(a), y + height * (1.0 - up.share(b))}; }
+    display::FigurePoint at(double a, double b) const {
+        return {x + width * across.share(a), y + height * (1.0 - up.share(b))};
+    }
 
     void draw(const std::string& title, const std::string& unit_across, const std::string& unit_up) const {
         for (const double v : across.ticks()) {
             figure.line({{at(v, up.low).x, y}, {at(v, up.low).x, y + height}}, grid, 0.8);
-            figure.text({at(v, up.low).x, y + height + 13.0}, fmt::format("{:g}", v), 10.0, ink, display::TextAnchor::middle);
+            figure.text({at(v, up.low).x, y + height + 13.0}, fmt::format("{:g}", v), 10.0, ink,
+                        display::TextAnchor::middle);
         }
         for (const double v : up.ticks()) {
             figure.line({{x, at(across.low, v).y}, {x + width, at(across.low, v).y}}, grid, 0.8);
-            figure.text({x - 5.0, at(across.low, v).y + 3.5}, fmt::format("{:g}", v), 10.0, ink, display::TextAnchor::end);
+            figure.text({x - 5.0, at(across.low, v).y + 3.5}, fmt::format("{:g}", v), 10.0, ink,
+                        display::TextAnchor::end);
         }
         figure.line({{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}, {x, y}}, frame, 1.0);
         figure.text({x, y - 6.0}, title, 11.0, ink, display::TextAnchor::start, true);

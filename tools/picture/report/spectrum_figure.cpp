@@ -18,8 +18,8 @@ constexpr display::Colour curve_colour{0x1F, 0x4E, 0x9E}, order_colour{0xB8, 0x1
 constexpr double left = 70.0, width = 640.0, spectrum_height = 240.0, picture_height = 170.0, gap = 44.0, right = 86.0;
 constexpr double decades_down = 80.0;  // dB shown below the strongest
 
-void draw_curve(display::Figure& figure, const study::AnalysedChannel& channel, const study::AnalysedFile& file, double y,
-                double lowest, double highest) {
+void draw_curve(display::Figure& figure, const study::AnalysedChannel& channel, const study::AnalysedFile& file,
+                double y, double lowest, double highest) {
     const signal::VibrationReport& r = channel.report;
     const signal::Spectrum& psd = r.psd;
     std::vector<double> levels;

@@ -20,7 +20,8 @@ class Paint {
 public:
     explicit Paint(const observe::SeenBody& body) {
         for (std::size_t i = 0; i < body.points.size() && i < body.labels.size(); ++i)
-            if (body.labels[i] == contact::surface_label::fracture) cells_[cell_of(body.points[i])].push_back(body.points[i]);
+            if (body.labels[i] == contact::surface_label::fracture)
+                cells_[cell_of(body.points[i])].push_back(body.points[i]);
     }
     bool empty() const { return cells_.empty(); }
     bool covers(const Vec3& at) const {
@@ -45,7 +46,8 @@ private:
 
 }  // namespace
 
-BodySurface make_body_surface(const observe::SeenBody& body, const contact::Voxmap& field, const Vec3& colour, const Vec3& paint_colour) {
+BodySurface make_body_surface(const observe::SeenBody& body, const contact::Voxmap& field, const Vec3& colour,
+                              const Vec3& paint_colour) {
     const Paint paint(body);
     const geometry::SurfaceNet net = geometry::surface_net(field.grid, 0.0f, false);
     BodySurface surface;

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "dsp/contact/voxmap.hpp"
-#include "dsp/geometry/brick_surface.hpp"
 #include "dsp/display/camera.hpp"
+#include "dsp/geometry/brick_surface.hpp"
 #include "engine/observe/seen_values.hpp"
 
 namespace tactus::picture {
@@ -16,6 +16,7 @@ struct BodySurface {
 };
 
 /// Two triangles for each crossing edge of the grid, its vertices drawn onto the surface. `field` is the body's own.
-BodySurface make_body_surface(const observe::SeenBody& body, const contact::Voxmap& field, const Vec3& colour, const Vec3& paint_colour);
+BodySurface make_body_surface(const observe::SeenBody& body, const contact::Voxmap& field, const Vec3& colour,
+                              const Vec3& paint_colour);
 
 }  // namespace tactus::picture

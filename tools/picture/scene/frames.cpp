@@ -120,7 +120,8 @@ struct FrameWriter::State {
         display::Picture& picture = model.update();
         if (!is_aimed) {
             camera.look_from(view);
-            if (view == display::NamedView::iso && model.tool()) camera.look_from_side_of(*model.tool(), model.bounds());
+            if (view == display::NamedView::iso && model.tool())
+                camera.look_from_side_of(*model.tool(), model.bounds());
             camera.fit(model.bounds(), aspect(), 1.12);
             is_aimed = !model.bounds().empty();
         }

@@ -12,12 +12,12 @@ inline const Vec3 steel{0.62, 0.65, 0.70}, force_colour{0.86, 0.20, 0.16}, hand_
     proxy_colour{0.95, 0.60, 0.12}, paint_colour{0.90, 0.38, 0.30}, still_colour{0.80, 0.79, 0.75};
 // One colour for each place of a scene, apart also for most colour-blind eyes.
 inline const std::array<Vec3, coupling::Scene::most_objects> group_colours{{{0.88, 0.83, 0.70},
-                                                                  {0.42, 0.62, 0.80},
-                                                                  {0.55, 0.72, 0.45},
-                                                                  {0.83, 0.62, 0.45},
-                                                                  {0.66, 0.55, 0.76},
-                                                                  {0.45, 0.72, 0.70},
-                                                                  {0.82, 0.72, 0.42},
-                                                                  {0.78, 0.52, 0.58}}};
+                                                                            {0.42, 0.62, 0.80},
+                                                                            {0.55, 0.72, 0.45},
+                                                                            {0.83, 0.62, 0.45},
+                                                                            {0.66, 0.55, 0.76},
+                                                                            {0.45, 0.72, 0.70},
+                                                                            {0.82, 0.72, 0.42},
+                                                                            {0.78, 0.52, 0.58}}};
 
 }  // namespace tactus::picture::scene_colours

@@ -21,7 +21,9 @@ namespace {
 
 std::string node_of(const std::string& port) { return port.substr(0, port.find('.')); }
 
-geometry::SurfaceGrid grid_of(const volume::BrickLayout& layout) { return {layout.origin, layout.spacing, volume::brick_cells}; }
+geometry::SurfaceGrid grid_of(const volume::BrickLayout& layout) {
+    return {layout.origin, layout.spacing, volume::brick_cells};
+}
 
 }  // namespace
 
@@ -98,8 +100,8 @@ double SceneModel::number_of(const std::string& port, double otherwise) const {
     return seen && std::isfinite(seen->value) ? seen->value : otherwise;
 }
 
-void SceneModel::show(display::MeshPool::Mesh mesh, const Pose& pose, const display::Bounds& local, double opacity, bool is_clipped,
-                      bool is_fitted) {
+void SceneModel::show(display::MeshPool::Mesh mesh, const Pose& pose, const display::Bounds& local, double opacity,
+                      bool is_clipped, bool is_fitted) {
     picture_.meshes.push_back({mesh, pose, opacity, is_clipped, is_clipped && opacity >= 1.0});
     if (local.empty()) return;
     for (const Vec3& corner : local.corners()) {
@@ -167,7 +169,7 @@ void SceneModel::show_still_bones() {
             try {
                 const bone::Bone loaded = bone::load_bone(path);
                 const volume::BoneEditor editor(loaded.distance, loaded.density,
-                                        {.band = 0.003, .max_dirty = 1, .max_versions = 1});
+                                                {.band = 0.003, .max_dirty = 1, .max_versions = 1});
                 bone.mesh = renderer_.meshes().make(grid_of(editor.layout()));
                 for (std::uint32_t brick = 0; brick < static_cast<std::uint32_t>(editor.layout().brick_count());
                      ++brick) {
@@ -260,7 +262,8 @@ void SceneModel::show_bodies() {
 }
 
 /// Points of the held body that lie within another.
-void SceneModel::show_penetration(const BodyMesh& held, const Pose& pose, std::size_t place, const observe::SeenScene& scene) {
+void SceneModel::show_penetration(const BodyMesh& held, const Pose& pose, std::size_t place,
+                                  const observe::SeenScene& scene) {
     constexpr double worst = 0.5e-3;
     for (std::size_t i = 0; i < scene.count; ++i) {
         const auto other = bodies_.find(scene.objects[i].body);

@@ -62,8 +62,8 @@ private:
     display::MeshPool::Mesh shape_mesh(const std::string& name, const geometry::SurfacePatch& patch);
     std::optional<Pose> pose_of(const std::string& port);
     double number_of(const std::string& port, double otherwise) const;
-    void show(display::MeshPool::Mesh mesh, const Pose& pose, const display::Bounds& local, double opacity = 1.0, bool is_clipped = true,
-              bool is_fitted = true);
+    void show(display::MeshPool::Mesh mesh, const Pose& pose, const display::Bounds& local, double opacity = 1.0,
+              bool is_clipped = true, bool is_fitted = true);
     void show_bones();
     void show_still_bones();
     void show_bodies();

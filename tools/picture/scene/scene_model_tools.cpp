@@ -58,8 +58,10 @@ void SceneModel::show_gripper() {
         geometry::SurfacePatch body;
         display::add_box(body, {-45e-3, -14e-3, 25e-3}, {45e-3, 14e-3, 45e-3}, {0.42, 0.45, 0.50});
         const Vec3 left(-0.5 * opening - 4e-3 + thumb, 0.0, 0.0), right(0.5 * opening + 4e-3 - finger, 0.0, 0.0);
-        show(shape_mesh("finger", patch), hand * Pose{left, {1.0, 0.0, 0.0, 0.0}}, display::bounds_of(patch), 1.0, false);
-        show(shape_mesh("finger", patch), hand * Pose{right, {1.0, 0.0, 0.0, 0.0}}, display::bounds_of(patch), 1.0, false);
+        show(shape_mesh("finger", patch), hand * Pose{left, {1.0, 0.0, 0.0, 0.0}}, display::bounds_of(patch), 1.0,
+             false);
+        show(shape_mesh("finger", patch), hand * Pose{right, {1.0, 0.0, 0.0, 0.0}}, display::bounds_of(patch), 1.0,
+             false);
         show(shape_mesh("gripper", body), hand, display::bounds_of(body), 1.0, false);
         const double force = number_of(fingers.force, 0.0);
         legend_.entries.push_back({fmt::format("{}: {:.1f} mm closed", fingers.finger, finger * 1e3), steel});
@@ -76,8 +78,8 @@ void SceneModel::show_gripper() {
         display::add_square(table, Vec3(0.0), {0.0, 0.0, 1.0}, 120e-3, {0.70, 0.72, 0.74}, 1.0);
         show(shape_mesh("table", table), {{0.0, 0.0, -10e-3 - half}, {1.0, 0.0, 0.0, 0.0}}, display::bounds_of(table));
         const double height = number_of(weight.height, 0.0);
-        show(shape_mesh("weight", patch), {{0.0, 0.0, height - 10e-3}, {1.0, 0.0, 0.0, 0.0}}, display::bounds_of(patch), 1.0,
-             false);
+        show(shape_mesh("weight", patch), {{0.0, 0.0, height - 10e-3}, {1.0, 0.0, 0.0, 0.0}}, display::bounds_of(patch),
+             1.0, false);
         legend_.entries.push_back({fmt::format("weight, lifted by {:.1f} mm", height * 1e3), group_colours[3]});
     }
 }

@@ -30,8 +30,8 @@ struct NodeView {
     }
 
     bool has_input(std::string_view name, const ValueType& type) const {
-        return std::ranges::any_of(node.inputs,
-                                   [&](const compile::PlanInput& in) { return in.name == name && in.port->type == &type; });
+        return std::ranges::any_of(
+            node.inputs, [&](const compile::PlanInput& in) { return in.name == name && in.port->type == &type; });
     }
     /// The name of an output, when there is one of that type.
     std::string output(std::string_view name, const ValueType& type) const {

@@ -52,8 +52,8 @@ volume::Grid density_of(const bone::Bone& bone, const volume::Grid& distance, co
     return density;
 }
 
-bone::Bone scan_fragment(const bone::Bone& bone, const contact::Voxmap& map, const volume::Grid& solid, const Pose& placement,
-                   const FractureSettings& settings, std::uint64_t seed) {
+bone::Bone scan_fragment(const bone::Bone& bone, const contact::Voxmap& map, const volume::Grid& solid,
+                         const Pose& placement, const FractureSettings& settings, std::uint64_t seed) {
     cases::ScanOptions scan;
     scan.voxel = Vec3(settings.voxel);
     scan.blur = settings.blur;

@@ -44,7 +44,8 @@ LaidIntact propose_by_intact(std::vector<contact::SurfacePoint>& points, const F
 std::optional<LaidIntact> propose(std::vector<contact::SurfacePoint>& points, const FractureSurfaceSettings& settings) {
     if (!settings.intact.empty()) {
         const LaidIntact laid = propose_by_intact(points, settings);
-        if (!settings.facing.empty()) cases::keep_patches_near(points, points_of_fragment(settings.facing), settings.reach);
+        if (!settings.facing.empty())
+            cases::keep_patches_near(points, points_of_fragment(settings.facing), settings.reach);
         return laid;
     }
     if (!settings.facing.empty()) {
@@ -67,8 +68,8 @@ FractureSurface propose_fracture_surface(const FractureSurfaceSettings& settings
     FractureSurface out{bone_of_file(settings.bone), std::nullopt};
     std::vector<contact::SurfacePoint>& points = out.bone.points;
     if (points.empty()) points = contact::sample_surface(out.bone.distance, {});
-    const bool has_paint =
-        std::ranges::any_of(points, [](const contact::SurfacePoint& p) { return p.label == contact::surface_label::fracture; });
+    const bool has_paint = std::ranges::any_of(
+        points, [](const contact::SurfacePoint& p) { return p.label == contact::surface_label::fracture; });
     if (settings.keep && has_paint && !(settings.facing.empty() && settings.intact.empty()))
         throw Error(
             fmt::format("{}: has paint already, which --keep starts from, so --facing and --intact would change "

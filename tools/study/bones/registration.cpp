@@ -24,8 +24,9 @@ Part part_of(const std::vector<contact::SurfacePoint>& moving, const std::vector
     return part;
 }
 
-std::optional<RegisteredRegion> register_region(const std::vector<contact::SurfacePoint>& moving, const fit::Registration& bulk,
-                                                const fit::RegistrationTarget& target, const RegisterSettings& settings) {
+std::optional<RegisteredRegion> register_region(const std::vector<contact::SurfacePoint>& moving,
+                                                const fit::Registration& bulk, const fit::RegistrationTarget& target,
+                                                const RegisterSettings& settings) {
     auto region = fit::displaced_region(moving, bulk.pose, target, settings.away, settings.gap, settings.margin);
     if (region.empty()) return std::nullopt;
     RegisteredRegion found;
@@ -37,8 +38,8 @@ std::optional<RegisteredRegion> register_region(const std::vector<contact::Surfa
     found.registration = fit::register_surface(part.points, target, bulk.pose, {.widest = 8e-3, .finest = 0.8e-3});
     // What slid along the surface is not far from it: now that the part's motion is known, all that moved with it counts.
     for (int round = 0; round < 2; ++round) {
-        auto all = fit::region_nearer(moving, bulk.pose, found.registration.pose, target, 0.2 * settings.away, settings.away,
-                                 settings.gap);
+        auto all = fit::region_nearer(moving, bulk.pose, found.registration.pose, target, 0.2 * settings.away,
+                                      settings.away, settings.gap);
         if (all.size() < region.size() / 2) break;
         region = std::move(all);
         part = part_of(moving, region);

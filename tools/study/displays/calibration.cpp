@@ -22,7 +22,8 @@ std::vector<display::RigTouch> calibration_steps(const CalibrationSettings& sett
     std::vector<display::RigTouch> steps;
     using Of = display::RigTouch::Of;
     if (!settings.places.empty())
-        for (const Vec3& place : display::load_places(settings.places)) steps.push_back({Of::workspace, {}, {}, {}, place});
+        for (const Vec3& place : display::load_places(settings.places))
+            steps.push_back({Of::workspace, {}, {}, {}, place});
     else if (!settings.tracker.empty())
         for (int n = 0; n < settings.points; ++n) steps.push_back({Of::workspace, {}, {}, {}, {}});
     if (settings.mirror)
@@ -51,7 +52,8 @@ std::string prompt_of(const display::RigTouch& step) {
         case display::RigTouch::Of::workspace:
             if (step.place == Vec3(0.0)) return "hold the tracked marker to the tip, somewhere new in the workspace";
             return "touch the " + step.name();
-        case display::RigTouch::Of::mirror: return "touch the mirror with the tip, somewhere new, far from the touches before";
+        case display::RigTouch::Of::mirror:
+            return "touch the mirror with the tip, somewhere new, far from the touches before";
         case display::RigTouch::Of::image:
             return fmt::format(
                 "bring the tip to where the mirror shows the mark of screen '{}' at {} % of its width and "

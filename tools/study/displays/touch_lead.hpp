@@ -41,7 +41,9 @@ public:
 
 private:
     /// Its place comes from the tracker.
-    bool is_tracked(const display::RigTouch& step) const { return has_tracker_ && step.of == display::RigTouch::Of::workspace; }
+    bool is_tracked(const display::RigTouch& step) const {
+        return has_tracker_ && step.of == display::RigTouch::Of::workspace;
+    }
     /// What is wrong with a touch of the step that is due, whatever the others are; empty: nothing.
     std::string fault_of(const Touched& touched) const;
     /// The touches so far complete a part: a device, the mirror, or one screen.

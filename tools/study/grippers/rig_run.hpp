@@ -2,10 +2,10 @@
 // One cell of a rig's matrix: a patch with a gripper, an object and a rig, run on a virtual clock and judged.
 #pragma once
 
-#include "tools/study/rig_matrix.hpp"
 #include "dsp/control/fidelity.hpp"
 #include "graph/compile/load_assets.hpp"
 #include "tools/session/patch_choice.hpp"
+#include "tools/study/rig_matrix.hpp"
 
 #include <optional>
 #include <string>

@@ -53,7 +53,7 @@ double number_or(const std::string& text, double standard, const SourceLocation&
 }  // namespace
 
 std::vector<std::pair<RigCell, control::RigSeries>> load_rig_series(const std::filesystem::path& path,
-                                                           std::vector<std::string>& notes) {
+                                                                    std::vector<std::string>& notes) {
     const table::NumberTable table = table::load_number_table(path);
     const auto &motors = table.text("motor"), &objects = table.text("object"), &ks = table.text("stiffness_N_per_mm"),
                &bs = table.text("damping_Ns_per_mm"), &rates = table.text("rate_hz"),

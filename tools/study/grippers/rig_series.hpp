@@ -16,7 +16,7 @@ namespace tactus::study {
 /// called wall, or without stiffness and damping, is a rigid wall. Times rise; uneven ones are evened out by straight
 /// lines. `notes` gets what the reader should know. Throws Error with file and line.
 std::vector<std::pair<RigCell, control::RigSeries>> load_rig_series(const std::filesystem::path& path,
-                                                           std::vector<std::string>& notes);
+                                                                    std::vector<std::string>& notes);
 
 /// One record of such a file, with the line of names when it is the first.
 std::string rig_series_csv(const RigCell& cell, const control::RigSeries& series, bool first);

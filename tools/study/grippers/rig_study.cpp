@@ -72,8 +72,9 @@ double swing_for(double force, double stiffness, double widest) {
 std::optional<RigObject> freest(const RigMatrix& matrix, double rate) {
     std::optional<RigObject> found;
     for (const RigObject& o : matrix.objects)
-        if (o.kind == control::ObjectKind::elastic && (!found || std::abs(control::ideal_admittance(object_of(o), rate)) >
-                                                            std::abs(control::ideal_admittance(object_of(*found), rate))))
+        if (o.kind == control::ObjectKind::elastic &&
+            (!found || std::abs(control::ideal_admittance(object_of(o), rate)) >
+                           std::abs(control::ideal_admittance(object_of(*found), rate))))
             found = o;
     return found;
 }
@@ -261,8 +262,12 @@ RigReport study_rig(const session::PatchChoice& choice, const RigMatrix& matrix,
     const auto slow_cell = static_cast<std::size_t>(std::ranges::min_element(max_speeds) - max_speeds.begin());
     if (const double speed = max_speeds[slow_cell]; speed > 0.0) {
         const double expected = simulate::saturation_rate(speed, wide, simulate::RigSprings{}.at_finger(), 0.0);
-        RigCell cell{
-            rows[slow_cell].cell.motor, {"free motion", control::ObjectKind::elastic, 0.0, 20.0}, expected, wide, {}, {}};
+        RigCell cell{rows[slow_cell].cell.motor,
+                     {"free motion", control::ObjectKind::elastic, 0.0, 20.0},
+                     expected,
+                     wide,
+                     {},
+                     {}};
         double low = 0.5 * expected, high = 2.0 * expected;
         for (int halving = 0; halving < 12; ++halving) {
             cell.rate = 0.5 * (low + high);

@@ -7,13 +7,15 @@
 
 namespace tactus::study {
 
-CaseFragment load_fragment(const cases::PlanFragment& fragment, const std::filesystem::path& folder, cases::Paint paint) {
+CaseFragment load_fragment(const cases::PlanFragment& fragment, const std::filesystem::path& folder,
+                           cases::Paint paint) {
     CaseFragment loaded{cases::fragment_bone(fragment, folder, paint, on_threads()), {}};
     loaded.map = contact::make_voxmap(loaded.bone.distance);
     return loaded;
 }
 
-std::vector<CaseFragment> load_fragments(const cases::CasePlan& plan, const std::filesystem::path& folder, cases::Paint paint) {
+std::vector<CaseFragment> load_fragments(const cases::CasePlan& plan, const std::filesystem::path& folder,
+                                         cases::Paint paint) {
     cases::check_files(plan, folder);
     std::vector<CaseFragment> all;
     for (const cases::PlanFragment& fragment : plan.fragments) all.push_back(load_fragment(fragment, folder, paint));

@@ -30,8 +30,8 @@ LaidMirror lay_mirror(const cases::CasePlan& plan, const std::filesystem::path& 
     return laid;
 }
 
-MirrorComparison compare_with_mirror(const fit::RegistrationTarget& mirror, const CaseFragment& main, const Pose& stands,
-                                     const CaseFragment& other, const Pose& from) {
+MirrorComparison compare_with_mirror(const fit::RegistrationTarget& mirror, const CaseFragment& main,
+                                     const Pose& stands, const CaseFragment& other, const Pose& from) {
     fit::RegistrationSettings settings;
     settings.widest = 10e-3;
     const fit::Registration found = fit::register_surface(other.bone.points, mirror, from, settings);

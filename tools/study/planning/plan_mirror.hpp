@@ -35,7 +35,7 @@ struct MirrorComparison {
     Motion away;                ///< of its middle, from where it lies to where it lies best
     FacesThere before, after;
 };
-MirrorComparison compare_with_mirror(const fit::RegistrationTarget& mirror, const CaseFragment& main, const Pose& stands,
-                                     const CaseFragment& other, const Pose& from);
+MirrorComparison compare_with_mirror(const fit::RegistrationTarget& mirror, const CaseFragment& main,
+                                     const Pose& stands, const CaseFragment& other, const Pose& from);
 
 }  // namespace tactus::study

@@ -47,11 +47,11 @@ signal::Spectrogram spectrogram_of(const signal::Take& take) {
 const char* touch_unit(signal::ThresholdUnit unit) {
     return unit == signal::ThresholdUnit::displacement   ? "displacement"
            : unit == signal::ThresholdUnit::acceleration ? "acceleration"
-                                                 : "none";
+                                                         : "none";
 }
 
-void compare_takes(ComparedPair& pair, const signal::Take& reference, const signal::Take& output, const signal::ComparisonOptions& options,
-                   bool pictures) {
+void compare_takes(ComparedPair& pair, const signal::Take& reference, const signal::Take& output,
+                   const signal::ComparisonOptions& options, bool pictures) {
     pair.touch = options.touch;
     pair.comparison = signal::compare(reference, output, options);
     if (pictures)

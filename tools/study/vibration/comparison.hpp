@@ -23,8 +23,8 @@ struct CompareSettings {
     double reference_scale = 1.0, output_scale = 1.0;  ///< units per full scale
     double longest_delay = 2.0;                        ///< s
     int channel = 0;                                   ///< 0: the mean of all
-    std::array<table::LogSelection, 2> logs;                  ///< how the reference and the output are read if they are CSV
-    bool pictures = false;                             ///< spectrograms are wanted
+    std::array<table::LogSelection, 2> logs;  ///< how the reference and the output are read if they are CSV
+    bool pictures = false;  ///< spectrograms are wanted
 };
 
 struct ComparedPair {
@@ -34,14 +34,14 @@ struct ComparedPair {
     table::Thresholds thresholds;
     signal::ThresholdUnit touch = signal::ThresholdUnit::displacement;
     double level_gap_db = 0.0;
-    bool actuator_known = false;            ///< the gap is that of an actuator at its limit
+    bool actuator_known = false;  ///< the gap is that of an actuator at its limit
     std::vector<std::string> notes;
     std::vector<signal::Spectrogram> spectrograms;  ///< of reference and output, when pictures are wanted
 };
 
 /// Fills in the comparison of two takes; spectrograms when pictures are wanted. Throws Error.
-void compare_takes(ComparedPair& pair, const signal::Take& reference, const signal::Take& output, const signal::ComparisonOptions& options,
-                   bool pictures);
+void compare_takes(ComparedPair& pair, const signal::Take& reference, const signal::Take& output,
+                   const signal::ComparisonOptions& options, bool pictures);
 
 /// Compares `settings.reference` with `settings.output`. Throws Error.
 ComparedPair compare_files(const CompareSettings& settings);

@@ -16,7 +16,8 @@ namespace {
 
 double decibel(double ratio) { return 20.0 * std::log10(ratio); }
 
-Flatness flatness(const vibration::FrequencyResponse& response, const vibration::Equaliser& equaliser, double drive_limit) {
+Flatness flatness(const vibration::FrequencyResponse& response, const vibration::Equaliser& equaliser,
+                  double drive_limit) {
     Flatness result;
     for (int n = 0; n <= 40; ++n) {
         const double hz = std::pow(10.0, n / 10.0);
@@ -59,7 +60,8 @@ Equalisation equalise(const EqualiseSettings& settings) {
     made.unit = file.unit;
     made.equaliser = vibration::design_equaliser(response, settings.design);
     made.equaliser.unit = file.unit;
-    made.limit = vibration::voltage_within(made.actuator->voltage_limit, made.actuator->current_limit, made.actuator->resistance);
+    made.limit = vibration::voltage_within(made.actuator->voltage_limit, made.actuator->current_limit,
+                                           made.actuator->resistance);
     made.flat = flatness(response, made.equaliser, made.limit / std::abs(settings.volts));
     if (!settings.signal.empty()) made.programme = play(settings, made.equaliser, made.limit);
     return made;

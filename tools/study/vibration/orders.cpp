@@ -44,7 +44,7 @@ signal::Rotation rotation_of(const WholeRecord& record, const OrdersSettings& se
         if (static_cast<std::size_t>(settings.tacho) > record.channels.size())
             throw Error(fmt::format("there is no channel {} with a tachometer", settings.tacho));
         return signal::rotation_from_tacho(record.channels[static_cast<std::size_t>(settings.tacho - 1)], record.rate,
-                                   settings.pulses);
+                                           settings.pulses);
     }
     if (settings.fixed) {
         out.source = "fixed";

@@ -74,9 +74,10 @@ Validation plan_validation(const ValidateSettings& settings) {
 void validate(Validation& validation, std::size_t index, const ValidateSettings& settings, bool pictures) {
     ValidationRun& run = validation.runs[index];
     const sound::Recording& recording = *run.recording;
-    const SteadyPatch steady = steady_patch(
-        validation.source, validation.path,
-        {validation.set->path, recording.rate, recording.load, std::pow(10.0, run.level_db / 20.0)}, nodes::catalogue());
+    const SteadyPatch steady =
+        steady_patch(validation.source, validation.path,
+                     {validation.set->path, recording.rate, recording.load, std::pow(10.0, run.level_db / 20.0)},
+                     nodes::catalogue());
     patch::Problems problems;
     compile::AssetCache assets;
     std::optional<compile::Plan> plan = session::plan_of(steady.patch, {}, std::nullopt, &assets, problems);

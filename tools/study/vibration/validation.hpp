@@ -3,8 +3,8 @@
 #pragma once
 
 #include "assets/sound/recording_set.hpp"
-#include "tools/study/patch_steady.hpp"
 #include "tools/session/patch_choice.hpp"
+#include "tools/study/patch_steady.hpp"
 #include "tools/study/vibration/comparison.hpp"
 
 #include <memory>

@@ -77,8 +77,8 @@ std::vector<ParameterField> parameters_of(const compile::Plan& plan, int index) 
             for (const patch::PatchAsset& asset : plan.patch.assets) field.options.push_back(asset.name);
         if (field.kind != Kind::quantity) continue;
         const Param* param = node.params.at(field.name);
-        field.is_driven =
-            std::ranges::any_of(plan.wires, [&](const compile::PlanWire& w) { return w.to_input < 0 && w.param == param; });
+        field.is_driven = std::ranges::any_of(
+            plan.wires, [&](const compile::PlanWire& w) { return w.to_input < 0 && w.param == param; });
     }
     return fields;
 }

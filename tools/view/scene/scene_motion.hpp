@@ -12,8 +12,8 @@ namespace tactus::view {
 
 /// The same number for what looks the same: every mesh where it stands, seen from the same place. `mesh_changes`: of the
 /// pool that the meshes are in. `legend`: drawn into the picture.
-std::uint64_t looks_of(const display::Picture& picture, std::uint64_t mesh_changes, std::span<const display::DrawnView> views,
-                       const display::Legend& legend);
+std::uint64_t looks_of(const display::Picture& picture, std::uint64_t mesh_changes,
+                       std::span<const display::DrawnView> views, const display::Legend& legend);
 
 class SceneMotion {
 public:

@@ -19,7 +19,8 @@ static bool next_button(const char* label) {
 void ScenePanel::tools() {
     for (std::size_t i = 0; i < display::view_names.size(); ++i) {
         const std::string name(display::view_names[i]);
-        if (i == 0 ? ImGui::SmallButton(name.c_str()) : next_button(name.c_str())) look_from(static_cast<display::NamedView>(i));
+        if (i == 0 ? ImGui::SmallButton(name.c_str()) : next_button(name.c_str()))
+            look_from(static_cast<display::NamedView>(i));
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("key %d", static_cast<int>(i) + 1);
     }
     if (next_button("fit")) fit();

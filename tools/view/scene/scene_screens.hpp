@@ -42,7 +42,8 @@ public:
     /// Per pixel. Many small triangles are costly to sample more than once where there is no graphics card.
     int samples = 4;
     /// Draws the scene as it was aimed at, for all screens.
-    void draw(display::SceneRenderer& renderer, const display::Picture& picture, const Sight& sight, const display::Legend& legend);
+    void draw(display::SceneRenderer& renderer, const display::Picture& picture, const Sight& sight,
+              const display::Legend& legend);
     /// What was drawn last, in their windows: what uncovers or resizes one of those has wiped it.
     void show();
 

@@ -63,7 +63,8 @@ void LiveFeed::follow(const std::set<std::string>& looked_at, const std::set<std
         if (trace.columns.size() != wide) {
             trace = {};
             trace.columns.resize(wide);
-            if (const auto type = types_.find(port); type != types_.end()) trace.names = take::channels_of(*type->second);
+            if (const auto type = types_.find(port); type != types_.end())
+                trace.names = take::channels_of(*type->second);
         }
         for (std::size_t i = 0; i < values.when.size(); ++i) {
             trace.times.push_back(seconds(values.when[i]));

@@ -24,7 +24,8 @@ std::size_t index_at(const Trace& trace, double time) {
     return static_cast<std::size_t>(std::ranges::lower_bound(trace.times, time) - trace.times.begin());
 }
 
-Curve curve_of(const signal::Spectrum& spectrum, const std::string& name, std::uint32_t ink, Range hz, double shift_db) {
+Curve curve_of(const signal::Spectrum& spectrum, const std::string& name, std::uint32_t ink, Range hz,
+               double shift_db) {
     Curve curve{name, ink, {}, false};
     // Where bins lie closer than a pixel, the largest of each of 600 equal steps of frequency.
     constexpr double steps = 600.0;

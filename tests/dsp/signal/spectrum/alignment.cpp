@@ -32,7 +32,8 @@ TEST_CASE("a take and what an actuator made of it are found to belong together, 
             INFO((cutting ? "cutting, " : "idle, ") << delay << " s");
             const std::vector<float> drive = test::saw(233.0, cutting, 6.0, 48000.0, 1);
             const std::vector<double> reference = signal::resample(drive, 48000.0, rate, std::max(delay, 0.0));
-            const signal::Alignment found = align(reference, signal::resample(drive, 48000.0, rate, std::max(-delay, 0.0)));
+            const signal::Alignment found =
+                align(reference, signal::resample(drive, 48000.0, rate, std::max(-delay, 0.0)));
             CHECK(found.significant);
             // What repeats itself 233 times a second tells the delay up to whole periods.
             const double error = found.delay - delay;

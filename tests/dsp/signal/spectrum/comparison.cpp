@@ -89,7 +89,8 @@ TEST_CASE("two takes of one saw at 233 and 233.4 Hz score as the same saw; anoth
         CHECK(same.lines.only_in_output.empty());
         CHECK(same.lines.only_in_reference.empty());
 
-        const signal::Comparison other = signal::compare({take, rate}, {test::saw(150.0, cutting, 10.0, rate, 2), rate});
+        const signal::Comparison other =
+            signal::compare({take, rate}, {test::saw(150.0, cutting, 10.0, rate, 2), rate});
         CHECK(other.lsd_db > 5.0);
         CHECK(other.cosine_500 < 0.7);
         CHECK(other.lines.only_in_output.size() >= 3);

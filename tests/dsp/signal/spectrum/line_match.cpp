@@ -11,7 +11,8 @@ namespace {
 
 constexpr double rate = 8000.0;
 
-signal::Spectrum spectrum_of_tones(std::initializer_list<std::pair<double, double>> tones, double noise, std::uint64_t seed) {
+signal::Spectrum spectrum_of_tones(std::initializer_list<std::pair<double, double>> tones, double noise,
+                                   std::uint64_t seed) {
     std::vector<double> samples(80000);
     const Random random{seed};
     for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -100,8 +100,8 @@ TEST_CASE("live scores are those of a comparison of the whole takes") {
             INFO("tilt " << tilt << ", output at " << rate << " Hz");
             std::vector<float> output = saw(rate, 6.0, 233.0, tilt, 2);
             for (float& y : output) y *= 0.1f;
-            const signal::Comparison whole =
-                signal::compare(signal::Take(std::span<const float>(reference), 48000.0), signal::Take(std::span<const float>(output), rate));
+            const signal::Comparison whole = signal::compare(signal::Take(std::span<const float>(reference), 48000.0),
+                                                             signal::Take(std::span<const float>(output), rate));
             signal::LiveComparison live(48000.0, rate, forever);
             push_in_pieces(reference, [&](std::span<const float> piece) { live.push_reference(piece); });
             push_in_pieces(output, [&](std::span<const float> piece) { live.push_output(piece); });

@@ -66,7 +66,8 @@ void compare_all(const Folder& folder, const std::vector<double>& x, const std::
     REQUIRE(std::system(command.c_str()) == 0);
     const std::vector<double> wanted = folder.read("out");
     const std::vector<T> a(x.begin(), x.end()), b(y.begin(), y.end());
-    signal::WelchSettings settings{8000.0, n, n / 3, signal::WindowKind::hann, detrend, signal::Averaging::mean, signal::Scaling::density};
+    signal::WelchSettings settings{
+        8000.0, n, n / 3, signal::WindowKind::hann, detrend, signal::Averaging::mean, signal::Scaling::density};
     const signal::CrossSpectra cross = signal::cross_spectra<T>(a, b, settings);
     const std::size_t bins = n / 2 + 1;
     REQUIRE(wanted.size() == 8 * bins);

@@ -25,5 +25,6 @@ TEST_CASE("windows equal scipy's, periodic and symmetric") {
 
 TEST_CASE("the noise bandwidth is one bin without a window and one and a half with Hann") {
     CHECK(signal::noise_bandwidth_bins(signal::make_window(signal::WindowKind::rectangular, 100)) == Approx(1.0));
-    CHECK(signal::noise_bandwidth_bins(signal::make_window(signal::WindowKind::hann, 4096)) * 48000.0 / 4096.0 == Approx(17.578125));
+    CHECK(signal::noise_bandwidth_bins(signal::make_window(signal::WindowKind::hann, 4096)) * 48000.0 / 4096.0 ==
+          Approx(17.578125));
 }

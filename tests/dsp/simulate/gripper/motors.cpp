@@ -53,7 +53,8 @@ TEST_CASE("a traveling wave slows off resonance, off 90 degrees and with amplitu
 }
 
 TEST_CASE("every way of control gives the speed that is asked for, outside of the dead zone") {
-    for (const simulate::WaveControl control : {simulate::WaveControl::frequency, simulate::WaveControl::phase, simulate::WaveControl::amplitude}) {
+    for (const simulate::WaveControl control :
+         {simulate::WaveControl::frequency, simulate::WaveControl::phase, simulate::WaveControl::amplitude}) {
         simulate::WaveMotor m;
         m.control = control;
         for (const double v : {0.05, -0.2, 0.55, -0.6}) CHECK(m.speed_of(m.drive_for(v)) == Approx(v).epsilon(1e-9));

@@ -48,7 +48,8 @@ double peak_of_import(const fs::path& ct, const fs::path& out) {
     if (child == 0) {
         ::freopen("/dev/null", "w", stdout);
         ::freopen("/dev/null", "w", stderr);
-        ::execl(tactus::test::command().c_str(), "tactus", "import", ct.c_str(), "--component", "all", "-o", out.c_str(), nullptr);
+        ::execl(tactus::test::command().c_str(), "tactus", "import", ct.c_str(), "--component", "all", "-o",
+                out.c_str(), nullptr);
         ::_exit(127);
     }
     int status = 0;

@@ -106,8 +106,8 @@ TEST_CASE("programs that change a plan at the same time do it one after the othe
     const Bare bare;
     std::string script;
     for (int n = 0; n < 6; ++n)
-        script += tactus::test::command() + " plan move " + bare.plan + " a --pose " + std::to_string(n) +
-                  ",0,0,1,0,0,0 &\n";
+        script +=
+            tactus::test::command() + " plan move " + bare.plan + " a --pose " + std::to_string(n) + ",0,0,1,0,0,0 &\n";
     shell(bare.folder, script + "wait\n");
     const cases::CasePlan plan = cases::load_case_plan(bare.plan);
     CHECK(plan.steps.size() == 6);

@@ -50,9 +50,7 @@ std::size_t lines_of(const std::string& text) {
     return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-std::string bundled_set() {
-    return (tactus::test::library_folder() / "saw/reciprocating.toml").string();
-}
+std::string bundled_set() { return (tactus::test::library_folder() / "saw/reciprocating.toml").string(); }
 
 /// What full scale of the bundled recordings is worth.
 std::string scale() {
