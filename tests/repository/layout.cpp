@@ -276,8 +276,8 @@ TEST_CASE("every verb is in the catalogue, in the folder that it names") {
         for (auto found = std::sregex_iterator(text.begin(), text.end(), definition); found != std::sregex_iterator();
              ++found, ++verbs) {
             CAPTURE(file.string(), found->str());
-            const std::string line = "X(" + found->str(1) + ", " + file.parent_path().filename().string() + ")";
-            CHECK(catalogue.find(line) != std::string::npos);
+            const std::string line = "X(" + found->str(1) + ", " + file.parent_path().filename().string();
+            CHECK((catalogue.find(line + ",") != std::string::npos || catalogue.find(line + ")") != std::string::npos));
         }
     }
     CHECK(verbs > 40);

@@ -63,7 +63,7 @@ TEST_CASE("old spellings still work") {
     CHECK(folder.tactus("render " + patch + " --seconds 0.1 --threads=1 --overwrite -o " + out).code == 0);
     CHECK(folder.tactus("rig --help").code == 0);
     // Read as --display, whose message it is.
-    CHECK(folder.tactus("render " + patch + " --seconds 0.1 --frames 1 --rig nowhere.toml --overwrite -o " + out)
+    CHECK(folder.tactus("render touch-sphere --seconds 0.1 --frames 1 --rig nowhere.toml --overwrite -o " + out)
               .err.find("nowhere.toml") != std::string::npos);
     const std::string old_way = (folder.path / "old.csv").string(), new_way = (folder.path / "new.csv").string();
     const std::string sweep = "measure saw-vibration --in actuator.drive --duration 1 --amplitude 100 ";
