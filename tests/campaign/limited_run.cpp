@@ -18,7 +18,8 @@ namespace tactus::campaign {
 
 namespace {
 
-[[noreturn]] void become(std::vector<char*>& words, const std::filesystem::path& folder, const RunLimits& limits) {
+[[noreturn]] void become(std::vector<char*>& words, const std::filesystem::path& folder, const RunLimits& limits,
+                         const std::filesystem::path& told) {
     const auto limit = [](int what, rlim_t most) {
         const rlimit both{most, most};
         setrlimit(static_cast<__rlimit_resource>(what), &both);
@@ -29,7 +30,9 @@ namespace {
     limit(RLIMIT_DATA, rlim_t{8} << 30);
     limit(RLIMIT_FSIZE, rlim_t{1} << 30);
     const int nowhere = open("/dev/null", O_RDWR);
-    for (int n = 0; n < 3; ++n) dup2(nowhere, n);
+    dup2(nowhere, 0);
+    const int out = open(told.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    for (int n = 1; n < 3; ++n) dup2(out < 0 ? nowhere : out, n);
     if (chdir(folder.c_str()) == 0) execv(words[0], words.data());
     _exit(127);
 }
@@ -41,15 +44,15 @@ std::string tried_command() {
     return other ? other : test::command();
 }
 
-RunEnd run_limited(const std::vector<std::string>& words, const std::filesystem::path& folder,
-                   const RunLimits& limits) {
+RunEnd run_limited(const std::vector<std::string>& words, const std::filesystem::path& folder, const RunLimits& limits,
+                   const std::filesystem::path& told) {
     std::vector<std::string> copy = words;
     std::vector<char*> pointers;
     for (std::string& word : copy) pointers.push_back(word.data());
     pointers.push_back(nullptr);
     const pid_t child = fork();
     if (child < 0) return {"no process could be made", -1};
-    if (child == 0) become(pointers, folder, limits);
+    if (child == 0) become(pointers, folder, limits, told);
     int status = 0;
     rusage used{};
     bool is_late = false;

@@ -21,8 +21,8 @@ struct RunEnd {
 /// The command that is tried: $TACTUS, or the one built beside this program.
 std::string tried_command();
 
-/// Runs `words` in `folder`.
+/// Runs `words` in `folder`. What they print goes to the file `told`, or nowhere.
 RunEnd run_limited(const std::vector<std::string>& words, const std::filesystem::path& folder,
-                   const RunLimits& limits = {});
+                   const RunLimits& limits = {}, const std::filesystem::path& told = "/dev/null");
 
 }  // namespace tactus::campaign
