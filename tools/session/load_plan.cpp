@@ -19,23 +19,27 @@ namespace fs = std::filesystem;
 
 namespace {
 
-fs::path library_beside_command() {
+/// The library that came with the command: beside it in a build folder, else where it is installed.
+fs::path library_of_command() {
     std::error_code failure;
     const fs::path self = fs::read_symlink("/proc/self/exe", failure);
-    return failure ? fs::path("library") : self.parent_path() / "library";
+    if (failure) return "library";
+    const fs::path beside = self.parent_path() / "library";
+    const fs::path installed = (self.parent_path() / TACTUS_INSTALLED_LIBRARY).lexically_normal();
+    return !fs::is_directory(beside, failure) && fs::is_directory(installed, failure) ? installed : beside;
 }
 
 }  // namespace
 
 fs::path library_folder() {
     if (const char* given = std::getenv("TACTUS_LIBRARY"); given && *given) return given;
-    return library_beside_command();
+    return library_of_command();
 }
 
 bool is_of_library(const fs::path& file) {
     std::error_code failure;
     const fs::path path = fs::weakly_canonical(fs::absolute(file), failure);
-    for (const fs::path& library : {library_folder(), library_beside_command()}) {
+    for (const fs::path& library : {library_folder(), library_of_command()}) {
         const fs::path folder = fs::weakly_canonical(fs::absolute(library), failure);
         if (!folder.empty() && std::ranges::mismatch(folder, path).in1 == folder.end()) return true;
     }
@@ -80,8 +84,9 @@ fs::path find_patch(const std::string& name) { return find_bundled(name, "patch"
 
 fs::path find_rig(const std::string& name) { return find_bundled(name, "rig", "rigs"); }
 
-std::optional<compile::Plan> plan_of(patch::Patch patch, const patch::PatchOverrides& overrides, std::optional<std::uint64_t> seed,
-                            compile::AssetCache* assets, patch::Problems& problems) {
+std::optional<compile::Plan> plan_of(patch::Patch patch, const patch::PatchOverrides& overrides,
+                                     std::optional<std::uint64_t> seed, compile::AssetCache* assets,
+                                     patch::Problems& problems) {
     patch::read_parts(patch);
     patch::apply_overrides(patch, overrides, problems);
     if (seed) patch.seed = *seed;
@@ -93,13 +98,14 @@ std::optional<compile::Plan> plan_of(patch::Patch patch, const patch::PatchOverr
 }
 
 std::optional<compile::Plan> read_plan(const PatchChoice& choice, patch::Problems& problems) {
-    return plan_of(patch::load_patch(find_patch(choice.patch), problems), choice.overrides, choice.seed, nullptr, problems);
+    return plan_of(patch::load_patch(find_patch(choice.patch), problems), choice.overrides, choice.seed, nullptr,
+                   problems);
 }
 
 compile::Plan load_plan(const PatchChoice& choice, compile::AssetCache& assets) {
     patch::Problems problems;
-    std::optional<compile::Plan> plan =
-        plan_of(patch::load_patch(find_patch(choice.patch), problems), choice.overrides, choice.seed, &assets, problems);
+    std::optional<compile::Plan> plan = plan_of(patch::load_patch(find_patch(choice.patch), problems), choice.overrides,
+                                                choice.seed, &assets, problems);
     throw_problems(problems);
     return std::move(*plan);
 }
@@ -122,7 +128,8 @@ void throw_problems(const patch::Problems& problems) {
     throw Error(lines.back());
 }
 
-std::unique_ptr<take::TakeWriter> make_take(const PatchChoice& choice, const fs::path& folder, double seconds, bool live) {
+std::unique_ptr<take::TakeWriter> make_take(const PatchChoice& choice, const fs::path& folder, double seconds,
+                                            bool live) {
     take::TakeAbout about{find_patch(choice.patch), choice.overrides, choice.seed, seconds, live};
     // A take is replayed from any folder.
     for (std::string& asset : about.overrides.assets)
