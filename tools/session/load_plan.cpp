@@ -19,23 +19,27 @@ namespace fs = std::filesystem;
 
 namespace {
 
-fs::path library_beside_command() {
+/// The library that came with the command: beside it in a build folder, else where it is installed.
+fs::path library_of_command() {
     std::error_code failure;
     const fs::path self = fs::read_symlink("/proc/self/exe", failure);
-    return failure ? fs::path("library") : self.parent_path() / "library";
+    if (failure) return "library";
+    const fs::path beside = self.parent_path() / "library";
+    const fs::path installed = (self.parent_path() / TACTUS_INSTALLED_LIBRARY).lexically_normal();
+    return !fs::is_directory(beside, failure) && fs::is_directory(installed, failure) ? installed : beside;
 }
 
 }  // namespace
 
 fs::path library_folder() {
     if (const char* given = std::getenv("TACTUS_LIBRARY"); given && *given) return given;
-    return library_beside_command();
+    return library_of_command();
 }
 
 bool is_of_library(const fs::path& file) {
     std::error_code failure;
     const fs::path path = fs::weakly_canonical(fs::absolute(file), failure);
-    for (const fs::path& library : {library_folder(), library_beside_command()}) {
+    for (const fs::path& library : {library_folder(), library_of_command()}) {
         const fs::path folder = fs::weakly_canonical(fs::absolute(library), failure);
         if (!folder.empty() && std::ranges::mismatch(folder, path).in1 == folder.end()) return true;
     }

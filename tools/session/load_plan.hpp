@@ -12,10 +12,10 @@
 
 namespace tactus::session {
 
-/// Folder of the bundled library: $TACTUS_LIBRARY, or "library" beside the command.
+/// Folder of the bundled library: $TACTUS_LIBRARY, or "library" beside the command, or ../share/tactus/library from it.
 std::filesystem::path library_folder();
 
-/// The file is in the bundled library, that of $TACTUS_LIBRARY or that beside the command, or would be.
+/// The file is in the bundled library, that of $TACTUS_LIBRARY or that of the command, or would be.
 bool is_of_library(const std::filesystem::path& file);
 
 /// File of a patch given by path, or by name in the library. Throws Error listing what the library has.

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: Apache-2.0
+# Installs the build folder BUILD below SCRATCH, moves the installation, and renders with it from another folder what
+# the built command BUILT renders.
+file(REMOVE_RECURSE ${SCRATCH})
+execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/first
+                OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+file(RENAME ${SCRATCH}/first ${SCRATCH}/moved)
+
+function(output_hash command folder result)
+  file(MAKE_DIRECTORY ${folder})
+  execute_process(
+    COMMAND ${CMAKE_COMMAND} -E env --unset=TACTUS_LIBRARY ${command} render saw-training --seconds 1 --json --out out
+    WORKING_DIRECTORY ${folder} OUTPUT_VARIABLE summary COMMAND_ERROR_IS_FATAL ANY)
+  string(JSON hash GET "${summary}" output_hash)
+  set(${result} ${hash} PARENT_SCOPE)
+endfunction()
+output_hash(${SCRATCH}/moved/bin/tactus ${SCRATCH}/here installed)
+output_hash(${BUILT} ${SCRATCH}/there built)
+if(NOT installed STREQUAL built)
+  message(FATAL_ERROR "the installed command renders ${installed}, the built one ${built}")
+endif()
+
+foreach(part bin/tactus-bench share/doc/tactus/README.md share/doc/tactus/docs/reference/nodes.md
+             share/tactus/library/cases/mandible-twelve/case.plan.json share/tactus/library/equalisers/saw-vibration.toml
+             share/tactus/library/rigs/mirror.toml share/tactus/library/patches/parts/handle.toml)
+  if(NOT EXISTS ${SCRATCH}/moved/${part})
+    message(FATAL_ERROR "not installed: ${part}")
+  endif()
+endforeach()
+
+# The system's loader finds all libraries: the program names no folder of the machine that built it.
+find_program(READELF readelf)
+if(READELF)
+  execute_process(COMMAND ${READELF} -d ${SCRATCH}/moved/bin/tactus OUTPUT_VARIABLE dynamic COMMAND_ERROR_IS_FATAL ANY)
+  if(dynamic MATCHES "RPATH|RUNPATH")
+    message(FATAL_ERROR "the installed command has an rpath:\n${dynamic}")
+  endif()
+endif()
+file(REMOVE_RECURSE ${SCRATCH})
