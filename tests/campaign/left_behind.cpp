@@ -49,9 +49,10 @@ std::string fault_of_take(const fs::path& take) {
     if (!fs::exists(take / "take.json")) return code == 2 ? "" : fmt::format("replay ends with {}: {}", code, text);
     const nlohmann::json said = nlohmann::json::parse(text, nullptr, false);
     if (said.is_discarded()) return fmt::format("replay ends with {}: {}", code, text);
-    if (!said["first_difference"].is_null() || !said["damaged_files"].empty() || !said["differing_hashes"].empty())
+    if (!said.at("first_difference").is_null() || !said.at("damaged_files").empty() ||
+        !said.at("differing_hashes").empty())
         return fmt::format("replay differs: {}", said.dump());
-    const int wanted = said["compared_values"] > 0 ? 0 : 1;
+    const int wanted = said.at("compared_values") > 0 ? 0 : 1;
     return code == wanted ? "" : fmt::format("replay ends with {}: {}", code, text);
 }
 
