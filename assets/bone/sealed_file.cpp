@@ -26,7 +26,11 @@ constexpr std::size_t block_size = 1 << 20;  // whole words, so that the hash do
 }  // namespace
 
 SealedFile::SealedFile(const std::filesystem::path& path, std::string identifier)
-    : path_(path), part_(path.string() + ".part"), identifier_(std::move(identifier)), block_(block_size, 0) {
+    : path_(path),
+      part_(path.string() + ".part"),
+      lock_(part_, path_),
+      identifier_(std::move(identifier)),
+      block_(block_size, 0) {
     errno = 0;
     file_.open(part_, std::ios::binary | std::ios::trunc);
     if (!file_) throw Error(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));

@@ -2,6 +2,7 @@
 // A bone file on disk: what OpenVDB writes, with a mark and a checksum behind it.
 #pragma once
 
+#include "assets/file/part_lock.hpp"
 #include "dsp/core/hash.hpp"
 
 #include <filesystem>
@@ -34,6 +35,7 @@ private:
     void flush_block();
 
     std::filesystem::path path_, part_;
+    file::PartLock lock_;
     std::string identifier_;
     std::vector<char> block_;
     std::ofstream file_;

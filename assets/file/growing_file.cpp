@@ -5,6 +5,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,8 +23,18 @@ constexpr std::size_t most_waiting = 1 << 12;  // bytes
 
 GrowingFile::GrowingFile(const std::filesystem::path& path, std::filesystem::path shown)
     : shown_(shown.empty() ? path : std::move(shown)),
-      handle_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+      handle_(::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666)) {
     if (handle_ < 0) fail(errno);
+    // Emptied only by the one that has it. Other failures: a file system without locks.
+    if (::flock(handle_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        ::close(handle_);
+        throw Error(fmt::format("{}: another program writes to this file; choose another name", shown_.string()));
+    }
+    if (::ftruncate(handle_, 0) != 0 && errno != EINVAL) {
+        const int code = errno;
+        ::close(handle_);
+        fail(code);
+    }
 }
 
 GrowingFile::~GrowingFile() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/file/whole_file.hpp"
 
+#include "assets/file/part_lock.hpp"
 #include "assets/file/room.hpp"
 #include "dsp/core/error.hpp"
 
@@ -84,13 +85,14 @@ void sync_folder(const std::filesystem::path& folder) {
 
 void write_beside(const std::filesystem::path& path, std::string_view bytes, Disk disk) {
     const std::filesystem::path part = path.string() + ".part";
+    const PartLock lock(part, path);
     const auto fail = [&](int code) {
         std::error_code ignored;
         std::filesystem::remove(part, ignored);
         throw Error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(code)));
     };
     std::FILE* file = std::fopen(part.c_str(), "wb");
-    if (!file) throw Error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
+    if (!file) fail(errno);
     const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() && std::fflush(file) == 0 &&
                          (disk == Disk::whenever || ::fsync(::fileno(file)) == 0);
     const int write_code = errno;

@@ -49,6 +49,17 @@ std::vector<float> mix_to_mono(const Sound& sound) {
     return mono;
 }
 
+namespace {
+
+/// As its header says; none when it cannot be read.
+sf_count_t frames_in(const std::filesystem::path& path) {
+    SF_INFO info{};
+    const SoundHandle sound(sf_open(path.c_str(), SFM_READ, &info));
+    return sound ? info.frames : 0;
+}
+
+}  // namespace
+
 struct SoundWriter::File {
     std::filesystem::path path, part;
     SoundHandle handle;
@@ -99,7 +110,9 @@ void SoundWriter::finish() {
         return;
     }
     sf_write_sync(file_->handle.get());
-    const bool failed = sf_error(file_->handle.get()) != SF_ERR_NO_ERROR || sf_close(file_->handle.release()) != 0;
+    bool failed = sf_error(file_->handle.get()) != SF_ERR_NO_ERROR || sf_close(file_->handle.release()) != 0;
+    // A disk that fails takes no new header either, and libsndfile does not say so.
+    failed = failed || (file_->has_failed && frames_in(file_->part) != file_->frames);
     if (failed)
         throw Error(fmt::format("{}: the sound could not be completed; is the disk full? What was written is in {}",
                                 file_->path.string(), file_->part.string()));

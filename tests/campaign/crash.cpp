@@ -100,8 +100,9 @@ struct Round {
 std::string failing_disk(Harm harm, const fs::path& folder, Dice& dice) {
     // A few of the calls are many for a table, and many are few for a sound.
     const std::size_t from = 1 + dice.below(dice.below(2) ? 12 : 150);
-    return fmt::format("LD_PRELOAD={} FAILING_DISK_FROM={} FAILING_DISK_PATH={}/ {}", tactus::test::failing_disk(),
-                       from, folder.string(),
+    // Some paths are given from the folder on.
+    return fmt::format("LD_PRELOAD={} FAILING_DISK_FROM={} FAILING_DISK_PATH={}/:new:take:bone.vdb:case.plan.json {}",
+                       tactus::test::failing_disk(), from, folder.string(),
                        harm == Harm::full_disk ? "" : "FAILING_DISK_ERRNO=EROFS FAILING_DISK_CALLS=write,open,rename");
 }
 
@@ -152,6 +153,18 @@ void use_again(const fs::path& folder, std::vector<std::string>& faults) {
     must({"plan", "move", "case.plan.json", "b", "--pose", "0,0,9,1,0,0,0"});
 }
 
+/// The folder as it was left, and what the command said.
+void keep(const fs::path& folder, const fs::path& kept) {
+    constexpr auto how =
+        fs::copy_options::recursive | fs::copy_options::overwrite_existing | fs::copy_options::skip_symlinks;
+    fs::remove_all(kept);
+    fs::create_directories(kept);
+    fs::copy(folder, kept, how);
+    for (const char* twin : {"", "-2"})
+        if (const fs::path said = folder.string() + twin + ".said"; fs::exists(said))
+            fs::copy(said, kept / fmt::format("said{}", twin), how);
+}
+
 int try_round(const std::vector<Job>& jobs, std::uint64_t number, const fs::path& scratch, const std::string& display) {
     const Job& job = jobs[number % jobs.size()];
     // As seven is prime, each job meets each harm.
@@ -163,16 +176,13 @@ int try_round(const std::vector<Job>& jobs, std::uint64_t number, const fs::path
     Round round = disturb(job, harm, folder, display, dice);
     const auto left = faults_in(folder, before, job.may_change, round.was_cut);
     round.faults.insert(round.faults.end(), left.begin(), left.end());
+    // Before it is used again, which writes over it.
+    const fs::path kept = fs::path("crash-findings") / fmt::format("round-{}", number);
+    if (!round.faults.empty()) keep(folder, kept);
     use_again(folder, round.faults);
     for (const std::string& fault : round.faults)
         fmt::print("round {}: {}, {}: {}\n", number, job.name, harm_names[static_cast<std::size_t>(harm)], fault);
-    if (!round.faults.empty()) {
-        const fs::path kept = fs::path("crash-findings") / fmt::format("round-{}", number);
-        fs::create_directories(kept);
-        fs::copy(folder, kept,
-                 fs::copy_options::recursive | fs::copy_options::overwrite_existing | fs::copy_options::skip_symlinks);
-        fmt::print("  kept as {}\n", kept.string());
-    }
+    if (fs::exists(kept)) fmt::print("  kept as {}\n", kept.string());
     std::fflush(stdout);
     fs::remove_all(folder);
     return static_cast<int>(round.faults.size());

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <exception>
 #include <sstream>
 #include <string_view>
@@ -48,9 +49,10 @@ std::string fault_of_take(const fs::path& take) {
     if (!fs::exists(take / "take.json")) return code == 2 ? "" : fmt::format("replay ends with {}: {}", code, text);
     const nlohmann::json said = nlohmann::json::parse(text, nullptr, false);
     if (said.is_discarded()) return fmt::format("replay ends with {}: {}", code, text);
-    if (!said["first_difference"].is_null() || !said["damaged_files"].empty() || !said["differing_hashes"].empty())
+    if (!said.at("first_difference").is_null() || !said.at("damaged_files").empty() ||
+        !said.at("differing_hashes").empty())
         return fmt::format("replay differs: {}", said.dump());
-    const int wanted = said["compared_values"] > 0 ? 0 : 1;
+    const int wanted = said.at("compared_values") > 0 ? 0 : 1;
     return code == wanted ? "" : fmt::format("replay ends with {}: {}", code, text);
 }
 
@@ -71,7 +73,9 @@ std::string fault_of_file(const fs::path& file) {
     if (ends(".json"))
         return nlohmann::json::accept(file::read_whole_file(file)) ? std::string() : std::string("is no JSON");
     if (ends(".wav")) {
-        sound::load_sound(file);
+        // A run that was ended before its first tick has a header and no sample; readers call it empty.
+        constexpr std::uintmax_t longest_header = 128;
+        if (fs::file_size(file) > longest_header) sound::load_sound(file);
         return {};
     }
     if (ends(".vdb")) return fault_of_verb({"info"}, file);

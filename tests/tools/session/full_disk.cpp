@@ -135,6 +135,21 @@ TEST_CASE("a disk that cannot be written to any more loses nothing that was ther
     CHECK(fs::file_size(folder.path / "out/sound.wav.part") > 0);
 }
 
+TEST_CASE("a sound whose header cannot be completed does not get its name") {
+    if (is_sanitized()) return;
+    const Folder folder;
+    folder.write("p.toml", recording_patch);
+    // All writes fail, renaming does not.
+    const Outcome gone =
+        on_failing_disk(folder, "FAILING_DISK_ERRNO=EIO FAILING_DISK_FROM=12 FAILING_DISK_PATH=sound.wav",
+                        "render p.toml --seconds 2 --out out");
+    INFO(gone.out << gone.err);
+    CHECK(gone.code == 3);
+    CHECK_FALSE(fs::exists(folder.path / "out/sound.wav"));
+    CHECK(fs::file_size(folder.path / "out/sound.wav.part") > 0);
+    CHECK(gone.err.find("sound.wav.part") != std::string::npos);
+}
+
 TEST_CASE("a take that finds no room repeats the run as far as it goes") {
     if (is_sanitized()) return;
     const Folder folder;
