@@ -2,8 +2,8 @@
 // Cost of one frame of the quasi-static coupling: two halves of a broken bone rubbed against each other, a new pose of
 // the hand in each frame.
 #include "assets/library/fragments.hpp"
-#include "dsp/coupling/held_contact.hpp"
 #include "dsp/core/quantile.hpp"
+#include "dsp/coupling/held_contact.hpp"
 #include "dsp/coupling/quasi_static.hpp"
 
 #include <benchmark/benchmark.h>
@@ -33,7 +33,8 @@ struct Half {
 
 /// spacing of the points in µm, most iterations.
 void coupled_fragments(benchmark::State& state) {
-    const std::vector<bone::Bone> bones = library::make_fragments({.spacing = 1e-6 * static_cast<double>(state.range(0))});
+    const std::vector<bone::Bone> bones =
+        library::make_fragments({.spacing = 1e-6 * static_cast<double>(state.range(0))});
     const Half left(bones[0]), right(bones[1]);
     coupling::Scene scene;
     scene.count = 2;

@@ -2,8 +2,8 @@
 // Signed distance to the surface of a CT of a ring (13 and 5 mm radius, 0.35 mm voxels, 128^3): this program, OpenVDB's
 // meshToLevelSet on marching tetrahedra of the same values, and a 3-4-5 chamfer of the thresholded voxels. Counters: error
 // against the exact distance within three voxels of the surface, in voxels.
-#include "dsp/volume/iso_distance.hpp"
 #include "dsp/geometry/iso_surface.hpp"
+#include "dsp/volume/iso_distance.hpp"
 #include "tools/study/workers.hpp"
 
 #include <openvdb/openvdb.h>

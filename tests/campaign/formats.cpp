@@ -97,7 +97,7 @@ std::string mend_riff(std::string bytes, std::uint64_t number) {
 void pack_seeds(const fs::path& folder) {
     for (const fs::path& file : files_in(folder))
         file::write_whole_file(fs::path(file.string() + (file.extension() == ".tar" ? ".inv3" : ".gz")),
-                         gzip(file::read_whole_file(file)));
+                               gzip(file::read_whole_file(file)));
 }
 
 std::vector<fs::path> with_ending(const fs::path& folder, const std::string& ending) {

@@ -3,8 +3,7 @@
 #include "engine/run/engine.hpp"
 #include "graph/compile/compile.hpp"
 #include "nodes/catalogue.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <string>
 
@@ -118,7 +117,8 @@ rate = "4 Hz"
 )";
     const auto hash = [&](int threads, bool random_blocks) {
         patch::Problems problems;
-        std::optional<compile::Plan> plan = compile::compile(patch::read_patch(text, "test.toml", problems), nodes::catalogue(), problems);
+        std::optional<compile::Plan> plan =
+            compile::compile(patch::read_patch(text, "test.toml", problems), nodes::catalogue(), problems);
         for (const Error& error : problems.list) FAIL(error.what());
         run::EngineOptions options;
         options.seconds = 3.0;

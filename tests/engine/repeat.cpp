@@ -24,7 +24,8 @@ Repetition repeat(const std::filesystem::path& folder, int threads) {
     };
     run::Engine engine(compile_text(take.text), options);
     for (const auto& event : take.events) {
-        if (const auto* edit = std::get_if<take::TakenEdit>(&event)) engine.schedule(compile_text(edit->text), edit->when);
+        if (const auto* edit = std::get_if<take::TakenEdit>(&event))
+            engine.schedule(compile_text(edit->text), edit->when);
         if (const auto* change = std::get_if<take::TakenChange>(&event))
             engine.schedule_change(change->id, change->node, change->param, change->value);
     }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/repeat.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/realtime_check.hpp"
-
-#include <catch2/catch.hpp>
 
 using namespace tactus;
 using namespace tactus::test;
@@ -14,7 +13,7 @@ TEST_CASE("taking a plan over, setting a parameter and recording a take are real
     const auto folder = scratch("swaps");
     {
         take::TakeWriter take(folder,
-                        {.patch_file = "swaps.toml", .overrides = {}, .seed = {}, .seconds = 1.0, .live = false});
+                              {.patch_file = "swaps.toml", .overrides = {}, .seed = {}, .seconds = 1.0, .live = false});
         run::EngineOptions options;
         options.take = &take;
         run::Engine engine(compile_text(edited(0)), options);

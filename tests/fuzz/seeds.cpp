@@ -37,9 +37,9 @@ void write_nrrd(const Path& folder) {
     file::write_whole_file(folder / "raw.nrrd", plain);
     const std::size_t end = plain.find("\n\n");
     file::write_whole_file(folder / "named.nrrd",
-                     std::string(plain).insert(end,
-                                               "\nSegment0_ID:=a\nSegment0_LabelValue:=1\nSegment0_Name:=jaw\n"
-                                               "Segment0_Color:=0.9 0.8 0.7\nSegment0_Layer:=0"));
+                           std::string(plain).insert(end,
+                                                     "\nSegment0_ID:=a\nSegment0_LabelValue:=1\nSegment0_Name:=jaw\n"
+                                                     "Segment0_Color:=0.9 0.8 0.7\nSegment0_Layer:=0"));
     std::string text = plain.substr(0, end + 2);
     text.replace(text.find("encoding: raw"), 13, "encoding: ascii");
     for (const std::int16_t value : v.hu) text += fmt::format("{} ", value);
@@ -47,12 +47,13 @@ void write_nrrd(const Path& folder) {
     volume::Grid grid{v.size, v.origin * 1e-3, Vec3(0.5e-3, 0.6e-3, 1.5e-3), {}};
     grid.values.assign(v.hu.begin(), v.hu.end());
     volume::write_volume(grid, volume::SampleType::int16, folder / "gzip.nrrd");
-    file::write_whole_file(folder / "layers.nrrd",
-                     "NRRD0005\ntype: uchar\ndimension: 4\nspace: right-anterior-superior\nsizes: 2 3 2 2\n"
-                     "space directions: none (1,0,0) (0,1,0) (0,0,1)\nkinds: list domain domain domain\n"
-                     "encoding: raw\nspace origin: (0,0,0)\nSegment0_ID:=a\nSegment0_LabelValue:=1\nSegment0_Layer:=0\n"
-                     "Segment1_ID:=b\nSegment1_LabelValue:=1\nSegment1_Layer:=1\n\n" +
-                         std::string("\0\1\1\0\0\0\1\1\0\0\0\1\0\1\1\0\0\0\1\1\0\0\0\1", 24));
+    file::write_whole_file(
+        folder / "layers.nrrd",
+        "NRRD0005\ntype: uchar\ndimension: 4\nspace: right-anterior-superior\nsizes: 2 3 2 2\n"
+        "space directions: none (1,0,0) (0,1,0) (0,0,1)\nkinds: list domain domain domain\n"
+        "encoding: raw\nspace origin: (0,0,0)\nSegment0_ID:=a\nSegment0_LabelValue:=1\nSegment0_Layer:=0\n"
+        "Segment1_ID:=b\nSegment1_LabelValue:=1\nSegment1_Layer:=1\n\n" +
+            std::string("\0\1\1\0\0\0\1\1\0\0\0\1\0\1\1\0\0\0\1\1\0\0\0\1", 24));
 }
 
 void write_nifti(const Path& folder) {
@@ -135,7 +136,7 @@ void write_bones(const Path& folder) {
     bone::save_bones(std::vector{bone, other}, folder / "two.vdb");
     for (const std::uint32_t packing : {0u, 1u, 2u, 3u, 4u, 6u})
         file::write_whole_file(folder / fmt::format("packed{}.vdb", packing),
-                         test::sealed(test::repacked(bone::read_sealed(folder / "one.vdb"), packing)));
+                               test::sealed(test::repacked(bone::read_sealed(folder / "one.vdb"), packing)));
 }
 
 }  // namespace
@@ -151,7 +152,8 @@ void write_seeds(const std::filesystem::path& root) {
     file::write_whole_file(folder("assets_inv3") / "project.tar", inv3_tar(ball()));
     for (const std::string kind : {"stl", "ply", "obj"}) write_texts(folder("assets_" + kind), kind);
     for (const std::string kind : {"stl", "ply"})
-        mesh::write_mesh(std::vector<mesh::ColouredSurface>{{tetrahedron()}}, folder("assets_" + kind) / ("binary." + kind));
+        mesh::write_mesh(std::vector<mesh::ColouredSurface>{{tetrahedron()}},
+                         folder("assets_" + kind) / ("binary." + kind));
     write_bones(folder("assets_vdb"));
 }
 

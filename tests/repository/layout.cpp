@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the tree promises: rooms include only to the left, folders are namespaces, files carry their licence, nodes are
 // in the catalogue, and no room knows the names of what is built on it.
+#include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <array>
@@ -90,8 +89,9 @@ std::vector<std::pair<std::string, std::string>> namespaces_of(const std::string
 
 /// A block of another folder's namespace may declare a type of it, or specialise a template of the vocabulary.
 bool only_declares(const std::string& block) {
-    static const std::regex defined("(^|\n)(inline|constexpr|void|[a-z_]+ [a-z_]+\\(|class [A-Za-z]+ *(:[^;]*)?\\{|struct "
-                                    "[A-Za-z]+ *(:[^;]*)?\\{)");
+    static const std::regex defined(
+        "(^|\n)(inline|constexpr|void|[a-z_]+ [a-z_]+\\(|class [A-Za-z]+ *(:[^;]*)?\\{|struct "
+        "[A-Za-z]+ *(:[^;]*)?\\{)");
     return !std::regex_search(block, defined);
 }
 
@@ -132,8 +132,10 @@ TEST_CASE("no two types have one name in one namespace") {
             const std::string text = read(file);
             for (std::sregex_iterator at(text.begin(), text.end(), definition), end; at != end; ++at) {
                 const auto before = text.rfind("\nnamespace ", static_cast<std::size_t>(at->position()));
-                const auto line = before == std::string::npos ? std::string() : text.substr(before, text.find('{', before) - before);
-                const auto [other, is_new] = seen.emplace(namespace_of(file) + line + "::" + (*at)[2].str(), file.string());
+                const auto line =
+                    before == std::string::npos ? std::string() : text.substr(before, text.find('{', before) - before);
+                const auto [other, is_new] =
+                    seen.emplace(namespace_of(file) + line + "::" + (*at)[2].str(), file.string());
                 CAPTURE(file.string(), other->second, other->first);
                 CHECK(is_new);
             }
@@ -171,7 +173,8 @@ TEST_CASE("below the nodes nobody knows a node type, a patch or a rig by its nam
 
 TEST_CASE("every source file says its licence first") {
     std::vector<fs::path> files{root / "CMakeLists.txt", root / "dev", root / ".ci/run"};
-    for (const auto folder : {"dsp", "assets", "graph", "devices", "nodes", "engine", "tools", "tests", "cmake", "docs"})
+    for (const auto folder :
+         {"dsp", "assets", "graph", "devices", "nodes", "engine", "tools", "tests", "cmake", "docs"})
         for (const auto& file : files_under(folder, {".cpp", ".hpp", ".cmake", ".py", ".sh"})) files.push_back(file);
     for (const fs::path& file : files) {
         std::ifstream stream(file);
@@ -199,8 +202,8 @@ TEST_CASE("heavy libraries stay out of headers") {
     for (const auto room : rooms)
         for (const fs::path& file : files_under(room, {".hpp"}))
             for (const std::string& name : includes_of(file))
-                for (const std::string_view heavy : {"openvdb/", "CLI/", "nlohmann/", "toml++", "Eigen/", "gdcm", "teem/",
-                                                     "kissfft", "zlib.h", "GL/", "EGL/", "portaudio"}) {
+                for (const std::string_view heavy : {"openvdb/", "CLI/", "nlohmann/", "toml++", "Eigen/", "gdcm",
+                                                     "teem/", "kissfft", "zlib.h", "GL/", "EGL/", "portaudio"}) {
                     CAPTURE(file.string(), name);
                     CHECK_FALSE(name.starts_with(heavy));
                 }

@@ -109,8 +109,7 @@ NodeHarness::NodeHarness(const NodeType& type, Options options)
         Input& port = *input.port;
         port.connected = true;
         if (port.kind == InputKind::any) port.type = options_.any;
-        takes_blocks_ |= port.kind == InputKind::stream ||
-                         (port.kind == InputKind::any && port.type == &value::signal);
+        takes_blocks_ |= port.kind == InputKind::stream || (port.kind == InputKind::any && port.type == &value::signal);
     }
     for (const OutputSlot& output : members_->outputs) takes_blocks_ |= output.port->type == &value::signal;
     for (auto& [name, asset] : members_->assets)

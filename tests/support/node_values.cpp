@@ -83,8 +83,8 @@ const volume::BoneEditor& sample_bone() {
 /// A ball of bone on a table, the same for every activation.
 const coupling::Scene& sample_scene() {
     static const contact::Pointshell shell = contact::make_pointshell(contact::Ball{5e-3}.points(1e-3));
-    static const contact::Voxmap map = contact::sample_voxmap({{31, 31, 31}, Vec3(-15e-3), Vec3(1e-3), {}},
-                                            [](const Vec3& p) { return contact::Ball{5e-3}.distance(p); });
+    static const contact::Voxmap map = contact::sample_voxmap(
+        {{31, 31, 31}, Vec3(-15e-3), Vec3(1e-3), {}}, [](const Vec3& p) { return contact::Ball{5e-3}.distance(p); });
     static const geometry::TriangleTree triangles(geometry::iso_surface(map.grid, 0.0f, false));
     static const coupling::Scene scene = [] {
         coupling::Scene made;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // measure, equalise and compare as scripts call them: the loop from a sweep to a vibration that is the saw's.
+#include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tests/tools/run_command.hpp"
 
@@ -7,7 +8,6 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ struct SoundShape {
 };
 
 fs::path sound_of(const Folder& folder, const std::string& name, const std::function<double(double)>& value,
-               const SoundShape& shape = {}) {
+                  const SoundShape& shape = {}) {
     SF_INFO info{};
     info.samplerate = shape.rate;
     info.channels = shape.channels;
@@ -70,7 +70,8 @@ json compared(const Folder& folder, const std::string& arguments, int code) {
 
 }  // namespace
 
-TEST_CASE("measure finds the actuator's resonance in a patch; equalise makes a filter of it that the patch can use") {
+TEST_CASE(
+    "measure finds the actuator's resonance in a patch, and equalise makes a filter of it that the patch can use") {
     const Folder folder;
     const std::string csv = (folder.path / "response.csv").string(), filter = (folder.path / "filter.toml").string();
     const Outcome measured =
@@ -104,7 +105,7 @@ TEST_CASE("measure finds the actuator's resonance in a patch; equalise makes a f
     }
 }
 
-TEST_CASE("a sweep that drives the actuator into its limit shows it as distortion of odd orders") {
+TEST_CASE("a sweep that drives the actuator into its limit shows it as distortion of odd orders", "[slow]") {
     const Folder folder;
     const std::string csv = (folder.path / "response.csv").string();
     const auto third_order = [&](const char* amplitude) {
@@ -122,7 +123,7 @@ TEST_CASE("a sweep that drives the actuator into its limit shows it as distortio
     CHECK(third_order("750") > 10.0);  // 6 V where 3 V are the limit: 13.8 % by Fourier's integral
 }
 
-TEST_CASE("with its equaliser the bundled actuator plays what the saw did; without, it does not") {
+TEST_CASE("with its equaliser the bundled actuator plays what the saw did, and without, it does not") {
     const Folder folder;
     const auto play = [&](const std::string& amount, int code) {
         const std::string out = (folder.path / ("amount" + amount)).string();
@@ -148,7 +149,7 @@ TEST_CASE("with its equaliser the bundled actuator plays what the saw did; witho
     CHECK(after["level_gap_db"] > 20.0);
 }
 
-TEST_CASE("two takes of one saw pass with null where scores need one recording; another saw fails") {
+TEST_CASE("two takes of one saw pass with null where scores need one recording, and another saw fails") {
     const Folder folder;
     const std::string reference = sound_of(folder, "a.wav", saw(233.0), {.seconds = 6.0}).string();
     const std::string same = sound_of(folder, "b.wav", saw(233.4, 0.1, 77), {.rate = 44100, .seconds = 5.0}).string();
@@ -177,9 +178,10 @@ TEST_CASE("two takes of one saw pass with null where scores need one recording; 
                    0)["verdict"] == "pass");
 }
 
-TEST_CASE("a person reads the verdict first, then why; a figure is written as its name says") {
+TEST_CASE("a person reads the verdict first, then why, and a figure is written as its name says") {
     const Folder folder;
-    const std::string a = sound_of(folder, "a.wav", saw(233.0)).string(), b = sound_of(folder, "b.wav", saw(150.0)).string();
+    const std::string a = sound_of(folder, "a.wav", saw(233.0)).string(),
+                      b = sound_of(folder, "b.wav", saw(150.0)).string();
     const std::string svg = (folder.path / "f.svg").string(), png = (folder.path / "f.png").string();
     const Outcome text = folder.tactus("compare " + a + " " + b + " --plot " + svg);
     CHECK(text.code == 1);
@@ -192,7 +194,7 @@ TEST_CASE("a person reads the verdict first, then why; a figure is written as it
     CHECK(folder.tactus("compare " + a + " " + a + " --plot f.gif").code == 2);
 }
 
-TEST_CASE("a report is one page that needs nothing else and names what it found") {
+TEST_CASE("a report is one page that needs nothing else and names what it found", "[slow]") {
     const Folder folder;
     const std::string a = sound_of(folder, "a.wav", saw(233.0)).string();
     const auto hummed = [tone = saw(233.0)](double t) mutable {
@@ -222,7 +224,7 @@ TEST_CASE("a report is one page that needs nothing else and names what it found"
     CHECK(folder.tactus("compare " + a + " " + a + " --report /nowhere/page.html").code == 2);
 }
 
-TEST_CASE("compare answers or says what is wrong with a file, once, and ends with exit code 2") {
+TEST_CASE("compare answers or says what is wrong with a file, once, and ends with exit code 2", "[slow]") {
     const Folder folder;
     const std::string good = sound_of(folder, "good.wav", saw(233.0)).string();
     const auto against = [&](const fs::path& file) { return folder.tactus("compare " + good + " " + file.string()); };
@@ -242,8 +244,9 @@ TEST_CASE("compare answers or says what is wrong with a file, once, and ends wit
     refused(sound_of(folder, "silent.wav", [](double) { return 0.0; }), "output is silent");
     refused(sound_of(folder, "constant.wav", [](double) { return 0.5; }), "output is silent");
     refused(sound_of(folder, "one.wav", saw(233.0), {.seconds = 1.0 / 48000.0}), "shorter than 0.5 s");
-    refused(sound_of(folder, "nan.wav", [](double t) { return t > 1.0 ? std::numeric_limits<double>::quiet_NaN() : 0.1; }),
-            "NaN");
+    refused(
+        sound_of(folder, "nan.wav", [](double t) { return t > 1.0 ? std::numeric_limits<double>::quiet_NaN() : 0.1; }),
+        "NaN");
     refused(sound_of(folder, "slow.wav", saw(30.0), {.rate = 200}), "too low");
     const std::string bytes = slurp(good);
     refused(folder.write("cut.wav", bytes.substr(0, bytes.size() / 2)), "cut short");
@@ -259,18 +262,19 @@ TEST_CASE("compare answers or says what is wrong with a file, once, and ends wit
     passes(sound_of(folder, "k192.wav", saw(233.0, 0.3, 3), {.rate = 192000}));
     passes(sound_of(folder, "k3.wav", saw(233.0, 0.3, 3), {.rate = 3000}));
     passes(sound_of(folder, "seven.wav",
-                 [s = saw(233.0, 0.3, 3), value = 0.0, channel = 0](double t) mutable {
-                     if (channel++ % 7 == 0) value = s(t);
-                     return value;
-                 },
-                 {.channels = 7}));
-    const Outcome clipped = against(
-        sound_of(folder, "clipped.wav", [s = saw(233.0)](double t) mutable { return std::clamp(3.0 * s(t), -1.0, 1.0); }));
+                    [s = saw(233.0, 0.3, 3), value = 0.0, channel = 0](double t) mutable {
+                        if (channel++ % 7 == 0) value = s(t);
+                        return value;
+                    },
+                    {.channels = 7}));
+    const Outcome clipped = against(sound_of(
+        folder, "clipped.wav", [s = saw(233.0)](double t) mutable { return std::clamp(3.0 * s(t), -1.0, 1.0); }));
     CHECK(clipped.code != 2);
     CHECK(clipped.out.find("clipped") != std::string::npos);
 }
 
-TEST_CASE("compare reads logs as it reads sounds, each with its own columns, and the longest piece between gaps") {
+TEST_CASE("compare reads logs as it reads sounds, each with its own columns, and the longest piece between gaps",
+          "[slow]") {
     const Folder folder;
     // 2.5 kHz with jitter; one column is the vibration, one is not.
     const auto log = [&](const char* name, const char* header, double from, double to, double gap) {
@@ -287,13 +291,13 @@ TEST_CASE("compare reads logs as it reads sounds, each with its own columns, and
     const std::string whole = log("a.csv", "time_ms,flag,accel\n", 0.0, 6.0, 0.0);
     const std::string parted = log("b.csv", "when_ms,flag,value\n", 1.0, 9.0, 0.5);
     const std::string wave = sound_of(folder, "a.wav",
-                                   [](double t) {
-                                       double y = 0.0;
-                                       for (int k = 1; k <= 3; ++k)
-                                           y += 0.3 * std::sin(2.0 * std::numbers::pi * k * 120.0 * t + k * k) / k;
-                                       return y;
-                                   },
-                                   {.seconds = 5.0})
+                                      [](double t) {
+                                          double y = 0.0;
+                                          for (int k = 1; k <= 3; ++k)
+                                              y += 0.3 * std::sin(2.0 * std::numbers::pi * k * 120.0 * t + k * k) / k;
+                                          return y;
+                                      },
+                                      {.seconds = 5.0})
                                  .string();
     const json same = compared(folder, whole + " " + wave + " --time-column time_ms --column accel", 0);
     CHECK(same["fundamental_hz"]["reference"].get<double>() == Approx(120.0).margin(0.1));
@@ -305,7 +309,7 @@ TEST_CASE("compare reads logs as it reads sounds, each with its own columns, and
     CHECK(none.err.find("nothing") != std::string::npos);
 }
 
-TEST_CASE("compare needs no more memory for a longer recording") {
+TEST_CASE("compare needs no more memory for a longer recording", "[slow]") {
     const Folder folder;
     const auto kilobytes = [&](double seconds) {
         const fs::path file = sound_of(folder, "long.wav", saw(233.0), {.rate = 8000, .seconds = seconds});
@@ -325,7 +329,7 @@ TEST_CASE("compare needs no more memory for a longer recording") {
     CHECK(kilobytes(330.0) < kilobytes(90.0) + 8000);
 }
 
-TEST_CASE("measure and equalise refuse what makes no sense with one line") {
+TEST_CASE("measure and equalise refuse what makes no sense with one line", "[slow]") {
     const Folder folder;
     const std::string table = folder.write("t.csv", "20 0\n100 0\n2000 0\n").string();
     const std::pair<std::string, std::string> slips[] = {
@@ -356,7 +360,7 @@ TEST_CASE("measure and equalise refuse what makes no sense with one line") {
     }
 }
 
-TEST_CASE("equalise says how much of a recording the actuator's limits cut") {
+TEST_CASE("equalise says how much of a recording the actuator's limits cut", "[slow]") {
     const Folder folder;
     const std::string table = folder.write("t.csv", "20 0\n100 0\n200 0\n2000 0\n").string();
     const std::string take = sound_of(folder, "a.wav", saw(233.0, 0.5)).string();

@@ -6,8 +6,8 @@
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ TEST_CASE("assets: the pieces of a broken bone make up the bone, less kerf and c
 TEST_CASE("assets: the same seed breaks alike, another seed otherwise") {
     const volume::Grid whole = bar();
     const std::vector<volume::Grid> a = cases::break_bone(whole, {.pieces = 3, .seed = 5}),
-                            b = cases::break_bone(whole, {.pieces = 3, .seed = 5});
+                                    b = cases::break_bone(whole, {.pieces = 3, .seed = 5});
     REQUIRE(a.size() == b.size());
     for (std::size_t n = 0; n < a.size(); ++n) CHECK(a[n].values == b[n].values);
     CHECK(cases::break_bone(whole, {.pieces = 3, .seed = 6})[0].values != a[0].values);
@@ -102,7 +102,7 @@ TEST_CASE("assets: a scan shows a moved solid where it was put, within a fifth o
     CHECK(std::sqrt(squares / count) < 0.12 * mm);
 }
 
-TEST_CASE("assets: paint covers the break and nothing else; a proposal finds most of it") {
+TEST_CASE("assets: paint covers the break and nothing else, and a proposal finds most of it") {
     const volume::Grid whole = bar();
     const contact::Voxmap map = contact::make_voxmap(whole);
     const std::vector<volume::Grid> parts = cases::break_bone(whole, {.seed = 3});
@@ -129,7 +129,8 @@ TEST_CASE("assets: paint covers the break and nothing else; a proposal finds mos
     CHECK(both > 0.6 * proposed);
 }
 
-TEST_CASE("assets: what lies inside of the unbroken bone is the break, however smooth and wherever the piece lies") {
+TEST_CASE("assets: what lies inside of the unbroken bone is the break, however smooth and wherever the piece lies",
+          "[slow]") {
     const volume::Grid whole = bar();
     const std::vector<contact::SurfacePoint> unbroken = contact::sample_surface(whole, {.spacing = 0.5 * mm});
     const fit::RegistrationTarget intact(unbroken);
@@ -143,7 +144,8 @@ TEST_CASE("assets: what lies inside of the unbroken bone is the break, however s
     CHECK(cases::propose_inside(guess, intact, placement.inverse()) > 200);
     double painted = 0.0, both = 0.0, proposed = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const bool truly = points[i].label == contact::surface_label::fracture, guessed = guess[i].label != contact::surface_label::none;
+        const bool truly = points[i].label == contact::surface_label::fracture,
+                   guessed = guess[i].label != contact::surface_label::none;
         painted += truly ? points[i].area : 0.0;
         proposed += guessed ? points[i].area : 0.0;
         both += truly && guessed ? points[i].area : 0.0;
@@ -157,7 +159,8 @@ TEST_CASE("assets: what lies inside of the unbroken bone is the break, however s
         CHECK(cases::keep_patches_near(guess, other, 1.0 * mm) == labelled);
         for (contact::SurfacePoint& p : other) p.position += Vec3(0.2, 0.0, 0.0);
         CHECK(cases::keep_patches_near(guess, other, 10.0 * mm) == 0);
-        CHECK(std::ranges::none_of(guess, [](const contact::SurfacePoint& p) { return p.label != contact::surface_label::none; }));
+        CHECK(std::ranges::none_of(
+            guess, [](const contact::SurfacePoint& p) { return p.label != contact::surface_label::none; }));
         CHECK_THROWS_AS(cases::keep_patches_near(guess, {}, 1.0), Error);
     }
     SECTION("the unbroken bone itself has nothing inside of it") {

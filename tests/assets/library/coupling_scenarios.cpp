@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pegs, thin plates and broken bones: the couplings where they are hard.
 #include "assets/library/fragments.hpp"
-#include "dsp/coupling/held_contact.hpp"
 #include "dsp/core/quantile.hpp"
+#include "dsp/coupling/held_contact.hpp"
 #include "tests/dsp/coupling/held.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -87,7 +86,8 @@ Insertion insert(double clearance) {
         const double depth = n < 1500 ? -3.0 * mm + 24.0 * mm * t / 1.5 : 21.0 * mm - 24.0 * mm * (t - 1.5) / 1.5;
         const Vec3 shake = 0.8 * mm * Vec3(std::sin(w * t), std::sin(1.3 * w * t), 0.0);
         const Vec3 nod = 2.0 * degree * Vec3(std::sin(1.3 * w * t), std::sin(w * t), 0.0);
-        const coupling::QuasiStaticState& now = rig.update({Vec3(0.0, 0.0, 30.0 * mm - depth) + shake, rotation_by(nod)});
+        const coupling::QuasiStaticState& now =
+            rig.update({Vec3(0.0, 0.0, 30.0 * mm - depth) + shake, rotation_by(nod)});
         REQUIRE(is_finite(now.wrench));
         const Vec3 tip = (now.proxy * grip).position;
         result.depth = std::max(result.depth, -tip.z);
@@ -100,7 +100,7 @@ Insertion insert(double clearance) {
 
 }  // namespace
 
-TEST_CASE("a peg goes in and comes out at 0.3, 0.1 and 0.0 mm of clearance, and not at -0.1 mm") {
+TEST_CASE("a peg goes in and comes out at 0.3, 0.1 and 0.0 mm of clearance, and not at -0.1 mm", "[slow]") {
     for (const double clearance : {0.3 * mm, 0.1 * mm, 0.0}) {
         const Insertion peg = insert(clearance);
         CAPTURE(clearance, peg.depth, peg.axial, peg.lateral, peg.end);
@@ -114,7 +114,7 @@ TEST_CASE("a peg goes in and comes out at 0.3, 0.1 and 0.0 mm of clearance, and 
     CHECK(tight.depth < 10.0 * mm);
 }
 
-TEST_CASE("no corner pops through a thin plate below the documented force, no face at all") {
+TEST_CASE("no corner pops through a thin plate below the documented force, no face at all", "[slow]") {
     const Part block = part_of(contact::Box{{6.0 * mm, 6.0 * mm, 6.0 * mm}}, 0.42 * mm, 0.35 * mm);
     const Quat on_corner = rotation_by(Vec3(0.0, -std::acos(1.0 / std::sqrt(3.0)), 0.0)) *
                            rotation_by(Vec3(0.0, 0.0, -0.25 * std::numbers::pi));
@@ -187,7 +187,7 @@ Rig fragment_rig(const contact::ContactLaw& law) {
 
 }  // namespace
 
-TEST_CASE("a jump of 15 mm and 14 degrees leaves a fragment on its side") {
+TEST_CASE("a jump of 15 mm and 14 degrees leaves a fragment on its side", "[slow]") {
     Rig rig = fragment_rig({});
     const Vec3 fit = halves().right_at.position;
     for (int n = 0; n < 20; ++n) rig.update({fit, {1, 0, 0, 0}});
@@ -197,7 +197,7 @@ TEST_CASE("a jump of 15 mm and 14 degrees leaves a fragment on its side") {
     CHECK(rig.coupling.state().wrench.force.x > 5.0);
 }
 
-TEST_CASE("fragments slide and walk on each other: balanced, not deep, and silent when held") {
+TEST_CASE("fragments slide and walk on each other: balanced, not deep, and silent when held", "[slow]") {
     const Vec3 fit = halves().right_at.position;
     for (const bool is_stiff : {false, true}) {
         const contact::ContactLaw law = is_stiff ? stiff() : contact::ContactLaw{};

@@ -2,67 +2,64 @@
 #include "assets/table/sample_log.hpp"
 
 #include "dsp/core/error.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 using namespace tactus;
 
 namespace {
 
 table::SampleLog read(std::string_view text, table::LogSelection selection = {}) {
-  return table::read_sample_log(text, "l.csv", selection);
+    return table::read_sample_log(text, "l.csv", selection);
 }
 
 } // namespace
 
-TEST_CASE("a log's time column and axes are found by their names, milliseconds "
-          "by the ending") {
-  const table::SampleLog log = read("# logger "
-                             "2\ntimestamp_ms,global_ms,accel_x,accel_y,temp_"
-                             "c\n3,100,1,-2,24\n9,106,3,4.5,24\n");
-  CHECK(log.times == std::vector{3.0 * 1e-3, 9.0 * 1e-3});
-  CHECK(log.names == std::vector<std::string>{"accel_x", "accel_y"});
-  CHECK(log.columns[1] == std::vector{-2.0, 4.5});
-  CHECK(log.time_name == "timestamp_ms");
+TEST_CASE(
+    "a log's time column and axes are found by their names, milliseconds "
+    "by the ending") {
+    const table::SampleLog log = read(
+        "# logger "
+        "2\ntimestamp_ms,global_ms,accel_x,accel_y,temp_"
+        "c\n3,100,1,-2,24\n9,106,3,4.5,24\n");
+    CHECK(log.times == std::vector{3.0 * 1e-3, 9.0 * 1e-3});
+    CHECK(log.names == std::vector<std::string>{"accel_x", "accel_y"});
+    CHECK(log.columns[1] == std::vector{-2.0, 4.5});
+    CHECK(log.time_name == "timestamp_ms");
 }
 
-TEST_CASE("columns are chosen by name or number; semicolons with decimal "
-          "commas and tabs are read") {
-  table::LogSelection selection;
-  selection.columns = {"temp", "2"};
-  const table::SampleLog log =
-      read("t;a;temp\r\n0,5;1;20,25\r\n1,0;2;20,5\r\n", selection);
-  CHECK(log.times == std::vector{0.5, 1.0});
-  CHECK(log.columns ==
-        std::vector<std::vector<double>>{{20.25, 20.5}, {1.0, 2.0}});
-  CHECK(read("0\t5\n1\t6\n").columns[0] == std::vector{5.0, 6.0});
-  selection.columns = {"a"};
-  selection.time_unit = "us";
-  CHECK(read("t,a\n1000000,7\n2000000,8\n", selection).times ==
-        std::vector{1.0, 2.0});
+TEST_CASE(
+    "columns are chosen by name or number, and semicolons with decimal "
+    "commas and tabs are read") {
+    table::LogSelection selection;
+    selection.columns = {"temp", "2"};
+    const table::SampleLog log = read("t;a;temp\r\n0,5;1;20,25\r\n1,0;2;20,5\r\n", selection);
+    CHECK(log.times == std::vector{0.5, 1.0});
+    CHECK(log.columns == std::vector<std::vector<double>>{{20.25, 20.5}, {1.0, 2.0}});
+    CHECK(read("0\t5\n1\t6\n").columns[0] == std::vector{5.0, 6.0});
+    selection.columns = {"a"};
+    selection.time_unit = "us";
+    CHECK(read("t,a\n1000000,7\n2000000,8\n", selection).times == std::vector{1.0, 2.0});
 }
 
 TEST_CASE("rows without a number are counted as lost, a half last line too") {
-  const table::SampleLog log = read("t,a\n0,1\n1,\n2,nan\n3,4\n4");
-  CHECK(log.times == std::vector{0.0, 3.0});
-  CHECK(log.lost_rows == 3);
+    const table::SampleLog log = read("t,a\n0,1\n1,\n2,nan\n3,4\n4");
+    CHECK(log.times == std::vector{0.0, 3.0});
+    CHECK(log.lost_rows == 3);
 }
 
 TEST_CASE("what is no log is refused with its place") {
-  CHECK_THROWS_WITH(read(""), Catch::Contains("empty"));
-  CHECK_THROWS_WITH(read("a,b\n1,2\n"), Catch::Contains("l.csv:1:1") &&
-                                            Catch::Contains("--time-column"));
-  CHECK_THROWS_WITH(read("t,a\n0,1\n1,x2\n"),
-                    Catch::Contains("l.csv:3:2") && Catch::Contains("'x2'"));
-  CHECK_THROWS_WITH(read("t,a\n5,1\n4,2\n"), Catch::Contains("backwards"));
-  CHECK_THROWS_WITH(read("t,a,b\n0,1,2\n"), Catch::Contains("--column"));
-  CHECK_THROWS_WITH(read("t,a\n0,1\n1\n2,3\n"), Catch::Contains("l.csv:3"));
-  CHECK_THROWS_WITH(read("just words\nno numbers\n"),
-                    Catch::Contains("one column"));
-  table::LogSelection selection;
-  selection.columns = {"accel_q"};
-  CHECK_THROWS_WITH(read("t,accel_x,b\n0,1,2\n", selection),
-                    Catch::Contains("did you mean 'accel_x'"));
-  CHECK_THROWS_WITH(table::load_sample_log("/nowhere/x.csv", {}),
-                    Catch::Contains("no such file"));
+    CHECK_THROWS_WITH(read(""), Catch::Matchers::ContainsSubstring("empty"));
+    CHECK_THROWS_WITH(read("a,b\n1,2\n"), Catch::Matchers::ContainsSubstring("l.csv:1:1") &&
+                                              Catch::Matchers::ContainsSubstring("--time-column"));
+    CHECK_THROWS_WITH(read("t,a\n0,1\n1,x2\n"),
+                      Catch::Matchers::ContainsSubstring("l.csv:3:2") && Catch::Matchers::ContainsSubstring("'x2'"));
+    CHECK_THROWS_WITH(read("t,a\n5,1\n4,2\n"), Catch::Matchers::ContainsSubstring("backwards"));
+    CHECK_THROWS_WITH(read("t,a,b\n0,1,2\n"), Catch::Matchers::ContainsSubstring("--column"));
+    CHECK_THROWS_WITH(read("t,a\n0,1\n1\n2,3\n"), Catch::Matchers::ContainsSubstring("l.csv:3"));
+    CHECK_THROWS_WITH(read("just words\nno numbers\n"), Catch::Matchers::ContainsSubstring("one column"));
+    table::LogSelection selection;
+    selection.columns = {"accel_q"};
+    CHECK_THROWS_WITH(read("t,accel_x,b\n0,1,2\n", selection),
+                      Catch::Matchers::ContainsSubstring("did you mean 'accel_x'"));
+    CHECK_THROWS_WITH(table::load_sample_log("/nowhere/x.csv", {}), Catch::Matchers::ContainsSubstring("no such file"));
 }

@@ -226,7 +226,8 @@ std::string enhanced_dicom_bytes(const WrittenVolume& v) {
 void write_dicom_folder(const WrittenVolume& volume, const std::filesystem::path& folder, const SliceStyle& style) {
     std::filesystem::create_directories(folder);
     for (int k = 0; k < volume.size[2]; ++k)
-        file::write_whole_file(folder / fmt::format("{:03}.dcm", k * 37 % 101 * 10 + k / 101), dicom_bytes(volume, k, style));
+        file::write_whole_file(folder / fmt::format("{:03}.dcm", k * 37 % 101 * 10 + k / 101),
+                               dicom_bytes(volume, k, style));
 }
 
 }  // namespace tactus

@@ -36,8 +36,8 @@ int main(int argc, char** argv) {
             work();
         };
         const auto begin = std::chrono::steady_clock::now();
-        const tactus::signal::Spectrum spectrum =
-            single ? tactus::signal::welch<float>(narrow, settings, spread) : tactus::signal::welch<double>(x, settings, spread);
+        const tactus::signal::Spectrum spectrum = single ? tactus::signal::welch<float>(narrow, settings, spread)
+                                                         : tactus::signal::welch<double>(x, settings, spread);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         fmt::print("{} {}\n", seconds, fmt::join(spectrum.power, " "));
         std::fflush(stdout);

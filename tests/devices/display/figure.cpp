@@ -2,8 +2,7 @@
 #include "devices/display/figure.hpp"
 
 #include "dsp/core/error.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <string>
 
@@ -65,7 +64,8 @@ TEST_CASE("text leaves ink where it stands, and as much of it turned as upright"
         figure.text({100.0, 100.0}, "Spectrum ≤ 1", 12.0, {}, anchor, false, turned);
         return figure.image(2.0);
     };
-    const display::Image start = written(display::TextAnchor::start, false), end = written(display::TextAnchor::end, false);
+    const display::Image start = written(display::TextAnchor::start, false),
+                         end = written(display::TextAnchor::end, false);
     const auto left_ink = [](const display::Image& image) {
         int count = 0;
         for (int y = 0; y < image.height; ++y)

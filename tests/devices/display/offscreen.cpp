@@ -3,8 +3,8 @@
 #include "devices/display/gl_context.hpp"
 #include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
 
 #include <array>
 #include <cmath>
@@ -22,7 +22,7 @@ bool can_render() {
         const display::SurfacelessContext context;
         return true;
     } catch (const Error& error) {
-        WARN("skipped: " << error.what());
+        tactus::test::skip(error.what());
         return false;
     }
 }
@@ -86,7 +86,8 @@ TEST_CASE("the nearer mesh hides the farther, and up is up") {
 TEST_CASE("edges are smooth: a pixel on the rim is a mixture") {
     if (!can_render()) return;
     const std::array scene{sphere({0.0, 0.0, 0.0}, 1.0, {0.0, 0.0, 0.0})};
-    const display::Image image = display::render_picture(scene, display::fit_view({-2, -2, -2}, {2, 2, 2}, {0, 1, 0}), 101, 101);
+    const display::Image image =
+        display::render_picture(scene, display::fit_view({-2, -2, -2}, {2, 2, 2}, {0, 1, 0}), 101, 101);
     int mixed = 0;
     for (int y = 0; y < 101; ++y)
         for (int x = 0; x < 101; ++x) mixed += image.pixel(x, y)[0] > 120 && image.pixel(x, y)[0] < 190;
@@ -106,10 +107,12 @@ TEST_CASE("malformed meshes and sizes are refused") {
     CHECK_THROWS_AS(display::render_picture({}, display::View{}, 0, 10), Error);
     CHECK_THROWS_AS(display::render_picture({}, display::View{}, 10, 100000), Error);
     mesh.triangles.back() = static_cast<std::uint32_t>(mesh.positions.size() / 3);
-    CHECK_THROWS_WITH(display::render_picture({&mesh, 1}, display::View{}, 10, 10), Catch::Contains("vertex"));
+    CHECK_THROWS_WITH(display::render_picture({&mesh, 1}, display::View{}, 10, 10),
+                      Catch::Matchers::ContainsSubstring("vertex"));
     mesh.triangles.clear();
     mesh.normals.pop_back();
-    CHECK_THROWS_WITH(display::render_picture({&mesh, 1}, display::View{}, 10, 10), Catch::Contains("normal"));
+    CHECK_THROWS_WITH(display::render_picture({&mesh, 1}, display::View{}, 10, 10),
+                      Catch::Matchers::ContainsSubstring("normal"));
 }
 
 TEST_CASE("a PNG file appears whole or not at all") {
@@ -121,6 +124,7 @@ TEST_CASE("a PNG file appears whole or not at all") {
     std::ifstream(path, std::ios::binary).read(signature.data(), 8);
     CHECK(signature == "\x89PNG\r\n\x1a\n");
     CHECK_FALSE(std::filesystem::exists(path + ".part"));
-    CHECK_THROWS_AS(display::write_png({2, 1, {255, 0, 0, 0, 255, 0}}, (folder / "missing/picture.png").string()), Error);
+    CHECK_THROWS_AS(display::write_png({2, 1, {255, 0, 0, 0, 255, 0}}, (folder / "missing/picture.png").string()),
+                    Error);
     std::filesystem::remove_all(folder);
 }

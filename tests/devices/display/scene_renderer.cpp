@@ -4,8 +4,8 @@
 #include "devices/display/picture_maker.hpp"
 #include "devices/display/shapes.hpp"
 #include "dsp/core/error.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,7 +21,7 @@ bool can_render() {
         const display::SurfacelessContext context;
         return true;
     } catch (const Error& error) {
-        WARN("skipped: " << error.what());
+        tactus::test::skip(error.what());
         return false;
     }
 }
@@ -62,7 +62,9 @@ struct TwoBalls {
     std::vector<display::DrawnView> views(display::StereoMode mode = display::StereoMode::mono) const {
         return display::views_of(camera, picture.bounds, 240, 160, mode);
     }
-    display::Image draw(display::StereoMode mode = display::StereoMode::mono) { return maker.draw(picture, views(mode)); }
+    display::Image draw(display::StereoMode mode = display::StereoMode::mono) {
+        return maker.draw(picture, views(mode));
+    }
 };
 
 int count(const display::Image& image, bool (*what)(const std::uint8_t*)) {
@@ -105,7 +107,7 @@ TEST_CASE("parts of a mesh are replaced and taken away one by one, however often
     meshes.remove(mesh);
     CHECK(meshes.triangles(meshes.make()) == 0);
     patch.triangles.back() = static_cast<std::uint32_t>(patch.vertices.size());
-    CHECK_THROWS_WITH(meshes.set_part(mesh, 0, patch), Catch::Contains("vertex"));
+    CHECK_THROWS_WITH(meshes.set_part(mesh, 0, patch), Catch::Matchers::ContainsSubstring("vertex"));
 }
 
 TEST_CASE("a pose that is not a number is not drawn, and nothing else suffers") {
@@ -193,7 +195,7 @@ TEST_CASE("in a mirror the picture is turned about and bodies still look solid")
     CHECK(count(scene.maker.draw(scene.picture, {&turned, 1}), is_section) > 600);
 }
 
-TEST_CASE("a million triangles are drawn") {
+TEST_CASE("a million triangles are drawn", "[slow]") {
     if (!can_render()) return;
     display::PictureMaker maker(160, 120);
     display::MeshPool& meshes = maker.renderer().meshes();
@@ -212,7 +214,8 @@ TEST_CASE("a million triangles are drawn") {
     picture.bounds.add(Vec3(0.08, 0.04, 0.08));
     display::OrbitCamera camera;
     camera.fit(picture.bounds, 4.0 / 3.0);
-    CHECK(count(maker.draw(picture, display::views_of(camera, picture.bounds, 160, 120, display::StereoMode::mono)), is_red) > 3000);
+    CHECK(count(maker.draw(picture, display::views_of(camera, picture.bounds, 160, 120, display::StereoMode::mono)),
+                is_red) > 3000);
 }
 
 TEST_CASE("an empty scene is background, and an empty bone has no triangles") {

@@ -2,8 +2,7 @@
 #include "devices/gripper/frame.hpp"
 
 #include "dsp/core/random.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <string_view>
@@ -82,7 +81,8 @@ TEST_CASE("of 100 000 broken frames none gets through, and the good ones between
         }
     };
     for (std::uint64_t n = 0; n < 100'000; ++n) {
-        std::vector<std::uint8_t> broken = bytes_of(gripper::pack(sample(n % 5000), static_cast<std::uint16_t>(n % 5000)));
+        std::vector<std::uint8_t> broken =
+            bytes_of(gripper::pack(sample(n % 5000), static_cast<std::uint16_t>(n % 5000)));
         const std::vector<std::uint8_t> whole = broken;
         switch (next() % 5) {
             case 0:  // bits flip

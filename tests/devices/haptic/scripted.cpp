@@ -2,8 +2,7 @@
 #include "devices/haptic/scripted.hpp"
 
 #include "dsp/core/error.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <unistd.h>
 
@@ -60,8 +59,8 @@ TEST_CASE("a scripted hand holds the buttons that it is told to, from the option
         << "# a hand\n0 s: 0 0 0 mm\n1 s: 0 0 1 mm | trigger\n2 s: 0 0 2 mm, 0 0 3 deg | trigger second\n"
            "3 s: 0 0 0 mm | fourth\n";
     Options options("device 'hand'", {{"file", file.string(), {"patch.toml", 7, 3}}});
-    CHECK(held(*haptic::open_scripted(options, [](const std::string& asset) { return std::filesystem::path(asset); })) ==
-          wanted);
+    CHECK(held(*haptic::open_scripted(
+              options, [](const std::string& asset) { return std::filesystem::path(asset); })) == wanted);
     std::filesystem::remove(file);
     for (const char* bad : {"1 s trigger", "1 s: triger", "2 s: trigger; 1 s:"}) {
         CAPTURE(bad);

@@ -3,9 +3,8 @@
 
 #include "dsp/core/error.hpp"
 #include "tests/dsp/carve/saw.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/realtime_check.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <memory>
 
@@ -20,13 +19,13 @@ std::unique_ptr<volume::BoneEditor> bone_of(double density, int max_dirty = 512)
     const DenseField field = block();
     volume::Grid rho = field.grid;
     std::ranges::fill(rho.values, static_cast<float>(density));
-    return std::make_unique<volume::BoneEditor>(field.grid, rho,
-                                        volume::BoneEditorOptions{.band = 0.003, .max_dirty = max_dirty, .max_versions = 4});
+    return std::make_unique<volume::BoneEditor>(
+        field.grid, rho, volume::BoneEditorOptions{.band = 0.003, .max_dirty = max_dirty, .max_versions = 4});
 }
 
 /// Cuts and publishes after every call, as a node does; versions are given back at once.
-carve::CarveResult saw_through(carve::Carver& carver, volume::BoneEditor& editor, std::span<const carve::CarveSample> samples,
-                        std::size_t per_call) {
+carve::CarveResult saw_through(carve::Carver& carver, volume::BoneEditor& editor,
+                               std::span<const carve::CarveSample> samples, std::size_t per_call) {
     carve::CarveResult sum;
     for (std::size_t n = 0; n < samples.size(); n += per_call) {
         const auto part = carver.update(editor, samples.subspan(n, std::min(per_call, samples.size() - n)));
@@ -165,14 +164,14 @@ TEST_CASE("settings that make no saw are refused") {
     carve::Carver carver;
     carve::CarveSettings settings;
     settings.stroke = 0.0005;
-    CHECK_THROWS_WITH(carver.prepare(*editor, settings), Catch::Contains("tooth pitch"));
+    CHECK_THROWS_WITH(carver.prepare(*editor, settings), Catch::Matchers::ContainsSubstring("tooth pitch"));
     settings = {};
     settings.kerf = -1.0;
-    CHECK_THROWS_WITH(carver.prepare(*editor, settings), Catch::Contains("kerf"));
+    CHECK_THROWS_WITH(carver.prepare(*editor, settings), Catch::Matchers::ContainsSubstring("kerf"));
     settings = {};
     settings.kerf = 0.007;
-    CHECK_THROWS_WITH(carver.prepare(*editor, settings), Catch::Contains("band"));
+    CHECK_THROWS_WITH(carver.prepare(*editor, settings), Catch::Matchers::ContainsSubstring("band"));
     settings = {};
     settings.tooth_pitch = 1e-9;
-    CHECK_THROWS_WITH(carver.prepare(*editor, settings), Catch::Contains("teeth"));
+    CHECK_THROWS_WITH(carver.prepare(*editor, settings), Catch::Matchers::ContainsSubstring("teeth"));
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/dsp/carve/saw.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <limits>
@@ -75,7 +74,8 @@ TEST_CASE("removed bone is counted in its density class") {
         return p.x < 0.0 ? (p.x < -0.004 ? 300.0 : 500.0) : (p.x < 0.004 ? 900.0 : 1500.0);
     };
     carve::CarveCore carver = saw();
-    const auto result = carve_through(carver, field, stroke(above, {0, -0.0005, 0}, 4.0));  // slower than the saw can cut
+    const auto result =
+        carve_through(carver, field, stroke(above, {0, -0.0005, 0}, 4.0));  // slower than the saw can cut
     const double edge = 0.0005 * 3.999 - 0.0006;
     CHECK(depth(carver) == Approx(edge).margin(1e-6));
     const double per_length = slot(edge) / 0.018;
@@ -152,7 +152,8 @@ TEST_CASE("drawing the blade back is free and it returns to where it had come") 
     const Vec3 out = above + Vec3(0, 0.002, 0);
     carve_through(carver, field, stroke({0, -reached, 0}, {0, 0.1, 0}, 0.001 * std::ceil(1e4 * (reached + 0.0026))));
     CHECK(depth(carver) < -0.002);
-    const auto back = carve_through(carver, field, stroke(out, {0, -0.1, 0}, 0.001 * std::floor(1e4 * (reached + 0.0026))));
+    const auto back =
+        carve_through(carver, field, stroke(out, {0, -0.1, 0}, 0.001 * std::floor(1e4 * (reached + 0.0026))));
     CHECK(depth(carver) == Approx(reached).margin(0.0003));
     CHECK(back.removed_m3 < 0.01 * slot(reached));
 }

@@ -16,7 +16,7 @@ inline double box_distance(const Vec3& p, const Vec3& low, const Vec3& high) {
 }
 
 inline volume::Grid sampled(const Vec3& low, const Vec3& high, const Vec3& spacing,
-                    const std::function<double(const Vec3&)>& of) {
+                            const std::function<double(const Vec3&)>& of) {
     volume::Grid grid;
     grid.origin = low;
     grid.spacing = spacing;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The field after long cuts, against the exact distance to the same kerf.
 #include "tests/dsp/carve/saw.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 
@@ -70,11 +69,12 @@ TEST_CASE("a straight cut leaves the exact distance to its kerf") {
         carve_through(carver, field, stroke({0, 0.0006, 0}, {0, -0.010, 0}, density > 1000.0 ? 6.0 : 1.0));
         const double deepest = depth(carver);
         const volume::Grid& g = field.grid;
-        const volume::Grid exact = sampled(g.origin, g.position(g.size[0] - 1, g.size[1] - 1, g.size[2] - 1) - 0.1 * voxel,
-                                   g.spacing, [deepest](const Vec3& p) {
-                                       const double kerf = 0.0005 - std::hypot(std::max(-deepest - p.y, 0.0), p.z);
-                                       return std::max(box_distance(p, block_low, block_high), kerf);
-                                   });
+        const volume::Grid exact =
+            sampled(g.origin, g.position(g.size[0] - 1, g.size[1] - 1, g.size[2] - 1) - 0.1 * voxel, g.spacing,
+                    [deepest](const Vec3& p) {
+                        const double kerf = 0.0005 - std::hypot(std::max(-deepest - p.y, 0.0), p.z);
+                        return std::max(box_distance(p, block_low, block_high), kerf);
+                    });
         compare(field, exact, deepest, 2e-6);
     }
 }
@@ -117,10 +117,11 @@ TEST_CASE("a cut by an unsteady hand leaves the exact distance to the kerf it ma
     };
     const volume::Grid& g = field.grid;
     const volume::Grid exact = sampled(g.origin, g.position(g.size[0] - 1, g.size[1] - 1, g.size[2] - 1) - 0.1 * voxel,
-                               g.spacing, [&](const Vec3& p) {
-                                   const double uncut = box_distance(p, block_low, block_high);
-                                   if (std::abs(p.x) > 0.004 || std::abs(p.z) > 0.003 || p.y < -0.006) return uncut;
-                                   return std::max(uncut, 0.0005 - swept(p));
-                               });
+                                       g.spacing, [&](const Vec3& p) {
+                                           const double uncut = box_distance(p, block_low, block_high);
+                                           if (std::abs(p.x) > 0.004 || std::abs(p.z) > 0.003 || p.y < -0.006)
+                                               return uncut;
+                                           return std::max(uncut, 0.0005 - swept(p));
+                                       });
     compare(field, exact, depth(carver), 3e-5);
 }

@@ -2,8 +2,7 @@
 #include "dsp/carve/redistance.hpp"
 
 #include "tests/dsp/carve/saw.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <memory>
 #include <numeric>
@@ -17,9 +16,9 @@ constexpr double radius = 0.006, reach = 0.0015;
 
 std::unique_ptr<volume::BoneEditor> bone_of(const std::function<double(double)>& distorted) {
     const volume::Grid grid = sampled(Vec3(-0.009), Vec3(0.009), Vec3(voxel),
-                              [&](const Vec3& p) { return distorted(glm::length(p) - radius); });
-    return std::make_unique<volume::BoneEditor>(grid, grid,
-                                        volume::BoneEditorOptions{.band = 0.1, .max_dirty = 400, .max_versions = 3});
+                                      [&](const Vec3& p) { return distorted(glm::length(p) - radius); });
+    return std::make_unique<volume::BoneEditor>(
+        grid, grid, volume::BoneEditorOptions{.band = 0.1, .max_dirty = 400, .max_versions = 3});
 }
 
 int settle(volume::BoneEditor& editor) {

@@ -23,7 +23,7 @@ inline DenseField block(const Vec3& shift = Vec3(0.0), double density = 1800.0, 
 
 /// The centre of the blade's round front, half a kerf behind the teeth, held at `from`, then moved at `velocity` (m/s), a sample each millisecond.
 inline std::vector<carve::CarveSample> stroke(const Vec3& from, const Vec3& velocity, double seconds,
-                                       const Quat& orientation = downwards, bool running = true) {
+                                              const Quat& orientation = downwards, bool running = true) {
     std::vector<carve::CarveSample> samples;
     const Vec3 teeth = from + orientation * Vec3(0.0, 0.0005, 0.0);
     const int count = static_cast<int>(std::lround(seconds * 1000.0));
@@ -35,10 +35,12 @@ inline std::vector<carve::CarveSample> stroke(const Vec3& from, const Vec3& velo
 
 /// Feeds the samples in calls of `per_call`; returns the sum.
 template <class Carving, class Field>
-carve::CarveResult carve_through(Carving& carver, Field& field, std::span<const carve::CarveSample> samples, std::size_t per_call = 17) {
+carve::CarveResult carve_through(Carving& carver, Field& field, std::span<const carve::CarveSample> samples,
+                                 std::size_t per_call = 17) {
     carve::CarveResult sum;
     for (std::size_t n = 0; n < samples.size(); n += per_call) {
-        const carve::CarveResult part = carver.update(field, samples.subspan(n, std::min(per_call, samples.size() - n)));
+        const carve::CarveResult part =
+            carver.update(field, samples.subspan(n, std::min(per_call, samples.size() - n)));
         sum.removed_m3 += part.removed_m3;
         for (std::size_t c = 0; c < 4; ++c) sum.removed_by_density[c] += part.removed_by_density[c];
         sum.dirty_bricks = part.dirty_bricks;

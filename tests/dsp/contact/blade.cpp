@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/contact/blade.hpp"
 #include "dsp/core/random.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
@@ -25,8 +25,8 @@ std::unique_ptr<volume::BoneEditor> bone_of(const std::function<double(const Vec
                 grid.at(i, j, k) = static_cast<float>(distance(grid.position(i, j, k)));
     volume::Grid density = grid;
     std::ranges::fill(density.values, 1800.0f);
-    return std::make_unique<volume::BoneEditor>(grid, density,
-                                        volume::BoneEditorOptions{.band = 0.1, .max_dirty = 1, .max_versions = 1});
+    return std::make_unique<volume::BoneEditor>(
+        grid, density, volume::BoneEditorOptions{.band = 0.1, .max_dirty = 1, .max_versions = 1});
 }
 
 /// Bone for y > 0: the blade, whose y points at the bone, is pressed in by raising its y.
@@ -41,8 +41,8 @@ TEST_CASE("a whole edge pressed flat into a plane is pushed out along the normal
     const auto bone = bone_of(half_space);
     const double flat = stiffness / 4.0 * std::pow(44.0, 0.25);
     for (const double depth : {0.1e-3, 0.4e-3, 1.0e-3}) {
-        const contact::BladeContact contact =
-            contact::blade_contact(bone->current(), points, {Vec3(0.0, depth, 0.0), Quat(1, 0, 0, 0)}, Vec3(0.0), stiffness);
+        const contact::BladeContact contact = contact::blade_contact(
+            bone->current(), points, {Vec3(0.0, depth, 0.0), Quat(1, 0, 0, 0)}, Vec3(0.0), stiffness);
         CHECK(contact.count == 44);
         CHECK(contact.penetration == Approx(depth).epsilon(1e-4));
         CHECK(contact.wrench.force.y == Approx(-flat * depth).epsilon(1e-4));
@@ -50,8 +50,8 @@ TEST_CASE("a whole edge pressed flat into a plane is pushed out along the normal
         CHECK(contact.load == Approx(flat * depth).epsilon(1e-4));
         // Symmetric about the origin; about a point 10 mm to the side it has the lever of 10 mm.
         CHECK(glm::length(contact.wrench.torque) < 1e-6);
-        const contact::BladeContact aside = contact::blade_contact(bone->current(), points, {Vec3(0.0, depth, 0.0), Quat(1, 0, 0, 0)},
-                                                 Vec3(0.01, 0.0, 0.0), stiffness);
+        const contact::BladeContact aside = contact::blade_contact(
+            bone->current(), points, {Vec3(0.0, depth, 0.0), Quat(1, 0, 0, 0)}, Vec3(0.01, 0.0, 0.0), stiffness);
         CHECK(aside.wrench.torque.z == Approx(-0.01 * aside.wrench.force.y).epsilon(1e-3));
     }
 }
@@ -113,9 +113,9 @@ TEST_CASE("depth added to any point never lowers the total push of a flat contac
     const auto bone = bone_of([](const Vec3& p) { return -(p.y - (p.x > 0.0 ? 0.3e-3 : 0.0)); });
     double last = 0.0;
     for (double depth = 0.0; depth < 1e-3; depth += 1e-6) {
-        const double load =
-            contact::blade_contact(bone->current(), points, {Vec3(0.0, depth, 0.0), Quat(1, 0, 0, 0)}, Vec3(0.0), stiffness)
-                .load;
+        const double load = contact::blade_contact(bone->current(), points, {Vec3(0.0, depth, 0.0), Quat(1, 0, 0, 0)},
+                                                   Vec3(0.0), stiffness)
+                                .load;
         CHECK(load >= last - 1e-9);
         last = load;
     }
@@ -133,13 +133,17 @@ TEST_CASE("in a kerf: centred no side force, shifted pushed back, tilted a right
     const auto at = [](double z, double tilt) {
         return Pose{Vec3(0.0, 0.0, z), glm::angleAxis(tilt, Vec3(1.0, 0.0, 0.0))};
     };
-    CHECK(glm::length(contact::blade_contact(wide->current(), points, at(0.0, 0.0), Vec3(0.0), stiffness).wrench.force) == 0.0);
-    const contact::BladeContact shifted = contact::blade_contact(wide->current(), points, at(0.2e-3, 0.0), Vec3(0.0), stiffness);
+    CHECK(glm::length(
+              contact::blade_contact(wide->current(), points, at(0.0, 0.0), Vec3(0.0), stiffness).wrench.force) == 0.0);
+    const contact::BladeContact shifted =
+        contact::blade_contact(wide->current(), points, at(0.2e-3, 0.0), Vec3(0.0), stiffness);
     CHECK(shifted.wrench.force.z < -0.05);
-    const contact::BladeContact tilted = contact::blade_contact(wide->current(), points, at(0.0, 0.06), Vec3(0.0), stiffness);
+    const contact::BladeContact tilted =
+        contact::blade_contact(wide->current(), points, at(0.0, 0.06), Vec3(0.0), stiffness);
     CHECK(tilted.wrench.torque.x < -1e-4);
     const auto narrow = kerf(0.35e-3);
-    const contact::BladeContact pinched = contact::blade_contact(narrow->current(), points, at(0.0, 0.0), Vec3(0.0), stiffness);
+    const contact::BladeContact pinched =
+        contact::blade_contact(narrow->current(), points, at(0.0, 0.0), Vec3(0.0), stiffness);
     CHECK(pinched.count == 88);
     CHECK(std::abs(pinched.wrench.force.z) < 1e-6);
 }
@@ -168,7 +172,8 @@ TEST_CASE("a pinched blade feels no more than the stated stiffness, and rests") 
     for (const double half_width : {0.45e-3, 0.35e-3, 0.2e-3}) {
         const auto bone = bone_of([half_width](const Vec3& p) { return half_width - std::abs(p.z); });
         const auto side = [&](double z) {
-            return contact::blade_contact(bone->current(), points, {Vec3(0.0, 0.0, z), Quat(1, 0, 0, 0)}, Vec3(0.0), stiffness)
+            return contact::blade_contact(bone->current(), points, {Vec3(0.0, 0.0, z), Quat(1, 0, 0, 0)}, Vec3(0.0),
+                                          stiffness)
                 .wrench.force.z;
         };
         INFO("half width " << half_width);
@@ -191,7 +196,8 @@ TEST_CASE("a pose that is no pose, or far away, feels nothing") {
     const auto bone = bone_of(half_space);
     for (const Pose& pose : {Pose{Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0), Quat(1, 0, 0, 0)},
                              Pose{Vec3(0.0), Quat(0, 0, 0, 0)}, Pose{Vec3(5.0, 0, 0), Quat(1, 0, 0, 0)}}) {
-        const contact::BladeContact contact = contact::blade_contact(bone->current(), points, pose, Vec3(0.0), stiffness);
+        const contact::BladeContact contact =
+            contact::blade_contact(bone->current(), points, pose, Vec3(0.0), stiffness);
         CHECK(contact.count == 0);
         CHECK(contact.wrench.force == Vec3(0.0));
     }

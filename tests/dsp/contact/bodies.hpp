@@ -30,7 +30,7 @@ inline std::vector<contact::SurfacePoint> foot_points(int per_side, double side)
 
 inline contact::Voxmap ball(int size, double spacing, double radius) {
     return contact::sample_voxmap(contact::centred_layout(size, spacing),
-                         [ball = contact::Ball{radius}](const Vec3& p) { return ball.distance(p); });
+                                  [ball = contact::Ball{radius}](const Vec3& p) { return ball.distance(p); });
 }
 
 /// A ball with waves on it: gradients in every direction. |∇| stays near 1.

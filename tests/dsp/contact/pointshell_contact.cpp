@@ -4,9 +4,8 @@
 #include "dsp/contact/pointshell_kernel.hpp"
 #include "dsp/core/hash.hpp"
 #include "tests/dsp/contact/bodies.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/realtime_check.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <limits>
 
@@ -48,12 +47,13 @@ struct Scene {
         return {&shell, shell_pose, &map, map_pose, n % 3 != 0};
     }
     contact::ContactLaw law(std::uint64_t n) const {
-        return {.stiffness = n % 2 ? 1e4 : 1e11,
-                .blend = n % 7 ? 0.03e-3 : 0.0,
-                .saturation = n % 5 ? 1e6 : 1e-3,
-                .by_area = n % 2 == 0,
-                .direction = n % 11 == 10 ? contact::ForceDirection::shell_normal : contact::ForceDirection::field_gradient,
-                .interpolation = n % 4 < 2 ? contact::Interpolation::trilinear : contact::Interpolation::quadratic};
+        return {
+            .stiffness = n % 2 ? 1e4 : 1e11,
+            .blend = n % 7 ? 0.03e-3 : 0.0,
+            .saturation = n % 5 ? 1e6 : 1e-3,
+            .by_area = n % 2 == 0,
+            .direction = n % 11 == 10 ? contact::ForceDirection::shell_normal : contact::ForceDirection::field_gradient,
+            .interpolation = n % 4 < 2 ? contact::Interpolation::trilinear : contact::Interpolation::quadratic};
     }
 };
 
@@ -180,7 +180,8 @@ TEST_CASE("a budget bounds the points, the nearest are kept whole and the rest a
     }
     // Light contact under a small budget: the points near the other body are all there.
     const contact::ContactPair light{&shell, {Vec3(0.0378, 0, 0), Quat(1, 0, 0, 0)}, &map, {}, true};
-    const contact::ContactSum whole = contact({&light, 1}, Vec3(0.0), {}), part = contact({&light, 1}, Vec3(0.0), {}, 2000);
+    const contact::ContactSum whole = contact({&light, 1}, Vec3(0.0), {}),
+                              part = contact({&light, 1}, Vec3(0.0), {}, 2000);
     CHECK(whole.in_contact > 50);
     CHECK(part.evaluated <= 2000);
     CHECK(part.gradient[0] == Approx(whole.gradient[0]).epsilon(1e-3));
@@ -189,13 +190,16 @@ TEST_CASE("a budget bounds the points, the nearest are kept whole and the rest a
 TEST_CASE("several pairs under one budget: as one after the other when it is enough, and shared when it is not") {
     const Scene scene;
     const contact::Pointshell small = contact::make_pointshell(contact::spread_over_ball(700, 0.004));
-    const contact::Voxmap floor = contact::sample_voxmap(contact::centred_layout(40, 1e-3), [](const Vec3& p) { return p.z; });
+    const contact::Voxmap floor =
+        contact::sample_voxmap(contact::centred_layout(40, 1e-3), [](const Vec3& p) { return p.z; });
     const Pose pose{Vec3(0.003, 0.001, 0.002), glm::angleAxis(0.5, glm::normalize(Vec3(1, 1, 0)))};
-    const contact::ContactPair pairs[3] = {{&scene.shell, pose, &floor, {}, true},
-                                  {&small, {Vec3(0.012, 0.003, 0.0), Quat(1, 0, 0, 0)}, &scene.map, pose, false},
-                                  {&scene.shell, pose, &scene.map, {Vec3(0.015, 0, 0), Quat(1, 0, 0, 0)}, true}};
+    const contact::ContactPair pairs[3] = {
+        {&scene.shell, pose, &floor, {}, true},
+        {&small, {Vec3(0.012, 0.003, 0.0), Quat(1, 0, 0, 0)}, &scene.map, pose, false},
+        {&scene.shell, pose, &scene.map, {Vec3(0.015, 0, 0), Quat(1, 0, 0, 0)}, true}};
     contact::PointshellContact contact(2 * scene.shell.nodes.size() + small.nodes.size());
-    const contact::ContactSum all = contact(pairs, pose.position, {}), exact = contact::contact_reference(pairs, pose.position, {});
+    const contact::ContactSum all = contact(pairs, pose.position, {}),
+                              exact = contact::contact_reference(pairs, pose.position, {});
     CHECK(exact.in_contact > 500);
     CHECK(apart(all, exact) < 1e-5 * exact.total_force);
     double energy = 0.0;
@@ -233,12 +237,14 @@ TEST_CASE("what is no scene is nothing to the vectorised form either") {
     CHECK(contact({}, Vec3(0.0), {}).energy == 0.0);
     // Half of the shell outside of the grid; a field that is flat; a body in itself.
     const contact::ContactPair border{&scene.shell, {Vec3(0.0215, 0.0, 0.0), Quat(1, 0, 0, 0)}, &scene.map, {}, true};
-    const contact::ContactSum exact = contact::contact_reference({&border, 1}, Vec3(0.0), {.stiffness = 1e4, .blend = 0.008});
+    const contact::ContactSum exact =
+        contact::contact_reference({&border, 1}, Vec3(0.0), {.stiffness = 1e4, .blend = 0.008});
     const contact::ContactSum fast = contact({&border, 1}, Vec3(0.0), {.stiffness = 1e4, .blend = 0.008});
     CHECK(exact.in_contact > 100);
     CHECK(fast.in_contact == exact.in_contact);
     CHECK(apart(exact, fast) < 1e-5 * exact.total_force);
-    const contact::Voxmap flat = contact::sample_voxmap(contact::centred_layout(20, 1e-3), [](const Vec3&) { return -1e-3; });
+    const contact::Voxmap flat =
+        contact::sample_voxmap(contact::centred_layout(20, 1e-3), [](const Vec3&) { return -1e-3; });
     const contact::ContactPair plateau{&scene.shell, {}, &flat, {}, true};
     const contact::ContactSum level = contact({&plateau, 1}, Vec3(0.0), {});
     CHECK(level.in_contact == 3000);

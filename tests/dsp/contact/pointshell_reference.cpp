@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/contact/pointshell_contact.hpp"
 #include "tests/dsp/contact/bodies.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <limits>
 
@@ -19,7 +18,8 @@ double size_of(const Six& v) {
 }
 
 /// Central difference of the energy along direction `a` of ξ.
-double slope_along(std::span<const contact::ContactPair> pairs, const Vec3& about, const contact::ContactLaw& law, int a, double h) {
+double slope_along(std::span<const contact::ContactPair> pairs, const Vec3& about, const contact::ContactLaw& law,
+                   int a, double h) {
     double energy[2];
     for (int side = 0; side < 2; ++side) {
         std::vector<contact::ContactPair> shifted(pairs.begin(), pairs.end());
@@ -46,11 +46,12 @@ TEST_CASE("gradient is the derivative of the energy to 1e-6, at a thousand poses
         Pose shell_pose = bodies::random_pose(random, 2 * n + 1, 1.0);
         shell_pose.position = map_pose.position + 0.015 * glm::normalize(shell_pose.position);
         const bool smooth = n % 2, by_map = n % 3 == 0;
-        const contact::ContactLaw law{.stiffness = by_map ? 2e10 : 1e4,
-                             .blend = 0.1e-3,
-                             .saturation = n % 5 ? 1e6 : 1.5e-3,
-                             .by_area = by_map,
-                             .interpolation = smooth ? contact::Interpolation::quadratic : contact::Interpolation::trilinear};
+        const contact::ContactLaw law{
+            .stiffness = by_map ? 2e10 : 1e4,
+            .blend = 0.1e-3,
+            .saturation = n % 5 ? 1e6 : 1.5e-3,
+            .by_area = by_map,
+            .interpolation = smooth ? contact::Interpolation::quadratic : contact::Interpolation::trilinear};
         const contact::ContactPair pair{&shell, shell_pose, &rough, map_pose, !by_map};
         const Vec3 about = shell_pose.position + Vec3(0.004, -0.002, 0.001);
         // Points must not cross cell faces, where a trilinear field has kinks, within the steps.
@@ -78,13 +79,15 @@ TEST_CASE("gradient is the derivative of the energy to 1e-6, at a thousand poses
 
 TEST_CASE("stiffness is symmetric and never negative, and on a plane the derivative of the gradient") {
     const contact::Pointshell shell = contact::make_pointshell(bodies::foot_points(12, 0.01));
-    const contact::Voxmap floor = contact::sample_voxmap(contact::centred_layout(40, 1e-3), [](const Vec3& p) { return p.z; });
+    const contact::Voxmap floor =
+        contact::sample_voxmap(contact::centred_layout(40, 1e-3), [](const Vec3& p) { return p.z; });
     const contact::Voxmap rough = bodies::rough_ball(48, 1e-3, 0.012);
     const Random random{2};
     for (std::uint64_t n = 0; n < 200; ++n) {
         Pose pose = bodies::random_pose(random, n, 0.012);
         const contact::ContactPair pair{&shell, pose, &rough, {}, n % 2 == 0};
-        const contact::ContactLaw law{.direction = n % 3 ? contact::ForceDirection::field_gradient : contact::ForceDirection::shell_normal};
+        const contact::ContactLaw law{.direction = n % 3 ? contact::ForceDirection::field_gradient
+                                                         : contact::ForceDirection::shell_normal};
         const contact::ContactSum sum = contact::contact_reference({&pair, 1}, pose.position, law);
         for (std::size_t i = 0; i < 6; ++i)
             for (std::size_t j = 0; j < 6; ++j) CHECK(sum.stiffness[6 * i + j] == sum.stiffness[6 * j + i]);
@@ -142,8 +145,10 @@ TEST_CASE("both bodies moved together feel the same in their own frame") {
 }
 
 TEST_CASE("one point feels its law: nothing outside the blend, k·s beyond it, at most k·saturation") {
-    const contact::Pointshell shell = contact::make_pointshell(std::vector<contact::SurfacePoint>{{Vec3(0.0), Vec3(0, 0, -1), 2e-6}});
-    const contact::Voxmap floor = contact::sample_voxmap(contact::centred_layout(40, 1e-3), [](const Vec3& p) { return p.z; });
+    const contact::Pointshell shell =
+        contact::make_pointshell(std::vector<contact::SurfacePoint>{{Vec3(0.0), Vec3(0, 0, -1), 2e-6}});
+    const contact::Voxmap floor =
+        contact::sample_voxmap(contact::centred_layout(40, 1e-3), [](const Vec3& p) { return p.z; });
     const auto force = [&](double depth, const contact::ContactLaw& law) {
         const contact::ContactPair pair{&shell, {Vec3(0.0, 0.0, -depth), Quat(1, 0, 0, 0)}, &floor, {}, true};
         return contact::contact_reference({&pair, 1}, Vec3(0.0), law).wrench().force.z;

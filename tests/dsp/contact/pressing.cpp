@@ -2,8 +2,7 @@
 // What a hand would feel: pressing on things and sliding over them.
 #include "dsp/contact/pointshell_contact.hpp"
 #include "tests/dsp/contact/bodies.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <numbers>
 
@@ -24,9 +23,11 @@ TEST_CASE("sliding on a ball of 70 voxels and on a plane, direction is true to 0
     const contact::Pointshell shell = contact::make_pointshell(contact::spread_over_ball(1000, finger));
     const contact::Voxmap ball = bodies::ball(176, h, radius);
     const Vec3 up = glm::normalize(Vec3(0.2, -0.3, 1.0));
-    const contact::Voxmap plane = contact::sample_voxmap(contact::centred_layout(96, h), [&](const Vec3& p) { return glm::dot(p, up); });
+    const contact::Voxmap plane =
+        contact::sample_voxmap(contact::centred_layout(96, h), [&](const Vec3& p) { return glm::dot(p, up); });
     contact::PointshellContact contact(shell.nodes.size());
-    for (const contact::Interpolation interpolation : {contact::Interpolation::trilinear, contact::Interpolation::quadratic}) {
+    for (const contact::Interpolation interpolation :
+         {contact::Interpolation::trilinear, contact::Interpolation::quadratic}) {
         const contact::ContactLaw law{.interpolation = interpolation};
         const contact::DepthLaw<double> exact_law(law);
         double worst_angle = 0.0, worst_share = 0.0;
@@ -57,7 +58,8 @@ TEST_CASE("sliding on a ball of 70 voxels and on a plane, direction is true to 0
 }
 
 TEST_CASE("a wall of thickness t withstands k·(t/2 − h) on one point, wherever it stands in the grid of spacing h") {
-    const contact::Pointshell tip = contact::make_pointshell(std::vector<contact::SurfacePoint>{{Vec3(0.0), Vec3(0, 0, -1), 1e-6}});
+    const contact::Pointshell tip =
+        contact::make_pointshell(std::vector<contact::SurfacePoint>{{Vec3(0.0), Vec3(0, 0, -1), 1e-6}});
     contact::PointshellContact contact(tip.nodes.size());
     for (const double thickness : {2e-3, 1e-3, 0.7e-3, 0.35e-3}) {
         for (const double offset : {0.0, 0.25, 0.5, 0.8}) {
@@ -81,7 +83,8 @@ TEST_CASE("a wall of thickness t withstands k·(t/2 − h) on one point, whereve
 
 TEST_CASE("the force is continuous through the surface, at the blend and where it saturates") {
     const contact::Pointshell shell = contact::make_pointshell(bodies::foot_points(8, 4e-3));
-    const contact::Voxmap floor = contact::sample_voxmap(contact::centred_layout(40, 1e-3), [](const Vec3& p) { return p.z; });
+    const contact::Voxmap floor =
+        contact::sample_voxmap(contact::centred_layout(40, 1e-3), [](const Vec3& p) { return p.z; });
     contact::PointshellContact contact(shell.nodes.size());
     const contact::ContactLaw law{.stiffness = 1e4, .saturation = 0.5e-3};
     double last = 0.0;

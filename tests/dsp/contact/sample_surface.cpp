@@ -3,8 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "tests/dsp/contact/bodies.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <numeric>
 
@@ -17,11 +16,11 @@ constexpr double pi = std::numbers::pi;
 /// Distance to a box of half sides `half` with sharp edges.
 volume::Grid box(int size, double spacing, const Vec3& half) {
     return contact::sample_voxmap(contact::centred_layout(size, spacing),
-                         [half](const Vec3& p) {
-                             const Vec3 q = glm::abs(p) - half;
-                             const double outside = glm::length(glm::max(q, Vec3(0.0)));
-                             return outside + std::min(std::max({q.x, q.y, q.z}), 0.0);
-                         })
+                                  [half](const Vec3& p) {
+                                      const Vec3 q = glm::abs(p) - half;
+                                      const double outside = glm::length(glm::max(q, Vec3(0.0)));
+                                      return outside + std::min(std::max({q.x, q.y, q.z}), 0.0);
+                                  })
         .grid;
 }
 
@@ -91,7 +90,7 @@ TEST_CASE("following curvature, points crowd where the surface turns and nowhere
     CHECK(total_area(crowded) == Approx(total_area(even)).epsilon(0.01));
 }
 
-TEST_CASE("the same surface gives the same points; a mesh will do as well as a grid") {
+TEST_CASE("the same surface gives the same points, and a mesh will do as well as a grid") {
     const volume::Grid grid = bodies::ball(40, 0.5e-3, 0.008).grid;
     const contact::SurfaceSampling sampling{.spacing = 0.7e-3};
     const auto a = contact::sample_surface(grid, sampling), b = contact::sample_surface(grid, sampling);
@@ -102,7 +101,7 @@ TEST_CASE("the same surface gives the same points; a mesh will do as well as a g
     }
     // Two triangles of a square, seen from above.
     const geometry::TriangleSurface square{{Vec3(0, 0, 0), Vec3(0.02, 0, 0), Vec3(0.02, 0.02, 0), Vec3(0, 0.02, 0)},
-                                 {{0, 1, 2}, {0, 2, 3}}};
+                                           {{0, 1, 2}, {0, 2, 3}}};
     const auto flat = contact::sample_surface(square, {.spacing = 1e-3});
     CHECK(flat.size() == Approx(400).epsilon(0.12));
     CHECK(total_area(flat) == Approx(4e-4));
@@ -116,7 +115,9 @@ TEST_CASE("sampling refuses what it cannot do and gives nothing where nothing is
     CHECK_THROWS_AS(contact::sample_surface(grid, {.spacing = 1e-7}), Error);
     CHECK_THROWS_AS(contact::sample_surface(grid, {.spacing = 0.5e-3, .most_points = 10}), Error);
     CHECK(contact::sample_surface(geometry::TriangleSurface{}, {}).empty());
-    CHECK(contact::sample_surface(contact::sample_voxmap(contact::centred_layout(8, 1e-3), [](const Vec3&) { return 1.0; }).grid, {}).empty());
+    CHECK(contact::sample_surface(
+              contact::sample_voxmap(contact::centred_layout(8, 1e-3), [](const Vec3&) { return 1.0; }).grid, {})
+              .empty());
 }
 
 TEST_CASE("points that face another body are labelled, those that look away are not") {

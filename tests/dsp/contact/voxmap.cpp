@@ -3,8 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "tests/dsp/contact/bodies.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <limits>
 
@@ -119,7 +118,8 @@ TEST_CASE("a voxmap refuses grids that are no field") {
     broken = grid;
     broken.spacing.y = 0.0;
     CHECK_THROWS_AS(contact::make_voxmap(broken), Error);
-    CHECK_THROWS_AS(contact::make_voxmap(volume::Grid{{1, 8, 8}, Vec3(0.0), Vec3(1e-3), std::vector<float>(64, 0.0f)}), Error);
+    CHECK_THROWS_AS(contact::make_voxmap(volume::Grid{{1, 8, 8}, Vec3(0.0), Vec3(1e-3), std::vector<float>(64, 0.0f)}),
+                    Error);
 }
 
 TEST_CASE("a voxmap of a bone reads what the bone reads near its surface") {

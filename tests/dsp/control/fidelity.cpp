@@ -3,8 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "tests/dsp/control/closed_loop.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -48,7 +47,7 @@ TEST_CASE("an ideal device is judged faultless, and what it renders is read off"
     for (const double rate : {0.1, 0.5, 1.5})
         for (const double damping : {0.0, 50.0}) {
             const control::Fidelity f = control::judge_fidelity(rendered(1000.0, damping, rate, 2.0 + 4.0 / rate),
-                                              {.stiffness = 1000.0, .damping = damping}, rate, 1.0);
+                                                                {.stiffness = 1000.0, .damping = damping}, rate, 1.0);
             CAPTURE(rate, damping);
             CHECK(*f.gain_error_db == Approx(0.0).margin(1e-9));
             CHECK(*f.phase_error_deg == Approx(0.0).margin(1e-9));
@@ -83,16 +82,19 @@ TEST_CASE("samples that slip do not count, hunting is told apart from harmonics,
     control::RigSeries hunting = rendered(1000.0, 0.0, 0.5, 12.0);
     for (std::size_t n = 0; n < hunting.position.size(); ++n)
         hunting.position[n] += 1e-4 * std::sin(0.9 * static_cast<double>(n));
-    CHECK(control::judge_fidelity(hunting, {.stiffness = 1000.0}, 0.5, 2.0).limit_cycle_rms == Approx(0.707e-4).epsilon(0.02));
-    CHECK_THROWS_WITH(control::judge_fidelity(s, {.stiffness = 1000.0}, 0.1, 2.0), Catch::Contains("two whole cycles"));
+    CHECK(control::judge_fidelity(hunting, {.stiffness = 1000.0}, 0.5, 2.0).limit_cycle_rms ==
+          Approx(0.707e-4).epsilon(0.02));
+    CHECK_THROWS_WITH(control::judge_fidelity(s, {.stiffness = 1000.0}, 0.1, 2.0),
+                      Catch::Matchers::ContainsSubstring("two whole cycles"));
     s.force[7] = NAN;
-    CHECK_THROWS_WITH(control::judge_fidelity(s, {.stiffness = 1000.0}, 0.5, 2.0), Catch::Contains("sample 8"));
+    CHECK_THROWS_WITH(control::judge_fidelity(s, {.stiffness = 1000.0}, 0.5, 2.0),
+                      Catch::Matchers::ContainsSubstring("sample 8"));
 }
 
 TEST_CASE("closed forms of the rig: 157.08 mm/s, 0.446 Hz, 6.88 mm") {
     CHECK(simulate::peak_cord_speed(0.05, 1.0) * 1e3 == Approx(157.08).epsilon(1e-3));
-    CHECK(simulate::saturation_rate(simulate::WalkingMotorSettings{}.max_speed(), 0.025, simulate::RigSprings{}.at_finger(), 0.0) ==
-          Approx(0.446).epsilon(1e-3));
+    CHECK(simulate::saturation_rate(simulate::WalkingMotorSettings{}.max_speed(), 0.025,
+                                    simulate::RigSprings{}.at_finger(), 0.0) == Approx(0.446).epsilon(1e-3));
     CHECK(simulate::WalkingMotorSettings{}.max_speed() == Approx(0.07).epsilon(1e-12));
     LoopRun run = walking(1000.0, 0.025, 0.02);
     std::get<simulate::WalkingMotor>(run.finger.motor).settings.holding_force = 100.0;
@@ -133,7 +135,8 @@ TEST_CASE("feed-forward renders a spring several times better than the loop of t
         LoopRun led = walking(k, 0.007, 0.5);
         led.loop.feed_forward = 1.0;
         led.loop.feed_forward_lag = 0.02;
-        led.loop.gain = 0.5 * control::gain_limit(control::LoopModel{.feed_forward = 1.0, .feed_forward_lag = 0.02}, led.object);
+        led.loop.gain =
+            0.5 * control::gain_limit(control::LoopModel{.feed_forward = 1.0, .feed_forward_lag = 0.02}, led.object);
         const double with = *control::judge_fidelity(led(), led.object, 0.5, 2.0).nrmse;
         CAPTURE(k, without, with);
         CHECK(without > 3.0 * with);

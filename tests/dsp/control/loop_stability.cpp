@@ -2,8 +2,7 @@
 #include "dsp/control/loop_stability.hpp"
 
 #include "tests/dsp/control/closed_loop.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -49,7 +48,8 @@ TEST_CASE("an ideal motor's eigenvalue limit is the closed form within 3 %") {
             for (const double hand : {380.0, 1500.0}) {
                 control::LoopModel model{.delay = delay, .motor_lag = 0.0, .hand_stiffness = hand, .stiffness = k};
                 CAPTURE(delay, k, hand);
-                CHECK(control::gain_limit(model) == Approx(control::ideal_gain_limit(model.period, delay, hand, k)).epsilon(0.001));
+                CHECK(control::gain_limit(model) ==
+                      Approx(control::ideal_gain_limit(model.period, delay, hand, k)).epsilon(0.001));
             }
 }
 
@@ -58,7 +58,8 @@ TEST_CASE("loops are stable at 0.9 and unstable at 1.1 of the eigenvalue limit")
         for (const int delay : {0, 1, 2, 3})
             for (const double lag : {0.0, 0.002, 0.004, 0.01})
                 for (const double damping : {0.0, 20.0}) {
-                    const control::LoopModel model{.delay = delay, .motor_lag = lag, .stiffness = k, .damping = damping};
+                    const control::LoopModel model{
+                        .delay = delay, .motor_lag = lag, .stiffness = k, .damping = damping};
                     const double limit = control::gain_limit(model);
                     CAPTURE(k, delay, lag, damping, limit);
                     REQUIRE(limit > 1.0);
@@ -88,7 +89,8 @@ TEST_CASE("a soft object lowers the gain, and what is one-sided is as slow as it
     control::LoopModel model;
     CHECK(control::gain_limit(model, {.stiffness = 50.0}) < 0.3 * control::gain_limit(model, {.stiffness = 5000.0}));
     const control::ObjectSettings two_sided{.kind = control::ObjectKind::wall};
-    const control::ObjectSettings barely_damped{.kind = control::ObjectKind::wall, .one_sided = true, .free_damping = 0.5};
+    const control::ObjectSettings barely_damped{
+        .kind = control::ObjectKind::wall, .one_sided = true, .free_damping = 0.5};
     CHECK(control::gain_limit(model, two_sided) > 100.0);
     CHECK(control::gain_limit(model, barely_damped) < 0.5 * control::gain_limit(model, two_sided));
 }

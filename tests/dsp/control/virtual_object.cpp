@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/control/virtual_object.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <limits>
@@ -71,7 +70,8 @@ TEST_CASE("a mass on a spring swings as the closed form says, under-, over- and 
 TEST_CASE("a two-sided wall never moves, a one-sided one stops the finger and lets it go") {
     control::VirtualObject rigid = make({.kind = control::ObjectKind::wall, .rest = 0.01}, 0.01);
     for (const double f : {-9.5, 9.5, 1e6}) CHECK(rigid.step(f) == 0.01);
-    control::VirtualObject wall = make({.kind = control::ObjectKind::wall, .one_sided = true, .rest = 0.01, .free_damping = 20.0}, 0.0);
+    control::VirtualObject wall =
+        make({.kind = control::ObjectKind::wall, .one_sided = true, .rest = 0.01, .free_damping = 20.0}, 0.0);
     double x = 0.0;
     while (x < 0.01) {
         const double next = wall.step(2.0);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/coupling/passivity.hpp"
 
-#include "dsp/coupling/force_shape.hpp"
 #include "dsp/core/quantile.hpp"
-
-#include <catch2/catch.hpp>
+#include "dsp/coupling/force_shape.hpp"
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 

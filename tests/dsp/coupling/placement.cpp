@@ -2,8 +2,7 @@
 #include "dsp/coupling/placement.hpp"
 
 #include "dsp/core/rotation.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <numbers>
 
@@ -11,16 +10,19 @@ using namespace tactus;
 
 namespace {
 
-const coupling::Placement placement{
-    {{0.1, -0.2, 0.3}, coupling::rotation_xyz({0.4, -0.9, 2.1})}, 1.7, {{0.02, 0.05, -0.11}, coupling::rotation_xyz({1.0, 0.2, -0.5})}};
+const coupling::Placement placement{{{0.1, -0.2, 0.3}, coupling::rotation_xyz({0.4, -0.9, 2.1})},
+                                    1.7,
+                                    {{0.02, 0.05, -0.11}, coupling::rotation_xyz({1.0, 0.2, -0.5})}};
 
 }  // namespace
 
 TEST_CASE("a placement turns about x first, then y, then z") {
     const double quarter = std::numbers::pi / 2.0;
     CHECK(glm::length(coupling::rotation_xyz({quarter, 0.0, 0.0}) * Vec3(0.0, 1.0, 0.0) - Vec3(0.0, 0.0, 1.0)) < 1e-12);
-    CHECK(glm::length(coupling::rotation_xyz({quarter, 0.0, quarter}) * Vec3(0.0, 1.0, 0.0) - Vec3(0.0, 0.0, 1.0)) < 1e-12);
-    CHECK(glm::length(coupling::rotation_xyz({quarter, quarter, 0.0}) * Vec3(0.0, 1.0, 0.0) - Vec3(1.0, 0.0, 0.0)) < 1e-12);
+    CHECK(glm::length(coupling::rotation_xyz({quarter, 0.0, quarter}) * Vec3(0.0, 1.0, 0.0) - Vec3(0.0, 0.0, 1.0)) <
+          1e-12);
+    CHECK(glm::length(coupling::rotation_xyz({quarter, quarter, 0.0}) * Vec3(0.0, 1.0, 0.0) - Vec3(1.0, 0.0, 0.0)) <
+          1e-12);
 }
 
 TEST_CASE("the hand does the work that the tool does, whatever the placement, the grip and the scale") {

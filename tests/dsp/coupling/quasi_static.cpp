@@ -4,9 +4,9 @@
 #include "dsp/coupling/dynamic_coupling.hpp"
 #include "tests/dsp/contact/bodies.hpp"
 #include "tests/dsp/coupling/held.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/realtime_check.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
@@ -178,10 +178,12 @@ TEST_CASE("a turn past half way round is still pulled back the way it came") {
 
 TEST_CASE("bodies and springs at the edge of sense give finite forces") {
     const contact::Pointshell none = contact::make_pointshell({});
-    const contact::Pointshell one = contact::make_pointshell(std::vector<contact::SurfacePoint>{{Vec3(0.0), Vec3(0, 0, -1), 1e-6, 0}});
+    const contact::Pointshell one =
+        contact::make_pointshell(std::vector<contact::SurfacePoint>{{Vec3(0.0), Vec3(0, 0, -1), 1e-6, 0}});
     const contact::Pointshell inside = test::shell_of(contact::Ball{3.0 * mm}, 1.0 * mm);
     const contact::Pointshell same = test::shell_of(contact::Ball{25.0 * mm}, 2.0 * mm);
-    const contact::Voxmap flat = contact::sample_voxmap(contact::centred_layout(21, 1.0 * mm), [](const Vec3&) { return -1.0 * mm; });
+    const contact::Voxmap flat =
+        contact::sample_voxmap(contact::centred_layout(21, 1.0 * mm), [](const Vec3&) { return -1.0 * mm; });
     const auto run = [](const contact::Pointshell& shell, const contact::Voxmap& map, const Pose& hand, auto&& change) {
         Held held(shell, {&map});
         coupling::QuasiStaticCoupling coupling = test::coupling_for(held, hand);
@@ -227,8 +229,8 @@ TEST_CASE("bodies and springs at the edge of sense give finite forces") {
 TEST_CASE("sliding over a plane at any slope: the force is the spring's along the normal") {
     const contact::Pointshell foot = contact::make_pointshell(bodies::foot_points(5, 4.0 * mm));
     const Vec3 normal = glm::normalize(Vec3(0.3, -0.2, 1.0)), along = glm::normalize(glm::cross(normal, Vec3(0, 1, 0)));
-    const contact::Voxmap plane =
-        contact::sample_voxmap(contact::centred_layout(81, 0.35 * mm), [&](const Vec3& p) { return glm::dot(p, normal); });
+    const contact::Voxmap plane = contact::sample_voxmap(contact::centred_layout(81, 0.35 * mm),
+                                                         [&](const Vec3& p) { return glm::dot(p, normal); });
     const Quat flat = glm::angleAxis(std::acos(normal.z), glm::normalize(glm::cross(Vec3(0, 0, 1), normal)));
     Held held(foot, {&plane});
     coupling::QuasiStaticCoupling coupling = test::coupling_for(held, {normal * mm, flat});
@@ -244,9 +246,11 @@ TEST_CASE("sliding over a plane at any slope: the force is the spring's along th
 }
 
 TEST_CASE("sliding over a ball: the force is the spring's along the normal") {
-    const contact::Pointshell tip = contact::make_pointshell(std::vector<contact::SurfacePoint>{{Vec3(0.0), Vec3(0, 0, -1), 1e-6, 0}});
+    const contact::Pointshell tip =
+        contact::make_pointshell(std::vector<contact::SurfacePoint>{{Vec3(0.0), Vec3(0, 0, -1), 1e-6, 0}});
     const double radius = 25.0 * mm, depth = 2.0 * mm;
-    for (const contact::Interpolation between : {contact::Interpolation::trilinear, contact::Interpolation::quadratic}) {
+    for (const contact::Interpolation between :
+         {contact::Interpolation::trilinear, contact::Interpolation::quadratic}) {
         Held held(tip, {&ball_map()});
         held.law.interpolation = between;
         coupling::QuasiStaticCoupling coupling = test::coupling_for(held, {{0, 0, 26.0 * mm}, {1, 0, 0, 0}});

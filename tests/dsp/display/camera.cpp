@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/display/camera.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 
@@ -33,7 +32,8 @@ TEST_CASE("dsp: from the front the patient's left is on the right, and up is up"
     for (int number = 1; number <= 7; ++number) {
         camera.look_from(*display::view_of_number(number));
         CHECK(glm::length(camera.orientation) == Approx(1.0));
-        CHECK(display::view_of_name(display::view_names[static_cast<std::size_t>(number - 1)]) == display::view_of_number(number));
+        CHECK(display::view_of_name(display::view_names[static_cast<std::size_t>(number - 1)]) ==
+              display::view_of_number(number));
     }
     CHECK_FALSE(display::view_of_number(8));
     CHECK_FALSE(display::view_of_name("behind"));

@@ -86,7 +86,8 @@ inline Half bar_half(double side, const Relief& relief, const BarOptions& o = {}
     for (contact::SurfacePoint& p : made.points) {
         const bool broken = bar(p.position) < -0.4 * mm && std::abs(p.position.x) < 6.0 * mm;
         const bool spilled = std::abs(p.position.x - relief(p.position.y, p.position.z)) < o.over;
-        if ((broken || spilled) && p.position.z < (-12.0 + 24.0 * o.half) * mm) p.label = contact::surface_label::fracture;
+        if ((broken || spilled) && p.position.z < (-12.0 + 24.0 * o.half) * mm)
+            p.label = contact::surface_label::fracture;
         p.position += o.far;
     }
     grid.origin += o.far;

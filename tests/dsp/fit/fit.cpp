@@ -3,8 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "tests/dsp/fit/broken_bar.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cstring>
 #include <numbers>
@@ -65,7 +64,7 @@ TEST_CASE("dsp: normals that are flipped pull nothing together") {
     CHECK(error_of(left(), fit.pose) > 1 * mm);
 }
 
-TEST_CASE("dsp: another bone's fracture does not match, and neither does the mirror image") {
+TEST_CASE("dsp: another bone's fracture does not match, and neither does the mirror image", "[slow]") {
     const fit::FitSurface fixed = right().surface();
     for (std::uint64_t seed = 11; seed <= 13; ++seed) {
         const fit::FitSurface stranger = bar_half(-1.0, rough_relief(seed)).surface();
@@ -142,7 +141,7 @@ TEST_CASE("dsp: a break that looks the same turned by half is ambiguous") {
     CHECK(fit::find_fit(moving, fixed, {}, fit::FitMode::global).verdict == fit::FitVerdict::ambiguous);
 }
 
-TEST_CASE("dsp: chips, spilled and missing paint, lost bone and uneven voxels leave the place as it is") {
+TEST_CASE("dsp: chips, spilled and missing paint, lost bone and uneven voxels leave the place as it is", "[slow]") {
     struct Hardship {
         const char* name;
         BarOptions left, right;
@@ -157,7 +156,8 @@ TEST_CASE("dsp: chips, spilled and missing paint, lost bone and uneven voxels le
     };
     for (const Hardship& h : hardships) {
         const Half a = bar_half(-1.0, rough_relief(3), h.left), b = bar_half(1.0, rough_relief(3), h.right);
-        const fit::Fit fit = fit::find_fit(a.surface(), b.surface(), beside(4 * mm, 10 * degree, 7), fit::FitMode::extended);
+        const fit::Fit fit =
+            fit::find_fit(a.surface(), b.surface(), beside(4 * mm, 10 * degree, 7), fit::FitMode::extended);
         INFO(h.name << ": " << error_of(a, fit.pose) / mm << " mm, " << fit::name_of(fit.verdict));
         CHECK(error_of(a, fit.pose) < h.most_error);
     }
@@ -167,17 +167,19 @@ TEST_CASE("dsp: an outer contour with a step of its own does not pull the break 
     // The left half's lower side is 0.6 to 1.8 mm thicker than the right one's.
     for (const double bend : {1.1, 1.3}) {
         const Half a = bar_half(-1.0, rough_relief(3), {.bend = bend}), b = bar_half(1.0, rough_relief(3));
-        const fit::Fit fit = fit::find_fit(a.surface(), b.surface(), beside(4 * mm, 10 * degree, 7), fit::FitMode::extended);
+        const fit::Fit fit =
+            fit::find_fit(a.surface(), b.surface(), beside(4 * mm, 10 * degree, 7), fit::FitMode::extended);
         CAPTURE(bend, error_of(a, fit.pose) / mm, fit.quality.outline / mm);
         CHECK(error_of(a, fit.pose) < 0.15 * mm);
         CHECK(fit.verdict == fit::FitVerdict::fit);
     }
 }
 
-TEST_CASE("dsp: bone lost along the break is closed, not called a failure") {
+TEST_CASE("dsp: bone lost along the break is closed, not called a failure", "[slow]") {
     for (const double gap : {0.2 * mm, 0.5 * mm, 1.0 * mm}) {
         const Half a = bar_half(-1.0, rough_relief(3), {.gap = gap}), b = bar_half(1.0, rough_relief(3), {.gap = gap});
-        const fit::Fit fit = fit::find_fit(a.surface(), b.surface(), beside(4 * mm, 10 * degree, 7), fit::FitMode::extended);
+        const fit::Fit fit =
+            fit::find_fit(a.surface(), b.surface(), beside(4 * mm, 10 * degree, 7), fit::FitMode::extended);
         // Pulled to each other by what was lost.
         CHECK(error_of(a, fit.pose, {{gap, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}) < 0.25 * mm);
         CHECK(fit.verdict == fit::FitVerdict::fit);
@@ -186,7 +188,8 @@ TEST_CASE("dsp: bone lost along the break is closed, not called a failure") {
 
 TEST_CASE("dsp: a start deep inside of the other bone finds out") {
     const fit::FitSurface moving = left().surface(), fixed = right().surface();
-    const fit::Fit fit = fit::find_fit(moving, fixed, {{7 * mm, 1 * mm, 0.0}, {1.0, 0.0, 0.0, 0.0}}, fit::FitMode::extended);
+    const fit::Fit fit =
+        fit::find_fit(moving, fixed, {{7 * mm, 1 * mm, 0.0}, {1.0, 0.0, 0.0, 0.0}}, fit::FitMode::extended);
     CHECK(error_of(left(), fit.pose) < 0.1 * mm);
 }
 
@@ -209,7 +212,8 @@ TEST_CASE("dsp: far from the origin the fit is the same") {
     const Half a = bar_half(-1.0, rough_relief(3), {.far = far}), b = bar_half(1.0, rough_relief(3), {.far = far});
     const Pose start = beside(4 * mm, 10 * degree, 7);
     const Pose shift{far, {1.0, 0.0, 0.0, 0.0}};
-    const fit::Fit fit = fit::find_fit(a.surface(), b.surface(), shift * start * shift.inverse(), fit::FitMode::extended);
+    const fit::Fit fit =
+        fit::find_fit(a.surface(), b.surface(), shift * start * shift.inverse(), fit::FitMode::extended);
     CHECK(error_of(a, fit.pose) < 0.1 * mm);
 }
 

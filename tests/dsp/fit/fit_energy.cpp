@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/fit_energy.hpp"
 
-#include "dsp/geometry/symmetric_eigen.hpp"
 #include "dsp/fit/fit.hpp"
 #include "dsp/fit/held_fit.hpp"
+#include "dsp/geometry/symmetric_eigen.hpp"
 #include "tests/dsp/fit/broken_bar.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/realtime_check.hpp"
-
-#include <catch2/catch.hpp>
 
 using namespace tactus;
 using namespace tactus::test;
@@ -108,7 +107,7 @@ TEST_CASE("dsp: both halves of a look give the same sum, and the held fit carrie
     energy.look(pose);
     const contact::ContactSum fresh = energy(pose, contact::ContactParts::all);
     const contact::ContactSum halves[] = {energy.look_at_half(fit::FitHalf::moving_points, pose),
-                                 energy.look_at_half(fit::FitHalf::fixed_points, pose)};
+                                          energy.look_at_half(fit::FitHalf::fixed_points, pose)};
     CHECK(fresh.energy == Approx(halves[0].energy + halves[1].energy));
     for (std::size_t i = 0; i < 36; ++i)
         CHECK(fresh.stiffness[i] == Approx(halves[0].stiffness[i] + halves[1].stiffness[i]).margin(1e-6));
@@ -123,7 +122,8 @@ TEST_CASE("dsp: both halves of a look give the same sum, and the held fit carrie
     const Pose handle = stands * fit::between_bodies(moving, fixed, pose) * grip.inverse();
     fit.look(handle, grip, stands, 1.0);
     const auto energy_at = [&](const Pose& where) {
-        return energy(fit::between_centres(moving, fixed, stands.inverse() * where * grip), contact::ContactParts::all).energy;
+        return energy(fit::between_centres(moving, fixed, stands.inverse() * where * grip), contact::ContactParts::all)
+            .energy;
     };
     const contact::ContactSum there = fit(handle, contact::ContactParts::all);
     CHECK(fit.energy() == Approx(there.energy));

@@ -3,8 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "tests/dsp/fit/broken_bar.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <vector>
 
@@ -43,7 +42,7 @@ fit::FragmentMatch searched(fit::FragmentMatcher& matcher, std::span<const Pose>
 TEST_CASE("dsp: the matcher names a mirrored and a foreign partner, from nearby and from anywhere") {
     const Half mirror = mirrored(right()), foreign = bar_half(1.0, rough_relief(12));
     const std::vector<fit::FragmentSurface> surfaces{surface_of(left()), surface_of(right()), surface_of(mirror),
-                                                surface_of(foreign)};
+                                                     surface_of(foreign)};
     fit::FragmentMatcher matcher(surfaces);
     const std::vector<Pose> poses{beside(4 * mm, 10 * degree, 7), {}, {}, {}};
     const auto stands_alone = [&](std::size_t n) {

@@ -2,8 +2,7 @@
 #include "dsp/fit/step_tree.hpp"
 
 #include "dsp/core/random.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <array>
 #include <cstring>
@@ -102,8 +101,8 @@ TEST_CASE("a tree that is full forgets the way back, not the count, and takes no
 }
 
 TEST_CASE("steps that are known from before are undone like others, on whichever branch they stand") {
-    std::array<fit::Arrangement, 4> at{fit::Arrangement(fragments), fit::Arrangement(fragments), fit::Arrangement(fragments),
-                                  fit::Arrangement(fragments)};
+    std::array<fit::Arrangement, 4> at{fit::Arrangement(fragments), fit::Arrangement(fragments),
+                                       fit::Arrangement(fragments), fit::Arrangement(fragments)};
     for (int n = 1; n < 4; ++n)
         for (int m = n; m < 4; ++m) at[static_cast<std::size_t>(m)].place(n, {Vec3(n), {1.0, 0.0, 0.0, 0.0}});
     fit::StepTree tree(fragments, 3, 10);

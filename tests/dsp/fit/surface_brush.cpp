@@ -2,8 +2,8 @@
 #include "dsp/fit/surface_brush.hpp"
 
 #include "dsp/core/random.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -23,8 +23,8 @@ std::vector<contact::SurfacePoint> sheet(int side) {
             const auto n = static_cast<std::uint64_t>(j * side + i);
             const Vec3 at = Vec3(0.4 * i, 0.4 * j, random.normal(n)) * mm;
             const bool is_painted = random.uniform(n + 1'000'000) < 0.1;
-            points.push_back(
-                {at, Vec3(0.0, 0.0, 1.0), 0.16 * mm * mm, is_painted ? contact::surface_label::fracture : contact::surface_label::none});
+            points.push_back({at, Vec3(0.0, 0.0, 1.0), 0.16 * mm * mm,
+                              is_painted ? contact::surface_label::fracture : contact::surface_label::none});
         }
     return points;
 }
@@ -53,7 +53,8 @@ TEST_CASE("strokes of any size, on and off the surface, label what a look at eve
             ++labelled;
             area += p.area;
         }
-        REQUIRE(std::ranges::equal(brush.points(), points, {}, &contact::SurfacePoint::label, &contact::SurfacePoint::label));
+        REQUIRE(std::ranges::equal(brush.points(), points, {}, &contact::SurfacePoint::label,
+                                   &contact::SurfacePoint::label));
         REQUIRE(brush.labelled() == labelled);
         REQUIRE(brush.area() == Approx(area).margin(1e-12));
         REQUIRE(brush.distance(at) == Approx(least).margin(1e-12));

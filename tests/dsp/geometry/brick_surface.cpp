@@ -2,8 +2,8 @@
 #include "dsp/geometry/brick_surface.hpp"
 
 #include "dsp/geometry/iso_surface.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -134,7 +134,8 @@ TEST_CASE("dsp: dense bone is white, porous bone green, half way between half an
         for (int b = 0; b < editor.layout().brick_count() && patch.vertices.empty(); ++b)
             mesher.make(editor.current(), static_cast<std::uint32_t>(b), patch);
         REQUIRE_FALSE(patch.vertices.empty());
-        for (const geometry::SurfaceVertex& v : patch.vertices) CHECK(v.colour == geometry::packed_colour(colours(density)));
+        for (const geometry::SurfaceVertex& v : patch.vertices)
+            CHECK(v.colour == geometry::packed_colour(colours(density)));
     }
 }
 

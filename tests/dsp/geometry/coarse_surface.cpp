@@ -2,8 +2,8 @@
 #include "dsp/geometry/coarse_surface.hpp"
 
 #include "dsp/volume/bricks.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -38,10 +38,10 @@ struct Bricks {
     double voxel = 0.0005;
     Vec3 centre{0.0};
     volume::Grid distance = body(voxel, centre);
-    volume::BoneEditor editor{
-        distance,
-        volume::Grid{distance.size, distance.origin, distance.spacing, std::vector<float>(distance.values.size(), 1800.0f)},
-        {.band = 4.0 * voxel}};
+    volume::BoneEditor editor{distance,
+                              volume::Grid{distance.size, distance.origin, distance.spacing,
+                                           std::vector<float>(distance.values.size(), 1800.0f)},
+                              {.band = 4.0 * voxel}};
     geometry::SurfaceGrid grid{editor.layout().origin, editor.layout().spacing, volume::brick_cells};
     std::vector<geometry::SurfacePatch> fine;
 
@@ -129,8 +129,8 @@ TEST_CASE("dsp: a coarse surface of one part, or of none, needs no grid of parts
     const Bricks bricks;
     geometry::CoarseSurface coarse;
     const geometry::SurfacePatch& one =
-        bricks.fine[std::ranges::max_element(bricks.fine, {},
-                                             [](const geometry::SurfacePatch& patch) { return patch.triangles.size(); }) -
+        bricks.fine[std::ranges::max_element(
+                        bricks.fine, {}, [](const geometry::SurfacePatch& patch) { return patch.triangles.size(); }) -
                     bricks.fine.begin()];
     CHECK(coarse.make(one, {Vec3(0.0), Vec3(0.0005), 0})[0].triangles.size() < one.triangles.size() / 2);
     for (const geometry::SurfacePatch& patch : coarse.make({}, bricks.grid)) CHECK(patch.triangles.empty());

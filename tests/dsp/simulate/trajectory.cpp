@@ -2,8 +2,7 @@
 #include "dsp/simulate/trajectory.hpp"
 
 #include "dsp/core/error.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +23,8 @@ std::vector<simulate::TrajectorySample> recorded(double begin, double end, doubl
 
 simulate::TrajectoryPlayer with_gap(double gap, double jump) {
     std::vector<simulate::TrajectorySample> all = recorded(0.0, 0.5);
-    const std::vector<simulate::TrajectorySample> later = recorded(all.back().time + gap, all.back().time + gap + 0.5, jump);
+    const std::vector<simulate::TrajectorySample> later =
+        recorded(all.back().time + gap, all.back().time + gap + 0.5, jump);
     all.insert(all.end(), later.begin(), later.end());
     return {all, {}, {}};
 }
@@ -50,7 +50,7 @@ TEST_CASE("recorded samples are passed through exactly, and twist has no jump th
     std::size_t hint = 0;
     for (std::size_t i = 1; i + 1 < samples.size(); ++i) {
         const simulate::TrajectoryState before = player.at(samples[i].time - 1e-9, hint),
-                              after = player.at(samples[i].time, hint);
+                                        after = player.at(samples[i].time, hint);
         REQUIRE(glm::distance(after.intention.pose.position, samples[i].pose.position) < 1e-9);
         REQUIRE(glm::distance(before.intention.twist.linear, after.intention.twist.linear) < 1e-6);
     }

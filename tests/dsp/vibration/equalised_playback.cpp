@@ -7,8 +7,7 @@
 #include "dsp/vibration/equaliser.hpp"
 #include "dsp/vibration/identify.hpp"
 #include "tests/dsp/vibration/plant.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cstdlib>
 #include <string>
@@ -70,14 +69,15 @@ void show(const std::string& name, const signal::Comparison& c) {
 
 }  // namespace
 
-TEST_CASE("on the plant it was made for, an equaliser makes the saw's vibration out of the actuator's") {
+TEST_CASE("on the plant it was made for, an equaliser makes the saw's vibration out of the actuator's", "[slow]") {
     for (const Saw& saw : saws) {
         const std::vector<float> wanted = saw.take();
         const signal::Comparison before = played(wanted, wanted, {});
         show(std::string(saw.name) + " before", before);
         CHECK(before.harmonic_error_db.value() > 2.0);
         CHECK(before.third_octave_max_db > 3.5);
-        for (const vibration::EqualiserKind kind : {vibration::EqualiserKind::minimum_phase, vibration::EqualiserKind::linear_phase}) {
+        for (const vibration::EqualiserKind kind :
+             {vibration::EqualiserKind::minimum_phase, vibration::EqualiserKind::linear_phase}) {
             const bool linear = kind == vibration::EqualiserKind::linear_phase;
             INFO(saw.name << (linear ? ", linear phase" : ", minimum phase"));
             const signal::Comparison after = played(wanted, equalised(wanted, kind), {});
@@ -95,7 +95,7 @@ TEST_CASE("on the plant it was made for, an equaliser makes the saw's vibration 
     }
 }
 
-TEST_CASE("on a plant that has drifted since, an equaliser still improves every take") {
+TEST_CASE("on a plant that has drifted since, an equaliser still improves every take", "[slow]") {
     struct Drift {
         const char* name;
         double resonance, mode;
@@ -108,7 +108,8 @@ TEST_CASE("on a plant that has drifted since, an equaliser still improves every 
             INFO(drift.name << ", " << saw.name);
             const std::vector<float> wanted = saw.take();
             const signal::Comparison before = played(wanted, wanted, plant);
-            const signal::Comparison after = played(wanted, equalised(wanted, vibration::EqualiserKind::linear_phase), plant);
+            const signal::Comparison after =
+                played(wanted, equalised(wanted, vibration::EqualiserKind::linear_phase), plant);
             show(std::string(drift.name) + ", " + saw.name + " before", before);
             show(std::string(drift.name) + ", " + saw.name + " after", after);
             CHECK(after.lsd_db < before.lsd_db);
@@ -132,7 +133,8 @@ TEST_CASE("on a plant that has drifted since, an equaliser still improves every 
 // |error before| + |error after| >= |d|: a filter that errs by at most 0.5 dB on the plant it was made for cannot err by
 // less than |d| − 0.5 dB on the other.
 TEST_CASE(
-    "no fixed filter serves a handle before and after its mode moves onto the saw's first order; a new sweep does") {
+    "no fixed filter serves a handle before and after its mode moves onto the saw's first order, and a new sweep "
+    "does") {
     test::Plant other;
     other.mode = 165.0;
     double worst = 0.0, mean = 0.0;
@@ -148,7 +150,8 @@ TEST_CASE(
     for (const Saw& saw : saws) {
         INFO(saw.name);
         const std::vector<float> wanted = saw.take();
-        const signal::Comparison after = played(wanted, equalised(wanted, vibration::EqualiserKind::linear_phase, anew), other);
+        const signal::Comparison after =
+            played(wanted, equalised(wanted, vibration::EqualiserKind::linear_phase, anew), other);
         show(std::string("other handle, measured anew, ") + saw.name, after);
         CHECK(after.lsd_db < (saw.cutting ? 1.0 : 0.2));
         CHECK(after.third_octave_max_db < 2.0);

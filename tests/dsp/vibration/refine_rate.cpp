@@ -3,8 +3,7 @@
 
 #include "dsp/core/random.hpp"
 #include "dsp/signal/spectrum/comb.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -33,7 +32,8 @@ TEST_CASE("the rate of a buzz is heard to 0.05 Hz, whatever the sample rate, in 
         for (const double frequency : {75.0, 150.3, 233.0, 333.3})
             for (const double noise : {0.0, 0.1}) {
                 INFO(sample_rate << " Hz, " << frequency << " Hz, noise " << noise);
-                const signal::Comb heard = signal::fit_comb(buzz(frequency, noise, sample_rate), sample_rate, 60.0, 400.0);
+                const signal::Comb heard =
+                    signal::fit_comb(buzz(frequency, noise, sample_rate), sample_rate, 60.0, 400.0);
                 CHECK(heard.best.frequency == Approx(frequency).margin(0.05));
                 CHECK(heard.confidence > signal::sure_of_comb);
             }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/volume/bricks.hpp"
 #include "dsp/core/random.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -52,7 +52,8 @@ Vec3 random_point(const Random& random, std::uint64_t i, double half) {
 
 TEST_CASE("bricks interpolate as the dense grid does, and the gradient is that of the interpolant") {
     const volume::Grid grid = sphere_grid({37, 41, 25}, Vec3(0.35e-3, 0.35e-3, 0.6e-3), 0.004);
-    const volume::BoneEditor editor(grid, constant_like(grid, 1800.0f), {.band = 1.0, .max_dirty = 8, .max_versions = 2});
+    const volume::BoneEditor editor(grid, constant_like(grid, 1800.0f),
+                                    {.band = 1.0, .max_dirty = 8, .max_versions = 2});
     const volume::BoneSnapshot bone = editor.current();
     const Random random{3};
     for (std::uint64_t i = 0; i < 5000; ++i) {
@@ -75,7 +76,8 @@ TEST_CASE("bricks interpolate as the dense grid does, and the gradient is that o
 
 TEST_CASE("outside of the grid, far from the bone and at no number everything is far") {
     const volume::Grid grid = sphere_grid({65, 65, 65}, Vec3(0.5e-3), 0.004);
-    const volume::BoneEditor editor(grid, constant_like(grid, 1.0f), {.band = 0.002, .max_dirty = 8, .max_versions = 2});
+    const volume::BoneEditor editor(grid, constant_like(grid, 1.0f),
+                                    {.band = 0.002, .max_dirty = 8, .max_versions = 2});
     for (const Vec3& p :
          {Vec3(1.0, 0.0, 0.0), Vec3(0.0159, 0.0159, 0.0159), Vec3(std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0),
           Vec3(0.0, -std::numeric_limits<double>::infinity(), 0.0)}) {

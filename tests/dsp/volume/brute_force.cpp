@@ -2,13 +2,12 @@
 // The distance to the surface of grey values, beside the distance to every triangle of the same surface drawn finer.
 #include "dsp/core/random.hpp"
 #include "dsp/geometry/closest_point.hpp"
-#include "dsp/volume/iso_distance.hpp"
 #include "dsp/geometry/iso_surface.hpp"
+#include "dsp/volume/iso_distance.hpp"
 #include "dsp/volume/resample.hpp"
+#include "tests/support/catch.hpp"
 
 #include <glm/geometric.hpp>
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -59,8 +58,8 @@ struct Triangles {
             const Vec3 apart = middle[n] - at;
             if (glm::dot(apart, apart) > (least + radius) * (least + radius)) continue;
             const auto& t = surface.triangles[n];
-            least =
-                std::min(least, glm::length(geometry::closest_on_triangle(at, corner(t[0]), corner(t[1]), corner(t[2])) - at));
+            least = std::min(
+                least, glm::length(geometry::closest_on_triangle(at, corner(t[0]), corner(t[1]), corner(t[2])) - at));
         }
         return least;
     }
@@ -75,7 +74,8 @@ geometry::TriangleSurface fine_surface(const volume::Grid& grey, int times) {
 
 }  // namespace
 
-TEST_CASE("the distance to lumps a few samples wide is that of brute force, isotropic or not, 1 m from the origin") {
+TEST_CASE("the distance to lumps a few samples wide is that of brute force, isotropic or not, 1 m from the origin",
+          "[slow]") {
     for (const Vec3 spacing : {Vec3(4e-4), Vec3(3.5e-4, 3.5e-4, 6e-4)}) {
         const volume::Grid grey = lumps(spacing, spacing.z > 5e-4 ? 3 : 2);
         const volume::Grid distance = volume::distance_to_iso(grey, 0.0f);
@@ -154,7 +154,7 @@ TEST_CASE("the distance has the same bits whoever runs its jobs") {
     CHECK(volume::distance_to_iso(volume::smoothed(grey, threads), 0.0f, threads).values == alone.values);
 }
 
-TEST_CASE("worked on a few layers at a time, the distance has the bits of the whole up to its reach") {
+TEST_CASE("worked on a few layers at a time, the distance has the bits of the whole up to its reach", "[slow]") {
     // Lumps of all sizes, and deep inside a block, where the nearest surface is farther than the reach.
     for (const Vec3 spacing : {Vec3(4e-4), Vec3(3.5e-4, 3.5e-4, 6e-4)}) {
         volume::Grid grey = lumps(spacing, 5);
@@ -195,9 +195,11 @@ TEST_CASE("volumes that are all bone, all air or one sample thick have a distanc
     for (const std::array<int, 3> size : {std::array<int, 3>{5, 4, 3}, {1, 1, 1}, {7, 1, 1}, {6, 5, 1}}) {
         volume::Grid grid{size, Vec3(0.0), Vec3(1e-3), {}};
         grid.values.assign(grid.count(), 1.0f);
-        for (const float d : volume::distance_to_iso(grid, 0.0f).values) CHECK(d == -std::numeric_limits<float>::infinity());
+        for (const float d : volume::distance_to_iso(grid, 0.0f).values)
+            CHECK(d == -std::numeric_limits<float>::infinity());
         grid.values.assign(grid.count(), -1.0f);
-        for (const float d : volume::distance_to_iso(grid, 0.0f).values) CHECK(d == std::numeric_limits<float>::infinity());
+        for (const float d : volume::distance_to_iso(grid, 0.0f).values)
+            CHECK(d == std::numeric_limits<float>::infinity());
     }
     volume::Grid thin{{2, 2, 2}, Vec3(0.0), Vec3(1e-3), {-1, 1, -1, 1, -1, 1, -1, 1}};
     for (int n = 0; n < 8; ++n)

@@ -3,10 +3,9 @@
 #include "dsp/volume/components.hpp"
 #include "dsp/volume/resample.hpp"
 #include "dsp/volume/surface_distance.hpp"
+#include "tests/support/catch.hpp"
 
 #include <glm/geometric.hpp>
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -78,7 +77,8 @@ TEST_CASE("distance to a partial-volume sphere of 0.35 mm voxels is right within
     for (const double radius : {4.0 * mm, 7.3 * mm}) {
         const volume::Grid grey = partial_volume_sphere(radius, 0.35 * mm, centre, radius > 5.0 * mm ? 52 : 34);
         const Errors errors =
-            sphere_errors(volume::distance_to_iso(volume::smoothed(volume::smoothed(volume::smoothed(grey))), 300.0f), radius, centre);
+            sphere_errors(volume::distance_to_iso(volume::smoothed(volume::smoothed(volume::smoothed(grey))), 300.0f),
+                          radius, centre);
         CAPTURE(radius, errors.depth / mm, errors.direction);
         // 300 HU is the half-way value of air at -1000 and bone at 1600.
         CHECK(errors.depth < 0.05 * mm);

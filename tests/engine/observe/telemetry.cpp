@@ -3,8 +3,7 @@
 
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/played_device.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -48,14 +47,15 @@ std::array<std::int64_t, observe::late_causes> skips_after(bool busy) {
     const observe::GroupTelemetry& t = engine.groups()[0]->telemetry;
     std::array<std::int64_t, observe::late_causes> skips{};
     std::int64_t all = 0;
-    for (std::size_t c = 0; c < observe::late_causes; ++c) all += skips[c] = t.skip_causes[static_cast<observe::LateCause>(c)];
+    for (std::size_t c = 0; c < observe::late_causes; ++c)
+        all += skips[c] = t.skip_causes[static_cast<observe::LateCause>(c)];
     CHECK(all == t.skipped.load());
     return skips;
 }
 
 }  // namespace
 
-TEST_CASE("every skipped tick has its cause: a node that computes too long, or a thread that stands still") {
+TEST_CASE("every skipped tick has its cause: a node that computes too long, or a thread that stands still", "[live]") {
     // On a machine that is busy with other things a computing thread may stand still as well: three tries.
     const auto most = [](bool busy, observe::LateCause cause) {
         std::int64_t skips = 0;
@@ -70,10 +70,11 @@ TEST_CASE("every skipped tick has its cause: a node that computes too long, or a
 TEST_CASE("nodes are timed in one call of 64, and told by name") {
     run::EngineOptions options;
     options.seconds = 6.4;
-    run::Engine engine(compile_text(PatchText{
-                      {{"a", "chaos", "1 kHz", {}}, {"b", "chaos", "1 kHz", {{"work", "2000"}}}}, {"a.out -> b.in"}, ""}
-                                   .toml()),
-                  options);
+    run::Engine engine(
+        compile_text(
+            PatchText{{{"a", "chaos", "1 kHz", {}}, {"b", "chaos", "1 kHz", {{"work", "2000"}}}}, {"a.out -> b.in"}, ""}
+                .toml()),
+        options);
     engine.render(1);
     REQUIRE(engine.nodes().size() == 2);
     const build::LiveNode &a = *engine.nodes()[0], &b = *engine.nodes()[1];

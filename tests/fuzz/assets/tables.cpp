@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // All that is a table of numbers: any text is read as each of them or refused with one message, and what is read is
 // finite.
-#include "assets/table/deflection_file.hpp"
 #include "assets/display/touch_file.hpp"
 #include "assets/sound/response_file.hpp"
+#include "assets/table/deflection_file.hpp"
 #include "assets/table/trajectory.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/fuzz/memory_file.hpp"

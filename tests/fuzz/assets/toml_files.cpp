@@ -3,10 +3,10 @@
 #include "assets/display/rig_file.hpp"
 #include "assets/sound/equaliser_file.hpp"
 #include "assets/sound/recording_set.hpp"
-#include "tools/study/rig_matrix.hpp"
 #include "assets/table/thresholds.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/fuzz/memory_file.hpp"
+#include "tools/study/rig_matrix.hpp"
 
 #include <cstdlib>
 

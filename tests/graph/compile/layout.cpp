@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/compile/layout.hpp"
 
+#include "tests/support/catch.hpp"
 #include "tests/support/compile_nodes.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <array>
 #include <map>
@@ -43,8 +42,8 @@ std::string audio_of(const std::string& name, const std::string& type) { return 
 //  └──────┘   └───┘   └───┘   └───┘   └───┘
 TEST_CASE("a chain of signals of any length lives in two places") {
     const Places p = places_of(wires("\"w.out -> a.in\", \"a.out -> b.in\", \"b.out -> c.in\", \"c.out -> d.in\"") +
-                               audio_of("w", "wave") + audio_of("a", "gain") + audio_of("b", "gain") + audio_of("c", "gain") +
-                               audio_of("d", "gain"));
+                               audio_of("w", "wave") + audio_of("a", "gain") + audio_of("b", "gain") +
+                               audio_of("c", "gain") + audio_of("d", "gain"));
     std::set<std::size_t> different;
     for (const auto& [port, offset] : p.at) different.insert(offset);
     CHECK(different.size() == 2);
@@ -61,8 +60,9 @@ TEST_CASE("a chain of signals of any length lives in two places") {
 //          └───►│ z │           reads the wave last
 //               └───┘
 TEST_CASE("a signal keeps its place until its last reader has run") {
-    const Places p = places_of(wires("\"w.out -> a.in\", \"a.out -> b.in\", \"w.out -> z.in\"") + audio_of("w", "wave") +
-                               audio_of("a", "gain") + audio_of("b", "gain") + audio_of("z", "gain"));
+    const Places p =
+        places_of(wires("\"w.out -> a.in\", \"a.out -> b.in\", \"w.out -> z.in\"") + audio_of("w", "wave") +
+                  audio_of("a", "gain") + audio_of("b", "gain") + audio_of("z", "gain"));
     CHECK(p.at.at("w.out") != p.at.at("a.out"));
     CHECK(p.at.at("w.out") != p.at.at("b.out"));
     CHECK(p.at.at("a.out") != p.at.at("b.out"));

@@ -3,9 +3,9 @@
 #include "dsp/contact/pointshell.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "dsp/simulate/hand.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -28,7 +28,8 @@ struct Fracture {
     coupling::Scene scene;
 
     Fracture() {
-        std::vector<bone::Bone> bones = library::make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
+        std::vector<bone::Bone> bones =
+            library::make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
         left = std::make_shared<const bone::Bone>(std::move(bones[0]));
         right = std::make_shared<const bone::Bone>(std::move(bones[1]));
         scene.count = 2;

@@ -6,9 +6,9 @@
 #include "dsp/contact/shape.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -35,8 +35,10 @@ double largest_step(const std::vector<Wrench>& felt, std::size_t first) {
 }  // namespace
 
 TEST_CASE("bone that is carved away at the break while a fragment snaps to it changes the force without a jump") {
-    const std::vector<bone::Bone> bones = library::make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
-    const contact::Pointshell shells[] = {contact::make_pointshell(bones[0].points), contact::make_pointshell(bones[1].points)};
+    const std::vector<bone::Bone> bones =
+        library::make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
+    const contact::Pointshell shells[] = {contact::make_pointshell(bones[0].points),
+                                          contact::make_pointshell(bones[1].points)};
     const contact::Voxmap right = contact::make_voxmap(bones[1].distance);
     // Sixty versions a second of the left half, a ball that grows at the rim of the break.
     std::vector<contact::Voxmap> carved;
@@ -69,7 +71,8 @@ TEST_CASE("bone that is carved away at the break while a fragment snaps to it ch
         return scene;
     };
     NodeHarness node("snap_to_fit", servo);
-    node.asset("moving", std::make_shared<const bone::Bone>(bones[1])).asset("fixed", std::make_shared<const bone::Bone>(bones[0]));
+    node.asset("moving", std::make_shared<const bone::Bone>(bones[1]))
+        .asset("fixed", std::make_shared<const bone::Bone>(bones[0]));
     node.set("held", "1").set("target", "0");
     node.feed<coupling::Scene>("scene", scene_at);
     const Pose grip{Vec3(-20.0 * mm, 0.0, 0.0), {1.0, 0.0, 0.0, 0.0}};
@@ -129,8 +132,10 @@ TEST_CASE("a target behind a thin plate pulls nothing through it, neither does a
 }
 
 TEST_CASE("a fragment that is taken deep inside of another and led comes out without harm, and to its place") {
-    const std::vector<bone::Bone> bones = library::make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
-    const contact::Pointshell shells[] = {contact::make_pointshell(bones[0].points), contact::make_pointshell(bones[1].points)};
+    const std::vector<bone::Bone> bones =
+        library::make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
+    const contact::Pointshell shells[] = {contact::make_pointshell(bones[0].points),
+                                          contact::make_pointshell(bones[1].points)};
     const contact::Voxmap maps[] = {contact::make_voxmap(bones[0].distance), contact::make_voxmap(bones[1].distance)};
     coupling::Scene scene;
     scene.count = 2;

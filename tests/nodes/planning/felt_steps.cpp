@@ -6,9 +6,9 @@
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -33,7 +33,8 @@ struct Broken {
     Pose beside;  ///< of the right half
 
     explicit Broken(std::uint64_t seed) {
-        auto bones = library::make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 1.0 * mm, .seed = seed});
+        auto bones =
+            library::make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 1.0 * mm, .seed = seed});
         left = std::make_shared<const bone::Bone>(std::move(bones[0]));
         right = std::make_shared<const bone::Bone>(std::move(bones[1]));
         scene.count = 2;
@@ -125,7 +126,7 @@ Felt felt_by(const char* kind, const Broken& broken, const Times& at, std::int64
 
 }  // namespace
 
-TEST_CASE("a fragment that is led over the teeth of any break and settles there is felt without a step") {
+TEST_CASE("a fragment that is led over the teeth of any break and settles there is felt without a step", "[slow]") {
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         const Broken broken(seed);
         for (const char* kind : {"quasi_static_coupling", "snap_to_fit"}) {
@@ -144,7 +145,7 @@ TEST_CASE("a fragment that is led over the teeth of any break and settles there 
     }
 }
 
-TEST_CASE("a fragment that is led or settles comes along within 50 ms of being pulled away, at any time") {
+TEST_CASE("a fragment that is led or settles comes along within 50 ms of being pulled away, at any time", "[slow]") {
     const Broken broken(1);
     for (const char* kind : {"quasi_static_coupling", "snap_to_fit"})
         for (const std::int64_t pull : {720, 900, 1200, 1760, 1820, 1900, 2100, 2230, 2400}) {

@@ -3,8 +3,9 @@
 
 #include "devices/display/picture_maker.hpp"
 #include "dsp/core/error.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -20,7 +21,7 @@ bool can_render() {
         const display::SurfacelessContext context;
         return true;
     } catch (const Error& error) {
-        WARN("skipped: " << error.what());
+        tactus::test::skip(error.what());
         return false;
     }
 }
@@ -50,7 +51,8 @@ TEST_CASE("a cut is in the next picture, and only its bricks were meshed") {
     volume::BoneEditor editor(ball(0.01), density, {.band = 0.002});
     observe::Observer observer;
     const volume::BoneSnapshot initial = editor.current();
-    const auto port = observer.open({"carve.bone", at_60_hz, 1}, value::snapshot<volume::BoneSnapshot>, bytes_of(initial));
+    const auto port =
+        observer.open({"carve.bone", at_60_hz, 1}, value::snapshot<volume::BoneSnapshot>, bytes_of(initial));
     display::PictureMaker maker(64, 64);
     SceneOutline outline;
     outline.bones = {{"carve.bone"}};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nodes/catalogue.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/tools/patches.hpp"
 #include "tools/view/canvas.hpp"
 #include "tools/view/patch/parameters.hpp"
@@ -9,7 +10,6 @@
 #include "tools/view/signal/plot.hpp"
 
 #include <fmt/format.h>
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,8 @@ namespace {
 
 compile::Plan plan_of_text(const std::string& text) {
     patch::Problems problems;
-    std::optional<compile::Plan> plan = compile::compile(patch::read_patch(text, "p.toml", problems), nodes::catalogue(), problems);
+    std::optional<compile::Plan> plan =
+        compile::compile(patch::read_patch(text, "p.toml", problems), nodes::catalogue(), problems);
     for (const Error& error : problems.list) FAIL(error.what());
     return std::move(*plan);
 }

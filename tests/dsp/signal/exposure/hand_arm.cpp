@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/signal/exposure/hand_arm.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <array>
 #include <cmath>
@@ -66,8 +65,9 @@ TEST_CASE("through the spectrum a tone is weighted within 0.01 %, through the fi
 TEST_CASE("daily exposure agrees with the norm's examples to the printed digit") {
     const auto printed = [](double x) { return std::round(10.0 * x) / 10.0; };
     CHECK(printed(signal::daily_exposure(std::array{signal::HandArmOperation{7.4, 2.5 * 3600.0}})) == 4.1);
-    CHECK(printed(signal::daily_exposure(std::array{signal::HandArmOperation{4.6, 7200.0}, signal::HandArmOperation{6.0, 3600.0},
-                                            signal::HandArmOperation{3.6, 7200.0}})) == 3.6);
+    CHECK(printed(signal::daily_exposure(std::array{signal::HandArmOperation{4.6, 7200.0},
+                                                    signal::HandArmOperation{6.0, 3600.0},
+                                                    signal::HandArmOperation{3.6, 7200.0}})) == 3.6);
     CHECK(std::round(signal::years_to_white_fingers(7.0)) == 4.0);
     // A sagittal saw on bone: 11.3 m/s², 23 minutes to the action value, 94 to the limit value.
     CHECK(signal::time_to_reach(signal::action_value, 11.3) / 60.0 == Approx(23.5).margin(0.05));

@@ -3,8 +3,7 @@
 #include "dsp/signal/filter/one_pole.hpp"
 #include "dsp/signal/filter/oscillator.hpp"
 #include "dsp/signal/filter/ramp.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <complex>
@@ -50,7 +49,8 @@ TEST_CASE("low-pass and high-pass are 3 dB down at their frequency and fall 12 d
 
 TEST_CASE("the gain of a low-pass at its frequency is its quality factor") {
     for (const double q : {0.5, 2.0, 10.0})
-        CHECK(measured_gain(signal::Biquad{signal::lowpass(300.0, rate, q)}, 300.0) == Approx(20.0 * std::log10(q)).margin(0.01));
+        CHECK(measured_gain(signal::Biquad{signal::lowpass(300.0, rate, q)}, 300.0) ==
+              Approx(20.0 * std::log10(q)).margin(0.01));
 }
 
 TEST_CASE("a band-pass keeps its centre, is frequency/q wide, and falls 6 dB per octave on both sides") {
@@ -74,7 +74,8 @@ TEST_CASE("a notch removes its frequency and nothing an octave away") {
 }
 
 TEST_CASE("the computed response is the one that a sine meets") {
-    for (const auto& c : {signal::lowpass(300.0, rate, 3.0), signal::highpass(80.0, rate), signal::bandpass(500.0, rate, 4.0)})
+    for (const auto& c :
+         {signal::lowpass(300.0, rate, 3.0), signal::highpass(80.0, rate), signal::bandpass(500.0, rate, 4.0)})
         for (const double f : {60.0, 233.0, 1000.0})
             CHECK(measured_gain(signal::Biquad{c}, f) ==
                   Approx(20.0 * std::log10(std::abs(c.response(f, rate)))).margin(0.005));
@@ -82,7 +83,8 @@ TEST_CASE("the computed response is the one that a sine meets") {
 
 TEST_CASE("filters outside what the rate can carry stay stable") {
     for (const double f : {-5.0, 0.0, 24000.0, 1e9})
-        for (const auto& c : {signal::lowpass(f, rate), signal::highpass(f, rate), signal::bandpass(f, rate, 0.0), signal::notch(f, rate, -1.0)}) {
+        for (const auto& c : {signal::lowpass(f, rate), signal::highpass(f, rate), signal::bandpass(f, rate, 0.0),
+                              signal::notch(f, rate, -1.0)}) {
             signal::Biquad filter{c};
             double largest = 0.0;
             for (int i = 0; i < 20000; ++i) largest = std::max(largest, std::abs(filter(i % 7 == 0 ? 1.0 : -0.2)));

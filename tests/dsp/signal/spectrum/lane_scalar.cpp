@@ -3,8 +3,8 @@
 #include "dsp/signal/spectrum/lane_scalar.hpp"
 
 #include "dsp/core/random.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <kissfft/kissfft.hh>
 
 #include <cmath>
@@ -67,11 +67,12 @@ TEST_CASE("each lane of a transform has the bits of KissFFT on its numbers alone
 }
 
 TEST_CASE("a lane scalar is made from one number, keeps its zero's sign, and computes lane by lane") {
-    const signal::LaneScalar<double> zero(-0.0), a(signal::Lanes<double>{1.5, -2.0}), b(signal::Lanes<double>{4.0, 0.5});
+    const signal::LaneScalar<double> zero(-0.0), a(signal::Lanes<double>{1.5, -2.0}),
+        b(signal::Lanes<double>{4.0, 0.5});
     CHECK(std::signbit(zero.lanes[0]));
     CHECK(std::signbit(zero.lanes[1]));
     const signal::LaneScalar<double> sum = a + b, difference = a - b, product = a * b, ratio = a / b, twice = 2 * a,
-                             half = a / 2, negative = -a;
+                                     half = a / 2, negative = -a;
     const double wanted[7][2] = {{5.5, -1.5}, {-2.5, -2.5}, {6.0, -1.0}, {0.375, -4.0},
                                  {3.0, -4.0}, {0.75, -1.0}, {-1.5, 2.0}};
     std::size_t row = 0;

@@ -2,8 +2,7 @@
 #include "dsp/signal/spectrum/line_match.hpp"
 
 #include "tests/dsp/vibration/plant.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 using namespace tactus;
 
@@ -11,7 +10,8 @@ namespace {
 
 constexpr double rate = 8000.0;
 
-signal::Spectrum spectrum_of_tones(std::initializer_list<std::pair<double, double>> tones, double noise, std::uint64_t seed) {
+signal::Spectrum spectrum_of_tones(std::initializer_list<std::pair<double, double>> tones, double noise,
+                                   std::uint64_t seed) {
     std::vector<double> samples(80000);
     const Random random{seed};
     for (std::size_t i = 0; i < samples.size(); ++i) {

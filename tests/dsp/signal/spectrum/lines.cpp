@@ -3,8 +3,7 @@
 
 #include "dsp/core/random.hpp"
 #include "dsp/signal/spectrum/comb.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -78,7 +77,8 @@ TEST_CASE("the fundamental of a saw in noise is right within 0.05 Hz and each or
 }
 
 TEST_CASE("orders that are missing say so, and a weak or missing first order does not move the fundamental") {
-    const signal::Spectrum odd = Record(8000.0, 8.0).tone(100, 1.0).tone(300, 0.5).tone(500, 0.3).noise(0.01, 2).spectrum(8192);
+    const signal::Spectrum odd =
+        Record(8000.0, 8.0).tone(100, 1.0).tone(300, 0.5).tone(500, 0.3).noise(0.01, 2).spectrum(8192);
     const std::vector<signal::Harmonic> table = signal::harmonic_table(odd, 100.0, 6);
     REQUIRE(table.size() == 6);
     for (const signal::Harmonic& h : table) CHECK(h.present == (h.order % 2 == 1 && h.order <= 5));
@@ -89,7 +89,8 @@ TEST_CASE("orders that are missing say so, and a weak or missing first order doe
 }
 
 TEST_CASE("a lone tone is its own fundamental and noise has none") {
-    const signal::Comb tone = signal::fit_comb(Record(8000.0, 8.0).tone(233.0, 1.0).noise(0.01, 4).spectrum(8192), 20.0, 500.0);
+    const signal::Comb tone =
+        signal::fit_comb(Record(8000.0, 8.0).tone(233.0, 1.0).noise(0.01, 4).spectrum(8192), 20.0, 500.0);
     CHECK(tone.best.frequency == Approx(233.0).epsilon(1e-4));
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
         const signal::Comb noise = signal::fit_comb(Record(8000.0, 8.0).noise(1.0, seed).spectrum(4096), 20.0, 500.0);
@@ -97,7 +98,7 @@ TEST_CASE("a lone tone is its own fundamental and noise has none") {
     }
 }
 
-TEST_CASE("hum 10 dB above the noise of its bin is found, 50 Hz and 60 Hz") {
+TEST_CASE("hum 10 dB above the noise of its bin is found, 50 Hz and 60 Hz", "[slow]") {
     int found = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         const double mains = seed % 2 ? 60.0 : 50.0;
@@ -108,9 +109,11 @@ TEST_CASE("hum 10 dB above the noise of its bin is found, 50 Hz and 60 Hz") {
         const double noise = 0.05 * 0.05 / 4000.0;
         const double amplitude = std::sqrt(2.0 * std::pow(10.0, 10.3 / 10.0) * noise * quiet.noise_bandwidth);
         record.tone(mains, amplitude);
-        const std::vector<signal::HumLine> hum = signal::find_hum(record.spectrum(4096), 180.0 + static_cast<double>(seed));
+        const std::vector<signal::HumLine> hum =
+            signal::find_hum(record.spectrum(4096), 180.0 + static_cast<double>(seed));
         bool right = false;
-        for (const signal::HumLine& line : hum) right = right || (line.mains == static_cast<int>(mains) && line.order == 1);
+        for (const signal::HumLine& line : hum)
+            right = right || (line.mains == static_cast<int>(mains) && line.order == 1);
         found += right ? 1 : 0;
     }
     CHECK(found >= 54);  // at the threshold itself noise decides; 9 in 10 a third of a dB above it
@@ -124,7 +127,7 @@ TEST_CASE("hum 10 dB above the noise of its bin is found, 50 Hz and 60 Hz") {
     CHECK(hum[1].order == 3);
 }
 
-TEST_CASE("no hum is found in 200 records without hum, saws at any rate") {
+TEST_CASE("no hum is found in 200 records without hum, saws at any rate", "[slow]") {
     int false_alarms = 0;
     const Random random{99};
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
@@ -141,6 +144,7 @@ TEST_CASE("no hum is found in 200 records without hum, saws at any rate") {
 
 TEST_CASE("a rate that is the mains itself counts as hum, orders of a saw at 150 Hz do not") {
     CHECK_FALSE(
-        signal::find_hum(Record(8000.0, 10.0).tone(50.0, 1.0).tone(100.0, 0.3).noise(0.01, 1).spectrum(8192), 50.0).empty());
+        signal::find_hum(Record(8000.0, 10.0).tone(50.0, 1.0).tone(100.0, 0.3).noise(0.01, 1).spectrum(8192), 50.0)
+            .empty());
     CHECK(signal::find_hum(Record(8000.0, 10.0).saw(150.0, 1.0).noise(0.01, 1).spectrum(8192), 150.0).empty());
 }

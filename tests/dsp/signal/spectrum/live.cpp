@@ -4,8 +4,7 @@
 #include "dsp/signal/spectrum/comb.hpp"
 #include "dsp/signal/spectrum/comparison.hpp"
 #include "dsp/signal/spectrum/live_comparison.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <limits>
@@ -93,15 +92,15 @@ TEST_CASE("the rate of a saw heard live is that of the record") {
     CHECK(comb.confidence > 0.7);
 }
 
-TEST_CASE("live scores are those of a comparison of the whole takes") {
+TEST_CASE("live scores are those of a comparison of the whole takes", "[slow]") {
     const std::vector<float> reference = saw(48000.0, 6.0, 233.0);
     for (const double tilt : {0.7, 0.45, 0.95})
         for (const double rate : {48000.0, 44100.0, 8000.0}) {
             INFO("tilt " << tilt << ", output at " << rate << " Hz");
             std::vector<float> output = saw(rate, 6.0, 233.0, tilt, 2);
             for (float& y : output) y *= 0.1f;
-            const signal::Comparison whole =
-                signal::compare(signal::Take(std::span<const float>(reference), 48000.0), signal::Take(std::span<const float>(output), rate));
+            const signal::Comparison whole = signal::compare(signal::Take(std::span<const float>(reference), 48000.0),
+                                                             signal::Take(std::span<const float>(output), rate));
             signal::LiveComparison live(48000.0, rate, forever);
             push_in_pieces(reference, [&](std::span<const float> piece) { live.push_reference(piece); });
             push_in_pieces(output, [&](std::span<const float> piece) { live.push_output(piece); });

@@ -3,8 +3,7 @@
 
 #include "dsp/core/random.hpp"
 #include "dsp/signal/spectrum/bands.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -84,7 +83,8 @@ TEST_CASE("third-octave bands err by what was done to them") {
         if (band.hz < 120.0 || band.hz > 320.0) CHECK(band.error_db == Approx(0.0).margin(1e-9));
     }
     // The output's gain counts before.
-    CHECK(signal::third_octave_errors({reference, reference, 0.5}, 40.0, 1000.0, 2.0)[3].error_db == Approx(6.02).margin(0.01));
+    CHECK(signal::third_octave_errors({reference, reference, 0.5}, 40.0, 1000.0, 2.0)[3].error_db ==
+          Approx(6.02).margin(0.01));
     std::fill(output.begin(), output.end(), 0.0);
     CHECK(signal::third_octave_errors({reference, output, 0.5}, 40.0, 1000.0)[0].error_db == Approx(-60.0));
 }

@@ -4,8 +4,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/signal/spectrum/cross.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +27,8 @@ struct Pair {
     }
 };
 
-signal::WelchSettings of(std::size_t segment, signal::Detrend detrend, signal::Scaling scaling = signal::Scaling::density) {
+signal::WelchSettings of(std::size_t segment, signal::Detrend detrend,
+                         signal::Scaling scaling = signal::Scaling::density) {
     return {8000.0, segment, segment / 2, signal::WindowKind::hann, detrend, signal::Averaging::mean, scaling};
 }
 
@@ -62,14 +62,16 @@ TEST_CASE("spectra equal scipy's: even and odd segments, each detrend, mean and 
                                          3.9870805333303546e-05, 0.00019969548161130908, 5.8816316116796816e-05,
                                          2.6966997513754002e-08, 2.0430524451381742e-09};
     check_equal(signal::welch<double>(pair.x, of(16, signal::Detrend::constant)).power, even, 1e-12);
-    check_equal(signal::welch<double>(pair.x, of(15, signal::Detrend::linear, signal::Scaling::spectrum)).power, odd_linear, 1e-11);
+    check_equal(signal::welch<double>(pair.x, of(15, signal::Detrend::linear, signal::Scaling::spectrum)).power,
+                odd_linear, 1e-11);
     signal::WelchSettings median = of(15, signal::Detrend::none);
     median.averaging = signal::Averaging::median;
     check_equal(signal::welch<double>(pair.x, median).power, odd_median, 1e-12);
 
     const std::vector<float> single(pair.x.begin(), pair.x.end());
     check_equal(signal::welch<float>(single, of(16, signal::Detrend::constant)).power, even, 2e-5);
-    check_equal(signal::welch<float>(single, of(15, signal::Detrend::linear, signal::Scaling::spectrum)).power, odd_linear, 2e-5);
+    check_equal(signal::welch<float>(single, of(15, signal::Detrend::linear, signal::Scaling::spectrum)).power,
+                odd_linear, 2e-5);
 }
 
 TEST_CASE("cross-spectrum and coherence equal scipy's") {
@@ -97,7 +99,8 @@ TEST_CASE("cross-spectrum and coherence equal scipy's") {
 
 TEST_CASE("a record in pieces of any size has the spectrum of the whole, to the bit") {
     const std::vector<double> x = white_noise(40'000, 3), y = white_noise(40'000, 4);
-    for (const signal::Averaging averaging : {signal::Averaging::mean, signal::Averaging::median, signal::Averaging::maximum, signal::Averaging::minimum}) {
+    for (const signal::Averaging averaging :
+         {signal::Averaging::mean, signal::Averaging::median, signal::Averaging::maximum, signal::Averaging::minimum}) {
         signal::WelchSettings settings = of(256, signal::Detrend::constant);
         settings.overlap = 100;
         settings.averaging = averaging;
@@ -123,7 +126,7 @@ TEST_CASE("a record in pieces of any size has the spectrum of the whole, to the 
     CHECK(stream.spectra().xy == signal::cross_spectra<double>(x, y, of(256, signal::Detrend::linear)).xy);
 }
 
-TEST_CASE("the power of noise is its variance, spread over the band; the scatter is what is promised") {
+TEST_CASE("the power of noise is its variance, spread over the band, and the scatter is what is promised") {
     const std::vector<double> x = white_noise(200'000, 5);
     const signal::Spectrum spectrum = signal::welch<double>(x, of(512, signal::Detrend::constant));
     double total = 0.0, scatter = 0.0;
@@ -142,12 +145,13 @@ TEST_CASE("a tone on a bin reads half its squared amplitude, at 0 Hz and half th
     for (const auto& [bin, wanted] : {std::pair{0, 9.0}, {20, 4.5}, {64, 9.0}}) {
         for (std::size_t i = 0; i < x.size(); ++i)
             x[i] = 3.0 * std::cos(std::numbers::pi * bin * static_cast<double>(i) / 64.0);
-        const signal::Spectrum spectrum = signal::welch<double>(x, of(128, signal::Detrend::none, signal::Scaling::spectrum));
+        const signal::Spectrum spectrum =
+            signal::welch<double>(x, of(128, signal::Detrend::none, signal::Scaling::spectrum));
         CHECK(spectrum.power[static_cast<std::size_t>(bin)] == Approx(wanted).epsilon(1e-12));
     }
 }
 
-TEST_CASE("unrelated noise has coherence near one over the number of segments; too few are refused") {
+TEST_CASE("unrelated noise has coherence near one over the number of segments, and too few are refused") {
     const std::vector<double> x = white_noise(100'000, 6), y = white_noise(100'000, 7);
     signal::WelchSettings settings = of(1000, signal::Detrend::constant);
     settings.overlap = 0;
@@ -156,7 +160,8 @@ TEST_CASE("unrelated noise has coherence near one over the number of segments; t
     for (const double g : gamma) mean += g / static_cast<double>(gamma.size());
     CHECK(mean == Approx(0.01).epsilon(0.2));
     settings.segment = 30'000;
-    CHECK_THROWS_WITH(signal::cross_spectra<double>(x, y, settings).coherence(), Catch::Contains("at least 4 segments"));
+    CHECK_THROWS_WITH(signal::cross_spectra<double>(x, y, settings).coherence(),
+                      Catch::Matchers::ContainsSubstring("at least 4 segments"));
 }
 
 TEST_CASE("H1 finds a filter under noise on its output") {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/signal/spectrum/window.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 using namespace tactus;
 
@@ -25,5 +24,6 @@ TEST_CASE("windows equal scipy's, periodic and symmetric") {
 
 TEST_CASE("the noise bandwidth is one bin without a window and one and a half with Hann") {
     CHECK(signal::noise_bandwidth_bins(signal::make_window(signal::WindowKind::rectangular, 100)) == Approx(1.0));
-    CHECK(signal::noise_bandwidth_bins(signal::make_window(signal::WindowKind::hann, 4096)) * 48000.0 / 4096.0 == Approx(17.578125));
+    CHECK(signal::noise_bandwidth_bins(signal::make_window(signal::WindowKind::hann, 4096)) * 48000.0 / 4096.0 ==
+          Approx(17.578125));
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/simulate/gripper/finger.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -53,7 +52,8 @@ TEST_CASE("a traveling wave slows off resonance, off 90 degrees and with amplitu
 }
 
 TEST_CASE("every way of control gives the speed that is asked for, outside of the dead zone") {
-    for (const simulate::WaveControl control : {simulate::WaveControl::frequency, simulate::WaveControl::phase, simulate::WaveControl::amplitude}) {
+    for (const simulate::WaveControl control :
+         {simulate::WaveControl::frequency, simulate::WaveControl::phase, simulate::WaveControl::amplitude}) {
         simulate::WaveMotor m;
         m.control = control;
         for (const double v : {0.05, -0.2, 0.55, -0.6}) CHECK(m.speed_of(m.drive_for(v)) == Approx(v).epsilon(1e-9));
