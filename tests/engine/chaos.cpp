@@ -2,8 +2,7 @@
 #include "tests/engine/chaos.hpp"
 
 #include "nodes/catalogue.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -3,8 +3,7 @@
 #include "graph/analyse/stiffness.hpp"
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/played_device.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/repeat.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <filesystem>
 
@@ -23,7 +22,7 @@ std::uint64_t rendered(const std::string& toml, int threads, int block, bool ran
 
 }  // namespace
 
-TEST_CASE("threads and blocks cannot change a bit of the output") {
+TEST_CASE("threads and blocks cannot change a bit of the output", "[slow]") {
     const std::string patch = four_rates();
     const std::uint64_t reference = rendered(patch, 1, 1, false);
     for (const int threads : {1, 2, 4})
@@ -52,7 +51,7 @@ TEST_CASE("every group runs the activations that start before the end, and no mo
     for (const auto& group : engine.groups()) CHECK(group->telemetry.misses.load() == 0);
 }
 
-TEST_CASE("a live run that misses nothing has the offline hash, and one that misses has that of its log") {
+TEST_CASE("a live run that misses nothing has the offline hash, and one that misses has that of its log", "[live]") {
     const std::string patch = four_rates();
     const std::uint64_t offline = rendered(patch, 1, 0, false, 0.4);
     for (const double dilate : {1.0, 4.0, 16.0}) {
@@ -80,7 +79,7 @@ TEST_CASE("a live run that misses nothing has the offline hash, and one that mis
     }
 }
 
-TEST_CASE("an overloaded live run skips, drops and holds, and its log still gives the same bits") {
+TEST_CASE("an overloaded live run skips, drops and holds, and its log still gives the same bits", "[live]") {
     // The 1 kHz and 60 Hz groups need longer than their periods.
     std::string patch = four_rates();
     const auto slow_down = [&patch](const std::string& node, const std::string& work) {
@@ -109,8 +108,8 @@ TEST_CASE("an overloaded live run skips, drops and holds, and its log still give
     std::filesystem::remove(log);
 }
 
-TEST_CASE(
-    "a live run in which groups stand still for longer than rings hold is repeated, whatever blocks and threads") {
+TEST_CASE("a live run in which groups stand still for longer than rings hold is repeated, whatever blocks and threads",
+          "[live]") {
     std::string patch = four_rates();
     const auto stand_still = [&patch](const std::string& name, const std::string& rate, int at) {
         patch += "[nodes." + name + "]\ntype = \"planted\"\nrate = \"" + rate +
@@ -146,7 +145,7 @@ TEST_CASE(
     std::filesystem::remove(log);
 }
 
-TEST_CASE("a damaged or foreign log is refused") {
+TEST_CASE("a damaged or foreign log is refused", "[live]") {
     const auto log = scratch("damaged.log");
     run::EngineOptions options;
     options.seconds = 0.05;
@@ -155,9 +154,9 @@ TEST_CASE("a damaged or foreign log is refused") {
     live.run_live({.dilate = 1.0, .log = log, .stop = nullptr, .watch = {}});
     const auto size = std::filesystem::file_size(log);
     std::filesystem::resize_file(log, size - 200);
-    CHECK_THROWS_WITH(take::TimingLog::load(log), Catch::Contains("stops before the end"));
+    CHECK_THROWS_WITH(take::TimingLog::load(log), Catch::Matchers::ContainsSubstring("stops before the end"));
     std::filesystem::resize_file(log, 10);
-    CHECK_THROWS_WITH(take::TimingLog::load(log), Catch::Contains("not a timing log"));
+    CHECK_THROWS_WITH(take::TimingLog::load(log), Catch::Matchers::ContainsSubstring("not a timing log"));
     std::filesystem::remove(log);
-    CHECK_THROWS_WITH(take::TimingLog::load(log), Catch::Contains("cannot read"));
+    CHECK_THROWS_WITH(take::TimingLog::load(log), Catch::Matchers::ContainsSubstring("cannot read"));
 }

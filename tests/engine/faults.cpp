@@ -2,8 +2,7 @@
 // Planted faults, and what would have reached the hand.
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/played_device.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <unistd.h>
 #include <algorithm>
@@ -121,14 +120,14 @@ const auto plain_hand = [](std::int64_t count) { return pressing(count); };
 
 }  // namespace
 
-TEST_CASE("without a fault the hand feels the spring, and nothing is told") {
+TEST_CASE("without a fault the hand feels the spring, and nothing is told", "[live]") {
     const Outcome o = run_patch(patch_text("none", 0), 1.0, plain_hand);
     check_bounds(o);
     CHECK(force_at(o, 900) == Approx(4.0));
     CHECK(o.faults.empty());
 }
 
-TEST_CASE("a force that is not a number, or infinite, fades to zero within 10 ms and never returns") {
+TEST_CASE("a force that is not a number, or infinite, fades to zero within 10 ms and never returns", "[live]") {
     for (const std::string fault : {"nan", "inf"}) {
         const Outcome o = run_patch(patch_text(fault, 500), 3.0, plain_hand);
         INFO(fault);
@@ -142,7 +141,7 @@ TEST_CASE("a force that is not a number, or infinite, fades to zero within 10 ms
     }
 }
 
-TEST_CASE("a driver whose sample counter stops is given up after 10 ticks, and without force 10 ms later") {
+TEST_CASE("a driver whose sample counter stops is given up after 10 ticks, and without force 10 ms later", "[live]") {
     const Outcome o = run_patch(patch_text("none", 0), 3.0, [](std::int64_t count) {
         DeviceSample sample = pressing(count);
         sample.counter = count < 500 || count > 700 ? count : 500;
@@ -158,7 +157,7 @@ TEST_CASE("a driver whose sample counter stops is given up after 10 ticks, and w
     CHECK(o.faults[0].reason == control::Fault::stale_input);
 }
 
-TEST_CASE("an invalid sample fades the force at once") {
+TEST_CASE("an invalid sample fades the force at once", "[live]") {
     const Outcome o = run_patch(patch_text("none", 0), 1.0, [](std::int64_t count) {
         DeviceSample sample = pressing(count);
         sample.valid = count != 500;
@@ -170,7 +169,8 @@ TEST_CASE("an invalid sample fades the force at once") {
     CHECK(o.faults[0].reason == control::Fault::invalid_input);
 }
 
-TEST_CASE("a force spike, a jump of 15 mm and a flip of 180 degrees reach the hand no faster than the slew limit") {
+TEST_CASE("a force spike, a jump of 15 mm and a flip of 180 degrees reach the hand no faster than the slew limit",
+          "[live]") {
     const Outcome spike = run_patch(patch_text("spike", 500), 1.0, plain_hand);
     check_bounds(spike);
     CHECK(glm::length(spike.given[502].wrench.force) < 6.0);
@@ -204,7 +204,8 @@ TEST_CASE("no node gets round the limits that the device states") {
     CHECK(io::clamp_to_device({{30.0, 40.0, 0.0}, {}}, {}).force == Vec3(30.0, 40.0, 0.0));
 }
 
-TEST_CASE("a stalled tick loses the hand to the watchdog, which fades it; the other groups and the log go on") {
+TEST_CASE("a stalled tick loses the hand to the watchdog, which fades it, and the other groups and the log go on",
+          "[live]") {
     const auto log = std::filesystem::temp_directory_path() / ("tactus_stall_" + std::to_string(::getpid()));
     const auto check_watchdog = [](const Outcome& o, bool must_be_taken) {
         const std::thread::id tick = o.given.front().by;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What reaches the hand while the graph that makes the force is edited.
 #include "tests/engine/chaos.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,9 +5,9 @@
 #include "graph/analyse/latency.hpp"
 #include "graph/analyse/stiffness.hpp"
 #include "nodes/catalogue.hpp"
+#include "tests/support/catch.hpp"
 
 #include <fmt/format.h>
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <ctime>
@@ -110,6 +110,10 @@ void check_proportion(std::string (*patch_of)(int)) {
 
 }  // namespace
 
-TEST_CASE("a node among many springs behind a hand costs what it costs among few") { check_proportion(springs); }
+TEST_CASE("a node among many springs behind a hand costs what it costs among few", "[slow]") {
+    check_proportion(springs);
+}
 
-TEST_CASE("a node among many patches within a patch costs what it costs among few") { check_proportion(voices); }
+TEST_CASE("a node among many patches within a patch costs what it costs among few", "[slow]") {
+    check_proportion(voices);
+}

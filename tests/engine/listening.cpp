@@ -3,8 +3,7 @@
 #include "engine/run/engine.hpp"
 #include "graph/compile/compile.hpp"
 #include "nodes/catalogue.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <string>
 

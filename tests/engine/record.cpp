@@ -2,8 +2,7 @@
 // Recording that begins and ends within a live run.
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/repeat.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -50,7 +49,8 @@ void change_to(run::Engine& engine, std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("recording begins within a run for all outputs at one time, and the take repeats the run to the bit") {
+TEST_CASE("recording begins within a run for all outputs at one time, and the take repeats the run to the bit",
+          "[live]") {
     const auto folder = scratch("record");
     Flicks begun = 0;
     const auto hashes = run_with(folder, {{0.1, [](run::Engine& e) { change_to(e, 4); }},
@@ -83,7 +83,7 @@ TEST_CASE("recording begins within a run for all outputs at one time, and the ta
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("a run that is recorded twice has two stretches of each output in one take") {
+TEST_CASE("a run that is recorded twice has two stretches of each output in one take", "[live]") {
     const auto folder = scratch("twice");
     const auto hashes = run_with(folder, {{0.1, [](run::Engine& e) { e.record(true); }},
                                           {0.25, [](run::Engine& e) { e.record(false); }},
@@ -99,7 +99,7 @@ TEST_CASE("a run that is recorded twice has two stretches of each output in one 
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("a value that was changed in the second stretch of a take is found") {
+TEST_CASE("a value that was changed in the second stretch of a take is found", "[live]") {
     const auto folder = scratch("forged");
     run_with(folder, {{0.1, [](run::Engine& e) { e.record(true); }},
                       {0.25, [](run::Engine& e) { e.record(false); }},
@@ -122,14 +122,14 @@ TEST_CASE("a value that was changed in the second stretch of a take is found") {
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("a journal that grows too long is given up, and only recording is refused from then on") {
+TEST_CASE("a journal that grows too long is given up, and only recording is refused from then on", "[live]") {
     const auto folder = scratch("long");
     bool was_refused = false;
     std::vector<std::string> notices;
     run_with(folder,
              {{0.8,
                [&](run::Engine& e) {
-                   CHECK_THROWS_WITH(e.record(true), Catch::Contains("begin it anew"));
+                   CHECK_THROWS_WITH(e.record(true), Catch::Matchers::ContainsSubstring("begin it anew"));
                    was_refused = true;
                    notices = e.host().notices;
                }}},

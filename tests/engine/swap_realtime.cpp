@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/repeat.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/realtime_check.hpp"
-
-#include <catch2/catch.hpp>
 
 using namespace tactus;
 using namespace tactus::test;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What every node type of the catalogue must keep, whatever it computes.
 #include "nodes/catalogue.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
 #include "tests/support/realtime_check.hpp"
-
-#include <catch2/catch.hpp>
 
 using namespace tactus;
 using test::Feed;
@@ -67,7 +66,7 @@ struct Declaration final : MemberVisitor {
 
 }  // namespace
 
-TEST_CASE("any partition of a run into blocks gives the same bits") {
+TEST_CASE("any partition of a run into blocks gives the same bits", "[slow]") {
     for_every_node([](const NodeType& type, const ValueType* any) {
         for (const Feed feed : {Feed::ordinary, Feed::hostile}) {
             const std::uint64_t whole = hash_of(type, any, feed, 0);
@@ -77,7 +76,7 @@ TEST_CASE("any partition of a run into blocks gives the same bits") {
     });
 }
 
-TEST_CASE("finite values in give finite values out") {
+TEST_CASE("finite values in give finite values out", "[slow]") {
     for_every_node([](const NodeType& type, const ValueType* any) {
         NodeHarness harness(type, {.drive_params = true, .any = any});
         harness.prepare();
@@ -86,7 +85,7 @@ TEST_CASE("finite values in give finite values out") {
     });
 }
 
-TEST_CASE("a node recovers from values that are not finite, huge or denormal") {
+TEST_CASE("a node recovers from values that are not finite, huge or denormal", "[slow]") {
     for_every_node([](const NodeType& type, const ValueType* any) {
         NodeHarness harness(type, {.feed = Feed::hostile, .any = any});
         harness.prepare();
@@ -99,7 +98,7 @@ TEST_CASE("a node recovers from values that are not finite, huge or denormal") {
     });
 }
 
-TEST_CASE("a tick of a node allocates nothing, takes no lock and calls no system") {
+TEST_CASE("a tick of a node allocates nothing, takes no lock and calls no system", "[slow]") {
     for_every_node([](const NodeType& type, const ValueType* any) {
         for (const Feed feed : {Feed::ordinary, Feed::hostile}) {
             NodeHarness harness(type, {.feed = feed, .drive_params = true, .any = any});
@@ -111,7 +110,7 @@ TEST_CASE("a tick of a node allocates nothing, takes no lock and calls no system
     });
 }
 
-TEST_CASE("a node runs with every optional input left open") {
+TEST_CASE("a node runs with every optional input left open", "[slow]") {
     for_every_node([](const NodeType& type, const ValueType* any) {
         NodeHarness harness(type, {.any = any});
         harness.disconnect_optional();

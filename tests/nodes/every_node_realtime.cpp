@@ -2,10 +2,9 @@
 // Every node type of the catalogue in many situations under the watch of the real-time check. A new type is covered by
 // standing in the catalogue; its choices and flags are found by asking it.
 #include "nodes/catalogue.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
 #include "tests/support/realtime_check.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <string>
 #include <utility>
@@ -81,7 +80,8 @@ bool runs_clean(const NodeType& type, const ValueType* any, const Situation& s,
 
 }  // namespace
 
-TEST_CASE("every node is real-time safe in its first ticks, open or connected, driven, with good and bad input") {
+TEST_CASE("every node is real-time safe in its first ticks, open or connected, driven, with good and bad input",
+          "[slow]") {
     if (const RealtimeWatch watch = realtime_watch(); !watch.missing.empty())
         WARN("skipped in part: " << watch.missing);
     for (const NodeType* type : nodes::catalogue()) {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Nodes that do what a tick must not. The walk over the catalogue would catch each of them; without the real-time scope
 // around the tick nobody would notice, since all of them give the right values.
+#include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
 #include "tests/support/realtime_check.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <unistd.h>
 #include <chrono>

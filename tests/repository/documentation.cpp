@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The documentation agrees with the tree: links lead somewhere, packages are named, generated pages are up to date.
 #include "tests/repository/markdown.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/tools/run_command.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -50,7 +49,7 @@ TEST_CASE("README and the page of dependencies name every package that is instal
     }
 }
 
-TEST_CASE("the generated pages are what the command says; docs/generate.sh writes them anew") {
+TEST_CASE("the generated pages are what the command says, and docs/generate.sh writes them anew") {
     const Folder folder;
     const std::string script = (source_folder() / "docs/generate.sh").string();
     REQUIRE(std::system(("'" + script + "' '" + command() + "' '" + folder.path.string() + "'").c_str()) == 0);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The commands of README and the tutorials run as written; those of all other pages name verbs and options that exist.
 #include "tests/repository/markdown.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/tools/run_command.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -101,14 +100,14 @@ std::string verb_of(const std::vector<std::string>& words) {
 
 }  // namespace
 
-TEST_CASE("the commands of README run as written") { run_page(source_folder() / "README.md"); }
+TEST_CASE("the commands of README run as written", "[live]") { run_page(source_folder() / "README.md"); }
 
-TEST_CASE("the commands of the tutorials run as written") {
+TEST_CASE("the commands of the tutorials run as written", "[live]") {
     for (const fs::path& page : markdown_files())
         if (page.parent_path() == source_folder() / "docs/tutorial") run_page(page);
 }
 
-TEST_CASE("documented commands name verbs and options that exist") {
+TEST_CASE("documented commands name verbs and options that exist", "[slow]") {
     const Folder folder;
     std::map<std::string, Outcome> help;
     static const std::regex option("^--[a-z-]+");

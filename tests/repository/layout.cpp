@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the tree promises: rooms include only to the left, folders are namespaces, files carry their licence, nodes are
 // in the catalogue, and no room knows the names of what is built on it.
+#include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <array>

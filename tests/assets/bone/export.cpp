@@ -9,12 +9,12 @@
 #include "dsp/core/error.hpp"
 #include "dsp/volume/surface_distance.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
 
 #include <teem/nrrd.h>
 #include <zlib.h>
 #include <glm/geometric.hpp>
-
-#include <catch2/catch.hpp>
 
 #include <array>
 #include <cmath>
@@ -24,7 +24,7 @@
 #include <sstream>
 
 using namespace tactus;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -64,7 +64,7 @@ TEST_CASE("an exported surface read by assimp is closed, in LPS mm, of the bone'
     for (const char* name : {"ball.stl", "ball.ply"}) {
         mesh::write_mesh(std::vector<mesh::ColouredSurface>{{surface, Vec3(1, 0, 0)}}, folder / name);
         const std::string bytes = file::read_whole_file(folder / name);
-        CHECK_THAT(bytes.substr(0, 300), Contains("SPACE=LPS"));
+        CHECK_THAT(bytes.substr(0, 300), ContainsSubstring("SPACE=LPS"));
         const mesh::Mesh back = mesh::load_mesh(folder / name, mm);
         CHECK(mesh::topology_of(back).is_watertight());
         CHECK(back.triangles.size() == surface.triangles.size());
@@ -89,8 +89,8 @@ TEST_CASE("several bones go into one mesh file, and what cannot be written is re
     mesh::write_mesh(std::vector<mesh::ColouredSurface>{{surface, {}}, {moved, {}}}, folder / "two.ply");
     CHECK(mesh::topology_of(mesh::load_mesh(folder / "two.ply")).components == 2);
     CHECK_THROWS_WITH(mesh::write_mesh(std::vector<mesh::ColouredSurface>{{surface, {}}}, folder / "ball.obj"),
-                      Contains(".stl or .ply"));
-    CHECK_THROWS_WITH(mesh::write_mesh({}, folder / "none.stl"), Contains("no triangles"));
+                      ContainsSubstring(".stl or .ply"));
+    CHECK_THROWS_WITH(mesh::write_mesh({}, folder / "none.stl"), ContainsSubstring("no triangles"));
     CHECK_THROWS_AS(mesh::write_mesh(std::vector<mesh::ColouredSurface>{{surface, {}}}, folder / "absent" / "ball.stl"),
                     Error);
     CHECK_FALSE(std::filesystem::exists(folder / "none.stl"));
@@ -164,7 +164,7 @@ TEST_CASE("an exported NIfTI holds the same samples with the axes of RAS in its 
 
 TEST_CASE("an exported NIfTI read by nibabel has the samples and their places") {
     if (std::system("/usr/bin/python3 -c 'import nibabel' >/dev/null 2>&1") != 0) {
-        WARN("skipped: there is no nibabel (package python3-nibabel)");
+        tactus::test::skip("there is no nibabel (package python3-nibabel)");
         return;
     }
     const TemporaryFolder folder;
@@ -200,8 +200,9 @@ TEST_CASE("bones on one lattice become one volume, others are asked for one by o
     CHECK(*std::min_element(distance.values.begin(), distance.values.end()) > -9.0f);
     CHECK(*std::max_element(distance.values.begin(), distance.values.end()) <= 1000.0f);
     bones[1].distance.origin.x += 0.4 * bones[1].distance.spacing.x;
-    CHECK_THROWS_WITH(bone::volume_of_bones(bones, bone::BoneQuantity::hu), Contains("--bone"));
-    CHECK_THROWS_WITH(bone::volume_of_bones({}, bone::BoneQuantity::hu), Contains("no bone"));
+    CHECK_THROWS_WITH(bone::volume_of_bones(bones, bone::BoneQuantity::hu), ContainsSubstring("--bone"));
+    CHECK_THROWS_WITH(bone::volume_of_bones({}, bone::BoneQuantity::hu), ContainsSubstring("no bone"));
     const TemporaryFolder folder;
-    CHECK_THROWS_WITH(volume::write_volume(both, volume::WrittenType::int16, folder / "ball.mha"), Contains(".nrrd"));
+    CHECK_THROWS_WITH(volume::write_volume(both, volume::WrittenType::int16, folder / "ball.mha"),
+                      ContainsSubstring(".nrrd"));
 }

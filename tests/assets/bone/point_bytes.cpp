@@ -4,13 +4,12 @@
 #include "assets/bone/bone.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 
 using namespace tactus;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -59,7 +58,7 @@ TEST_CASE("surface points that are damaged, too few, too many or of another form
     CHECK_THROWS_AS(bone::points_from(whole + "x", "f"), Error);
     std::string later = whole;
     later[15] = '9';
-    CHECK_THROWS_WITH(bone::points_from(later, "f.vdb"), Contains("f.vdb") && Contains("format"));
+    CHECK_THROWS_WITH(bone::points_from(later, "f.vdb"), ContainsSubstring("f.vdb") && ContainsSubstring("format"));
     // A count of 2⁶³ takes no memory.
     std::string many = whole;
     many[23] = static_cast<char>(0x80);

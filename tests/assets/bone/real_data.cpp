@@ -3,10 +3,10 @@
 #include "assets/bone/import.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/volume/scan_volume.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
 
 #include <glm/common.hpp>
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ std::optional<std::filesystem::path> shared(const std::string& name) {
     const char* const folder = std::getenv("TACTUS_SHARED_DATA");
     if (folder && std::filesystem::exists(std::filesystem::path(folder) / name))
         return std::filesystem::path(folder) / name;
-    WARN("skipped: TACTUS_SHARED_DATA does not name a folder with " << name);
+    tactus::test::skip("TACTUS_SHARED_DATA does not name a folder with " + name);
     return {};
 }
 
@@ -192,7 +192,7 @@ TEST_CASE("published meshes become bones of the extent and volume that are state
 TEST_CASE("the InVesalius example is a scan of the stated shape, low slices first, rows from back to front") {
     const std::filesystem::path path = "/usr/share/doc/invesalius-examples/examples/Cranium.inv3";
     if (!std::filesystem::exists(path)) {
-        WARN("skipped: the Debian package invesalius-examples is not installed");
+        tactus::test::skip("the Debian package invesalius-examples is not installed");
         return;
     }
     const volume::ScanVolume volume = volume::read_volume(path);

@@ -6,8 +6,8 @@
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -102,7 +102,7 @@ TEST_CASE("assets: a scan shows a moved solid where it was put, within a fifth o
     CHECK(std::sqrt(squares / count) < 0.12 * mm);
 }
 
-TEST_CASE("assets: paint covers the break and nothing else; a proposal finds most of it") {
+TEST_CASE("assets: paint covers the break and nothing else, and a proposal finds most of it") {
     const volume::Grid whole = bar();
     const contact::Voxmap map = contact::make_voxmap(whole);
     const std::vector<volume::Grid> parts = cases::break_bone(whole, {.seed = 3});
@@ -129,7 +129,8 @@ TEST_CASE("assets: paint covers the break and nothing else; a proposal finds mos
     CHECK(both > 0.6 * proposed);
 }
 
-TEST_CASE("assets: what lies inside of the unbroken bone is the break, however smooth and wherever the piece lies") {
+TEST_CASE("assets: what lies inside of the unbroken bone is the break, however smooth and wherever the piece lies",
+          "[slow]") {
     const volume::Grid whole = bar();
     const std::vector<contact::SurfacePoint> unbroken = contact::sample_surface(whole, {.spacing = 0.5 * mm});
     const fit::RegistrationTarget intact(unbroken);

@@ -4,8 +4,7 @@
 #include "assets/library/fragments.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cstdint>
 #include <string>
@@ -29,7 +28,7 @@ double painted_area(const std::vector<contact::SurfacePoint>& points) {
 
 }  // namespace
 
-TEST_CASE("paint that is written to a file and read back is the same to the point") {
+TEST_CASE("paint that is written to a file and read back is the same to the point", "[slow]") {
     const TemporaryFolder folder;
     const std::vector<contact::SurfacePoint> painted = broken_half(0.6 * mm);
     cases::write_paint_file(painted, "left", folder.path / "left.json");

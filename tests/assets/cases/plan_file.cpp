@@ -5,8 +5,8 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <bit>
@@ -136,18 +136,20 @@ TEST_CASE("a step that cannot be is refused and leaves the plan as it was") {
     cases::CasePlan plan = eventful();
     const std::string text = cases::plan_text(plan);
     CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::add, {0}, "chim")),
-                      Catch::Contains("did you mean 'chin'"));
+                      Catch::Matchers::ContainsSubstring("did you mean 'chin'"));
     CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::group, {1, 2}, "x")),
-                      Catch::Contains("move together already"));
+                      Catch::Matchers::ContainsSubstring("move together already"));
     CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::group, {0, 1}, "chin")),
-                      Catch::Contains("already"));
+                      Catch::Matchers::ContainsSubstring("already"));
     CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::hide, {4})),
-                      Catch::Contains("no fragment number 4"));
-    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::hide, {1, 1})), Catch::Contains("twice"));
-    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::remove, {0})), Catch::Contains("in no group"));
-    CHECK_THROWS_WITH(put(plan, 1, any_pose(1)), Catch::Contains("locked"));
-    CHECK_THROWS_WITH(put(plan, 2, any_pose(1)), Catch::Contains("locked"));
-    CHECK_THROWS_WITH(cases::find_fragment(plan, "z"), Catch::Contains("no fragment 'z'"));
+                      Catch::Matchers::ContainsSubstring("no fragment number 4"));
+    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::hide, {1, 1})),
+                      Catch::Matchers::ContainsSubstring("twice"));
+    CHECK_THROWS_WITH(cases::add_step(plan, meaning(cases::StepKind::remove, {0})),
+                      Catch::Matchers::ContainsSubstring("in no group"));
+    CHECK_THROWS_WITH(put(plan, 1, any_pose(1)), Catch::Matchers::ContainsSubstring("locked"));
+    CHECK_THROWS_WITH(put(plan, 2, any_pose(1)), Catch::Matchers::ContainsSubstring("locked"));
+    CHECK_THROWS_WITH(cases::find_fragment(plan, "z"), Catch::Matchers::ContainsSubstring("no fragment 'z'"));
     CHECK(cases::plan_text(plan) == text);
 }
 
@@ -164,17 +166,23 @@ TEST_CASE("what is no plan of ours is refused in one line that says what to do")
         return "";
     };
     for (std::size_t length = 1; length + 2 < text.size(); length += 37)
-        CHECK_THAT(refusal(text.substr(0, length)), Catch::Contains("ends in the middle"));
+        CHECK_THAT(refusal(text.substr(0, length)), Catch::Matchers::ContainsSubstring("ends in the middle"));
     CHECK_THAT(refusal(replaced(text, "\"version\": 1", "\"version\": 2")),
-               Catch::Contains("version 2; this program reads version 1; nothing was changed"));
-    CHECK_THAT(refusal(replaced(text, "\"name\": \"b\"", "\"name\": \"a\"")), Catch::Contains("another fragment has"));
-    CHECK_THAT(refusal(replaced(text, "\"after\": 0", "\"after\": 1")), Catch::Contains("no step before it"));
-    CHECK_THAT(refusal(replaced(text, "\"kind\": \"lock\"", "\"kind\": \"eat\"")), Catch::Contains("'eat'"));
-    CHECK_THAT(refusal(replaced(text, "\"current\": \"other\"", "\"current\": \"x\"")), Catch::Contains("'x'"));
-    CHECK_THAT(refusal(replaced(text, "\"unit\": \"m\"", "\"unit\": \"mm\"")), Catch::Contains("unit \"m\""));
-    CHECK_THAT(refusal(replaced(text, "\"score\": 0.8", "\"score\": \"0.8\"")), Catch::Contains("no number"));
-    CHECK_THAT(refusal("{}"), Catch::Contains("no plan"));
-    CHECK_THAT(refusal("solid ascii"), Catch::Contains("JSON"));
+               Catch::Matchers::ContainsSubstring("version 2; this program reads version 1; nothing was changed"));
+    CHECK_THAT(refusal(replaced(text, "\"name\": \"b\"", "\"name\": \"a\"")),
+               Catch::Matchers::ContainsSubstring("another fragment has"));
+    CHECK_THAT(refusal(replaced(text, "\"after\": 0", "\"after\": 1")),
+               Catch::Matchers::ContainsSubstring("no step before it"));
+    CHECK_THAT(refusal(replaced(text, "\"kind\": \"lock\"", "\"kind\": \"eat\"")),
+               Catch::Matchers::ContainsSubstring("'eat'"));
+    CHECK_THAT(refusal(replaced(text, "\"current\": \"other\"", "\"current\": \"x\"")),
+               Catch::Matchers::ContainsSubstring("'x'"));
+    CHECK_THAT(refusal(replaced(text, "\"unit\": \"m\"", "\"unit\": \"mm\"")),
+               Catch::Matchers::ContainsSubstring("unit \"m\""));
+    CHECK_THAT(refusal(replaced(text, "\"score\": 0.8", "\"score\": \"0.8\"")),
+               Catch::Matchers::ContainsSubstring("no number"));
+    CHECK_THAT(refusal("{}"), Catch::Matchers::ContainsSubstring("no plan"));
+    CHECK_THAT(refusal("solid ascii"), Catch::Matchers::ContainsSubstring("JSON"));
 }
 
 TEST_CASE("a plan is saved whole or not at all") {
@@ -200,12 +208,12 @@ TEST_CASE("a file that is gone or has changed since is named, and names of fragm
     cases::add_fragment(plan, "left", file, file.parent_path(), Vec3(1.0));
     CHECK(plan.fragments[0].file == "bone.stl");
     CHECK_THROWS_WITH(cases::add_fragment(plan, "left", file, file.parent_path(), Vec3(1.0)),
-                      Catch::Contains("another name"));
+                      Catch::Matchers::ContainsSubstring("another name"));
     CHECK(cases::changed_files(plan, file.parent_path()).empty());
     file::write_whole_file(file, "two");
     REQUIRE(cases::changed_files(plan, file.parent_path()).size() == 1);
     CHECK_THAT(cases::changed_files(plan, file.parent_path())[0],
-               Catch::Contains("not the one that the plan was made with"));
+               Catch::Matchers::ContainsSubstring("not the one that the plan was made with"));
     std::filesystem::remove(file);
-    CHECK_THAT(cases::changed_files(plan, file.parent_path())[0], Catch::Contains("is missing"));
+    CHECK_THAT(cases::changed_files(plan, file.parent_path())[0], Catch::Matchers::ContainsSubstring("is missing"));
 }

@@ -5,9 +5,9 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
+#include "tests/support/catch.hpp"
 
 #include <sys/resource.h>
-#include <catch2/catch.hpp>
 
 #include <csignal>
 
@@ -82,7 +82,7 @@ TEST_CASE("while the disk is full the last saved plan stays, and all is saved wh
     {
         const FullDisk full(100);
         keeper.add(put(1, 0.2), 1.0);
-        CHECK_THROWS_WITH(keeper.save(), Catch::Contains("cannot be written"));
+        CHECK_THROWS_WITH(keeper.save(), Catch::Matchers::ContainsSubstring("cannot be written"));
         CHECK(file::read_whole_file(file) == before);
         CHECK_FALSE(std::filesystem::exists(file.string() + ".part"));
     }
@@ -147,9 +147,10 @@ TEST_CASE("two keepers of one plan: the second is refused until the first has en
     const auto file = folder / "case.plan.json";
     {
         const cases::PlanKeeper first(two(), file);
-        CHECK_THROWS_WITH(cases::PlanKeeper(two(), file), Catch::Contains("another program is changing this plan"));
+        CHECK_THROWS_WITH(cases::PlanKeeper(two(), file),
+                          Catch::Matchers::ContainsSubstring("another program is changing this plan"));
     }
     CHECK_NOTHROW(cases::PlanKeeper(two(), file));
     CHECK_THROWS_WITH(cases::PlanKeeper(two(), folder / "none" / "case.plan.json"),
-                      Catch::Contains("cannot be changed"));
+                      Catch::Matchers::ContainsSubstring("cannot be changed"));
 }

@@ -4,8 +4,8 @@
 #include "assets/display/touch_file.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/coupling/placement.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <unistd.h>
@@ -109,5 +109,6 @@ TEST_CASE("assets: touches come back from their file, and a bad line is named") 
     CHECK(back[1].of == display::RigTouch::Of::image);
     CHECK(glm::length(back[1].reading - touches[1].reading) < 1e-9);
     const TextFile bad("of,x_mm,y_mm,z_mm\nmirror,1,2,3\nmirrow,1,2,3\n");
-    CHECK_THROWS_WITH(display::load_touches(bad.path), Catch::Contains(":3") && Catch::Contains("mirror"));
+    CHECK_THROWS_WITH(display::load_touches(bad.path),
+                      Catch::Matchers::ContainsSubstring(":3") && Catch::Matchers::ContainsSubstring("mirror"));
 }

@@ -5,8 +5,7 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 using namespace tactus;
 
@@ -18,7 +17,7 @@ TEST_CASE("a file that another program is writing is refused, and written once t
         // As of another program: locks of two descriptors know nothing of each other's process.
         const file::PartLock other(part, path);
         CHECK_THROWS_WITH(file::write_whole_file(path, "after"),
-                          Catch::Contains("a.bin: another program is writing this file"));
+                          Catch::Matchers::ContainsSubstring("a.bin: another program is writing this file"));
         CHECK(std::filesystem::exists(part));
         CHECK(file::read_whole_file(path) == "before");
     }
@@ -34,7 +33,8 @@ TEST_CASE("a growing file is not emptied by a second program") {
         file::GrowingFile first(path);
         first.append("{\"device\": 1}\n");
         first.flush();
-        CHECK_THROWS_WITH(file::GrowingFile(path), Catch::Contains("another program writes to this file"));
+        CHECK_THROWS_WITH(file::GrowingFile(path),
+                          Catch::Matchers::ContainsSubstring("another program writes to this file"));
         first.append("{\"device\": 2}\n");
         first.close();
     }

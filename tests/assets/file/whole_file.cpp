@@ -3,8 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <string>
 
@@ -45,7 +44,8 @@ TEST_CASE("a hash of a file in blocks is the hash of its bytes at once") {
 TEST_CASE("a folder and a file that is not there are told") {
     TemporaryFolder folder;
     Hash hash;
-    CHECK_THROWS_WITH(file::read_whole_file(folder / "none"), Catch::Contains("none: no such file"));
-    CHECK_THROWS_WITH(file::add_file(hash, folder / "."), Catch::Contains("no such file"));
-    CHECK_THROWS_WITH(file::write_whole_file(folder / "none" / "a", "x"), Catch::Contains("cannot be written"));
+    CHECK_THROWS_WITH(file::read_whole_file(folder / "none"), Catch::Matchers::ContainsSubstring("none: no such file"));
+    CHECK_THROWS_WITH(file::add_file(hash, folder / "."), Catch::Matchers::ContainsSubstring("no such file"));
+    CHECK_THROWS_WITH(file::write_whole_file(folder / "none" / "a", "x"),
+                      Catch::Matchers::ContainsSubstring("cannot be written"));
 }

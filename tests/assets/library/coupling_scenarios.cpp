@@ -4,8 +4,7 @@
 #include "dsp/core/quantile.hpp"
 #include "dsp/coupling/held_contact.hpp"
 #include "tests/dsp/coupling/held.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -101,7 +100,7 @@ Insertion insert(double clearance) {
 
 }  // namespace
 
-TEST_CASE("a peg goes in and comes out at 0.3, 0.1 and 0.0 mm of clearance, and not at -0.1 mm") {
+TEST_CASE("a peg goes in and comes out at 0.3, 0.1 and 0.0 mm of clearance, and not at -0.1 mm", "[slow]") {
     for (const double clearance : {0.3 * mm, 0.1 * mm, 0.0}) {
         const Insertion peg = insert(clearance);
         CAPTURE(clearance, peg.depth, peg.axial, peg.lateral, peg.end);
@@ -115,7 +114,7 @@ TEST_CASE("a peg goes in and comes out at 0.3, 0.1 and 0.0 mm of clearance, and 
     CHECK(tight.depth < 10.0 * mm);
 }
 
-TEST_CASE("no corner pops through a thin plate below the documented force, no face at all") {
+TEST_CASE("no corner pops through a thin plate below the documented force, no face at all", "[slow]") {
     const Part block = part_of(contact::Box{{6.0 * mm, 6.0 * mm, 6.0 * mm}}, 0.42 * mm, 0.35 * mm);
     const Quat on_corner = rotation_by(Vec3(0.0, -std::acos(1.0 / std::sqrt(3.0)), 0.0)) *
                            rotation_by(Vec3(0.0, 0.0, -0.25 * std::numbers::pi));
@@ -188,7 +187,7 @@ Rig fragment_rig(const contact::ContactLaw& law) {
 
 }  // namespace
 
-TEST_CASE("a jump of 15 mm and 14 degrees leaves a fragment on its side") {
+TEST_CASE("a jump of 15 mm and 14 degrees leaves a fragment on its side", "[slow]") {
     Rig rig = fragment_rig({});
     const Vec3 fit = halves().right_at.position;
     for (int n = 0; n < 20; ++n) rig.update({fit, {1, 0, 0, 0}});
@@ -198,7 +197,7 @@ TEST_CASE("a jump of 15 mm and 14 degrees leaves a fragment on its side") {
     CHECK(rig.coupling.state().wrench.force.x > 5.0);
 }
 
-TEST_CASE("fragments slide and walk on each other: balanced, not deep, and silent when held") {
+TEST_CASE("fragments slide and walk on each other: balanced, not deep, and silent when held", "[slow]") {
     const Vec3 fit = halves().right_at.position;
     for (const bool is_stiff : {false, true}) {
         const contact::ContactLaw law = is_stiff ? stiff() : contact::ContactLaw{};

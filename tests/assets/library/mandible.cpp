@@ -2,12 +2,11 @@
 #include "assets/library/mandible.hpp"
 
 #include "assets/mesh/mesh.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 using namespace tactus;
 
-TEST_CASE("the bundled mandible is one closed piece of plausible size with a dense shell and a light core") {
+TEST_CASE("the bundled mandible is one closed piece of plausible size with a dense shell and a light core", "[slow]") {
     const bone::Bone bone = library::make_mandible();
     const mesh::Mesh surface = mesh::surface_of(bone.distance);
     const mesh::MeshTopology topology = mesh::topology_of(surface);
@@ -29,6 +28,6 @@ TEST_CASE("the bundled mandible is one closed piece of plausible size with a den
     CHECK(core / core_count == Approx(450.0).margin(120.0));
 }
 
-TEST_CASE("the bundled mandible is the same every time") {
+TEST_CASE("the bundled mandible is the same every time", "[slow]") {
     CHECK(library::mandible_hu().values == library::mandible_hu().values);
 }

@@ -6,8 +6,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/signal/filter/biquad.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -74,7 +73,7 @@ TEST_CASE("the bundled saw shakes as hard as saws are known to, and its noise sw
     CHECK(middle > 2.0 * ends);
 }
 
-TEST_CASE("the bundled saw is the same bytes each time") {
+TEST_CASE("the bundled saw is the same bytes each time", "[slow]") {
     const TemporaryFolder folder;
     library::make_saw_recordings(folder / "a");
     library::make_saw_recordings(folder / "b");
@@ -86,7 +85,7 @@ TEST_CASE("the bundled saw is the same bytes each time") {
     CHECK(files == 13);
 }
 
-TEST_CASE("the bundled saw runs as a voice without a click") {
+TEST_CASE("the bundled saw runs as a voice without a click", "[slow]") {
     const TemporaryFolder folder;
     library::make_saw_recordings(folder.path);
     const sound::RecordingSet set = sound::load_recording_set(folder / "reciprocating.toml");

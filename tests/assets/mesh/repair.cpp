@@ -6,12 +6,11 @@
 #include "assets/mesh/mesh.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
+#include "tests/support/catch.hpp"
 
 #include <glm/geometric.hpp>
 
 #include <fmt/format.h>
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +18,7 @@
 #include <numbers>
 
 using namespace tactus;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -93,7 +92,8 @@ TEST_CASE("holes, duplicates and turned triangles are repaired and counted, and 
     CHECK(done.boundary_edges == 7);
     CHECK(mesh::topology_of(mesh).is_watertight());
     CHECK(mesh::volume_of(mesh) == Approx(whole).epsilon(1e-3));
-    CHECK_THAT(done.describe(), Contains("2 holes closed (7 boundary edges") && Contains("3 triangles turned"));
+    CHECK_THAT(done.describe(),
+               ContainsSubstring("2 holes closed (7 boundary edges") && ContainsSubstring("3 triangles turned"));
 }
 
 TEST_CASE("two balls that share one edge keep their insides") {
@@ -118,7 +118,8 @@ TEST_CASE("two balls that share one edge keep their insides") {
 TEST_CASE("what has no inside is refused with numbers") {
     geometry::TriangleSurface bowl = sphere(Vec3(0.0));
     bowl.triangles.resize(bowl.triangles.size() / 2);
-    CHECK_THROWS_WITH(mesh::repair(bowl, "bowl"), Contains("48 boundary edges") && Contains("1 hole,"));
+    CHECK_THROWS_WITH(mesh::repair(bowl, "bowl"),
+                      ContainsSubstring("48 boundary edges") && ContainsSubstring("1 hole,"));
     // A Möbius band of five triangles.
     geometry::TriangleSurface band;
     for (int n = 0; n < 5; ++n) {
@@ -126,10 +127,10 @@ TEST_CASE("what has no inside is refused with numbers") {
         band.vertices.push_back(Vec3(std::cos(a), std::sin(a), 0.3 * n));
         band.triangles.push_back({n, (n + 1) % 5, (n + 2) % 5});
     }
-    CHECK_THROWS_WITH(mesh::repair(band, "band"), Contains("one side"));
+    CHECK_THROWS_WITH(mesh::repair(band, "band"), ContainsSubstring("one side"));
 }
 
-TEST_CASE("a mesh says its frame in a comment; LPS is assumed when it does not") {
+TEST_CASE("a mesh says its frame in a comment, and LPS is assumed when it does not") {
     const TemporaryFolder folder;
     const geometry::TriangleSurface ball = sphere(Vec3(20.0, 30.0, 40.0));
     mesh::MeshOrigin origin;

@@ -3,14 +3,13 @@
 
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <fstream>
 
 using namespace tactus;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -65,7 +64,7 @@ TEST_CASE("a damaged equaliser is refused with its place") {
     };
     for (const auto& [text, message] : slips) {
         INFO(text);
-        CHECK_THROWS_WITH(read(folder, text), Contains(message) && Contains("e.toml"));
+        CHECK_THROWS_WITH(read(folder, text), ContainsSubstring(message) && ContainsSubstring("e.toml"));
     }
     CHECK_THROWS_AS(sound::load_equaliser(folder / "none.toml"), Error);
 }

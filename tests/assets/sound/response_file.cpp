@@ -3,15 +3,14 @@
 
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <fstream>
 #include <limits>
 
 using namespace tactus;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -87,6 +86,6 @@ TEST_CASE("a table that is no response is refused with its line") {
     };
     for (const auto& [text, message] : slips) {
         INFO(text);
-        CHECK_THROWS_WITH(read(folder, text), Contains(message) && Contains("r.csv"));
+        CHECK_THROWS_WITH(read(folder, text), ContainsSubstring(message) && ContainsSubstring("r.csv"));
     }
 }

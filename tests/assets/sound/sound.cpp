@@ -4,8 +4,7 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -14,7 +13,7 @@
 #include <string>
 
 using namespace tactus;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -102,14 +101,14 @@ TEST_CASE("a sound that lost its tail is refused, WAV or FLAC") {
 
 TEST_CASE("what is no sound is refused with its name") {
     const TemporaryFolder folder;
-    CHECK_THROWS_WITH(sound::load_sound(folder / "none.wav"), Contains("none.wav: no such sound file"));
-    CHECK_THROWS_WITH(sound::load_sound(folder.path), Contains("is a folder"));
+    CHECK_THROWS_WITH(sound::load_sound(folder / "none.wav"), ContainsSubstring("none.wav: no such sound file"));
+    CHECK_THROWS_WITH(sound::load_sound(folder.path), ContainsSubstring("is a folder"));
     file::write_whole_file(folder / "text.wav", "this is no sound at all, only words");
-    CHECK_THROWS_WITH(sound::load_sound(folder / "text.wav"), Contains("text.wav: cannot be read as sound"));
+    CHECK_THROWS_WITH(sound::load_sound(folder / "text.wav"), ContainsSubstring("text.wav: cannot be read as sound"));
     write(folder / "empty.wav", {});
-    CHECK_THROWS_WITH(sound::load_sound(folder / "empty.wav"), Contains("empty"));
+    CHECK_THROWS_WITH(sound::load_sound(folder / "empty.wav"), ContainsSubstring("empty"));
     write(folder / "nan.wav", {0.0f, std::numeric_limits<float>::quiet_NaN()});
-    CHECK_THROWS_WITH(sound::load_sound(folder / "nan.wav"), Contains("NaN"));
+    CHECK_THROWS_WITH(sound::load_sound(folder / "nan.wav"), ContainsSubstring("NaN"));
 }
 
 TEST_CASE("a header that promises more than the file holds is refused without the memory it asks for") {
@@ -127,7 +126,7 @@ TEST_CASE("a header that promises more than the file holds is refused without th
 
 TEST_CASE("a full disk and a missing folder are errors, not lost sounds") {
     const TemporaryFolder folder;
-    CHECK_THROWS_WITH(sound::SoundWriter(folder / "no/such/a.wav", 1, 48000), Contains("cannot write"));
+    CHECK_THROWS_WITH(sound::SoundWriter(folder / "no/such/a.wav", 1, 48000), ContainsSubstring("cannot write"));
     if (!std::filesystem::exists("/dev/full")) return;
     std::filesystem::create_symlink("/dev/full", folder / "a.wav.part");
     CHECK_THROWS_AS(write(folder / "a.wav", ramp_samples(1 << 20)), Error);
@@ -151,7 +150,8 @@ TEST_CASE("a header with a rate, or a number of samples, that cannot be is refus
     CHECK(sound::load_sound(folder / "a.wav").frames == 12000);
     for (const std::uint32_t rate : {10'000'001u, 2'100'000'000u}) {
         with_rate(rate);
-        CHECK_THROWS_WITH(sound::load_sound(folder / "a.wav"), Catch::Contains("samples per second"));
+        CHECK_THROWS_WITH(sound::load_sound(folder / "a.wav"),
+                          Catch::Matchers::ContainsSubstring("samples per second"));
     }
     // STREAMINFO of FLAC: 36 bits of samples, whose lowest 32 lie at byte 22.
     write(folder / "a.flac", ramp_samples(12000), 1, sound::SoundFormat::flac);
@@ -159,5 +159,6 @@ TEST_CASE("a header with a rate, or a number of samples, that cannot be is refus
     file.seekp(22);
     file.write("\x7f\xff\xff\xff", 4);
     file.close();
-    CHECK_THROWS_WITH(sound::load_sound(folder / "a.flac"), Catch::Contains("more than a file of its size can hold"));
+    CHECK_THROWS_WITH(sound::load_sound(folder / "a.flac"),
+                      Catch::Matchers::ContainsSubstring("more than a file of its size can hold"));
 }

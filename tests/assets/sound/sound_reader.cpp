@@ -3,10 +3,10 @@
 
 #include "assets/sound/sound.hpp"
 #include "dsp/core/error.hpp"
+#include "tests/support/catch.hpp"
 
 #include <fmt/format.h>
 #include <sndfile.h>
-#include <catch2/catch.hpp>
 
 #include <unistd.h>
 
@@ -80,20 +80,21 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("floats above full scale stay as they are; a NaN names its place") {
+TEST_CASE("floats above full scale stay as they are, and a NaN names its place") {
     const Temporary file("loud.wav");
     write(file.path, SF_FORMAT_WAV | SF_FORMAT_DOUBLE, 1, 1000, {0.0, 3.5, -7.25});
     CHECK(read_all(file.path, 2) == std::vector{0.0, 3.5, -7.25});
     write(file.path, SF_FORMAT_WAV | SF_FORMAT_DOUBLE, 1, 1000,
           {0.0, 0.0, std::numeric_limits<double>::quiet_NaN(), 0.0});
-    CHECK_THROWS_WITH(read_all(file.path, 2), Catch::Contains("NaN") && Catch::Contains("0.002 s"));
+    CHECK_THROWS_WITH(read_all(file.path, 2),
+                      Catch::Matchers::ContainsSubstring("NaN") && Catch::Matchers::ContainsSubstring("0.002 s"));
 }
 
 TEST_CASE("sounds that are cut short, empty or no sound are refused") {
     const Temporary file("short.wav");
     write(file.path, SF_FORMAT_WAV | SF_FORMAT_PCM_16, 1, 1000, std::vector<double>(1000));
     fs::resize_file(file.path, 900);
-    CHECK_THROWS_WITH(sound::SoundReader(file.path), Catch::Contains("cut short"));
+    CHECK_THROWS_WITH(sound::SoundReader(file.path), Catch::Matchers::ContainsSubstring("cut short"));
     const Temporary flac("short.flac");
     std::vector<double> noise(50000);
     for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = std::sin(static_cast<double>(i * i % 1013));
@@ -101,8 +102,8 @@ TEST_CASE("sounds that are cut short, empty or no sound are refused") {
     fs::resize_file(flac.path, fs::file_size(flac.path) / 2);
     CHECK_THROWS_AS(read_all(flac.path, 1000), Error);
     write(file.path, SF_FORMAT_WAV | SF_FORMAT_PCM_16, 1, 1000, {});
-    CHECK_THROWS_WITH(sound::SoundReader(file.path), Catch::Contains("empty"));
+    CHECK_THROWS_WITH(sound::SoundReader(file.path), Catch::Matchers::ContainsSubstring("empty"));
     std::ofstream(file.path) << "this is no sound";
-    CHECK_THROWS_WITH(sound::SoundReader(file.path), Catch::Contains("cannot be read as sound"));
-    CHECK_THROWS_WITH(sound::SoundReader("/nowhere.wav"), Catch::Contains("no such sound file"));
+    CHECK_THROWS_WITH(sound::SoundReader(file.path), Catch::Matchers::ContainsSubstring("cannot be read as sound"));
+    CHECK_THROWS_WITH(sound::SoundReader("/nowhere.wav"), Catch::Matchers::ContainsSubstring("no such sound file"));
 }

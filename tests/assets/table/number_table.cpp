@@ -4,8 +4,7 @@
 #include "assets/table/deflection_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 using namespace tactus;
 
@@ -20,15 +19,18 @@ TEST_CASE("a table has columns by name, with commas, semicolons or tabs") {
 }
 
 TEST_CASE("a table that cannot be used says where and why") {
-    CHECK_THROWS_WITH(table::read_number_table("", "t.csv"), Catch::Contains("empty"));
-    CHECK_THROWS_WITH(table::read_number_table("a,b\n1,2\n3\n", "t.csv"), Catch::Contains("t.csv:3"));
+    CHECK_THROWS_WITH(table::read_number_table("", "t.csv"), Catch::Matchers::ContainsSubstring("empty"));
+    CHECK_THROWS_WITH(table::read_number_table("a,b\n1,2\n3\n", "t.csv"),
+                      Catch::Matchers::ContainsSubstring("t.csv:3"));
     const table::NumberTable table = table::read_number_table("force,b\n1,two\n", "t.csv");
-    CHECK_THROWS_WITH(table.numbers("b"), Catch::Contains("'two'") && Catch::Contains("t.csv:2"));
-    CHECK_THROWS_WITH(table.numbers("forse"), Catch::Contains("did you mean 'force'"));
-    CHECK_THROWS_WITH(table::read_number_table("a\nnan\n", "t").numbers("a"), Catch::Contains("no number"));
+    CHECK_THROWS_WITH(table.numbers("b"),
+                      Catch::Matchers::ContainsSubstring("'two'") && Catch::Matchers::ContainsSubstring("t.csv:2"));
+    CHECK_THROWS_WITH(table.numbers("forse"), Catch::Matchers::ContainsSubstring("did you mean 'force'"));
+    CHECK_THROWS_WITH(table::read_number_table("a\nnan\n", "t").numbers("a"),
+                      Catch::Matchers::ContainsSubstring("no number"));
 }
 
-TEST_CASE("deflections come in millimetres; a calibration is a regression that must be a line") {
+TEST_CASE("deflections come in millimetres, and a calibration is a regression that must be a line") {
     const TemporaryFolder folder;
     const auto write = [&](const char* name, const std::string& text) {
         file::write_whole_file(folder.path / name, text);
@@ -38,13 +40,13 @@ TEST_CASE("deflections come in millimetres; a calibration is a regression that m
         table::load_deflection_table(write("foam.csv", "force_N,loading_mm,unloading_mm\n0,0,0.5\n2,4,4\n"));
     CHECK(foam.follow(0.0, 1.0) == Approx(2e-3));
     CHECK_THROWS_WITH(table::load_deflection_table(write("bad.csv", "force_N,loading_mm,unloading_mm\n0,0,0\n0,1,1\n")),
-                      Catch::Contains("must rise"));
+                      Catch::Matchers::ContainsSubstring("must rise"));
     const simulate::LineFit fit = table::load_force_calibration(
         write("gauge.csv", "reading,force_N\n100,0\n510,1\n508,1\n920,2\n-310,-1\n101,0\n"));
     CHECK(fit.slope == Approx(1.0 / 410.0).epsilon(2e-3));
     CHECK(fit(100.0) == Approx(0.0).margin(5e-3));
     CHECK_THROWS_WITH(table::load_force_calibration(write("two.csv", "reading,force_N\n1,0\n2,1\n")),
-                      Catch::Contains("three different forces"));
+                      Catch::Matchers::ContainsSubstring("three different forces"));
     CHECK_THROWS_WITH(table::load_force_calibration(write("broken.csv", "reading,force_N\n1,0\n900,1\n3,2\n")),
-                      Catch::Contains("do not lie on a line"));
+                      Catch::Matchers::ContainsSubstring("do not lie on a line"));
 }

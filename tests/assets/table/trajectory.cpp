@@ -2,8 +2,8 @@
 #include "assets/table/trajectory.hpp"
 
 #include "dsp/core/error.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
 
 #include <unistd.h>
 #include <cstdlib>
@@ -12,7 +12,7 @@
 #include <string>
 
 using namespace tactus;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -67,7 +67,7 @@ TEST_CASE("a new trial begins a segment, and one trial can be chosen") {
     const table::Trajectory second = table::read_trajectory(csv.path, {"", 2});
     REQUIRE(second.samples.size() == 1);
     CHECK(second.samples[0].pose.position.x == Approx(0.08));
-    CHECK_THAT(csv.error({"", 9}), Contains("no trial 9") && Contains("1, 2"));
+    CHECK_THAT(csv.error({"", 9}), ContainsSubstring("no trial 9") && ContainsSubstring("1, 2"));
 }
 
 TEST_CASE("a tool is chosen by the prefix of its columns, and lost samples are left out") {
@@ -79,22 +79,24 @@ TEST_CASE("a tool is chosen by the prefix of its columns, and lost samples are l
     const table::Trajectory t = table::read_trajectory(csv.path, {"A", 0});
     CHECK(t.samples.size() == 2);
     CHECK(t.lost == 1);
-    CHECK_THAT(csv.error(), Contains("px_mm") && Contains("the file has the tools A"));
+    CHECK_THAT(csv.error(), ContainsSubstring("px_mm") && ContainsSubstring("the file has the tools A"));
 }
 
 TEST_CASE("a bad file is refused in one line that says where") {
     const auto said = [](const std::string& text) { return Csv(text).error(); };
-    CHECK_THAT(said(""), Contains("empty"));
-    CHECK_THAT(said(header), Contains("no sample"));
-    CHECK_THAT(said("t_s,px_mm\n0,1\n"), Contains(":1:1: there is no column py_mm or py_cm or py_m"));
-    CHECK_THAT(said(header + first + "1.02,1,nan,20,30,0,0,0,1,0,0,0\n"), Contains(":3:8: 'nan' in column px_mm"));
-    CHECK_THAT(said(header + first + "1.02,1,x,20,30,0,0,0,1,0,0,0\n"), Contains(":3:8: 'x'"));
-    CHECK_THAT(said(header + first + "1.02,1,1e999,20,30,0,0,0,1,0,0,0\n"), Contains(":3:8:"));
-    CHECK_THAT(said(header + first + "1.02,1,11,20,30,0,0,0,0,0,0,0\n"), Contains(":3:") && Contains("length 0"));
-    CHECK_THAT(said(header + first + first), Contains(":3:1:") && Contains("times must increase"));
-    CHECK_THAT(said(header + first + "0.9,1,11,20,30,0,0,0,1,0,0,0\n"), Contains(":3:1:"));
-    CHECK_THAT(said(header + first + "1.02,1,11\n"), Contains(":3:1: the line has 3 fields"));
-    CHECK_THROWS_WITH(table::read_trajectory("/nowhere/at_all.csv"), Contains("cannot be read"));
+    CHECK_THAT(said(""), ContainsSubstring("empty"));
+    CHECK_THAT(said(header), ContainsSubstring("no sample"));
+    CHECK_THAT(said("t_s,px_mm\n0,1\n"), ContainsSubstring(":1:1: there is no column py_mm or py_cm or py_m"));
+    CHECK_THAT(said(header + first + "1.02,1,nan,20,30,0,0,0,1,0,0,0\n"),
+               ContainsSubstring(":3:8: 'nan' in column px_mm"));
+    CHECK_THAT(said(header + first + "1.02,1,x,20,30,0,0,0,1,0,0,0\n"), ContainsSubstring(":3:8: 'x'"));
+    CHECK_THAT(said(header + first + "1.02,1,1e999,20,30,0,0,0,1,0,0,0\n"), ContainsSubstring(":3:8:"));
+    CHECK_THAT(said(header + first + "1.02,1,11,20,30,0,0,0,0,0,0,0\n"),
+               ContainsSubstring(":3:") && ContainsSubstring("length 0"));
+    CHECK_THAT(said(header + first + first), ContainsSubstring(":3:1:") && ContainsSubstring("times must increase"));
+    CHECK_THAT(said(header + first + "0.9,1,11,20,30,0,0,0,1,0,0,0\n"), ContainsSubstring(":3:1:"));
+    CHECK_THAT(said(header + first + "1.02,1,11\n"), ContainsSubstring(":3:1: the line has 3 fields"));
+    CHECK_THROWS_WITH(table::read_trajectory("/nowhere/at_all.csv"), ContainsSubstring("cannot be read"));
 }
 
 TEST_CASE("a slow recording is not all gaps, a fast one keeps the 50 ms") {
@@ -108,7 +110,7 @@ TEST_CASE("a slow recording is not all gaps, a fast one keeps the 50 ms") {
 TEST_CASE("a recording of a haptic device plays at 1 kHz near its own speed") {
     const char* const data = std::getenv("TACTUS_SHARED_DATA");
     if (data == nullptr) {
-        WARN("skipped: TACTUS_SHARED_DATA does not name a folder with trajectories/omni_scalpel_trials_a.csv");
+        tactus::test::skip("TACTUS_SHARED_DATA does not name a folder with trajectories/omni_scalpel_trials_a.csv");
         return;
     }
     const table::Trajectory t =

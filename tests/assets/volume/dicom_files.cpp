@@ -3,8 +3,8 @@
 #include "assets/volume/dicom_images.hpp"
 #include "assets/volume/scan_volume.hpp"
 #include "dsp/core/error.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ const std::filesystem::path folder = "/usr/lib/python3/dist-packages/pydicom/dat
 
 bool are_there() {
     if (std::filesystem::exists(folder / "MR_small.dcm")) return true;
-    WARN("skipped: the Debian package python3-pydicom is not installed");
+    tactus::test::skip("the Debian package python3-pydicom is not installed");
     return false;
 }
 

@@ -5,12 +5,12 @@
 #include "assets/volume/scan_volume.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
+#include "tests/support/catch.hpp"
 
 #include <fmt/format.h>
-#include <catch2/catch.hpp>
 
 using namespace tactus;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -61,7 +61,7 @@ TEST_CASE("a long line of an NRRD header is refused, whichever field it is") {
     CHECK_THROWS_AS(volume::read_volume(folder / "a.nrrd"), Error);
     // Looks like a key with a value only behind its field.
     file::write_whole_file(folder / "a.nrrd", nrrd_with("type: " + std::string(1100, 'a') + ":=b"));
-    CHECK_THROWS_WITH(volume::read_volume(folder / "a.nrrd"), Contains("2:1: a field of"));
+    CHECK_THROWS_WITH(volume::read_volume(folder / "a.nrrd"), ContainsSubstring("2:1: a field of"));
 }
 
 TEST_CASE("fields up to 700 bytes, long comments, key/value pairs and contents of an NRRD header are read") {
@@ -81,12 +81,12 @@ TEST_CASE("an NRRD header of too many lines, or of another format, is refused") 
     std::string many = "# c";
     for (int n = 0; n < 10001; ++n) many += "\n# c";
     file::write_whole_file(folder / "a.nrrd", nrrd_with(many));
-    CHECK_THROWS_WITH(volume::read_volume(folder / "a.nrrd"), Contains("more than 10000 lines"));
+    CHECK_THROWS_WITH(volume::read_volume(folder / "a.nrrd"), ContainsSubstring("more than 10000 lines"));
     file::write_whole_file(folder / "a.nrrd", "P5\n2 2\n255\nabcd");
-    CHECK_THROWS_WITH(volume::read_volume(folder / "a.nrrd"), Contains("does not begin with 'NRRD000'"));
+    CHECK_THROWS_WITH(volume::read_volume(folder / "a.nrrd"), ContainsSubstring("does not begin with 'NRRD000'"));
 }
 
-TEST_CASE("samples as text are read; a number of thousands of letters among them is refused") {
+TEST_CASE("samples as text are read, and a number of thousands of letters among them is refused") {
     const TemporaryFolder folder;
     std::string text = nrrd_with("encoding: ascii");
     text.resize(text.find("\n\n") + 2);
@@ -94,10 +94,11 @@ TEST_CASE("samples as text are read; a number of thousands of letters among them
     CHECK(volume::read_volume(folder / "a.nrrd").values == std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8});
     for (const char letter : {'(', '1', 'a'}) {
         file::write_whole_file(folder / "a.nrrd", text + "1 2 3 " + std::string(100000, letter) + " 5 6 7 8\n");
-        CHECK_THROWS_WITH(volume::read_volume(folder / "a.nrrd"), Contains("a number of more than 500 letters"));
+        CHECK_THROWS_WITH(volume::read_volume(folder / "a.nrrd"),
+                          ContainsSubstring("a number of more than 500 letters"));
     }
     text.insert(text.size() - 1, "data file: a.txt\n");
     file::write_whole_file(folder / "a.nhdr", text);
     file::write_whole_file(folder / "a.txt", "1 2 3 " + std::string(100000, '7') + " 5 6 7 8\n");
-    CHECK_THROWS_WITH(volume::read_volume(folder / "a.nhdr"), Contains("a number of more than 500 letters"));
+    CHECK_THROWS_WITH(volume::read_volume(folder / "a.nhdr"), ContainsSubstring("a number of more than 500 letters"));
 }

@@ -6,11 +6,10 @@
 #include "dsp/core/random.hpp"
 #include "tests/assets/bone/temporary_folder.hpp"
 #include "tests/assets/volume/written_volume.hpp"
+#include "tests/support/catch.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -83,7 +82,7 @@ Found import_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE("a CT of known shapes comes back within 0.15 voxel and 1 % of volume, the gantry level or tilted") {
+TEST_CASE("a CT of known shapes comes back within 0.15 voxel and 1 % of volume, the gantry level or tilted", "[slow]") {
     const double exact = exact_volume();
     for (const double tilt : {0.0, 15.0}) {
         const TemporaryFolder folder;
@@ -108,7 +107,8 @@ TEST_CASE("a CT of known shapes comes back within 0.15 voxel and 1 % of volume, 
 
 TEST_CASE(
     "the same shapes as a label map come back with its CT as well as from the CT, without it within a third of a "
-    "voxel") {
+    "voxel",
+    "[slow]") {
     const TemporaryFolder folder;
     const WrittenVolume v = scan(0.0);
     WrittenVolume labels = v;

@@ -3,8 +3,7 @@
 #include "devices/audio/quiet.hpp"
 #include "devices/audio/stream_state.hpp"
 #include "dsp/core/error.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <unistd.h>
 #include <array>
@@ -93,7 +92,7 @@ TEST_CASE("an output that does not exist is refused with a reason, quietly, and 
     std::fseek(capture, 0, SEEK_END);
     CHECK(std::ftell(capture) == 0);
     std::fclose(capture);
-    CHECK_THAT(said[0], Catch::Contains("there is no sound output"));
+    CHECK_THAT(said[0], Catch::Matchers::ContainsSubstring("there is no sound output"));
     CHECK(said[1] == said[0]);
 }
 
@@ -113,7 +112,7 @@ TEST_CASE("an ALSA configuration without a default device is an error, not the e
 }
 
 TEST_CASE("run by the test of a broken ALSA configuration", "[.broken_alsa]") {
-    CHECK_THROWS_WITH(audio::list_audio_outputs(), Catch::Contains("pcm.default"));
+    CHECK_THROWS_WITH(audio::list_audio_outputs(), Catch::Matchers::ContainsSubstring("pcm.default"));
 }
 
 TEST_CASE("an output opens, asks for sound and closes") {

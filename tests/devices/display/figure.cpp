@@ -2,8 +2,7 @@
 #include "devices/display/figure.hpp"
 
 #include "dsp/core/error.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <string>
 

@@ -4,8 +4,8 @@
 #include "dsp/core/error.hpp"
 #include "dsp/geometry/brick_surface.hpp"
 #include "dsp/volume/bricks.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ bool can_render() {
         const display::SurfacelessContext context;
         return true;
     } catch (const Error& error) {
-        WARN("skipped: " << error.what());
+        tactus::test::skip(error.what());
         return false;
     }
 }
@@ -97,7 +97,8 @@ bool has_near(const display::Image& image, int x, int y, bool wanted) {
 
 }  // namespace
 
-TEST_CASE("a picture of what moves has far fewer triangles, its outline off by one pixel at most, and no cracks") {
+TEST_CASE("a picture of what moves has far fewer triangles, its outline off by one pixel at most, and no cracks",
+          "[slow]") {
     if (!can_render()) return;
     Scene scene;
     for (const display::NamedView from :

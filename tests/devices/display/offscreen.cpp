@@ -3,8 +3,8 @@
 #include "devices/display/gl_context.hpp"
 #include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
 
 #include <array>
 #include <cmath>
@@ -22,7 +22,7 @@ bool can_render() {
         const display::SurfacelessContext context;
         return true;
     } catch (const Error& error) {
-        WARN("skipped: " << error.what());
+        tactus::test::skip(error.what());
         return false;
     }
 }
@@ -107,10 +107,12 @@ TEST_CASE("malformed meshes and sizes are refused") {
     CHECK_THROWS_AS(display::render_picture({}, display::View{}, 0, 10), Error);
     CHECK_THROWS_AS(display::render_picture({}, display::View{}, 10, 100000), Error);
     mesh.triangles.back() = static_cast<std::uint32_t>(mesh.positions.size() / 3);
-    CHECK_THROWS_WITH(display::render_picture({&mesh, 1}, display::View{}, 10, 10), Catch::Contains("vertex"));
+    CHECK_THROWS_WITH(display::render_picture({&mesh, 1}, display::View{}, 10, 10),
+                      Catch::Matchers::ContainsSubstring("vertex"));
     mesh.triangles.clear();
     mesh.normals.pop_back();
-    CHECK_THROWS_WITH(display::render_picture({&mesh, 1}, display::View{}, 10, 10), Catch::Contains("normal"));
+    CHECK_THROWS_WITH(display::render_picture({&mesh, 1}, display::View{}, 10, 10),
+                      Catch::Matchers::ContainsSubstring("normal"));
 }
 
 TEST_CASE("a PNG file appears whole or not at all") {

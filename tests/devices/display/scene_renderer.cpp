@@ -4,8 +4,8 @@
 #include "devices/display/picture_maker.hpp"
 #include "devices/display/shapes.hpp"
 #include "dsp/core/error.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,7 +21,7 @@ bool can_render() {
         const display::SurfacelessContext context;
         return true;
     } catch (const Error& error) {
-        WARN("skipped: " << error.what());
+        tactus::test::skip(error.what());
         return false;
     }
 }
@@ -107,7 +107,7 @@ TEST_CASE("parts of a mesh are replaced and taken away one by one, however often
     meshes.remove(mesh);
     CHECK(meshes.triangles(meshes.make()) == 0);
     patch.triangles.back() = static_cast<std::uint32_t>(patch.vertices.size());
-    CHECK_THROWS_WITH(meshes.set_part(mesh, 0, patch), Catch::Contains("vertex"));
+    CHECK_THROWS_WITH(meshes.set_part(mesh, 0, patch), Catch::Matchers::ContainsSubstring("vertex"));
 }
 
 TEST_CASE("a pose that is not a number is not drawn, and nothing else suffers") {
@@ -195,7 +195,7 @@ TEST_CASE("in a mirror the picture is turned about and bodies still look solid")
     CHECK(count(scene.maker.draw(scene.picture, {&turned, 1}), is_section) > 600);
 }
 
-TEST_CASE("a million triangles are drawn") {
+TEST_CASE("a million triangles are drawn", "[slow]") {
     if (!can_render()) return;
     display::PictureMaker maker(160, 120);
     display::MeshPool& meshes = maker.renderer().meshes();

@@ -2,8 +2,7 @@
 #include "devices/gripper/frame.hpp"
 
 #include "dsp/core/random.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <string_view>

@@ -3,8 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "tests/devices/gripper/stand_in.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <chrono>
 #include <functional>
@@ -77,7 +76,7 @@ TEST_CASE("noise and losses on the line cost samples, never truth") {
     CHECK(worst < 1.0);  // a flipped bit of a position would be anywhere within 600 m
 }
 
-TEST_CASE("a controller that falls silent, is not valid and holds; back again it goes on") {
+TEST_CASE("a controller that falls silent, is not valid and holds, and back again it goes on") {
     StandInController controller;
     gripper::SerialGripper gripper(settings_for(controller));
     gripper.prepare(1.0 / 150.0);
@@ -126,7 +125,8 @@ TEST_CASE("a gripper that is let go is told to hold, and so is one whose speed i
 TEST_CASE("a port that is none is refused with its name") {
     gripper::SerialGripperSettings s;
     s.port = "/dev/null";
-    CHECK_THROWS_WITH(gripper::SerialGripper(s), Catch::Contains("/dev/null") && Catch::Contains("no serial line"));
+    CHECK_THROWS_WITH(gripper::SerialGripper(s), Catch::Matchers::ContainsSubstring("/dev/null") &&
+                                                     Catch::Matchers::ContainsSubstring("no serial line"));
     s.port = "/nowhere/tty";
-    CHECK_THROWS_WITH(gripper::SerialGripper(s), Catch::Contains("cannot open /nowhere/tty"));
+    CHECK_THROWS_WITH(gripper::SerialGripper(s), Catch::Matchers::ContainsSubstring("cannot open /nowhere/tty"));
 }

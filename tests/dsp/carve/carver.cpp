@@ -3,9 +3,8 @@
 
 #include "dsp/core/error.hpp"
 #include "tests/dsp/carve/saw.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/realtime_check.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <memory>
 
@@ -165,14 +164,14 @@ TEST_CASE("settings that make no saw are refused") {
     carve::Carver carver;
     carve::CarveSettings settings;
     settings.stroke = 0.0005;
-    CHECK_THROWS_WITH(carver.prepare(*editor, settings), Catch::Contains("tooth pitch"));
+    CHECK_THROWS_WITH(carver.prepare(*editor, settings), Catch::Matchers::ContainsSubstring("tooth pitch"));
     settings = {};
     settings.kerf = -1.0;
-    CHECK_THROWS_WITH(carver.prepare(*editor, settings), Catch::Contains("kerf"));
+    CHECK_THROWS_WITH(carver.prepare(*editor, settings), Catch::Matchers::ContainsSubstring("kerf"));
     settings = {};
     settings.kerf = 0.007;
-    CHECK_THROWS_WITH(carver.prepare(*editor, settings), Catch::Contains("band"));
+    CHECK_THROWS_WITH(carver.prepare(*editor, settings), Catch::Matchers::ContainsSubstring("band"));
     settings = {};
     settings.tooth_pitch = 1e-9;
-    CHECK_THROWS_WITH(carver.prepare(*editor, settings), Catch::Contains("teeth"));
+    CHECK_THROWS_WITH(carver.prepare(*editor, settings), Catch::Matchers::ContainsSubstring("teeth"));
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The field after long cuts, against the exact distance to the same kerf.
 #include "tests/dsp/carve/saw.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 

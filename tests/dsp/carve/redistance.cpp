@@ -2,8 +2,7 @@
 #include "dsp/carve/redistance.hpp"
 
 #include "tests/dsp/carve/saw.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <memory>
 #include <numeric>

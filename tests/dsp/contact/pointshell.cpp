@@ -3,8 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "tests/dsp/contact/bodies.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <limits>
 #include <numeric>
@@ -94,7 +93,7 @@ TEST_CASE("the same points in any order give the same set of chunks, and the sam
     }
 }
 
-TEST_CASE("no points make an empty shell; points that are no numbers are refused") {
+TEST_CASE("no points make an empty shell, and points that are no numbers are refused") {
     CHECK(contact::make_pointshell({}).empty());
     CHECK(contact::make_pointshell({}).nodes.empty());
     auto points = contact::spread_over_ball(10, 0.02);

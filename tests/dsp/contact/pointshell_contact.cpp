@@ -4,9 +4,8 @@
 #include "dsp/contact/pointshell_kernel.hpp"
 #include "dsp/core/hash.hpp"
 #include "tests/dsp/contact/bodies.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/realtime_check.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <limits>
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/contact/pointshell_contact.hpp"
 #include "tests/dsp/contact/bodies.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <limits>
 

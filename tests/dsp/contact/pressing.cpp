@@ -2,8 +2,7 @@
 // What a hand would feel: pressing on things and sliding over them.
 #include "dsp/contact/pointshell_contact.hpp"
 #include "tests/dsp/contact/bodies.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <numbers>
 

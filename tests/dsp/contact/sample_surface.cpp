@@ -3,8 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "tests/dsp/contact/bodies.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <numeric>
 
@@ -91,7 +90,7 @@ TEST_CASE("following curvature, points crowd where the surface turns and nowhere
     CHECK(total_area(crowded) == Approx(total_area(even)).epsilon(0.01));
 }
 
-TEST_CASE("the same surface gives the same points; a mesh will do as well as a grid") {
+TEST_CASE("the same surface gives the same points, and a mesh will do as well as a grid") {
     const volume::Grid grid = bodies::ball(40, 0.5e-3, 0.008).grid;
     const contact::SurfaceSampling sampling{.spacing = 0.7e-3};
     const auto a = contact::sample_surface(grid, sampling), b = contact::sample_surface(grid, sampling);

@@ -2,8 +2,7 @@
 // A simulated card with a clock of its own and an engine that follows it, hours in a second.
 #include "dsp/control/card_follower.hpp"
 #include "dsp/core/random.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <functional>
@@ -117,7 +116,7 @@ struct Simulation {
 
 }  // namespace
 
-TEST_CASE("a clock that follows a card 200 ppm off holds the ring at its level for hours") {
+TEST_CASE("a clock that follows a card 200 ppm off holds the ring at its level for hours", "[slow]") {
     for (const double ppm : {-200.0, 0.0, 200.0})
         for (const int frames : {16, 64, 100, 256, 1024}) {
             Simulation s;

@@ -2,8 +2,7 @@
 #include "dsp/control/loop_stability.hpp"
 
 #include "tests/dsp/control/closed_loop.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <cmath>

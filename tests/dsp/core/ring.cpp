@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/core/ring.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <array>
 #include <thread>
@@ -37,7 +36,7 @@ TEST_CASE("a full ring takes only what fits and an empty one gives only what is 
     CHECK(ring.space() == 4);
 }
 
-TEST_CASE("nothing is lost, doubled or torn between two threads") {
+TEST_CASE("nothing is lost, doubled or torn between two threads", "[slow]") {
     struct Twin {
         std::uint64_t a, b;
     };

@@ -2,8 +2,7 @@
 // A hand without will on a device, sampled at 1 kHz, against the coupling: how stiff it may be before it rings.
 #include "tests/dsp/contact/bodies.hpp"
 #include "tests/dsp/coupling/held.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <cmath>

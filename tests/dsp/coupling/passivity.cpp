@@ -3,8 +3,7 @@
 
 #include "dsp/core/quantile.hpp"
 #include "dsp/coupling/force_shape.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 

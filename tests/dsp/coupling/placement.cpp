@@ -2,8 +2,7 @@
 #include "dsp/coupling/placement.hpp"
 
 #include "dsp/core/rotation.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <numbers>
 

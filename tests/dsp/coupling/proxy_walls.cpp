@@ -3,8 +3,7 @@
 #include "dsp/core/random.hpp"
 #include "dsp/coupling/surface_proxy.hpp"
 #include "tests/dsp/coupling/held.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +28,7 @@ Vec3 random_place(const Random& random, std::uint64_t n, double reach) {
 
 }  // namespace
 
-TEST_CASE("jumps of the hand up to 75 mm never take a proxy out of a hollow ball with a wall of 0.35 mm") {
+TEST_CASE("jumps of the hand up to 75 mm never take a proxy out of a hollow ball with a wall of 0.35 mm", "[slow]") {
     const HollowBall shape{8.0 * mm, 0.35 * mm};
     const Random random{3};
     for (const double voxel : {0.35 * mm, 0.2 * mm}) {

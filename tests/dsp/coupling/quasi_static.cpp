@@ -4,9 +4,9 @@
 #include "dsp/coupling/dynamic_coupling.hpp"
 #include "tests/dsp/contact/bodies.hpp"
 #include "tests/dsp/coupling/held.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/realtime_check.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>

@@ -4,9 +4,8 @@
 #include "dsp/core/random.hpp"
 #include "dsp/geometry/closest_point.hpp"
 #include "tests/dsp/coupling/held.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/realtime_check.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -86,7 +85,7 @@ TEST_CASE("the nearest place within half-spaces is on faces, in edges and in cor
     CHECK(glm::length(coupling::nearest_within({-1, -2, -3}, {0, 0, 0}, all) - Vec3(0, 0, -0.5)) < 1e-12);
 }
 
-TEST_CASE("sliding over a ball, field or triangles: the force is the spring's along the normal") {
+TEST_CASE("sliding over a ball, field or triangles: the force is the spring's along the normal", "[slow]") {
     for (const coupling::ProxySurface& surface : both(ball_map(), ball_triangles()))
         for (const double radius : {0.0, 2.0 * mm}) {
             coupling::SurfaceProxy proxy;

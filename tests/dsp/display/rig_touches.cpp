@@ -2,8 +2,8 @@
 #include "dsp/display/rig_touches.hpp"
 
 #include "dsp/coupling/placement.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <string>
@@ -79,28 +79,30 @@ TEST_CASE("dsp: a touch that went wrong is named, with how far it is off the oth
 
 TEST_CASE("dsp: touches that decide nothing, or contradict each other altogether, are refused with what to do") {
     std::vector<display::RigTouch> touches = whole_rig();
-    CHECK_THROWS_WITH(display::fit_rig(std::span(touches).first(3)), Catch::Contains("touch 4 places at least"));
-    CHECK_THROWS_WITH(display::fit_rig(std::span(touches).subspan(16)), Catch::Contains("touch the mirror as well"));
+    CHECK_THROWS_WITH(display::fit_rig(std::span(touches).first(3)),
+                      Catch::Matchers::ContainsSubstring("touch 4 places at least"));
+    CHECK_THROWS_WITH(display::fit_rig(std::span(touches).subspan(16)),
+                      Catch::Matchers::ContainsSubstring("touch the mirror as well"));
     auto mixed = touches;
     mixed[20].of = display::RigTouch::Of::screen;
-    CHECK_THROWS_WITH(display::fit_rig(mixed), Catch::Contains("not both"));
+    CHECK_THROWS_WITH(display::fit_rig(mixed), Catch::Matchers::ContainsSubstring("not both"));
     auto swapped = touches;
     for (std::size_t i = 16; i < 25; ++i) swapped[i].shown.x = 1.0 - swapped[i].shown.x;
-    CHECK_THROWS_WITH(display::fit_rig(swapped), Catch::Contains("look away from the mirror"));
+    CHECK_THROWS_WITH(display::fit_rig(swapped), Catch::Matchers::ContainsSubstring("look away from the mirror"));
     auto shaken = touches;
     for (std::size_t i = 16; i < 25; ++i) shaken[i].reading.x += 0.02 * static_cast<double>((i * 7) % 5);
-    CHECK_THROWS_WITH(display::fit_rig(shaken), Catch::Contains("no single one is to blame"));
+    CHECK_THROWS_WITH(display::fit_rig(shaken), Catch::Matchers::ContainsSubstring("no single one is to blame"));
     auto line = touches;
     for (std::size_t i = 8; i < 16; ++i)
         line[i].reading = touches[8].reading + Vec3(0.01 * static_cast<double>(i), 0.0, 0.0);
-    CHECK_THROWS_WITH(display::fit_rig(line), Catch::Contains("on a line"));
+    CHECK_THROWS_WITH(display::fit_rig(line), Catch::Matchers::ContainsSubstring("on a line"));
     auto tiny = touches;
     for (std::size_t i = 17; i < 25; ++i)
         tiny[i].reading = touches[16].reading + 0.01 * (touches[i].reading - touches[16].reading);
-    CHECK_THROWS_WITH(display::fit_rig(tiny), Catch::Contains("no size of a screen"));
+    CHECK_THROWS_WITH(display::fit_rig(tiny), Catch::Matchers::ContainsSubstring("no size of a screen"));
     auto lost = touches;
     lost[5].reading.y = std::nan("");
-    CHECK_THROWS_WITH(display::fit_rig(lost), Catch::Contains("touch 6"));
+    CHECK_THROWS_WITH(display::fit_rig(lost), Catch::Matchers::ContainsSubstring("touch 6"));
 }
 
 TEST_CASE("dsp: a device that is not true is taken as it is when its scales and skews may be fitted") {
@@ -114,5 +116,5 @@ TEST_CASE("dsp: a device that is not true is taken as it is when its scales and 
     const Vec3 at(0.05, 0.02, -0.1);
     const Vec3 reading = untrue * device.inverse().apply(at);
     CHECK(glm::length(fit.device.apply(fit.stretch * reading) - at) < 1e-9);
-    CHECK_THROWS_WITH(display::fit_rig(touches), Catch::Contains("device"));
+    CHECK_THROWS_WITH(display::fit_rig(touches), Catch::Matchers::ContainsSubstring("device"));
 }

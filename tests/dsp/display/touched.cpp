@@ -4,8 +4,8 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/coupling/placement.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -122,16 +122,17 @@ TEST_CASE("dsp: the corners of a screen and the plane of a mirror come out of no
 TEST_CASE("dsp: touches that decide nothing are refused by what is missing") {
     const auto line = [](double x) { return display::TouchPair{{x, 2.0 * x, 0.0}, {x, 0.0, 2.0 * x}}; };
     std::vector<display::TouchPair> touches{line(0.0), line(0.1)};
-    CHECK_THROWS_WITH(display::fit_rigid(touches), Catch::Contains("at least 3"));
+    CHECK_THROWS_WITH(display::fit_rigid(touches), Catch::Matchers::ContainsSubstring("at least 3"));
     touches.push_back(line(0.2));
-    CHECK_THROWS_WITH(display::fit_rigid(touches), Catch::Contains("on a line"));
+    CHECK_THROWS_WITH(display::fit_rigid(touches), Catch::Matchers::ContainsSubstring("on a line"));
     touches.push_back({{0.1, 0.0, 0.0}, {0.1, 0.05, 0.0}});
-    CHECK_THROWS_WITH(display::fit_affine(touches), Catch::Contains("in a plane"));
+    CHECK_THROWS_WITH(display::fit_affine(touches), Catch::Matchers::ContainsSubstring("in a plane"));
     touches[0].to.x = std::nan("");
-    CHECK_THROWS_WITH(display::fit_rigid(touches), Catch::Contains("touch 1"));
-    CHECK_THROWS_WITH(display::fit_rigid(std::vector<display::TouchPair>(5)), Catch::Contains("at one place"));
+    CHECK_THROWS_WITH(display::fit_rigid(touches), Catch::Matchers::ContainsSubstring("touch 1"));
+    CHECK_THROWS_WITH(display::fit_rigid(std::vector<display::TouchPair>(5)),
+                      Catch::Matchers::ContainsSubstring("at one place"));
     CHECK_THROWS_WITH(display::fit_plane(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}),
-                      Catch::Contains("do not lie in a plane"));
+                      Catch::Matchers::ContainsSubstring("do not lie in a plane"));
     const std::vector<display::ScreenTouch> mixed{{{0, 0}, {0, 0, 0}}, {{1, 0}, {0.5, 0, 0}}, {{0, 1}, {0.2, 0.3, 0}}};
-    CHECK_THROWS_WITH(display::fit_screen(mixed), Catch::Contains("skewed"));
+    CHECK_THROWS_WITH(display::fit_screen(mixed), Catch::Matchers::ContainsSubstring("skewed"));
 }

@@ -3,8 +3,8 @@
 
 #include "dsp/core/rotation.hpp"
 #include "dsp/fit/history.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <array>

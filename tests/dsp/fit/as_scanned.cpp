@@ -2,8 +2,7 @@
 #include "dsp/fit/as_scanned.hpp"
 
 #include "tests/dsp/fit/broken_bar.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 using namespace tactus;
 using namespace tactus::test;

@@ -2,8 +2,8 @@
 #include "dsp/fit/faces.hpp"
 
 #include "dsp/core/random.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>

@@ -3,8 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "tests/dsp/fit/broken_bar.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cstring>
 #include <numbers>
@@ -65,7 +64,7 @@ TEST_CASE("dsp: normals that are flipped pull nothing together") {
     CHECK(error_of(left(), fit.pose) > 1 * mm);
 }
 
-TEST_CASE("dsp: another bone's fracture does not match, and neither does the mirror image") {
+TEST_CASE("dsp: another bone's fracture does not match, and neither does the mirror image", "[slow]") {
     const fit::FitSurface fixed = right().surface();
     for (std::uint64_t seed = 11; seed <= 13; ++seed) {
         const fit::FitSurface stranger = bar_half(-1.0, rough_relief(seed)).surface();
@@ -142,7 +141,7 @@ TEST_CASE("dsp: a break that looks the same turned by half is ambiguous") {
     CHECK(fit::find_fit(moving, fixed, {}, fit::FitMode::global).verdict == fit::FitVerdict::ambiguous);
 }
 
-TEST_CASE("dsp: chips, spilled and missing paint, lost bone and uneven voxels leave the place as it is") {
+TEST_CASE("dsp: chips, spilled and missing paint, lost bone and uneven voxels leave the place as it is", "[slow]") {
     struct Hardship {
         const char* name;
         BarOptions left, right;
@@ -176,7 +175,7 @@ TEST_CASE("dsp: an outer contour with a step of its own does not pull the break 
     }
 }
 
-TEST_CASE("dsp: bone lost along the break is closed, not called a failure") {
+TEST_CASE("dsp: bone lost along the break is closed, not called a failure", "[slow]") {
     for (const double gap : {0.2 * mm, 0.5 * mm, 1.0 * mm}) {
         const Half a = bar_half(-1.0, rough_relief(3), {.gap = gap}), b = bar_half(1.0, rough_relief(3), {.gap = gap});
         const fit::Fit fit =

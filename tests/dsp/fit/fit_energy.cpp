@@ -5,9 +5,8 @@
 #include "dsp/fit/held_fit.hpp"
 #include "dsp/geometry/symmetric_eigen.hpp"
 #include "tests/dsp/fit/broken_bar.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/realtime_check.hpp"
-
-#include <catch2/catch.hpp>
 
 using namespace tactus;
 using namespace tactus::test;

@@ -3,8 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "tests/dsp/fit/broken_bar.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <vector>
 

@@ -8,8 +8,8 @@
 #include "dsp/fit/mirror.hpp"
 #include "dsp/fit/point_registration.hpp"
 #include "dsp/geometry/main_axes.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <cmath>
@@ -79,7 +79,7 @@ TEST_CASE("the tree finds what looking at every point finds") {
     }
 }
 
-TEST_CASE("a surface is laid on another sampling of itself from wherever it is") {
+TEST_CASE("a surface is laid on another sampling of itself from wherever it is", "[slow]") {
     const auto fixed = lump_points(60), moving = lump_points(47, 0.2);
     const fit::RegistrationTarget target(fixed);
     for (const Pose& truth : {Pose{Vec3(40.0, -300.0, 20.0) * mm, rotation_by({2.0, -1.0, 0.5})},
@@ -113,7 +113,7 @@ TEST_CASE("a part that is elsewhere does not draw the rest along, is found, and 
     CHECK(glm::length(back.pose.apply(middle) - shift.inverse().apply(middle)) < 0.3 * mm);
 }
 
-TEST_CASE("the mirror of a body is found from its two sides, and what of one side was moved is put back") {
+TEST_CASE("the mirror of a body is found from its two sides, and what of one side was moved is put back", "[slow]") {
     // A body that is symmetric about a tilted plane; its right side lies where it was scanned, turned a little.
     const fit::MirrorPlane truth{glm::normalize(Vec3(0.9, 0.3, -0.2)), 55.0 * mm};
     const auto left = lump_points(50);
@@ -178,7 +178,7 @@ TEST_CASE("main axes of a turned box are its edges, longest first, and a rotatio
     CHECK(glm::determinant(axes) == Approx(1.0));
 }
 
-TEST_CASE("where a third of a surface is elsewhere, the place that most of it agrees on is found") {
+TEST_CASE("where a third of a surface is elsewhere, the place that most of it agrees on is found", "[slow]") {
     const auto fixed = lump_points(60);
     auto moving = lump_points(53, 0.2);
     const Pose shift{Vec3(2.5, 1.0, 1.5) * mm, rotation_by({0.0, 0.03, 0.02})};

@@ -2,8 +2,7 @@
 #include "dsp/fit/step_tree.hpp"
 
 #include "dsp/core/random.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <array>
 #include <cstring>

@@ -2,8 +2,8 @@
 #include "dsp/geometry/brick_surface.hpp"
 
 #include "dsp/geometry/iso_surface.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 #include "dsp/geometry/coarse_surface.hpp"
 
 #include "dsp/volume/bricks.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>

@@ -3,8 +3,7 @@
 
 #include "dsp/core/random.hpp"
 #include "dsp/volume/surface_distance.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <map>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/geometry/symmetric_eigen.hpp"
 #include "dsp/core/random.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 using namespace tactus;
 

@@ -2,8 +2,7 @@
 #include "dsp/simulate/trajectory.hpp"
 
 #include "dsp/core/error.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/realtime.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <complex>
@@ -12,7 +11,7 @@
 #include <numbers>
 
 using namespace tactus;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -110,5 +109,5 @@ TEST_CASE("an actuator that cannot be is refused, an unknown one with the known 
     CHECK_THROWS_AS(vibration::Actuator(model, 0.0, rate), Error);
     CHECK_THROWS_AS(vibration::Actuator(model, 0.1, 0.0), Error);
     CHECK_THROWS_AS(vibration::Actuator(model, 0.1, 100.0), Error);
-    CHECK_THROWS_WITH(vibration::find_actuator("haptuator_smal"), Contains("haptuator_small"));
+    CHECK_THROWS_WITH(vibration::find_actuator("haptuator_smal"), ContainsSubstring("haptuator_small"));
 }

@@ -7,8 +7,7 @@
 #include "dsp/vibration/equaliser.hpp"
 #include "dsp/vibration/identify.hpp"
 #include "tests/dsp/vibration/plant.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cstdlib>
 #include <string>
@@ -70,7 +69,7 @@ void show(const std::string& name, const signal::Comparison& c) {
 
 }  // namespace
 
-TEST_CASE("on the plant it was made for, an equaliser makes the saw's vibration out of the actuator's") {
+TEST_CASE("on the plant it was made for, an equaliser makes the saw's vibration out of the actuator's", "[slow]") {
     for (const Saw& saw : saws) {
         const std::vector<float> wanted = saw.take();
         const signal::Comparison before = played(wanted, wanted, {});
@@ -96,7 +95,7 @@ TEST_CASE("on the plant it was made for, an equaliser makes the saw's vibration 
     }
 }
 
-TEST_CASE("on a plant that has drifted since, an equaliser still improves every take") {
+TEST_CASE("on a plant that has drifted since, an equaliser still improves every take", "[slow]") {
     struct Drift {
         const char* name;
         double resonance, mode;
@@ -134,7 +133,8 @@ TEST_CASE("on a plant that has drifted since, an equaliser still improves every 
 // |error before| + |error after| >= |d|: a filter that errs by at most 0.5 dB on the plant it was made for cannot err by
 // less than |d| − 0.5 dB on the other.
 TEST_CASE(
-    "no fixed filter serves a handle before and after its mode moves onto the saw's first order; a new sweep does") {
+    "no fixed filter serves a handle before and after its mode moves onto the saw's first order, and a new sweep "
+    "does") {
     test::Plant other;
     other.mode = 165.0;
     double worst = 0.0, mean = 0.0;

@@ -4,9 +4,8 @@
 #include "dsp/core/random.hpp"
 #include "dsp/vibration/actuator.hpp"
 #include "dsp/vibration/refine_rate.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/realtime_check.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -42,7 +41,7 @@ double goertzel(const std::vector<float>& samples, double frequency, double rate
 
 }  // namespace
 
-TEST_CASE("the line of a saw lies within 0.1 Hz of the commanded rate") {
+TEST_CASE("the line of a saw lies within 0.1 Hz of the commanded rate", "[slow]") {
     const auto free_air = tone(233.0, 0.3), cutting = tone(190.0, 2.0);
     const vibration::SawRecording recordings[] = {{free_air, 48000.0, 233.0}, {cutting, 48000.0, 190.0, 7.0, true}};
     for (double rate : {160.0, 200.5, 233.0, 250.0}) {
@@ -75,7 +74,7 @@ TEST_CASE("the envelope of a tone ripples by less than 1 dB while the load comes
     CHECK(20.0 * std::log10(most / least) < 1.0);
 }
 
-TEST_CASE("the strongest line of the voice is the commanded rate, whatever recording it is played from") {
+TEST_CASE("the strongest line of the voice is the commanded rate, whatever recording it is played from", "[slow]") {
     const auto slow = tone(150.0, 1.0), fast = tone(233.0, 0.3);
     const vibration::SawRecording recordings[] = {{slow, 48000.0, 150.0}, {fast, 48000.0, 233.0}};
     for (const double rate : {140.0, 165.0, 185.0, 210.0, 240.0}) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/volume/bricks.hpp"
 #include "dsp/core/random.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>

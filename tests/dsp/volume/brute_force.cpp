@@ -5,10 +5,9 @@
 #include "dsp/geometry/iso_surface.hpp"
 #include "dsp/volume/iso_distance.hpp"
 #include "dsp/volume/resample.hpp"
+#include "tests/support/catch.hpp"
 
 #include <glm/geometric.hpp>
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -75,7 +74,8 @@ geometry::TriangleSurface fine_surface(const volume::Grid& grey, int times) {
 
 }  // namespace
 
-TEST_CASE("the distance to lumps a few samples wide is that of brute force, isotropic or not, 1 m from the origin") {
+TEST_CASE("the distance to lumps a few samples wide is that of brute force, isotropic or not, 1 m from the origin",
+          "[slow]") {
     for (const Vec3 spacing : {Vec3(4e-4), Vec3(3.5e-4, 3.5e-4, 6e-4)}) {
         const volume::Grid grey = lumps(spacing, spacing.z > 5e-4 ? 3 : 2);
         const volume::Grid distance = volume::distance_to_iso(grey, 0.0f);
@@ -154,7 +154,7 @@ TEST_CASE("the distance has the same bits whoever runs its jobs") {
     CHECK(volume::distance_to_iso(volume::smoothed(grey, threads), 0.0f, threads).values == alone.values);
 }
 
-TEST_CASE("worked on a few layers at a time, the distance has the bits of the whole up to its reach") {
+TEST_CASE("worked on a few layers at a time, the distance has the bits of the whole up to its reach", "[slow]") {
     // Lumps of all sizes, and deep inside a block, where the nearest surface is farther than the reach.
     for (const Vec3 spacing : {Vec3(4e-4), Vec3(3.5e-4, 3.5e-4, 6e-4)}) {
         volume::Grid grey = lumps(spacing, 5);

@@ -3,10 +3,9 @@
 #include "dsp/volume/components.hpp"
 #include "dsp/volume/resample.hpp"
 #include "dsp/volume/surface_distance.hpp"
+#include "tests/support/catch.hpp"
 
 #include <glm/geometric.hpp>
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>

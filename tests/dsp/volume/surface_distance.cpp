@@ -2,10 +2,9 @@
 #include "dsp/volume/surface_distance.hpp"
 
 #include "dsp/geometry/closest_point.hpp"
+#include "tests/support/catch.hpp"
 
 #include <glm/geometric.hpp>
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +47,8 @@ double brute_force(const geometry::TriangleSurface& surface, const Vec3& p) {
 
 }  // namespace
 
-TEST_CASE("the distance to triangles is exact beside the surface and right within a tenth of a sample far from it") {
+TEST_CASE("the distance to triangles is exact beside the surface and right within a tenth of a sample far from it",
+          "[slow]") {
     for (const double triangle : {0.4e-3, 1e-3, 3e-3})
         for (const Vec3& h : {Vec3(0.7e-3), Vec3(0.5e-3, 0.5e-3, 0.9e-3)}) {
             const geometry::TriangleSurface surface = lumps(triangle);
@@ -74,7 +74,7 @@ TEST_CASE("the distance to triangles is exact beside the surface and right withi
         }
 }
 
-TEST_CASE("the distance to triangles has the same bits whoever runs its jobs") {
+TEST_CASE("the distance to triangles has the same bits whoever runs its jobs", "[slow]") {
     const geometry::TriangleSurface surface = lumps(0.5e-3);
     const volume::Grid layout = layout_of(Vec3(0.6e-3));
     const volume::Grid alone = volume::signed_distance(layout, surface);

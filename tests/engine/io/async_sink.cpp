@@ -2,8 +2,7 @@
 #include "engine/io/async_sink.hpp"
 
 #include "dsp/core/error.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -71,7 +70,7 @@ TEST_CASE("what is kept is saved by a thread of its own, in order, without being
     CHECK(sink.take_message().empty());
 }
 
-TEST_CASE("what cannot be saved is said once, tried again, and nothing of it is lost") {
+TEST_CASE("what cannot be saved is said once, tried again, and nothing of it is lost", "[slow]") {
     const auto notes = std::make_shared<Notes>();
     notes->is_full = true;
     io::AsyncSink sink(notes, sizeof(double));

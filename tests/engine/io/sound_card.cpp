@@ -3,8 +3,7 @@
 #include "engine/io/sound_card.hpp"
 #include "devices/audio/stream_state.hpp"
 #include "engine/run/run_clock.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <array>
 #include <numeric>

@@ -5,8 +5,7 @@
 #include "assets/file/growing_file.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -145,8 +144,8 @@ TEST_CASE("a table and a sound on a small disk are whole files of what had room"
             samples.write(n * 1000, ones.data(), ones.size(), sizeof(float));
             samples.drain();
         }
-        CHECK_THAT(rows.loss(), Catch::Contains("a.csv: cannot be written"));
-        CHECK_THAT(samples.loss(), Catch::Contains("a.wav: cannot write"));
+        CHECK_THAT(rows.loss(), Catch::Matchers::ContainsSubstring("a.csv: cannot be written"));
+        CHECK_THAT(samples.loss(), Catch::Matchers::ContainsSubstring("a.wav: cannot write"));
         rows.finish();
         samples.finish();
     }

@@ -5,8 +5,7 @@
 #include "graph/compile/compile.hpp"
 #include "graph/patch/patch.hpp"
 #include "tests/engine/chaos.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -225,7 +224,7 @@ TEST_CASE("an observer that begins late, or sleeps until its ring is full, has t
     CHECK(holds_the_same(*bone, editor.current()));
 }
 
-TEST_CASE("a live run goes on alike under an observer that comes, goes and reads while values change") {
+TEST_CASE("a live run goes on alike under an observer that comes, goes and reads while values change", "[live]") {
     observe::Observer observer;
     run::EngineOptions options;
     options.seconds = 1.0;

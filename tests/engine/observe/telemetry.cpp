@@ -3,8 +3,7 @@
 
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/played_device.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -56,7 +55,7 @@ std::array<std::int64_t, observe::late_causes> skips_after(bool busy) {
 
 }  // namespace
 
-TEST_CASE("every skipped tick has its cause: a node that computes too long, or a thread that stands still") {
+TEST_CASE("every skipped tick has its cause: a node that computes too long, or a thread that stands still", "[live]") {
     // On a machine that is busy with other things a computing thread may stand still as well: three tries.
     const auto most = [](bool busy, observe::LateCause cause) {
         std::int64_t skips = 0;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/engine/chaos.hpp"
 #include "tests/engine/repeat.hpp"
+#include "tests/support/catch.hpp"
 
 #include <fmt/format.h>
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cstdlib>
@@ -86,7 +86,7 @@ TEST_CASE("a node whose structure changes is made anew, and starts as the patch 
     for (const auto& [port, hash] : fresh) CHECK(changed.at(port) == hash);
 }
 
-TEST_CASE("with edits too, threads and blocks cannot change a bit") {
+TEST_CASE("with edits too, threads and blocks cannot change a bit", "[slow]") {
     std::vector<Edit> edits;
     for (int i = 1; i <= 12; ++i) edits.push_back({i * 37 * ms + i * 1000, edited(static_cast<std::uint64_t>(i))});
     const auto reference = hashes_of(edited(0), edits, 1, 1, false, 0.5);
@@ -98,14 +98,14 @@ TEST_CASE("with edits too, threads and blocks cannot change a bit") {
         }
 }
 
-TEST_CASE("edits may follow each other faster than values travel") {
+TEST_CASE("edits may follow each other faster than values travel", "[slow]") {
     std::vector<Edit> edits;
     for (int i = 1; i <= 300; ++i) edits.push_back({i * ms + i * 777, edited(static_cast<std::uint64_t>(i % 23))});
     const auto reference = hashes_of(edited(0), edits, 1, 1, false, 0.4);
     CHECK(hashes_of(edited(0), edits, 3, 480, true, 0.4) == reference);
 }
 
-TEST_CASE("a storm of edits under load is repeated to the bit from its take") {
+TEST_CASE("a storm of edits under load is repeated to the bit from its take", "[live]") {
     // TACTUS_STORM=2000 makes it a long one.
     const char* asked = std::getenv("TACTUS_STORM");
     const std::int64_t storm = asked ? std::atoll(asked) : 40;
@@ -148,7 +148,7 @@ TEST_CASE("a storm of edits under load is repeated to the bit from its take") {
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("a parameter set from outside holds two quanta later, and the take repeats it") {
+TEST_CASE("a parameter set from outside holds two quanta later, and the take repeats it", "[live]") {
     const auto folder = scratch("set");
     run::Engine::PortHashes live_hashes;
     Flicks asked_at = 0, holds_at = 0;
@@ -165,10 +165,11 @@ TEST_CASE("a parameter set from outside holds two quanta later, and the take rep
             if (holds_at != 0 || engine.progress_seconds() < 0.1) return;
             asked_at = static_cast<Flicks>(engine.progress_seconds() * static_cast<double>(flicks_per_second));
             holds_at = engine.set("b", "gain", "0.25");
-            CHECK_THROWS_WITH(engine.set("bb", "gain", "1"), Catch::Contains("did you mean 'b'"));
-            CHECK_THROWS_WITH(engine.set("b", "gian", "1"), Catch::Contains("did you mean 'gain'"));
-            CHECK_THROWS_WITH(engine.set("b", "gain", "7"), Catch::Contains("outside"));
-            CHECK_THROWS_WITH(engine.set("loud", "factor", "1"), Catch::Contains("driven by a wire"));
+            CHECK_THROWS_WITH(engine.set("bb", "gain", "1"), Catch::Matchers::ContainsSubstring("did you mean 'b'"));
+            CHECK_THROWS_WITH(engine.set("b", "gian", "1"), Catch::Matchers::ContainsSubstring("did you mean 'gain'"));
+            CHECK_THROWS_WITH(engine.set("b", "gain", "7"), Catch::Matchers::ContainsSubstring("outside"));
+            CHECK_THROWS_WITH(engine.set("loud", "factor", "1"),
+                              Catch::Matchers::ContainsSubstring("driven by a wire"));
         };
         engine.run_live(live);
         engine.finish();
@@ -183,7 +184,7 @@ TEST_CASE("a parameter set from outside holds two quanta later, and the take rep
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("an edit that cannot be made leaves the old plan running") {
+TEST_CASE("an edit that cannot be made leaves the old plan running", "[live]") {
     run::EngineOptions options;
     options.seconds = 0.4;
     options.live = true;

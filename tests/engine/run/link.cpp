@@ -4,8 +4,7 @@
 
 #include "dsp/core/random.hpp"
 #include "graph/node/port.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/analyse/stiffness.hpp"
 
+#include "tests/support/catch.hpp"
 #include "tests/support/compile_nodes.hpp"
-
-#include <catch2/catch.hpp>
 
 using namespace tactus;
 
@@ -73,7 +72,7 @@ TEST_CASE("a driven stiffness counts with the end of its range") {
     CHECK_FALSE(loops[0].ok());
 }
 
-TEST_CASE("a way without a spring has a limit and nothing to compare; an unknown damping promises nothing") {
+TEST_CASE("a way without a spring has a limit and nothing to compare, and an unknown damping promises nothing") {
     const auto plain = loops_of("wires = [\"in.out -> out.in\"]\n" + hand);
     REQUIRE(plain.size() == 1);
     CHECK_FALSE(plain[0].declared);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/compile/layout.hpp"
 
+#include "tests/support/catch.hpp"
 #include "tests/support/compile_nodes.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <array>
 #include <map>

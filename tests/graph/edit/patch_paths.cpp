@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/edit/patch_paths.hpp"
 #include "graph/edit/patch_editor.hpp"
+#include "tests/support/catch.hpp"
 
 #include <unistd.h>
-#include <catch2/catch.hpp>
 
 #include <filesystem>
 #include <fstream>

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/graph/patch_reading.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 using namespace tactus;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -85,18 +84,22 @@ on = true
 
 TEST_CASE("what stands at the top by mistake is named, with the nearest key") {
     CHECK_THAT(problems_of(with_hand("titel = \"x\"\n")),
-               Contains("p.toml:1:1: unknown key 'titel'") && Contains("did you mean 'title'"));
-    CHECK_THAT(problems_of(with_hand("", "[node.blade]\ntype = \"x\"\n")), Contains("did you mean 'nodes'"));
-    CHECK_THAT(problems_of(with_hand("nodes = 3\n").substr(0, 10)), Contains("p.toml:1:9: 'nodes' is a table"));
+               ContainsSubstring("p.toml:1:1: unknown key 'titel'") && ContainsSubstring("did you mean 'title'"));
+    CHECK_THAT(problems_of(with_hand("", "[node.blade]\ntype = \"x\"\n")), ContainsSubstring("did you mean 'nodes'"));
+    CHECK_THAT(problems_of(with_hand("nodes = 3\n").substr(0, 10)),
+               ContainsSubstring("p.toml:1:9: 'nodes' is a table"));
 }
 
 TEST_CASE("wires inside a table are told to move up") {
     CHECK(problems_of(with_hand("", "wires = [\"a.b -> c.d\"]\n")) ==
           "p.toml:4:1: 'wires' stands inside [nodes.hand]; move it above the first table\n");
-    CHECK_THAT(problems_of(with_hand("[assets]\nwires = []\n")), Contains("stands inside [assets]"));
-    CHECK_THAT(problems_of(with_hand("[groups.g]\nrate = \"1 Hz\"\nwires = []\n")), Contains("inside [groups.g]"));
-    CHECK_THAT(problems_of(with_hand("[devices.d]\ndriver = \"x\"\nwires = []\n")), Contains("inside [devices.d]"));
-    CHECK_THAT(problems_of(with_hand("wires = \"a.b -> c.d\"\n")), Contains("p.toml:1:9") && Contains("is a list"));
+    CHECK_THAT(problems_of(with_hand("[assets]\nwires = []\n")), ContainsSubstring("stands inside [assets]"));
+    CHECK_THAT(problems_of(with_hand("[groups.g]\nrate = \"1 Hz\"\nwires = []\n")),
+               ContainsSubstring("inside [groups.g]"));
+    CHECK_THAT(problems_of(with_hand("[devices.d]\ndriver = \"x\"\nwires = []\n")),
+               ContainsSubstring("inside [devices.d]"));
+    CHECK_THAT(problems_of(with_hand("wires = \"a.b -> c.d\"\n")),
+               ContainsSubstring("p.toml:1:9") && ContainsSubstring("is a list"));
 }
 
 TEST_CASE("a node has a type and either a rate or a group") {
@@ -110,29 +113,33 @@ TEST_CASE("a value of the wrong kind is one problem, at the value") {
     CHECK(problems_of("[nodes.a]\ntype = 3\nrate = \"1 Hz\"\n") == "p.toml:2:8: 'type' is a text; put it in quotes\n");
     CHECK(problems_of("[nodes.a]\ntype = \"t\"\nrate = 1000\n") == "p.toml:3:8: 'rate' is a text; put it in quotes\n");
     CHECK(problems_of(with_hand("[assets]\nb = 3\n")) == "p.toml:2:5: 'b' is a text; put it in quotes\n");
-    CHECK_THAT(problems_of(with_hand("", "date = 2020-01-01\n")), Contains("p.toml:4:8") && Contains("'date'"));
-    CHECK_THAT(problems_of(with_hand("", "table = {a = 1}\n")), Contains("p.toml:4:9") && Contains("'table'"));
-    CHECK_THAT(problems_of(with_hand("", "v = [1, 2]\n")), Contains("p.toml:4:5") && Contains("list of three"));
+    CHECK_THAT(problems_of(with_hand("", "date = 2020-01-01\n")),
+               ContainsSubstring("p.toml:4:8") && ContainsSubstring("'date'"));
+    CHECK_THAT(problems_of(with_hand("", "table = {a = 1}\n")),
+               ContainsSubstring("p.toml:4:9") && ContainsSubstring("'table'"));
+    CHECK_THAT(problems_of(with_hand("", "v = [1, 2]\n")),
+               ContainsSubstring("p.toml:4:5") && ContainsSubstring("list of three"));
     CHECK_THAT(problems_of(with_hand("", "v = [1, 2, [3]]\n")),
-               Contains("p.toml:4:12") && Contains("three quantities"));
-    CHECK_THAT(problems_of(with_hand("", "v = [1, true, 3]\n")), Contains("p.toml:4:9"));
+               ContainsSubstring("p.toml:4:12") && ContainsSubstring("three quantities"));
+    CHECK_THAT(problems_of(with_hand("", "v = [1, true, 3]\n")), ContainsSubstring("p.toml:4:9"));
 }
 
 TEST_CASE("names are letters, digits, '_' and '-'") {
     CHECK_THAT(problems_of("[nodes.\"a b\"]\ntype = \"t\"\nrate = \"1 Hz\"\n"),
-               Contains("p.toml:1:8: 'a b' is no name"));
-    CHECK_THAT(problems_of("[nodes.\"\"]\ntype = \"t\"\nrate = \"1 Hz\"\n"), Contains("is no name"));
-    CHECK_THAT(problems_of(with_hand("", std::string(hand))), Contains("p.toml:4:"));
-    CHECK_THAT(problems_of(with_hand("", "rate = \"2 Hz\"\n")), Contains("p.toml:4:"));
+               ContainsSubstring("p.toml:1:8: 'a b' is no name"));
+    CHECK_THAT(problems_of("[nodes.\"\"]\ntype = \"t\"\nrate = \"1 Hz\"\n"), ContainsSubstring("is no name"));
+    CHECK_THAT(problems_of(with_hand("", std::string(hand))), ContainsSubstring("p.toml:4:"));
+    CHECK_THAT(problems_of(with_hand("", "rate = \"2 Hz\"\n")), ContainsSubstring("p.toml:4:"));
 }
 
 TEST_CASE("quantum and seed are checked") {
-    CHECK_THAT(problems_of(with_hand("quantum = \"0 ms\"\n")), Contains("p.toml:1:11") && Contains("above zero"));
-    CHECK_THAT(problems_of(with_hand("quantum = \"-1 ms\"\n")), Contains("above zero"));
-    CHECK_THAT(problems_of(with_hand("quantum = \"1 kHz\"\n")), Contains("p.toml:1:11"));
-    CHECK_THAT(problems_of(with_hand("quantum = \"0.3333333 ms\"\n")), Contains("not exact"));
-    CHECK_THAT(problems_of(with_hand("seed = -1\n")), Contains("p.toml:1:8"));
-    CHECK_THAT(problems_of(with_hand("seed = 1.5\n")), Contains("p.toml:1:8"));
+    CHECK_THAT(problems_of(with_hand("quantum = \"0 ms\"\n")),
+               ContainsSubstring("p.toml:1:11") && ContainsSubstring("above zero"));
+    CHECK_THAT(problems_of(with_hand("quantum = \"-1 ms\"\n")), ContainsSubstring("above zero"));
+    CHECK_THAT(problems_of(with_hand("quantum = \"1 kHz\"\n")), ContainsSubstring("p.toml:1:11"));
+    CHECK_THAT(problems_of(with_hand("quantum = \"0.3333333 ms\"\n")), ContainsSubstring("not exact"));
+    CHECK_THAT(problems_of(with_hand("seed = -1\n")), ContainsSubstring("p.toml:1:8"));
+    CHECK_THAT(problems_of(with_hand("seed = 1.5\n")), ContainsSubstring("p.toml:1:8"));
 }
 
 TEST_CASE("several problems are told together, in the order of the file") {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/control/force_limiter.hpp"
 #include "dsp/core/error.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <cmath>
 
@@ -52,17 +51,18 @@ TEST_CASE("a controller brings the finger to F/k") {
 TEST_CASE("an unstable gain is refused when the patch is read, with the limit, unless it is wanted") {
     Held held;
     held.node.set("gain", "120 s^-1");
-    CHECK_THROWS_WITH(held.node.prepare(), Catch::Contains("unstable") && Catch::Contains("the limit is"));
+    CHECK_THROWS_WITH(held.node.prepare(), Catch::Matchers::ContainsSubstring("unstable") &&
+                                               Catch::Matchers::ContainsSubstring("the limit is"));
     held.node.set("allow_unstable", "true");
     held.node.prepare();
     held.tick();
     CHECK(held.node.last<double>("used_gain") == 120.0);
     Held nothing;
     nothing.node.set("stiffness", "0 N/mm");
-    CHECK_THROWS_WITH(nothing.node.prepare(), Catch::Contains("set a damping"));
+    CHECK_THROWS_WITH(nothing.node.prepare(), Catch::Matchers::ContainsSubstring("set a damping"));
     Held no_table;
     no_table.node.set("object", "table");
-    CHECK_THROWS_WITH(no_table.node.prepare(), Catch::Contains("asset"));
+    CHECK_THROWS_WITH(no_table.node.prepare(), Catch::Matchers::ContainsSubstring("asset"));
 }
 
 TEST_CASE("while it runs an unstable change is refused and the last good settings hold") {
@@ -249,7 +249,7 @@ TEST_CASE("a gripper's input tells what is wrong and keeps the last good positio
     CHECK(node.last<double>("fault") == static_cast<double>(control::Fault::invalid_input));
 }
 
-TEST_CASE("the rig swings 50 mm at its rate; a sweep gets faster without a jump") {
+TEST_CASE("the rig swings 50 mm at its rate, and a sweep gets faster without a jump") {
     NodeHarness node("test_rig", {.period = period, .max_frames = 1});
     node.set("swings", "0.5 Hz").feed<double>("finger", 0.0);
     node.prepare();

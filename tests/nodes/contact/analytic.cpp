@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/core/rotation.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
-
-#include <catch2/catch.hpp>
 
 using namespace tactus;
 using test::NodeHarness;

@@ -3,9 +3,8 @@
 #include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "dsp/geometry/triangle_tree.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,9 @@
 #include "dsp/contact/pointshell.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "dsp/simulate/hand.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>

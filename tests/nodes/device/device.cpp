@@ -2,9 +2,8 @@
 #include "assets/bone/bone.hpp"
 #include "assets/library/mandible.hpp"
 #include "dsp/core/rotation.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -148,7 +147,8 @@ TEST_CASE("a workspace with a bone puts the resting blade in front of it, teeth 
     CHECK(std::get<double>(report.sections.at("site").at("thickness_mm")) == Approx(20.0).margin(1.0));
 }
 
-TEST_CASE("on the bundled mandible the blade goes across the body from the outside, clear of everything else") {
+TEST_CASE("on the bundled mandible the blade goes across the body from the outside, clear of everything else",
+          "[slow]") {
     const auto mandible = std::make_shared<const bone::Bone>(library::make_mandible());
     NodeHarness node("workspace", servo);
     node.disconnect("clutch").disconnect("turn");
@@ -171,5 +171,5 @@ TEST_CASE("a workspace says so when a bone has no place for a blade") {
     NodeHarness node("workspace", servo);
     node.disconnect("clutch").disconnect("turn");
     node.asset("bone", std::make_shared<const bone::Bone>(air));
-    CHECK_THROWS_WITH(node.prepare(), Catch::Contains("leave 'bone' out"));
+    CHECK_THROWS_WITH(node.prepare(), Catch::Matchers::ContainsSubstring("leave 'bone' out"));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>

@@ -6,9 +6,9 @@
 #include "dsp/contact/shape.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>

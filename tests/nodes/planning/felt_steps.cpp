@@ -6,9 +6,9 @@
 #include "dsp/core/random.hpp"
 #include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -126,7 +126,7 @@ Felt felt_by(const char* kind, const Broken& broken, const Times& at, std::int64
 
 }  // namespace
 
-TEST_CASE("a fragment that is led over the teeth of any break and settles there is felt without a step") {
+TEST_CASE("a fragment that is led over the teeth of any break and settles there is felt without a step", "[slow]") {
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         const Broken broken(seed);
         for (const char* kind : {"quasi_static_coupling", "snap_to_fit"}) {
@@ -145,7 +145,7 @@ TEST_CASE("a fragment that is led over the teeth of any break and settles there 
     }
 }
 
-TEST_CASE("a fragment that is led or settles comes along within 50 ms of being pulled away, at any time") {
+TEST_CASE("a fragment that is led or settles comes along within 50 ms of being pulled away, at any time", "[slow]") {
     const Broken broken(1);
     for (const char* kind : {"quasi_static_coupling", "snap_to_fit"})
         for (const std::int64_t pull : {720, 900, 1200, 1760, 1820, 1900, 2100, 2230, 2400}) {

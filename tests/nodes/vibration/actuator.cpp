@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/actuator.hpp"
 
+#include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>

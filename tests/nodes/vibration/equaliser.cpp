@@ -2,14 +2,13 @@
 #include "dsp/vibration/equaliser.hpp"
 
 #include "dsp/vibration/sweep.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <cmath>
 
 using namespace tactus;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using test::NodeHarness;
 
 namespace {
@@ -46,7 +45,7 @@ TEST_CASE("an equaliser node gives its impulse response, by halves when half of 
 TEST_CASE("an equaliser made for another rate is refused and the message says how to make one that fits") {
     NodeHarness node("equaliser");
     node.asset("filter", filter_of({1.0f}, 0.0, 44100.0));
-    CHECK_THROWS_WITH(node.prepare(), Contains("44100 Hz") && Contains("--rate 48000"));
+    CHECK_THROWS_WITH(node.prepare(), ContainsSubstring("44100 Hz") && ContainsSubstring("--rate 48000"));
 }
 
 TEST_CASE("a sweep node plays the sweep that identification expects, as often as asked, then silence") {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tests/support/catch.hpp"
 #include "tests/support/node_harness.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <cmath>
 

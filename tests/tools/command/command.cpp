@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command as scripts see it: exit codes, one clear error, nothing half-written.
+#include "tests/support/catch.hpp"
 #include "tests/tools/run_command.hpp"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <sys/wait.h>
@@ -46,7 +46,7 @@ number = 0.5
 
 }  // namespace
 
-TEST_CASE("a render leaves recordings and a summary; the hash depends on neither threads nor blocks") {
+TEST_CASE("a render leaves recordings and a summary, and the hash depends on neither threads nor blocks") {
     const Folder folder;
     const std::string patch = folder.write("good.toml", good).string(), out = (folder.path / "out").string();
     std::string hash;
@@ -64,7 +64,7 @@ TEST_CASE("a render leaves recordings and a summary; the hash depends on neither
     }
 }
 
-TEST_CASE("check says how stiff a hand may feel each path, and what the patch declares") {
+TEST_CASE("check says how stiff a hand may feel each path, and what the patch declares", "[slow]") {
     const Folder folder;
     const auto loop = [&](const std::string& settings, int code = 0) {
         const Outcome o = folder.tactus("check saw-training --json " + settings);
@@ -86,7 +86,7 @@ TEST_CASE("check says how stiff a hand may feel each path, and what the patch de
     CHECK(loop("--set simulated.damping='5 N s/m'", 1)["ok"] == false);
 }
 
-TEST_CASE("check names every slip with file, line and column") {
+TEST_CASE("check names every slip with file, line and column", "[slow]") {
     const Folder folder;
     struct Slip {
         std::string what, to, message;
@@ -128,17 +128,17 @@ TEST_CASE("a cycle, wires inside a table, broken TOML and an empty patch are nam
         CHECK(bad.code == 2);
         return bad.err;
     };
-    using Catch::Contains;
+    using Catch::Matchers::ContainsSubstring;
     CHECK_THAT(message("wires = [\"a.out -> b.in\", \"b.out -> a.in\"]\n[nodes.a]\ntype=\"gain\"\nrate=\"48 kHz\"\n"
                        "[nodes.b]\ntype=\"gain\"\nrate=\"48 kHz\"\n"),
-               Contains("cycle"));
+               ContainsSubstring("cycle"));
     CHECK_THAT(message("[nodes.a]\ntype=\"constant\"\nrate=\"1 kHz\"\nwires = [\"a.value -> a.x\"]\n"),
-               Contains("move it above"));
-    CHECK_THAT(message("wires = [\n"), Contains("bad.toml:"));
-    CHECK_THAT(message(""), Contains("no nodes"));
+               ContainsSubstring("move it above"));
+    CHECK_THAT(message("wires = [\n"), ContainsSubstring("bad.toml:"));
+    CHECK_THAT(message(""), ContainsSubstring("no nodes"));
 }
 
-TEST_CASE("assets and settings that cannot be used end in exit code 2, say which, and write nothing") {
+TEST_CASE("assets and settings that cannot be used end in exit code 2, say which, and write nothing", "[slow]") {
     const Folder folder;
     const fs::path out = folder.path / "out";
     const auto refused = [&](const std::string& how, const std::string& part) {
@@ -170,7 +170,7 @@ TEST_CASE("a folder that cannot be made or written is refused, and an import tha
     CHECK_FALSE(fs::exists(folder.path / "x.vdb"));
 }
 
-TEST_CASE("usage that makes no sense ends in exit code 2") {
+TEST_CASE("usage that makes no sense ends in exit code 2", "[slow]") {
     const Folder folder;
     for (const char* line :
          {"", "frobnicate", "render", "render saw-training --out o --seconds -1",
@@ -182,7 +182,7 @@ TEST_CASE("usage that makes no sense ends in exit code 2") {
         CHECK(folder.tactus(line).code == 0);
 }
 
-TEST_CASE("saw-training saws: forces within limits, bone removed, the same bits on any number of threads") {
+TEST_CASE("saw-training saws: forces within limits, bone removed, the same bits on any number of threads", "[slow]") {
     const Folder folder;
     const fs::path out = folder.path / "saw";
     std::string hash;
@@ -207,7 +207,7 @@ TEST_CASE("saw-training saws: forces within limits, bone removed, the same bits 
     }
 }
 
-TEST_CASE("a live run's log repeats it to the bit") {
+TEST_CASE("a live run's log repeats it to the bit", "[live]") {
     const Folder folder;
     const std::string log = (folder.path / "timing.log").string();
     const Outcome live = folder.tactus("run saw-training --seconds 1 --dilate 2 --json --out " +

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the command says of itself: help by job, version, manual pages, completions; and what it exits with.
+#include "tests/support/catch.hpp"
 #include "tests/tools/background_run.hpp"
 #include "tests/tools/run_command.hpp"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <cstdlib>

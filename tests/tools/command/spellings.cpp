@@ -5,8 +5,8 @@
 #include "tools/command/options.hpp"
 
 #include "dsp/core/error.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <string>

@@ -5,10 +5,11 @@
 #include "devices/display/gl_context.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/display/camera.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
+#include "tests/support/skip.hpp"
 
 #include <fmt/format.h>
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <array>
@@ -36,7 +37,7 @@ bool can_render() {
         const display::SurfacelessContext context;
         return true;
     } catch (const Error& error) {
-        WARN("skipped: " << error.what());
+        tactus::test::skip(error.what());
         return false;
     }
 }
@@ -69,7 +70,7 @@ const fs::path golden = tactus::test::source_folder() / "tests/tools/frames";
 
 }  // namespace
 
-TEST_CASE("pictures of the library look as they did") {
+TEST_CASE("pictures of the library look as they did", "[slow]") {
     if (!can_render()) return;
     // Made by: tactus render PATCH --seconds S --frames 1 --size 320x200 --view-from VIEW --out DIR
     struct Case {
@@ -94,7 +95,7 @@ TEST_CASE("pictures of the library look as they did") {
     }
 }
 
-TEST_CASE("frames come at even times, whole, and do not depend on threads") {
+TEST_CASE("frames come at even times, whole, and do not depend on threads", "[slow]") {
     if (!can_render()) return;
     const Folder folder;
     const std::string command =
@@ -112,7 +113,7 @@ TEST_CASE("frames come at even times, whole, and do not depend on threads") {
     CHECK(Pixels(folder.path / "a/frame_0001.png").share_unlike(Pixels(folder.path / "a/frame_0003.png"), 40) > 0.001);
 }
 
-TEST_CASE("pictures change no bit of the output") {
+TEST_CASE("pictures change no bit of the output", "[slow]") {
     if (!can_render()) return;
     const Folder folder;
     const auto hash = [](const std::string& summary) {
@@ -128,7 +129,7 @@ TEST_CASE("pictures change no bit of the output") {
     CHECK(hash(with.out) == hash(without.out));
 }
 
-TEST_CASE("what a picture cannot be made of is said in one line") {
+TEST_CASE("what a picture cannot be made of is said in one line", "[slow]") {
     const Folder folder;
     const auto error = [&](const std::string& options) {
         const Outcome outcome =
@@ -210,7 +211,8 @@ std::array<double, 2> orange(const Pixels& picture, double at_x, double at_y, in
 }  // namespace
 
 TEST_CASE(
-    "frames through a rig show the tool within half a pixel of where the hand feels it, in a mirror, for both eyes") {
+    "frames through a rig show the tool within half a pixel of where the hand feels it, in a mirror, for both eyes",
+    "[slow]") {
     if (!can_render()) return;
     const Folder folder;
     folder.write("still.toml", still_hand);
@@ -274,7 +276,7 @@ stereo = "mono"
     }
 }
 
-TEST_CASE("stereo pictures have a legend for each eye at one place, and an offset moves what is seen") {
+TEST_CASE("stereo pictures have a legend for each eye at one place, and an offset moves what is seen", "[slow]") {
     if (!can_render()) return;
     const Folder folder;
     folder.write("still.toml", still_hand);

@@ -3,8 +3,9 @@
 
 #include "devices/display/picture_maker.hpp"
 #include "dsp/core/error.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -20,7 +21,7 @@ bool can_render() {
         const display::SurfacelessContext context;
         return true;
     } catch (const Error& error) {
-        WARN("skipped: " << error.what());
+        tactus::test::skip(error.what());
         return false;
     }
 }

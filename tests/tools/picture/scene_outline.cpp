@@ -2,10 +2,9 @@
 #include "tools/picture/scene/scene_outline.hpp"
 
 #include "nodes/catalogue.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tools/session/load_plan.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <string>

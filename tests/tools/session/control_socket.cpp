@@ -3,9 +3,8 @@
 #include "tools/session/control_socket.hpp"
 
 #include "dsp/core/error.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/tools/background_run.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -57,7 +56,7 @@ const std::string patch = "[nodes.half]\ntype = \"constant\"\nrate = \"1 kHz\"\n
 
 }  // namespace
 
-TEST_CASE("a folder that is a link is left alone: nothing behind it is removed, and its rights stay") {
+TEST_CASE("a folder that is a link is left alone: nothing behind it is removed, and its rights stay", "[live]") {
     const Runtime runtime;
     const fs::path documents = runtime.folder.path / "documents";
     fs::create_directories(documents / "letters");
@@ -65,8 +64,8 @@ TEST_CASE("a folder that is a link is left alone: nothing behind it is removed, 
     std::ofstream(documents / "1.socket") << "no socket";
     ::chmod(documents.c_str(), 0755);
     fs::create_directory_symlink(documents, runtime.sockets);
-    CHECK_THROWS_WITH(session::ControlSocket(), Catch::Contains("it is a link"));
-    CHECK_THROWS_WITH(session::ask_run(0, "set a.b=1"), Catch::Contains("it is a link"));
+    CHECK_THROWS_WITH(session::ControlSocket(), Catch::Matchers::ContainsSubstring("it is a link"));
+    CHECK_THROWS_WITH(session::ask_run(0, "set a.b=1"), Catch::Matchers::ContainsSubstring("it is a link"));
     // As a program that knows nothing of this folder meets it.
     const std::string file = runtime.folder.write("p.toml", patch).string();
     CHECK(runtime.folder
@@ -81,13 +80,13 @@ TEST_CASE("a folder that is a link is left alone: nothing behind it is removed, 
 TEST_CASE("a folder that others have access to is refused and keeps its rights") {
     const Runtime runtime;
     runtime.make(0755);
-    CHECK_THROWS_WITH(session::ControlSocket(), Catch::Contains("others have access"));
-    CHECK_THROWS_WITH(session::ask_run(0, "set a.b=1"), Catch::Contains("others have access"));
+    CHECK_THROWS_WITH(session::ControlSocket(), Catch::Matchers::ContainsSubstring("others have access"));
+    CHECK_THROWS_WITH(session::ask_run(0, "set a.b=1"), Catch::Matchers::ContainsSubstring("others have access"));
     CHECK(mode_of(runtime.sockets) == 0755);
     if (::getuid() != 0) return;
     ::chmod(runtime.sockets.c_str(), 0700);
     REQUIRE(::chown(runtime.sockets.c_str(), 65534, 65534) == 0);
-    CHECK_THROWS_WITH(session::ControlSocket(), Catch::Contains("another user"));
+    CHECK_THROWS_WITH(session::ControlSocket(), Catch::Matchers::ContainsSubstring("another user"));
 }
 
 TEST_CASE("only sockets of processes that are gone are removed") {
@@ -126,7 +125,7 @@ TEST_CASE("a new folder is for its user only, whatever its path's length") {
     CHECK(fs::is_socket(deep / "tactus" / session::ControlFolder::name_of(::getpid())));
 }
 
-TEST_CASE("a run that is stopped keeps its socket while another begins and ends") {
+TEST_CASE("a run that is stopped keeps its socket while another begins and ends", "[live]") {
     const Runtime runtime;
     const Folder& folder = runtime.folder;
     const std::string file = folder.write("p.toml", patch).string();
@@ -143,7 +142,7 @@ TEST_CASE("a run that is stopped keeps its socket while another begins and ends"
     CHECK(run.stop(SIGINT) == 0);
 }
 
-TEST_CASE("a run without a folder for its socket says so and runs") {
+TEST_CASE("a run without a folder for its socket says so and runs", "[live]") {
     const Runtime runtime;
     runtime.make(0777);
     const std::string file = runtime.folder.write("p.toml", patch).string();

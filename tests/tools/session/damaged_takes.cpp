@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Takes that lost something since they were made, and what a run that was killed can still give.
+#include "tests/support/catch.hpp"
 #include "tests/tools/background_run.hpp"
 #include "tests/tools/patches.hpp"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ void halve(const fs::path& file) { fs::resize_file(file, fs::file_size(file) / 2
 
 }  // namespace
 
-TEST_CASE("a take that lost a part of any file differs, and replay names the file") {
+TEST_CASE("a take that lost a part of any file differs, and replay names the file", "[slow]") {
     const Folder folder;
     const fs::path whole = render(folder), take = folder.path / "damaged";
     const auto check = [&](const std::string& file, const std::function<void(const fs::path&)>& damage) {
@@ -132,7 +132,7 @@ TEST_CASE("a replayed take writes the files that its run wrote, to the byte") {
           json::parse(slurp(folder.path / "out/summary.json"))["output_hash"]);
 }
 
-TEST_CASE("the take of a run that was killed writes the results that the run did not") {
+TEST_CASE("the take of a run that was killed writes the results that the run did not", "[live]") {
     const Folder folder;
     folder.write("touch.toml", heard);
     const fs::path take = folder.path / "take", out = folder.path / "out";

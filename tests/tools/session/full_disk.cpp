@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A disk that gets full or goes away during a run: what was written stays, the rest of the run is kept.
 #include "assets/sound/sound.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
 #include "tests/tools/outputs_patch.hpp"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -52,7 +53,7 @@ void no_parts(const fs::path& folder) {
 
 bool is_sanitized() {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    WARN("a sanitizer must be loaded first, so no disk can be made to fail here");
+    tactus::test::skip("a sanitizer must be loaded first, so no disk can be made to fail here");
     return true;
 #else
     return false;
@@ -61,7 +62,8 @@ bool is_sanitized() {
 
 }  // namespace
 
-TEST_CASE("on a disk that gets full, a render and a run keep every whole row and sample and go on to their end") {
+TEST_CASE("on a disk that gets full, a render and a run keep every whole row and sample and go on to their end",
+          "[live]") {
     if (is_sanitized()) return;
     const Folder folder;
     folder.write("p.toml", recording_patch);
@@ -183,7 +185,7 @@ TEST_CASE("a take that finds no room repeats the run as far as it goes") {
     }
 }
 
-TEST_CASE("a timing log that finds no room keeps whole records and its name") {
+TEST_CASE("a timing log that finds no room keeps whole records and its name", "[live]") {
     if (is_sanitized()) return;
     const Folder folder;
     folder.write("p.toml", recording_patch);
@@ -197,7 +199,7 @@ TEST_CASE("a timing log that finds no room keeps whole records and its name") {
     CHECK(whole_rows(folder.path / "out/table.csv") > 450);
 }
 
-TEST_CASE("bones and pictures that find no room are named, and the rest of the results is there") {
+TEST_CASE("bones and pictures that find no room are named, and the rest of the results is there", "[slow]") {
     if (is_sanitized()) return;
     const Folder folder;
     for (const std::string what : {".vdb", ".png"}) {

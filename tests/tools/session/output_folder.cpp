@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // One folder, one run: results are written over only where that is asked for.
+#include "tests/support/catch.hpp"
 #include "tests/tools/background_run.hpp"
 #include "tests/tools/outputs_patch.hpp"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 
-using Catch::Contains;
+using Catch::Matchers::ContainsSubstring;
 using nlohmann::json;
 using tactus::test::Folder;
 using tactus::test::Outcome;
@@ -26,7 +26,7 @@ const std::string live = " --audio none --no-edits ";
 
 }  // namespace
 
-TEST_CASE("a folder that holds results is refused, and written over when that is asked for") {
+TEST_CASE("a folder that holds results is refused, and written over when that is asked for", "[live]") {
     const Folder folder;
     folder.write("p.toml", recording_patch);
     for (const std::string verb : {"render", "run --audio none --no-edits"}) {
@@ -35,7 +35,7 @@ TEST_CASE("a folder that holds results is refused, and written over when that is
         const std::string summary = slurp(folder.path / out / "summary.json");
         const Outcome again = shell(folder, line);
         CHECK(again.code == 2);
-        CHECK_THAT(again.err, Contains("holds results already") && Contains("--overwrite"));
+        CHECK_THAT(again.err, ContainsSubstring("holds results already") && ContainsSubstring("--overwrite"));
         CHECK(slurp(folder.path / out / "summary.json") == summary);
         CHECK(shell(folder, line + " --overwrite").code == 0);
         // What a run that was killed has left is a result as well.
@@ -50,7 +50,7 @@ TEST_CASE("a folder that holds results is refused, and written over when that is
     }
 }
 
-TEST_CASE("runs at the same time have folders of their own, and a link leads to the last one") {
+TEST_CASE("runs at the same time have folders of their own, and a link leads to the last one", "[slow]") {
     const Folder folder;
     folder.write("p.toml", recording_patch);
     const std::string line = "$T run p.toml --seconds 1" + live;
@@ -64,8 +64,8 @@ TEST_CASE("runs at the same time have folders of their own, and a link leads to 
         CHECK(table.find('\0') == std::string::npos);
         CHECK(json::parse(slurp(folder.path / name / "summary.json"))["seconds"] == 1.0);
     }
-    CHECK_THAT(slurp(folder.path / "a.out"), Catch::EndsWith("results in p-run/\n"));
-    CHECK_THAT(slurp(folder.path / "b.out"), Catch::EndsWith("results in p-run-2/\n"));
+    CHECK_THAT(slurp(folder.path / "a.out"), Catch::Matchers::EndsWith("results in p-run/\n"));
+    CHECK_THAT(slurp(folder.path / "b.out"), Catch::Matchers::EndsWith("results in p-run-2/\n"));
     CHECK(fs::read_symlink(folder.path / "p-run-latest") == "p-run-2");
     CHECK(shell(folder, "$T run p.toml --seconds 0.1" + live).code == 0);
     CHECK(fs::read_symlink(folder.path / "p-run-latest") == "p-run-3");
@@ -77,7 +77,7 @@ TEST_CASE("runs at the same time have folders of their own, and a link leads to 
     CHECK(slurp(folder.path / "p-run-latest") == "mine");
 }
 
-TEST_CASE("a folder that another run writes to is refused, even to be written over") {
+TEST_CASE("a folder that another run writes to is refused, even to be written over", "[live]") {
     const Folder folder;
     const std::string file = folder.write("p.toml", recording_patch).string(), out = (folder.path / "out").string();
     Run run(folder, file + live + "--out " + out);
@@ -85,14 +85,14 @@ TEST_CASE("a folder that another run writes to is refused, even to be written ov
     for (const std::string& how : {"run" + live, std::string("render ")}) {
         const Outcome second = folder.tactus(how + " " + file + " --seconds 0.1 --overwrite --out " + out);
         CHECK(second.code == 2);
-        CHECK_THAT(second.err, Contains("another run writes to this folder"));
+        CHECK_THAT(second.err, ContainsSubstring("another run writes to this folder"));
     }
     CHECK(run.stop(SIGINT) == 0);
     CHECK(slurp(out + "/table.csv").find('\0') == std::string::npos);
     CHECK(fs::exists(out + "/summary.json"));
 }
 
-TEST_CASE("a recording cannot have the name of a file that the run itself writes") {
+TEST_CASE("a recording cannot have the name of a file that the run itself writes", "[live]") {
     const Folder folder;
     for (const char* name : {"summary.json", "bone.vdb", "bone.png", "take.json", "timing.log", "events.jsonl",
                              "result.json", "patch-0.toml", "streams", "journal-1", "sound.wav.part"}) {
@@ -104,12 +104,12 @@ TEST_CASE("a recording cannot have the name of a file that the run itself writes
         INFO(name << "\n" << refused.err);
         CHECK(refused.code == 2);
         // The node's table in the patch.
-        CHECK_THAT(refused.err, Contains("p.toml:16:8: '" + std::string(name) + "' is the name of a file"));
+        CHECK_THAT(refused.err, ContainsSubstring("p.toml:16:8: '" + std::string(name) + "' is the name of a file"));
         CHECK((!fs::exists(folder.path / "out") || fs::is_empty(folder.path / "out")));
     }
     const std::string file = folder.write("p.toml", recording_patch).string(), out = (folder.path / "out").string();
     const Outcome log =
         folder.tactus("run " + file + live + "--seconds 0.1 --out " + out + " --log " + out + "/table.csv");
     CHECK(log.code == 2);
-    CHECK_THAT(log.err, Contains("--log") && Contains("a recording of the patch goes to this file"));
+    CHECK_THAT(log.err, ContainsSubstring("--log") && ContainsSubstring("a recording of the patch goes to this file"));
 }

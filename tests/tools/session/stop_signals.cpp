@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A terminal that closes ends a run in order, and nobody who stops listening ends it at all.
+#include "tests/support/catch.hpp"
 #include "tests/tools/background_run.hpp"
 #include "tests/tools/outputs_patch.hpp"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ void is_complete(const fs::path& out) {
 
 }  // namespace
 
-TEST_CASE("a run ends in order with SIGHUP as with SIGTERM") {
+TEST_CASE("a run ends in order with SIGHUP as with SIGTERM", "[live]") {
     for (const int signal : {SIGHUP, SIGTERM}) {
         const Folder folder;
         const std::string file = folder.write("p.toml", recording_patch).string();
@@ -45,7 +45,7 @@ TEST_CASE("a run ends in order with SIGHUP as with SIGTERM") {
     }
 }
 
-TEST_CASE("a run that was told to ignore SIGHUP, as by nohup, ignores it") {
+TEST_CASE("a run that was told to ignore SIGHUP, as by nohup, ignores it", "[live]") {
     const Folder folder;
     folder.write("p.toml", recording_patch);
     const Outcome ran = shell(folder,
@@ -56,7 +56,7 @@ TEST_CASE("a run that was told to ignore SIGHUP, as by nohup, ignores it") {
     CHECK(json::parse(ran.out)["seconds"] == 1.0);
 }
 
-TEST_CASE("a render that is asked to end keeps what it has computed and says how far it came") {
+TEST_CASE("a render that is asked to end keeps what it has computed and says how far it came", "[slow]") {
     for (const char* signal : {"HUP", "TERM", "INT"}) {
         const Folder folder;
         folder.write("p.toml", recording_patch);
@@ -73,7 +73,7 @@ TEST_CASE("a render that is asked to end keeps what it has computed and says how
     }
 }
 
-TEST_CASE("a closed terminal or pipe does not end a run") {
+TEST_CASE("a closed terminal or pipe does not end a run", "[live]") {
     const Folder folder;
     folder.write("p.toml", recording_patch);
     // Nobody reads either of them when the run speaks; the fault is one that it tells at once.

@@ -42,7 +42,8 @@ private:
 
 }  // namespace
 
-TEST_CASE("in the window a rig is calibrated by noisy touches within 1 mm, one that missed asked for again, and used") {
+TEST_CASE("in the window a rig is calibrated by noisy touches within 1 mm, one that missed asked for again, and used",
+          "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;
     Hand hand;

@@ -28,7 +28,7 @@ bool is_edited(const fs::path& file) { return slurp(file).find("\"220 Hz\"") != 
 
 }  // namespace
 
-TEST_CASE("a window closed by hand asks about edits that are not saved: save, do not save, or stay open") {
+TEST_CASE("a window closed by hand asks about edits that are not saved: save, do not save, or stay open", "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;
     const fs::path patch = folder.write("voice.toml", voice), kept = folder.path / "voice.unsaved.toml";
@@ -44,7 +44,7 @@ TEST_CASE("a window closed by hand asks about edits that are not saved: save, do
     CHECK_FALSE(fs::exists(kept));
 }
 
-TEST_CASE("a window that a script closes keeps the edits, and the next window restores or discards them") {
+TEST_CASE("a window that a script closes keeps the edits, and the next window restores or discards them", "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;
     const fs::path patch = folder.write("voice.toml", voice), kept = folder.path / "voice.unsaved.toml";
@@ -66,7 +66,7 @@ TEST_CASE("a window that a script closes keeps the edits, and the next window re
     CHECK_FALSE(fs::exists(kept));
 }
 
-TEST_CASE("a window that SIGTERM or the end of --seconds takes away keeps the edits") {
+TEST_CASE("a window that SIGTERM or the end of --seconds takes away keeps the edits", "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;
     folder.write("voice.toml", voice);
@@ -91,7 +91,8 @@ TEST_CASE("a window that SIGTERM or the end of --seconds takes away keeps the ed
     CHECK(slurp(folder.path / "err.txt").find("are kept in") != std::string::npos);
 }
 
-TEST_CASE("a patch of the library that is saved in the window gets a name, and the library stays as it is") {
+TEST_CASE("a patch of the library that is saved in the window gets a name, and the library stays as it is",
+          "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;
     const fs::path patches = library_folder() / "patches";

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The window by its own controls: buttons, sliders and wires under the mouse, and keys.
+#include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tests/tools/patches.hpp"
 #include "tests/tools/view/on_display.hpp"
-
-#include <catch2/catch.hpp>
 
 namespace fs = std::filesystem;
 using namespace tactus::test;
 using nlohmann::json;
 
-TEST_CASE("every control of the window does what it says when it is pressed") {
+TEST_CASE("every control of the window does what it says when it is pressed", "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;
     folder.write("voice.toml", voice);
@@ -86,7 +85,8 @@ close
 }
 
 TEST_CASE(
-    "every patch of the library is edited, saved, recorded and scrubbed in the window, and compiles as it was shown") {
+    "every patch of the library is edited, saved, recorded and scrubbed in the window, and compiles as it was shown",
+    "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;
     std::set<std::string> names;

@@ -53,7 +53,7 @@ void check_golden(const fs::path& made, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("a take at an instant looks as it did when somebody looked") {
+TEST_CASE("a take at an instant looks as it did when somebody looked", "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;
     REQUIRE(on(display, folder, "render saw-training --seconds 1.2 --record take --out out").code == 0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nodes/catalogue.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/tools/patches.hpp"
 #include "tools/view/canvas.hpp"
 #include "tools/view/patch/parameters.hpp"
@@ -9,7 +10,6 @@
 #include "tools/view/signal/plot.hpp"
 
 #include <fmt/format.h>
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,11 +2,12 @@
 // The command with its window on a display without a screen, and what its pictures hold.
 #pragma once
 
+#include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
 #include "tests/tools/run_command.hpp"
 #include "tests/tools/view/display.hpp"
 
 #include <fmt/format.h>
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
@@ -47,9 +48,9 @@ void check_picture(const std::filesystem::path& png, int width, int height);
 
 }  // namespace tactus::test
 
-#define NEEDS_DISPLAY(display)                                                      \
-    const Display display;                                                          \
-    if (!display.is_there()) {                                                      \
-        WARN("Xvfb is not installed (apt install xvfb): the window is not tested"); \
-        return;                                                                     \
+#define NEEDS_DISPLAY(display)                                          \
+    const Display display;                                              \
+    if (!display.is_there()) {                                          \
+        tactus::test::skip("Xvfb is not installed (apt install xvfb)"); \
+        return;                                                         \
     }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A take that is looked at, at any instant and in any order.
+#include "tests/support/catch.hpp"
 #include "tests/tools/patches.hpp"
 #include "tests/tools/run_command.hpp"
 #include "tools/session/replayed_take.hpp"
 #include "tools/view/take_bench.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -49,7 +48,7 @@ bool same(const observe::SeenBone& a, const observe::SeenBone& b) {
 
 }  // namespace
 
-TEST_CASE("the bone at an instant of a take is that of a run to there, whatever was looked at before") {
+TEST_CASE("the bone at an instant of a take is that of a run to there, whatever was looked at before", "[slow]") {
     Folder folder;
     TakeBench bench(rendered(folder, "saw-training", "3"));
     bench.go_to(bench.length());

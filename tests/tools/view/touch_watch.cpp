@@ -2,8 +2,7 @@
 #include "tools/view/scene/touch_watch.hpp"
 
 #include "graph/node/value.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <map>

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Edits that are not saved when their window goes, without a window.
 #include "tools/view/unsaved.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/tools/patches.hpp"
 #include "tests/tools/run_command.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/view/workbench.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <memory>

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/view/workbench.hpp"
 #include "engine/take/take_reader.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/tools/patches.hpp"
 #include "tests/tools/run_command.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/view/signal/feed.hpp"
-
-#include <catch2/catch.hpp>
 
 #include <chrono>
 #include <functional>
@@ -108,7 +107,8 @@ TEST_CASE("a patch saved at the bench compiles to the plan that was shown") {
     }
 }
 
-TEST_CASE("edits at the bench reach the run: parameters as such, all else as a new plan, a pause as time that stands") {
+TEST_CASE("edits at the bench reach the run: parameters as such, all else as a new plan, a pause as time that stands",
+          "[slow]") {
     const Folder folder;
     Workbench bench(choice_in(folder));
     bench.run();
@@ -139,8 +139,8 @@ TEST_CASE("edits at the bench reach the run: parameters as such, all else as a n
     CHECK(bench.running()->summary_json().find("output_hash") != std::string::npos);
 }
 
-TEST_CASE(
-    "a file saved elsewhere is taken over by what runs, parameters that were turned among it, and can be undone") {
+TEST_CASE("a file saved elsewhere is taken over by what runs, parameters that were turned among it, and can be undone",
+          "[slow]") {
     const Folder folder;
     const RunChoice choice = choice_in(folder);
     Workbench bench(choice);
@@ -193,7 +193,7 @@ TEST_CASE(
     CHECK(slurp(choice.patch) == mine);
 }
 
-TEST_CASE("record pressed while a patch runs leaves the run alone and makes a take that repeats it") {
+TEST_CASE("record pressed while a patch runs leaves the run alone and makes a take that repeats it", "[slow]") {
     const Folder folder;
     Workbench bench(choice_in(folder));
     CHECK(bench.take().empty());

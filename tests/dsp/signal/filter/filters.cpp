@@ -3,8 +3,7 @@
 #include "dsp/signal/filter/one_pole.hpp"
 #include "dsp/signal/filter/oscillator.hpp"
 #include "dsp/signal/filter/ramp.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <complex>

@@ -4,8 +4,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/geometry/spline.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -47,7 +46,7 @@ TEST_CASE("samples at uneven times give the wave they were taken from") {
     CHECK(worst < 2e-3);
 }
 
-TEST_CASE("a gap parts the record, nothing is made up in it; equal time stamps are spread") {
+TEST_CASE("a gap parts the record, nothing is made up in it, and equal time stamps are spread") {
     std::vector<double> times, values;
     for (int i = 0; i < 300; ++i) {
         if (i >= 100 && i < 150) continue;
@@ -66,8 +65,8 @@ TEST_CASE("a gap parts the record, nothing is made up in it; equal time stamps a
 TEST_CASE("times that run backwards or stand still are refused") {
     const std::vector<double> values{1, 2, 3, 4};
     CHECK_THROWS_WITH(signal::regularise(std::vector{0.0, 1.0, 0.5, 2.0}, Channels{values}),
-                      Catch::Contains("backwards"));
+                      Catch::Matchers::ContainsSubstring("backwards"));
     CHECK_THROWS_WITH(signal::regularise(std::vector{1.0, 1.0, 1.0, 1.0}, Channels{values}),
-                      Catch::Contains("stands still"));
+                      Catch::Matchers::ContainsSubstring("stands still"));
     CHECK_THROWS_AS(signal::regularise(std::vector{0.0}, Channels{values}), Error);
 }

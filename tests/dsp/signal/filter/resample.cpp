@@ -2,8 +2,7 @@
 #include "dsp/signal/filter/resample.hpp"
 
 #include "dsp/core/error.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <numbers>

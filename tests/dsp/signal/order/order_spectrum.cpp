@@ -3,8 +3,7 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -66,7 +65,7 @@ TEST_CASE("without a tachometer the rate is followed by its ridge, in noise too"
         CHECK(spectrum.orders[static_cast<std::size_t>(k - 1)].amplitude == Approx(amplitudes[k]).epsilon(0.1));
 }
 
-TEST_CASE("the ridge of a few clean orders is their rate and not half of it; noise has hardly one") {
+TEST_CASE("the ridge of a few clean orders is their rate and not half of it, and noise has hardly one") {
     const auto mean_of = [](const signal::Ridge& ridge) {
         double sum = 0.0;
         for (const double frequency : ridge.frequency) sum += frequency / static_cast<double>(ridge.frequency.size());
@@ -100,8 +99,8 @@ TEST_CASE("a fixed rate needs no tracking") {
 
 TEST_CASE("what cannot be tracked is refused") {
     const std::vector<double> flat(1000, 1.0);
-    CHECK_THROWS_WITH(signal::rotation_from_tacho(flat, rate, 1.0), Catch::Contains("at least 4"));
-    CHECK_THROWS_WITH(signal::track_ridge(flat, rate, {}), Catch::Contains("--rate"));
+    CHECK_THROWS_WITH(signal::rotation_from_tacho(flat, rate, 1.0), Catch::Matchers::ContainsSubstring("at least 4"));
+    CHECK_THROWS_WITH(signal::track_ridge(flat, rate, {}), Catch::Matchers::ContainsSubstring("--rate"));
     CHECK_THROWS_WITH(signal::order_spectrum(flat, rate, signal::rotation_at(20.0, 0.125), 4),
-                      Catch::Contains("whole turns"));
+                      Catch::Matchers::ContainsSubstring("whole turns"));
 }

@@ -3,8 +3,7 @@
 
 #include "dsp/signal/filter/resample.hpp"
 #include "tests/dsp/vibration/plant.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 using namespace tactus;
 
@@ -26,7 +25,7 @@ std::vector<double> played(const std::vector<float>& drive, double start = 0.0) 
 
 }  // namespace
 
-TEST_CASE("a take and what an actuator made of it are found to belong together, whatever the delay") {
+TEST_CASE("a take and what an actuator made of it are found to belong together, whatever the delay", "[slow]") {
     for (const bool cutting : {false, true})
         for (const double delay : {0.0, 0.00123, 0.7, -0.4}) {
             INFO((cutting ? "cutting, " : "idle, ") << delay << " s");
@@ -43,7 +42,7 @@ TEST_CASE("a take and what an actuator made of it are found to belong together, 
         }
 }
 
-TEST_CASE("two takes of one saw do not belong together, however alike") {
+TEST_CASE("two takes of one saw do not belong together, however alike", "[slow]") {
     for (const bool cutting : {false, true})
         for (std::uint64_t seed = 1; seed < 6; ++seed) {
             INFO((cutting ? "cutting, seed " : "idle, seed ") << seed);

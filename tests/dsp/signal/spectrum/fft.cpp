@@ -2,8 +2,7 @@
 #include "dsp/signal/spectrum/fft.hpp"
 
 #include "dsp/core/random.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -73,7 +72,7 @@ void check_length(std::size_t n, double tolerance) {
 
 }  // namespace
 
-TEST_CASE("a transform of any length is the sum that defines it, and its inverse gives the record back") {
+TEST_CASE("a transform of any length is the sum that defines it, and its inverse gives the record back", "[slow]") {
     // Powers of two, mixed factors, odd, large primes, and a prime times a small factor.
     for (const std::size_t n :
          {1u,  2u,  3u,  4u,  5u,   6u,   7u,   8u,   9u,   12u,  15u,  16u,  17u,  31u,  32u,

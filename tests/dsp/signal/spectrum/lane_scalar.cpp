@@ -3,8 +3,8 @@
 #include "dsp/signal/spectrum/lane_scalar.hpp"
 
 #include "dsp/core/random.hpp"
+#include "tests/support/catch.hpp"
 
-#include <catch2/catch.hpp>
 #include <kissfft/kissfft.hh>
 
 #include <cmath>

@@ -2,8 +2,7 @@
 #include "dsp/signal/spectrum/line_match.hpp"
 
 #include "tests/dsp/vibration/plant.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 using namespace tactus;
 

@@ -3,8 +3,7 @@
 
 #include "dsp/core/random.hpp"
 #include "dsp/signal/spectrum/comb.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -99,7 +98,7 @@ TEST_CASE("a lone tone is its own fundamental and noise has none") {
     }
 }
 
-TEST_CASE("hum 10 dB above the noise of its bin is found, 50 Hz and 60 Hz") {
+TEST_CASE("hum 10 dB above the noise of its bin is found, 50 Hz and 60 Hz", "[slow]") {
     int found = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         const double mains = seed % 2 ? 60.0 : 50.0;
@@ -128,7 +127,7 @@ TEST_CASE("hum 10 dB above the noise of its bin is found, 50 Hz and 60 Hz") {
     CHECK(hum[1].order == 3);
 }
 
-TEST_CASE("no hum is found in 200 records without hum, saws at any rate") {
+TEST_CASE("no hum is found in 200 records without hum, saws at any rate", "[slow]") {
     int false_alarms = 0;
     const Random random{99};
     for (std::uint64_t seed = 0; seed < 200; ++seed) {

@@ -4,8 +4,7 @@
 #include "dsp/signal/spectrum/comb.hpp"
 #include "dsp/signal/spectrum/comparison.hpp"
 #include "dsp/signal/spectrum/live_comparison.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <limits>
@@ -93,7 +92,7 @@ TEST_CASE("the rate of a saw heard live is that of the record") {
     CHECK(comb.confidence > 0.7);
 }
 
-TEST_CASE("live scores are those of a comparison of the whole takes") {
+TEST_CASE("live scores are those of a comparison of the whole takes", "[slow]") {
     const std::vector<float> reference = saw(48000.0, 6.0, 233.0);
     for (const double tilt : {0.7, 0.45, 0.95})
         for (const double rate : {48000.0, 44100.0, 8000.0}) {

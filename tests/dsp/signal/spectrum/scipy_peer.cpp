@@ -2,9 +2,10 @@
 // Spectra beside scipy's on the same record, when this machine has scipy.
 #include "dsp/core/random.hpp"
 #include "dsp/signal/spectrum/cross.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
 
 #include <fmt/format.h>
-#include <catch2/catch.hpp>
 
 #include <unistd.h>
 
@@ -94,9 +95,9 @@ void compare_all(const Folder& folder, const std::vector<double>& x, const std::
 
 }  // namespace
 
-TEST_CASE("spectra, cross-spectra, coherence and H1 equal scipy's at any length") {
+TEST_CASE("spectra, cross-spectra, coherence and H1 equal scipy's at any length", "[slow]") {
     if (std::system("/usr/bin/python3 -c 'import scipy.signal' 2>/dev/null") != 0) {
-        WARN("no python3 with scipy here: only the golden numbers were compared");
+        tactus::test::skip("no python3 with scipy here");
         return;
     }
     const Folder folder;

@@ -3,8 +3,7 @@
 
 #include "dsp/core/random.hpp"
 #include "dsp/signal/spectrum/bands.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -2,8 +2,7 @@
 #include "dsp/signal/spectrum/transform.hpp"
 
 #include "dsp/core/random.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <cmath>
 #include <numbers>

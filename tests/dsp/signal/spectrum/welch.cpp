@@ -4,8 +4,7 @@
 #include "dsp/core/error.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/signal/spectrum/cross.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -127,7 +126,7 @@ TEST_CASE("a record in pieces of any size has the spectrum of the whole, to the 
     CHECK(stream.spectra().xy == signal::cross_spectra<double>(x, y, of(256, signal::Detrend::linear)).xy);
 }
 
-TEST_CASE("the power of noise is its variance, spread over the band; the scatter is what is promised") {
+TEST_CASE("the power of noise is its variance, spread over the band, and the scatter is what is promised") {
     const std::vector<double> x = white_noise(200'000, 5);
     const signal::Spectrum spectrum = signal::welch<double>(x, of(512, signal::Detrend::constant));
     double total = 0.0, scatter = 0.0;
@@ -152,7 +151,7 @@ TEST_CASE("a tone on a bin reads half its squared amplitude, at 0 Hz and half th
     }
 }
 
-TEST_CASE("unrelated noise has coherence near one over the number of segments; too few are refused") {
+TEST_CASE("unrelated noise has coherence near one over the number of segments, and too few are refused") {
     const std::vector<double> x = white_noise(100'000, 6), y = white_noise(100'000, 7);
     signal::WelchSettings settings = of(1000, signal::Detrend::constant);
     settings.overlap = 0;
@@ -162,7 +161,7 @@ TEST_CASE("unrelated noise has coherence near one over the number of segments; t
     CHECK(mean == Approx(0.01).epsilon(0.2));
     settings.segment = 30'000;
     CHECK_THROWS_WITH(signal::cross_spectra<double>(x, y, settings).coherence(),
-                      Catch::Contains("at least 4 segments"));
+                      Catch::Matchers::ContainsSubstring("at least 4 segments"));
 }
 
 TEST_CASE("H1 finds a filter under noise on its output") {

@@ -2,9 +2,9 @@
 // Bones through the command: what is in a file, label maps in, meshes and volumes out.
 #include "assets/bone/bone.hpp"
 #include "assets/volume/write_volume.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
@@ -76,7 +76,7 @@ double ball_mm3(double radius) { return 4.0 / 3.0 * std::numbers::pi * radius * 
 
 }  // namespace
 
-TEST_CASE("info answers the same questions for a CT and a label map and a mesh and bones") {
+TEST_CASE("info answers the same questions for a CT and a label map and a mesh and bones", "[slow]") {
     const Folder folder;
     volume::write_volume(two_balls(false), volume::WrittenType::int16, folder / "ct.nrrd");
     volume::write_volume(two_balls(true), volume::WrittenType::int16, folder / "labels.nrrd");
@@ -117,7 +117,7 @@ TEST_CASE("info answers the same questions for a CT and a label map and a mesh a
     CHECK(ct["suggested_threshold"].get<double>() < 1300.0);
 }
 
-TEST_CASE("a label map goes in and comes out: import, load by name, export, import again") {
+TEST_CASE("a label map goes in and comes out: import, load by name, export, import again", "[slow]") {
     const Folder folder;
     volume::write_volume(two_balls(true), volume::WrittenType::int16, folder / "labels.nrrd");
     const json made = folder.answer("import " + folder / "labels.nrrd --label all --json -o " + folder / "two.vdb");
@@ -141,7 +141,7 @@ TEST_CASE("a label map goes in and comes out: import, load by name, export, impo
     CHECK_FALSE(fs::exists(folder / "x.vdb"));
 }
 
-TEST_CASE("a render leaves the cut bone; it is smaller and goes out as a mesh") {
+TEST_CASE("a render leaves the cut bone, and it is smaller and goes out as a mesh") {
     const Folder folder;
     REQUIRE(folder.tactus("render saw-training --seconds 3 --out " + folder / "saw").code == 0);
     const bone::Bone cut = bone::load_bone(folder / "saw/bone.vdb");

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much memory the import of a large CT takes, as the system counts it.
+#include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
+#include "tests/support/skip.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <sys/resource.h>
-
-#include <catch2/catch.hpp>
 
 #include <cmath>
 #include <cstdint>
@@ -62,9 +62,9 @@ double peak_of_import(const fs::path& ct, const fs::path& out) {
 
 }  // namespace
 
-TEST_CASE("the memory that an import takes does not grow with the layers of the CT") {
+TEST_CASE("the memory that an import takes does not grow with the layers of the CT", "[slow]") {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    WARN("skipped: sanitizers hold memory of their own");
+    tactus::test::skip("sanitizers hold memory of their own");
 #else
     const Folder folder;
     write_ct(folder.path / "ct.nrrd", 300);

@@ -2,10 +2,10 @@
 // Breaking a bone and putting it together, as scripts do it.
 #include "assets/bone/bone.hpp"
 #include "dsp/core/types.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/tools/bar.hpp"
 #include "tests/tools/run_command.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
@@ -31,7 +31,7 @@ Pose pose_in(const json& j) {
 
 }  // namespace
 
-TEST_CASE("a bone that fracture broke is put together by snap, and a stranger's half is refused") {
+TEST_CASE("a bone that fracture broke is put together by snap, and a stranger's half is refused", "[slow]") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
     bone::save_bone(bar(), file("bar.vdb"));
@@ -66,7 +66,7 @@ TEST_CASE("a bone that fracture broke is put together by snap, and a stranger's 
     CHECK(json::parse(stranger.out)["verdict"] != "fit");
 }
 
-TEST_CASE("halves that touch in one scan are not called a fit where the scan has them") {
+TEST_CASE("halves that touch in one scan are not called a fit where the scan has them", "[slow]") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
     bone::save_bone(bar(), file("bar.vdb"));
@@ -92,7 +92,7 @@ TEST_CASE("halves that touch in one scan are not called a fit where the scan has
     CHECK(json::parse(planned.out)["placed"] == false);
 }
 
-TEST_CASE("the break is proposed by the unbroken bone, laid on the piece by itself or on the main fragment") {
+TEST_CASE("the break is proposed by the unbroken bone, laid on the piece by itself or on the main fragment", "[slow]") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
     bone::save_bone(bar(), file("bar.vdb"));
@@ -138,7 +138,7 @@ TEST_CASE("the break is proposed by the unbroken bone, laid on the piece by itse
     CHECK(folder.tactus("fracture-surface " + file("bar.vdb") + " -o " + file("n.json") + " --mirror").code == 2);
 }
 
-TEST_CASE("snap and fracture refuse what they cannot use with one clear line") {
+TEST_CASE("snap and fracture refuse what they cannot use with one clear line", "[slow]") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
     bone::save_bone(bar(), file("bar.vdb"));

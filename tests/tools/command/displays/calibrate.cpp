@@ -5,10 +5,10 @@
 #include "assets/display/touch_file.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/coupling/placement.hpp"
+#include "tests/support/catch.hpp"
 #include "tools/picture/scene/sight.hpp"
 
 #include <fmt/format.h>
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
@@ -204,7 +204,7 @@ TEST_CASE("through the file of a rig, every pixel is within half a one of the an
     CHECK(parallax < 0.01);
 }
 
-TEST_CASE("a simulated hand touches the marks of a screen; one that went wrong is asked for again") {
+TEST_CASE("a simulated hand touches the marks of a screen, and one that went wrong is asked for again") {
     const Folder folder;
     // A screen of 400 x 250 mm, upright; the second mark is missed by 30 mm, and touched right at the end.
     std::string script = "0 s: 0 0 0 mm |\n";

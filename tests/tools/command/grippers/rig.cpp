@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rig and the gripper patches, as their readers are told to run them.
+#include "tests/support/catch.hpp"
 #include "tests/tools/run_command.hpp"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
@@ -42,7 +42,7 @@ json rendered(const Folder& folder, const std::string& patch, const std::string&
 
 }  // namespace
 
-TEST_CASE("rig: the whole matrix gives the facts and findings of the thesis over all that is assumed") {
+TEST_CASE("rig: the whole matrix gives the facts and findings of the thesis over all that is assumed", "[slow]") {
     const Folder folder;
     const json answer = rig(folder, "gripper-wqsm");
     CHECK(answer["rows"].size() == 2 * 6 * 6 * 2);
@@ -98,7 +98,8 @@ TEST_CASE("rig: the whole matrix gives the facts and findings of the thesis over
     CHECK(page.find("http") == page.find("http://www.w3.org"));  // nothing is loaded from elsewhere
 }
 
-TEST_CASE("rig: what it measured is judged the same when it is read back, and so is a log with uneven times") {
+TEST_CASE("rig: what it measured is judged the same when it is read back, and so is a log with uneven times",
+          "[slow]") {
     const Folder folder;
     folder.write(
         "m.toml",
@@ -149,7 +150,7 @@ TEST_CASE("rig: what cannot be judged is refused with a reason") {
     CHECK(unknown.err.find("linear") != std::string::npos);
 }
 
-TEST_CASE("render gripper-on-arm: a light weight is lifted and felt, a heavy one slides out") {
+TEST_CASE("render gripper-on-arm: a light weight is lifted and felt, a heavy one slides out", "[slow]") {
     const Folder folder;
     const json light = rendered(folder, "gripper-on-arm", "--seconds 5");
     CAPTURE(light.dump());
@@ -159,7 +160,7 @@ TEST_CASE("render gripper-on-arm: a light weight is lifted and felt, a heavy one
     CHECK(rendered(folder, "gripper-on-arm", "--seconds 5 --set weight.mass=\"2 kg\"")["weight"]["highest_mm"] < 5.0);
 }
 
-TEST_CASE("gripper patches: planted faults hold the motor and are told") {
+TEST_CASE("gripper patches: planted faults hold the motor and are told", "[slow]") {
     const Folder folder;
     for (const auto& [fault, words] :
          {std::pair{"nan", "not a finite number"}, {"unplugged", "invalid sample"}, {"stuck", "stood still"}}) {
@@ -177,7 +178,7 @@ TEST_CASE("gripper patches: planted faults hold the motor and are told") {
     }
 }
 
-TEST_CASE("gripper patches: one hash on any threads and blocks, and live when nothing is late") {
+TEST_CASE("gripper patches: one hash on any threads and blocks, and live when nothing is late", "[live]") {
     const Folder folder;
     for (const char* patch : {"gripper-wqsm", "gripper-twum", "gripper-on-arm"}) {
         const json one = rendered(folder, patch, "--seconds 1 --jobs 1");
@@ -207,7 +208,7 @@ TEST_CASE("gripper patches: one hash on any threads and blocks, and live when no
     }
 }
 
-TEST_CASE("run refuses no gripper, render refuses hardware") {
+TEST_CASE("run refuses no gripper, render refuses hardware", "[live]") {
     const Folder folder;
     const Outcome o = folder.tactus("render gripper-wqsm --set finger.device=serial --set motor.device=serial --out " +
                                     (folder.path / "o").string());

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The benchmarks are a program beside the command.
+#include "tests/support/catch.hpp"
 #include "tests/tools/run_command.hpp"
-
-#include <catch2/catch.hpp>
 
 using tactus::test::Folder;
 using tactus::test::Outcome;
 using tactus::test::slurp;
 
-TEST_CASE("'bench' hands everything on to the program beside the command") {
+TEST_CASE("'bench' hands everything on to the program beside the command", "[slow]") {
     const Folder folder;
     const Outcome help = folder.tactus("bench --help");
     CHECK(help.code == 0);

@@ -4,10 +4,10 @@
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "dsp/core/types.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/tools/bar.hpp"
 #include "tests/tools/run_command.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
@@ -99,7 +99,7 @@ struct FromParent {
 
 }  // namespace
 
-TEST_CASE("a case is arranged by commands: every step is kept, undone and redone") {
+TEST_CASE("a case is arranged by commands: every step is kept, undone and redone", "[slow]") {
     const Boxes boxes;
     CHECK(boxes.run("move", "b --pose 1,2,3,0,0,0,1").code == 0);
     CHECK(boxes.run("group", "a b --name jaw").code == 0);
@@ -111,7 +111,7 @@ TEST_CASE("a case is arranged by commands: every step is kept, undone and redone
     CHECK(state["fragments"][1]["pose"]["position_mm"][1].get<double>() == Approx(2.0));
     const Outcome held = boxes.run("move", "b --pose 0,0,0,1,0,0,0");
     CHECK(held.code == 2);
-    CHECK_THAT(held.err, Catch::Contains("locked"));
+    CHECK_THAT(held.err, Catch::Matchers::ContainsSubstring("locked"));
     CHECK(boxes.run("undo", "--steps 2").code == 0);
     CHECK(boxes.state()["fragments"][1]["groups"].empty());
     CHECK(boxes.run("alternative", "second").code == 0);
@@ -133,7 +133,7 @@ TEST_CASE("a case is arranged by commands: every step is kept, undone and redone
     CHECK(boxes.state()["groups"].empty());
 }
 
-TEST_CASE("exported transforms and landmarks, read by other code, move the scan onto the exported mesh") {
+TEST_CASE("exported transforms and landmarks, read by other code, move the scan onto the exported mesh", "[slow]") {
     const Boxes boxes;
     REQUIRE(boxes.run("move", "b --pose 12.5,-3,40,0.5,0.5,-0.5,0.5").code == 0);
     const Outcome done = boxes.run("export", "--json --out " + boxes.file("out"));
@@ -173,7 +173,7 @@ TEST_CASE("exported transforms and landmarks, read by other code, move the scan 
     CHECK(mesh::load_mesh(boxes.file("ply/a.ply")).vertices.size() == 8);
 }
 
-TEST_CASE("broken bone is put together by a plan, measured, and written up on one page") {
+TEST_CASE("broken bone is put together by a plan, measured, and written up on one page", "[slow]") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
     bone::save_bone(bar(), file("bar.vdb"));
@@ -213,12 +213,12 @@ TEST_CASE("broken bone is put together by a plan, measured, and written up on on
     for (const std::string verb : {"snap", "report"}) {
         const Outcome refused = folder.tactus("plan " + verb + " " + plan + (verb == "snap" ? " fragment_02" : ""));
         CHECK(refused.code == 2);
-        CHECK_THAT(refused.err, Catch::Contains("not the one that the plan was made with"));
+        CHECK_THAT(refused.err, Catch::Matchers::ContainsSubstring("not the one that the plan was made with"));
     }
     CHECK(json::parse(folder.tactus("plan show " + plan + " --json").out)["problems"].size() == 1);
 }
 
-TEST_CASE("fragments a metre from the origin are planned like any others") {
+TEST_CASE("fragments a metre from the origin are planned like any others", "[slow]") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
     bone::Bone far = bar();
@@ -238,7 +238,7 @@ TEST_CASE("fragments a metre from the origin are planned like any others") {
     CHECK(glm::length(found.apply(at) - Vec3(1.0, -0.6, 0.8)) < 0.2 * mm);
 }
 
-TEST_CASE("paint goes to a file of strokes that a hand may correct, and comes back from it") {
+TEST_CASE("paint goes to a file of strokes that a hand may correct, and comes back from it", "[slow]") {
     const Folder folder;
     const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
     bone::save_bone(bar(), file("bar.vdb"));
@@ -271,7 +271,7 @@ TEST_CASE("paint goes to a file of strokes that a hand may correct, and comes ba
     CHECK(folder.tactus(again + folder.write("bad.json", "[]").string()).code == 2);
 }
 
-TEST_CASE("what cannot be planned is refused in one line, and nothing is lost") {
+TEST_CASE("what cannot be planned is refused in one line, and nothing is lost", "[live]") {
     const Boxes boxes;
     const std::string whole = slurp(boxes.plan);
     boxes.folder.write("metres.stl", box_stl(Vec3(0.0), Vec3(0.010, 0.012, 0.014), false));
@@ -303,7 +303,7 @@ TEST_CASE("what cannot be planned is refused in one line, and nothing is lost") 
         INFO(arguments << "\n" << done.err);
         CHECK(done.code == 2);
         CHECK(std::ranges::count(done.err, '\n') == 1);
-        CHECK_THAT(done.err, Catch::Contains(message));
+        CHECK_THAT(done.err, Catch::Matchers::ContainsSubstring(message));
     }
     // A fragment whose file is gone: nothing begins, neither by command nor live.
     std::filesystem::remove(boxes.file("b.stl"));
@@ -314,7 +314,8 @@ TEST_CASE("what cannot be planned is refused in one line, and nothing is lost") 
         INFO(command << "\n" << done.err);
         CHECK(done.code == 2);
         CHECK(std::ranges::count(done.err, '\n') == 1);
-        CHECK_THAT(done.err, Catch::Contains("fragment 'b'") && Catch::Contains("b.stl is missing"));
+        CHECK_THAT(done.err, Catch::Matchers::ContainsSubstring("fragment 'b'") &&
+                                 Catch::Matchers::ContainsSubstring("b.stl is missing"));
     }
     CHECK(slurp(boxes.plan) == whole);
     CHECK(slurp(boxes.file("later.plan.json")) == later);

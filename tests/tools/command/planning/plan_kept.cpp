@@ -2,10 +2,11 @@
 // Nothing of a plan is lost: not by a run that is killed, not by two programs at once, not by a disk that is full.
 #include "assets/cases/plan_file.hpp"
 #include "assets/cases/plan_lock.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
+#include "tests/support/skip.hpp"
 #include "tests/tools/background_run.hpp"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -56,7 +57,7 @@ bool is_one_line(const std::string& text) { return std::ranges::count(text, '\n'
 
 }  // namespace
 
-TEST_CASE("a live case that is killed is on disk as far as it went, and opens with the same bits") {
+TEST_CASE("a live case that is killed is on disk as far as it went, and opens with the same bits", "[live]") {
     const Folder folder;
     const fs::path out = folder.path / "out", plan = out / "case.plan.json", take = folder.path / "take";
     std::size_t begun = 0, most = 0;
@@ -87,7 +88,7 @@ TEST_CASE("a live case that is killed is on disk as far as it went, and opens wi
     CHECK(again.code == 0);
 }
 
-TEST_CASE("a live case and the same one on a virtual clock leave the same bytes of a plan") {
+TEST_CASE("a live case and the same one on a virtual clock leave the same bytes of a plan", "[live]") {
     const Folder folder;
     const std::string live = (folder.path / "live").string(), log = (folder.path / "log").string(),
                       virt = (folder.path / "virtual").string();
@@ -102,7 +103,7 @@ TEST_CASE("a live case and the same one on a virtual clock leave the same bytes 
     CHECK(json::parse(run.out)["notices"].dump().find("saved") == std::string::npos);
 }
 
-TEST_CASE("programs that change a plan at the same time do it one after the other, and no step is lost") {
+TEST_CASE("programs that change a plan at the same time do it one after the other, and no step is lost", "[slow]") {
     const Bare bare;
     std::string script;
     for (int n = 0; n < 6; ++n)
@@ -117,7 +118,7 @@ TEST_CASE("programs that change a plan at the same time do it one after the othe
     const cases::PlanLock lock(bare.plan);
     const Outcome refused = bare.run("undo");
     CHECK(refused.code == 2);
-    CHECK_THAT(refused.err, Catch::Contains("another program is changing this plan"));
+    CHECK_THAT(refused.err, Catch::Matchers::ContainsSubstring("another program is changing this plan"));
     CHECK(is_one_line(refused.err));
     CHECK(bare.run("show", "--json").code == 0);
     CHECK(bare.run("alternative").code == 0);
@@ -130,7 +131,7 @@ TEST_CASE("on a full disk a step is refused in one line and the plan stays as it
     const std::string verb = tactus::test::command() + " plan move " + bare.plan + " a --pose 4,5,6,1,0,0,0\n";
     const Outcome refused = shell(bare.folder, "trap '' XFSZ\nulimit -f 1\n" + verb);
     CHECK(refused.code == 2);
-    CHECK_THAT(refused.err, Catch::Contains("case.plan.json: cannot be written"));
+    CHECK_THAT(refused.err, Catch::Matchers::ContainsSubstring("case.plan.json: cannot be written"));
     CHECK(is_one_line(refused.err));
     CHECK(slurp(bare.plan) == before);
     CHECK(bare.files() == std::vector<std::string>{"case.plan.json"});
@@ -144,14 +145,15 @@ TEST_CASE("in a folder that cannot be written to, a step is refused in one line 
     else fs::permissions(bare.folder.path, fs::perms::owner_read | fs::perms::owner_exec);
     const std::string show = as_nobody + tactus + " plan show " + bare.plan + " --json\n";
     if (shell(bare.folder, show).code != 0) {
-        WARN("nobody else may run the command from its folder, so a folder without rights cannot be tried");
+        tactus::test::skip(
+            "nobody else may run the command from its folder, so a folder without rights cannot be tried");
         return;
     }
     const Outcome refused =
         shell(bare.folder, as_nobody + tactus + " plan move " + bare.plan + " a --pose 4,5,6,1,0,0,0\n");
     fs::permissions(bare.folder.path, fs::perms::owner_all);
     CHECK(refused.code == 2);
-    CHECK_THAT(refused.err, Catch::Contains("case.plan.json: cannot be changed: Permission denied"));
+    CHECK_THAT(refused.err, Catch::Matchers::ContainsSubstring("case.plan.json: cannot be changed: Permission denied"));
     CHECK(is_one_line(refused.err));
     CHECK(slurp(bare.plan) == before);
 }

@@ -3,10 +3,10 @@
 // place.
 #include "dsp/core/rotation.hpp"
 #include "dsp/core/types.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tests/tools/run_command.hpp"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
@@ -105,7 +105,7 @@ double step_after(const std::vector<Vec3>& force, double time, double millisecon
 
 }  // namespace
 
-TEST_CASE("render planning-trauma: every piece within 0.3 mm and 0.5 degrees, the chain within 0.5 mm") {
+TEST_CASE("render planning-trauma: every piece within 0.3 mm and 0.5 degrees, the chain within 0.5 mm", "[slow]") {
     const Folder folder;
     const fs::path out = folder.path / "out", take = folder.path / "take";
     const Outcome run =

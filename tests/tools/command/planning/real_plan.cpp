@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A hip that was really broken, by its own faces and against the other side; and a pelvis with a shifted part. Runs
 // only where TACTUS_SHARED_DATA names a folder with these published scans.
+#include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
 #include "tests/tools/run_command.hpp"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <cstdlib>
@@ -24,7 +25,7 @@ std::filesystem::path shared() {
 
 bool has(const std::filesystem::path& file) {
     if (!shared().empty() && std::filesystem::exists(file)) return true;
-    WARN("skipped: TACTUS_SHARED_DATA names no folder with " << file.filename().string());
+    tactus::test::skip("TACTUS_SHARED_DATA names no folder with " + file.filename().string());
     return false;
 }
 

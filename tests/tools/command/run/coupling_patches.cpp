@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The patches of contact and coupling, run by the command as their readers are told to.
+#include "tests/support/catch.hpp"
 #include "tests/tools/run_command.hpp"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
@@ -25,7 +25,7 @@ json rendered(const Folder& folder, const std::string& patch, double seconds, co
 
 }  // namespace
 
-TEST_CASE("render peg-in-hole: in and out at 0.1 and 0.0 mm, not in at -0.1 mm") {
+TEST_CASE("render peg-in-hole: in and out at 0.1 and 0.0 mm, not in at -0.1 mm", "[slow]") {
     const Folder folder;
     for (const char* clearance : {"0.1 mm", "0.0 mm"}) {
         const json s = rendered(folder, "peg-in-hole", 6.0, "--set hole.clearance=\"" + std::string(clearance) + "\"");
@@ -51,7 +51,7 @@ TEST_CASE("render pop-through: the direct force turns over, the proxy's never do
     CHECK(s["proxy_range"]["max"][2] > 3.0);
 }
 
-TEST_CASE("render fragments, press-fragments and touch-sphere: balanced, nothing faulty") {
+TEST_CASE("render fragments, press-fragments and touch-sphere: balanced, nothing faulty", "[slow]") {
     const Folder folder;
     for (const char* patch : {"fragments", "press-fragments", "touch-sphere"}) {
         const json s = rendered(folder, patch, 9.5);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A JACK server without hardware; a second client records what the command plays.
 #include "assets/sound/sound.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <jack/jack.h>
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <fcntl.h>
@@ -166,7 +167,7 @@ private:
 
 bool has_server() {
     if (std::system("command -v jackd >/dev/null") == 0) return true;
-    WARN("skipped: no JACK server (apt-get install jackd2)");
+    tactus::test::skip("no JACK server (apt-get install jackd2)");
     return false;
 }
 
@@ -224,19 +225,20 @@ void check_playing(bool freewheel, std::initializer_list<int> periods) {
         bool played = false;
         for (int attempt = 0; attempt < 3 && !played; ++attempt)
             played = plays_the_same(folder, period, freewheel, wanted);
-        if (!played) WARN("this machine was too busy to play without gaps, period " << period);
+        if (!played)
+            tactus::test::skip("this machine was too busy to play without gaps, period " + std::to_string(period));
     }
 }
 
 }  // namespace
 
-TEST_CASE("what a second client records of a live run is the offline render, sample by sample") {
+TEST_CASE("what a second client records of a live run is the offline render, sample by sample", "[live]") {
     check_playing(false, {16, 64, 100, 256, 1024});
 }
 
-TEST_CASE("a server in freewheel gets every sample, too") { check_playing(true, {64, 1024}); }
+TEST_CASE("a server in freewheel gets every sample, too", "[live]") { check_playing(true, {64, 1024}); }
 
-TEST_CASE("a server that dies leaves a run that ends by itself, silent, with faded forces and a whole take") {
+TEST_CASE("a server that dies leaves a run that ends by itself, silent, with faded forces and a whole take", "[live]") {
     if (!has_server()) return;
     const Folder folder;
     Server server(folder, 256);
@@ -263,7 +265,7 @@ TEST_CASE("a server that dies leaves a run that ends by itself, silent, with fad
     CHECK(again.code == 0);
 }
 
-TEST_CASE("an output that an edit makes anew plays on through the card that is open") {
+TEST_CASE("an output that an edit makes anew plays on through the card that is open", "[live]") {
     if (!has_server()) return;
     const Folder folder;
     Server server(folder, 256);
@@ -290,7 +292,7 @@ TEST_CASE("an output that an edit makes anew plays on through the card that is o
     CHECK(summary["sound"][0]["frames_written"] > 90'000);
 }
 
-TEST_CASE("a card that is not there, or cannot go at the asked pace, is an error that says so") {
+TEST_CASE("a card that is not there, or cannot go at the asked pace, is an error that says so", "[live]") {
     const Folder folder;
     const std::string patch = folder.write("tone.toml", tone).string(), out = (folder.path / "live").string();
     const Outcome missing = folder.tactus("run " + patch + " --seconds 0.1 --audio nobody-has-this --out " + out);
@@ -301,7 +303,7 @@ TEST_CASE("a card that is not there, or cannot go at the asked pace, is an error
     CHECK(slow.err.find("--dilate") != std::string::npos);
 }
 
-TEST_CASE("sound goes to a file or nowhere when asked to") {
+TEST_CASE("sound goes to a file or nowhere when asked to", "[live]") {
     const Folder folder;
     const std::string patch = folder.write("tone.toml", tone).string();
     for (const char* where : {"file", "none"}) {

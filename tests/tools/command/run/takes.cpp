@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Takes, replay, and changes to a patch that runs, as scripts use them.
+#include "tests/support/catch.hpp"
 #include "tests/tools/background_run.hpp"
 #include "tests/tools/patches.hpp"
 
 #include <sndfile.h>
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <signal.h>
@@ -70,7 +70,7 @@ TEST_CASE("a rendered take is repeated to the bit, and one whose values were cha
     CHECK(told.out.find("differs: hand.pose at tick 400") != std::string::npos);
 }
 
-TEST_CASE("what cannot be replayed says so before it runs") {
+TEST_CASE("what cannot be replayed says so before it runs", "[slow]") {
     Folder folder;
     folder.write("touch.toml", touch + "[assets]\nsound = \"sound.bin\"\n");
     folder.write("sound.bin", "0123456789");
@@ -105,7 +105,7 @@ TEST_CASE("what cannot be replayed says so before it runs") {
     CHECK(damaged.err.find("take.json") != std::string::npos);
 }
 
-TEST_CASE("a run that is killed leaves a take that is repeated as far as it goes") {
+TEST_CASE("a run that is killed leaves a take that is repeated as far as it goes", "[live]") {
     Folder folder;
     folder.write("touch.toml", touch);
     const fs::path take = folder.path / "take";
@@ -135,7 +135,7 @@ TEST_CASE("a run that is killed leaves a take that is repeated as far as it goes
     CHECK(told.out.find("identical") == std::string::npos);
 }
 
-TEST_CASE("a patch is edited and its parameters are set while it runs; the take repeats it all") {
+TEST_CASE("a patch is edited and its parameters are set while it runs, and the take repeats it all", "[live]") {
     Folder folder;
     const fs::path patch = folder.write("touch.toml", touch), take = folder.path / "take";
     Run run(folder, patch.string() + " --record " + take.string() + " --out " + (folder.path / "out").string());
@@ -172,7 +172,7 @@ TEST_CASE("a patch is edited and its parameters are set while it runs; the take 
     ::unsetenv("XDG_RUNTIME_DIR");
 }
 
-TEST_CASE("a patch within is edited by its own file, set by what it offers, and kept in the take") {
+TEST_CASE("a patch within is edited by its own file, set by what it offers, and kept in the take", "[live]") {
     Folder folder;
     const std::string within = R"([outputs]
 signal = "tone.signal"

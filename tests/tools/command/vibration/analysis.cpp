@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The verbs that analyse records, as scripts call them.
+#include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <fmt/format.h>
 #include <sndfile.h>
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
@@ -136,7 +136,7 @@ TEST_CASE("a batch goes on past a bad file, says so, and writes one table") {
     CHECK(std::count(table.begin(), table.end(), '\n') == 4);
 }
 
-TEST_CASE("odd records get an answer that says what is odd") {
+TEST_CASE("odd records get an answer that says what is odd", "[slow]") {
     const Folder folder;
     const auto first = [&](const std::string& arguments) {
         const Outcome outcome = folder.tactus("spectrum --json " + arguments);
@@ -178,7 +178,7 @@ TEST_CASE("odd records get an answer that says what is odd") {
     CHECK(folder.tactus("spectrum --json --channel 2,3 seven.wav").only("rows")["channels"].size() == 2);
 }
 
-TEST_CASE("records that cannot be used end with one error and exit code 2") {
+TEST_CASE("records that cannot be used end with one error and exit code 2", "[slow]") {
     const Folder folder;
     folder.sound("good.wav", tones({{100.0, 0.5}}, 2.0));
     folder.sound("nan.wav", {0.0, std::nan(""), 0.0});
@@ -215,7 +215,8 @@ TEST_CASE("an uneven log is resampled and says how far it can be trusted") {
 
 TEST_CASE(
     "exposure weights three axes, knows bounds, and refuses what is not "
-    "calibrated") {
+    "calibrated",
+    "[slow]") {
     const Folder folder;
     const std::vector<double> x = tones({{100.0 / (2.0 * std::numbers::pi) * 5.0, 0.5}}, 4.0);
     std::vector<double> axes;
@@ -255,7 +256,7 @@ TEST_CASE(
     CHECK(two["operations"].size() == 2);
 }
 
-TEST_CASE("orders follow a tachometer, a ridge, or a stated rate") {
+TEST_CASE("orders follow a tachometer, a ridge, or a stated rate", "[slow]") {
     const Folder folder;
     constexpr double rate = 8000.0;
     std::vector<double> both;
@@ -283,7 +284,7 @@ TEST_CASE("orders follow a tachometer, a ridge, or a stated rate") {
     CHECK(folder.tactus("orders steady.wav --tacho 3").code == 2);
 }
 
-TEST_CASE("orders and exposure answer odd records or refuse them with one line") {
+TEST_CASE("orders and exposure answer odd records or refuse them with one line", "[slow]") {
     const Folder folder;
     folder.text("empty.wav", "");
     folder.text("words.wav", "RIFF");

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // validate, and compare and exposure over folders, as scripts call them.
+#include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <sndfile.h>
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -72,7 +72,8 @@ std::string few(const Folder& folder) {
 
 }  // namespace
 
-TEST_CASE("validate: with its equaliser the bundled handle has the vibration of its recordings at both levels") {
+TEST_CASE("validate: with its equaliser the bundled handle has the vibration of its recordings at both levels",
+          "[slow]") {
     const Folder folder;
     const std::string page = (folder.path / "page.html").string(), table = (folder.path / "t.csv").string();
     const Outcome outcome = folder.tactus("validate saw-vibration --reference " + few(folder) +
@@ -123,7 +124,8 @@ TEST_CASE("validate: without its equaliser the handle fails, and one line per ru
     CHECK(outcome.out.find("lsd_db") != std::string::npos);
 }
 
-TEST_CASE("validate: recordings of one's own, uncalibrated, through a patch with a hand, a bone and no equaliser") {
+TEST_CASE("validate: recordings of one's own, uncalibrated, through a patch with a hand, a bone and no equaliser",
+          "[slow]") {
     const Folder folder;
     saw(folder.path / "cut.flac", 200.0, 0.8);
     saw(folder.path / "idle.flac", 200.0, 0.5);
@@ -163,7 +165,7 @@ TEST_CASE("validate says what is missing") {
     refused("saw-vibration --out load.value --reference " + bundled_set(), "signal");
 }
 
-TEST_CASE("compare takes folders: files are paired by name, and one that is bad does not stop the rest") {
+TEST_CASE("compare takes folders: files are paired by name, and one that is bad does not stop the rest", "[slow]") {
     const Folder folder;
     for (const char* name : {"a", "b", "c"}) saw(folder.path / "wanted" / (std::string(name) + ".wav"), 233.0);
     saw(folder.path / "made/a.flac", 233.0, 0.6, 2.0, 0.1);

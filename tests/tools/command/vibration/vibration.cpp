@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // measure, equalise and compare as scripts call them: the loop from a sweep to a vibration that is the saw's.
+#include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
 #include "tests/tools/run_command.hpp"
 
@@ -7,7 +8,6 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -73,7 +73,8 @@ json compared(const Folder& folder, const std::string& arguments, int code) {
 
 }  // namespace
 
-TEST_CASE("measure finds the actuator's resonance in a patch; equalise makes a filter of it that the patch can use") {
+TEST_CASE(
+    "measure finds the actuator's resonance in a patch, and equalise makes a filter of it that the patch can use") {
     const Folder folder;
     const std::string csv = (folder.path / "response.csv").string(), filter = (folder.path / "filter.toml").string();
     const Outcome measured =
@@ -107,7 +108,7 @@ TEST_CASE("measure finds the actuator's resonance in a patch; equalise makes a f
     }
 }
 
-TEST_CASE("a sweep that drives the actuator into its limit shows it as distortion of odd orders") {
+TEST_CASE("a sweep that drives the actuator into its limit shows it as distortion of odd orders", "[slow]") {
     const Folder folder;
     const std::string csv = (folder.path / "response.csv").string();
     const auto third_order = [&](const char* amplitude) {
@@ -125,7 +126,7 @@ TEST_CASE("a sweep that drives the actuator into its limit shows it as distortio
     CHECK(third_order("750") > 10.0);  // 6 V where 3 V are the limit: 13.8 % by Fourier's integral
 }
 
-TEST_CASE("with its equaliser the bundled actuator plays what the saw did; without, it does not") {
+TEST_CASE("with its equaliser the bundled actuator plays what the saw did, and without, it does not") {
     const Folder folder;
     const auto play = [&](const std::string& amount, int code) {
         const std::string out = (folder.path / ("amount" + amount)).string();
@@ -151,7 +152,7 @@ TEST_CASE("with its equaliser the bundled actuator plays what the saw did; witho
     CHECK(after["level_gap_db"] > 20.0);
 }
 
-TEST_CASE("two takes of one saw pass with null where scores need one recording; another saw fails") {
+TEST_CASE("two takes of one saw pass with null where scores need one recording, and another saw fails") {
     const Folder folder;
     const std::string reference = sound_of(folder, "a.wav", saw(233.0), {.seconds = 6.0}).string();
     const std::string same = sound_of(folder, "b.wav", saw(233.4, 0.1, 77), {.rate = 44100, .seconds = 5.0}).string();
@@ -180,7 +181,7 @@ TEST_CASE("two takes of one saw pass with null where scores need one recording; 
                    0)["verdict"] == "pass");
 }
 
-TEST_CASE("a person reads the verdict first, then why; a figure is written as its name says") {
+TEST_CASE("a person reads the verdict first, then why, and a figure is written as its name says") {
     const Folder folder;
     const std::string a = sound_of(folder, "a.wav", saw(233.0)).string(),
                       b = sound_of(folder, "b.wav", saw(150.0)).string();
@@ -196,7 +197,7 @@ TEST_CASE("a person reads the verdict first, then why; a figure is written as it
     CHECK(folder.tactus("compare " + a + " " + a + " --plot f.gif").code == 2);
 }
 
-TEST_CASE("a report is one page that needs nothing else and names what it found") {
+TEST_CASE("a report is one page that needs nothing else and names what it found", "[slow]") {
     const Folder folder;
     const std::string a = sound_of(folder, "a.wav", saw(233.0)).string();
     const auto hummed = [tone = saw(233.0)](double t) mutable {
@@ -226,7 +227,7 @@ TEST_CASE("a report is one page that needs nothing else and names what it found"
     CHECK(folder.tactus("compare " + a + " " + a + " --report /nowhere/page.html").code == 2);
 }
 
-TEST_CASE("compare answers or says what is wrong with a file, once, and ends with exit code 2") {
+TEST_CASE("compare answers or says what is wrong with a file, once, and ends with exit code 2", "[slow]") {
     const Folder folder;
     const std::string good = sound_of(folder, "good.wav", saw(233.0)).string();
     const auto against = [&](const fs::path& file) { return folder.tactus("compare " + good + " " + file.string()); };
@@ -275,7 +276,8 @@ TEST_CASE("compare answers or says what is wrong with a file, once, and ends wit
     CHECK(clipped.out.find("clipped") != std::string::npos);
 }
 
-TEST_CASE("compare reads logs as it reads sounds, each with its own columns, and the longest piece between gaps") {
+TEST_CASE("compare reads logs as it reads sounds, each with its own columns, and the longest piece between gaps",
+          "[slow]") {
     const Folder folder;
     // 2.5 kHz with jitter; one column is the vibration, one is not.
     const auto log = [&](const char* name, const char* header, double from, double to, double gap) {
@@ -310,7 +312,7 @@ TEST_CASE("compare reads logs as it reads sounds, each with its own columns, and
     CHECK(none.err.find("nothing") != std::string::npos);
 }
 
-TEST_CASE("compare needs no more memory for a longer recording") {
+TEST_CASE("compare needs no more memory for a longer recording", "[slow]") {
     const Folder folder;
     const auto kilobytes = [&](double seconds) {
         const fs::path file = sound_of(folder, "long.wav", saw(233.0), {.rate = 8000, .seconds = seconds});
@@ -330,7 +332,7 @@ TEST_CASE("compare needs no more memory for a longer recording") {
     CHECK(kilobytes(330.0) < kilobytes(90.0) + 8000);
 }
 
-TEST_CASE("measure and equalise refuse what makes no sense with one line") {
+TEST_CASE("measure and equalise refuse what makes no sense with one line", "[slow]") {
     const Folder folder;
     const std::string table = folder.write("t.csv", "20 0\n100 0\n2000 0\n").string();
     const std::pair<std::string, std::string> slips[] = {
@@ -361,7 +363,7 @@ TEST_CASE("measure and equalise refuse what makes no sense with one line") {
     }
 }
 
-TEST_CASE("equalise says how much of a recording the actuator's limits cut") {
+TEST_CASE("equalise says how much of a recording the actuator's limits cut", "[slow]") {
     const Folder folder;
     const std::string table = folder.write("t.csv", "20 0\n100 0\n200 0\n2000 0\n").string();
     const std::string take = sound_of(folder, "a.wav", saw(233.0, 0.5)).string();

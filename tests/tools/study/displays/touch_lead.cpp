@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/displays/touch_lead.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include <string>
 #include <vector>
@@ -33,7 +32,7 @@ TEST_CASE("a lead goes from step to step, and checks each part when it is comple
     CHECK(lead.is_done());
     CHECK(checked == std::vector<std::size_t>{3, 5});
     CHECK(lead.steps()[4].reading.x == 0.4);
-    CHECK_THROWS_WITH(TouchLead({}, false, {}), Catch::Contains("nothing"));
+    CHECK_THROWS_WITH(TouchLead({}, false, {}), Catch::Matchers::ContainsSubstring("nothing"));
 }
 
 TEST_CASE("a touch that moved, or that the others contradict, is asked for again, and a third time ends it") {
@@ -61,7 +60,7 @@ TEST_CASE("a touch that moved, or that the others contradict, is asked for again
     SECTION("wrong again, it ends") { CHECK_THROWS_AS(lead.take(at(-0.1)), display::BadTouch); }
 }
 
-TEST_CASE("a touch is the mean of where the tip was; few samples are asked for again, and a third time end it") {
+TEST_CASE("a touch is the mean of where the tip was, and few samples are asked for again, and a third time end it") {
     std::vector<Vec3> tips(20, Vec3(1e-3, 0.0, 0.0));
     tips[7].y = 20e-3;
     const Touched touched = touch_of(tips, {});
@@ -72,7 +71,7 @@ TEST_CASE("a touch is the mean of where the tip was; few samples are asked for a
     CHECK(lead.take(touch_of(tips, {})).find("5 valid samples") != std::string::npos);
     CHECK(lead.take(touch_of({}, {})).find("no valid samples") != std::string::npos);
     CHECK(lead.due() == 0);
-    CHECK_THROWS_WITH(lead.take(touch_of({}, {})), Catch::Contains("no valid samples"));
+    CHECK_THROWS_WITH(lead.take(touch_of({}, {})), Catch::Matchers::ContainsSubstring("no valid samples"));
 }
 
 TEST_CASE("where the tracker says the place, a touch that it did not see is asked for again") {

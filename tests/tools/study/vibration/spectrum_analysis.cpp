@@ -2,12 +2,12 @@
 // Studies as another program calls them: settings in, results out.
 #include "tools/study/vibration/spectrum_analysis.hpp"
 
+#include "tests/support/catch.hpp"
 #include "tests/tools/run_command.hpp"
 #include "tools/study/vibration/exposure.hpp"
 #include "tools/study/vibration/orders.hpp"
 
 #include <fmt/format.h>
-#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>

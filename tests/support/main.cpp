@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The main program of all tests: exit code 0 passed, 1 failed, 77 skipped.
+#if !__has_include(<catch2/catch_all.hpp>)
+#define CATCH_CONFIG_RUNNER
+#endif
+#include "tests/support/catch.hpp"
+#include "tests/support/skip.hpp"
+
+namespace {
+
+constexpr int skipped_code = 77;
+
+int cases = 0, skipped_cases = 0;
+bool is_skipped = false;  // the running case
+
+#if __has_include(<catch2/catch_all.hpp>)
+using Listener = Catch::EventListenerBase;
+#else
+using Listener = Catch::TestEventListenerBase;
+#endif
+
+struct CountSkipped : Listener {
+    using Listener::Listener;
+    void testCaseStarting(const Catch::TestCaseInfo& info) override {
+        Listener::testCaseStarting(info);
+        is_skipped = false;
+    }
+    void testCaseEnded(const Catch::TestCaseStats& stats) override {
+        Listener::testCaseEnded(stats);
+        ++cases;
+        skipped_cases += is_skipped;
+    }
+};
+CATCH_REGISTER_LISTENER(CountSkipped)
+
+}  // namespace
+
+namespace tactus::test {
+
+void skip(const std::string& why) {
+    is_skipped = true;
+    WARN("skipped: " << why);
+}
+
+}  // namespace tactus::test
+
+int main(int argc, char** argv) {
+    Catch::Session session;
+    if (session.applyCommandLine(argc, argv) != 0) return 1;
+#if !__has_include(<catch2/catch_all.hpp>)
+    // A name that no test case has is a failure, as in Catch2 3.
+    session.configData().warnings = Catch::WarnAbout::NoTests;
+#endif
+    // Catch2 2 returns the number of failed checks, which may be 77.
+    if (session.run() != 0) return 1;
+    return cases > 0 && skipped_cases == cases ? skipped_code : 0;
+}
