@@ -52,8 +52,8 @@ void push(std::span<const Touch> touches, double k, const Vec3& about, Wrench& i
 
 }  // namespace
 
-BladeContact blade_contact(const volume::BoneSnapshot& bone, const BladePoints& blade, const Pose& tool, const Vec3& about,
-                           double stiffness) noexcept {
+BladeContact blade_contact(const volume::BoneSnapshot& bone, const BladePoints& blade, const Pose& tool,
+                           const Vec3& about, double stiffness) noexcept {
     BladeContact contact;
     if (!is_valid(tool)) return contact;
     std::array<Touch, blade_point_count> touches;

@@ -43,7 +43,7 @@ struct BladeContact {
 /// the curvature of the energy stays below K. c = 4 for the edge, whose points are pushed in one direction (one tooth
 /// alone gives K/4, the whole edge 0.64·K); c = 22 for the faces, which a kerf can pinch from both sides.
 /// Deterministic; a pose that is not finite gives no force.
-BladeContact blade_contact(const volume::BoneSnapshot& bone, const BladePoints& blade, const Pose& tool, const Vec3& about,
-                           double stiffness) noexcept;
+BladeContact blade_contact(const volume::BoneSnapshot& bone, const BladePoints& blade, const Pose& tool,
+                           const Vec3& about, double stiffness) noexcept;
 
 }  // namespace tactus::contact

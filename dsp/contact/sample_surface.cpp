@@ -177,7 +177,8 @@ Vec3 normal_in(const Voxmap& map, const Vec3& position, const Vec3& otherwise) {
 }
 
 /// With a map, curvature comes from its normals: those of the triangles follow the noise of the samples.
-std::vector<SurfacePoint> spread(const geometry::TriangleSurface& surface, const SurfaceSampling& sampling, const Voxmap* map) {
+std::vector<SurfacePoint> spread(const geometry::TriangleSurface& surface, const SurfaceSampling& sampling,
+                                 const Voxmap* map) {
     if (!(sampling.spacing > 0.0) || !std::isfinite(sampling.spacing))
         throw Error("the spacing of a pointshell must be positive");
     double area = 0.0;

@@ -96,7 +96,8 @@ volume::Sample Voxmap::sample(const Vec3& position) const noexcept {
     const volume::GridCell cell = volume::find_grid_cell(grid.origin, grid.spacing, grid.size, position);
     if (!cell.inside) return {far, Vec3(0.0), false};
     const auto row = static_cast<std::size_t>(grid.size[0]), plane = row * static_cast<std::size_t>(grid.size[1]);
-    const volume::Interpolated at = volume::Trilinear(&grid.values[grid.index(cell.i, cell.j, cell.k)], row, plane)(cell);
+    const volume::Interpolated at =
+        volume::Trilinear(&grid.values[grid.index(cell.i, cell.j, cell.k)], row, plane)(cell);
     return {at.value, at.slope / grid.spacing, true};
 }
 

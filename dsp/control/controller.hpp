@@ -2,10 +2,10 @@
 // Admittance control of one finger (thesis figure 39): force → virtual object → position loop → speed of the motor.
 #pragma once
 
+#include "dsp/control/force_limiter.hpp"
 #include "dsp/control/loop_stability.hpp"
 #include "dsp/control/position_loop.hpp"
 #include "dsp/control/virtual_object.hpp"
-#include "dsp/control/force_limiter.hpp"
 
 namespace tactus::control {
 

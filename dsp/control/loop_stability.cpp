@@ -33,7 +33,8 @@ State advance(const LoopModel& m, const HeldStep& object, int delay, const State
         next[told + static_cast<std::size_t>(d)] = s[told + static_cast<std::size_t>(d) - 1];
     if (delay > 0) next[told] = command;
     const double acts = delay > 0 ? s[told + static_cast<std::size_t>(delay) - 1] : command;
-    const double gained = signal::lag_share(m.motor_lag, m.period), run_on = m.motor_lag > 0.0 ? m.motor_lag * gained : 0.0;
+    const double gained = signal::lag_share(m.motor_lag, m.period),
+                 run_on = m.motor_lag > 0.0 ? m.motor_lag * gained : 0.0;
     next[speed] = s[speed] + gained * (acts - s[speed]);
     next[finger] = s[finger] + run_on * s[speed] + (m.period - run_on) * acts;
     return next;

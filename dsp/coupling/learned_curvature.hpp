@@ -32,7 +32,8 @@ public:
 
     /// The gradient (N, N·m) changed by `change` over the step s (m, rad); `known` is the known stiffness. `lever` (m)
     /// weighs rotations against translations.
-    void learn(const geometry::Vector6& s, const geometry::Vector6& change, const geometry::Matrix6& known, double lever) noexcept {
+    void learn(const geometry::Vector6& s, const geometry::Vector6& change, const geometry::Matrix6& known,
+               double lever) noexcept {
         geometry::Vector6 rest{};
         double along = 0.0, rests = 0.0, steps = 0.0;
         for (std::size_t i = 0; i < 6; ++i) {

@@ -17,7 +17,6 @@ class TriangleTree;
 
 namespace tactus::coupling {
 
-
 /// A body for contact: surface points, distance field, or triangles; in one frame; any may be missing. Does not own
 /// them: the node that made the body does.
 struct Body {

@@ -2,8 +2,8 @@
 // Constraint analysis: which motions a fit constrains, from the eigenvectors of its stiffness.
 #pragma once
 
-#include "dsp/geometry/symmetric6.hpp"
 #include "dsp/fit/fit.hpp"
+#include "dsp/geometry/symmetric6.hpp"
 
 namespace tactus::fit {
 

@@ -14,7 +14,8 @@ namespace tactus::fit {
 
 struct FitSurfaceOptions {
     std::uint8_t paint = contact::surface_label::fracture;  ///< label of the points to fit
-    std::uint8_t other_paint = contact::surface_label::fracture;  ///< label of other faces: neither paint nor outer contour
+    std::uint8_t other_paint =
+        contact::surface_label::fracture;  ///< label of other faces: neither paint nor outer contour
     double reach = 12e-3;  ///< m: extent of the field around painted points; no pull from farther away
     double outline = 6e-3;  ///< m: unpainted points this near to the paint form the outer contour
     std::size_t most_outline = 240;  ///< points of the outline, spread evenly

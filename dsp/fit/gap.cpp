@@ -48,7 +48,8 @@ SurfaceGap gap_between(std::span<const contact::SurfacePoint> points, const Pose
     return gap;
 }
 
-double overlap_volume(const volume::Grid& first, const Pose& pose, const contact::Voxmap& other, const Pose& other_pose) {
+double overlap_volume(const volume::Grid& first, const Pose& pose, const contact::Voxmap& other,
+                      const Pose& other_pose) {
     const Pose into = other_pose.inverse() * pose;
     const double edge = (first.spacing.x + first.spacing.y + first.spacing.z) / 3.0;
     double voxels = 0.0;

@@ -28,6 +28,7 @@ SurfaceGap gap_between(std::span<const contact::SurfacePoint> points, const Pose
                        const Pose& other_pose, const GapSettings& settings = {});
 
 /// m³ inside both bones. Voxels of the first are weighted by their fraction, from the distance.
-double overlap_volume(const volume::Grid& first, const Pose& pose, const contact::Voxmap& other, const Pose& other_pose);
+double overlap_volume(const volume::Grid& first, const Pose& pose, const contact::Voxmap& other,
+                      const Pose& other_pose);
 
 }  // namespace tactus::fit

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "dsp/coupling/held_contact.hpp"
-#include "dsp/geometry/symmetric6.hpp"
 #include "dsp/fit/fit_energy.hpp"
+#include "dsp/geometry/symmetric6.hpp"
 
 #include <array>
 #include <cstddef>

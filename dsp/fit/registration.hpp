@@ -21,8 +21,8 @@ struct RegistrationSettings {
 struct Registration {
     Pose pose;  ///< of the moving surface in the fixed one's frame
     double median = 0.0, p90 = 0.0;  ///< m, distances of the moving points from the fixed surface
-    double before = 0.0;             ///< m, the median where it started
-    double covered = 0.0;            ///< share of the moving points within twice the finest scale
+    double before = 0.0;  ///< m, the median where it started
+    double covered = 0.0;  ///< share of the moving points within twice the finest scale
 };
 
 /// Target of a registration. Distances are to the tangent plane of the nearest point, because points are sparse.
@@ -43,15 +43,17 @@ private:
 };
 
 /// m, median distance of the points at `pose` from the fixed surface. Throws Error without points.
-double median_distance(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed, const Pose& pose);
+double median_distance(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed,
+                       const Pose& pose);
 
 /// Robust point-to-plane ICP with a narrowing scale, from `start`. Uses only points whose normal is within 60 degrees
 /// of that of their target. Throws Error without points. Deterministic.
-Registration register_surface(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed, const Pose& start,
-                              const RegistrationSettings& settings = {});
+Registration register_surface(std::span<const contact::SurfacePoint> moving, const RegistrationTarget& fixed,
+                              const Pose& start, const RegistrationSettings& settings = {});
 
 /// The best of registrations from 24 starts: centroids together, principal axes aligned in all ways, and between these.
-Registration register_from_anywhere(std::span<const contact::SurfacePoint> moving, std::span<const contact::SurfacePoint> fixed_points,
+Registration register_from_anywhere(std::span<const contact::SurfacePoint> moving,
+                                    std::span<const contact::SurfacePoint> fixed_points,
                                     const RegistrationTarget& fixed, const RegistrationSettings& settings = {});
 
 /// Points of the moving surface at `pose` that are farther than `away` (m) from the fixed one: the largest connected

@@ -92,7 +92,8 @@ void BrickSurface::make(const volume::BoneSnapshot& bone, std::uint32_t brick, S
     if (!samples) return;
     // Most bricks lie completely inside or outside the bone.
     const bool inside = samples[0] < 0.0f;
-    if (std::all_of(samples, samples + volume::brick_samples, [inside](float d) { return (d < 0.0f) == inside; })) return;
+    if (std::all_of(samples, samples + volume::brick_samples, [inside](float d) { return (d < 0.0f) == inside; }))
+        return;
     const volume::BrickLayout& layout = bone.layout();
     const auto b = static_cast<int>(brick);
     const BrickField field{
@@ -104,7 +105,8 @@ void BrickSurface::make(const volume::BoneSnapshot& bone, std::uint32_t brick, S
     const auto vertex = [&](int i, int j, int k, int from, int to) {
         const int x = i + (from & 1), y = j + (from >> 1 & 1), z = k + (from >> 2);
         const int step = from ^ to;
-        std::int32_t& slot = vertex_[static_cast<std::size_t>(7 * volume::BrickLayout::sample_index(x, y, z) + step - 1)];
+        std::int32_t& slot =
+            vertex_[static_cast<std::size_t>(7 * volume::BrickLayout::sample_index(x, y, z) + step - 1)];
         if (slot >= 0) return slot;
         const int u = x + (step & 1), v = y + (step >> 1 & 1), w = z + (step >> 2);
         const double t = crossing(static_cast<double>(field.at(x, y, z)), static_cast<double>(field.at(u, v, w)), 0.0);

@@ -107,8 +107,8 @@ struct Pass {
 
 }  // namespace
 
-std::vector<std::int32_t> nearest_points(const volume::Grid& layout, std::span<const glm::vec3> points, const RunJobs& run,
-                                         int first) {
+std::vector<std::int32_t> nearest_points(const volume::Grid& layout, std::span<const glm::vec3> points,
+                                         const RunJobs& run, int first) {
     std::vector<std::int32_t> nearest(layout.count(), -1);
     for (std::size_t n = 0; n < points.size(); ++n) {
         std::array<int, 3> cell{};

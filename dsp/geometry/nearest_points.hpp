@@ -21,7 +21,7 @@ namespace tactus::geometry {
 /// too long by less than half a sample, and a local search finds the true one. The result does not depend on how jobs
 /// are run. `layout` may be a slab of a larger volume that starts at layer `first`: points then count from the volume's
 /// first layer, and the result equals that of the whole volume where a point is nearer than both ends of the slab.
-std::vector<std::int32_t> nearest_points(const volume::Grid& layout, std::span<const glm::vec3> points, const RunJobs& run,
-                                         int first = 0);
+std::vector<std::int32_t> nearest_points(const volume::Grid& layout, std::span<const glm::vec3> points,
+                                         const RunJobs& run, int first = 0);
 
 }  // namespace tactus::geometry

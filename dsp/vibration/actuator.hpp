@@ -17,12 +17,12 @@ struct ActuatorModel {
     std::string_view name;
     double resonance;  ///< f0, Hz
     double damping;  ///< damping ratio ζ
-    double resistance;             ///< of the coil, Ω
-    double inductance;             ///< of the coil, H
-    double voltage_limit;          ///< V, either sign
-    double current_limit;          ///< A, either sign
-    double reference_acceleration; ///< peak m/s² per V ...
-    double reference_frequency;    ///< ... at this frequency (Hz) ...
+    double resistance;  ///< of the coil, Ω
+    double inductance;  ///< of the coil, H
+    double voltage_limit;  ///< V, either sign
+    double current_limit;  ///< A, either sign
+    double reference_acceleration;  ///< peak m/s² per V ...
+    double reference_frequency;  ///< ... at this frequency (Hz) ...
     double reference_mass;  ///< ... with this total mass, kg
 };
 
@@ -37,7 +37,7 @@ const ActuatorModel& find_actuator(std::string_view name);
 
 struct ActuatorOutput {
     double voltage = 0.0;  ///< output of the amplifier, V
-    double current = 0.0;       ///< in the coil, A
+    double current = 0.0;  ///< in the coil, A
     double acceleration = 0.0;  ///< of the handle, m/s²
     bool limited = false;  ///< the drive exceeded the limits
 };

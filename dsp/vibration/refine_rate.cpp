@@ -22,7 +22,8 @@ Decimated decimate(std::span<const float> samples, double rate, double wanted, d
     const auto step = static_cast<std::size_t>(std::max(1.0, std::floor(rate / wanted)));
     Decimated out{{}, rate / static_cast<double>(step)};
     out.samples.reserve(samples.size() / step + 1);
-    signal::Biquad first{signal::highpass(30.0, rate)}, second{signal::lowpass(cutoff, rate, 0.541)}, third{signal::lowpass(cutoff, rate, 1.307)};
+    signal::Biquad first{signal::highpass(30.0, rate)}, second{signal::lowpass(cutoff, rate, 0.541)},
+        third{signal::lowpass(cutoff, rate, 1.307)};
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const double y = third(second(first(samples[i])));
         if (i % step == 0) out.samples.push_back(y);

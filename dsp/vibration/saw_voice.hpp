@@ -70,7 +70,7 @@ private:
         std::size_t loop;  // in loops_
         double rate, load, amplitude;
         bool cutting;
-        double level = 0.0;                 // rms
+        double level = 0.0;  // rms
         double target = 0.0, weight = 0.0;  // shares in the mix
     };
     /// The layers of one recorded rate, one per load.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/volume/iso_distance.hpp"
 
-#include "dsp/volume/cubic_interpolant.hpp"
 #include "dsp/geometry/nearest_points.hpp"
+#include "dsp/volume/cubic_interpolant.hpp"
 
 #include <glm/geometric.hpp>
 

@@ -190,7 +190,8 @@ std::vector<float> surface_distance(const Grid& layout, const geometry::Triangle
     return std::move(distance);
 }
 
-std::vector<std::int16_t> winding_numbers(const Grid& layout, const geometry::TriangleSurface& surface, const RunJobs& run) {
+std::vector<std::int16_t> winding_numbers(const Grid& layout, const geometry::TriangleSurface& surface,
+                                          const RunJobs& run) {
     std::vector<std::int16_t> crossings(layout.count(), 0);
     const TriangleLayers near(layout, surface, 0.5 * widest_of(layout));
     run(layout.size[2], [&](int k) {

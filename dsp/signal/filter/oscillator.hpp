@@ -10,7 +10,7 @@ namespace tactus::signal {
 /// Sine whose phase is an integer in 2^-64 cycles: it does not drift, does not depend on the partition into blocks, and
 /// is continuous when the frequency changes.
 struct SineOscillator {
-    double rate = 48000.0;    ///< samples per second
+    double rate = 48000.0;  ///< samples per second
     std::uint64_t phase = 0;  ///< 2^64 is one cycle
 
     double operator()(double frequency) noexcept {

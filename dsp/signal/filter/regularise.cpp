@@ -70,7 +70,7 @@ EvenRecord regularise(std::span<const double> times, std::span<const std::vector
             for (const std::vector<double>& values : channels) {
                 const auto from = static_cast<std::ptrdiff_t>(first), to = static_cast<std::ptrdiff_t>(end);
                 const geometry::Spline curve({spread.begin() + from, spread.begin() + to},
-                                   {values.begin() + from, values.begin() + to});
+                                             {values.begin() + from, values.begin() + to});
                 std::vector<double>& out = piece.emplace_back(count);
                 for (std::size_t i = 0; i < count; ++i)
                     out[i] = curve(spread[first] + static_cast<double>(i) / even.rate).value;

@@ -10,7 +10,8 @@ namespace tactus::signal {
 
 struct EvenRecord {
     double rate = 0.0;  ///< Hz: the mean rate of the input
-    double usable = 0.0;  ///< Hz: half the rate of the step that 99 % of steps do not exceed; content above it is unreliable
+    double usable =
+        0.0;  ///< Hz: half the rate of the step that 99 % of steps do not exceed; content above it is unreliable
     double shortest_step = 0.0, longest_step = 0.0;  ///< s, without gaps
     std::size_t gaps = 0;  ///< steps of more than five medians; they are not interpolated
     double lost = 0.0;       ///< s in gaps

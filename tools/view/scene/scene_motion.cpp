@@ -27,8 +27,8 @@ void add(Hash& hash, const display::Legend& legend) {
 
 }  // namespace
 
-std::uint64_t looks_of(const display::Picture& picture, std::uint64_t mesh_changes, std::span<const display::DrawnView> views,
-                       const display::Legend& legend) {
+std::uint64_t looks_of(const display::Picture& picture, std::uint64_t mesh_changes,
+                       std::span<const display::DrawnView> views, const display::Legend& legend) {
     Hash hash;
     hash.add_word(mesh_changes);
     for (const display::DrawnMesh& drawn : picture.meshes) {

@@ -65,7 +65,9 @@ TEST_CASE("a gap parts the record, nothing is made up in it; equal time stamps a
 
 TEST_CASE("times that run backwards or stand still are refused") {
     const std::vector<double> values{1, 2, 3, 4};
-    CHECK_THROWS_WITH(signal::regularise(std::vector{0.0, 1.0, 0.5, 2.0}, Channels{values}), Catch::Contains("backwards"));
-    CHECK_THROWS_WITH(signal::regularise(std::vector{1.0, 1.0, 1.0, 1.0}, Channels{values}), Catch::Contains("stands still"));
+    CHECK_THROWS_WITH(signal::regularise(std::vector{0.0, 1.0, 0.5, 2.0}, Channels{values}),
+                      Catch::Contains("backwards"));
+    CHECK_THROWS_WITH(signal::regularise(std::vector{1.0, 1.0, 1.0, 1.0}, Channels{values}),
+                      Catch::Contains("stands still"));
     CHECK_THROWS_AS(signal::regularise(std::vector{0.0}, Channels{values}), Error);
 }
