@@ -66,7 +66,7 @@ struct AdmittanceController {
         if (object.is("table") && !table) setup.fail("object = \"table\" needs the asset 'table'");
         const control::ControllerSettings wanted_settings = settings();
         if (!wanted_settings.object.is_renderable())
-            setup.fail("an object without stiffness, damping and mass has no force law; set a damping");
+            setup.fail("an object without stiffness, damping and mass has no force law; give a damping");
         if (!control_.set(wanted_settings)) {
             const double limit = tactus::control::gain_limit(wanted_settings.loop, wanted_settings.object);
             setup.fail(
