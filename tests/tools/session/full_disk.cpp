@@ -152,7 +152,7 @@ TEST_CASE("a sound whose header cannot be completed does not get its name") {
     CHECK(gone.err.find("sound.wav.part") != std::string::npos);
 }
 
-TEST_CASE("a take that finds no room repeats the run as far as it goes") {
+TEST_CASE("a take that finds no room repeats the run as far as it goes", "[live]") {
     if (is_sanitized()) return;
     const Folder folder;
     folder.write("p.toml", recording_patch);
