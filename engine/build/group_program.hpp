@@ -6,8 +6,8 @@
 #include "dsp/core/hash.hpp"
 #include "dsp/core/signal_hash.hpp"
 #include "engine/io/device_guard.hpp"
-#include "engine/run/link.hpp"
 #include "engine/observe/telemetry.hpp"
+#include "engine/run/link.hpp"
 #include "graph/node/device.hpp"
 #include "graph/node/setup.hpp"
 
@@ -27,7 +27,6 @@ class GroupRuntime;
 }
 
 namespace tactus::build {
-
 
 /// A number that drives a parameter before its node's step: from the same group, or gliding from another.
 struct Drive {
@@ -121,7 +120,7 @@ struct DeviceSlot {
 };
 
 struct GroupProgram {
-    std::int64_t generation = 0;
+    std::int64_t plan_number = 0;
     Flicks switch_time = 0;  ///< logical time from which on it runs
     int backlog = 0;  ///< activations that may run late
     bool changes_force = false;  ///< forces on a hand may jump when this takes over

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The nodes of a rate group, one after the other.
+#include "engine/observe/observed_port.hpp"
 #include "engine/run/clock.hpp"
 #include "engine/run/group_runtime.hpp"
-#include "engine/observe/observed_port.hpp"
 #include "graph/node/node_memory.hpp"
 
 #include <algorithm>

@@ -9,6 +9,9 @@
 
 namespace tactus::run {
 
+/// From setting the clock to the first activation.
+constexpr std::int64_t start_delay_ns = 20'000'000;
+
 class RunClock {
     static_assert(std::atomic<std::int64_t>::is_always_lock_free && std::atomic<double>::is_always_lock_free);
 
@@ -32,8 +35,9 @@ public:
     /// Any thread. False, and `line` as it was, while no whole line is there: none yet, or one is being set. Wait-free.
     bool try_get(control::TrimmedClock& line) const noexcept {
         const std::uint64_t version = version_.load(std::memory_order_acquire);
-        const control::TrimmedClock now{logical_.load(std::memory_order_acquire), steady_ns_.load(std::memory_order_acquire),
-                               slope_.load(std::memory_order_acquire)};
+        const control::TrimmedClock now{logical_.load(std::memory_order_acquire),
+                                        steady_ns_.load(std::memory_order_acquire),
+                                        slope_.load(std::memory_order_acquire)};
         if (version == 0 || version % 2 == 1 || version_.load(std::memory_order_relaxed) != version) return false;
         line = now;
         return true;
