@@ -44,6 +44,7 @@ struct KerfStamp {
                 const Vec3 start = back.apply(field.origin() + Vec3(0.0, j, k) * spacing);
                 double from = first[0], to = last[0];
                 clip(low, high, start, step, from, to);
+                if (!(from <= to)) continue;  // of a nearly level row, `from` may exceed every int
                 const int stop = static_cast<int>(std::floor(to));
                 for (int i = static_cast<int>(std::ceil(from)); i <= stop; ++i) {
                     whole &= lift(field, i, j, k, start + step * static_cast<double>(i), result);

@@ -86,7 +86,7 @@ void GenerationBuilder::form_groups() {
         group_index_.emplace(runtime.get(), static_cast<int>(made_->groups.size()));
         made_->groups.push_back(std::move(runtime));
         auto& program = *made_->programs.emplace_back(std::make_unique<GroupProgram>());
-        program.generation = made_->number;
+        program.plan_number = made_->number;
         program.backlog = group.backlog;
     }
 }

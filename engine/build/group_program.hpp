@@ -120,7 +120,7 @@ struct DeviceSlot {
 };
 
 struct GroupProgram {
-    std::int64_t generation = 0;
+    std::int64_t plan_number = 0;
     Flicks switch_time = 0;  ///< logical time from which on it runs
     int backlog = 0;  ///< activations that may run late
     bool changes_force = false;  ///< forces on a hand may jump when this takes over

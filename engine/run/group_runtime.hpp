@@ -5,47 +5,36 @@
 #include "dsp/core/ring.hpp"
 #include "engine/build/group_program.hpp"
 #include "engine/observe/telemetry.hpp"
+#include "engine/run/decisions.hpp"
 #include "engine/run/pause_window.hpp"
 #include "engine/take/timing_log.hpp"
 #include "graph/compile/plan.hpp"
 
 #include <atomic>
 #include <cstdint>
-#include <string>
+#include <memory>
 #include <vector>
 
 namespace tactus::run {
 
-/// What decides when a value counts as being there.
-enum class Pace { offline, live };
-
-/// A parameter set from outside while the patch runs.
-struct ParameterChange {
-    std::int64_t id = 0;  ///< as the take names it
-    Flicks when = 0;      ///< applied at the first activation at or after
-    Param* param = nullptr;
-    double value = 0.0;   ///< SI
-};
-
 class GroupRuntime {
 public:
-    /// `number` is the group's name in the log, `frames` the most activations one call may run.
-    GroupRuntime(const compile::PlanGroup& description, int number, int frames)
-        : plan(&description_), index(number), max_frames(frames), description_(description) {}
+    /// `number` is the group's name in the log, `frames` the most activations one call may run. Runs on the virtual
+    /// clock.
+    GroupRuntime(const compile::PlanGroup& description, int number, int frames);
+    ~GroupRuntime();
+    GroupRuntime(const GroupRuntime&) = delete;
+    GroupRuntime& operator=(const GroupRuntime&) = delete;
 
     const compile::PlanGroup* plan;  ///< name, period and the like; its nodes change with the program
     const int index;
     const int max_frames;
     std::atomic<std::int64_t> end{0};  ///< activations … end − 1 run; only ever lowered while running
-    const std::vector<take::TimingRecord>* replayed = nullptr;  ///< decisions to repeat, or null
-    const std::vector<ParameterChange>* replayed_changes = nullptr;  ///< by id
-    Ring<take::TimingRecord>* log = nullptr;                    ///< where live decisions go, or null
+    DecisionLog log;
     std::vector<build::GroupProgram*> scheduled;  ///< programs known before the run, in order
-    const PauseWindow* pause = nullptr;    ///< live only
     bool times_nodes = true;
     Flicks now = 0;  ///< logical time of the call that runs
     observe::GroupTelemetry telemetry;
-    std::atomic<bool> log_overflow{false};
 
     /// Next activation to run. Own thread only.
     std::int64_t next() const { return next_; }
@@ -57,14 +46,18 @@ public:
     /// Activations before this one are complete; their values may be read. Any thread.
     std::int64_t done() const noexcept { return done_.load(std::memory_order_acquire); }
     /// Of the program that runs; −1 before the first. Any thread.
-    std::int64_t generation() const noexcept { return generation_.load(std::memory_order_acquire); }
+    std::int64_t plan_number() const noexcept { return plan_number_.load(std::memory_order_acquire); }
     /// How many activations may run late. Own thread only.
     int backlog() const { return program_ ? program_->backlog : 0; }
 
     // Control thread. False when too much is waiting already.
     bool hand_over(build::GroupProgram* program) { return programs_.push(program); }
     bool hand_over(const ParameterChange& change) { return changes_.push(change); }
-    /// Before the group's thread starts.
+    // Control thread, before the group's thread starts.
+    /// The clock decides in real time. `pause` must outlive the group's thread.
+    void decide_live(const PauseWindow& pause);
+    /// A log decides; see ReplayedDecisions.
+    void replay(const std::vector<take::TimingRecord>& records, const std::vector<ParameterChange>& changes);
     void start_at(std::int64_t tick) {
         next_ = tick;
         done_.store(tick);
@@ -73,39 +66,34 @@ public:
     // Own thread, before each call.
     /// Applies the parameters and takes over the program that are due at the next activation. True when it took one
     /// over: then other groups may have become ready. Wait-free.
-    bool take_changes(Pace pace) noexcept;
-    /// Offline: every value that the next call reads is there, and slots for one activation are free. Of a call that has
-    /// begun: slots for what it gives.
+    bool take_changes() noexcept;
+    /// Offline: every value that the next call reads is there, and slots for one activation are free. Of a call that
+    /// has begun: slots for what it gives.
     bool ready() const noexcept;
     /// Runs one call and returns how many activations it covered. At most `frames` of them.
-    int call(int frames, Pace pace) noexcept;
-    /// The same in two steps, for a repetition: a call that has begun ends when there is room for what it gives.
-    void begin_call(int frames, Pace pace) noexcept;
-    int finish_call(Pace pace) noexcept;
+    int call(int frames) noexcept;
+    /// The same in two steps, for a replay: a call that has begun ends when there is room for what it gives.
+    void begin_call(int frames) noexcept;
+    int finish_call() noexcept;
     bool has_begun() const noexcept { return begun_ > 0; }
-    /// Live: the next activation waits, because the run pauses.
-    bool pauses() const noexcept { return pause && pause->stops(next_ * plan->period); }
-    /// While it pauses, now and then: tells the watchdog that the devices are not forsaken. May call the system, in drivers.
+    /// While it pauses, now and then: tells the watchdog that the devices are not forsaken. May call the system, in
+    /// drivers.
     void rest() noexcept;
     /// Leaves out activations up to `to`, because they are too late.
     void skip_to(std::int64_t to) noexcept;
-    /// Repeats a logged skip that starts at the next activation; false when there is none.
-    bool replay_skip() noexcept;
+    /// Leaves out the activations that a replayed log leaves out here; false when there are none.
+    bool skip_as_decided() noexcept;
     void end_at(std::int64_t tick) noexcept;
     /// Times the nodes of the next calls, all of them: the one before took too long.
     void watch_closely() noexcept { closely_ = timed_every; }
 
 private:
     int cut(int frames) const noexcept;
-    bool has_room(int frames) const noexcept;
-    const take::TimingRecord* replayed_at(take::TimingKind kind, std::uint32_t source,
-                                          std::int64_t tick) const noexcept;
-    void apply_parameters() noexcept;
     void hold_off() noexcept;
-    void apply_pause(Pace pace) noexcept;
-    bool switch_if_due(Pace pace) noexcept;
+    void apply_pause() noexcept;
+    bool switch_if_due() noexcept;
     void take_over(build::GroupProgram& next) noexcept;
-    void read_links(int frames, Pace pace) noexcept;
+    void read_links(int frames) noexcept;
     void acquire() noexcept;
     void run_steps(int frames) noexcept;
     /// `watched`: what the steps give is hashed or recorded, or they are timed.
@@ -115,9 +103,7 @@ private:
     void run_one_at_a_time(const build::Step& step, const build::StepWires& of, const Tick& all) noexcept;
     void hash_outputs(const build::Step& step, int frames) noexcept;
     void record_outputs(const build::Step& step, int frames) noexcept;
-    void publish(int frames, Pace pace) noexcept;
-    void note(take::TimingKind kind, int source, std::int64_t count, std::int64_t value,
-              const DeviceSample* sample) noexcept;
+    void publish(int frames) noexcept;
 
     static constexpr int timed_every = 64;  ///< nodes are timed in one call of so many
 
@@ -126,15 +112,14 @@ private:
     Ring<ParameterChange> changes_{1024};
     build::GroupProgram* program_ = nullptr;
     build::GroupProgram* upcoming_ = nullptr;
-    ParameterChange change_;
-    bool has_change_ = false, fades_for_plan_ = false, is_paused_ = false;
+    std::unique_ptr<Decisions> decisions_;
+    bool fades_for_plan_ = false, is_paused_ = false;
     std::size_t taken_ = 0;  ///< of `scheduled`
     std::int64_t next_ = 0, last_ = -1, ran_ = 0;
     int closely_ = 0;  ///< calls still to be timed
     int begun_ = 0;  ///< activations of the call that has begun and not ended
     std::uint64_t calls_ = 0;
-    mutable std::size_t cursor_ = 0;  ///< replayed records before this one are past
-    std::atomic<std::int64_t> generation_{-1};
+    std::atomic<std::int64_t> plan_number_{-1};
     std::atomic<bool> over_{false};
     alignas(64) std::atomic<std::int64_t> done_{0};
 };

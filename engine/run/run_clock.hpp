@@ -9,6 +9,9 @@
 
 namespace tactus::run {
 
+/// From setting the clock to the first activation.
+constexpr std::int64_t start_delay_ns = 20'000'000;
+
 class RunClock {
     static_assert(std::atomic<std::int64_t>::is_always_lock_free && std::atomic<double>::is_always_lock_free);
 

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/run/clock_decisions.hpp"
+
+#include "engine/run/clock.hpp"
+#include "engine/run/group_runtime.hpp"
+#include "engine/run/link.hpp"
+
+#include <algorithm>
+
+namespace tactus::run {
+
+void ClockDecisions::apply_parameters(std::int64_t tick) noexcept {
+    while (has_change_ || (has_change_ = changes_.pop(change_))) {
+        if (change_.when > tick * period_) return;
+        change_.param->value = change_.value;
+        log_.note(take::TimingKind::parameter, tick, {.value = change_.id});
+        has_change_ = false;
+    }
+}
+
+bool ClockDecisions::switches_to(const build::GroupProgram& next, std::int64_t tick) noexcept {
+    return tick * period_ >= next.switch_time;
+}
+
+bool ClockDecisions::fades_for(const build::GroupProgram& next, std::int64_t tick) noexcept {
+    return tick * period_ >= next.fade_time && next.fade_time < next.switch_time;
+}
+
+std::int64_t ClockDecisions::end_of_call(std::int64_t tick, std::int64_t until,
+                                         const build::GroupProgram* next) const noexcept {
+    const auto cut_at = [&](Flicks time) {
+        if (const std::int64_t at = ceil_div(time, period_); at > tick) until = std::min(until, at);
+    };
+    if (next) {
+        cut_at(next->fade_time);
+        cut_at(next->switch_time);
+    }
+    if (has_change_) cut_at(change_.when);
+    return until;
+}
+
+LinkReading OfflineDecisions::read(const Link& link, const GroupRuntime& producer, std::int64_t tick, int) noexcept {
+    const std::int64_t index = newest(link, producer, tick);
+    return {index, is_late(link, index, producer.end.load(std::memory_order_relaxed) - 1, tick)};
+}
+
+void OfflineDecisions::commit(build::DeviceSlot& slot) noexcept {
+    slot.device->commit(io::clamp_to_device(slot.port.wrench, slot.port.info));
+    if (slot.port.info.fingers > 0) slot.device->drive(slot.port.motors);
+}
+
+bool LiveDecisions::holds_off(std::int64_t tick, bool before) noexcept {
+    const bool now = pause_.holds_off(tick * period_);
+    if (now != before) log_.note(take::TimingKind::fade, tick, {.source = 1, .value = now ? 1 : 0});
+    return now;
+}
+
+bool LiveDecisions::switches_to(const build::GroupProgram& next, std::int64_t tick) noexcept {
+    const bool now = ClockDecisions::switches_to(next, tick);
+    if (now) log_.note(take::TimingKind::plan, tick, {.value = next.plan_number});
+    return now;
+}
+
+bool LiveDecisions::fades_for(const build::GroupProgram& next, std::int64_t tick) noexcept {
+    const bool now = ClockDecisions::fades_for(next, tick);
+    if (now) log_.note(take::TimingKind::fade, tick, {});
+    return now;
+}
+
+bool LiveDecisions::has_room(const std::vector<Link*>&, std::int64_t, int) const noexcept { return true; }
+
+LinkReading LiveDecisions::read(const Link& link, const GroupRuntime& producer, std::int64_t tick,
+                                int frames) noexcept {
+    const std::int64_t index = newest(link, producer, tick);
+    // The producer's end may still be set behind where it is by then: only when it is over is its last one known.
+    const std::int64_t last = producer.is_over() ? producer.done() - 1 : Link::unknown;
+    const bool late = is_late(link, index, last, tick);
+    if (late) log_.note(take::TimingKind::held_read, tick, {link.id, frames, index});
+    return {index, late};
+}
+
+bool LiveDecisions::drops(const Link& link, std::int64_t tick, int frames) noexcept {
+    const bool drop = !link.has_room(tick, frames);
+    if (drop) log_.note(take::TimingKind::dropped, tick, {link.id, frames});
+    return drop;
+}
+
+void LiveDecisions::commit(build::DeviceSlot& slot) noexcept {
+    slot.guard.commit(*slot.device, slot.port.wrench, steady_ns());
+    if (slot.port.info.fingers > 0) slot.device->drive(slot.port.motors);
+}
+
+}  // namespace tactus::run

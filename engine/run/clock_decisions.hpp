@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Decisions by the clock: on a virtual one, where nothing is ever late, and in real time, where they go to the log.
+#pragma once
+
+#include "engine/run/decisions.hpp"
+#include "engine/run/pause_window.hpp"
+
+namespace tactus::run {
+
+/// Changes take effect at the logical time that they were given.
+class ClockDecisions : public Decisions {
+public:
+    /// `changes` is filled by the control thread, in the order of time. `period` of the group, flicks.
+    ClockDecisions(DecisionLog& log, Flicks period, Ring<ParameterChange>& changes)
+        : Decisions(log), period_(period), changes_(changes) {}
+
+    void apply_parameters(std::int64_t tick) noexcept override;
+    bool switches_to(const build::GroupProgram& next, std::int64_t tick) noexcept override;
+    bool fades_for(const build::GroupProgram& next, std::int64_t tick) noexcept override;
+    std::int64_t end_of_call(std::int64_t tick, std::int64_t until,
+                             const build::GroupProgram* next) const noexcept override;
+
+protected:
+    const Flicks period_;
+
+private:
+    Ring<ParameterChange>& changes_;
+    ParameterChange change_;
+    bool has_change_ = false;
+};
+
+/// The virtual clock: groups wait for each other.
+class OfflineDecisions final : public ClockDecisions {
+public:
+    using ClockDecisions::ClockDecisions;
+
+    LinkReading read(const Link& link, const GroupRuntime& producer, std::int64_t tick, int frames) noexcept override;
+    void commit(build::DeviceSlot& slot) noexcept override;
+};
+
+/// Real time: nobody waits. A value that is not there is missed, one that finds no room is dropped.
+class LiveDecisions final : public ClockDecisions {
+public:
+    LiveDecisions(DecisionLog& log, Flicks period, Ring<ParameterChange>& changes, const PauseWindow& pause)
+        : ClockDecisions(log, period, changes), pause_(pause) {}
+
+    bool holds_off(std::int64_t tick, bool before) noexcept override;
+    bool switches_to(const build::GroupProgram& next, std::int64_t tick) noexcept override;
+    bool fades_for(const build::GroupProgram& next, std::int64_t tick) noexcept override;
+    bool has_room(const std::vector<Link*>& links, std::int64_t tick, int frames) const noexcept override;
+    LinkReading read(const Link& link, const GroupRuntime& producer, std::int64_t tick, int frames) noexcept override;
+    bool drops(const Link& link, std::int64_t tick, int frames) noexcept override;
+    void commit(build::DeviceSlot& slot) noexcept override;
+
+private:
+    const PauseWindow& pause_;
+};
+
+}  // namespace tactus::run

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/run/decisions.hpp"
+
+#include "engine/run/group_runtime.hpp"
+#include "engine/run/link.hpp"
+
+#include <algorithm>
+
+namespace tactus::run {
+
+void DecisionLog::note(take::TimingKind kind, std::int64_t tick, const Entry& entry) noexcept {
+    if (!ring) return;
+    take::TimingRecord record;
+    record.kind = kind;
+    record.group = group_;
+    record.source = static_cast<std::uint32_t>(entry.source);
+    record.count = static_cast<std::int32_t>(entry.count);
+    record.tick = tick;
+    record.value = entry.value;
+    if (entry.sample) record.sample = *entry.sample;
+    if (!ring->push(record)) overflow.store(true, std::memory_order_relaxed);
+}
+
+std::int64_t Decisions::skip_from(std::int64_t tick) const noexcept { return tick; }
+
+bool Decisions::holds_off(std::int64_t, bool before) noexcept { return before; }
+
+std::int64_t Decisions::awaited(const Link& link, std::int64_t tick) const noexcept { return link.wanted(tick); }
+
+bool Decisions::has_room(const std::vector<Link*>& links, std::int64_t tick, int frames) const noexcept {
+    return std::ranges::all_of(links, [&](const Link* link) { return link->has_room(tick, frames); });
+}
+
+bool Decisions::may_begin(const std::vector<Link*>& links, std::int64_t tick) const noexcept {
+    return has_room(links, tick, 1);
+}
+
+void Decisions::acquire(build::DeviceSlot& slot, std::int64_t tick, Flicks elapsed) noexcept {
+    sample(slot, elapsed);
+    log_.note(take::TimingKind::device_sample, tick, {slot.id, 1, 0, &slot.port.sample});
+}
+
+bool Decisions::drops(const Link&, std::int64_t, int) noexcept { return false; }
+
+void Decisions::pass(std::int64_t) noexcept {}
+
+std::int64_t Decisions::newest(const Link& link, const GroupRuntime& producer, std::int64_t tick) noexcept {
+    const std::int64_t wanted = link.wanted(tick);
+    return wanted > link.used() ? link.newest_available(wanted, producer.done()) : link.used();
+}
+
+bool Decisions::is_late(const Link& link, std::int64_t index, std::int64_t last, std::int64_t tick) noexcept {
+    const std::int64_t wanted = link.wanted(tick);
+    return index < std::min(wanted, last) && link.misses(wanted);
+}
+
+void Decisions::sample(build::DeviceSlot& slot, Flicks elapsed) noexcept {
+    slot.port.sample = slot.device->acquire(seconds(elapsed));
+    slot.port.sample.taken = slot.guard.was_taken();
+    slot.port.sample.sound_lost = slot.guard.is_asked_to_fade();
+}
+
+}  // namespace tactus::run

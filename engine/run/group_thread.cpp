@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// The threads of the groups in a live run.
+#include "engine/run/live_run.hpp"
+
+#include "dsp/core/realtime.hpp"
+#include "engine/run/clock.hpp"
+
+#include <pthread.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::run {
+
+namespace {
+
+// The scheduler wakes a sleeper late by tens of microseconds; the last stretch is spun instead, never more.
+constexpr std::int64_t spin_ns = 80'000;
+constexpr std::int64_t poll_start_ns = 200'000;
+constexpr std::int64_t rest_ns = 1'000'000;  // well below the watchdog's limit
+
+void wait_until(std::int64_t when_ns) noexcept {
+    const std::int64_t sleep_to = when_ns - spin_ns;
+    if (steady_ns() < sleep_to) sleep_until(sleep_to);
+    while (steady_ns() < when_ns) {
+    }
+}
+
+/// The faster the group, the higher its priority. False when the system refuses.
+bool make_real_time(Flicks period) noexcept {
+    sched_param parameters{};
+    // 48 kHz: 77, 1 kHz: 60, 60 Hz: 47.
+    const double octaves_above_1_hz = std::log2(rate_of(period));
+    parameters.sched_priority = std::clamp(30 + static_cast<int>(3.0 * octaves_above_1_hz), 10, 80);
+    return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
+}
+
+}  // namespace
+
+bool LiveRun::pauses(const GroupRuntime& group) const {
+    return parts_.pause.window().stops(group.next() * group.plan->period);
+}
+
+void LiveRun::rest_while_paused(GroupRuntime& group, control::TrimmedClock& line) {
+    const std::int64_t before = line.steady_ns;
+    const auto rest = [&group] {
+        group.rest();
+        sleep_until(steady_ns() + rest_ns);
+    };
+    while (pauses(group) && !group.finished()) rest();
+    // The clock is set before the pause ends; a reader that was unlucky looks again.
+    while (!group.finished() && line.steady_ns == before) {
+        line = clock_.get(line);
+        if (line.steady_ns == before) sleep_until(steady_ns() + spin_ns);
+    }
+    const auto release_ns = [&] {
+        line = clock_.get(line);
+        return line.when(group.next() * group.plan->period);
+    };
+    while (!group.finished() && release_ns() - steady_ns() > 2 * rest_ns) rest();
+}
+
+void LiveRun::work(GroupRuntime& group) {
+    flush_denormals_to_zero();
+    // Whoever sets the clock may have been interrupted by this very thread.
+    control::TrimmedClock line;
+    while (!clock_.try_get(line)) sleep_until(steady_ns() + poll_start_ns);
+    const auto release_ns = [&](std::int64_t tick) {
+        line = clock_.get(line);
+        return line.when(tick * group.plan->period);
+    };
+    const double period_ns = options_.dilate * 1e9 / rate_of(group.plan->period);
+    observe::GroupTelemetry& telemetry = group.telemetry;
+    std::int64_t busy_until = 0;
+    observe::LateCause overrun = observe::LateCause::woken_late;
+    while (!group.finished()) {
+        if (pauses(group)) {
+            rest_while_paused(group, line);
+            continue;
+        }
+        const std::int64_t due = release_ns(group.next());
+        wait_until(due);
+        const std::int64_t begin = steady_ns();
+        telemetry.lateness.add(begin - due);
+        // Still at the call before when this one was due: what held that one up is to blame.
+        const observe::LateCause started = busy_until > due ? overrun : observe::LateCause::woken_late;
+        const auto late = static_cast<std::int64_t>(static_cast<double>(begin - due) / period_ns);
+        if (late > group.backlog()) {
+            const std::int64_t to = std::min(group.next() + late, group.end.load());
+            telemetry.skip_causes.add(started, to - group.next());
+            group.skip_to(to);
+            continue;
+        }
+        group.take_changes();
+        const std::int64_t computed_before = thread_ns();
+        group.call(group.max_frames);
+        busy_until = steady_ns();
+        telemetry.execution.add(busy_until - begin);
+        overrun = observe::blame(begin - due, started, busy_until - begin, thread_ns() - computed_before);
+        if (const std::int64_t missed = telemetry.awaited.exchange(0)) telemetry.withheld.add(overrun, missed);
+        if (busy_until - due > std::llround(period_ns * group.max_frames)) group.watch_closely();
+    }
+    group.end_at(group.next());
+}
+
+void LiveRun::start_threads() {
+    const auto& groups = parts_.timeline.now().groups;
+    for (const auto& group : groups) start_thread(*group);
+    while (ready_.load() < groups.size()) sleep_until(steady_ns() + poll_start_ns);
+    line_ = {0, steady_ns() + start_delay_ns, options_.dilate};
+    clock_.set(line_);
+    started_ = true;
+}
+
+void LiveRun::start_thread(GroupRuntime& group) {
+    ++running_;
+    group.decide_live(parts_.pause.window());
+    threads_.emplace_back(&group, [this, &group] {
+        if (!make_real_time(group.plan->period)) is_refused_ = true;
+        ++ready_;
+        while (!started_.load()) sleep_until(steady_ns() + poll_start_ns);
+        work(group);
+        --running_;
+    });
+}
+
+void LiveRun::end_thread(const GroupRuntime& group) {
+    std::erase_if(threads_, [&](const auto& thread) { return thread.first == &group; });
+}
+
+}  // namespace tactus::run

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/run/offline_run.hpp"
+
+#include "dsp/core/error.hpp"
+#include "dsp/core/random.hpp"
+#include "dsp/core/realtime.hpp"
+#include "engine/observe/observer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+namespace tactus::run {
+
+void OfflineRun::wake_others() {
+    steps_.fetch_add(1, std::memory_order_release);
+    steps_.notify_all();
+}
+
+GroupRuntime* OfflineRun::earliest_ready(const std::vector<GroupRuntime*>& mine, bool& all_finished) {
+    // Earliest first: then one thread alone never has to wait.
+    GroupRuntime* earliest = nullptr;
+    all_finished = true;
+    for (GroupRuntime* group : mine) {
+        while (!group->has_begun() && !group->finished() && group->skip_as_decided()) {
+        }
+        if (group->finished()) continue;
+        // Room in channels of the plan before may have become free.
+        if (!group->has_begun() && group->take_changes()) wake_others();
+        all_finished = false;
+        const auto release = [](const GroupRuntime* g) { return g->next() * g->plan->period; };
+        if (group->ready() && (!earliest || release(group) < release(earliest))) earliest = group;
+    }
+    return earliest;
+}
+
+void OfflineRun::work(const std::vector<GroupRuntime*>& mine, std::uint64_t seed) {
+    flush_denormals_to_zero();
+    const Random random{seed};
+    std::uint64_t draws = 0;
+    while (!stop_.load(std::memory_order_relaxed)) {
+        const std::uint32_t seen = steps_.load(std::memory_order_acquire);
+        bool all_finished = false;
+        GroupRuntime* const group = earliest_ready(mine, all_finished);
+        if (all_finished) return;
+        if (!group) {
+            steps_.wait(seen, std::memory_order_acquire);
+            continue;
+        }
+        int frames = group->max_frames;
+        if (options_.random_blocks)
+            frames = 1 + static_cast<int>(random.bits(draws++) % static_cast<std::uint64_t>(frames));
+        const auto before = std::chrono::steady_clock::now();
+        if (!group->has_begun()) group->begin_call(frames);
+        if (group->ready()) group->finish_call();
+        group->telemetry.execution.add((std::chrono::steady_clock::now() - before).count());
+        wake_others();
+        recorder_.drain_full();
+        if (options_.observer && options_.observer->wants_drain()) options_.observer->drain();
+        if (const auto* ring = group->log.ring; ring && ring->size() * 2 > ring->capacity())
+            recorder_.drain_journal(timeline_.groups());
+    }
+}
+
+void OfflineRun::run(int threads, const std::function<void(double)>& progress) {
+    // The slowest groups do the heavy work: they are dealt out first, the rest shares the last thread.
+    const auto& groups = timeline_.groups();
+    const auto count = static_cast<std::size_t>(std::clamp<int>(threads, 1, static_cast<int>(groups.size())));
+    std::vector<std::vector<GroupRuntime*>> shares(count);
+    for (std::size_t i = 0; i < groups.size(); ++i)
+        shares[std::min(groups.size() - 1 - i, count - 1)].push_back(groups[i].get());
+    const std::uint64_t seed = timeline_.now().plan.patch.seed;
+    if (count == 1 && !progress) {
+        work(shares.front(), mix(seed));
+        return complete();
+    }
+    std::atomic<std::size_t> running{count};
+    std::vector<std::jthread> workers;
+    for (std::size_t i = 0; i < count; ++i)
+        workers.emplace_back([this, &shares, &running, seed, i] {
+            try {
+                work(shares[i], mix(seed + i));
+            } catch (...) {
+                fail(std::current_exception());
+            }
+            --running;
+        });
+    while (progress && running.load() > 0) {
+        try {
+            progress(timeline_.progress_seconds() / options_.seconds);
+        } catch (...) {
+            fail(std::current_exception());
+            break;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    workers.clear();
+    if (failure_) std::rethrow_exception(failure_);
+    complete();
+}
+
+void OfflineRun::complete() {
+    for (const auto& group : timeline_.groups()) group->end_at(group->next());
+    recorder_.drain_journal(timeline_.groups());
+    recorder_.drain();
+}
+
+void OfflineRun::stop() {
+    stop_ = true;
+    steps_.fetch_add(1);
+    steps_.notify_all();
+}
+
+void OfflineRun::fail(std::exception_ptr error) {
+    const std::lock_guard lock(failure_lock_);
+    if (!failure_) failure_ = std::move(error);
+    stop();
+}
+
+}  // namespace tactus::run

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run is asked for, and what is said about an edit of it.
+#pragma once
+
+#include "engine/io/host.hpp"
+#include "engine/take/take_writer.hpp"
+#include "graph/compile/plan.hpp"
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::observe {
+class Observer;
+}
+
+namespace tactus::run {
+
+class GroupRuntime;
+
+/// Makes the stream that keeps every value of an output, "node.port", or null.
+using TapMaker =
+    std::function<std::unique_ptr<io::Stream>(const std::string& port, const ValueType&, const GroupRuntime&)>;
+
+struct EngineOptions {
+    double seconds = 1.0;
+    int block = 0;               ///< most samples per call of an audio group, 0: the patch's quantum
+    bool random_blocks = false;  ///< calls of random length up to `block`, for tests
+    std::optional<std::filesystem::path> folder;  ///< where recordings go; none: they are not kept
+    const take::TimingLog* replay = nullptr;      ///< repeat what timing decided in a live run
+    const std::vector<io::RecordedDevice>* devices =
+        nullptr;  ///< stand-ins for the devices of the run that is repeated
+    take::TakeWriter* take = nullptr;                          ///< records the run
+    bool record_values = true;  ///< the take has them from the beginning; else from `Engine::record` on
+    std::uint64_t longest_journal = std::uint64_t{4} << 30;  ///< bytes of decisions kept while no values are recorded
+    observe::Observer* observer = nullptr;  ///< reads copies; changes nothing
+    bool live = false;
+    io::AudioChoice audio;  ///< live only
+    bool hash = true;  ///< keep `output_hash`; costs about as much per sample of a signal as a trivial node
+    bool time_nodes = true;  ///< keep the time of each node, from one call in 64
+    TapMaker tap;  ///< where every value of an output goes; used by replay, which compares
+};
+
+struct LiveOptions {
+    double dilate = 1.0;  ///< real seconds per logical second
+    std::optional<std::filesystem::path> log;  ///< where timing decisions are written
+    const std::atomic<bool>* stop = nullptr;  ///< set by another thread to end the run early
+    std::function<void()> watch;  ///< called about every 20 ms by the control thread
+};
+
+/// The result of an edit.
+struct EditOutcome {
+    std::optional<std::string> error;  ///< why the old plan runs on
+    std::int64_t generation = 0;
+    Flicks when = 0;  ///< logical time of the switch
+    std::size_t kept = 0, nodes = 0;  ///< nodes that go on, of all
+};
+
+using PortHashes = std::vector<std::pair<std::string, std::uint64_t>>;
+
+}  // namespace tactus::run

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/run/replayed_decisions.hpp"
+
+#include "engine/run/group_runtime.hpp"
+#include "engine/run/link.hpp"
+
+#include <algorithm>
+
+namespace tactus::run {
+
+using take::TimingKind;
+using take::TimingRecord;
+
+const TimingRecord* ReplayedDecisions::find(TimingKind kind, int source, std::int64_t tick) const noexcept {
+    for (std::size_t i = first_; i < records_.size(); ++i) {
+        const TimingRecord& record = records_[i];
+        if (record.tick > tick) break;
+        const bool covers = tick < record.tick + std::max(record.count, 1);
+        if (covers && record.kind == kind && record.source == static_cast<std::uint32_t>(source)) return &record;
+    }
+    return nullptr;
+}
+
+std::int64_t ReplayedDecisions::skip_from(std::int64_t tick) const noexcept {
+    const TimingRecord* skip = find(TimingKind::skipped, 0, tick);
+    return skip ? skip->tick + skip->count : tick;
+}
+
+void ReplayedDecisions::apply_parameters(std::int64_t tick) noexcept {
+    for (std::size_t i = first_; i < records_.size() && records_[i].tick <= tick; ++i) {
+        const TimingRecord& record = records_[i];
+        if (record.kind != TimingKind::parameter || record.tick != tick) continue;
+        const ParameterChange& change = changes_[static_cast<std::size_t>(record.value)];
+        change.param->value = change.value;
+    }
+}
+
+bool ReplayedDecisions::holds_off(std::int64_t tick, bool before) noexcept {
+    const TimingRecord* pause = find(TimingKind::fade, 1, tick);
+    return pause ? pause->value != 0 : before;
+}
+
+bool ReplayedDecisions::switches_to(const build::GroupProgram& next, std::int64_t tick) noexcept {
+    const TimingRecord* plan = find(TimingKind::plan, 0, tick);
+    return plan && plan->value == next.plan_number;
+}
+
+bool ReplayedDecisions::fades_for(const build::GroupProgram&, std::int64_t tick) noexcept {
+    return find(TimingKind::fade, 0, tick) != nullptr;
+}
+
+std::int64_t ReplayedDecisions::end_of_call(std::int64_t tick, std::int64_t until,
+                                            const build::GroupProgram*) const noexcept {
+    // A logged decision begins or ends only between calls.
+    for (std::size_t i = first_; i < records_.size(); ++i) {
+        const TimingRecord& record = records_[i];
+        if (record.tick >= until) break;
+        const std::int64_t at = record.tick > tick ? record.tick : record.tick + record.count;
+        if (at > tick) until = std::min(until, at);
+    }
+    return until;
+}
+
+std::int64_t ReplayedDecisions::awaited(const Link& link, std::int64_t tick) const noexcept {
+    const TimingRecord* held = find(TimingKind::held_read, link.id, tick);
+    return held ? held->value : link.wanted(tick);
+}
+
+bool ReplayedDecisions::has_room(const std::vector<Link*>& links, std::int64_t tick, int frames) const noexcept {
+    return std::ranges::all_of(links, [&](const Link* link) {
+        return link->has_room(tick, frames) || find(TimingKind::dropped, link->id, tick);
+    });
+}
+
+bool ReplayedDecisions::may_begin(const std::vector<Link*>&, std::int64_t) const noexcept {
+    // Live, room is asked for when a call ends, and what others read meanwhile has made some.
+    return true;
+}
+
+void ReplayedDecisions::acquire(build::DeviceSlot& slot, std::int64_t tick, Flicks elapsed) noexcept {
+    if (const TimingRecord* logged = find(TimingKind::device_sample, slot.id, tick)) slot.port.sample = logged->sample;
+    else sample(slot, elapsed);
+    log_.note(TimingKind::device_sample, tick, {slot.id, 1, 0, &slot.port.sample});
+}
+
+LinkReading ReplayedDecisions::read(const Link& link, const GroupRuntime& producer, std::int64_t tick, int) noexcept {
+    const TimingRecord* held = find(TimingKind::held_read, link.id, tick);
+    const std::int64_t index = held ? held->value : newest(link, producer, tick);
+    return {index, is_late(link, index, producer.end.load(std::memory_order_relaxed) - 1, tick)};
+}
+
+bool ReplayedDecisions::drops(const Link& link, std::int64_t tick, int) noexcept {
+    return find(TimingKind::dropped, link.id, tick) != nullptr;
+}
+
+void ReplayedDecisions::commit(build::DeviceSlot&) noexcept {}
+
+void ReplayedDecisions::pass(std::int64_t tick) noexcept {
+    while (first_ < records_.size() && records_[first_].tick + std::max(records_[first_].count, 1) <= tick) ++first_;
+}
+
+}  // namespace tactus::run

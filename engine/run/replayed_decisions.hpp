@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Decisions that an earlier run made, read from its log.
+#pragma once
+
+#include "engine/run/decisions.hpp"
+
+#include <cstddef>
+
+namespace tactus::run {
+
+class ReplayedDecisions final : public Decisions {
+public:
+    /// `records` of this group, in order; `changes` by their number in the log. Both must outlive this.
+    ReplayedDecisions(DecisionLog& log, const std::vector<take::TimingRecord>& records,
+                      const std::vector<ParameterChange>& changes)
+        : Decisions(log), records_(records), changes_(changes) {}
+
+    std::int64_t skip_from(std::int64_t tick) const noexcept override;
+    void apply_parameters(std::int64_t tick) noexcept override;
+    bool holds_off(std::int64_t tick, bool before) noexcept override;
+    bool switches_to(const build::GroupProgram& next, std::int64_t tick) noexcept override;
+    bool fades_for(const build::GroupProgram& next, std::int64_t tick) noexcept override;
+    std::int64_t end_of_call(std::int64_t tick, std::int64_t until,
+                             const build::GroupProgram* next) const noexcept override;
+    std::int64_t awaited(const Link& link, std::int64_t tick) const noexcept override;
+    bool has_room(const std::vector<Link*>& links, std::int64_t tick, int frames) const noexcept override;
+    bool may_begin(const std::vector<Link*>& links, std::int64_t tick) const noexcept override;
+    void acquire(build::DeviceSlot& slot, std::int64_t tick, Flicks elapsed) noexcept override;
+    LinkReading read(const Link& link, const GroupRuntime& producer, std::int64_t tick, int frames) noexcept override;
+    bool drops(const Link& link, std::int64_t tick, int frames) noexcept override;
+    void commit(build::DeviceSlot& slot) noexcept override;
+    void pass(std::int64_t tick) noexcept override;
+
+private:
+    /// The record that covers an activation, or null.
+    const take::TimingRecord* find(take::TimingKind kind, int source, std::int64_t tick) const noexcept;
+
+    const std::vector<take::TimingRecord>& records_;
+    const std::vector<ParameterChange>& changes_;
+    std::size_t first_ = 0;  ///< records before this one are past
+};
+
+}  // namespace tactus::run

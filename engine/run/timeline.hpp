@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// What runs from when: the plans of a run, one after the other, and the groups that run them.
+#pragma once
+
+#include "engine/build/generation.hpp"
+#include "engine/run/options.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tactus::run {
+
+class Recorder;
+
+/// Control thread.
+class Timeline {
+public:
+    Timeline(const EngineOptions& options, build::BuildContext& context, Recorder& recorder)
+        : options_(options), context_(context), recorder_(recorder) {}
+
+    /// The plan that runs first. Throws Error.
+    void begin(compile::Plan plan);
+    /// Before an offline run: see Engine.
+    void schedule(compile::Plan plan, Flicks when);
+    void schedule_change(std::int64_t id, const std::string& node, const std::string& param, double value);
+
+    /// Builds what follows the plan that runs; on any thread, while the run goes on. Throws Error.
+    std::unique_ptr<build::Generation> build_next(compile::Plan plan);
+    /// Every group takes the plan over at `when`. Returns the groups that are new: their threads are to be started.
+    std::vector<GroupRuntime*> hand_over(std::unique_ptr<build::Generation> next, Flicks when);
+    /// The plan before is taken apart; no group touches it any more.
+    void retire();
+    /// A plan takes over, and the one before is still there.
+    bool is_changing() const { return before_ != nullptr; }
+
+    /// The plan that runs, or ran last.
+    const build::Generation& now() const { return *now_; }
+    build::Generation& now() { return *now_; }
+    /// Every group that ever ran, the first plan's first.
+    const std::vector<std::shared_ptr<GroupRuntime>>& groups() const { return groups_; }
+    /// Logical time that some group has reached.
+    Flicks furthest() const;
+    /// Logical time that every group has reached, s.
+    double progress_seconds() const;
+    Report report() const;
+    PortHashes port_hashes() const;
+
+private:
+    void add(const build::Generation& next, Flicks when);
+    void set_end(GroupRuntime& group) const;
+    static void gather_hashes(const build::Generation& old, const build::Generation* next, PortHashes& parts);
+
+    const EngineOptions& options_;
+    build::BuildContext& context_;
+    Recorder& recorder_;
+    std::vector<std::shared_ptr<GroupRuntime>> groups_;
+    std::unique_ptr<build::Generation> now_, before_;
+    std::vector<std::unique_ptr<build::Generation>> scheduled_;  // offline: all that come before `now_`
+    PortHashes ended_hashes_;
+    std::vector<ParameterChange> replayed_changes_;
+};
+
+}  // namespace tactus::run
