@@ -38,6 +38,8 @@ void ForceLimiter::prepare(const ForceLimits& limits, double period_s) {
 }
 
 void ForceLimiter::fail(Fault reason) noexcept {
+    // A late tick says only that something is wrong: a reason that says what replaces it.
+    if (fault_ == Fault::late_commit && reason != Fault::none) fault_ = reason;
     if (fault_ != Fault::none) return;
     fault_ = reason;
     fade_from_ = output_;

@@ -66,7 +66,8 @@ public:
     /// `raw` is the wanted wrench on the hand; `counter` and `valid` are the driver's for this tick's sample.
     Wrench tick(const Wrench& raw, std::int64_t counter, bool valid, double elapsed_s) noexcept;
 
-    /// Starts the fade for an external reason. The first reason stays until `recover`.
+    /// Starts the fade for an external reason. The first reason stays until `recover`; only `late_commit` gives way to
+    /// another one, for it names no cause.
     void fail(Fault reason) noexcept;
 
     /// The same when another thread has already faded the force: the output is zero at once.

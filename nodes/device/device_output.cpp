@@ -96,9 +96,9 @@ private:
     }
 
     void recover(const Tick& tick) noexcept {
+        last_fault_ = limiter_.fault();
         if (!in_fault_) {
             in_fault_ = true;
-            last_fault_ = limiter_.fault();
             ++faults_;
             well_for_ = 0.0;
         }

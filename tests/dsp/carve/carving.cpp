@@ -203,6 +203,32 @@ TEST_CASE("a blade outside the grid removes nothing") {
     CHECK(same(field.grid, before));
 }
 
+TEST_CASE("a blade that is tilted by next to nothing touches no voxel outside the grid") {
+    struct BoundedField : DenseField {
+        int outside = 0;
+        float get(int i, int j, int k) noexcept {
+            const std::array<int, 3> n = size();
+            if (i >= 0 && j >= 0 && k >= 0 && i < n[0] && j < n[1] && k < n[2]) return grid.at(i, j, k);
+            ++outside;
+            return 1.0f;
+        }
+    };
+    double volume = 0.0;
+    for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(0, 1, 0), Vec3(1, 1, 1) / std::sqrt(3.0)}) {
+        for (double tilt = 1e-10; tilt < 1e-6; tilt *= 1.5) {
+            BoundedField field{block(Vec3(0.0), 600.0)};
+            carve::CarveCore carver = saw();
+            const Quat orientation = glm::angleAxis(tilt, axis) * downwards;
+            const auto result = carve_through(carver, field, stroke(above, {0, -0.010, 0}, 0.15, orientation));
+            INFO("tilt " << tilt);
+            REQUIRE(field.outside == 0);
+            if (volume == 0.0) volume = result.removed_m3;
+            CHECK(result.removed_m3 == Approx(volume).epsilon(1e-3));
+        }
+    }
+    CHECK(volume > 0.0);
+}
+
 TEST_CASE("a blade that appears in the middle of bone cuts from the surface on") {
     DenseField field = block();
     carve::CarveCore carver = saw();

@@ -143,6 +143,29 @@ TEST_CASE("every fault fades to zero within 10 ms, says why, and latches until r
     CHECK(rig.within_limits());
 }
 
+TEST_CASE("a fault that names a cause replaces a late tick, and no other fault") {
+    for (const control::Fault cause : {control::Fault::sound_lost, control::Fault::stale_input}) {
+        Rig rig;
+        rig.engage();
+        rig.run(push, 20);
+        rig.limiter.cut(control::Fault::late_commit);
+        rig.run(push, 1);
+        CHECK(rig.limiter.fault() == control::Fault::late_commit);
+        rig.limiter.fail(cause);
+        rig.run(push, 1);
+        CHECK(rig.limiter.fault() == cause);
+        CHECK(glm::length(rig.out.force) == 0.0);
+        rig.limiter.fail(control::Fault::invalid_input);
+        CHECK(rig.limiter.fault() == cause);
+    }
+    // A force that is not finite must not come in again by itself, whatever came before.
+    Rig rig;
+    rig.engage();
+    rig.limiter.cut(control::Fault::late_commit);
+    rig.run({{std::numeric_limits<double>::quiet_NaN(), 0, 0}, {}}, 1);
+    CHECK(rig.limiter.fault() == control::Fault::not_finite);
+}
+
 TEST_CASE("a resting hand is not a stale device") {
     Rig rig;
     rig.engage();
