@@ -30,7 +30,7 @@ const std::string tone =
 
 }  // namespace
 
-TEST_CASE("every verb that writes has -o,--out; jobs, bands, probes and displays are called alike") {
+TEST_CASE("every verb that writes has -o,--out, and jobs, bands, probes and displays are called alike") {
     const Folder folder;
     for (const char* verb : {"render", "run", "replay", "draw", "gripper", "measure", "equalise", "calibrate", "import",
                              "info", "export", "fracture", "fracture-surface", "plan export", "plan report"}) {
