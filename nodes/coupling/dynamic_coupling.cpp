@@ -37,7 +37,10 @@ struct DynamicCoupling {
     Param angular_damping{"0.01 N m s/rad", "0 N m s/rad", "10 N m s/rad", "of the rotational damper"};
     Param max_force{"10 N", "0 N", "100 N", "limit of the spring force"};
     Param max_torque{"0.5 N m", "0 N m", "20 N m", "limit of the spring torque"};
-    Param step{"0.5 mm", "0.001 mm", "20 mm", "limit of a point's motion per tick beyond the free distance"};
+    Param step{"0.5 mm", "0.001 mm", "20 mm",
+               "limit of a point's motion beyond the free distance, eight times in a tick; never more than half a "
+               "voxel of the "
+               "finest field that is touched"};
     ContactParameters contact;
 
     void prepare(const Setup&) {
@@ -54,7 +57,7 @@ struct DynamicCoupling {
                             inertia,
                             damping,
                             angular_damping,
-                            step,
+                            std::min(step.value, contact_->safe_step()),
                             contact_->reach()};
         if (hold_.taken) solver_.reset(device);
         place = hold_.place;

@@ -59,7 +59,7 @@ TEST_CASE("an unstable gain is refused when the patch is read, with the limit, u
     CHECK(held.node.last<double>("used_gain") == 120.0);
     Held nothing;
     nothing.node.set("stiffness", "0 N/mm");
-    CHECK_THROWS_WITH(nothing.node.prepare(), Catch::Matchers::ContainsSubstring("set a damping"));
+    CHECK_THROWS_WITH(nothing.node.prepare(), Catch::Matchers::ContainsSubstring("give a damping"));
     Held no_table;
     no_table.node.set("object", "table");
     CHECK_THROWS_WITH(no_table.node.prepare(), Catch::Matchers::ContainsSubstring("asset"));
