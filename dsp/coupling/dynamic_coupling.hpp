@@ -39,6 +39,7 @@ public:
         state_.proxy = hand_ = is_valid(hand) ? hand : hand_;
         turn_ = Vec3(0.0);
         moved_ = {};
+        guard_.forget();
     }
     const DynamicState& state() const noexcept { return state_; }
 
@@ -80,12 +81,14 @@ private:
     void look(Contact& contact) noexcept {
         const contact::ContactSum before = state_.contact;
         state_.contact = contact(state_.proxy, contact::ContactParts::all);
-        if (!crosses_wall(before, state_.contact, moved_, settings.step)) return;
-        state_.proxy = proxy_before_;
-        state_.twist = {};
-        state_.contact = before;
-        moved_ = {};
-        turn_ = rotation_near(hand_.orientation, state_.proxy.orientation, turn_);
+        if (guard_.refuses(state_.contact, moved_, settings.step)) {
+            state_.proxy = proxy_before_;
+            state_.twist = {};
+            state_.contact = before;
+            moved_ = {};
+            turn_ = rotation_near(hand_.orientation, state_.proxy.orientation, turn_);
+        }
+        guard_.see(state_.contact, settings.step);
     }
 
     /// (M/h² + D/h + K) δ = M v/h + D v_hand − forces, for the displacement δ of the next h seconds.
@@ -127,6 +130,7 @@ private:
 
     static constexpr int most_parts = 8;
     DynamicState state_;
+    WallGuard guard_;
     Pose hand_, proxy_before_;
     geometry::Vector6 moved_{};  // from proxy_before_ to the proxy
     Vec3 turn_{0.0};

@@ -69,6 +69,7 @@ public:
         state_.proxy = hand_ = is_valid(hand) ? hand : hand_;
         rotation_ = Vec3(0.0);
         curvature_.forget();
+        guard_.forget();
     }
 
     const QuasiStaticState& state() const noexcept { return state_; }
@@ -86,6 +87,7 @@ public:
         state_.evaluations = 0;
         state_.balanced = false;
         Balance now = balance(state_.proxy, contact);
+        guard_.see(now.contact, settings.step);
         state_.energy_before = now.energy;
         while (std::isfinite(now.energy)) {
             state_.balanced = residual(now) < settings.tolerance;
@@ -194,7 +196,8 @@ private:
         const Pose trial = moved(state_.proxy, step.displacement);
         const Balance there = balance(trial, contact);
         if (!(there.energy <= now.energy + 1e-4 * step.slope)) return false;
-        if (crosses_wall(now.contact, there.contact, step.displacement, settings.step)) return false;
+        if (guard_.refuses(there.contact, step.displacement, settings.step)) return false;
+        guard_.see(there.contact, settings.step);
         geometry::Vector6 change{};
         for (std::size_t i = 0; i < 6; ++i) change[i] = there.gradient[i] - now.gradient[i];
         curvature_.learn(step.displacement, change, known, std::max(settings.gyration, 1e-6));
@@ -232,6 +235,7 @@ private:
     static constexpr int most_halvings = 6;
     static constexpr double least_way = 1e-9;  // m
     LearnedCurvature curvature_;
+    WallGuard guard_;
     QuasiStaticState state_;
     Pose hand_;
     Vec3 rotation_{0.0};

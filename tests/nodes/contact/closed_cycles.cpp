@@ -227,7 +227,7 @@ const std::vector<Case>& cases() {
                 n.set("static_friction", friction).set("dynamic_friction", friction);
             };
         };
-        const double body_stiffness = 200.0 * 10e3;  // at most so many points of 10 N/mm touch at once
+        const double body_stiffness = 200.0 * 40e3;  // at most so many mm² of 40 N/mm touch at once
         std::vector<Case> made{
             {.type = "sphere_contact",
              .pose = "pose",
