@@ -240,6 +240,7 @@ ContactSum PointshellContact::operator()(std::span<const ContactPair> pairs, con
         for (const float deep : lanes.deepest) sum.penetration = std::max(sum.penetration, static_cast<double>(deep));
         add(sum, totals, relation);
     }
+    sum.contact_gradient = sum.gradient;
     return sum;
 }
 

@@ -40,6 +40,7 @@ struct ContactPair {
 struct ContactSum {
     double energy = 0.0;  ///< J
     std::array<double, 6> gradient{};  ///< ∂energy/∂ξ
+    std::array<double, 6> contact_gradient{};  ///< the part of it that comes from points; others may add to `gradient`
     std::array<double, 36> stiffness{};  ///< row by row, both triangles filled
     double total_force = 0.0;  ///< N, Σ k w φ' over the points: the scale of rounding errors
     double penetration = 0.0;  ///< m, of the deepest point, 0 when none is inside

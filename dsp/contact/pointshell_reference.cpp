@@ -55,6 +55,7 @@ ContactSum contact_reference(std::span<const ContactPair> pairs, const Vec3& abo
     }
     for (std::size_t i = 0; i < 6; ++i)
         for (std::size_t j = 0; j < i; ++j) sum.stiffness[6 * j + i] = sum.stiffness[6 * i + j];
+    sum.contact_gradient = sum.gradient;
     return sum;
 }
 

@@ -17,7 +17,7 @@ struct LoopModel {
     double gain = 40.0;                   ///< 1/s
     int delay = 1;                        ///< whole periods between sample and motion, 0 to 8
     double motor_lag = 0.002;             ///< s, time constant of the motor's speed
-    double hand_stiffness = 380.0;  ///< N/m, of the stiffest hand
+    double hand_stiffness = 3000.0;  ///< N/m, of the stiffest finger; fingers are between 200 and 3000 N/m
     double feed_forward = 0.0;            ///< share of the object's velocity
     double feed_forward_lag = 0.0;        ///< s, time constant of its smoothing
     bool is_wall = false;  ///< the object does not move; stiffness, damping and mass are ignored

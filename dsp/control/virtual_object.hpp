@@ -21,7 +21,7 @@ struct ObjectSettings {
     double mass = 0.0;           ///< kg
     bool one_sided = false;  ///< the object begins at `rest` and lies towards +; before it the finger is free
     double rest = 0.0;  ///< m, position without force
-    double free_damping = 20.0;  ///< N·s/m, in front of a one-sided object
+    double free_damping = 80.0;  ///< N·s/m, in front of a one-sided object
     const DeflectionTable* table = nullptr;
 
     /// False without stiffness, damping and mass: any force would give an infinite velocity.

@@ -29,6 +29,19 @@ double clearance_of(const contact::ContactPair& pair, double enough) noexcept {
     return std::max(least, 0.0);
 }
 
+/// Greatest distance of a body's surface from its origin; without points the corners of its field count.
+double extent_of(const Body& body) noexcept {
+    if (body.shell) return body.shell->reach;
+    if (!body.map) return 0.0;
+    const volume::Grid& grid = body.map->grid;
+    double most = 0.0;
+    for (int corner = 0; corner < 8; ++corner)
+        most = std::max(
+            most, glm::length(grid.position((corner & 1) ? grid.size[0] - 1 : 0, (corner & 2) ? grid.size[1] - 1 : 0,
+                                            (corner & 4) ? grid.size[2] - 1 : 0)));
+    return most;
+}
+
 }  // namespace
 
 HeldContact::HeldContact(std::size_t most_points) : kernel_(nodes_of(most_points)) {}
@@ -39,10 +52,10 @@ void HeldContact::set(const Scene& scene, int held, const Pose& grip, const cont
     budget_ = budget;
     grip_ = grip;
     count_ = 0;
-    held_shell_ = nullptr;
+    reach_ = gyration2_ = measured_ = 0.0;
+    safe_step_ = std::numeric_limits<double>::infinity();
     if (held < 0 || static_cast<std::size_t>(held) >= scene.count) return;
     const SceneObject& grasped = scene.objects[static_cast<std::size_t>(held)];
-    held_shell_ = grasped.body.shell;
     const auto moves_along = [&](std::size_t i) {
         return i == static_cast<std::size_t>(held) || (grasped.unit >= 0 && scene.objects[i].unit == grasped.unit);
     };
@@ -51,6 +64,7 @@ void HeldContact::set(const Scene& scene, int held, const Pose& grip, const cont
         const SceneObject& mine = scene.objects[m];
         if (!moves_along(m) || (m != static_cast<std::size_t>(held) && !is_valid(mine.pose))) continue;
         const Pose beside = m == static_cast<std::size_t>(held) ? Pose{} : from_held * mine.pose;
+        measure(mine.body, grip * beside);
         for (std::size_t i = 0; i < scene.count; ++i)
             if (!moves_along(i) && is_valid(scene.objects[i].pose)) add(mine, beside, scene.objects[i], both_ways);
     }
@@ -60,6 +74,8 @@ void HeldContact::add(const SceneObject& mine, const Pose& beside, const SceneOb
     const auto put = [&](const contact::ContactPair& pair) {
         beside_[count_] = beside;
         pairs_[count_++] = pair;
+        const Vec3& voxel = pair.map->grid.spacing;
+        safe_step_ = std::min(safe_step_, 0.5 * std::min({voxel.x, voxel.y, voxel.z}));
     };
     if (mine.body.shell && other.body.map) put({mine.body.shell, {}, other.body.map, other.pose, true});
     if (both_ways && other.body.shell && mine.body.map) put({other.body.shell, other.pose, mine.body.map, {}, false});
@@ -88,14 +104,14 @@ double HeldContact::clearance(const Pose& handle) const noexcept {
     return least;
 }
 
-double HeldContact::reach() const noexcept {
-    return held_shell_ ? held_shell_->reach + glm::length(grip_.position) : 0.0;
-}
-
-double HeldContact::gyration() const noexcept {
-    if (!held_shell_) return 0.0;
-    const Vec3 arm = grip_.apply(held_shell_->centroid);
-    return std::sqrt(held_shell_->gyration * held_shell_->gyration + glm::dot(arm, arm));
+void HeldContact::measure(const Body& body, const Pose& in_hand) noexcept {
+    reach_ = std::max(reach_, extent_of(body) + glm::length(in_hand.position));
+    if (!body.shell || body.shell->empty()) return;
+    const Vec3 arm = in_hand.apply(body.shell->centroid);
+    const double own = body.shell->gyration * body.shell->gyration + glm::dot(arm, arm);
+    const auto points = static_cast<double>(body.shell->size());
+    measured_ += points;
+    gyration2_ += (own - gyration2_) * (points / measured_);
 }
 
 }  // namespace tactus::coupling

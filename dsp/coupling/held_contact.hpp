@@ -6,6 +6,7 @@
 #include "dsp/coupling/scene.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -27,13 +28,17 @@ public:
     contact::ContactSum operator()(const Pose& handle, contact::ContactParts parts) noexcept;
     /// m; see HeldContactLike. 0 when something may be in contact.
     double clearance(const Pose& handle) const noexcept;
-    /// Greatest distance of the held body's points from the handle, and their root mean square distance, m; 0 without
-    /// points.
-    double reach() const noexcept;
-    double gyration() const noexcept;
+    /// Of all bodies of the held unit: greatest distance of their surface from the handle, and root mean square distance
+    /// of their points, m; 0 without points.
+    double reach() const noexcept { return reach_; }
+    double gyration() const noexcept { return std::sqrt(gyration2_); }
+    /// m: half of the finest voxel of all fields that something is tested against; infinite without any. A wall that a
+    /// field can hold is thicker, so a motion of this length that starts outside of it does not end behind it.
+    double safe_step() const noexcept { return safe_step_; }
 
 private:
     void add(const SceneObject& mine, const Pose& beside, const SceneObject& other, bool both_ways) noexcept;
+    void measure(const Body& body, const Pose& in_hand) noexcept;
     std::span<const contact::ContactPair> place(const Pose& handle) noexcept;
 
     contact::PointshellContact kernel_;
@@ -43,7 +48,8 @@ private:
     std::array<contact::ContactPair, most_pairs> pairs_;
     std::array<Pose, most_pairs> beside_;  ///< pose of a pair's moving body in the frame of the held one
     std::size_t count_ = 0, budget_ = 0;
-    const contact::Pointshell* held_shell_ = nullptr;
+    double reach_ = 0.0, gyration2_ = 0.0, measured_ = 0.0;  ///< m, m², number of points in them
+    double safe_step_ = std::numeric_limits<double>::infinity();
     Pose grip_;
 };
 

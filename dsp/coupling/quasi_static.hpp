@@ -13,6 +13,7 @@
 #include "dsp/contact/pointshell_contact.hpp"
 #include "dsp/coupling/coupling_spring.hpp"
 #include "dsp/coupling/learned_curvature.hpp"
+#include "dsp/coupling/wall_crossing.hpp"
 #include "dsp/geometry/symmetric6.hpp"
 
 #include <algorithm>
@@ -34,8 +35,8 @@ struct QuasiStaticSettings {
     int iterations = 10;
     int evaluations = 24;  ///< maximum number of contact evaluations in a tick
     double tolerance = 1e-3;  ///< N: balanced when the residual is below this
-    /// m: maximum motion of any point in one iteration beyond the free distance. At most half of the thinnest wall plus
-    /// the thinnest held part, or bodies pass through each other.
+    /// m: maximum motion of any point in one iteration beyond the free distance: HeldContact::safe_step or less. Steps
+    /// through the middle of a wall of at least four times this thickness are refused (wall_crossing.hpp).
     double step = 0.5e-3;
     /// m: maximum motion of any point in one tick beyond the motion of the hand. A jump over an edge is spread over as
     /// many ticks as needed, so that the spring force changes by no more than this stretches the springs.
@@ -68,6 +69,7 @@ public:
         state_.proxy = hand_ = is_valid(hand) ? hand : hand_;
         rotation_ = Vec3(0.0);
         curvature_.forget();
+        guard_.forget();
     }
 
     const QuasiStaticState& state() const noexcept { return state_; }
@@ -85,6 +87,7 @@ public:
         state_.evaluations = 0;
         state_.balanced = false;
         Balance now = balance(state_.proxy, contact);
+        guard_.see(now.contact, settings.step);
         state_.energy_before = now.energy;
         while (std::isfinite(now.energy)) {
             state_.balanced = residual(now) < settings.tolerance;
@@ -193,6 +196,8 @@ private:
         const Pose trial = moved(state_.proxy, step.displacement);
         const Balance there = balance(trial, contact);
         if (!(there.energy <= now.energy + 1e-4 * step.slope)) return false;
+        if (guard_.refuses(there.contact, step.displacement, settings.step)) return false;
+        guard_.see(there.contact, settings.step);
         geometry::Vector6 change{};
         for (std::size_t i = 0; i < 6; ++i) change[i] = there.gradient[i] - now.gradient[i];
         curvature_.learn(step.displacement, change, known, std::max(settings.gyration, 1e-6));
@@ -230,6 +235,7 @@ private:
     static constexpr int most_halvings = 6;
     static constexpr double least_way = 1e-9;  // m
     LearnedCurvature curvature_;
+    WallGuard guard_;
     QuasiStaticState state_;
     Pose hand_;
     Vec3 rotation_{0.0};

@@ -20,14 +20,25 @@ std::string setting_of(const compile::Plan& plan, std::size_t node, std::string_
 
 using DrivenParams = std::unordered_set<const Param*>;
 
+DrivenParams driven_params(const compile::Plan& plan) {
+    DrivenParams driven;
+    for (const compile::PlanWire& wire : plan.wires)
+        if (wire.param) driven.insert(wire.param);
+    return driven;
+}
+
+bool is_felt(const Param& param) {
+    static const Dimension force_per_distance = parse_unit("N/m").dimension;
+    return !param.is_internal && parse_unit(param.unit).dimension == force_per_distance;
+}
+
 /// The node's largest stiffness: the value that a parameter has, or the largest while a wire drives it.
 std::optional<DeclaredStiffness> stiffest(const DrivenParams& driven, const compile::PlanNode& node) {
-    static const Dimension force_per_distance = parse_unit("N/m").dimension;
     std::optional<DeclaredStiffness> found;
     for (const auto& [name, param] : node.params) {
-        if (param->is_internal || parse_unit(param->unit).dimension != force_per_distance) continue;
+        if (!is_felt(*param)) continue;
         const double value = driven.contains(param) ? param->max : param->value;
-        if (!found || value > found->newton_per_metre) found = {node.name + "." + name, value};
+        if (!found || value > found->newton_per_metre) found = {node.name + "." + name, value, driven.contains(param)};
     }
     return found;
 }
@@ -74,11 +85,53 @@ private:
 
 }  // namespace
 
-std::vector<ForceLoop> force_loops(const compile::Plan& plan,
-                                   const std::function<double(const std::string&)>& damping) {
-    DrivenParams driven;
-    for (const compile::PlanWire& wire : plan.wires)
-        if (wire.param) driven.insert(wire.param);
+Verdict ForceLoop::verdict() const {
+    if (!declared) return Verdict::stable;
+    const double stiffness = declared->newton_per_metre;
+    if ((limit > 0.0 && stiffness >= limit) || (max_stiffness > 0.0 && stiffness > max_stiffness))
+        return Verdict::too_stiff;
+    return limit > 0.0 ? Verdict::stable : Verdict::unknown;
+}
+
+std::span<const DeviceClass> device_classes() {
+    static constexpr DeviceClass classes[] = {
+        {"light stylus arm (Touch)", 0.5, 1000.0},       {"light stylus arm (Touch X, Premium)", 0.8, 1500.0},
+        {"small parallel device (Falcon)", 2.0, 3000.0}, {"stiff parallel device (omega, delta)", 4.0, 14500.0},
+        {"large arm (Virtuose)", 8.0, 2500.0},
+    };
+    return classes;
+}
+
+std::vector<FeltSpring> felt_springs(const compile::Plan& plan) {
+    const DrivenParams driven = driven_params(plan);
+    std::vector<FeltSpring> felt;
+    for (std::size_t source = 0; source < plan.nodes.size(); ++source) {
+        if (plan.nodes[source].type->role != NodeRole::hand_source) continue;
+        const Ages from = ages_from(plan, static_cast<int>(source));
+        Scales scales(plan, from);
+        for (std::size_t sink = 0; sink < plan.nodes.size(); ++sink) {
+            if (plan.nodes[sink].type->role != NodeRole::hand_sink || from.age[sink] == unreached) continue;
+            const std::vector<Flicks> to_sink = ages_to(plan, static_cast<int>(sink));
+            for (std::size_t n = 0; n < plan.nodes.size(); ++n) {
+                if (from.age[n] == unreached || to_sink[n] == unreached) continue;
+                for (const auto& [name, param] : plan.nodes[n].params) {
+                    if (!is_felt(*param)) continue;
+                    const double scale = scales.of(n);
+                    SourceLocation where = plan.nodes[n].where;
+                    for (const OptionText& given : plan.patch.nodes[n].settings)
+                        if (given.name == name) where = given.where;
+                    felt.push_back({plan.nodes[n].name + "." + name, where, param, setting_of(plan, sink, "device"),
+                                    scale * scale, driven.contains(param)});
+                }
+            }
+        }
+    }
+    return felt;
+}
+
+std::vector<ForceLoop> force_loops(const compile::Plan& plan, const std::function<double(const std::string&)>& damping,
+                                   const std::function<double(const std::string&)>& max_stiffness) {
+    const DrivenParams driven = driven_params(plan);
     std::vector<std::pair<std::size_t, DeclaredStiffness>> springs;
     std::vector<std::pair<std::size_t, std::vector<Flicks>>> sinks;  // with the way from each node to it
     for (std::size_t n = 0; n < plan.nodes.size(); ++n) {
@@ -96,13 +149,16 @@ std::vector<ForceLoop> force_loops(const compile::Plan& plan,
             const std::vector<Flicks>& to_sink = at_sink.second;
             if (from.age[sink] == unreached) continue;
             const double period = seconds(plan.groups[static_cast<std::size_t>(plan.nodes[sink].group)].period);
-            const double b = damping(setting_of(plan, sink, "device"));
+            const std::string device = setting_of(plan, sink, "device");
+            const double b = damping(device), most = max_stiffness ? max_stiffness(device) : 0.0;
             const auto loop_of = [&](Flicks latency, std::optional<DeclaredStiffness> declared) {
                 return ForceLoop{plan.nodes[source].name,
                                  plan.nodes[sink].name,
                                  seconds(latency),
+                                 period,
                                  b,
                                  stiffness_limit(b, period, seconds(latency)),
+                                 most,
                                  std::move(declared)};
             };
             std::optional<ForceLoop> worst;
@@ -110,7 +166,8 @@ std::vector<ForceLoop> force_loops(const compile::Plan& plan,
                 const Flicks there = from.age[spring], back = to_sink[spring];
                 if (there == unreached || back == unreached) continue;
                 const double scale = scales.of(spring);
-                DeclaredStiffness felt{declared.param, declared.newton_per_metre * scale * scale};
+                DeclaredStiffness felt{declared.param, declared.newton_per_metre * scale * scale, declared.is_driven};
+                if (felt.is_driven && most > 0.0) felt.newton_per_metre = std::min(felt.newton_per_metre, most);
                 ForceLoop loop = loop_of(there + back, std::move(felt));
                 // Stiffness times lateness: what comes closest to the limit, also for a device of unknown damping.
                 const auto strain = [period](const ForceLoop& l) {

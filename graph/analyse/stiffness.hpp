@@ -4,8 +4,10 @@
 
 #include "graph/compile/plan.hpp"
 
+#include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,17 +18,41 @@ struct DeclaredStiffness {
     std::string param;              ///< "blade.stiffness"
     double newton_per_metre =
         0.0;  ///< its value, or the end of its range when a wire drives it; in the device's metres
+    bool is_driven = false;  ///< by a wire
+};
+
+enum class Verdict : std::uint8_t {
+    stable,
+    too_stiff,  ///< beyond what the damping of the device permits, or beyond what its maker states
+    unknown,  ///< a stiffness is declared, but the device states no damping
 };
 
 /// A loop through a hand: device in, nodes, device out.
 struct ForceLoop {
     std::string from, to;      ///< names of nodes
     double latency_s = 0.0;  ///< from a sample to the force it leads to, by the way that leaves the least stiffness
+    double period_s = 0.0;  ///< for which a force is held
     double damping = 0.0;  ///< of the device that is pushed, N·s/m
     double limit = 0.0;  ///< largest stable stiffness, N/m; 0 when the device states no damping
+    double max_stiffness = 0.0;  ///< of the device, N/m, as its maker states it; 0: not stated
     std::optional<DeclaredStiffness> declared;  ///< the stiffest on that way, if there is any
-    bool ok() const { return !declared || limit == 0.0 || declared->newton_per_metre < limit; }
+
+    Verdict verdict() const;
+    bool ok() const { return verdict() == Verdict::stable; }
 };
+
+/// A parameter in N/m between a hand's device and its force, and what it is worth at the device.
+struct FeltSpring {
+    std::string name;  ///< "blade.stiffness"
+    SourceLocation where;  ///< of its value, or of its node
+    Param* param = nullptr;
+    std::string device;  ///< that is pushed, by its name in the patch; "": the only one
+    double scale = 1.0;  ///< of the parameter's N/m, at the device
+    bool is_driven = false;  ///< by a wire
+};
+
+/// Every such parameter of every way from a device_input to a device_output, in the order of nodes and names.
+std::vector<FeltSpring> felt_springs(const compile::Plan& plan);
 
 /// Largest stiffness of a spring that a hand's device, of damping b in N·s/m, can feel without humming when its force is
 /// held for `period_s` and comes `delay_s` late: b / (T/2 + t_d), that is b / (T (½ + D)) for D periods of delay.
@@ -38,7 +64,17 @@ constexpr double stiffness_limit(double damping, double period_s, double delay_s
 
 /// Every way from a device_input to a device_output, one line for each pair, in order of names. `damping` is asked for
 /// that of a device by its name in the patch ("": the only one). A workspace on the way enlarges what is felt by the
-/// square of its scale.
-std::vector<ForceLoop> force_loops(const compile::Plan& plan, const std::function<double(const std::string&)>& damping);
+/// square of its scale. `max_stiffness` is asked for in the same way; a stiffness that a wire drives stays below it,
+/// since the run limits it (tools/session/limit_stiffness.hpp).
+std::vector<ForceLoop> force_loops(const compile::Plan& plan, const std::function<double(const std::string&)>& damping,
+                                   const std::function<double(const std::string&)>& max_stiffness = {});
+
+/// A kind of device, to see what others would feel of a patch. Makers state no damping: these are assumptions for the
+/// mechanism with a light grip. Stiffness as makers state it for the weakest axis, N/m.
+struct DeviceClass {
+    const char* name;
+    double damping, max_stiffness;
+};
+std::span<const DeviceClass> device_classes();
 
 }  // namespace tactus::analyse

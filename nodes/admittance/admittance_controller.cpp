@@ -37,7 +37,10 @@ struct AdmittanceController {
     Param damping{"0 N s/m", "0 N s/m", "1000 N s/m", "of an elastic object"};
     Param mass{"0 kg", "0 kg", "10 kg", "of an elastic object"};
     Param rest{"0 mm", "-500 mm", "500 mm", "position at which the object exerts no force"};
-    Param free_damping{"20 N s/m", "0 N s/m", "1000 N s/m", "damping in front of a one-sided object"};
+    Param free_damping{
+        "80 N s/m", "0 N s/m", "1000 N s/m",
+        "damping in front of a one-sided object; a stiff finger needs much of it: with 20 N s/m no gain is "
+        "stable in a finger of 3 N/mm"};
     Asset<control::DeflectionTable> table{optional, "measured force over deflection, for object = \"table\""};
     Param gain{"0 s^-1", "0 s^-1", "10000 s^-1", "of the position loop; 0: gain_share times the stability limit"};
     Param gain_share{"0.5", "0.01", "0.95", "share of the stability limit, used when gain is 0"};
@@ -55,8 +58,11 @@ struct AdmittanceController {
         "suspected"};
     Param motor_lag{"4 ms", "0 ms", "100 ms", "time constant of the motor's speed, for the stability limit"};
     Param delay{"1", "0", "8", "ticks from a sample to the motion of the motor, for the stability limit"};
-    Param hand_stiffness{internal, "0.38 N/mm", "0 N/mm", "100 N/mm",
-                         "of the stiffest hand or rig, for the stability limit"};
+    Param hand_stiffness{
+        internal, "3 N/mm", "0 N/mm", "100 N/mm",
+        "of the stiffest finger or rig that may press, for the stability limit. Fingers are between 0.2 "
+        "and 3 N/mm, depending on grip and person; the test rig is 0.38 N/mm. A lower number permits a "
+        "quicker loop, which is unstable in a stiffer finger"};
     Param blend{"100 ms", "0 ms", "10 s", "time in which a new object replaces the old one"};
     Param recover{"0", "0", "1e9", "change the number to go on after a fault"};
     Flag allow_unstable{false, "accept an unstable gain"};
@@ -71,7 +77,8 @@ struct AdmittanceController {
             const double limit = tactus::control::gain_limit(wanted_settings.loop, wanted_settings.object);
             setup.fail(
                 fmt::format("with gain {:.4g} s^-1 this object is unstable in a hand of {:.3g} N/mm: the limit is "
-                            "{:.4g} s^-1; lower the gain, leave it 0, soften the hand, or set allow_unstable",
+                            "{:.4g} s^-1; lower the gain, leave it 0, give the hand_stiffness of what presses, or set "
+                            "allow_unstable",
                             gain.value, hand_stiffness * 1e-3, limit));
         }
         name_ = setup.name;

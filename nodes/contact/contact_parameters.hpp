@@ -12,9 +12,12 @@ namespace tactus::nodes {
 
 struct ContactParameters {
     Flag both_ways{false, "also test the other bodies' points against the held body's distance field"};
-    Param point_stiffness{internal, "10 N/mm", "0 N/mm", "1e6 N/mm", "contact stiffness per surface point"};
-    Param area_stiffness{internal, "0 N/m^3", "0 N/m^3", "1e15 N/m^3",
-                         "contact stiffness per surface area; if not 0 it replaces point_stiffness"};
+    Param area_stiffness{
+        internal, "40 N/mm^3", "0 N/mm^3", "1e6 N/mm^3",
+        "contact stiffness per surface area: N/mm for each mm^2 that touches, for any spacing of the points"};
+    Param point_stiffness{internal, "0 N/mm", "0 N/mm", "1e6 N/mm",
+                          "contact stiffness per surface point, whatever area it stands for; if not 0 it replaces "
+                          "area_stiffness, and a body is stiffer the denser its points are"};
     Param blend{"0.03 mm", "0 mm", "10 mm", "half the width of the zone in which the force sets in smoothly"};
     Param saturation{"0 mm", "0 mm", "1 m", "depth at which the force of a point stops growing; 0: never"};
     Choice interpolation{{"trilinear", "quadratic"}, "of the distance field; quadratic suits stiff contact"};
@@ -22,7 +25,7 @@ struct ContactParameters {
     Param points{structural, "1000000", "1000", "20000000",
                  "of all surfaces together; memory is reserved for this many"};
     Param budget{"1e9", "64", "1e9", "maximum number of points per evaluation"};
-    TACTUS_GROUP(both_ways, point_stiffness, area_stiffness, blend, saturation, interpolation, direction, points,
+    TACTUS_GROUP(both_ways, area_stiffness, point_stiffness, blend, saturation, interpolation, direction, points,
                  budget)
 
     coupling::HeldContact make() const { return coupling::HeldContact(static_cast<std::size_t>(points)); }
@@ -35,7 +38,7 @@ struct ContactParameters {
 private:
     contact::ContactLaw law() const noexcept {
         contact::ContactLaw law;
-        law.by_area = area_stiffness > 0.0;
+        law.by_area = !(point_stiffness > 0.0);
         law.stiffness = law.by_area ? area_stiffness : point_stiffness;
         law.blend = blend;
         law.saturation = saturation > 2.0 * blend ? saturation.value : 1e6;

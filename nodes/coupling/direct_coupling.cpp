@@ -3,13 +3,16 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
+
 namespace tactus::nodes {
 
 struct DirectCoupling {
     static constexpr auto about =
         "Direct coupling: the body is rigidly attached to the hand. The contact force is scaled so that the stiffness "
-        "of all points together stays below a limit. A thin wall can be passed through; a proxy prevents that (thesis "
-        "2.4.2).";
+        "of all points together stays below a limit. Until the body comes free again the scale only falls, so that no "
+        "path "
+        "gives energy to the hand. A thin wall can be passed through; a proxy prevents that (thesis 2.4.2).";
 
     In<Wrench> contact{"on the body, about the origin of the hand: voxmap_contact.wrench", "N, N m"};
     In<double> contact_stiffness{"of all touching points together: voxmap_contact.stiffness", "N/m"};
@@ -20,10 +23,17 @@ struct DirectCoupling {
 
     void process(const Tick&) noexcept {
         const double all = contact_stiffness.get();
-        const Wrench scaled = contact.get() * (all > stiffness ? stiffness / all : 1.0);
+        // The work of a contact energy E that is scaled by s over a path from free to free is ∫E ds: never positive while s
+        // falls. A scale that followed the contact up again would give energy.
+        if (!(all > 0.0)) scale_ = 1.0;
+        else if (all > stiffness) scale_ = std::min(scale_, stiffness / all);
+        const Wrench scaled = contact.get() * scale_;
         const double size = glm::length(scaled.force);
         wrench = scaled * (size > max_force ? max_force / size : 1.0);
     }
+
+private:
+    double scale_ = 1.0;  // of this touch
 };
 
 TACTUS_NODE(DirectCoupling, contact, contact_stiffness, wrench, stiffness, max_force)

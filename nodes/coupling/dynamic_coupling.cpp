@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/coupling/dynamic_coupling.hpp"
 
+#include "dsp/core/rotation.hpp"
 #include "graph/node/node.hpp"
 #include "nodes/contact/contact_parameters.hpp"
 #include "nodes/coupling/held_body.hpp"
@@ -17,8 +18,7 @@ struct DynamicCoupling {
 
     In<Pose> device{"pose of the hand in the scene", "m"};
     In<tactus::coupling::Scene> scene{"the bodies, with the held one among them"};
-    In<Twist> device_twist{optional, "velocity of the hand in the scene; unconnected: the damper takes it as zero",
-                           "m/s, rad/s"};
+    In<Twist> device_twist{optional, "velocity of the hand in the scene; unconnected: from its poses", "m/s, rad/s"};
     In<Pose> grip{optional, "pose of the held body in the frame of the hand; unconnected: 'grip_at'", "m"};
     In<bool> holding{optional, "false: the body stays where it was released; unconnected: true"};
     In<double> strength{optional, "share of the force that the hand feels, 0 to 1; unconnected: 1"};
@@ -37,7 +37,10 @@ struct DynamicCoupling {
     Param angular_damping{"0.01 N m s/rad", "0 N m s/rad", "10 N m s/rad", "of the rotational damper"};
     Param max_force{"10 N", "0 N", "100 N", "limit of the spring force"};
     Param max_torque{"0.5 N m", "0 N m", "20 N m", "limit of the spring torque"};
-    Param step{"0.5 mm", "0.001 mm", "20 mm", "limit of a point's motion per tick beyond the free distance"};
+    Param step{"0.5 mm", "0.001 mm", "20 mm",
+               "limit of a point's motion beyond the free distance, eight times in a tick; never more than half a "
+               "voxel of the "
+               "finest field that is touched"};
     ContactParameters contact;
 
     void prepare(const Setup&) {
@@ -54,9 +57,12 @@ struct DynamicCoupling {
                             inertia,
                             damping,
                             angular_damping,
-                            step,
+                            std::min(step.value, contact_->safe_step()),
                             contact_->reach()};
-        if (hold_.taken) solver_.reset(device);
+        if (hold_.taken) {
+            solver_.reset(device);
+            last_hand_ = device;
+        }
         place = hold_.place;
         if (!hold_.holds) {
             wrench = last_ * hold_.strength;
@@ -64,7 +70,8 @@ struct DynamicCoupling {
             penetration = 0.0;
             return;
         }
-        const Twist velocity = device_twist.connected ? device_twist.get() : Twist{};
+        const Twist velocity =
+            device_twist.connected ? device_twist.get() : velocity_from_poses(tick.elapsed_seconds());
         const coupling::DynamicState& now = solver_.update(device, velocity, seconds(tick.period), *contact_);
         last_ = now.wrench;
         wrench = now.wrench * hold_.strength;
@@ -77,10 +84,21 @@ struct DynamicCoupling {
     void report(Report& report) const { report.set("coupling", "penetration_max_mm", deepest_ * 1e3); }
 
 private:
+    /// A damper to a hand that is taken as still would give energy to a hand that moves.
+    Twist velocity_from_poses(double elapsed) noexcept {
+        const Pose before = last_hand_;
+        if (!is_valid(device.get())) return {};
+        last_hand_ = device;
+        if (!is_valid(before) || !(elapsed > 0.0)) return {};
+        return {(device->position - before.position) / elapsed,
+                rotation_between(before.orientation, device->orientation) / elapsed};
+    }
+
     std::optional<coupling::HeldContact> contact_;
     tactus::coupling::DynamicCoupling solver_;
     Hold hold_;
     Wrench last_;
+    Pose last_hand_;
     double deepest_ = 0.0;
 };
 

@@ -40,7 +40,7 @@ struct QuasiStaticCoupling {
     Out<bool> in_contact{"at least one point exerts a force"};
     Param held{"0", "-1", "15", "place of the held body in the scene; connect grasp.held"};
     Vector grip_at{"0 mm, 0 mm, 0 mm", "origin of the held body in the frame of the hand"};
-    Param guide_stiffness{"1 N/mm", "0 N/mm", "20 N/mm", "of the spring to the target"};
+    Param guide_stiffness{internal, "1 N/mm", "0 N/mm", "20 N/mm", "of the spring to the target"};
     Param guide_angular_stiffness{"1 N m/rad", "0 N m/rad", "100 N m/rad", "of the rotational spring to the target"};
     Param guide_force{"8 N", "0 N", "100 N", "limit of the force to the target"};
     Param guide_torque{"0.3 N m", "0 N m", "20 N m", "limit of the torque to the target"};

@@ -6,6 +6,8 @@
 #include "dsp/coupling/quasi_static.hpp"
 #include "graph/node/node.hpp"
 
+#include <algorithm>
+
 namespace tactus::nodes {
 
 struct SolverParameters {
@@ -15,8 +17,10 @@ struct SolverParameters {
     Param max_torque{"0.5 N m", "0 N m", "20 N m", "limit of the spring torque"};
     Param iterations{"10", "1", "50", "maximum number of solver steps in a tick"};
     Param tolerance{"0.001 N", "0 N", "1 N", "residual below which the body counts as balanced"};
-    Param step{"0.5 mm", "0.001 mm", "20 mm",
-               "limit of a point's motion per step beyond the free distance; at most half of the thinnest walls"};
+    Param step{
+        "0.5 mm", "0.001 mm", "20 mm",
+        "limit of a point's motion per solver step beyond the free distance; never more than half a voxel of the "
+        "finest field that is touched"};
     TACTUS_GROUP(stiffness, angular_stiffness, max_force, max_torque, iterations, tolerance, step)
 
     /// For the body that `contact` is set to; `share` scales the springs.
@@ -25,7 +29,7 @@ struct SolverParameters {
         settings.springs = {{stiffness * share, max_force * share}, {angular_stiffness * share, max_torque * share}};
         settings.iterations = static_cast<int>(iterations);
         settings.tolerance = tolerance;
-        settings.step = step;
+        settings.step = std::min(step.value, contact.safe_step());
         settings.reach = contact.reach();
         settings.gyration = contact.gyration();
     }

@@ -7,6 +7,7 @@
 #include "dsp/control/position_loop.hpp"
 #include "dsp/simulate/gripper/finger.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tactus::test {
@@ -52,6 +53,34 @@ inline simulate::WaveMotor free_running(double lag) {
     motor.settings.lag = lag;
     motor.control = simulate::WaveControl::amplitude;
     return motor;
+}
+
+enum class Fate { dies_down, grows, undecided };
+
+/// What becomes of a knock under an object and a gain. Nothing is limited.
+inline Fate fate(const control::LoopModel& model, double gain) {
+    LoopRun run;
+    run.object = {.kind = model.is_wall ? control::ObjectKind::wall : control::ObjectKind::elastic,
+                  .stiffness = model.stiffness,
+                  .damping = model.damping,
+                  .mass = model.mass};
+    run.loop = {gain, model.feed_forward, model.feed_forward_lag, 1e9};
+    run.finger.motor = free_running(model.motor_lag);
+    run.finger.rig = {0.5 * model.hand_stiffness, 1e4};
+    run.finger.delay = model.delay;
+    run.finger.position = 0.001;
+    run.amplitude = 0.0;
+    run.seconds = 8.0;
+    const control::RigSeries series = run();
+    double early = 0.0, late = 0.0;
+    for (std::size_t n = 0; n < series.position.size(); ++n) {
+        const double swing = std::abs(series.position[n]);
+        if (!(swing < 1e3)) return Fate::grows;
+        if (n >= 150 && n < 300) early = std::max(early, swing);
+        if (n >= 1050) late = std::max(late, swing);
+    }
+    if (late < 0.5 * early || late < 1e-9) return Fate::dies_down;
+    return late > 2.0 * early ? Fate::grows : Fate::undecided;
 }
 
 }  // namespace tactus::test

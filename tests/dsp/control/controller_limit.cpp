@@ -8,6 +8,7 @@ TEST_CASE("the gain's limit is that of the settings of now, whatever came before
     control::ControllerSettings settings;
     settings.loop.gain = 0.0;
     settings.object.damping = 2.0;
+    settings.loop.hand_stiffness = 380.0;
     control::AdmittanceControl control;
     const auto check = [&] {
         control::AdmittanceControl fresh;

@@ -34,7 +34,7 @@ LoopRun walking(double stiffness, double amplitude, double rate) {
     run.finger.motor = simulate::WalkingMotor{};
     run.finger.encoder.step = 4.5e-3 / 16000.0;
     run.finger.gauge = {0.005, 0.01, Random{3}};
-    run.loop.gain = 0.5 * control::gain_limit(control::LoopModel{}, run.object);
+    run.loop.gain = 0.5 * control::gain_limit(control::LoopModel{.hand_stiffness = 380.0}, run.object);
     run.amplitude = amplitude;
     run.rate = rate;
     run.seconds = 2.0 + 4.0 / rate;
@@ -120,7 +120,7 @@ TEST_CASE("the walking motor follows free motion up to 0.446 Hz") {
         LoopRun run = walking(0.0, 0.025, rate);
         run.object = {.stiffness = 0.0, .damping = 8.0};
         run.finger.gauge = {};
-        run.loop.gain = 0.5 * control::gain_limit(control::LoopModel{}, run.object);
+        run.loop.gain = 0.5 * control::gain_limit(control::LoopModel{.hand_stiffness = 380.0}, run.object);
         return control::judge_fidelity(run(), run.object, rate, 3.0).saturated_share > 0.0;
     };
     double low = 0.3, high = 0.7;
@@ -136,7 +136,9 @@ TEST_CASE("feed-forward renders a spring several times better than the loop of t
         led.loop.feed_forward = 1.0;
         led.loop.feed_forward_lag = 0.02;
         led.loop.gain =
-            0.5 * control::gain_limit(control::LoopModel{.feed_forward = 1.0, .feed_forward_lag = 0.02}, led.object);
+            0.5 *
+            control::gain_limit(
+                control::LoopModel{.hand_stiffness = 380.0, .feed_forward = 1.0, .feed_forward_lag = 0.02}, led.object);
         const double with = *control::judge_fidelity(led(), led.object, 0.5, 2.0).nrmse;
         CAPTURE(k, without, with);
         CHECK(without > 3.0 * with);

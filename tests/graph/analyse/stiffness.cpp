@@ -80,3 +80,30 @@ TEST_CASE("a way without a spring has a limit and nothing to compare, and an unk
     CHECK(plain[0].ok());
     CHECK(loops_of("wires = [\"in.out -> out.in\"]\n" + hand, 0.0)[0].limit == 0.0);
 }
+
+TEST_CASE("a stiffness on a device that states no damping is unknown, not stable") {
+    const std::string text = "wires = [\"in.out -> wall.in\", \"wall.out -> out.in\"]\n" + hand +
+                             a_node("wall", "stiff", "1 kHz", "stiffness = \"3.9 N/mm\"\n");
+    CHECK(loops_of(text, 2.0)[0].verdict() == analyse::Verdict::stable);
+    CHECK(loops_of(text, 1.0)[0].verdict() == analyse::Verdict::too_stiff);
+    CHECK(loops_of(text, 0.0)[0].verdict() == analyse::Verdict::unknown);
+    CHECK_FALSE(loops_of(text, 0.0)[0].ok());
+}
+
+TEST_CASE("a stiffness beyond what the device states is too stiff, whatever its damping") {
+    const Compiled c = compiled("wires = [\"in.out -> wall.in\", \"wall.out -> out.in\"]\n" + hand +
+                                a_node("wall", "stiff", "1 kHz", "stiffness = \"3.9 N/mm\"\n"));
+    REQUIRE(c.plan);
+    const auto states = [](double number) { return [number](const std::string&) { return number; }; };
+    for (const double damping : {0.0, 100.0}) {
+        CHECK(analyse::force_loops(*c.plan, states(damping), states(3800.0))[0].verdict() ==
+              analyse::Verdict::too_stiff);
+        CHECK(analyse::force_loops(*c.plan, states(damping), states(3900.0))[0].verdict() !=
+              analyse::Verdict::too_stiff);
+    }
+    const auto felt = analyse::felt_springs(*c.plan);
+    REQUIRE(felt.size() == 1);
+    CHECK(felt[0].name == "wall.stiffness");
+    CHECK(felt[0].param->value == Approx(3900.0));
+    CHECK_FALSE(felt[0].is_driven);
+}

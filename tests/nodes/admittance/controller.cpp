@@ -291,3 +291,20 @@ TEST_CASE("a weight is felt when it is gripped hard enough, and slides when it i
         }
     }
 }
+
+TEST_CASE("with default parameters an object of 0.2 N/mm is stable in fingers of 0.2 to 3 N/mm") {
+    for (const double finger : {200.0, 500.0, 1500.0, 3000.0}) {
+        Held held;
+        held.node.set("stiffness", "0.2 N/mm");
+        held.node.prepare();
+        double late = 0.0;
+        for (int n = 0; n < 900; ++n) {
+            // The finger is held still after a knock of 1 mm.
+            held.force = finger * ((n < 10 ? 1e-3 : 0.0) - held.position);
+            held.tick();
+            if (n >= 750) late = std::max(late, std::abs(held.position));
+        }
+        CAPTURE(finger);
+        CHECK(late < 0.05e-3);
+    }
+}

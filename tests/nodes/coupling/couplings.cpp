@@ -54,7 +54,7 @@ TEST_CASE("a held box set down on a table is felt with the coupling's stiffness,
     node.disconnect_optional();
     node.prepare();
     node.run(200);
-    // 3 mm deep, in series with 121 points of 10 N/mm.
+    // 3 mm deep, in series with over 100 mm² of 40 N/mm each.
     const Wrench w = node.last<Wrench>("wrench");
     CHECK(w.force.z == Approx(3.0).epsilon(0.01));
     CHECK(std::hypot(w.force.x, w.force.y) < 1e-3);
@@ -145,7 +145,8 @@ TEST_CASE("direct rendering scales all points together to what the hand can feel
     contact.prepare();
     contact.run(1);
     const Wrench raw = contact.last<Wrench>("wrench");
-    CHECK(raw.force.z == Approx(121 * 10e3 * 0.5 * mm).epsilon(0.01));
+    // 100 mm² of the lower face and 20 mm² of the edges, 40 N/mm for each.
+    CHECK(raw.force.z == Approx(120 * 40e3 * 0.5 * mm).epsilon(0.01));
     direct.feed("contact", raw);
     direct.feed("contact_stiffness", contact.last<double>("stiffness"));
     direct.set("stiffness", "0.8 N/mm");

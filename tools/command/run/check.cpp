@@ -2,6 +2,7 @@
 #include "graph/analyse/latency.hpp"
 #include "graph/analyse/stiffness.hpp"
 #include "tools/command/patch_options.hpp"
+#include "tools/command/run/check_stiffness.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/session/load_plan.hpp"
 
@@ -10,6 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
@@ -36,13 +38,7 @@ Json paths_json(const compile::Plan& plan, const std::vector<analyse::ForceLoop>
     for (const analyse::PathLatency& path : analyse::path_latencies(plan)) {
         Json row{{"from", path.from}, {"to", path.to}, {"latency_ms", path.latency_ms}, {"via", path.via}};
         if (const auto found = by_ends.find({path.from, path.to}); found != by_ends.end()) {
-            const analyse::ForceLoop& loop = *found->second;
-            row["latency_ms"] = loop.latency_s * 1e3;
-            row["damping_N_s_per_m"] = loop.damping;
-            row["stiffness_limit_N_per_mm"] = loop.limit * 1e-3;
-            row["declared_N_per_mm"] = loop.declared ? Json(loop.declared->newton_per_metre * 1e-3) : Json();
-            row["declared_by"] = loop.declared ? Json(loop.declared->param) : Json();
-            row["ok"] = loop.ok();
+            add_stiffness(row, *found->second);
         }
         paths.push_back(std::move(row));
     }
@@ -86,11 +82,11 @@ Json loops_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes) {
     return loops;
 }
 
-/// Damping of a device by its name in the patch, N·s/m; "" is the only one.
-std::function<double(const std::string&)> damping_of(const io::EngineHost& host) {
-    return [&host](const std::string& name) {
+/// What a device, by its name in the patch, states; "" is the only one; 0: nothing.
+std::function<double(const std::string&)> stated_by(const io::EngineHost& host, double DeviceInfo::* number) {
+    return [&host, number](const std::string& name) {
         for (const auto& slot : host.devices)
-            if (name.empty() || slot->name == name) return slot->port.info.damping;
+            if (name.empty() || slot->name == name) return slot->port.info.*number;
         return 0.0;
     };
 }
@@ -113,16 +109,12 @@ void print_check(const Json& json) {
         std::string line =
             fmt::format("{:<32} {:>7.4g} ms", path["from"].get<std::string>() + " -> " + path["to"].get<std::string>(),
                         path["latency_ms"].get<double>());
-        if (path.contains("ok")) {
-            const double limit = path["stiffness_limit_N_per_mm"];
-            line += limit > 0.0 ? fmt::format(" {:>7.3g} N/mm", limit) : fmt::format(" {:>12}", "?");
-            if (!path["declared_by"].is_null())
-                line += fmt::format(" {:>7.3g} N/mm  {}{}", path["declared_N_per_mm"].get<double>(),
-                                    path["declared_by"].get<std::string>(), path["ok"] ? "" : "  TOO STIFF");
-        }
+        line += stiffness_text(path);
         fmt::print("{}\n", line);
     }
     fmt::print("What a hand may feel before it hums: damping of the device / (period / 2 + latency).\n");
+    if (json.contains("contact")) print_contact_laws(json["contact"]);
+    if (json.contains("device_classes")) print_device_classes(json["device_classes"]);
 }
 
 /// No path is stiffer than a hand may feel it, and no loop unstable.
@@ -130,8 +122,21 @@ bool is_stable(const Json& json) {
     for (const char* key : {"paths", "admittance_loops"})
         if (json.contains(key))
             for (const Json& row : json[key])
-                if (row.contains("ok") && !row["ok"].get<bool>()) return false;
+                if (row.contains("ok") && row["ok"] == false) return false;
     return true;
+}
+
+/// A stiffness could not be judged.
+bool is_unknown(const Json& json) {
+    return json.contains("paths") && std::ranges::any_of(json["paths"], [](const Json& row) {
+               return row.contains("ok") && row["ok"].is_null();
+           });
+}
+
+const char* verdict_text(const Json& json) {
+    if (!is_stable(json)) return "no errors, but a path is too stiff or a loop unstable";
+    return is_unknown(json) ? "no errors, but whether a path is too stiff is unknown: its device states no damping"
+                            : "no errors";
 }
 
 int check(const CheckChoice& choice) {
@@ -146,7 +151,11 @@ int check(const CheckChoice& choice) {
         // What only `prepare` can find: devices, file names, sizes.
         if (problems.empty()) {
             const run::Engine engine(std::move(*plan), run::EngineOptions{});
-            json["paths"] = paths_json(engine.plan(), analyse::force_loops(engine.plan(), damping_of(engine.host())));
+            const auto loops = analyse::force_loops(engine.plan(), stated_by(engine.host(), &DeviceInfo::damping),
+                                                    stated_by(engine.host(), &DeviceInfo::max_stiffness));
+            json["paths"] = paths_json(engine.plan(), loops);
+            json["contact"] = contact_laws_json(engine.nodes());
+            json["device_classes"] = device_classes_json(loops);
             json["admittance_loops"] = loops_json(engine.nodes());
             json["warnings"] = engine.host().notices;
         }
@@ -164,8 +173,7 @@ int check(const CheckChoice& choice) {
             print_loops(json["admittance_loops"]);
         if (json.contains("warnings"))
             for (const Json& warning : json["warnings"]) fmt::print("warning: {}\n", warning.get<std::string>());
-        if (problems.empty())
-            fmt::print("{}\n", is_stable(json) ? "no errors" : "no errors, but a path is too stiff or a loop unstable");
+        if (problems.empty()) fmt::print("{}\n", verdict_text(json));
     }
     if (!problems.empty()) return bad_input;
     return is_stable(json) ? done : answer_is_no;

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a device states of damping and stiffness, against what a patch asks of it.
+#include "tests/support/catch.hpp"
+#include "tests/tools/run_command.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+
+using Catch::Matchers::ContainsSubstring;
+using nlohmann::json;
+using tactus::test::Folder;
+using tactus::test::Outcome;
+using tactus::test::slurp;
+
+namespace {
+
+/// A hand that goes 2 mm into a ball, on a device that states that it can be 5 N/mm stiff.
+std::string touch(const std::string& ball, const std::string& damping, const std::string& more = "",
+                  const std::string& wire = "") {
+    return R"(title = "touch"
+wires = [
+  "hand.pose   -> ball.pose",
+  "ball.wrench -> out.wrench",
+  "ball.wrench -> force.in",
+  "ball.penetration -> depth.in",
+)" + wire +
+           R"(]
+[devices.simulated]
+driver = "scripted"
+targets = "0 s: 0 0 57 mm; 0.3 s: 0 0 57 mm; 1 s: 0 0 53 mm; 2 s: 0 0 53 mm"
+stiffness = "20 N/mm"
+max_stiffness = "5 N/mm"
+damping = ")" +
+           damping + R"("
+[nodes.hand]
+type = "device_input"
+rate = "1 kHz"
+[nodes.ball]
+type = "sphere_contact"
+rate = "1 kHz"
+)" + ball + R"(
+[nodes.out]
+type = "device_output"
+rate = "1 kHz"
+max_force = "20 N"
+[nodes.force]
+type = "record"
+rate = "1 kHz"
+file = "force.csv"
+unit = "N, N m"
+[nodes.depth]
+type = "record"
+rate = "1 kHz"
+file = "depth.csv"
+unit = "m"
+)" + more;
+}
+
+const json* row_of(const json& checked, const std::string& from, const std::string& to) {
+    for (const json& row : checked["paths"])
+        if (row["from"] == from && row["to"] == to) return &row;
+    return nullptr;
+}
+
+/// The largest number in a column of a CSV file.
+double most_in(const std::string& csv, std::size_t column) {
+    std::istringstream lines(csv);
+    double most = 0.0;
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream cells(line);
+        std::string cell;
+        for (std::size_t c = 0; c <= column && std::getline(cells, cell, ','); ++c) {
+        }
+        most = std::max(most, std::strtod(cell.c_str(), nullptr));
+    }
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "check says that stiffness is unknown where the device states no damping, and what other devices could feel") {
+    const Folder folder;
+    const std::string patch = folder.write("touch.toml", touch("stiffness = \"2 N/mm\"", "0 N s/m")).string();
+    const Outcome asked = folder.tactus("check --json " + patch);
+    CAPTURE(asked.out, asked.err);
+    const json checked = json::parse(asked.out);
+    REQUIRE(row_of(checked, "hand", "out"));
+    CHECK(row_of(checked, "hand", "out")->at("ok").is_null());
+    const Outcome said = folder.tactus("check " + patch);
+    CHECK_THAT(said.out, ContainsSubstring("UNKNOWN: the device states no damping"));
+    CHECK_THAT(said.out, ContainsSubstring("is unknown: its device states no damping"));
+    CHECK_THAT(said.out, ContainsSubstring("Touch"));
+    CHECK(said.code == 0);
+    // A light arm hums at 2 N/mm, a stiff device does not.
+    CHECK(std::ranges::any_of(checked["device_classes"], [](const json& row) { return row["ok"] == false; }));
+    CHECK(std::ranges::any_of(checked["device_classes"], [](const json& row) { return row["ok"] == true; }));
+}
+
+TEST_CASE("a stiffness beyond what the device states is refused with the place, and check calls it too stiff") {
+    const Folder folder;
+    const std::string patch = folder.write("touch.toml", touch("stiffness = \"8 N/mm\"", "30 N s/m")).string();
+    const Outcome checked = folder.tactus("check " + patch);
+    CHECK(checked.code == 1);
+    CHECK_THAT(checked.out, ContainsSubstring("TOO STIFF: the device states 5 N/mm"));
+    const Outcome run = folder.tactus("render " + patch + " --seconds 1 --out " + (folder.path / "out").string());
+    CAPTURE(run.err);
+    CHECK(run.code == 2);
+    CHECK_THAT(run.err, ContainsSubstring("touch.toml:20:"));
+    CHECK_THAT(run.err, ContainsSubstring("lower it to 5 N/mm"));
+}
+
+TEST_CASE("a wire cannot drive a stiffness beyond what the device states") {
+    const Folder folder;
+    const std::string patch =
+        folder
+            .write("touch.toml",
+                   touch("", "30 N s/m", "[nodes.level]\ntype = \"constant\"\nrate = \"60 Hz\"\nnumber = 19e3\n",
+                         "  \"level.value -> ball.stiffness\",\n"))
+            .string();
+    const Outcome run = folder.tactus("render " + patch + " --seconds 2 --out " + (folder.path / "out").string());
+    INFO(run.err);
+    REQUIRE(run.code == 0);
+    const double depth = most_in(slurp(folder.path / "out/depth.csv"), 1);
+    CHECK(depth > 0.5e-3);
+    CHECK(most_in(slurp(folder.path / "out/force.csv"), 3) == Approx(5000.0 * depth).epsilon(0.01));
+    CHECK(folder.tactus("check " + patch).code == 0);
+}
+
+TEST_CASE("check names the law of contact: per area unless the patch gives a stiffness per point") {
+    const Folder folder;
+    for (const bool by_point : {false, true}) {
+        const std::string more =
+            "[nodes.ball2]\ntype = \"shape\"\nrate = \"1 kHz\"\n[nodes.scene]\ntype = \"scene\"\n"
+            "rate = \"1 kHz\"\n[nodes.coupling]\ntype = \"quasi_static_coupling\"\nrate = \"1 kHz\"\n"
+            "stiffness = \"3 N/mm\"\n" +
+            std::string(by_point ? "point_stiffness = \"7 N/mm\"\n" : "");
+        const std::string patch =
+            folder
+                .write("touch.toml", touch("", "30 N s/m", more,
+                                           "  \"ball2.body -> scene.a\",\n  \"scene.scene -> coupling.scene\",\n"
+                                           "  \"hand.pose -> coupling.device\",\n"))
+                .string();
+        const Outcome asked = folder.tactus("check --json " + patch);
+        CAPTURE(asked.out, asked.err);
+        const json law = json::parse(asked.out)["contact"][0];
+        CHECK(law["node"] == "coupling");
+        CHECK(law["law"] == (by_point ? "point" : "area"));
+        if (by_point) CHECK(law["stiffness_N_per_mm_per_point"] == Approx(7.0));
+        else CHECK(law["stiffness_N_per_mm_per_mm2"] == Approx(40.0));
+        CHECK(law["felt_at_most_N_per_mm"] == Approx(3.0));
+        CHECK_THAT(folder.tactus("check " + patch).out,
+                   ContainsSubstring(by_point ? "per point: 7 N/mm for each" : "per area: 40 N/mm for each mm^2"));
+    }
+}
