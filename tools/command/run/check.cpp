@@ -86,6 +86,22 @@ Json loops_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes) {
     return loops;
 }
 
+/// The outputs to a hand, and which of them may return more energy than the hand has put in.
+Json outputs_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes, Json& warnings) {
+    Json outputs = Json::array();
+    for (const auto& node : nodes) {
+        if (node->type->name != "device_output") continue;
+        Report report;
+        node->type->report(node->instance.get(), report);
+        const bool is_on = std::get<std::string>(report.sections.at("force").at("energy_cap")) == "on";
+        outputs.push_back({{"node", node->name}, {"energy_cap", is_on}});
+        if (!is_on)
+            warnings.push_back(fmt::format(
+                "{}: the energy cap is off; contacts may return more energy than the hand has put in", node->name));
+    }
+    return outputs;
+}
+
 /// Damping of a device by its name in the patch, N·s/m; "" is the only one.
 std::function<double(const std::string&)> damping_of(const io::EngineHost& host) {
     return [&host](const std::string& name) {
@@ -149,6 +165,7 @@ int check(const CheckChoice& choice) {
             json["paths"] = paths_json(engine.plan(), analyse::force_loops(engine.plan(), damping_of(engine.host())));
             json["admittance_loops"] = loops_json(engine.nodes());
             json["warnings"] = engine.host().notices;
+            json["outputs"] = outputs_json(engine.nodes(), json["warnings"]);
         }
     } catch (const Error& error) {
         problems.list.push_back(error);
