@@ -44,7 +44,7 @@ EnergyCap::Motion EnergyCap::follow(const Vec3& away, double step, double slow, 
     Motion motion;
     motion.done = far > radius ? away * (1.0 - radius / far) : Vec3(0.0);
     tracked.sum += motion.done;
-    motion.velocity = tracked.window(tracked.sum, elapsed_s);
+    motion.velocity = tracked.velocity = tracked.window(tracked.sum, elapsed_s);
     const double now = std::clamp(glm::length(motion.velocity) / slow - 1.0, 0.0, 1.0);
     tracked.fast = std::max(now, tracked.fast * std::max(0.0, 1.0 - elapsed_s / calm_s));
     motion.fast = tracked.fast;
@@ -79,12 +79,17 @@ double EnergyCap::reserve() const noexcept { return 2.0 * std::sqrt(doubt_) * st
 
 void EnergyCap::account(double work, double elapsed_s, double granted_W, bool was_taken) noexcept {
     grant_ = std::min(grant_ + granted_W * elapsed_s, granted_W * grant_window_s);
+    const double speed = glm::length(place_.velocity), near_rest = std::clamp(2.0 - speed / calm_m_s, 0.0, 1.0);
+    damped_ = damped_ * std::max(0.0, 1.0 - elapsed_s / grant_window_s) +
+              near_rest * settings_.damping * speed * speed * elapsed_s;
     // Which part of the force was still there while it faded is not known: at worst all of it gave and none took.
     if (!std::isfinite(work) || (was_taken && work > 0.0)) return;
-    const double refund = work < 0.0 ? std::min(grant_, -work) : 0.0;
+    const double given = std::max(0.0, -work), damped = std::min(damped_, given),
+                 refund = std::min(grant_, given - damped);
+    damped_ -= damped;
     grant_ -= refund;
     statistics_.granted += refund;
-    stored_ += work + refund;
+    stored_ += work + damped + refund;
     statistics_.most_stored = std::max(statistics_.most_stored, stored_);
     statistics_.most_returned = std::max(statistics_.most_returned, -stored_);
 }
@@ -147,7 +152,7 @@ Wrench EnergyCap::bound(const Wrench& felt, const Motion& moved, const Motion& t
     Gift both;
     for (const Gift& one : {by_force, by_torque})
         if (one.all() > 0.0) both = {both.along + one.along, both.own + one.own};
-    const double available = std::max(0.0, stored_ + grant_ - pending(moved, turned) - reserve());
+    const double available = std::max(0.0, stored_ + grant_ + damped_ - pending(moved, turned) - reserve());
     Wrench out = felt;
     if (both.all() > available) {
         // A hand that still moves against the force: the share s with s · along + s² · own = available. Otherwise less.

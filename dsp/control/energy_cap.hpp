@@ -16,6 +16,7 @@ struct EnergyCapSettings {
     double resolution = 20e-6;          ///< m, step of the reported position
     double angular_resolution = 200e-6; ///< rad, step of the reported orientation
     double delay_s = 0.0;               ///< of the device: from a motion to its sample plus from a force to the hand
+    double damping = 2.0;               ///< N·s/m, that a hand and its device have at least
     double least_mass = 0.1;            ///< kg, of the lightest hand with its device, for the motion ahead
     double least_inertia = 1e-4;        ///< kg·m²
 };
@@ -47,6 +48,7 @@ class EnergyCap {
 public:
     static constexpr double slow_m_s = 0.02;  ///< below: least motion; above twice this: samples as they are
     static constexpr double slow_rad_s = 0.4;
+    static constexpr double calm_m_s = 0.05;  ///< below: what the hand damps is refunded; above twice this: nothing
     static constexpr double calm_s = 0.01;  ///< in which a hand that stops becomes a slow one
     static constexpr double end_force = 0.02;  ///< N and ...
     static constexpr double end_torque = 0.5e-3;  ///< N·m below which a contact is over
@@ -80,6 +82,7 @@ private:
     struct Tracked {
         AdaptiveWindow window;
         Vec3 sum{0.0};  ///< of what counted
+        Vec3 velocity{0.0};
         double fast = 0.0;
     };
 
@@ -95,7 +98,7 @@ private:
     Tracked place_, turn_;
     Pose counted_;  // the hand's, as far as its motion counts
     std::array<Wrench, most_delay + 2> held_{};  // committed forces, newest first
-    double stored_ = 0.0, grant_ = 0.0, hold_s_ = 0.001;
+    double stored_ = 0.0, grant_ = 0.0, damped_ = 0.0, hold_s_ = 0.001;
     double force_level_ = 1.0, torque_level_ = 1.0;  // share that is felt after the cap has acted
     double doubt_ = 0.0;  // J², variance of the store by the steps of the samples
     bool started_ = false;

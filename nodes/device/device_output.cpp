@@ -52,6 +52,8 @@ struct DeviceOutput {
         if (port_->info.resolution > 0.0) cap.resolution = port_->info.resolution;
         if (port_->info.angular_resolution > 0.0) cap.angular_resolution = port_->info.angular_resolution;
         cap.delay_s = port_->info.delay;
+        // A device states its damping with a hand on it. More than this would blur what a bounce returns.
+        cap.damping = std::clamp(port_->info.damping, cap.damping, 5.0);
         cap_.prepare(cap);
     }
 
