@@ -6,7 +6,7 @@
 #include "engine/run/engine.hpp"
 #include "graph/compile/compile.hpp"
 #include "graph/compile/load_assets.hpp"
-#include "graph/patch/patch_load.hpp"
+#include "graph/patch/patch.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/study/passivity/thrown_device.hpp"
@@ -180,6 +180,13 @@ double ratio_of(const Setting& setting, double stiffness, bool capped, compile::
     return flight.ratio();
 }
 
+simulate::DeviceModel model_of(const std::string& device) {
+    if (const simulate::DeviceModel* const model = simulate::find_device_model(device)) return *model;
+    simulate::DeviceModel ideal;
+    ideal.max_force = 20.0;
+    return ideal;
+}
+
 void check_names(const std::vector<std::string>& given, const std::vector<std::string>& known, const char* what) {
     for (const std::string& name : given)
         if (std::ranges::find(known, name) == known.end())
@@ -229,9 +236,7 @@ std::vector<BounceRow> throw_at_contacts(const BounceMatrix& matrix,
             for (const double stiffness : matrix.stiffnesses)
                 for (const double speed : matrix.speeds)
                     for (const double mass : matrix.masses) {
-                        const simulate::DeviceModel* const model = simulate::find_device_model(device);
-                        thrown = {model ? *model : simulate::DeviceModel{.max_force = 20.0}, mass, speed,
-                                  setting.height};
+                        thrown = {model_of(device), mass, speed, setting.height};
                         BounceRow row{std::string(setting.name), device, stiffness, speed, mass};
                         row.energy_ratio = ratio_of(setting, stiffness, true, assets);
                         row.energy_ratio_without = ratio_of(setting, stiffness, false, assets);
