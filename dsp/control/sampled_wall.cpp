@@ -31,6 +31,25 @@ private:
     double now_ = 0.0;
 };
 
+/// How far a motion goes, and whether it returns: creep does not.
+class Swing {
+public:
+    void add(double x) noexcept {
+        if (!started_) first_ = last_ = low_ = high_ = x;
+        started_ = true;
+        low_ = std::min(low_, x);
+        high_ = std::max(high_, x);
+        path_ += std::abs(x - last_);
+        last_ = x;
+    }
+    double extent() const noexcept { return high_ - low_; }
+    bool returns() const noexcept { return path_ - std::abs(last_ - first_) > 0.5 * extent(); }
+
+private:
+    double first_ = 0.0, last_ = 0.0, low_ = 0.0, high_ = 0.0, path_ = 0.0;
+    bool started_ = false;
+};
+
 /// Work of a held force −x, or −ẋ by the last difference, on a hand that moves straight between samples, and ∫ẋ² dt:
 /// sums over whole waves.
 struct Work {
@@ -82,14 +101,14 @@ double passive_stiffness(const SampledWall& wall) noexcept {
 }
 
 bool oscillates(const SampledWall& wall) noexcept {
-    constexpr double seconds = 3.0, window = 0.3;
+    constexpr double seconds = 2.0, window = 0.3;
     constexpr int steps = 8;
     const double h = wall.period / steps;
     DelayedForce force(static_cast<int>(std::lround(wall.delay / h)));
     AdaptiveWindow speed;
     speed.prepare(wall.resolution);
     double x = -0.1e-3, v = 0.1;  // x > 0 is inside
-    double before_low = 0.0, before_high = 0.0, low = 0.0, high = 0.0;
+    Swing before, last;
     const auto ticks = static_cast<int>(seconds / wall.period);
     for (int n = 0; n < ticks; ++n) {
         const double seen = wall.resolution > 0.0 ? std::round(x / wall.resolution) * wall.resolution : x;
@@ -106,23 +125,23 @@ bool oscillates(const SampledWall& wall) noexcept {
             v = after;
         }
         const double t = n * wall.period;
-        if (t < seconds - 1.0 - window) before_low = before_high = x;
-        else if (t < seconds - 1.0) before_low = std::min(before_low, x), before_high = std::max(before_high, x);
-        if (t < seconds - window) low = high = x;
-        else low = std::min(low, x), high = std::max(high, x);
+        if (t >= seconds - 1.0 - window && t < seconds - 1.0) before.add(x);
+        if (t >= seconds - window) last.add(x);
         if (!std::isfinite(x) || std::abs(x) > 1.0) return true;
     }
-    const double left = high - low, quiet = std::max(2.5 * wall.resolution, 2e-6);
-    return left > quiet && left > 0.7 * (before_high - before_low);
+    const double quiet = std::max(2.5 * wall.resolution, 2e-6);
+    return last.extent() > quiet && last.returns() && last.extent() > 0.7 * before.extent();
 }
 
 double simulated_stiffness(SampledWall wall, double most) noexcept {
-    // The first stiffness that oscillates, on a grid of 4 %: there may be quiet islands beyond it.
-    for (double k = 10.0; k < most; k *= 1.04) {
-        wall.stiffness = k;
-        if (oscillates(wall)) return k;
-    }
-    return most;
+    // The first stiffness that oscillates, in steps of a quarter and then of 4 %: there may be quiet islands beyond it.
+    const auto first = [&](double from, double step, double end) {
+        for (wall.stiffness = from; wall.stiffness < end; wall.stiffness *= step)
+            if (oscillates(wall)) break;
+        return std::min(wall.stiffness, end);
+    };
+    const double rough = first(10.0, 1.25, most);
+    return rough < most ? first(rough / 1.25, 1.04, rough) : most;
 }
 
 }  // namespace tactus::control

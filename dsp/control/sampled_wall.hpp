@@ -36,7 +36,7 @@ double quiet_stiffness(const SampledWall& wall) noexcept;
 /// device and wall never give energy. N/m.
 double passive_stiffness(const SampledWall& wall) noexcept;
 
-/// A hand that hits the wall at 0.1 m/s and leans on it is still in motion after 3 s, by more than encoder steps explain.
+/// A hand that hits the wall at 0.1 m/s and leans on it is still in motion after 2 s, by more than encoder steps explain.
 bool oscillates(const SampledWall& wall) noexcept;
 
 /// The stiffness at which `oscillates` begins, up to `most` N/m.

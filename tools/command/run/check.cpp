@@ -3,18 +3,25 @@
 #include "graph/analyse/stiffness.hpp"
 #include "tools/command/patch_options.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/picture/report/comparison_figure.hpp"
+#include "tools/picture/report/z_width_figure.hpp"
 #include "tools/session/load_plan.hpp"
+#include "tools/study/passivity/z_width.hpp"
 
 #include "engine/run/engine.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace tactus::command {
 
@@ -24,7 +31,8 @@ namespace {
 
 struct CheckChoice {
     session::PatchChoice patch;
-    bool json = false;
+    bool json = false, z_width = false;
+    std::string z_width_figure;
 };
 
 /// One row per path; a loop through a hand has its stiffness too.
@@ -111,6 +119,55 @@ std::function<double(const std::string&)> damping_of(const io::EngineHost& host)
     };
 }
 
+/// Of each device that a node drives, as an ideal one, and of the simulated devices.
+std::vector<study::ZWidthCurve> z_width_of(const io::EngineHost& host) {
+    study::ZWidthGrid grid;
+    std::vector<study::ZWidthDevice> devices;
+    for (const auto& slot : host.devices) {
+        if (slot->port.info.fingers > 0) continue;
+        devices.push_back(study::ideal_device(slot->name + ", ideal", slot->port.info));
+        const double rate = rate_of(slot->period);
+        if (std::ranges::find(grid.rates, rate) == grid.rates.end()) grid.rates.push_back(rate);
+    }
+    std::ranges::sort(grid.rates);
+    for (study::ZWidthDevice& device : study::modelled_devices()) devices.push_back(std::move(device));
+    return study::z_width(devices, grid);
+}
+
+Json z_width_json(const std::vector<study::ZWidthCurve>& curves) {
+    const auto n_mm = [](double value) { return std::isfinite(value) ? Json(value * 1e-3) : Json(); };
+    Json rows = Json::array();
+    for (const study::ZWidthCurve& curve : curves)
+        for (const study::ZWidthPoint& point : curve.points)
+            rows.push_back({{"device", curve.device},
+                            {"rate_hz", curve.rate},
+                            {"delay_ms", curve.delay * 1e3},
+                            {"damping_N_s_per_m", point.damping},
+                            {"bound_N_per_mm", n_mm(point.bound)},
+                            {"passive_N_per_mm", n_mm(point.passive)},
+                            {"friction_N_per_mm", n_mm(point.friction)},
+                            {"simulated_N_per_mm", n_mm(point.simulated)}});
+    return rows;
+}
+
+void print_z_width(const Json& rows) {
+    fmt::print("\n{:<24} {:>7} {:>9} {:>12} {:>10} {:>10} {:>10} {:>12}\n", "wall: device", "rate", "delay", "damping",
+               "bound", "passive", "friction", "simulated");
+    for (const Json& row : rows) {
+        const auto cell = [&](const char* key) {
+            return row[key].is_null() ? std::string("-") : fmt::format("{:.3g}", row[key].get<double>());
+        };
+        fmt::print("{:<24} {:>4g} Hz {:>6.3g} ms {:>6g} N s/m {:>10} {:>10} {:>10} {:>12}\n",
+                   row["device"].get<std::string>(), row["rate_hz"].get<double>(), row["delay_ms"].get<double>(),
+                   row["damping_N_s_per_m"].get<double>(), cell("bound_N_per_mm"), cell("passive_N_per_mm"),
+                   cell("friction_N_per_mm"), cell("simulated_N_per_mm"));
+    }
+    fmt::print(
+        "Stiffness in N/mm. bound: (b - |B|) / (T / 2 + delay), Colgate and Schenkel; passive: the same by motion; "
+        "friction: up to which Coulomb friction takes what encoder steps give; simulated: the device, leaned on "
+        "with 1 N, begins to oscillate.\n");
+}
+
 void print_loops(const Json& loops) {
     fmt::print("\n{:<32} {:>12} {:>12}\n", "admittance loop", "gain", "unstable from");
     for (const Json& loop : loops)
@@ -166,6 +223,12 @@ int check(const CheckChoice& choice) {
             json["admittance_loops"] = loops_json(engine.nodes());
             json["warnings"] = engine.host().notices;
             json["outputs"] = outputs_json(engine.nodes(), json["warnings"]);
+            if (choice.z_width || !choice.z_width_figure.empty()) {
+                const std::vector<study::ZWidthCurve> curves = z_width_of(engine.host());
+                json["z_width"] = z_width_json(curves);
+                if (!choice.z_width_figure.empty())
+                    picture::write_figure(picture::draw_z_width(curves), choice.z_width_figure);
+            }
         }
     } catch (const Error& error) {
         problems.list.push_back(error);
@@ -181,6 +244,7 @@ int check(const CheckChoice& choice) {
             print_loops(json["admittance_loops"]);
         if (json.contains("warnings"))
             for (const Json& warning : json["warnings"]) fmt::print("warning: {}\n", warning.get<std::string>());
+        if (json.contains("z_width")) print_z_width(json["z_width"]);
         if (problems.empty())
             fmt::print("{}\n", is_stable(json) ? "no errors" : "no errors, but a path is too stiff or a loop unstable");
     }
@@ -192,6 +256,11 @@ Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<CheckChoice>();
     add_patch_options(verb, choice->patch);
     verb.flag("--json", choice->json, "as JSON");
+    verb.flag(
+        "--z-width", choice->z_width,
+        "also which walls, by stiffness and damping, the devices of the patch and simulated ones bear, per rate and "
+        "delay");
+    verb.add("--z-width-figure", choice->z_width_figure, "draw that to this .svg or .png");
     return [choice] { return check(*choice); };
 }
 
