@@ -88,14 +88,16 @@ display::Figure draw_z_width(const std::vector<study::ZWidthCurve>& curves) {
     for (std::size_t d = 0; d < devices.size(); ++d) {
         const Panel panel{gap + (gap + width) * static_cast<double>(d), top, most_damping, most_stiffness};
         draw_axes(figure, panel, devices[d]);
-        double least_delay = 1e9;
-        for (const study::ZWidthCurve& curve : curves)
-            if (curve.device == devices[d]) least_delay = std::min(least_delay, curve.delay * curve.rate);
         for (const study::ZWidthCurve& curve : curves) {
             if (curve.device != devices[d]) continue;
+            const bool is_late = std::ranges::any_of(curves, [&](const study::ZWidthCurve& other) {
+                return other.device == curve.device && other.rate == curve.rate && other.delay < curve.delay;
+            });
             const auto rate = static_cast<std::size_t>(std::ranges::find(rates, curve.rate) - rates.begin());
-            draw_curve(figure, panel, curve, colours[rate % colours.size()],
-                       curve.delay * curve.rate > least_delay + 0.5 ? 4.0 : 0.0);
+            draw_curve(figure, panel, curve, colours[rate % colours.size()], is_late ? 4.0 : 0.0);
+            const double friction = curve.points.empty() ? 0.0 : curve.points.front().friction;
+            if (std::isfinite(friction) && friction > 0.0)
+                figure.line({panel.at(0.0, friction), panel.at(most_damping, friction)}, frame, 1.0, 1.5);
         }
     }
     double x = gap;
@@ -104,7 +106,7 @@ display::Figure draw_z_width(const std::vector<study::ZWidthCurve>& curves) {
                     display::TextAnchor::start, true);
     figure.text({gap, top + height + 70.0},
                 "thin: bound of Colgate and Schenkel; squares: passivity border by motion; thick: the simulated device "
-                "begins to oscillate; dashed: a period of delay more",
+                "begins to oscillate; dashed: a period of delay more; dotted: friction takes what encoder steps give",
                 10.0, soft);
     return figure;
 }
