@@ -28,6 +28,7 @@
     X(ForceShaping, coupling)           \
     X(FragmentMatcher, planning)        \
     X(Gain, vibration)                  \
+    X(GrantedPower, device)             \
     X(Grasp, coupling)                  \
     X(GripperInput, admittance)         \
     X(GripperOutput, admittance)        \

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/haptic/operated.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
 namespace tactus::haptic {
 
 simulate::HandDynamics read_hand(Options& options) {
@@ -14,15 +20,37 @@ simulate::HandDynamics read_hand(Options& options) {
     return hand;
 }
 
+const simulate::DeviceModel* read_model(Options& options) {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all{"ideal"};
+        for (const simulate::DeviceModel& model : simulate::device_models()) all.emplace_back(model.name);
+        return all;
+    }();
+    const std::size_t chosen = options.choice("model", names, "ideal");
+    return chosen == 0 ? nullptr : &simulate::device_models()[chosen - 1];
+}
+
 DeviceInfo read_device_info(Options& options, const simulate::HandDynamics& hand, std::string name) {
+    const simulate::DeviceModel* const model = read_model(options);
+    const bool gives_torque = !model || model->max_torque > 0.0;
     DeviceInfo info;
-    info.name = std::move(name);
-    info.max_force = options.quantity("max_force", "20 N", "0.1 N", "200 N");
+    info.name = model ? fmt::format("{}, {}", name, model->about) : std::move(name);
+    info.max_force =
+        options.quantity("max_force", model ? fmt::format("{} N", model->max_force) : "20 N", "0.1 N", "200 N");
     info.max_torque = options.quantity("max_torque", "1 N m", "0.001 N m", "20 N m");
     info.damping = hand.damping;
     info.max_stiffness = options.quantity("max_stiffness", "0 N/mm", "0 N/mm", "100 N/mm");
-    info.actuates_torque = options.flag("torque", true);
+    info.actuates_torque = options.flag("torque", gives_torque);
     info.senses_rotation = true;
+    if (!model) return info;
+    info.max_force = std::min(info.max_force, model->max_force);
+    info.max_torque = std::min(info.max_torque, model->max_torque);
+    info.damping = hand.damping + model->viscous;
+    if (info.max_stiffness == 0.0) info.max_stiffness = model->max_stiffness;
+    info.resolution = model->resolution;
+    info.angular_resolution = model->angular_resolution;
+    info.delay = model->delay;
+    info.actuates_torque = info.actuates_torque && gives_torque;
     return info;
 }
 

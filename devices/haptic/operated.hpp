@@ -2,20 +2,25 @@
 // What every simulated device shares: a hand on it that feels its force.
 #pragma once
 
+#include "dsp/simulate/device_model.hpp"
 #include "dsp/simulate/hand.hpp"
 #include "graph/node/device.hpp"
 #include "graph/node/options.hpp"
 
 #include <atomic>
+#include <optional>
 #include <utility>
 
 namespace tactus::haptic {
 
 /// Reads the options of the hand and of what the device can do: mass, inertia, stiffness, damping, angular_stiffness,
 /// angular_damping, max_force, max_torque, torque (false: a
-/// device of three degrees of freedom, that gives none).
+/// device of three degrees of freedom, that gives none), and model, a device as it is; with one, mass and inertia are
+/// those of the hand alone.
 simulate::HandDynamics read_hand(Options& options);
 DeviceInfo read_device_info(Options& options, const simulate::HandDynamics& hand, std::string name);
+/// None: an ideal device.
+const simulate::DeviceModel* read_model(Options& options);
 
 /// The force that a device was given last. A watchdog may give one while the device is read.
 class SharedWrench {
@@ -43,10 +48,13 @@ private:
 template <typename Operator>
 class OperatedDevice final : public HapticDevice {
 public:
-    OperatedDevice(DeviceInfo info, const simulate::HandDynamics& dynamics, Operator initial)
+    /// Without a model the device is ideal: no friction, no steps, no delay.
+    OperatedDevice(DeviceInfo info, const simulate::HandDynamics& dynamics, Operator initial,
+                   const simulate::DeviceModel* model = nullptr)
         : info_(std::move(info)), initial_(std::move(initial)), operator_(initial_) {
         hand_.dynamics = dynamics;
         hand_.pose = operator_.start();
+        if (model) modelled_.emplace(*model, dynamics);
     }
 
     const DeviceInfo& info() const override { return info_; }
@@ -55,11 +63,17 @@ public:
         operator_ = initial_;
         hand_.pose = operator_.start();
         hand_.twist = {};
+        if (modelled_) modelled_->place(operator_.start());
         force_.set({});
         counter_ = 0;
     }
 
     DeviceSample acquire(double elapsed_s) noexcept override {
+        if (modelled_) {
+            modelled_->advance(operator_, force_.get(), elapsed_s);
+            return {modelled_->pose(), modelled_->twist(), operator_.buttons(), ++counter_,
+                    is_valid(modelled_->pose())};
+        }
         simulate::advance(hand_, operator_, force_.get(), elapsed_s);
         return {hand_.pose, hand_.twist, operator_.buttons(), ++counter_, is_valid(hand_.pose)};
     }
@@ -70,6 +84,7 @@ private:
     DeviceInfo info_;
     Operator initial_, operator_;
     simulate::Hand hand_;
+    std::optional<simulate::ModelledDevice> modelled_;
     SharedWrench force_;
     std::int64_t counter_ = 0;
 };

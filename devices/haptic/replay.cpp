@@ -61,6 +61,7 @@ std::unique_ptr<HapticDevice> open_replay(Options& options, const PathResolver& 
     Replaying operated;
     operated.trigger_from = read_trigger(options);
     const simulate::HandDynamics hand = read_hand(options);
+    const simulate::DeviceModel* const model = read_model(options);
     DeviceInfo info = read_device_info(options, hand, "replayed hand");
     options.finish();
     if (file.empty())
@@ -72,7 +73,7 @@ std::unique_ptr<HapticDevice> open_replay(Options& options, const PathResolver& 
     simulate::TrajectoryRules rules = trajectory.rules();
     rules.max_speed = max_speed;
     operated.player = std::make_shared<const simulate::TrajectoryPlayer>(trajectory.samples, trajectory.breaks, rules);
-    return std::make_unique<OperatedDevice<Replaying>>(std::move(info), hand, std::move(operated));
+    return std::make_unique<OperatedDevice<Replaying>>(std::move(info), hand, std::move(operated), model);
 }
 
 }  // namespace tactus::haptic

@@ -149,12 +149,14 @@ std::unique_ptr<HapticDevice> open_scripted(Options& options, const PathResolver
     const double on = options.quantity("trigger_on", "0 s", "0 s"),
                  off = options.quantity("trigger_off", "1e9 s", "0 s");
     const simulate::HandDynamics hand = read_hand(options);
+    const simulate::DeviceModel* const model = read_model(options);
     DeviceInfo info = read_device_info(options, hand, "scripted hand");
     options.finish();
     return std::make_unique<OperatedDevice<Following>>(
         std::move(info), hand,
         Following{simulate::ScriptOperator(std::move(targets), wiggle), on, off,
-                  std::make_shared<const std::vector<Press>>(std::move(presses))});
+                  std::make_shared<const std::vector<Press>>(std::move(presses))},
+        model);
 }
 
 }  // namespace tactus::haptic

@@ -73,9 +73,10 @@ simulate::StrokePlan read_plan(Options& options) {
 std::unique_ptr<HapticDevice> open_simulated(Options& options) {
     const simulate::StrokePlan plan = read_plan(options);
     const simulate::HandDynamics hand = read_hand(options);
+    const simulate::DeviceModel* const model = read_model(options);
     DeviceInfo info = read_device_info(options, hand, "simulated hand");
     options.finish();
-    return std::make_unique<OperatedDevice<Sawing>>(std::move(info), hand, Sawing(plan));
+    return std::make_unique<OperatedDevice<Sawing>>(std::move(info), hand, Sawing(plan), model);
 }
 
 }  // namespace tactus::haptic

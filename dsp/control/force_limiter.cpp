@@ -37,6 +37,18 @@ void ForceLimiter::prepare(const ForceLimits& limits, double period_s) {
     period_s_ = period_s;
 }
 
+void ForceLimiter::start_from(const Wrench& committed) noexcept {
+    if (!is_finite(committed)) return;
+    // A fade never grows again: what is left of it is scaled down by what was taken from it.
+    const auto share = [](const Vec3& given, const Vec3& wanted) {
+        const double most = glm::length(wanted);
+        return most > 0.0 ? std::min(1.0, glm::length(given) / most) : 1.0;
+    };
+    fade_from_.force *= share(committed.force, output_.force);
+    fade_from_.torque *= share(committed.torque, output_.torque);
+    output_ = committed;
+}
+
 void ForceLimiter::fail(Fault reason) noexcept {
     // A late tick says only that something is wrong: a reason that says what replaces it.
     if (fault_ == Fault::late_commit && reason != Fault::none) fault_ = reason;

@@ -66,6 +66,9 @@ public:
     /// `raw` is the wanted wrench on the hand; `counter` and `valid` are the driver's for this tick's sample.
     Wrench tick(const Wrench& raw, std::int64_t counter, bool valid, double elapsed_s) noexcept;
 
+    /// What the hand was given instead of the last output: the slew limit and a fade go on from there. Before `tick`.
+    void start_from(const Wrench& committed) noexcept;
+
     /// Starts the fade for an external reason. The first reason stays until `recover`; only `late_commit` gives way to
     /// another one, for it names no cause.
     void fail(Fault reason) noexcept;

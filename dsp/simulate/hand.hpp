@@ -6,6 +6,8 @@
 #include "dsp/core/rotation.hpp"
 #include "dsp/core/types.hpp"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -26,6 +28,10 @@ struct HandDynamics {
     double damping = 15.0;           ///< N·s/m, against the intended velocity
     double angular_stiffness = 2.0;  ///< N·m/rad
     double angular_damping = 0.04;   ///< N·m·s/rad
+    double friction = 0.0;           ///< N, Coulomb, of the device
+    double drag = 0.0;               ///< N·s/m, of the device, against its base
+    double angular_friction = 0.0;   ///< N·m
+    double angular_drag = 0.0;       ///< N·m·s/rad
 };
 
 /// State of the hand. `step` is the implicit midpoint rule: stable for any stiffness and step, and without numerical
@@ -39,6 +45,8 @@ struct Hand {
     /// constant during the step. Device frame.
     void step(double h, const Intention& intended, const Wrench& force) noexcept {
         const HandDynamics& d = dynamics;
+        if (d.friction > 0.0 || d.drag > 0.0 || d.angular_friction > 0.0 || d.angular_drag > 0.0)
+            return step_on_device(h, intended, force);
         const Vec3 v = (twist.linear * (2.0 * d.mass / h) + force.force +
                         (intended.pose.position - pose.position) * d.stiffness + intended.twist.linear * d.damping) /
                        (2.0 * d.mass / h + d.damping + 0.5 * d.stiffness * h);
@@ -51,6 +59,33 @@ struct Hand {
                        (2.0 * d.inertia / h + d.angular_damping + 0.5 * d.angular_stiffness * h);
         pose.orientation = glm::normalize(rotation_by(w * h) * pose.orientation);
         twist.angular = 2.0 * w - twist.angular;
+    }
+
+private:
+    /// The same with the friction of a device. Coulomb friction is implicit: it stops the motion within the step or
+    /// takes its whole impulse, so that a hand at rest stays where it is.
+    void step_on_device(double h, const Intention& intended, const Wrench& force) noexcept {
+        const HandDynamics& d = dynamics;
+        const auto slowed = [](const Vec3& v, double most) {
+            const double speed = glm::length(v);
+            return speed > most ? v * (1.0 - most / speed) : Vec3(0.0);
+        };
+        const double linear = 2.0 * d.mass / h + d.damping + d.drag + 0.5 * d.stiffness * h;
+        const Vec3 free = (twist.linear * (2.0 * d.mass / h) + force.force +
+                           (intended.pose.position - pose.position) * d.stiffness + intended.twist.linear * d.damping) /
+                          linear;
+        const Vec3 velocity = slowed(2.0 * free - twist.linear, 2.0 * d.friction / linear);
+        pose.position += 0.5 * (twist.linear + velocity) * h;
+        twist.linear = velocity;
+
+        const double angular = 2.0 * d.inertia / h + d.angular_damping + d.angular_drag + 0.5 * d.angular_stiffness * h;
+        const Vec3 error = rotation_between(pose.orientation, intended.pose.orientation);
+        const Vec3 turning = (twist.angular * (2.0 * d.inertia / h) + force.torque + error * d.angular_stiffness +
+                              intended.twist.angular * d.angular_damping) /
+                             angular;
+        const Vec3 spin = slowed(2.0 * turning - twist.angular, 2.0 * d.angular_friction / angular);
+        pose.orientation = glm::normalize(rotation_by(0.5 * (twist.angular + spin) * h) * pose.orientation);
+        twist.angular = spin;
     }
 };
 

@@ -43,9 +43,20 @@ io::RecordedDevice read_device(const Json& json) {
     io::RecordedDevice device;
     device.name = json.at("device");
     const Json& info = json.at("info");
-    device.info = {info.at("name"),          info.at("max_force"),       info.at("max_torque"),      info.at("damping"),
-                   info.at("max_stiffness"), info.at("actuates_torque"), info.at("senses_rotation"), info.at("fingers"),
-                   info.at("max_speed"),     info.at("least_speed")};
+    device.info = {.name = info.at("name"),
+                   .max_force = info.at("max_force"),
+                   .max_torque = info.at("max_torque"),
+                   .damping = info.at("damping"),
+                   .max_stiffness = info.at("max_stiffness"),
+                   // Takes of earlier versions do not hold these three.
+                   .resolution = info.value("resolution", 0.0),
+                   .angular_resolution = info.value("angular_resolution", 0.0),
+                   .delay = info.value("delay", 0.0),
+                   .actuates_torque = info.at("actuates_torque"),
+                   .senses_rotation = info.at("senses_rotation"),
+                   .fingers = info.at("fingers"),
+                   .max_speed = info.at("max_speed"),
+                   .least_speed = info.at("least_speed")};
     const Json& first = json.at("first");
     device.first.buttons = first.at("buttons");
     device.first.counter = first.at("counter");

@@ -225,7 +225,10 @@ void TakeWriter::device(const build::DeviceSlot& slot) {
                 {"senses_rotation", info.senses_rotation},
                 {"fingers", info.fingers},
                 {"max_speed", info.max_speed},
-                {"least_speed", info.least_speed}}},
+                {"least_speed", info.least_speed},
+                {"resolution", info.resolution},
+                {"angular_resolution", info.angular_resolution},
+                {"delay", info.delay}}},
               {"first", sample_json(slot.port.sample)}}
              .dump());
 }

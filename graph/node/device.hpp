@@ -49,6 +49,9 @@ struct DeviceInfo {
     double max_torque = 0.0;  ///< N·m
     double damping = 0.0;  ///< N·s/m, of the mechanism and the hand on it; bounds the stiffness that is stable
     double max_stiffness = 0.0;  ///< N/m, as the maker states it
+    double resolution = 0.0;  ///< m, step of the position that it reports
+    double angular_resolution = 0.0;  ///< rad, step of the orientation
+    double delay = 0.0;  ///< s, from a motion through the sample and the committed force to the force at the hand
     bool actuates_torque = false;
     bool senses_rotation = false;
     int fingers = 0;  ///< finger parts with a motor each; 0: no gripper

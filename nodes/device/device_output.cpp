@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/control/energy_cap.hpp"
 #include "dsp/control/force_limiter.hpp"
 #include "graph/node/node.hpp"
 
@@ -13,11 +14,13 @@ static double lower_limit(double wanted, double of_device) {
 
 struct DeviceOutput {
     static constexpr auto about =
-        "Sends a force to the hand: checked, limited, ramped in, and faded to zero on any fault. The limits of the "
-        "device apply too.";
+        "Sends a force to the hand: checked, limited, ramped in, and faded to zero on any fault. A contact returns no "
+        "more "
+        "energy than the hand has put in, but for power that is granted. The limits of the device apply too.";
     static constexpr NodeRole role = NodeRole::hand_sink;
 
     In<Wrench> wrench{"on the hand, about the handle, device frame", "N, N m"};
+    In<double> granted{optional, "power that the patch may give the hand on purpose: granted_power.power", "W"};
     Out<Wrench> applied{"the wrench that the device is given", "N, N m"};
     Out<bool> engaged{"forces are on"};
     Out<bool> torque_dropped{"a torque was asked for, but the device has none"};
@@ -33,6 +36,8 @@ struct DeviceOutput {
         "never. After a non-finite force they stay off"};
     Param engage_time{structural, "100 ms", "0 ms", "10 s", "duration of the ramp once forces are small"};
 
+    Flag energy_cap{true, "a contact returns no more energy than the hand has put in; false: 'check' warns"};
+
     void prepare(const Setup& setup) {
         port_ = &setup.host->device(device.value, DeviceUse::drive, device.where);
         control::ForceLimits limits;
@@ -42,6 +47,14 @@ struct DeviceOutput {
         limits.torque_slew = torque_slew;
         limits.engage_ramp_s = engage_time;
         limiter_.prepare(limits, seconds(setup.period));
+        control::EnergyCapSettings cap;
+        cap.period_s = seconds(setup.period);
+        if (port_->info.resolution > 0.0) cap.resolution = port_->info.resolution;
+        if (port_->info.angular_resolution > 0.0) cap.angular_resolution = port_->info.angular_resolution;
+        cap.delay_s = port_->info.delay;
+        // A device states its damping with a hand on it. More than this would blur what a bounce returns.
+        cap.damping = std::clamp(port_->info.damping, cap.damping, 5.0);
+        cap_.prepare(cap);
     }
 
     void process(const Tick& tick) noexcept {
@@ -49,7 +62,11 @@ struct DeviceOutput {
         limiter_.hold_off(port_->hold_off);
         if (s.sound_lost) limiter_.fail(control::Fault::sound_lost);
         if (s.taken) limiter_.cut(control::Fault::late_commit);
-        const Wrench out = limiter_.tick(givable(), s.counter, s.valid && is_valid(s.pose), tick.elapsed_seconds());
+        // The port holds what the device was given after the last tick.
+        limiter_.start_from(port_->wrench);
+        const bool is_good = s.valid && is_valid(s.pose);
+        const Wrench limited = limiter_.tick(givable(), s.counter, is_good, tick.elapsed_seconds());
+        const Wrench out = capped(limited, is_good, tick.elapsed_seconds());
         applied = out;
         port_->wrench = out;
         port_->fault = limiter_.fault();
@@ -76,11 +93,33 @@ struct DeviceOutput {
             report.set("force", "torque_dropped_max_Nm", most_dropped_);
             report.set("force", "torque_dropped_ticks", static_cast<double>(ticks_dropped_));
         }
+        const control::EnergyCapStatistics& e = cap_.statistics();
+        report.set("force", "energy_cap", std::string(energy_cap ? "on" : "off"));
+        report.set("force", "energy_capped_ticks", static_cast<double>(capped_ticks_));
+        report.set("force", "energy_capped_max_N", most_capped_);
+        report.set("force", "energy_stored_max_J", e.most_stored);
+        report.set("force", "energy_returned_max_J", e.most_returned);
+        report.set("force", "granted_power_max_W", most_granted_);
+        report.set("force", "granted_J", e.granted);
         report.set("force", "fault", std::string(control::describe(last_fault_)));
         report.set("force", "faults", static_cast<double>(faults_));
     }
 
 private:
+    /// Observes also while it is off, so that the report says what the hand was given.
+    Wrench capped(const Wrench& limited, bool is_good, double elapsed_s) noexcept {
+        const double watts = granted.connected && granted.get() > 0.0 ? std::min(granted.get(), most_granted_W) : 0.0;
+        most_granted_ = std::max(most_granted_, watts);
+        const Pose nowhere{{}, {0.0, 0.0, 0.0, 0.0}};
+        const DeviceSample& s = port_->sample;
+        const Wrench out = cap_.tick(limited, port_->wrench, is_good ? s.pose : nowhere, elapsed_s, watts, s.taken);
+        if (!energy_cap) return limited;
+        const double removed = glm::length(limited.force - out.force);
+        if (removed > 0.0 || limited.torque != out.torque) ++capped_ticks_;
+        most_capped_ = std::max(most_capped_, removed);
+        return out;
+    }
+
     /// The part of the wrench that the device can render. A non-finite wrench is kept, for the limiter to detect.
     Wrench givable() noexcept {
         Wrench asked = wrench.get();
@@ -110,15 +149,19 @@ private:
         in_fault_ = false;
     }
 
+    static constexpr double most_granted_W = 50.0;
     DevicePort* port_ = nullptr;
     control::ForceLimiter limiter_;
+    control::EnergyCap cap_;
+    double most_granted_ = 0.0, most_capped_ = 0.0;
+    std::int64_t capped_ticks_ = 0;
     double largest_ = 0.0, sum_ = 0.0, well_for_ = 0.0, most_dropped_ = 0.0;
     std::int64_t counter_ = 0, faults_ = 0, ticks_dropped_ = 0;
     control::Fault last_fault_ = control::Fault::none;
     bool in_fault_ = false;
 };
 
-TACTUS_NODE(DeviceOutput, wrench, applied, engaged, torque_dropped, device, max_force, max_torque, slew, torque_slew,
-            engage_time, recover_after)
+TACTUS_NODE(DeviceOutput, wrench, granted, applied, engaged, torque_dropped, device, max_force, max_torque, slew,
+            torque_slew, engage_time, recover_after, energy_cap)
 
 }  // namespace tactus::nodes

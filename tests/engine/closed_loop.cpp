@@ -35,7 +35,7 @@ struct Handle {
 };
 
 /// The wall is the top of a ball of 1 m radius around a point 1 m below.
-std::string pressed_on_a_wall(double newton_per_millimetre, int delay) {
+std::string pressed_on_a_wall(double newton_per_millimetre, int delay, bool capped = false) {
     return PatchText{
         {{"hand", "device_input", "1 kHz", {{"device", "handle"}}},
          {"wall",
@@ -45,7 +45,13 @@ std::string pressed_on_a_wall(double newton_per_millimetre, int delay) {
            {"radius", "1 m"},
            {"tool_radius", "0 mm"},
            {"stiffness", fmt::format("{} N/mm", newton_per_millimetre)}}},
-         {"out", "device_output", "1 kHz", {{"device", "handle"}, {"max_force", "50 N"}, {"slew", "100 N/ms"}}}},
+         {"out",
+          "device_output",
+          "1 kHz",
+          {{"device", "handle"},
+           {"max_force", "50 N"},
+           {"slew", "100 N/ms"},
+           {"energy_cap", capped ? "true" : "false"}}}},
         {"hand.pose -> wall.pose",
          delay == 0 ? "wall.wrench -> out.wrench" : fmt::format("wall.wrench -> out.wrench as delay {}", delay)},
         "[devices.handle]\ndriver = \"handle\"\n"}
@@ -53,7 +59,7 @@ std::string pressed_on_a_wall(double newton_per_millimetre, int delay) {
 }
 
 /// What is left of the movement after 12 s, peak velocity in m/s.
-double restlessness(double damping, double newton_per_millimetre, int delay) {
+double restlessness(double damping, double newton_per_millimetre, int delay, bool capped = false) {
     Handle handle{.damping = damping};
     double worst = 0.0;
     Performance performance;
@@ -66,7 +72,7 @@ double restlessness(double damping, double newton_per_millimetre, int delay) {
     play_as("handle", performance);
     run::EngineOptions options;
     options.seconds = 12.0;
-    run::Engine engine(compile_text(pressed_on_a_wall(newton_per_millimetre, delay)), options);
+    run::Engine engine(compile_text(pressed_on_a_wall(newton_per_millimetre, delay, capped)), options);
     engine.render(1);
     return worst;
 }
@@ -84,5 +90,7 @@ TEST_CASE("a wall below the limit of the sheet comes to rest, one above it hums"
             CHECK(limit == Approx(damping / (0.5 + delay)));
             CHECK(restlessness(damping, 0.7 * limit, delay) < 1e-4);
             CHECK(restlessness(damping, 1.3 * limit, delay) > 1e-2);
+            // The energy cap leaves such a hand in peace.
+            CHECK(restlessness(damping, 0.7 * limit, delay, true) < 1e-3);
         }
 }

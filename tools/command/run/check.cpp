@@ -4,7 +4,10 @@
 #include "tools/command/patch_options.hpp"
 #include "tools/command/run/check_stiffness.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/picture/report/comparison_figure.hpp"
+#include "tools/picture/report/z_width_figure.hpp"
 #include "tools/session/load_plan.hpp"
+#include "tools/study/passivity/z_width.hpp"
 
 #include "engine/run/engine.hpp"
 
@@ -12,11 +15,14 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace tactus::command {
 
@@ -26,7 +32,8 @@ namespace {
 
 struct CheckChoice {
     session::PatchChoice patch;
-    bool json = false;
+    bool json = false, z_width = false;
+    std::string z_width_figure;
 };
 
 /// One row per path; a loop through a hand has its stiffness too.
@@ -82,6 +89,22 @@ Json loops_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes) {
     return loops;
 }
 
+/// The outputs to a hand, and which of them may return more energy than the hand has put in.
+Json outputs_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes, Json& warnings) {
+    Json outputs = Json::array();
+    for (const auto& node : nodes) {
+        if (node->type->name != "device_output") continue;
+        Report report;
+        node->type->report(node->instance.get(), report);
+        const bool is_on = std::get<std::string>(report.sections.at("force").at("energy_cap")) == "on";
+        outputs.push_back({{"node", node->name}, {"energy_cap", is_on}});
+        if (!is_on)
+            warnings.push_back(fmt::format(
+                "{}: the energy cap is off; contacts may return more energy than the hand has put in", node->name));
+    }
+    return outputs;
+}
+
 /// What a device, by its name in the patch, states; "" is the only one; 0: nothing.
 std::function<double(const std::string&)> stated_by(const io::EngineHost& host, double DeviceInfo::* number) {
     return [&host, number](const std::string& name) {
@@ -89,6 +112,55 @@ std::function<double(const std::string&)> stated_by(const io::EngineHost& host, 
             if (name.empty() || slot->name == name) return slot->port.info.*number;
         return 0.0;
     };
+}
+
+/// Of each device that a node drives, as an ideal one, and of the simulated devices.
+std::vector<study::ZWidthCurve> z_width_of(const io::EngineHost& host) {
+    study::ZWidthGrid grid;
+    std::vector<study::ZWidthDevice> devices;
+    for (const auto& slot : host.devices) {
+        if (slot->port.info.fingers > 0) continue;
+        devices.push_back(study::ideal_device(slot->name + ", ideal", slot->port.info));
+        const double rate = rate_of(slot->period);
+        if (std::ranges::find(grid.rates, rate) == grid.rates.end()) grid.rates.push_back(rate);
+    }
+    std::ranges::sort(grid.rates);
+    for (study::ZWidthDevice& device : study::modelled_devices()) devices.push_back(std::move(device));
+    return study::z_width(devices, grid);
+}
+
+Json z_width_json(const std::vector<study::ZWidthCurve>& curves) {
+    const auto n_mm = [](double value) { return std::isfinite(value) ? Json(value * 1e-3) : Json(); };
+    Json rows = Json::array();
+    for (const study::ZWidthCurve& curve : curves)
+        for (const study::ZWidthPoint& point : curve.points)
+            rows.push_back({{"device", curve.device},
+                            {"rate_hz", curve.rate},
+                            {"delay_ms", curve.delay * 1e3},
+                            {"damping_N_s_per_m", point.damping},
+                            {"bound_N_per_mm", n_mm(point.bound)},
+                            {"passive_N_per_mm", n_mm(point.passive)},
+                            {"friction_N_per_mm", n_mm(point.friction)},
+                            {"simulated_N_per_mm", n_mm(point.simulated)}});
+    return rows;
+}
+
+void print_z_width(const Json& rows) {
+    fmt::print("\n{:<24} {:>7} {:>9} {:>12} {:>10} {:>10} {:>10} {:>12}\n", "wall: device", "rate", "delay", "damping",
+               "bound", "passive", "friction", "simulated");
+    for (const Json& row : rows) {
+        const auto cell = [&](const char* key) {
+            return row[key].is_null() ? std::string("-") : fmt::format("{:.3g}", row[key].get<double>());
+        };
+        fmt::print("{:<24} {:>4g} Hz {:>6.3g} ms {:>6g} N s/m {:>10} {:>10} {:>10} {:>12}\n",
+                   row["device"].get<std::string>(), row["rate_hz"].get<double>(), row["delay_ms"].get<double>(),
+                   row["damping_N_s_per_m"].get<double>(), cell("bound_N_per_mm"), cell("passive_N_per_mm"),
+                   cell("friction_N_per_mm"), cell("simulated_N_per_mm"));
+    }
+    fmt::print(
+        "Stiffness in N/mm. bound: (b - |B|) / (T / 2 + delay), Colgate and Schenkel; passive: the same by motion; "
+        "friction: up to which Coulomb friction takes what encoder steps give; simulated: the device, leaned on "
+        "with 1 N, begins to oscillate.\n");
 }
 
 void print_loops(const Json& loops) {
@@ -158,6 +230,13 @@ int check(const CheckChoice& choice) {
             json["device_classes"] = device_classes_json(loops);
             json["admittance_loops"] = loops_json(engine.nodes());
             json["warnings"] = engine.host().notices;
+            json["outputs"] = outputs_json(engine.nodes(), json["warnings"]);
+            if (choice.z_width || !choice.z_width_figure.empty()) {
+                const std::vector<study::ZWidthCurve> curves = z_width_of(engine.host());
+                json["z_width"] = z_width_json(curves);
+                if (!choice.z_width_figure.empty())
+                    picture::write_figure(picture::draw_z_width(curves), choice.z_width_figure);
+            }
         }
     } catch (const Error& error) {
         problems.list.push_back(error);
@@ -173,6 +252,7 @@ int check(const CheckChoice& choice) {
             print_loops(json["admittance_loops"]);
         if (json.contains("warnings"))
             for (const Json& warning : json["warnings"]) fmt::print("warning: {}\n", warning.get<std::string>());
+        if (json.contains("z_width")) print_z_width(json["z_width"]);
         if (problems.empty()) fmt::print("{}\n", verdict_text(json));
     }
     if (!problems.empty()) return bad_input;
@@ -183,6 +263,11 @@ Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<CheckChoice>();
     add_patch_options(verb, choice->patch);
     verb.flag("--json", choice->json, "as JSON");
+    verb.flag(
+        "--z-width", choice->z_width,
+        "also which walls, by stiffness and damping, the devices of the patch and simulated ones bear, per rate and "
+        "delay");
+    verb.add("--z-width-figure", choice->z_width_figure, "draw that to this .svg or .png");
     return [choice] { return check(*choice); };
 }
 
