@@ -223,6 +223,29 @@ TEST_CASE("a driver that never comes back keeps neither the other hand's force n
     }
 }
 
+TEST_CASE("a driver that never opens keeps neither the end of the run nor the hands that are there", "[live]") {
+    WatchedHand &left = watched_hand("left"), &right = watched_hand("right");
+    PatchText plain, more;
+    add_hand(plain, "left");
+    add_hand(more, "left");
+    add_hand(more, "right");
+    right.blocks = WatchedHand::Blocks::in_acquire;
+    bool told = false;
+    const LiveOutcome o = run_case({plain.toml(), 30.0,
+                                    [&](run::Engine& engine) {
+                                        engine.edit([&] { return compile_text(more.toml()); },
+                                                    [&](const run::EditOutcome&) { told = true; });
+                                    },
+                                    [&](run::Engine&) { return right.is_blocked.load(); }},
+                                   left);
+    CHECK_FALSE(told);
+    CHECK(left.ms_to_zero(o.stopped_ns) < prompt_ms);
+    CHECK(ms_between(o.stopped_ns, o.returned_ns) < 2000.0);
+    right.blocks = WatchedHand::Blocks::never;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    CHECK_FALSE(right.is_blocked);
+}
+
 TEST_CASE("a run whose threads are refused says so and does not hang", "[live]") {
     watched_hand("left");
     PatchText patch;
