@@ -24,7 +24,7 @@ Wrench clamp_to_device(const Wrench& wanted, const DeviceInfo& device) noexcept 
 }
 
 void DeviceGuard::commit(HapticDevice& device, const Wrench& wanted, std::int64_t now_ns) noexcept {
-    if (!guard_.begin()) {
+    if (is_overdue_.load(std::memory_order_acquire) || !guard_.begin()) {
         // A force that is kept away on purpose is no fault; what the hand is to feel once it is no more, is.
         const bool is_on_purpose =
             lets_go_.load(std::memory_order_acquire) || (is_let_go_.load(std::memory_order_acquire) && is_none(wanted));
@@ -34,7 +34,7 @@ void DeviceGuard::commit(HapticDevice& device, const Wrench& wanted, std::int64_
     }
     const Wrench given = clamp_to_device(wanted, device.info());
     device.commit(given);
-    refused_ = refused_ || run::steady_ns() - now_ns > guard_.limit_ns;
+    if (run::steady_ns() - now_ns > guard_.limit_ns) is_overdue_.store(true, std::memory_order_release);
     guard_.end(given, now_ns);
 }
 
@@ -59,11 +59,13 @@ void DeviceGuard::poll(HapticDevice& device, std::int64_t now_ns) noexcept {
     const bool was_taken = guard_.is_taken();
     Wrench out;
     if (lets_go && !was_taken) is_let_go_.store(true, std::memory_order_release);
-    if (!guard_.poll(now_ns, out, retired || lets_go)) {
+    const bool at_once = retired || lets_go || is_overdue_.load(std::memory_order_acquire);
+    if (!guard_.poll(now_ns, out, at_once)) {
         if (!was_taken) is_let_go_.store(false, std::memory_order_release);
         if (retired && !guard_.has_committed()) at_rest_.store(true, std::memory_order_release);
         return;
     }
+    is_overdue_.store(false, std::memory_order_release);
     device.commit(out);
     if (!guard_.has_faded(now_ns)) return;
     if (retired) at_rest_.store(true, std::memory_order_release);

@@ -32,8 +32,8 @@ public:
     void set_limit(std::int64_t ns) noexcept { guard_.limit_ns = ns; }
 
     // Thread of the tick.
-    /// Gives the device a force, unless the watchdog has it. May call the system, in the driver. A driver that takes longer
-    /// than the limit counts as taken: the force comes in anew.
+    /// Gives the device a force, unless the watchdog has it. May call the system, in the driver. When the driver takes
+    /// longer than the limit, the watchdog gets the device as soon as it comes back.
     void commit(HapticDevice& device, const Wrench& wanted, std::int64_t now_ns) noexcept;
     /// Before the steps: the watchdog had the device since the last call, so that forces must come in anew.
     bool was_taken() noexcept;
@@ -69,6 +69,7 @@ private:
     std::atomic<std::int64_t> asked_ns_{0};  // when the tick's thread was last refused
     std::atomic<bool> retired_{false}, at_rest_{false}, fade_asked_{false}, lets_go_{false};
     std::atomic<bool> is_let_go_{false};  // the watchdog has taken it on purpose
+    std::atomic<bool> is_overdue_{false};  // a commit took too long: the watchdog is to take the device
     bool refused_ = false;  // thread of the tick
     control::Fault last_ = control::Fault::none;
     std::array<DeviceFault, 64> faults_;

@@ -37,8 +37,9 @@ void Watchdog::watch(build::DeviceSlot& slot) {
 }
 
 void Watchdog::forget_beyond(std::size_t count) {
+    if (count >= watched()) return;
     // Whoever lets go of all hands at this moment may look at these once more: their memory stays until the last moment.
-    const std::size_t had = count_.exchange(std::min(count, watched()), std::memory_order_acq_rel);
+    const std::size_t had = count_.exchange(count, std::memory_order_acq_rel);
     sleep_until(steady_ns() + 2 * look_every_ns);
     for (std::size_t i = count; i < had; ++i) watches_[i].reset();
 }
