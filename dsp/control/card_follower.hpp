@@ -26,9 +26,9 @@ public:
     /// `rate` of the card, Hz; `margin_s` of sound that stays in the ring for late threads.
     void prepare(double rate, double margin_s) noexcept;
 
-    /// Call at least ten times per second. `reached` is the logical time of the engine. Returns the number of frames
-    /// that the card should skip; the caller adds them to `next` from then on.
-    std::int64_t follow(const CardView& card, Flicks reached, TrimmedClock& clock) noexcept;
+    /// Call at least ten times per second. `now_ns` is the steady time. Returns the number of frames that the card should
+    /// skip; the caller adds them to `next` from then on.
+    std::int64_t follow(const CardView& card, std::int64_t now_ns, TrimmedClock& clock) noexcept;
 
     /// Frames that should remain in the ring after a callback.
     std::int64_t target() const noexcept { return margin_ + largest_; }

@@ -11,12 +11,13 @@ namespace tactus::build {
 
 namespace {
 
-/// Nodes from which values reach a device, in any group: a force may depend on them.
-std::vector<bool> force_path(const Generation& generation) {
+/// Nodes from which values reach a device that `counts`, in any group.
+template <class Counts>
+std::vector<bool> nodes_before(const Generation& generation, const Counts& counts) {
     std::vector<bool> on_path;
     for (const auto& node : generation.nodes)
-        on_path.push_back(
-            std::ranges::any_of(node->uses.devices, [](const auto& use) { return use.second == DeviceUse::drive; }));
+        on_path.push_back(std::ranges::any_of(
+            node->uses.devices, [&](const auto& use) { return use.second == DeviceUse::drive && counts(*use.first); }));
     std::vector<std::vector<int>> sources(on_path.size());
     for (const compile::PlanWire& wire : generation.plan.wires)
         if (wire.from_node >= 0) sources[static_cast<std::size_t>(wire.to_node)].push_back(wire.from_node);
@@ -34,6 +35,10 @@ std::vector<bool> force_path(const Generation& generation) {
         }
     }
     return on_path;
+}
+
+std::vector<bool> force_path(const Generation& generation) {
+    return nodes_before(generation, [](const DeviceSlot&) { return true; });
 }
 
 /// The nodes and wires of the force path, as text.
@@ -60,6 +65,10 @@ std::vector<std::string> describe_force_path(const Generation& generation) {
 }
 
 }  // namespace
+
+std::vector<bool> nodes_of_forces(const Generation& generation) {
+    return nodes_before(generation, [](const DeviceSlot& slot) { return slot.port.info.fingers == 0; });
+}
 
 bool changes_force_path(const Generation& before, const Generation& now) {
     const std::vector<bool> on_path = force_path(now);

@@ -146,6 +146,11 @@ int Generation::find(std::string_view node) const {
     return -1;
 }
 
+run::ParamRamp* Generation::ramp_of(const Param* param) const {
+    const auto found = ramps.find(param);
+    return found == ramps.end() ? nullptr : found->second.get();
+}
+
 bool Generation::keeps(const run::GroupRuntime* group) const {
     return std::ranges::any_of(groups, [group](const auto& mine) { return mine.get() == group; });
 }

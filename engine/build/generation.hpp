@@ -7,12 +7,14 @@
 #include "engine/io/host.hpp"
 #include "engine/observe/observer.hpp"
 #include "engine/run/group_runtime.hpp"
+#include "engine/run/param_ramps.hpp"
 #include "graph/compile/plan.hpp"
 
 #include <functional>
 #include <map>
 #include <memory>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -43,6 +45,7 @@ struct BuildContext {
     /// Where the values of an output are recorded, or null. Named "node.port"; empty: there is no take.
     std::function<RecordStream*(const std::string& port, const ValueType&, const run::GroupRuntime&)> take;
     int next_group = 0, next_link = 0;
+    int group_before = 0, link_before = 0;  ///< the same before the plan that is being built
     observe::Observer* observer = nullptr;  ///< who looks on, or null
 };
 
@@ -57,6 +60,12 @@ struct Generation {
     std::vector<std::unique_ptr<GroupProgram>> programs;      ///< as plan.groups
     std::vector<std::shared_ptr<run::Link>> links;
     std::vector<std::unique_ptr<std::vector<std::byte>>> memory;  ///< values of outputs and unconnected inputs
+    /// Of each live parameter on which a force depends.
+    std::unordered_map<const Param*, std::shared_ptr<run::ParamRamp>> ramps;
+    std::unique_ptr<SwitchGate> gate;  ///< live, when it reaches a hand
+
+    /// Of a parameter, or null: it changes at once.
+    run::ParamRamp* ramp_of(const Param* param) const;
 
     /// Index of a node, −1: none of that name.
     int find(std::string_view node) const;

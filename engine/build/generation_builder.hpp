@@ -68,6 +68,7 @@ private:
     void find_delays_before(GroupProgram& program, const GroupProgram& old) const;
     void find_outputs_before(GroupProgram& program, const GroupProgram& old) const;
     void assign_devices(std::size_t index);
+    void make_ramps();
     /// What has to be set on a node that goes on.
     void rewire(std::size_t index);
 

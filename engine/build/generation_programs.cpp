@@ -91,12 +91,31 @@ void GenerationBuilder::make_programs() {
         producer.new_outputs.push_back(link.get());
     }
     for (std::size_t g = 0; g < made_->groups.size(); ++g) finish_program(g);
+    make_ramps();
     for (std::size_t i = 0; i < plan().nodes.size(); ++i) {
         if (made_->survived[i]) rewire(i);
         assign_devices(i);
     }
     if (!before_ || !changes_force_path(*before_, *made_)) return;
-    for (const auto& program : made_->programs) program->changes_force = !program->driven.empty();
+    for (std::size_t g = 0; g < made_->groups.size(); ++g) {
+        const auto old = groups_before_.find(made_->groups[g].get());
+        const bool drove = old != groups_before_.end() && !before_->programs[old->second]->driven.empty();
+        made_->programs[g]->changes_force = drove || !made_->programs[g]->driven.empty();
+    }
+}
+
+void GenerationBuilder::make_ramps() {
+    const std::vector<bool> is_meant = nodes_of_forces(*made_);
+    for (std::size_t i = 0; i < made_->nodes.size(); ++i) {
+        if (!is_meant[i]) continue;
+        for (const auto& [name, param] : made_->nodes[i]->params) {
+            if (param->is_structural || param->is_discrete) continue;
+            auto& ramp = made_->ramps[param];
+            if (before_)
+                if (const auto old = before_->ramps.find(param); old != before_->ramps.end()) ramp = old->second;
+            if (!ramp) ramp = std::make_shared<run::ParamRamp>(*param);
+        }
+    }
 }
 
 void GenerationBuilder::assign_devices(std::size_t index) {
@@ -171,7 +190,7 @@ void GenerationBuilder::rewire(std::size_t index) {
         const double now = made_->patch_values[index].at(name);
         // A value set from outside stays until the patch's text says another.
         if (now != before_->patch_values[old].at(name) || driven_before_.contains(old_node.params.at(name)))
-            program.params.emplace_back(running.params.at(name), now);
+            program.params.push_back({running.params.at(name), now, made_->ramp_of(running.params.at(name))});
     }
 }
 

@@ -24,7 +24,8 @@ class ObservedPort;
 }
 namespace tactus::run {
 class GroupRuntime;
-}
+struct ParamRamp;
+}  // namespace tactus::run
 
 namespace tactus::build {
 
@@ -119,12 +120,25 @@ struct DeviceSlot {
     Wrench committed;  ///< of the last tick
 };
 
+/// A parameter of a node that goes on, and its value from now on.
+struct NewValue {
+    Param* param = nullptr;
+    double value = 0.0;
+    run::ParamRamp* ramp = nullptr;  ///< how it gets there, or null: at once
+};
+
+/// Live: closed until every hand that a plan reaches is without force. Shared by the programs of the plan.
+struct SwitchGate {
+    std::atomic<int> closed_by{0};  ///< groups whose hands still feel a force
+};
+
 struct GroupProgram {
     std::int64_t plan_number = 0;
     Flicks switch_time = 0;  ///< logical time from which on it runs
     int backlog = 0;  ///< activations that may run late
     bool changes_force = false;  ///< forces on a hand may jump when this takes over
     Flicks fade_time = 0;  ///< forces are faded from here to the switch; equal to it: they are not
+    SwitchGate* gate = nullptr;  ///< it takes over only when that is open; null: nothing is asked
     std::vector<Step> steps;
     std::vector<StepWires> wires;
     std::vector<PublishedOutput> published;  ///< every output, in the order of the steps
@@ -140,7 +154,7 @@ struct GroupProgram {
     std::vector<SnapshotOutput*> snapshots;
     // What to do when taking over:
     std::vector<std::pair<Input*, const Input*>> wiring;  ///< inputs of nodes that go on, and how they are wired now
-    std::vector<std::pair<Param*, double>> params;  ///< of nodes that go on
+    std::vector<NewValue> params;
     std::vector<MovedOutput> moved;
 };
 

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/io/device_guard.hpp"
 
+#include "engine/run/clock.hpp"
+
 #include <glm/geometric.hpp>
 
 namespace tactus::io {
 
 namespace {
+
+bool is_none(const Wrench& w) noexcept { return w.force == Vec3(0.0) && w.torque == Vec3(0.0); }
 
 Vec3 shorten(const Vec3& v, double length) noexcept {
     const double excess = length > 0.0 ? glm::length(v) / length : 0.0;
@@ -20,18 +24,22 @@ Wrench clamp_to_device(const Wrench& wanted, const DeviceInfo& device) noexcept 
 }
 
 void DeviceGuard::commit(HapticDevice& device, const Wrench& wanted, std::int64_t now_ns) noexcept {
-    if (!guard_.begin()) {
-        refused_ = true;
+    if (is_overdue_.load(std::memory_order_acquire) || !guard_.begin()) {
+        // A force that is kept away on purpose is no fault; what the hand is to feel once it is no more, is.
+        const bool is_on_purpose =
+            lets_go_.load(std::memory_order_acquire) || (is_let_go_.load(std::memory_order_acquire) && is_none(wanted));
+        refused_ = refused_ || !is_on_purpose;
         asked_ns_.store(now_ns, std::memory_order_release);
         return;
     }
     const Wrench given = clamp_to_device(wanted, device.info());
     device.commit(given);
+    if (run::steady_ns() - now_ns > guard_.limit_ns) is_overdue_.store(true, std::memory_order_release);
     guard_.end(given, now_ns);
 }
 
 bool DeviceGuard::was_taken() noexcept {
-    const bool taken = refused_ || guard_.is_taken();
+    const bool taken = refused_ || (guard_.is_taken() && !is_let_go_.load(std::memory_order_acquire));
     refused_ = false;
     return taken;
 }
@@ -47,16 +55,24 @@ void DeviceGuard::note(control::Fault reason, std::int64_t tick, double force_N)
 
 void DeviceGuard::poll(HapticDevice& device, std::int64_t now_ns) noexcept {
     if (at_rest_.load(std::memory_order_relaxed)) return;
-    const bool retired = retired_.load(std::memory_order_acquire);
+    const bool retired = retired_.load(std::memory_order_acquire), lets_go = lets_go_.load(std::memory_order_acquire);
+    const bool was_taken = guard_.is_taken();
     Wrench out;
-    if (!guard_.poll(now_ns, out, retired)) {
+    if (lets_go && !was_taken) is_let_go_.store(true, std::memory_order_release);
+    const bool at_once = retired || lets_go || is_overdue_.load(std::memory_order_acquire);
+    if (!guard_.poll(now_ns, out, at_once)) {
+        if (!was_taken) is_let_go_.store(false, std::memory_order_release);
         if (retired && !guard_.has_committed()) at_rest_.store(true, std::memory_order_release);
         return;
     }
+    is_overdue_.store(false, std::memory_order_release);
     device.commit(out);
     if (!guard_.has_faded(now_ns)) return;
     if (retired) at_rest_.store(true, std::memory_order_release);
-    else if (now_ns - asked_ns_.load(std::memory_order_acquire) <= guard_.limit_ns) guard_.release();
+    else if (!lets_go && now_ns - asked_ns_.load(std::memory_order_acquire) <= guard_.limit_ns) {
+        guard_.release();
+        is_let_go_.store(false, std::memory_order_release);
+    }
 }
 
 }  // namespace tactus::io

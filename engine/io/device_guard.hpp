@@ -32,7 +32,8 @@ public:
     void set_limit(std::int64_t ns) noexcept { guard_.limit_ns = ns; }
 
     // Thread of the tick.
-    /// Gives the device a force, unless the watchdog has it. May call the system, in the driver.
+    /// Gives the device a force, unless the watchdog has it. May call the system, in the driver. When the driver takes
+    /// longer than the limit, the watchdog gets the device as soon as it comes back.
     void commit(HapticDevice& device, const Wrench& wanted, std::int64_t now_ns) noexcept;
     /// Before the steps: the watchdog had the device since the last call, so that forces must come in anew.
     bool was_taken() noexcept;
@@ -45,6 +46,10 @@ public:
     /// Takes the device when its time has come, fades the force, gives the device back once the force is zero and the
     /// tick's thread asks for it again.
     void poll(HapticDevice& device, std::int64_t now_ns) noexcept;
+    /// The force fades at once, on purpose, and stays away until `take_up`. Whoever asks sees to it that forces come in
+    /// anew. Any thread; wait-free.
+    void let_go() noexcept { lets_go_.store(true, std::memory_order_release); }
+    void take_up() noexcept { lets_go_.store(false, std::memory_order_release); }
     /// The force is to fade and come in anew, for a reason outside of the device. Any thread; wait-free.
     void ask_fade() noexcept { fade_asked_.store(true, std::memory_order_relaxed); }
     /// True once after `ask_fade`. Thread of the tick; wait-free.
@@ -62,7 +67,9 @@ public:
 private:
     control::CommitGuard guard_;
     std::atomic<std::int64_t> asked_ns_{0};  // when the tick's thread was last refused
-    std::atomic<bool> retired_{false}, at_rest_{false}, fade_asked_{false};
+    std::atomic<bool> retired_{false}, at_rest_{false}, fade_asked_{false}, lets_go_{false};
+    std::atomic<bool> is_let_go_{false};  // the watchdog has taken it on purpose
+    std::atomic<bool> is_overdue_{false};  // a commit took too long: the watchdog is to take the device
     bool refused_ = false;  // thread of the tick
     control::Fault last_ = control::Fault::none;
     std::array<DeviceFault, 64> faults_;

@@ -123,6 +123,13 @@ DevicePort& EngineHost::device(const std::string& wanted, DeviceUse use, const S
         for (const patch::PatchAsset& known : patch_.assets) names.push_back(known.name);
         throw Error(where, fmt::format("no asset '{}' in [assets]{}", asset, did_you_mean(asset, names)));
     };
+    // A driver may block when it is opened.
+    struct Opening {
+        explicit Opening(run::DriverGate& gate) : driver(gate) { driver.enter(); }
+        ~Opening() { driver.leave(); }
+        run::DriverGate& driver;
+    };
+    std::optional<Opening> opening(std::in_place, driver_);
     auto slot = std::make_unique<build::DeviceSlot>();
     slot->name = name;
     if (recorded_) {
@@ -140,6 +147,8 @@ DevicePort& EngineHost::device(const std::string& wanted, DeviceUse use, const S
     slot->device->prepare(seconds(period_));
     slot->port.info = slot->device->info();
     slot->port.sample = slot->device->acquire(0.0);
+    opening.reset();
+    if (driver_.is_forsaken()) throw Error(where, "the run has ended");
     slot->group = group_;
     slot->period = period_;
     for (const auto* list : {&devices, &opened_.devices})

@@ -5,6 +5,7 @@
 #include "engine/build/group_program.hpp"
 #include "engine/io/sound_card.hpp"
 #include "engine/io/streams.hpp"
+#include "engine/run/driver_gate.hpp"
 #include "graph/patch/patch.hpp"
 
 #include <filesystem>
@@ -63,6 +64,10 @@ public:
     void keep();
     /// Closes what was opened since `begin`.
     void discard();
+    /// Devices opened since `begin`.
+    const std::vector<std::unique_ptr<build::DeviceSlot>>& opened_devices() const { return opened_.devices; }
+    /// Any thread: if a driver is being opened, whoever does it is left behind, and gets an error when it comes back.
+    bool forsake_driver() noexcept { return driver_.forsake(); }
 
     /// Instead of opening devices, stand-ins for those of a run that is over: what they reported is in its log.
     void imitate(std::vector<RecordedDevice> recorded) { recorded_ = std::move(recorded); }
@@ -87,6 +92,7 @@ private:
     };
 
     patch::Patch patch_;
+    run::DriverGate driver_;
     std::optional<std::vector<RecordedDevice>> recorded_;
     Opened opened_;
     std::unordered_set<std::string> files_opened_, files_before_;  ///< recordings since `begin`, and those of the run

@@ -51,7 +51,7 @@ bool SoundCard::service(std::int64_t now_ns, Flicks reached, control::TrimmedClo
         lost_ = true;
         ++losses_;
         if (!lost_at_) lost_at_ = reached;
-        if (clock) clock->trim(reached, 1.0, 0.0);
+        if (clock) clock->trim(now_ns, 1.0, 0.0);
         return true;
     }
     // A card whose node an edit took away has nothing to tell about the engine's time.
@@ -64,7 +64,7 @@ bool SoundCard::service(std::int64_t now_ns, Flicks reached, control::TrimmedClo
     // What is still to be left out counts as gone already.
     const std::int64_t next = progress.taken + shift_.load(std::memory_order_relaxed) + (skipped_ - left_out);
     const std::int64_t more =
-        follower_.follow({progress.frames, next, progress.steady_ns, progress.largest}, reached, *clock);
+        follower_.follow({progress.frames, next, progress.steady_ns, progress.largest}, now_ns, *clock);
     if (more > 0) {
         skipped_ += more;
         sink_->leave_out(more);

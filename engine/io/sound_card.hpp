@@ -25,7 +25,7 @@ public:
     bool write(std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept override;
 
     // Control thread.
-    /// Looks at what the card did. Trims `clock` when given one. True at the moment when the card turns out to be lost:
+    /// Looks at what the card did. Trims `clock`, when given one, where it is at `now_ns`. `reached`: logical time. True at the moment when the card turns out to be lost:
     /// no callback came for `longest_silence_ns`.
     bool service(std::int64_t now_ns, Flicks reached, control::TrimmedClock* clock);
     void close() { sink_->close(); }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include <errno.h>
 #include <time.h>
 
 namespace tactus::run {
@@ -22,9 +23,11 @@ inline std::int64_t thread_ns() noexcept {
     return t.tv_sec * 1'000'000'000LL + t.tv_nsec;
 }
 
+/// Signals do not end it.
 inline void sleep_until(std::int64_t when_ns) noexcept {
     const timespec t{when_ns / 1'000'000'000, when_ns % 1'000'000'000};
-    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr);
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
+    }
 }
 
 }  // namespace tactus::run

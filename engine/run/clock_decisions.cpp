@@ -9,14 +9,18 @@
 
 namespace tactus::run {
 
-void ClockDecisions::apply_parameters(std::int64_t tick) noexcept {
-    while (has_change_ || (has_change_ = changes_.pop(change_))) {
+void ClockDecisions::apply_parameters(std::int64_t tick, std::int64_t plan, ParamRamps& ramps) noexcept {
+    while (has_change_ || (has_change_ = changes_.ring.pop(change_))) {
         if (change_.when > tick * period_) return;
-        change_.param->value = change_.value;
-        log_.note(take::TimingKind::parameter, tick, {.value = change_.id});
+        const std::int64_t length = change_.ramp ? ParamRamps::length(period_) : 0;
+        ramps.set(*change_.param, change_.ramp, change_.value, tick, length, plan);
+        log_.note(take::TimingKind::parameter, tick, {.source = static_cast<int>(length), .value = change_.id});
         has_change_ = false;
+        changes_.applied.fetch_add(1, std::memory_order_release);
     }
 }
+
+std::int64_t ClockDecisions::ramp_length(std::int64_t) const noexcept { return ParamRamps::length(period_); }
 
 bool ClockDecisions::switches_to(const build::GroupProgram& next, std::int64_t tick) noexcept {
     return tick * period_ >= next.switch_time;
@@ -50,14 +54,16 @@ void OfflineDecisions::commit(build::DeviceSlot& slot) noexcept {
 }
 
 bool LiveDecisions::holds_off(std::int64_t tick, bool before) noexcept {
-    const bool now = pause_.holds_off(tick * period_);
+    const bool now = pause_.holds_off(tick * period_, period_);
     if (now != before) log_.note(take::TimingKind::fade, tick, {.source = 1, .value = now ? 1 : 0});
     return now;
 }
 
 bool LiveDecisions::switches_to(const build::GroupProgram& next, std::int64_t tick) noexcept {
     const bool now = ClockDecisions::switches_to(next, tick);
-    if (now) log_.note(take::TimingKind::plan, tick, {.value = next.plan_number});
+    if (now)
+        log_.note(take::TimingKind::plan, tick,
+                  {.source = static_cast<int>(ParamRamps::length(period_)), .value = next.plan_number});
     return now;
 }
 
@@ -86,8 +92,10 @@ bool LiveDecisions::drops(const Link& link, std::int64_t tick, int frames) noexc
 }
 
 void LiveDecisions::commit(build::DeviceSlot& slot) noexcept {
+    if (!driver.enter()) return;
     slot.guard.commit(*slot.device, slot.port.wrench, steady_ns());
     if (slot.port.info.fingers > 0) slot.device->drive(slot.port.motors);
+    driver.leave();
 }
 
 }  // namespace tactus::run

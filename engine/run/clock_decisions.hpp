@@ -11,10 +11,11 @@ namespace tactus::run {
 class ClockDecisions : public Decisions {
 public:
     /// `changes` is filled by the control thread, in the order of time. `period` of the group, flicks.
-    ClockDecisions(DecisionLog& log, Flicks period, Ring<ParameterChange>& changes)
+    ClockDecisions(DecisionLog& log, Flicks period, ChangeQueue& changes)
         : Decisions(log), period_(period), changes_(changes) {}
 
-    void apply_parameters(std::int64_t tick) noexcept override;
+    void apply_parameters(std::int64_t tick, std::int64_t plan, ParamRamps& ramps) noexcept override;
+    std::int64_t ramp_length(std::int64_t tick) const noexcept override;
     bool switches_to(const build::GroupProgram& next, std::int64_t tick) noexcept override;
     bool fades_for(const build::GroupProgram& next, std::int64_t tick) noexcept override;
     std::int64_t end_of_call(std::int64_t tick, std::int64_t until,
@@ -24,7 +25,7 @@ protected:
     const Flicks period_;
 
 private:
-    Ring<ParameterChange>& changes_;
+    ChangeQueue& changes_;
     ParameterChange change_;
     bool has_change_ = false;
 };
@@ -41,7 +42,7 @@ public:
 /// Real time: nobody waits. A value that is not there is missed, one that finds no room is dropped.
 class LiveDecisions final : public ClockDecisions {
 public:
-    LiveDecisions(DecisionLog& log, Flicks period, Ring<ParameterChange>& changes, const PauseWindow& pause)
+    LiveDecisions(DecisionLog& log, Flicks period, ChangeQueue& changes, const PauseWindow& pause)
         : ClockDecisions(log, period, changes), pause_(pause) {}
 
     bool holds_off(std::int64_t tick, bool before) noexcept override;

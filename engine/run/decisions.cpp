@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/run/decisions.hpp"
 
+#include "engine/run/clock.hpp"
 #include "engine/run/group_runtime.hpp"
 #include "engine/run/link.hpp"
 
@@ -37,6 +38,7 @@ bool Decisions::may_begin(const std::vector<Link*>& links, std::int64_t tick) co
 
 void Decisions::acquire(build::DeviceSlot& slot, std::int64_t tick, Flicks elapsed) noexcept {
     sample(slot, elapsed);
+    if (driver.is_forsaken()) return;
     log_.note(take::TimingKind::device_sample, tick, {slot.id, 1, 0, &slot.port.sample});
 }
 
@@ -54,8 +56,17 @@ bool Decisions::is_late(const Link& link, std::int64_t index, std::int64_t last,
     return index < std::min(wanted, last) && link.misses(wanted);
 }
 
+void Decisions::let_rest(build::DeviceSlot& slot) noexcept {
+    if (!driver.enter()) return;
+    slot.guard.commit(*slot.device, {}, steady_ns());
+    driver.leave();
+}
+
 void Decisions::sample(build::DeviceSlot& slot, Flicks elapsed) noexcept {
-    slot.port.sample = slot.device->acquire(seconds(elapsed));
+    if (!driver.enter()) return;
+    const DeviceSample sample = slot.device->acquire(seconds(elapsed));
+    if (!driver.leave()) return;
+    slot.port.sample = sample;
     slot.port.sample.taken = slot.guard.was_taken();
     slot.port.sample.sound_lost = slot.guard.is_asked_to_fade();
 }

@@ -5,6 +5,8 @@
 
 #include "dsp/core/ring.hpp"
 #include "engine/build/group_program.hpp"
+#include "engine/run/driver_gate.hpp"
+#include "engine/run/param_ramps.hpp"
 #include "engine/take/timing_log.hpp"
 
 #include <atomic>
@@ -22,6 +24,14 @@ struct ParameterChange {
     Flicks when = 0;     ///< applied at the first activation at or after
     Param* param = nullptr;
     double value = 0.0;  ///< SI
+    ParamRamp* ramp = nullptr;  ///< how it gets there, or null: at once
+};
+
+/// The changes of one group on their way to it.
+struct ChangeQueue {
+    Ring<ParameterChange> ring{1024};
+    std::int64_t given = 0;  ///< control thread
+    std::atomic<std::int64_t> applied{0};  ///< nothing refers to these any more
 };
 
 /// Where a group notes its decisions. Without a ring it notes nothing.
@@ -63,8 +73,10 @@ public:
     // Before a call.
     /// The activation to go on with: `tick`, or a later one when a log leaves some out.
     virtual std::int64_t skip_from(std::int64_t tick) const noexcept;
-    /// Sets the parameters that are due.
-    virtual void apply_parameters(std::int64_t tick) noexcept = 0;
+    /// Sets the parameters that are due, in `ramps`; the plan numbered `plan` runs.
+    virtual void apply_parameters(std::int64_t tick, std::int64_t plan, ParamRamps& ramps) noexcept = 0;
+    /// Activations over which parameters change that `next`, which takes over now, has changed.
+    virtual std::int64_t ramp_length(std::int64_t tick) const noexcept = 0;
     /// Forces are held off because the run pauses. `before`: what the last call said.
     virtual bool holds_off(std::int64_t tick, bool before) noexcept;
     /// `next` takes over now from the program that runs.
@@ -85,7 +97,8 @@ public:
     virtual bool may_begin(const std::vector<Link*>& links, std::int64_t tick) const noexcept;
 
     // In a call.
-    /// Puts the device's state into its port. `elapsed` in flicks since the last call.
+    /// Puts the device's state into its port. `elapsed` in flicks since the last call. When the thread was left behind in
+    /// the driver, `driver` says so.
     virtual void acquire(build::DeviceSlot& slot, std::int64_t tick, Flicks elapsed) noexcept;
     virtual LinkReading read(const Link& link, const GroupRuntime& producer, std::int64_t tick,
                              int frames) noexcept = 0;
@@ -93,8 +106,12 @@ public:
     virtual bool drops(const Link& link, std::int64_t tick, int frames) noexcept;
     /// Gives the device the force and motor speeds of its port.
     virtual void commit(build::DeviceSlot& slot) noexcept = 0;
+    /// Gives the device no force, through its guard.
+    void let_rest(build::DeviceSlot& slot) noexcept;
     /// All activations before `tick` are complete.
     virtual void pass(std::int64_t tick) noexcept;
+
+    DriverGate driver;  ///< every call of a driver passes it
 
 protected:
     /// The newest index that is there, at most the wanted one.
@@ -102,7 +119,7 @@ protected:
     /// `index` is older than the wanted one, and not because the producer ended: `last` is its last activation.
     static bool is_late(const Link& link, std::int64_t index, std::int64_t last, std::int64_t tick) noexcept;
     /// From the device itself.
-    static void sample(build::DeviceSlot& slot, Flicks elapsed) noexcept;
+    void sample(build::DeviceSlot& slot, Flicks elapsed) noexcept;
 
     DecisionLog& log_;
 };

@@ -34,71 +34,88 @@ std::uint64_t hash_of(const patch::Patch& patch) {
 
 }  // namespace
 
-Engine::Engine(compile::Plan plan, const EngineOptions& options)
-    : options_(options),
-      plan_hash_(hash_of(plan.patch)),
-      host_(options.folder, options.live, options.audio),
-      losses_(host_.notices),
-      recorder_(options_, host_, losses_),
-      context_{.host = host_,
-               .block = options.block,
-               .hash = options.hash,
-               .constants = {},
-               .take = {},
-               .observer = options.observer},
-      timeline_(options_, context_, recorder_),
-      edits_(options_, context_, timeline_, recorder_),
-      pause_(timeline_),
-      offline_(options_, timeline_, recorder_) {
-    if (options_.devices) host_.imitate(*options_.devices);
-    if (options_.take || options_.tap)
-        context_.take = [this](const std::string& port, const ValueType& type, const GroupRuntime& group) {
-            return recorder_.stream_for(port, type, group);
+Engine::Parts::Parts(const EngineOptions& options_)
+    : options(options_),
+      host(options.folder, options.live, options.audio),
+      losses(host.notices),
+      recorder(options, host, losses),
+      context{.host = host,
+              .block = options.block,
+              .hash = options.hash,
+              .constants = {},
+              .take = {},
+              .observer = options.observer},
+      timeline(options, context, recorder),
+      edits(options, context, timeline, recorder, time),
+      pause(timeline, time),
+      offline(options, timeline, recorder) {
+    if (options.devices) host.imitate(*options.devices);
+    if (options.take || options.tap)
+        context.take = [this](const std::string& port, const ValueType& type, const GroupRuntime& group) {
+            return recorder.stream_for(port, type, group);
         };
-    if (options_.replay && options_.replay->plan_hash != plan_hash_)
+}
+
+Engine::Engine(compile::Plan plan, const EngineOptions& options)
+    : plan_hash_(hash_of(plan.patch)), parts_(std::make_shared<Parts>(options)) {
+    if (options.replay && options.replay->plan_hash != plan_hash_)
         throw Error("the timing log was made with another patch or other settings; replay needs the same");
-    if (options_.take) options_.take->begin(plan.patch, plan_hash_);
-    host_.begin(plan.patch);
-    timeline_.begin(std::move(plan));
+    if (options.take) options.take->begin(plan.patch, plan_hash_);
+    parts_->host.begin(plan.patch);
+    parts_->timeline.begin(std::move(plan));
 }
 
 Engine::~Engine() = default;
 
-void Engine::schedule(compile::Plan plan, Flicks when) { timeline_.schedule(std::move(plan), when); }
+void Engine::schedule(compile::Plan plan, Flicks when) { parts_->timeline.schedule(std::move(plan), when); }
 
 void Engine::schedule_change(std::int64_t id, const std::string& node, const std::string& param, double value) {
-    timeline_.schedule_change(id, node, param, value);
+    parts_->timeline.schedule_change(id, node, param, value);
 }
 
-void Engine::render(int threads, const std::function<void(double)>& progress) { offline_.run(threads, progress); }
+void Engine::render(int threads, const std::function<void(double)>& progress) {
+    parts_->offline.run(threads, progress);
+}
 
 void Engine::run_live(const LiveOptions& options) {
-    if (options.log) recorder_.open_log(*options.log, plan_hash_, options_.seconds);
-    LiveRun({host_, timeline_, recorder_, edits_, pause_}, options).run();
+    Parts& p = *parts_;
+    if (options.log) p.recorder.open_log(*options.log, plan_hash_, p.options.seconds);
+    const auto run =
+        std::make_shared<LiveRun>(LiveParts{p.host, p.timeline, p.recorder, p.edits, p.time, p.pause}, options);
+    struct Keep {
+        ~Keep() {
+            if (!run->has_left_threads()) return;
+            keep_for_ever(run);
+            keep_for_ever(parts);
+        }
+        const std::shared_ptr<LiveRun>& run;
+        const std::shared_ptr<Parts>& parts;
+    } const keep{run, parts_};
+    run->run();
 }
 
 void Engine::edit(std::function<compile::Plan()> make, std::function<void(const EditOutcome&)> told) {
-    edits_.edit(std::move(make), std::move(told));
+    parts_->edits.edit(std::move(make), std::move(told));
 }
 
 Flicks Engine::set(const std::string& node, const std::string& param, const std::string& text) {
-    return edits_.set(node, param, text);
+    return parts_->edits.set(node, param, text);
 }
 
-void Engine::record(bool wanted) { recorder_.want(wanted); }
+void Engine::record(bool wanted) { parts_->recorder.want(wanted); }
 
-void Engine::stop() { offline_.stop(); }
+void Engine::stop() { parts_->offline.stop(); }
 
-void Engine::complete() { recorder_.finish(port_hashes()); }
+void Engine::complete() { parts_->recorder.finish(port_hashes()); }
 
 void Engine::finish() {
     complete();
     if (!losses().empty()) throw Error(losses().front());
 }
 
-Report Engine::report() const { return timeline_.report(); }
+Report Engine::report() const { return parts_->timeline.report(); }
 
-Engine::PortHashes Engine::port_hashes() const { return timeline_.port_hashes(); }
+Engine::PortHashes Engine::port_hashes() const { return parts_->timeline.port_hashes(); }
 
 std::uint64_t Engine::output_hash() const {
     Hash hash;
@@ -109,6 +126,6 @@ std::uint64_t Engine::output_hash() const {
     return hash.value();
 }
 
-double Engine::progress_seconds() const { return timeline_.progress_seconds(); }
+double Engine::progress_seconds() const { return parts_->timeline.progress_seconds(); }
 
 }  // namespace tactus::run

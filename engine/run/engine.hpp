@@ -49,17 +49,17 @@ public:
     Flicks set(const std::string& node, const std::string& param, const std::string& text);
     /// While a live run goes on, from `watch`: forces fade to zero and logical time stops, or it goes on and forces
     /// come in anew. A take repeats it to the bit.
-    void pause(bool wanted) { pause_.want(wanted); }
+    void pause(bool wanted) { parts_->pause.want(wanted); }
     /// While a live run with a take goes on, from `watch`: from a moment a little ahead on, the same for all groups,
     /// the take holds every value, or no more. What timing decided it holds from the beginning, so it repeats the run
     /// up to there. No tick is disturbed. Throws Error when the take was given up.
     void record(bool wanted);
-    bool is_recording() const { return recorder_.is_recording(); }
+    bool is_recording() const { return parts_->recorder.is_recording(); }
     /// Some values are in the take.
-    bool was_recorded() const { return recorder_.was_recorded(); }
-    Pausing pausing() const { return pause_.state(); }
+    bool was_recorded() const { return parts_->recorder.was_recorded(); }
+    Pausing pausing() const { return parts_->pause.state(); }
     /// No edit is on its way.
-    bool is_settled() const { return edits_.is_settled(); }
+    bool is_settled() const { return parts_->edits.is_settled(); }
 
     /// During a render, any thread: it ends soon, as if it had been asked for no more.
     void stop();
@@ -69,7 +69,7 @@ public:
     /// The same; throws Error when there are losses.
     void finish();
     /// What the disk had no room for, and why; among the notices, too. Control thread.
-    const std::vector<std::string>& losses() const { return losses_.list(); }
+    const std::vector<std::string>& losses() const { return parts_->losses.list(); }
 
     /// What the nodes report. After the run.
     Report report() const;
@@ -79,28 +79,36 @@ public:
     PortHashes port_hashes() const;
 
     /// The plan that runs, or ran last.
-    const compile::Plan& plan() const { return timeline_.now().plan; }
+    const compile::Plan& plan() const { return parts_->timeline.now().plan; }
     /// Every group that ever ran, the first plan's first.
-    const std::vector<std::shared_ptr<GroupRuntime>>& groups() const { return timeline_.groups(); }
+    const std::vector<std::shared_ptr<GroupRuntime>>& groups() const { return parts_->timeline.groups(); }
     /// Those of the plan that runs. Control thread.
-    const std::vector<std::shared_ptr<build::LiveNode>>& nodes() const { return timeline_.now().nodes; }
-    const io::EngineHost& host() const { return host_; }
+    const std::vector<std::shared_ptr<build::LiveNode>>& nodes() const { return parts_->timeline.now().nodes; }
+    const io::EngineHost& host() const { return parts_->host; }
     std::uint64_t plan_hash() const { return plan_hash_; }
-    std::int64_t edits() const { return timeline_.now().number; }
+    std::int64_t edits() const { return parts_->timeline.now().number; }
     /// Logical time that every group has reached, s.
     double progress_seconds() const;
 
 private:
-    EngineOptions options_;
+    /// All that threads of the run refer to. One that a driver keeps for ever keeps this for ever.
+    struct Parts {
+        explicit Parts(const EngineOptions& options_);
+
+        EngineOptions options;
+        io::EngineHost host;
+        Losses losses;
+        Recorder recorder;
+        build::BuildContext context;
+        Timeline timeline;
+        LiveTime time;
+        LiveEdits edits;
+        PauseControl pause;
+        OfflineRun offline;
+    };
+
     std::uint64_t plan_hash_ = 0;
-    io::EngineHost host_;
-    Losses losses_;
-    Recorder recorder_;
-    build::BuildContext context_;
-    Timeline timeline_;
-    LiveEdits edits_;
-    PauseControl pause_;
-    OfflineRun offline_;
+    std::shared_ptr<Parts> parts_;
 };
 
 }  // namespace tactus::run

@@ -4,6 +4,7 @@
 #include "engine/run/clock.hpp"
 #include "engine/run/group_runtime.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 namespace tactus::run {
@@ -21,12 +22,13 @@ void GroupRuntime::apply_pause() noexcept {
 
 void GroupRuntime::rest() noexcept {
     if (!program_) return;  // made by an edit while the run stands
-    for (build::DeviceSlot* slot : program_->driven) slot->guard.commit(*slot->device, {}, steady_ns());
+    for (build::DeviceSlot* slot : program_->driven) decisions_->let_rest(*slot);
 }
 
 void GroupRuntime::take_over(build::GroupProgram& next) noexcept {
+    const std::int64_t ramp_length = program_ ? decisions_->ramp_length(next_) : 0;
     if (program_) {
-        fades_for_plan_ = false;
+        fades_for_plan_ = has_let_go_ = false;
         hold_off();
         program_->ran = ran_;
         for (build::PublishedOutput& output : next.published) {
@@ -41,7 +43,9 @@ void GroupRuntime::take_over(build::GroupProgram& next) noexcept {
         output.port->data = output.to;
     }
     for (const auto& [input, wired] : next.wiring) *input = *wired;
-    for (const auto& [param, value] : next.params) param->value = value;
+    ramps_.keep(next.plan_number);
+    for (const build::NewValue& changed : next.params)
+        ramps_.set(*changed.param, changed.ramp, changed.value, next_, ramp_length, next.plan_number);
     for (const auto& delay : next.delays)
         if (delay->before) delay->history.swap(delay->before->history);
     for (Link* link : next.ended) link->abandon();
@@ -60,7 +64,7 @@ bool GroupRuntime::take_changes() noexcept {
         if (!upcoming_ && taken_ < scheduled.size()) upcoming_ = scheduled[taken_++];
         if (!upcoming_) programs_.pop(upcoming_);
         if (program_) {
-            decisions_->apply_parameters(next_);
+            decisions_->apply_parameters(next_, plan_number(), ramps_);
             apply_pause();
         }
         if (!upcoming_ || !switch_if_due()) return took_over;
@@ -68,10 +72,23 @@ bool GroupRuntime::take_changes() noexcept {
     }
 }
 
+bool GroupRuntime::is_let_go() noexcept {
+    build::SwitchGate* const gate = upcoming_->gate;
+    if (!gate) return true;
+    if (fades_for_plan_ && !has_let_go_ && upcoming_->changes_force) {
+        // At least one tick has run since the fade began, which is long enough for a force of zero to stay so.
+        has_let_go_ = std::ranges::all_of(program_->driven, [](const build::DeviceSlot* slot) {
+            return slot->port.wrench.force == Vec3(0.0) && slot->port.wrench.torque == Vec3(0.0);
+        });
+        if (has_let_go_) gate->closed_by.fetch_sub(1, std::memory_order_acq_rel);
+    }
+    return gate->closed_by.load(std::memory_order_acquire) == 0;
+}
+
 bool GroupRuntime::switch_if_due() noexcept {
     // A group begins with its first program at the time that the plan says; only later ones are decided.
-    const bool must_switch =
-        program_ ? decisions_->switches_to(*upcoming_, next_) : next_ * plan->period >= upcoming_->switch_time;
+    const bool must_switch = program_ ? is_let_go() && decisions_->switches_to(*upcoming_, next_)
+                                      : next_ * plan->period >= upcoming_->switch_time;
     if (must_switch) {
         take_over(*upcoming_);
         upcoming_ = nullptr;

@@ -19,6 +19,7 @@ GroupRuntime::GroupRuntime(const compile::PlanGroup& description, int number, in
       max_frames(frames),
       log(number),
       description_(description),
+      ramps_(description.period),
       decisions_(std::make_unique<OfflineDecisions>(log, description.period, changes_)) {}
 
 GroupRuntime::~GroupRuntime() = default;
@@ -39,7 +40,7 @@ int GroupRuntime::cut(int frames) const noexcept {
     };
     for (const Link* link : program_->inputs) cut_at(link->window_end(next_));
     for (const auto& delay : program_->delays) cut_at(next_ + delay->count);
-    until = decisions_->end_of_call(next_, until, upcoming_);
+    until = decisions_->end_of_call(next_, ramps_.next_change(next_, until), upcoming_);
     return static_cast<int>(std::max<std::int64_t>(until - next_, 1));
 }
 
@@ -95,12 +96,14 @@ int GroupRuntime::call(int frames) noexcept {
 }
 
 void GroupRuntime::begin_call(int frames) noexcept {
+    ramps_.advance(next_);
     int n = cut(plan->has_audio ? frames : 1);
     // Who asked for room for more than one could wait for ever, for a reader that waits for the first of them.
     while (n > 1 && !decisions_->has_room(program_->outputs, next_, n)) n /= 2;
     begun_ = n;
     now = next_ * plan->period;
     acquire();
+    if (is_forsaken()) return;
     RealtimeScope scope;
     read_links(n);
     for (SnapshotOutput* output : program_->snapshots) {
@@ -114,6 +117,7 @@ void GroupRuntime::begin_call(int frames) noexcept {
 }
 
 int GroupRuntime::finish_call() noexcept {
+    if (is_forsaken()) return 0;
     const int n = std::exchange(begun_, 0);
     {
         RealtimeScope scope;
@@ -126,6 +130,7 @@ int GroupRuntime::finish_call() noexcept {
         slot->port.wrench = io::clamp_to_device(slot->port.wrench, slot->port.info);
         slot->committed = slot->port.wrench;
         decisions_->commit(*slot);
+        if (is_forsaken()) return 0;
     }
     telemetry.ticks.fetch_add(n, std::memory_order_relaxed);
     last_ = next_ + n - 1;
@@ -137,7 +142,9 @@ int GroupRuntime::finish_call() noexcept {
 
 void GroupRuntime::skip_to(std::int64_t to) noexcept {
     telemetry.skipped.fetch_add(to - next_, std::memory_order_relaxed);
-    log.note(take::TimingKind::skipped, next_, {.count = to - next_});
+    constexpr std::int64_t most = std::int64_t{1} << 30;  // of one record
+    for (std::int64_t at = next_; at < to; at += most)
+        log.note(take::TimingKind::skipped, at, {.count = std::min(to - at, most)});
     next_ = to;
     done_.store(next_, std::memory_order_release);
 }

@@ -52,7 +52,17 @@ public:
 
     // Control thread. False when too much is waiting already.
     bool hand_over(build::GroupProgram* program) { return programs_.push(program); }
-    bool hand_over(const ParameterChange& change) { return changes_.push(change); }
+    bool hand_over(const ParameterChange& change) {
+        if (!changes_.ring.push(change)) return false;
+        ++changes_.given;
+        return true;
+    }
+    /// How many changes it was given by now.
+    std::int64_t changes_given() const { return changes_.given; }
+    /// How many of them it does not refer to any more. Any thread.
+    std::int64_t changes_applied() const noexcept { return changes_.applied.load(std::memory_order_acquire); }
+    /// Leaves the group's thread behind if it is in a driver; nothing of the group may be destroyed then.
+    bool forsake() noexcept { return decisions_->driver.forsake(); }
     // Control thread, before the group's thread starts.
     /// The clock decides in real time. `pause` must outlive the group's thread.
     void decide_live(const PauseWindow& pause);
@@ -62,6 +72,12 @@ public:
         next_ = tick;
         done_.store(tick);
     }
+
+    // Own thread.
+    /// It was left behind in a driver: the thread must end and touch nothing.
+    bool is_forsaken() const noexcept { return decisions_->driver.is_forsaken(); }
+    /// It runs a program.
+    bool has_program() const noexcept { return program_ != nullptr; }
 
     // Own thread, before each call.
     /// Applies the parameters and takes over the program that are due at the next activation. True when it took one
@@ -91,6 +107,8 @@ private:
     int cut(int frames) const noexcept;
     void hold_off() noexcept;
     void apply_pause() noexcept;
+    /// The hands that the upcoming program reaches are without force, here and in all groups.
+    bool is_let_go() noexcept;
     bool switch_if_due() noexcept;
     void take_over(build::GroupProgram& next) noexcept;
     void read_links(int frames) noexcept;
@@ -109,11 +127,12 @@ private:
 
     compile::PlanGroup description_;
     Ring<build::GroupProgram*> programs_{64};
-    Ring<ParameterChange> changes_{1024};
+    ChangeQueue changes_;
+    ParamRamps ramps_;
     build::GroupProgram* program_ = nullptr;
     build::GroupProgram* upcoming_ = nullptr;
     std::unique_ptr<Decisions> decisions_;
-    bool fades_for_plan_ = false, is_paused_ = false;
+    bool fades_for_plan_ = false, has_let_go_ = false, is_paused_ = false;
     std::size_t taken_ = 0;  ///< of `scheduled`
     std::int64_t next_ = 0, last_ = -1, ran_ = 0;
     int closely_ = 0;  ///< calls still to be timed

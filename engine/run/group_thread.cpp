@@ -4,6 +4,7 @@
 
 #include "dsp/core/realtime.hpp"
 #include "engine/run/clock.hpp"
+#include "engine/run/made_thread.hpp"
 
 #include <pthread.h>
 
@@ -18,6 +19,8 @@ namespace {
 constexpr std::int64_t spin_ns = 80'000;
 constexpr std::int64_t poll_start_ns = 200'000;
 constexpr std::int64_t rest_ns = 1'000'000;  // well below the watchdog's limit
+// A group that sleeps for longer looks now and then whether the run pauses or has ended.
+constexpr std::int64_t longest_sleep_ns = 10'000'000;
 
 void wait_until(std::int64_t when_ns) noexcept {
     const std::int64_t sleep_to = when_ns - spin_ns;
@@ -38,7 +41,11 @@ bool make_real_time(Flicks period) noexcept {
 }  // namespace
 
 bool LiveRun::pauses(const GroupRuntime& group) const {
-    return parts_.pause.window().stops(group.next() * group.plan->period);
+    return parts_.time.window.stops(group.next() * group.plan->period);
+}
+
+bool LiveRun::is_over(const GroupRuntime& group) const {
+    return group.finished() || parts_.time.window.ends(group.next() * group.plan->period);
 }
 
 void LiveRun::rest_while_paused(GroupRuntime& group, control::TrimmedClock& line) {
@@ -47,44 +54,54 @@ void LiveRun::rest_while_paused(GroupRuntime& group, control::TrimmedClock& line
         group.rest();
         sleep_until(steady_ns() + rest_ns);
     };
-    while (pauses(group) && !group.finished()) rest();
+    while (pauses(group) && !is_over(group) && !group.is_forsaken()) rest();
     // The clock is set before the pause ends; a reader that was unlucky looks again.
-    while (!group.finished() && line.steady_ns == before) {
-        line = clock_.get(line);
+    while (!is_over(group) && line.steady_ns == before) {
+        line = parts_.time.clock.get(line);
         if (line.steady_ns == before) sleep_until(steady_ns() + spin_ns);
     }
     const auto release_ns = [&] {
-        line = clock_.get(line);
+        line = parts_.time.clock.get(line);
         return line.when(group.next() * group.plan->period);
     };
-    while (!group.finished() && release_ns() - steady_ns() > 2 * rest_ns) rest();
+    // Before the next pause, which it would sleep through, it looks again.
+    while (!is_over(group) && !pauses(group) && !group.is_forsaken() && release_ns() - steady_ns() > 2 * rest_ns)
+        rest();
 }
 
 void LiveRun::work(GroupRuntime& group) {
     flush_denormals_to_zero();
     // Whoever sets the clock may have been interrupted by this very thread.
     control::TrimmedClock line;
-    while (!clock_.try_get(line)) sleep_until(steady_ns() + poll_start_ns);
+    while (!parts_.time.clock.try_get(line)) sleep_until(steady_ns() + poll_start_ns);
     const auto release_ns = [&](std::int64_t tick) {
-        line = clock_.get(line);
+        line = parts_.time.clock.get(line);
         return line.when(tick * group.plan->period);
     };
     const double period_ns = options_.dilate * 1e9 / rate_of(group.plan->period);
     observe::GroupTelemetry& telemetry = group.telemetry;
     std::int64_t busy_until = 0;
     observe::LateCause overrun = observe::LateCause::woken_late;
-    while (!group.finished()) {
+    while (!is_over(group) && !group.is_forsaken()) {
         if (pauses(group)) {
             rest_while_paused(group, line);
             continue;
         }
         const std::int64_t due = release_ns(group.next());
+        if (due - steady_ns() > longest_sleep_ns) {
+            sleep_until(std::min(due - spin_ns, steady_ns() + longest_sleep_ns));
+            continue;
+        }
         wait_until(due);
+        if (is_over(group) || pauses(group)) continue;
         const std::int64_t begin = steady_ns();
         telemetry.lateness.add(begin - due);
         // Still at the call before when this one was due: what held that one up is to blame.
         const observe::LateCause started = busy_until > due ? overrun : observe::LateCause::woken_late;
-        const auto late = static_cast<std::int64_t>(static_cast<double>(begin - due) / period_ns);
+        const double periods_late = static_cast<double>(begin - due) / period_ns;
+        // A group that may not run late ticks leaves out one that would come right before the next one.
+        const bool is_exact = group.backlog() == 0 && group.max_frames == 1;
+        const auto late = static_cast<std::int64_t>(periods_late + (is_exact ? 0.5 : 0.0));
         if (late > group.backlog()) {
             const std::int64_t to = std::min(group.next() + late, group.end.load());
             telemetry.skip_causes.add(started, to - group.next());
@@ -92,6 +109,8 @@ void LiveRun::work(GroupRuntime& group) {
             continue;
         }
         group.take_changes();
+        // It may have ended before it took its first program.
+        if (!group.has_program()) continue;
         const std::int64_t computed_before = thread_ns();
         group.call(group.max_frames);
         busy_until = steady_ns();
@@ -100,32 +119,64 @@ void LiveRun::work(GroupRuntime& group) {
         if (const std::int64_t missed = telemetry.awaited.exchange(0)) telemetry.withheld.add(overrun, missed);
         if (busy_until - due > std::llround(period_ns * group.max_frames)) group.watch_closely();
     }
-    group.end_at(group.next());
+    if (!group.is_forsaken()) group.end_at(group.next());
 }
 
 void LiveRun::start_threads() {
     const auto& groups = parts_.timeline.now().groups;
-    for (const auto& group : groups) start_thread(*group);
+    try {
+        prepare_threads(parts_.timeline.now());
+        guard(parts_.host.devices);
+        watchdog_.begin();
+    } catch (...) {
+        cancel_threads();
+        throw;
+    }
     while (ready_.load() < groups.size()) sleep_until(steady_ns() + poll_start_ns);
     line_ = {0, steady_ns() + start_delay_ns, options_.dilate};
-    clock_.set(line_);
-    started_ = true;
+    parts_.time.clock.set(line_);
+    release_threads();
 }
 
-void LiveRun::start_thread(GroupRuntime& group) {
-    ++running_;
-    group.decide_live(parts_.pause.window());
-    threads_.emplace_back(&group, [this, &group] {
-        if (!make_real_time(group.plan->period)) is_refused_ = true;
-        ++ready_;
-        while (!started_.load()) sleep_until(steady_ns() + poll_start_ns);
-        work(group);
-        --running_;
-    });
+void LiveRun::make_thread(GroupRuntime& group) {
+    group.decide_live(parts_.time.window);
+    auto made = std::make_unique<GroupThread>(group);
+    GroupThread& mine = *made;
+    threads_.push_back(std::move(made));
+    try {
+        mine.thread = made_thread("for the group " + group.plan->name, [this, &mine] {
+            if (!make_real_time(mine.group.plan->period)) is_refused_ = true;
+            ++ready_;
+            while (mine.order == GroupThread::wait) sleep_until(steady_ns() + poll_start_ns);
+            if (mine.order == GroupThread::go) work(mine.group);
+            if (!mine.group.is_forsaken()) mine.is_over = true;
+        });
+    } catch (...) {
+        threads_.pop_back();
+        throw;
+    }
+}
+
+void LiveRun::cancel_threads() {
+    for (const auto& thread : threads_)
+        if (int expected = GroupThread::wait; thread->order.compare_exchange_strong(expected, GroupThread::cancel))
+            thread->thread.join();
+    std::erase_if(threads_, [](const auto& thread) { return thread->order == GroupThread::cancel; });
+    watchdog_.forget_beyond(devices_in_use_);
+}
+
+void LiveRun::release_threads() {
+    devices_in_use_ = watchdog_.watched();
+    for (const auto& thread : threads_)
+        if (thread->order == GroupThread::wait) thread->order = GroupThread::go;
 }
 
 void LiveRun::end_thread(const GroupRuntime& group) {
-    std::erase_if(threads_, [&](const auto& thread) { return thread.first == &group; });
+    std::erase_if(threads_, [&](const auto& thread) {
+        if (&thread->group != &group) return false;
+        thread->thread.join();
+        return true;
+    });
 }
 
 }  // namespace tactus::run

@@ -2,22 +2,29 @@
 #include "engine/run/live_edits.hpp"
 
 #include "dsp/core/error.hpp"
+#include "engine/run/made_thread.hpp"
 #include "graph/patch/sub_patch.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
+#include <system_error>
 #include <utility>
 
 namespace tactus::run {
 
 namespace {
 
-// How far ahead of the furthest group the switch lies.
-constexpr Flicks switch_lead = flicks_per_second / 20;
+// From setting a parameter to the first activation for which it may hold.
+constexpr Flicks set_lead = flicks_per_second * 3 / 1000;
+constexpr std::int64_t longest_wait_ns = 200'000'000;
 
 }  // namespace
+
+LiveEdits::~LiveEdits() {
+    if (building_ && building_->thread.joinable()) building_->thread.join();
+}
 
 void LiveEdits::edit(std::function<compile::Plan()> make, std::function<void(const EditOutcome&)> told) {
     waiting_ = Edit{std::move(make), std::move(told)};
@@ -25,48 +32,86 @@ void LiveEdits::edit(std::function<compile::Plan()> make, std::function<void(con
 
 void LiveEdits::service(const Threads& threads) {
     retire(threads);
-    if (!building_.valid()) {
-        if (waiting_ && !timeline_.is_changing()) build();
-        return;
-    }
-    if (building_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    if (building_) {
+        if (building_->is_done) finish(threads);
+    } else if (waiting_ && !timeline_.is_changing()) build();
+}
+
+void LiveEdits::tell(const EditOutcome& outcome) const {
+    if (making_->told) making_->told(outcome);
+}
+
+void LiveEdits::finish(const Threads& threads) {
+    const std::unique_ptr<Building> built = std::exchange(building_, nullptr);
+    built->thread.join();
+    const int group = context_.group_before, link = context_.link_before;
+    EditOutcome outcome;
     try {
-        hand_over(building_.get(), threads);
+        if (built->failure) std::rethrow_exception(built->failure);
+        outcome = hand_over(*built, threads);
     } catch (const std::exception& error) {
+        threads.cancel();
+        built->made.reset();
         context_.host.discard();
-        EditOutcome outcome;
+        // A take numbers groups and links in the order in which plans were taken up: those that fail leave no gap.
+        context_.next_group = group;
+        context_.next_link = link;
         outcome.error = error.what();
-        if (making_->told) making_->told(outcome);
     }
+    tell(outcome);
     making_.reset();
 }
 
 void LiveEdits::build() {
     making_ = std::exchange(waiting_, std::nullopt);
-    building_ = std::async(std::launch::async, [this] {
-        compile::Plan plan = making_->make();
-        // A take numbers groups and links in the order in which plans were taken up: those that fail leave no gap.
-        const int group = context_.next_group, link = context_.next_link;
-        try {
-            return timeline_.build_next(std::move(plan));
-        } catch (...) {
-            context_.next_group = group;
-            context_.next_link = link;
-            throw;
-        }
-    });
+    context_.group_before = context_.next_group;
+    context_.link_before = context_.next_link;
+    building_ = std::make_unique<Building>();
+    try {
+        building_->thread = made_thread(
+            "to build the plan",
+            [this, building = building_.get(), is_taken = recorder_.take() != nullptr] { work(*building, is_taken); });
+    } catch (const std::system_error& error) {
+        building_.reset();
+        EditOutcome outcome;
+        outcome.error = error.what();
+        tell(outcome);
+        making_.reset();
+    }
 }
 
-void LiveEdits::hand_over(std::unique_ptr<build::Generation> next, const Threads& threads) {
-    const Flicks when = timeline_.furthest() + switch_lead;
-    if (seconds(when) >= seconds_) throw Error("the run is over before the edit could take effect");
+/// Thread that builds. All that takes long is done here: the control thread and the switch do not wait for it.
+void LiveEdits::work(Building& building, bool is_taken) {
+    try {
+        building.made = timeline_.build_next(making_->make());
+        if (is_taken) building.assets = take::TakeWriter::describe_assets(building.made->plan.patch);
+    } catch (...) {
+        building.made.reset();
+        building.failure = std::current_exception();
+    }
+    building.is_done = true;
+}
+
+EditOutcome LiveEdits::hand_over(Building& built, const Threads& threads) {
+    build::Generation& next = *built.made;
+    const Flicks lead = Timeline::lead_of(next);
+    if (seconds(present_.now() + lead) >= seconds_) throw Error("the run is over before the edit could take effect");
+    threads.prepare(next);
     recorder_.keep_opened();
-    if (take::TakeWriter* take = recorder_.take()) take->edit(next->number, when, next->plan.patch);
-    EditOutcome outcome{{}, next->number, when, 0, next->nodes.size()};
-    outcome.kept = static_cast<std::size_t>(std::ranges::count(next->survived, true));
-    for (GroupRuntime* group : timeline_.hand_over(std::move(next), when)) threads.start(*group);
+    // Nothing that may take long comes between choosing the time and telling all groups.
+    const Flicks when = present_.now() + lead;
+    timeline_.hand_over(std::move(built.made), when);
+    threads.release();
+    const bool is_described = !built.assets.empty();
+    if (take::TakeWriter* take = recorder_.take(); take && is_described)
+        take->edit(next.number, when, next.plan.patch, built.assets);
     settled_at_.clear();
-    if (making_->told) making_->told(outcome);
+    given_before_.clear();
+    for (const auto& group : timeline_.groups())
+        if (!group->is_over()) given_before_.emplace_back(group, group->changes_given());
+    EditOutcome outcome{{}, next.number, when, 0, next.nodes.size()};
+    outcome.kept = static_cast<std::size_t>(std::ranges::count(next.survived, true));
+    return outcome;
 }
 
 void LiveEdits::retire(const Threads& threads) {
@@ -82,6 +127,8 @@ bool LiveEdits::is_before_left() {
         const bool has_left = now.keeps(group.get()) && group->plan_number() >= now.number;
         if (!has_left && !group->is_over()) return false;
     }
+    for (const auto& [group, given] : given_before_)
+        if (group->changes_applied() < given && !group->is_over()) return false;
     if (!now.settled()) return false;
     if (settled_at_.empty()) {
         for (const auto& group : groups) settled_at_.push_back(group->done());
@@ -105,8 +152,19 @@ void LiveEdits::close_ended(const Threads& threads) {
     recorder_.finish_ended(timeline_);
 }
 
-void LiveEdits::wait() const {
-    if (building_.valid()) building_.wait();
+bool LiveEdits::end() {
+    if (!building_) return true;
+    const std::int64_t give_up = steady_ns() + longest_wait_ns;
+    while (!building_->is_done) {
+        if (steady_ns() > give_up && context_.host.forsake_driver()) {
+            building_->thread.detach();
+            return false;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    building_->thread.join();
+    building_.reset();
+    return true;
 }
 
 Flicks LiveEdits::set(const std::string& given_node, const std::string& given_param, const std::string& text) {
@@ -130,8 +188,8 @@ Flicks LiveEdits::set(const std::string& given_node, const std::string& given_pa
         if (wire.to_node == at && wire.to_input < 0 && wire.param == compiled)
             throw Error(fmt::format("'{}.{}' is driven by a wire", node, param));
     const double value = found->second->parse(text);
-    const Flicks when = timeline_.furthest() + 2 * now.plan.patch.quantum;
-    const ParameterChange change{changes_++, when, found->second, value};
+    const Flicks when = present_.now() + set_lead;
+    const ParameterChange change{changes_++, when, found->second, value, now.ramp_of(found->second)};
     if (take::TakeWriter* take = recorder_.take()) take->change(change.id, now.number, node, param, value);
     if (!live.group->hand_over(change)) throw Error("too many changes are waiting already");
     return when;

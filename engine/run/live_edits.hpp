@@ -3,14 +3,18 @@
 // logical time. The old plan is taken apart when no group can touch it any more.
 #pragma once
 
+#include "engine/run/live_time.hpp"
 #include "engine/run/recorder.hpp"
 #include "engine/run/timeline.hpp"
 
+#include <atomic>
+#include <exception>
 #include <functional>
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 namespace tactus::run {
@@ -18,44 +22,64 @@ namespace tactus::run {
 /// Control thread.
 class LiveEdits {
 public:
-    LiveEdits(const EngineOptions& options, build::BuildContext& context, Timeline& timeline, Recorder& recorder)
-        : seconds_(options.seconds), context_(context), timeline_(timeline), recorder_(recorder) {}
+    LiveEdits(const EngineOptions& options, build::BuildContext& context, Timeline& timeline, Recorder& recorder,
+              const LiveTime& time)
+        : seconds_(options.seconds), context_(context), timeline_(timeline), recorder_(recorder), present_(time) {}
+    ~LiveEdits();
 
     /// See Engine.
     void edit(std::function<compile::Plan()> make, std::function<void(const EditOutcome&)> told);
     Flicks set(const std::string& node, const std::string& param, const std::string& text);
 
-    /// Starts and ends the threads of groups.
+    /// The threads that a plan needs.
     struct Threads {
-        std::function<void(GroupRuntime&)> start;
+        /// Makes those of new groups and of new devices; they wait. Throws when one is refused.
+        std::function<void(const build::Generation&)> prepare;
+        std::function<void()> release;  ///< they begin
+        std::function<void()> cancel;  ///< they end, as if they had never been
         std::function<void(const GroupRuntime&)> end;
     };
     /// Takes the next step of the edit that is on its way.
     void service(const Threads& threads);
-    bool is_building() const { return building_.valid(); }
+    bool is_building() const { return building_ != nullptr; }
     bool is_settled() const { return !waiting_ && !is_building() && !timeline_.is_changing(); }
-    /// Waits for the thread that builds.
-    void wait() const;
+    /// Waits for the thread that builds. False: a driver that it opens blocked it for a fifth of a second; it was left
+    /// behind, and nothing that it refers to may be destroyed.
+    bool end();
 
 private:
     struct Edit {
         std::function<compile::Plan()> make;
         std::function<void(const EditOutcome&)> told;
     };
+    /// A plan that is being built, or was.
+    struct Building {
+        std::thread thread;
+        std::atomic<bool> is_done{false};
+        std::unique_ptr<build::Generation> made;  // when done; null: `failure`
+        std::string assets;  // as the take describes them
+        std::exception_ptr failure;
+    };
     void build();
-    void hand_over(std::unique_ptr<build::Generation> next, const Threads& threads);
+    void work(Building& building, bool is_taken);
+    void finish(const Threads& threads);
+    EditOutcome hand_over(Building& built, const Threads& threads);
     void retire(const Threads& threads);
     /// Every group has left the plan before and has completed a call since.
     bool is_before_left();
     void close_ended(const Threads& threads);
+    void tell(const EditOutcome& outcome) const;
 
     const double seconds_;
     build::BuildContext& context_;
     Timeline& timeline_;
     Recorder& recorder_;
+    Present present_;
     std::optional<Edit> waiting_, making_;
-    std::future<std::unique_ptr<build::Generation>> building_;
+    std::unique_ptr<Building> building_;
     std::vector<std::int64_t> settled_at_;  // what each group had done when nothing read the plan before any more
+    /// Changes of parameters, which may be of the plan before, that each group had been given by the switch.
+    std::vector<std::pair<std::shared_ptr<GroupRuntime>, std::int64_t>> given_before_;
     std::int64_t changes_ = 0;
 };
 

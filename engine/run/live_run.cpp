@@ -17,7 +17,8 @@ namespace tactus::run {
 
 namespace {
 
-constexpr Flicks end_lead = flicks_per_second / 20;
+// A driver that blocks for so long after the end is left behind.
+constexpr std::int64_t longest_block_ns = 200'000'000;
 
 /// How old the last force may be before the watchdog fades it: 3 ms, or three ticks of a slower device.
 std::int64_t commit_limit_ns(const build::DeviceSlot& slot, double dilate) {
@@ -27,13 +28,18 @@ std::int64_t commit_limit_ns(const build::DeviceSlot& slot, double dilate) {
 
 }  // namespace
 
+LiveRun::LiveRun(const LiveParts& parts, const LiveOptions& options)
+    : parts_(parts), options_(options), present_(parts.time), watchdog_([this] { look(); }) {}
+
+LiveRun::~LiveRun() { cancel_threads(); }
+
 /// The clock follows the first card that is there. When one is lost, all hands are let go of once.
 void LiveRun::service_cards() {
     bool follows = false;
     for (const auto& card : parts_.host.cards) {
         // Sound at another pace than that of its card cannot be followed.
         control::TrimmedClock* const line = follows || options_.dilate != 1.0 || is_still_ ? nullptr : &line_;
-        const Flicks reached = parts_.timeline.furthest();
+        const Flicks reached = present_.now();
         if (card->service(steady_ns(), reached, line)) {
             for (const auto& slot : parts_.host.devices) slot->guard.ask_fade();
             parts_.host.notices.push_back(
@@ -43,20 +49,17 @@ void LiveRun::service_cards() {
         }
         follows = follows || !card->is_lost();
     }
-    clock_.set(line_);
+    parts_.time.clock.set(line_);
 }
 
 void LiveRun::service_pause() {
-    parts_.pause.service(line_, clock_);
+    if (parts_.pause.service(line_)) watchdog_.take_up();
     is_still_ = parts_.pause.state() != Pausing::runs;
 }
 
-void LiveRun::watch_devices() {
-    while (watchdog_.watched() < parts_.host.devices.size()) {
-        build::DeviceSlot& slot = *parts_.host.devices[watchdog_.watched()];
-        slot.guard.set_limit(commit_limit_ns(slot, options_.dilate));
-        watchdog_.watch(slot);
-    }
+void LiveRun::look() noexcept {
+    const bool stops = must_end_ || (options_.stop && options_.stop->load());
+    if (stops ? parts_.pause.end() : parts_.pause.begin_if_wanted()) watchdog_.let_go();
 }
 
 void LiveRun::service() {
@@ -67,22 +70,50 @@ void LiveRun::service() {
         if (std::string message = stream->take_message(); !message.empty())
             parts_.host.notices.push_back(std::move(message));
     service_pause();
-    parts_.recorder.service(parts_.timeline, parts_.edits.is_building());
-    parts_.edits.service({[this](GroupRuntime& group) { start_thread(group); },
-                          [this](const GroupRuntime& group) { end_thread(group); }});
-    watch_devices();
+    parts_.recorder.service(parts_.timeline, parts_.edits.is_building(), present_.now());
+    parts_.edits.service({.prepare = [this](const build::Generation& next) { prepare_threads(next); },
+                          .release = [this] { release_threads(); },
+                          .cancel = [this] { cancel_threads(); },
+                          .end = [this](const GroupRuntime& group) { end_thread(group); }});
     service_cards();
     if (options_.watch) options_.watch();
 }
 
-void LiveRun::service_stop() {
-    if (!options_.stop || !options_.stop->load()) return;
-    parts_.pause.want(false);
-    if (is_stopping_ || parts_.pause.state() != Pausing::runs) return;
-    is_stopping_ = true;
-    const Flicks end = parts_.timeline.furthest() + end_lead;
-    for (const auto& group : parts_.timeline.groups())
-        group->end = std::min(group->end.load(), ceil_div(end, group->plan->period));
+void LiveRun::guard(const std::vector<std::unique_ptr<build::DeviceSlot>>& devices) {
+    for (const auto& slot : devices) {
+        slot->guard.set_limit(commit_limit_ns(*slot, options_.dilate));
+        watchdog_.watch(*slot);
+    }
+}
+
+void LiveRun::prepare_threads(const build::Generation& next) {
+    guard(parts_.host.opened_devices());
+    for (std::size_t g = 0; g < next.groups.size(); ++g)
+        if (next.group_is_new[g]) make_thread(*next.groups[g]);
+}
+
+bool LiveRun::all_over() const {
+    return std::ranges::all_of(threads_, [](const auto& thread) { return thread->is_over.load(); });
+}
+
+void LiveRun::leave_blocked() {
+    const std::int64_t now = steady_ns();
+    const Flicks time = present_.now();
+    for (const auto& thread : threads_) {
+        GroupRuntime& group = thread->group;
+        const bool should_be_over = parts_.time.window.ends(time) || time >= group.end.load() * group.plan->period;
+        if (thread->is_over || !should_be_over) continue;
+        if (thread->late_since_ns == 0 || thread->done != group.done()) {
+            thread->late_since_ns = now;
+            thread->done = group.done();
+        }
+        if (now - thread->late_since_ns < longest_block_ns || !group.forsake()) continue;
+        thread->thread.detach();
+        thread->is_over = true;
+        has_left_threads_ = true;
+        parts_.host.notices.push_back(
+            fmt::format("a driver of the group {} did not return; it was left behind", group.plan->name));
+    }
 }
 
 void LiveRun::run() {
@@ -90,25 +121,31 @@ void LiveRun::run() {
     if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
         parts_.host.notices.push_back(
             "memory could not be locked: a page fault may delay a tick (run as root or raise RLIMIT_MEMLOCK)");
-    watch_devices();
     start_threads();
     std::exception_ptr failure;
-    while (running_.load() > 0) {
+    while (!all_over()) {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
         try {
-            service();
+            if (!failure) service();
         } catch (...) {
             failure = std::current_exception();
-            for (const auto& group : parts_.timeline.groups()) group->end = 0;
-            break;
+            must_end_ = true;
         }
-        service_stop();
+        leave_blocked();
     }
-    threads_.clear();
-    parts_.edits.wait();
-    munlockall();
+    end_all();
     if (failure) std::rethrow_exception(failure);
     complete();
+}
+
+/// Nobody is waited for who is blocked in a driver.
+void LiveRun::end_all() {
+    for (const auto& thread : threads_)
+        if (thread->thread.joinable()) thread->thread.join();
+    for (const auto& slot : parts_.host.devices) slot->guard.retire();
+    if (!watchdog_.farewell()) has_left_threads_ = true;
+    if (!parts_.edits.end()) has_left_threads_ = true;
+    munlockall();
 }
 
 void LiveRun::complete() {

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run in real time: one thread per group on the steady clock, and a control thread that serves them. No thread waits
-// for another.
+// A run in real time: one thread per group on the steady clock, one per device that guards it, one that acts at once when
+// the run is to pause or to end, and a control thread that serves them. No thread waits for another.
 #pragma once
 
 #include "engine/run/live_edits.hpp"
+#include "engine/run/live_time.hpp"
 #include "engine/run/pause_control.hpp"
-#include "engine/run/run_clock.hpp"
 #include "engine/run/watchdog.hpp"
 
 #include <atomic>
+#include <cstdint>
+#include <memory>
 #include <thread>
-#include <utility>
 #include <vector>
 
 namespace tactus::run {
@@ -21,46 +22,76 @@ struct LiveParts {
     Timeline& timeline;
     Recorder& recorder;
     LiveEdits& edits;
+    LiveTime& time;
     PauseControl& pause;
 };
 
 /// Control thread.
 class LiveRun {
 public:
-    LiveRun(const LiveParts& parts, const LiveOptions& options) : parts_(parts), options_(options) {}
+    LiveRun(const LiveParts& parts, const LiveOptions& options);
+    ~LiveRun();
+    LiveRun(const LiveRun&) = delete;
+    LiveRun& operator=(const LiveRun&) = delete;
 
-    /// Runs to the end. Throws Error.
+    /// Runs to the end. Throws Error, std::system_error.
     void run();
+    /// After `run`: threads were left behind in drivers. Neither this nor its parts may ever be destroyed.
+    bool has_left_threads() const { return has_left_threads_; }
 
 private:
+    struct GroupThread {
+        explicit GroupThread(GroupRuntime& group_) : group(group_) {}
+
+        enum Order : int { wait, go, cancel };
+        GroupRuntime& group;
+        std::atomic<int> order{wait};
+        std::atomic<bool> is_over{false};
+        std::thread thread;
+        // Control thread: since when it should have ended, and how far it had come then.
+        std::int64_t late_since_ns = 0, done = 0;
+    };
+
+    // group_thread.cpp
     void start_threads();
-    void start_thread(GroupRuntime& group);
+    /// Makes a thread that waits for its order. Throws std::system_error when the system refuses it.
+    void make_thread(GroupRuntime& group);
+    /// Ends those that still wait.
+    void cancel_threads();
+    void release_threads();
     void end_thread(const GroupRuntime& group);
     /// Thread of the group.
     void work(GroupRuntime& group);
     void rest_while_paused(GroupRuntime& group, control::TrimmedClock& line);
     bool pauses(const GroupRuntime& group) const;
+    bool is_over(const GroupRuntime& group) const;
+    void prepare_threads(const build::Generation& next);
+    void guard(const std::vector<std::unique_ptr<build::DeviceSlot>>& devices);
 
+    /// Thread of the watchdog: a stop and a pause act from here, whatever the control thread is at.
+    void look() noexcept;
     void service();
     void service_cards();
     void service_pause();
-    void watch_devices();
-    /// Ends all groups at one logical time when that is asked for, once.
-    void service_stop();
+    /// The groups that are no more, all at once.
+    bool all_over() const;
+    /// After its end: threads that a driver keeps are left behind.
+    void leave_blocked();
+    void end_all();
     void complete();
 
     LiveParts parts_;
-    const LiveOptions& options_;
+    const LiveOptions options_;
     control::TrimmedClock line_;  // control thread
-    RunClock clock_;
+    Present present_;
     Watchdog watchdog_;
-    std::atomic<bool> started_{false};      // not before every thread is there, whatever making them takes
-    std::atomic<std::size_t> ready_{0};     // threads that wait for the start
-    std::atomic<std::size_t> running_{0};   // threads that have not ended
-    std::atomic<bool> is_refused_{false};   // real-time priority
-    bool is_still_ = false;                 // time stands still, or has just begun to go on
-    bool is_stopping_ = false;
-    std::vector<std::pair<const GroupRuntime*, std::jthread>> threads_;
+    std::size_t devices_in_use_ = 0;  // of those that the watchdog looks after
+    std::atomic<std::size_t> ready_{0};  // threads that wait for the start
+    std::atomic<bool> is_refused_{false};  // real-time priority
+    std::atomic<bool> must_end_{false};  // an error ended the run
+    bool is_still_ = false;  // time stands still, or has just begun to go on
+    bool has_left_threads_ = false;
+    std::vector<std::unique_ptr<GroupThread>> threads_;
 };
 
 }  // namespace tactus::run

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/run/pause_control.hpp"
 
-#include "engine/run/clock.hpp"
-
 #include <algorithm>
 
 namespace tactus::run {
@@ -10,12 +8,14 @@ namespace tactus::run {
 namespace {
 
 constexpr Flicks fade_time = flicks_per_second / 50;  // a fade takes 10 ms
-constexpr Flicks lead = flicks_per_second / 20;
+// From asking to the first tick that fades, and to the first that does not run: all groups must have heard of it.
+constexpr Flicks fade_lead = flicks_per_second / 1000;
+constexpr Flicks stop_lead = flicks_per_second * 30 / 1000;
 
 }  // namespace
 
 Pausing PauseControl::state() const {
-    const Flicks stop = window_.stop.load();
+    const Flicks stop = time_.window.stop.load();
     if (stop == PauseWindow::never) return Pausing::runs;
     const bool all = std::ranges::all_of(timeline_.now().groups, [stop](const auto& group) {
         return group->is_over() || group->done() * group->plan->period >= stop;
@@ -23,23 +23,40 @@ Pausing PauseControl::state() const {
     return all ? Pausing::stands : Pausing::fades;
 }
 
-/// A pause begins a little ahead of the furthest group, so that all stop at one logical time; it ends with a clock that
-/// was set to go on from there.
-void PauseControl::service(control::TrimmedClock& line, RunClock& clock) {
-    const Pausing now = state();
-    if (now == Pausing::runs && wanted_) {
-        const Flicks stop = timeline_.furthest() + lead;
-        window_.fade = PauseWindow::never;
-        window_.until = PauseWindow::never;
-        window_.stop = stop;
-        window_.fade = stop - fade_time;
-    } else if (now == Pausing::stands && !wanted_) {
-        const Flicks stop = window_.stop.load();
-        line.steady_ns += steady_ns() + start_delay_ns - line.when(stop);
-        clock.set(line);
-        window_.until = stop + fade_time;
-        window_.stop = PauseWindow::never;
-    }
+/// The clock is set to go on from where time stands.
+bool PauseControl::service(control::TrimmedClock& line) {
+    PauseWindow& window = time_.window;
+    if (wanted_ || window.end != PauseWindow::never || state() != Pausing::stands) return false;
+    const Flicks stop = window.stop.load();
+    line.steady_ns += steady_ns() + start_delay_ns - line.when(stop);
+    time_.clock.set(line);
+    window.until = stop + fade_time;
+    window.stop = PauseWindow::never;
+    return true;
+}
+
+bool PauseControl::begin_if_wanted() noexcept {
+    PauseWindow& window = time_.window;
+    // In this order: a pause that has just ended is not wanted.
+    if (window.stop != PauseWindow::never || window.end != PauseWindow::never || !wanted_) return false;
+    const Flicks now = present_.now();
+    window.fade = PauseWindow::never;
+    window.until = PauseWindow::never;
+    window.stop = now + stop_lead;
+    window.fade = now + fade_lead;
+    return true;
+}
+
+bool PauseControl::end() noexcept {
+    PauseWindow& window = time_.window;
+    if (window.end != PauseWindow::never) return false;
+    const Flicks now = present_.now();
+    // Where time stands, nobody comes any further.
+    window.end = std::min(now + stop_lead, window.stop.load());
+    // A pause fades by itself; what comes in anew after one is held off again.
+    window.until = PauseWindow::never;
+    if (window.stop == PauseWindow::never) window.fade = now + fade_lead;
+    return true;
 }
 
 }  // namespace tactus::run

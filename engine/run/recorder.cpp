@@ -52,7 +52,7 @@ void Recorder::want(bool wanted) {
     wants_ = wanted;
 }
 
-void Recorder::service(Timeline& timeline, bool is_building) {
+void Recorder::service(Timeline& timeline, bool is_building, Flicks now) {
     if (!take_) return;
     if (!was_recorded_ && take_->size() > longest_journal_)
         return give_up(fmt::format("its journal has grown beyond {} MB", longest_journal_ >> 20));
@@ -60,10 +60,10 @@ void Recorder::service(Timeline& timeline, bool is_building) {
     taps_.finish_past();
     // A plan that is on its way has its streams already, or was built without any.
     if (wants_ == records_ || timeline.is_changing()) return;
-    wants_ ? begin(timeline) : end(timeline);
+    wants_ ? begin(timeline, now) : end(now);
 }
 
-void Recorder::begin(Timeline& timeline) {
+void Recorder::begin(Timeline& timeline, Flicks time) {
     records_ = was_recorded_ = true;
     std::vector<std::pair<build::PublishedOutput*, RecordStream*>> begun;
     build::Generation& now = timeline.now();
@@ -71,13 +71,13 @@ void Recorder::begin(Timeline& timeline) {
         for (build::PublishedOutput& output : now.programs[g]->published)
             begun.emplace_back(&output, taps_.get(output.name, *output.port->type, *now.groups[g]));
     taps_.update();
-    taps_.begin_at(timeline.furthest() + record_lead);
+    taps_.begin_at(time + record_lead);
     for (const auto& [output, stream] : begun) output->record_into(stream);
 }
 
-void Recorder::end(Timeline& timeline) {
+void Recorder::end(Flicks now) {
     records_ = false;
-    taps_.end_at(timeline.furthest() + record_lead);
+    taps_.end_at(now + record_lead);
 }
 
 void Recorder::give_up(const std::string& why) {

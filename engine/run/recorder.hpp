@@ -29,8 +29,8 @@ public:
     void want(bool wanted);
     bool is_recording() const { return take_ && wants_ && !take_->is_lost(); }
     bool was_recorded() const { return was_recorded_; }
-    /// Begins and ends recording. `is_building`: a plan is being built, which makes streams.
-    void service(Timeline& timeline, bool is_building);
+    /// Begins and ends recording. `is_building`: a plan is being built, which makes streams. `now`: logical time.
+    void service(Timeline& timeline, bool is_building, Flicks now);
 
     // Decisions.
     /// Writes a log file from now on, beside the take. Throws Error.
@@ -55,8 +55,8 @@ public:
     void note_losses();
 
 private:
-    void begin(Timeline& timeline);
-    void end(Timeline& timeline);
+    void begin(Timeline& timeline, Flicks time);
+    void end(Flicks now);
     void give_up(const std::string& why);
 
     io::EngineHost& host_;

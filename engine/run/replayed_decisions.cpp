@@ -11,12 +11,15 @@ namespace tactus::run {
 using take::TimingKind;
 using take::TimingRecord;
 
+static constexpr int any_source = -1;
+
 const TimingRecord* ReplayedDecisions::find(TimingKind kind, int source, std::int64_t tick) const noexcept {
     for (std::size_t i = first_; i < records_.size(); ++i) {
         const TimingRecord& record = records_[i];
         if (record.tick > tick) break;
         const bool covers = tick < record.tick + std::max(record.count, 1);
-        if (covers && record.kind == kind && record.source == static_cast<std::uint32_t>(source)) return &record;
+        const bool is_meant = source == any_source || record.source == static_cast<std::uint32_t>(source);
+        if (covers && record.kind == kind && is_meant) return &record;
     }
     return nullptr;
 }
@@ -26,12 +29,12 @@ std::int64_t ReplayedDecisions::skip_from(std::int64_t tick) const noexcept {
     return skip ? skip->tick + skip->count : tick;
 }
 
-void ReplayedDecisions::apply_parameters(std::int64_t tick) noexcept {
+void ReplayedDecisions::apply_parameters(std::int64_t tick, std::int64_t plan, ParamRamps& ramps) noexcept {
     for (std::size_t i = first_; i < records_.size() && records_[i].tick <= tick; ++i) {
         const TimingRecord& record = records_[i];
         if (record.kind != TimingKind::parameter || record.tick != tick) continue;
         const ParameterChange& change = changes_[static_cast<std::size_t>(record.value)];
-        change.param->value = change.value;
+        ramps.set(*change.param, change.ramp, change.value, tick, record.source, plan);
     }
 }
 
@@ -41,8 +44,13 @@ bool ReplayedDecisions::holds_off(std::int64_t tick, bool before) noexcept {
 }
 
 bool ReplayedDecisions::switches_to(const build::GroupProgram& next, std::int64_t tick) noexcept {
-    const TimingRecord* plan = find(TimingKind::plan, 0, tick);
+    const TimingRecord* plan = find(TimingKind::plan, any_source, tick);
     return plan && plan->value == next.plan_number;
+}
+
+std::int64_t ReplayedDecisions::ramp_length(std::int64_t tick) const noexcept {
+    const TimingRecord* plan = find(TimingKind::plan, any_source, tick);
+    return plan ? plan->source : 0;
 }
 
 bool ReplayedDecisions::fades_for(const build::GroupProgram&, std::int64_t tick) noexcept {

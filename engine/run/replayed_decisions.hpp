@@ -16,7 +16,8 @@ public:
         : Decisions(log), records_(records), changes_(changes) {}
 
     std::int64_t skip_from(std::int64_t tick) const noexcept override;
-    void apply_parameters(std::int64_t tick) noexcept override;
+    void apply_parameters(std::int64_t tick, std::int64_t plan, ParamRamps& ramps) noexcept override;
+    std::int64_t ramp_length(std::int64_t tick) const noexcept override;
     bool holds_off(std::int64_t tick, bool before) noexcept override;
     bool switches_to(const build::GroupProgram& next, std::int64_t tick) noexcept override;
     bool fades_for(const build::GroupProgram& next, std::int64_t tick) noexcept override;
@@ -32,7 +33,7 @@ public:
     void pass(std::int64_t tick) noexcept override;
 
 private:
-    /// The record that covers an activation, or null.
+    /// The record that covers an activation, or null. `source` −1: any.
     const take::TimingRecord* find(take::TimingKind kind, int source, std::int64_t tick) const noexcept;
 
     const std::vector<take::TimingRecord>& records_;

@@ -15,8 +15,11 @@ namespace tactus::run {
 
 namespace {
 
-// From the first fading tick to the switch: a fade takes 10 ms.
-constexpr Flicks fade_lead = flicks_per_second / 50;
+/// From the first fading tick to the switch: a fade takes 10 ms, but one tick of a slow group at least.
+Flicks fade_lead(Flicks period) { return std::max(flicks_per_second / 50, 2 * period); }
+
+/// From handing a plan over to the first tick that fades.
+constexpr Flicks notice_lead = flicks_per_second * 30 / 1000;
 
 std::int64_t tick_at(double time, Flicks period) {
     const double ticks = time * static_cast<double>(flicks_per_second) / static_cast<double>(period);
@@ -39,7 +42,7 @@ void Timeline::add(const build::Generation& next, Flicks when) {
         GroupRuntime& group = *next.groups[g];
         build::GroupProgram& program = *next.programs[g];
         program.switch_time = when;
-        program.fade_time = program.changes_force ? when - fade_lead : when;
+        program.fade_time = program.changes_force ? when - fade_lead(group.plan->period) : when;
         if (next.group_is_new[g]) {
             groups_.push_back(next.groups[g]);
             group.start_at(ceil_div(when, group.plan->period));
@@ -48,6 +51,7 @@ void Timeline::add(const build::Generation& next, Flicks when) {
             recorder_.attach(group);
         }
     }
+    for (const auto& [param, ramp] : next.ramps) ramp->newest_plan = next.number;
     // Where a group of a replayed run ended is in the log.
     for (const auto& group : groups_)
         if (!options_.replay && !next.keeps(group.get()))
@@ -76,32 +80,37 @@ std::unique_ptr<build::Generation> Timeline::build_next(compile::Plan plan) {
     return build::build_generation(std::move(plan), now_.get(), context_);
 }
 
-std::vector<GroupRuntime*> Timeline::hand_over(std::unique_ptr<build::Generation> next, Flicks when) {
+Flicks Timeline::lead_of(const build::Generation& next) {
+    Flicks lead = fade_lead(0);
+    for (std::size_t g = 0; g < next.groups.size(); ++g)
+        if (next.programs[g]->changes_force) lead = std::max(lead, fade_lead(next.groups[g]->plan->period));
+    return notice_lead + lead;
+}
+
+void Timeline::close_gate(build::Generation& next) {
+    next.gate = std::make_unique<build::SwitchGate>();
+    for (std::size_t g = 0; g < next.groups.size(); ++g) {
+        next.programs[g]->gate = next.gate.get();
+        const bool has_hands = next.programs[g]->changes_force && !next.group_is_new[g];
+        if (has_hands && !next.groups[g]->is_over()) ++next.gate->closed_by;
+    }
+}
+
+void Timeline::hand_over(std::unique_ptr<build::Generation> next, Flicks when) {
+    close_gate(*next);
     add(*next, when);
-    std::vector<GroupRuntime*> begun;
     for (std::size_t g = 0; g < next->groups.size(); ++g) {
         GroupRuntime& group = *next->groups[g];
-        if (next->group_is_new[g]) {
-            group.scheduled.push_back(next->programs[g].get());
-            begun.push_back(&group);
-        } else {
-            group.hand_over(next->programs[g].get());
-        }
+        if (next->group_is_new[g]) group.scheduled.push_back(next->programs[g].get());
+        else group.hand_over(next->programs[g].get());
     }
     before_ = std::exchange(now_, std::move(next));
-    return begun;
 }
 
 void Timeline::retire() {
     gather_hashes(*before_, now_.get(), ended_hashes_);
     before_.reset();
     for (const auto& link : now_->links) link->forget_continued();
-}
-
-Flicks Timeline::furthest() const {
-    Flicks furthest = 0;
-    for (const auto& group : now_->groups) furthest = std::max(furthest, group->done() * group->plan->period);
-    return furthest;
 }
 
 void Timeline::schedule_change(std::int64_t id, const std::string& node, const std::string& param, double value) {
@@ -113,7 +122,7 @@ void Timeline::schedule_change(std::int64_t id, const std::string& node, const s
     if (id < 0 || id > 1'000'000) throw Error("the take's list of parameter changes is damaged");
     if (replayed_changes_.size() <= static_cast<std::size_t>(id))
         replayed_changes_.resize(static_cast<std::size_t>(id) + 1);
-    replayed_changes_[static_cast<std::size_t>(id)] = {id, 0, found->second, value};
+    replayed_changes_[static_cast<std::size_t>(id)] = {id, 0, found->second, value, now_->ramp_of(found->second)};
 }
 
 /// Hashes of the outputs that end with a generation. A group that never took over the next one ends with its own.

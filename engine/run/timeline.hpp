@@ -27,8 +27,10 @@ public:
 
     /// Builds what follows the plan that runs; on any thread, while the run goes on. Throws Error.
     std::unique_ptr<build::Generation> build_next(compile::Plan plan);
-    /// Every group takes the plan over at `when`. Returns the groups that are new: their threads are to be started.
-    std::vector<GroupRuntime*> hand_over(std::unique_ptr<build::Generation> next, Flicks when);
+    /// Live: how far ahead the switch to a plan has to be, so that hands are without force by then.
+    static Flicks lead_of(const build::Generation& next);
+    /// Live: every group takes the plan over at `when`, but not before every hand that it reaches is without force.
+    void hand_over(std::unique_ptr<build::Generation> next, Flicks when);
     /// The plan before is taken apart; no group touches it any more.
     void retire();
     /// A plan takes over, and the one before is still there.
@@ -39,8 +41,6 @@ public:
     build::Generation& now() { return *now_; }
     /// Every group that ever ran, the first plan's first.
     const std::vector<std::shared_ptr<GroupRuntime>>& groups() const { return groups_; }
-    /// Logical time that some group has reached.
-    Flicks furthest() const;
     /// Logical time that every group has reached, s.
     double progress_seconds() const;
     Report report() const;
@@ -48,6 +48,7 @@ public:
 
 private:
     void add(const build::Generation& next, Flicks when);
+    static void close_gate(build::Generation& next);
     void set_end(GroupRuntime& group) const;
     static void gather_hashes(const build::Generation& old, const build::Generation* next, PortHashes& parts);
 

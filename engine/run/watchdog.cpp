@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/run/watchdog.hpp"
 
+#include "dsp/core/error.hpp"
 #include "engine/run/clock.hpp"
+#include "engine/run/made_thread.hpp"
 
 #include <fmt/format.h>
 #include <pthread.h>
@@ -12,41 +14,69 @@ namespace tactus::run {
 
 namespace {
 
-constexpr std::int64_t poll_every_ns = 1'000'000;
-constexpr std::int64_t longest_farewell_ns = 100'000'000;
-constexpr int priority = 85;  // above every group
+constexpr std::int64_t look_every_ns = 1'000'000;
+constexpr std::int64_t longest_wait_ns = 200'000'000;
+constexpr int priority = 84;  // above every group, below the threads of the devices
 
 }  // namespace
 
-Watchdog::Watchdog() : thread_([this] { run(); }) {}
+Watchdog::~Watchdog() {
+    ending_.store(true, std::memory_order_release);
+    if (thread_.joinable()) thread_.join();
+}
 
-Watchdog::~Watchdog() { ending_.store(true, std::memory_order_release); }
+void Watchdog::begin() {
+    thread_ = made_thread("that watches over the run", [this] { run(); });
+}
 
 void Watchdog::watch(build::DeviceSlot& slot) {
     const std::size_t count = count_.load(std::memory_order_relaxed);
-    if (count == slots_.size()) throw Error(fmt::format("more than {} haptic devices in one run", slots_.size()));
-    slots_[count] = &slot;
+    if (count == watches_.size()) throw Error(fmt::format("more than {} haptic devices in one run", watches_.size()));
+    watches_[count] = std::make_unique<DeviceWatch>(slot);
     count_.store(count + 1, std::memory_order_release);
+}
+
+void Watchdog::forget_beyond(std::size_t count) {
+    if (count >= watched()) return;
+    // Whoever lets go of all hands at this moment may look at these once more: their memory stays until the last moment.
+    const std::size_t had = count_.exchange(count, std::memory_order_acq_rel);
+    sleep_until(steady_ns() + 2 * look_every_ns);
+    for (std::size_t i = count; i < had; ++i) watches_[i].reset();
+}
+
+void Watchdog::let_go() noexcept {
+    for (std::size_t i = 0; i < count_.load(std::memory_order_acquire); ++i) watches_[i]->slot().guard.let_go();
+}
+
+void Watchdog::take_up() noexcept {
+    for (std::size_t i = 0; i < count_.load(std::memory_order_acquire); ++i) watches_[i]->slot().guard.take_up();
+}
+
+bool Watchdog::farewell() {
+    ending_.store(true, std::memory_order_release);
+    if (thread_.joinable()) thread_.join();
+    for (std::size_t i = 0; i < watched(); ++i) watches_[i]->end();
+    const std::int64_t give_up = steady_ns() + longest_wait_ns;
+    bool all = true;
+    for (std::size_t i = 0; i < watched(); ++i) {
+        while (!watches_[i]->is_over()) {
+            if (steady_ns() > give_up && watches_[i]->forsake()) {
+                all = false;
+                break;
+            }
+            sleep_until(steady_ns() + look_every_ns);
+        }
+    }
+    return all;
 }
 
 void Watchdog::run() noexcept {
     sched_param parameters{};
     parameters.sched_priority = priority;
-    // Refused for the groups as well then, which is told once.
     pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
-    std::int64_t next = steady_ns(), give_up = 0;
-    for (;;) {
-        const std::int64_t now = steady_ns();
-        const bool ending = ending_.load(std::memory_order_acquire);
-        bool at_rest = true;
-        for (std::size_t i = 0; i < count_.load(std::memory_order_acquire); ++i) {
-            slots_[i]->guard.poll(*slots_[i]->device, now);
-            at_rest = at_rest && slots_[i]->guard.is_at_rest();
-        }
-        if (ending && give_up == 0) give_up = now + longest_farewell_ns;
-        if (ending && (at_rest || now > give_up)) return;
-        next = std::max(next + poll_every_ns, now);
-        sleep_until(next);
+    while (!ending_.load(std::memory_order_acquire)) {
+        look_();
+        sleep_until(steady_ns() + look_every_ns);
     }
 }
 

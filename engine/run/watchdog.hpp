@@ -1,35 +1,55 @@
 // SPDX-License-Identifier: Apache-2.0
-// The second watchdog: a thread of its own that looks after every device of a live run once a millisecond.
+// What keeps the hands of a live run safe beside the ticks: a thread for each device, and one that acts at once when the
+// run is to pause or to end. Neither waits for a disk, for a group or for another device.
 #pragma once
 
-#include "engine/build/group_program.hpp"
+#include "engine/run/device_watch.hpp"
+#include "engine/run/live_time.hpp"
 
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <functional>
+#include <memory>
 #include <thread>
 
 namespace tactus::run {
 
+/// Control thread.
 class Watchdog {
 public:
-    Watchdog();
-    /// Waits until every device that was retired is without force, at most 0.1 s.
+    /// `look` is called about once a millisecond by a thread above every group.
+    explicit Watchdog(std::function<void()> look) : look_(std::move(look)) {}
+    /// After `farewell`, or when no thread was ever left behind.
     ~Watchdog();
     Watchdog(const Watchdog&) = delete;
     Watchdog& operator=(const Watchdog&) = delete;
 
-    /// From now on. One thread only; the slot must outlive the watchdog. At most 32.
+    /// Begins to look. Throws std::system_error when the system refuses the thread.
+    void begin();
+    /// Looks after a device, too, from now on. Throws Error when there are too many, std::system_error when the system
+    /// refuses the thread.
     void watch(build::DeviceSlot& slot);
+    /// The devices watched last go before they were ever used, until `count` are left.
+    void forget_beyond(std::size_t count);
     std::size_t watched() const { return count_.load(std::memory_order_relaxed); }
+
+    /// Forces on all hands fade at once and stay away, or may come again. Any thread; wait-free.
+    void let_go() noexcept;
+    void take_up() noexcept;
+
+    /// Waits until every device, all of which are retired, is without force. A driver that blocks is left behind after a
+    /// fifth of a second: false then.
+    bool farewell();
 
 private:
     void run() noexcept;
 
-    std::array<build::DeviceSlot*, 32> slots_{};
+    std::function<void()> look_;
+    std::array<std::unique_ptr<DeviceWatch>, 32> watches_;
     std::atomic<std::size_t> count_{0};
     std::atomic<bool> ending_{false};
-    std::jthread thread_;
+    std::thread thread_;
 };
 
 }  // namespace tactus::run

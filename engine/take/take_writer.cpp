@@ -270,7 +270,9 @@ std::unique_ptr<io::Stream> TakeWriter::stream(const std::string& port, const Va
     return std::make_unique<io::Stream>(format, std::make_unique<TakeSink>(folder_, info, type, opened, finished, cut));
 }
 
-void TakeWriter::edit(std::int64_t number, Flicks when, const patch::Patch& patch) {
+std::string TakeWriter::describe_assets(const patch::Patch& patch) { return assets_json(patch).dump(); }
+
+void TakeWriter::edit(std::int64_t number, Flicks when, const patch::Patch& patch, const std::string& assets) {
     const std::string file = fmt::format("patch-{}.toml", number);
     if (is_lost_) return;
     try {
@@ -278,7 +280,7 @@ void TakeWriter::edit(std::int64_t number, Flicks when, const patch::Patch& patc
     } catch (const Error& error) {
         return lose(error.message());
     }
-    line(Json{{"plan", number}, {"file", file}, {"when_flicks", when}, {"assets", assets_json(patch)}}.dump());
+    line(Json{{"plan", number}, {"file", file}, {"when_flicks", when}, {"assets", Json::parse(assets)}}.dump());
 }
 
 void TakeWriter::change(std::int64_t id, std::int64_t plan, const std::string& node, const std::string& param,

@@ -61,7 +61,10 @@ public:
     void begin(const patch::Patch& patch, std::uint64_t plan_hash);
     void device(const build::DeviceSlot& slot);
     std::unique_ptr<io::Stream> stream(const std::string& port, const ValueType& type, const run::GroupRuntime& group);
-    void edit(std::int64_t number, Flicks when, const patch::Patch& patch);
+    /// What an edit says of itself; reads all of its assets. Any thread. Throws Error.
+    static std::string describe_assets(const patch::Patch& patch);
+    /// The plan that takes over at `when`; `assets` as described.
+    void edit(std::int64_t number, Flicks when, const patch::Patch& patch, const std::string& assets);
     void change(std::int64_t id, std::int64_t plan, const std::string& node, const std::string& param, double value);
     void record(const TimingRecord& record);
     /// What each group had reached (index in the log, activation, logical time) before the last records were written.

@@ -25,6 +25,10 @@ inline constexpr Structural structural{};
 struct Internal {};
 inline constexpr Internal internal{};
 
+/// Marks a count, a choice by number or a press: it changes at once, never through values in between.
+struct Discrete {};
+inline constexpr Discrete discrete{};
+
 /// A quantity with unit and range. Its unit is that of the default; a number wire may drive it unless structural.
 struct Param {
     Param(std::string_view default_text, std::string_view min_text, std::string_view max_text, const char* about_ = "");
@@ -37,6 +41,11 @@ struct Param {
           const char* about_ = "")
         : Param(default_text, min_text, max_text, about_) {
         is_internal = true;
+    }
+    Param(Discrete, std::string_view default_text, std::string_view min_text, std::string_view max_text,
+          const char* about_ = "")
+        : Param(default_text, min_text, max_text, about_) {
+        is_discrete = true;
     }
     Param(const Param&) = delete;
     Param& operator=(const Param&) = delete;
@@ -55,6 +64,7 @@ struct Param {
     const char* about;
     bool is_structural = false;
     bool is_internal = false;
+    bool is_discrete = false;
 };
 
 /// One of several words.

@@ -57,14 +57,14 @@ struct AdmittanceController {
         "force of the hand against the motion. Above it a finger at rest may be stalled; below it a stuck encoder is "
         "suspected"};
     Param motor_lag{"4 ms", "0 ms", "100 ms", "time constant of the motor's speed, for the stability limit"};
-    Param delay{"1", "0", "8", "ticks from a sample to the motion of the motor, for the stability limit"};
+    Param delay{discrete, "1", "0", "8", "ticks from a sample to the motion of the motor, for the stability limit"};
     Param hand_stiffness{
         internal, "3 N/mm", "0 N/mm", "100 N/mm",
         "of the stiffest finger or rig that may press, for the stability limit. Fingers are between 0.2 "
         "and 3 N/mm, depending on grip and person; the test rig is 0.38 N/mm. A lower number permits a "
         "quicker loop, which is unstable in a stiffer finger"};
     Param blend{"100 ms", "0 ms", "10 s", "time in which a new object replaces the old one"};
-    Param recover{"0", "0", "1e9", "change the number to go on after a fault"};
+    Param recover{discrete, "0", "0", "1e9", "change the number to go on after a fault"};
     Flag allow_unstable{false, "accept an unstable gain"};
 
     void prepare(const Setup& setup) {

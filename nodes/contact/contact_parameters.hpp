@@ -24,7 +24,7 @@ struct ContactParameters {
     Choice direction{{"field_gradient", "shell_normal"}, "of the contact forces; shell_normal is that of the thesis"};
     Param points{structural, "1000000", "1000", "20000000",
                  "of all surfaces together; memory is reserved for this many"};
-    Param budget{"1e9", "64", "1e9", "maximum number of points per evaluation"};
+    Param budget{discrete, "1e9", "64", "1e9", "maximum number of points per evaluation"};
     TACTUS_GROUP(both_ways, area_stiffness, point_stiffness, blend, saturation, interpolation, direction, points,
                  budget)
 

@@ -24,7 +24,7 @@ struct Scene {
     In<Pose> moved{optional, "pose that a hand has given the body at place 'which'; the body keeps it", "m"};
     In<double> which{optional, "place of the body that 'moved' refers to; -1: none"};
     Out<tactus::coupling::Scene> scene{"for contact, coupling and grasp nodes"};
-    Param middle{"-1", "-1", "3",
+    Param middle{discrete, "-1", "-1", "3",
                  "place of the body whose centroid is the origin of the scene; -1: origin of the files"};
     Vector a_at{"0 mm, 0 mm, 0 mm", "offset of body a"};
     Vector b_at{"0 mm, 0 mm, 0 mm", "offset of body b"};

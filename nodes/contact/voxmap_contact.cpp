@@ -20,7 +20,7 @@ struct VoxmapContact {
     Out<double> stiffness{"of all touching points together, along the stiffest of the three axes", "N/m"};
     Out<double> penetration{"of the deepest point", "m"};
     Out<bool> in_contact{"at least one point exerts a force"};
-    Param held{"0", "-1", "15", "place of the body in the scene"};
+    Param held{discrete, "0", "-1", "15", "place of the body in the scene"};
     ContactParameters contact;
 
     void prepare(const Setup&) { contact_.emplace(contact.make()); }

@@ -27,7 +27,7 @@ struct DynamicCoupling {
     Out<double> place{"place of the held body in the scene; -1: none"};
     Out<double> penetration{"of the deepest point", "m"};
     Out<bool> in_contact{"at least one point exerts a force"};
-    Param held{"0", "-1", "15", "place of the held body in the scene; connect grasp.held"};
+    Param held{discrete, "0", "-1", "15", "place of the held body in the scene; connect grasp.held"};
     Vector grip_at{"0 mm, 0 mm, 0 mm", "origin of the held body in the frame of the hand"};
     Param mass{"100 g", "0.1 g", "100 kg", "of the body"};
     Param inertia{"1e-4 kg m^2", "1e-9 kg m^2", "100 kg m^2", "of the body, about every axis through the hand"};

@@ -21,7 +21,7 @@ struct Grasp {
     Out<double> strength{"share of the coupling's force that the hand feels, 0 to 1"};
     Param reach{"5 mm", "0 mm", "1 m", "maximum distance from the hand to the body"};
     Param fade{"50 ms", "0 ms", "10 s", "time in which the force fades in and out"};
-    Param fixed{"1", "0", "16", "number of places, from place 0 on, that cannot be grasped"};
+    Param fixed{discrete, "1", "0", "16", "number of places, from place 0 on, that cannot be grasped"};
 
     void prepare(const Setup&) { publish(); }
 

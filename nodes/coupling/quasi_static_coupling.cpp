@@ -38,7 +38,7 @@ struct QuasiStaticCoupling {
     Out<double> penetration{"of the deepest point", "m"};
     Out<double> residual{"of the force balance", "N"};
     Out<bool> in_contact{"at least one point exerts a force"};
-    Param held{"0", "-1", "15", "place of the held body in the scene; connect grasp.held"};
+    Param held{discrete, "0", "-1", "15", "place of the held body in the scene; connect grasp.held"};
     Vector grip_at{"0 mm, 0 mm, 0 mm", "origin of the held body in the frame of the hand"};
     Param guide_stiffness{internal, "1 N/mm", "0 N/mm", "20 N/mm", "of the spring to the target"};
     Param guide_angular_stiffness{"1 N m/rad", "0 N m/rad", "100 N m/rad", "of the rotational spring to the target"};

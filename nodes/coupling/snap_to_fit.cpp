@@ -39,8 +39,8 @@ struct SnapToFit {
     Out<bool> in_contact{"at least one point exerts a force"};
     Asset<bone::Bone> moving{"the held fragment, with painted points"};
     Asset<bone::Bone> fixed{"the other fragment, with painted points"};
-    Param held{"1", "-1", "15", "place of the held body in the scene; connect grasp.held"};
-    Param target{"0", "0", "15", "place of the other fragment"};
+    Param held{discrete, "1", "-1", "15", "place of the held body in the scene; connect grasp.held"};
+    Param target{discrete, "0", "0", "15", "place of the other fragment"};
     Choice mode{{"extended", "baseline", "thesis"},
                 "extended: robust two-sided energy with a narrowing scale; baseline: constant pull of the held "
                 "fragment's points (thesis: its old name)"};

@@ -15,7 +15,7 @@ struct SolverParameters {
     Param angular_stiffness{"1 N m/rad", "0 N m/rad", "100 N m/rad", "of the rotational spring"};
     Param max_force{"10 N", "0 N", "100 N", "limit of the spring force"};
     Param max_torque{"0.5 N m", "0 N m", "20 N m", "limit of the spring torque"};
-    Param iterations{"10", "1", "50", "maximum number of solver steps in a tick"};
+    Param iterations{discrete, "10", "1", "50", "maximum number of solver steps in a tick"};
     Param tolerance{"0.001 N", "0 N", "1 N", "residual below which the body counts as balanced"};
     Param step{
         "0.5 mm", "0.001 mm", "20 mm",

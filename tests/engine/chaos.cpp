@@ -20,7 +20,7 @@ struct Chaos {
     Out<double> out{"x"};
     Out<Pose> pose{"x as a pose"};
     Param gain{"0.01", "0", "1", "size of the nudges"};
-    Param work{"0", "0", "100000", "iterations of useless work"};
+    Param work{discrete, "0", "0", "100000", "iterations of useless work"};
 
     void prepare(const Setup& setup) {
         x_ = 0.2 + 0.5 * Random{setup.seed}.uniform(0);
@@ -89,7 +89,7 @@ struct Planted {
     In<Pose> pose{"of the hand", "m"};
     Out<Wrench> wrench{"on the hand", "N, N m"};
     Choice fault{{"none", "nan", "inf", "spike", "stall"}, "what happens"};
-    Param at{"500", "0", "1e6", "in which tick it happens"};
+    Param at{discrete, "500", "0", "1e6", "in which tick it happens"};
     Param stall{"0 ms", "0 ms", "10 s", "how long the tick then lasts"};
 
     void process(const Tick& tick) noexcept {
@@ -109,12 +109,23 @@ struct Planted {
 };
 TACTUS_NODE(Planted, pose, wrench, fault, at, stall)
 
+/// A pose that does not move.
+struct Still {
+    static constexpr auto about = "A fixed pose.";
+
+    Out<Pose> pose{"fixed", "m"};
+    Param height{"0 mm", "-1 m", "1 m", "of the position"};
+
+    void process(const Tick&) noexcept { pose = Pose{Vec3(0.0, 0.0, height.value), Quat(1.0, 0.0, 0.0, 0.0)}; }
+};
+TACTUS_NODE(Still, pose, height)
+
 compile::Catalogue chaos_catalogue() {
     static const std::vector<const NodeType*> types = [] {
         const compile::Catalogue all = nodes::catalogue();
         std::vector<const NodeType*> with(all.begin(), all.end());
-        for (const NodeType* type :
-             {&node_type_Chaos(), &node_type_ChaosSignal(), &node_type_BatchSum(), &node_type_Planted()})
+        for (const NodeType* type : {&node_type_Chaos(), &node_type_ChaosSignal(), &node_type_BatchSum(),
+                                     &node_type_Planted(), &node_type_Still()})
             with.push_back(type);
         return with;
     }();

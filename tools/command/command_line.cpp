@@ -54,8 +54,9 @@ const CLI::App* given_verb(const CLI::App& app) {
 /// As the program calls itself when a system call failed.
 int failed_call(const std::system_error& error) {
     say(stderr, fmt::format("tactus: {}\n", error.what()));
-    for (const std::errc full : {std::errc::no_space_on_device, std::errc::io_error, std::errc::not_enough_memory,
-                                 std::errc::no_such_device, std::errc::read_only_file_system})
+    for (const std::errc full :
+         {std::errc::no_space_on_device, std::errc::io_error, std::errc::not_enough_memory, std::errc::no_such_device,
+          std::errc::read_only_file_system, std::errc::resource_unavailable_try_again})
         if (error.code() == full) return machine_failed;
     return bad_input;
 }

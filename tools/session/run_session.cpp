@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Without --seconds the run lasts until Ctrl-C; a day is as good as for ever and keeps every index small.
-constexpr double for_ever = 86400.0;
+// Without --seconds the run lasts until Ctrl-C: a hundred years, which logical time in flicks holds four times over.
+constexpr double for_ever = 100.0 * 365.25 * 86400.0;
 
 /// The log may be anywhere, but not where a recording is.
 void check_log(const run::Engine& engine, const fs::path& log, const fs::path& folder) {

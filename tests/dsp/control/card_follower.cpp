@@ -98,7 +98,7 @@ struct Simulation {
             next_look = now + 20e6;
             control::CardView seen = card;
             seen.next += left_to_skip;
-            const std::int64_t skip = follower.follow(seen, made * frame, clock);
+            const std::int64_t skip = follower.follow(seen, static_cast<std::int64_t>(now), clock);
             left_out += skip;
             left_to_skip += skip;
             // The target grows with the largest callback, so early changes of slope are not jitter.
@@ -256,7 +256,7 @@ TEST_CASE("a trimmed clock is continuous where it bends and never steeper than i
     for (std::uint64_t i = 0; i < 10'000; ++i) {
         at += 14'112'000;  // 20 ms
         const std::int64_t before = clock.when(at);
-        clock.trim(at, 1.0 + 1e-2 * (random.uniform(2 * i) - 0.5), 1e9 * (random.uniform(2 * i + 1) - 0.5));
+        clock.trim(before, 1.0 + 1e-2 * (random.uniform(2 * i) - 0.5), 1e9 * (random.uniform(2 * i + 1) - 0.5));
         CHECK(std::abs(clock.when(at) - before) <= 1);
         const double slope = static_cast<double>(before - last) / 20e6;
         CHECK(std::abs(slope - 1.0) <= control::TrimmedClock::furthest + 1e-6);

@@ -128,3 +128,22 @@ TEST_CASE("readers of the run's clock see whole lines only") {
     trimmer.join();
     CHECK(torn == 0);
 }
+
+TEST_CASE("the clock is trimmed where time is, not where the furthest group is: nothing jumps") {
+    const Bench bench;
+    control::TrimmedClock clock{0, 0, 1.0};
+    constexpr Flicks slow = 5 * flicks_per_second;  // a group of 0.2 Hz has come to here already
+    std::int64_t frames = 0, worst = 0;
+    for (std::int64_t ms = 10; ms < 2000; ms += 10) {
+        const std::int64_t now = ms * 1'000'000;
+        bench.write(frames, 500);
+        bench.sink->ask(480, now);
+        frames += 500;
+        const auto present = static_cast<Flicks>(static_cast<double>(now) * 0.7056);
+        const std::int64_t before = clock.when(present);
+        bench.card->service(now, slow, &clock);
+        worst = std::max(worst, std::abs(clock.when(present) - before));
+    }
+    CHECK(clock.slope != 1.0);
+    CHECK(worst < 100);
+}

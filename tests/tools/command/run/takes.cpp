@@ -168,6 +168,8 @@ TEST_CASE("a patch is edited and its parameters are set while it runs, and the t
     INFO(replay.out << replay.err);
     REQUIRE(replay.code == 0);
     CHECK(json::parse(replay.out)["edits"] == 2);
+    // Without --seconds it would have gone on for years.
+    CHECK(json::parse(slurp(take / "take.json"))["seconds"] > 1e9);
     CHECK(folder.tactus("set 'ball.stiffness=0.3 N/mm'").err.find("no patch runs") != std::string::npos);
     ::unsetenv("XDG_RUNTIME_DIR");
 }

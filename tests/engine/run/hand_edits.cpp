@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a hand feels when the patch that makes its force is edited, or a parameter of it is set.
+#include "tests/engine/chaos.hpp"
+#include "tests/engine/repeat.hpp"
+#include "tests/engine/watched_hand.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+using namespace tactus;
+using namespace tactus::test;
+
+namespace {
+
+constexpr Flicks ms = flicks_per_second / 1000;
+
+std::string on_spring(const std::string& stiffness, const std::string& spring = "spring", const std::string& more = "",
+                      const std::string& rate = "1 kHz") {
+    PatchText patch;
+    add_hand(patch, "left", stiffness, spring, rate);
+    patch.extra += more;
+    return patch.toml();
+}
+
+/// Forces of each tick offline, with a plan that takes over at 300 ms.
+std::vector<double> rendered(const std::string& first, const std::string& second, int threads = 1, int block = 0) {
+    WatchedHand& hand = watched_hand("left");
+    run::EngineOptions options;
+    options.seconds = 0.6;
+    options.block = block;
+    run::Engine engine(compile_text(first), options);
+    engine.schedule(compile_text(second), 300 * ms);
+    engine.render(threads);
+    std::vector<double> forces;
+    for (const auto& given : hand.given()) forces.push_back(given.force_N);
+    return forces;
+}
+
+double largest_step(const std::vector<double>& forces) {
+    double largest = 0.0;
+    for (std::size_t i = 1; i < forces.size(); ++i) largest = std::max(largest, std::abs(forces[i] - forces[i - 1]));
+    return largest;
+}
+
+}  // namespace
+
+TEST_CASE("a stiffness that an edit changes comes in over a tenth of a second") {
+    const std::vector<double> forces = rendered(on_spring("1 N/mm"), on_spring("8 N/mm"));
+    REQUIRE(forces.size() == 600);
+    CHECK(forces[299] == Approx(2.0));
+    CHECK(forces[300] == Approx(2.0 + 0.14));
+    CHECK(forces[349] == Approx(2.0 + 50 * 0.14));
+    CHECK(forces[398] < 15.9);
+    for (std::size_t tick = 399; tick < 600; ++tick) REQUIRE(forces[tick] == 16.0);
+    CHECK(largest_step({forces.begin() + 290, forces.end()}) < 0.15);
+}
+
+TEST_CASE("a parameter that no force depends on changes at once") {
+    const std::string more = "[nodes.free]\ntype = \"constant\"\nrate = \"1 kHz\"\nnumber = ";
+    run::EngineOptions options;
+    options.seconds = 0.6;
+    std::vector<double> numbers;
+    struct Sink : io::Sink {
+        explicit Sink(std::vector<double>& to_) : to(to_) {}
+        void take(std::int64_t, const std::byte* values, std::size_t count) override {
+            to.insert(to.end(), reinterpret_cast<const double*>(values),
+                      reinterpret_cast<const double*>(values) + count);
+        }
+        void finish() override {}
+        std::vector<double>& to;
+    };
+    options.tap = [&](const std::string& port, const ValueType& type,
+                      const run::GroupRuntime& group) -> std::unique_ptr<io::Stream> {
+        if (port != "free.value") return nullptr;
+        StreamFormat format;
+        format.type = &type;
+        format.period = group.plan->period;
+        return std::make_unique<io::Stream>(format, std::make_unique<Sink>(numbers));
+    };
+    watched_hand("left");
+    run::Engine engine(compile_text(on_spring("1 N/mm", "spring", more + "1\n")), options);
+    engine.schedule(compile_text(on_spring("1 N/mm", "spring", more + "5\n")), 300 * ms);
+    engine.render(1);
+    REQUIRE(numbers.size() == 600);
+    CHECK(numbers[299] == 1.0);
+    CHECK(numbers[300] == 5.0);
+}
+
+TEST_CASE("how a parameter comes in is a matter of the sample's index: threads and blocks cannot change a bit") {
+    // The force on the hand depends on sound: its level scales a signal in blocks.
+    const auto patch = [](const std::string& level) {
+        PatchText text;
+        add_hand(text, "left");
+        text.nodes.push_back({"tone", "sine", "48 kHz", {{"frequency", "90 Hz"}}});
+        text.nodes.push_back({"loud", "gain", "48 kHz", {{"factor", level}}});
+        text.nodes.push_back({"level", "envelope", "48 kHz", {}});
+        text.wires.insert(text.wires.end(),
+                          {"tone.signal -> loud.in", "loud.out -> level.in", "level.level -> left_spring.damping"});
+        return text.toml();
+    };
+    const auto hashes = [&](int threads, int block) {
+        watched_hand("left");
+        run::EngineOptions options;
+        options.seconds = 0.5;
+        options.block = block;
+        run::Engine engine(compile_text(patch("0.5")), options);
+        engine.schedule(compile_text(patch("1")), 201 * ms + 777);
+        engine.schedule(compile_text(patch("0.2")), 233 * ms + 13);
+        engine.render(threads);
+        return engine.port_hashes();
+    };
+    const auto reference = hashes(1, 1);
+    for (const int threads : {1, 3})
+        for (const int block : {1, 7, 48, 480}) CHECK(hashes(threads, block) == reference);
+}
+
+TEST_CASE("a log that changes a parameter at once is repeated so, and one that lets it come in, too") {
+    const auto path = scratch("old-log");
+    for (const std::uint32_t activations : {0U, 100U}) {
+        WatchedHand& hand = watched_hand("left");
+        const std::string text = on_spring("1 N/mm");
+        std::uint64_t plan_hash = 0;
+        {
+            run::EngineOptions options;
+            run::Engine engine(compile_text(text), options);
+            plan_hash = engine.plan_hash();
+        }
+        {
+            take::TimingLogWriter log(path, plan_hash, 0.6);
+            take::TimingRecord record;
+            record.kind = take::TimingKind::parameter;
+            record.source = activations;
+            record.tick = 300;
+            log.write(record);
+            record = {};
+            record.tick = 600;
+            log.write(record);
+            log.finish();
+        }
+        const take::TimingLog log = take::TimingLog::load(path);
+        run::EngineOptions options;
+        options.seconds = 0.6;
+        options.replay = &log;
+        std::vector<double> forces;
+        struct Sink : io::Sink {
+            explicit Sink(std::vector<double>& to_) : to(to_) {}
+            void take(std::int64_t, const std::byte* values, std::size_t count) override {
+                for (std::size_t i = 0; i < count; ++i)
+                    to.push_back(glm::length(reinterpret_cast<const Wrench*>(values)[i].force));
+            }
+            void finish() override {}
+            std::vector<double>& to;
+        };
+        options.tap = [&](const std::string& port, const ValueType& type,
+                          const run::GroupRuntime& group) -> std::unique_ptr<io::Stream> {
+            if (port != "left_spring.wrench") return nullptr;
+            StreamFormat format;
+            format.type = &type;
+            format.period = group.plan->period;
+            return std::make_unique<io::Stream>(format, std::make_unique<Sink>(forces));
+        };
+        run::Engine engine(compile_text(text), options);
+        engine.schedule_change(0, "left_spring", "stiffness", 8000.0);
+        engine.render(1);
+        INFO(activations);
+        REQUIRE(forces.size() == 600);
+        CHECK(forces[299] == Approx(2.0));
+        CHECK(forces[300] == Approx(activations == 0 ? 16.0 : 2.14));
+        CHECK(forces[450] == 16.0);
+        CHECK(hand.given().empty());
+        std::filesystem::remove(path);
+    }
+}
+
+TEST_CASE("an edit of the force path does not jump, however long the control thread needs for it", "[live]") {
+    const auto folder = scratch("slow-edit");
+    const auto big = scratch("big.bin");
+    std::ofstream(big).put('x');
+    std::filesystem::resize_file(big, 600'000'000);
+    const std::string asset = "[assets]\nbig = \"" + big.string() + "\"\n";
+    WatchedHand& hand = watched_hand("left");
+    std::int64_t asked = 0;
+    bool told = false;
+    run::Engine::PortHashes live_hashes;
+    {
+        take::TakeWriter take(folder,
+                              {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 30.0, .live = true});
+        run::EngineOptions options;
+        options.seconds = 30.0;
+        options.live = true;
+        options.take = &take;
+        run::Engine engine(compile_text(on_spring("1 N/mm")), options);
+        std::atomic<bool> stop{false};
+        run::LiveOptions live;
+        live.stop = &stop;
+        live.watch = [&] {
+            if (asked == 0 && engine.progress_seconds() > 0.5) {
+                asked = steady_now();
+                engine.edit([&] { return compile_text(on_spring("8 N/mm", "other", asset)); },
+                            [&](const run::EditOutcome& outcome) {
+                                CHECK_FALSE(outcome.error);
+                                told = true;
+                            });
+            }
+            if (told && engine.is_settled() && steady_now() - asked > 500'000'000) stop = true;
+        };
+        engine.run_live(live);
+        engine.finish();
+        live_hashes = engine.port_hashes();
+    }
+    CHECK(told);
+    // The new force is too large to come in while the hand stays where it is.
+    CHECK(hand.largest_after(asked) < 2.01);
+    CHECK(hand.ms_to_zero(asked) < 1e9);
+    const Repetition again = repeat(folder, 2);
+    CHECK_FALSE(again.difference);
+    CHECK(again.hashes == live_hashes);
+    std::filesystem::remove_all(folder);
+    std::filesystem::remove(big);
+}
+
+TEST_CASE("a stiffness that is set while the patch runs comes in slowly, and the take repeats it", "[live]") {
+    const auto folder = scratch("slow-set");
+    WatchedHand& hand = watched_hand("left");
+    run::Engine::PortHashes live_hashes;
+    bool is_set = false;
+    {
+        take::TakeWriter take(folder,
+                              {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 0.8, .live = true});
+        run::EngineOptions options;
+        options.seconds = 0.8;
+        options.live = true;
+        options.take = &take;
+        run::Engine engine(compile_text(on_spring("1 N/mm")), options);
+        run::LiveOptions live;
+        live.watch = [&] {
+            if (is_set || engine.progress_seconds() < 0.4) return;
+            is_set = true;
+            engine.set("left_spring", "stiffness", "8 N/mm");
+        };
+        engine.run_live(live);
+        engine.finish();
+        live_hashes = engine.port_hashes();
+    }
+    CHECK(is_set);
+    std::int64_t slow = 0;
+    for (const auto& given : hand.given()) slow += given.force_N > 2.5 && given.force_N < 15.5;
+    // 14 ticks by the limit of the slew.
+    CHECK(slow > 40);
+    const Repetition again = repeat(folder, 2);
+    CHECK_FALSE(again.difference);
+    CHECK(again.hashes == live_hashes);
+    std::filesystem::remove_all(folder);
+}
