@@ -67,6 +67,11 @@ bool LiveDecisions::fades_for(const build::GroupProgram& next, std::int64_t tick
     return now;
 }
 
+std::int64_t LiveDecisions::readable_until(const Link&, const GroupRuntime&, std::int64_t,
+                                           std::int64_t until) const noexcept {
+    return until;
+}
+
 bool LiveDecisions::has_room(const std::vector<Link*>&, std::int64_t, int) const noexcept { return true; }
 
 LinkReading LiveDecisions::read(const Link& link, const GroupRuntime& producer, std::int64_t tick,

@@ -94,13 +94,22 @@ private:
     bool switch_if_due() noexcept;
     void take_over(build::GroupProgram& next) noexcept;
     void read_links(int frames) noexcept;
+    /// True when something older was read than the schedule says.
+    bool read_link(Link& link, const GroupRuntime& producer, int frames) noexcept;
+    /// Tells nodes which of their snapshots are still looked at.
+    void note_readers(int frames) noexcept;
     void acquire() noexcept;
     void run_steps(int frames) noexcept;
     /// `watched`: what the steps give is hashed or recorded, or they are timed.
     template <bool watched>
-    void run_each(const Tick& tick, bool timed) noexcept;
-    void drive(const build::StepWires& step, int i) noexcept;
-    void run_one_at_a_time(const build::Step& step, const build::StepWires& of, const Tick& all) noexcept;
+    void run_each(const build::Stretch& stretch, const Tick& tick, bool timed) noexcept;
+    void run_cycle(const build::Stretch& stretch, const Tick& all, bool timed) noexcept;
+    /// A step for `part` of a call of `frames` activations, from its activation `from` on. Its ports move on.
+    void run_part(std::size_t step, const Tick& part, int from, int frames) noexcept;
+    void run_one_at_a_time(std::size_t step, const Tick& all) noexcept;
+    /// Points the ports of a step at what comes `by` activations later, its activation `to` in a call.
+    void move_ports(std::size_t step, int by, int to, int frames) noexcept;
+    void move_back(std::size_t step, int frames) noexcept;
     void hash_outputs(const build::Step& step, int frames) noexcept;
     void record_outputs(const build::Step& step, int frames) noexcept;
     void publish(int frames) noexcept;
