@@ -200,4 +200,45 @@ TEST_CASE("groups that tick faster than the system wakes a thread leave most of 
     CHECK(processor_ns() - before < 350'000'000);
 }
 
+TEST_CASE("what came too late between two audio groups is repeated from the log, whatever blocks and threads",
+          "[live]") {
+    const PatchText text{{{"a", "loop", "one", {}},
+                          {"x", "chaos", "one", {}},
+                          {"b", "loop", "two", {}},
+                          {"y", "chaos", "two", {}},
+                          {"quick", "chaos", "20 kHz", {}},
+                          {"sum", "batch_sum", "two", {}},
+                          {"p", "planted", "one", {{"fault", "stall"}, {"stall", "30 ms"}, {"at", "3000"}}},
+                          {"q", "planted", "two", {{"fault", "stall"}, {"stall", "40 ms"}, {"at", "9000"}}}},
+                         {"a.level -> b.nudge", "x.out -> b.gain as linear", "b.level -> a.nudge", "y.out -> x.in",
+                          "quick.out -> y.other", "quick.pose -> sum.path as batch", "sum.sum -> a.gain",
+                          "x.pose -> p.pose", "y.pose -> q.pose"},
+                         "seed = 7\n[groups.one]\nrate = \"48 kHz\"\nlatency = \"0.3 ms\"\n"
+                         "[groups.two]\nrate = \"44.1 kHz\"\n"};
+    const auto log = scratch("parts.log");
+    run::EngineOptions options;
+    options.seconds = 0.3;
+    options.live = true;
+    run::Engine live(plan_of(text), options);
+    live.run_live({.dilate = 1.0, .log = log, .stop = nullptr, .watch = {}});
+    std::int64_t late = 0;
+    for (const auto& group : live.groups()) late += group->telemetry.misses + group->telemetry.skipped;
+    CHECK(late > 0);
+    const take::TimingLog recorded = take::TimingLog::load(log);
+    for (const int threads : {1, 3})
+        for (const bool random : {false, true})
+            for (const int block : {0, 1, 480}) {
+                INFO(threads << " threads, blocks of " << block << (random ? " at random" : ""));
+                run::EngineOptions again;
+                again.seconds = options.seconds;
+                again.replay = &recorded;
+                again.block = block;
+                again.random_blocks = random;
+                run::Engine replay(plan_of(text), again);
+                replay.render(threads);
+                CHECK(replay.port_hashes() == live.port_hashes());
+            }
+    std::filesystem::remove(log);
+}
+
 }  // namespace tactus::test
