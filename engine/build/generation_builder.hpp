@@ -64,6 +64,7 @@ private:
     std::vector<bool> vary_within_call() const;
     void add_step(GroupProgram& program, std::size_t index, bool varies);
     void make_stretches(std::size_t group);
+    void record(std::size_t group);
     /// Where the output of a node is seen from outside. One that goes on is looked at as before.
     observe::ObservedPort& observed(LiveNode& node, std::size_t output, const std::string& name);
     void make_programs();

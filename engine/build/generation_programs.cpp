@@ -25,6 +25,7 @@ void GenerationBuilder::make_steps() {
         for (const int index : plan().groups[g].order)
             add_step(*made_->programs[g], static_cast<std::size_t>(index), vary[static_cast<std::size_t>(index)]);
         make_stretches(g);
+        record(g);
     }
 }
 
@@ -41,6 +42,13 @@ std::vector<bool> GenerationBuilder::vary_within_call() const {
         if (is_one_value || (kind == InputKind::batch && changes)) vary[static_cast<std::size_t>(wire.to_node)] = true;
     }
     return vary;
+}
+
+void GenerationBuilder::record(std::size_t g) {
+    GroupProgram& program = *made_->programs[g];
+    if (!context_.take || program.layout.columns.empty()) return;
+    program.frames.resize(program.layout.bytes * static_cast<std::size_t>(made_->groups[g]->max_frames));
+    program.recorded = context_.take(program.layout, *made_->groups[g]);
 }
 
 /// Delayed wires are laid out before the first step that may read them.
@@ -112,7 +120,7 @@ void GenerationBuilder::add_step(GroupProgram& program, std::size_t index, bool 
         output.port = running.outputs[k];
         output.is_signal = &type == &value::signal;
         output.name = node.name + "." + node.outputs[k].name;
-        if (context_.take) output.take = context_.take(output.name, type, *running.group);
+        if (context_.take) output.offset = program.layout.add(output.name, type);
         if (context_.observer) output.seen = &observed(running, k, output.name);
         if (type.version) program.snapshots.push_back(static_cast<SnapshotOutput*>(running.outputs[k]));
     }

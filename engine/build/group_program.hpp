@@ -7,6 +7,7 @@
 #include "dsp/core/signal_hash.hpp"
 #include "engine/build/delay_line.hpp"
 #include "engine/io/device_guard.hpp"
+#include "engine/io/frames.hpp"
 #include "engine/observe/telemetry.hpp"
 #include "engine/run/link.hpp"
 #include "graph/node/device.hpp"
@@ -68,21 +69,16 @@ struct Stretch {
 };
 
 /// An output and the hash over all it gave. The values of a signal are there only until its last reader has run (see
-/// graph/compile/layout.hpp), so each is hashed and recorded right after its step.
+/// graph/compile/layout.hpp), so each is hashed and put into the frames right after its step.
 struct PublishedOutput {
     Output* port = nullptr;
     bool is_signal = false;
     Hash hash;
     SignalHash samples;
-    /// Where every value is recorded, or null: the control thread may set another while the group runs.
-    alignas(std::atomic_ref<RecordStream*>::required_alignment) RecordStream* take = nullptr;
+    std::size_t offset = 0;  ///< in the frames of the group
     observe::ObservedPort* seen = nullptr;  ///< where an observer finds it, or null
     std::string name;  ///< "node.port"
     int before = -1;  ///< the same output in the program before, whose hash goes on
-
-    static_assert(std::atomic_ref<RecordStream*>::is_always_lock_free);
-    void record_into(RecordStream* stream) noexcept { std::atomic_ref(take).store(stream, std::memory_order_release); }
-    RecordStream* recorded_into() noexcept { return std::atomic_ref(take).load(std::memory_order_acquire); }
 
     /// After `ran` activations of the group.
     std::uint64_t value(std::int64_t ran) const {
@@ -120,6 +116,11 @@ struct GroupProgram {
     std::vector<Stretch> stretches;  ///< of the steps, in order
     std::vector<PublishedOutput> published;  ///< every output, in the order of the steps
     bool hashes_outputs = true, records_outputs = false;
+    io::FrameLayout layout;  ///< of all outputs, when they are or may be recorded
+    std::vector<std::byte> frames;  ///< of a call
+    /// Where the frames go, or null: the control thread may set another while the group runs.
+    std::atomic<RecordStream*> recorded{nullptr};
+    static_assert(std::atomic<RecordStream*>::is_always_lock_free);
     std::int64_t ran = 0;  ///< activations of the group when the next program took over
     std::vector<run::Link*> inputs, outputs;  ///< links into and out of this group
     std::vector<const run::GroupRuntime*> producers;  ///< of each input link

@@ -52,8 +52,8 @@ Engine::Engine(compile::Plan plan, const EngineOptions& options)
       offline_(options_, timeline_, recorder_) {
     if (options_.devices) host_.imitate(*options_.devices);
     if (options_.take || options_.tap)
-        context_.take = [this](const std::string& port, const ValueType& type, const GroupRuntime& group) {
-            return recorder_.stream_for(port, type, group);
+        context_.take = [this](const io::FrameLayout& layout, const GroupRuntime& group) {
+            return recorder_.stream_for(layout, group);
         };
     if (options_.replay && options_.replay->plan_hash != plan_hash_)
         throw Error("the timing log was made with another patch or other settings; replay needs the same");

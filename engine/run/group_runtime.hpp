@@ -112,6 +112,7 @@ private:
     void move_back(std::size_t step, int frames) noexcept;
     void hash_outputs(const build::Step& step, int frames) noexcept;
     void record_outputs(const build::Step& step, int frames) noexcept;
+    void put_into_frames(const build::PublishedOutput& output, int frames) noexcept;
     void publish(int frames) noexcept;
 
     static constexpr int timed_every = 64;  ///< nodes are timed in one call of so many
@@ -126,6 +127,7 @@ private:
     std::size_t taken_ = 0;  ///< of `scheduled`
     std::int64_t next_ = 0, last_ = -1, ran_ = 0;
     int closely_ = 0;  ///< calls still to be timed
+    RecordStream* recorded_ = nullptr;  ///< where the outputs of this call go
     int begun_ = 0;  ///< activations of the call that has begun and not ended
     std::uint64_t calls_ = 0;
     std::atomic<std::int64_t> plan_number_{-1};

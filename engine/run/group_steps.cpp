@@ -6,6 +6,7 @@
 #include "graph/node/node_memory.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 namespace tactus::run {
@@ -101,11 +102,17 @@ void GroupRuntime::hash_outputs(const build::Step& step, int frames) noexcept {
 void GroupRuntime::record_outputs(const build::Step& step, int frames) noexcept {
     for (std::uint32_t k = step.first_output; k < step.first_output + step.output_count; ++k) {
         build::PublishedOutput& output = program_->published[k];
-        if (RecordStream* const stream = output.recorded_into())
-            stream->write(next_, output.port->data, static_cast<std::size_t>(frames), output.port->stride);
+        if (recorded_) put_into_frames(output, frames);
         if (output.seen)
             output.seen->see(next_, output.port->data, static_cast<std::size_t>(frames), output.port->stride);
     }
+}
+
+void GroupRuntime::put_into_frames(const build::PublishedOutput& output, int frames) noexcept {
+    const std::size_t size = output.port->type->size;
+    std::byte* to = program_->frames.data() + output.offset;
+    for (int i = 0; i < frames; ++i, to += program_->layout.bytes)
+        std::memcpy(to, output.port->data + i * output.port->stride, size);
 }
 
 /// Asks for the cache line of a node's ports and first parameters, a few steps before they are needed: nodes are
@@ -149,6 +156,7 @@ void GroupRuntime::run_steps(int frames) noexcept {
     const Tick tick{next_, plan->period, elapsed, frames};
     const bool timed = times_nodes && (calls_++ % timed_every == 0 || closely_ > 0);
     closely_ = std::max(closely_ - 1, 0);
+    recorded_ = program_->recorded.load(std::memory_order_acquire);
     const bool watched = timed || program_->hashes_outputs || program_->records_outputs;
     for (const build::Stretch& stretch : program_->stretches) {
         for (build::DelayLine* line : stretch.before) line->recall(next_, 0, frames);
@@ -158,6 +166,9 @@ void GroupRuntime::run_steps(int frames) noexcept {
     }
     for (const build::Stretch& stretch : program_->stretches)
         for (build::DelayLine* line : stretch.before) line->remember(next_, 0, frames);
+    if (recorded_)
+        recorded_->write(next_, program_->frames.data(), static_cast<std::size_t>(frames),
+                         static_cast<std::ptrdiff_t>(program_->layout.bytes));
     ran_ += frames;
 }
 
