@@ -67,9 +67,9 @@ bool LiveDecisions::fades_for(const build::GroupProgram& next, std::int64_t tick
     return now;
 }
 
-std::int64_t LiveDecisions::readable_until(const Link&, const GroupRuntime&, std::int64_t,
+std::int64_t LiveDecisions::readable_until(const Link& link, const GroupRuntime&, std::int64_t tick,
                                            std::int64_t until) const noexcept {
-    return until;
+    return std::min(until, std::max(tick + link.longest_call(), link.window_end(tick)));
 }
 
 bool LiveDecisions::has_room(const std::vector<Link*>&, std::int64_t, int) const noexcept { return true; }

@@ -40,7 +40,7 @@ int GroupRuntime::cut(int frames) const noexcept {
     // Calls of two groups with calls of one length begin together, after skipped activations, too.
     cut_at(ceil_div(next_ + 1, max_frames) * max_frames);
     for (const Link* link : program_->inputs)
-        cut_at(link->changes_within_calls ? next_ + link->longest_call() : link->window_end(next_));
+        if (!link->changes_within_calls) cut_at(link->window_end(next_));
     until = decisions_->end_of_call(next_, until, upcoming_);
     for (std::size_t i = 0; i < program_->inputs.size(); ++i)
         if (const Link& link = *program_->inputs[i]; link.changes_within_calls)

@@ -70,7 +70,7 @@ public:
     std::int64_t first_after(std::int64_t index) const {
         return ceil_div((index + 1) * producer_period + latency, consumer_period);
     }
-    /// Activations of the consumer that one call may read ahead of the first.
+    /// Live, the most activations of a call of the consumer, so that the producer has time for what the last one reads.
     std::int64_t longest_call() const { return longest_call_; }
 
     // Producer's side.
