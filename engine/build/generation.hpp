@@ -4,6 +4,7 @@
 #pragma once
 
 #include "engine/build/group_program.hpp"
+#include "engine/io/frames.hpp"
 #include "engine/io/host.hpp"
 #include "engine/observe/observer.hpp"
 #include "engine/run/group_runtime.hpp"
@@ -42,8 +43,8 @@ struct BuildContext {
     bool hash = true;  ///< keep hashes of all outputs
     std::map<std::pair<const ValueType*, std::string>, std::pair<std::shared_ptr<const void>, std::vector<std::byte>>>
         constants;
-    /// Where the values of an output are recorded, or null. Named "node.port"; empty: there is no take.
-    std::function<RecordStream*(const std::string& port, const ValueType&, const run::GroupRuntime&)> take;
+    /// Where the outputs of a group are recorded, as frames of that layout, or null. Empty: there is no take.
+    std::function<RecordStream*(const io::FrameLayout&, const run::GroupRuntime&)> take;
     int next_group = 0, next_link = 0;
     int group_before = 0, link_before = 0;  ///< the same before the plan that is being built
     observe::Observer* observer = nullptr;  ///< who looks on, or null

@@ -51,6 +51,8 @@ private:
     void connect_constant(const compile::PlanWire& wire);
     void connect_delay(const compile::PlanWire& wire, const Output& source, Input* target, int group_index);
     run::Link& link_for(const compile::PlanWire& wire);
+    /// Values of one group come so often that calls of the other, an audio group, would be cut short at each.
+    bool changes_within_calls(int producer, int consumer) const;
     bool is_same_wire(const run::LinkWire& old, const run::LinkWire& wire) const;
     /// Notes for each wire of `link` the same one of `old`; returns how many there are.
     std::size_t match_wires(run::Link& link, run::Link* old) const;
@@ -61,6 +63,8 @@ private:
     void make_steps();
     std::vector<bool> vary_within_call() const;
     void add_step(GroupProgram& program, std::size_t index, bool varies);
+    void make_stretches(std::size_t group);
+    void record(std::size_t group);
     /// Where the output of a node is seen from outside. One that goes on is looked at as before.
     observe::ObservedPort& observed(LiveNode& node, std::size_t output, const std::string& name);
     void make_programs();
@@ -90,6 +94,7 @@ private:
     std::unordered_set<const run::Link*> links_going_on_;                         // of `before_`
     std::unordered_map<const void*, void*> moved_;  // ports and parameters of compiled nodes to those that live
     std::vector<std::vector<Drive>> drives_;
+    std::unordered_map<const Input*, const run::LinkWire*> batches_;  // those that change within calls
     std::unordered_set<const run::Link*> new_links_;
 };
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
+#include <map>
 
 namespace tactus::build {
 
@@ -13,13 +15,18 @@ void GenerationBuilder::make_steps() {
     for (std::size_t i = 0; i < plan().nodes.size(); ++i)
         for (const auto& [name, param] : made_->nodes[i]->params) owners.emplace(param, i);
     for (const auto& link : made_->links)
-        for (const run::LinkWire& wire : link->wires)
-            if (wire.param && wire.mode == patch::WireMode::linear)
-                drives_[owners.at(wire.param)].push_back({wire.param, nullptr, &wire});
+        for (const run::LinkWire& wire : link->wires) {
+            if (wire.mode == patch::WireMode::batch && link->changes_within_calls) batches_.emplace(wire.target, &wire);
+            else if (wire.param && !wire.glide.empty())
+                drives_[owners.at(wire.param)].push_back({wire.param, wire.glide.data(), sizeof(double)});
+        }
     const std::vector<bool> vary = vary_within_call();
-    for (std::size_t g = 0; g < plan().groups.size(); ++g)
+    for (std::size_t g = 0; g < plan().groups.size(); ++g) {
         for (const int index : plan().groups[g].order)
             add_step(*made_->programs[g], static_cast<std::size_t>(index), vary[static_cast<std::size_t>(index)]);
+        make_stretches(g);
+        record(g);
+    }
 }
 
 std::vector<bool> GenerationBuilder::vary_within_call() const {
@@ -27,23 +34,78 @@ std::vector<bool> GenerationBuilder::vary_within_call() const {
     for (const compile::PlanWire& wire : made_->plan.wires) {
         if (wire.from_node < 0) continue;
         const compile::PlanNode& node = made_->plan.nodes[static_cast<std::size_t>(wire.to_node)];
-        const bool same_group = made_->plan.nodes[static_cast<std::size_t>(wire.from_node)].group == node.group;
-        if (!same_group && wire.mode != patch::WireMode::linear) continue;
+        const int from = made_->plan.nodes[static_cast<std::size_t>(wire.from_node)].group;
+        const bool changes = from == node.group || changes_within_calls(from, node.group);
         const InputKind kind =
             wire.to_input < 0 ? InputKind::value : node.inputs[static_cast<std::size_t>(wire.to_input)].port->kind;
-        if (kind == InputKind::value) vary[static_cast<std::size_t>(wire.to_node)] = true;
+        const bool is_one_value = kind == InputKind::value && (changes || wire.mode == patch::WireMode::linear);
+        if (is_one_value || (kind == InputKind::batch && changes)) vary[static_cast<std::size_t>(wire.to_node)] = true;
     }
     return vary;
+}
+
+void GenerationBuilder::record(std::size_t g) {
+    GroupProgram& program = *made_->programs[g];
+    if (!context_.take || program.layout.columns.empty()) return;
+    program.frames.resize(program.layout.bytes * static_cast<std::size_t>(made_->groups[g]->max_frames));
+    program.recorded = context_.take(program.layout, *made_->groups[g]);
+}
+
+/// Delayed wires are laid out before the first step that may read them.
+void GenerationBuilder::make_stretches(std::size_t g) {
+    const compile::PlanGroup& group = plan().groups[g];
+    GroupProgram& program = *made_->programs[g];
+    if (program.delays.empty()) {
+        program.stretches.push_back({.first = 0, .count = program.steps.size(), .inner = {}, .before = {}});
+        return;
+    }
+    std::unordered_map<const void*, std::size_t> places;  // of the step that reads an input or a parameter
+    for (std::size_t i = 0; i < program.steps.size(); ++i) {
+        const compile::PlanNode& node = plan().nodes[static_cast<std::size_t>(group.order[i])];
+        for (const compile::PlanInput& input : node.inputs) places.emplace(input.port, i);
+        for (const auto& [name, param] : node.params) places.emplace(param, i);
+    }
+    std::unordered_map<const Output*, std::size_t> sources;
+    for (std::size_t i = 0; i < program.steps.size(); ++i)
+        for (const compile::PlanOutput& output : plan().nodes[static_cast<std::size_t>(group.order[i])].outputs)
+            sources.emplace(output.port, i);
+    std::map<std::size_t, Stretch> stretches;  // by the first step
+    stretches[0];
+    for (const compile::PlanCycle& cycle : group.cycles) {
+        const auto first = static_cast<std::size_t>(cycle.first);
+        stretches[first].longest = cycle.longest;
+        stretches.try_emplace(first + static_cast<std::size_t>(cycle.count));
+    }
+    for (const auto& line : program.delays) {
+        const std::size_t at =
+            places.at(line->target ? static_cast<const void*>(line->target) : static_cast<const void*>(line->param));
+        auto within = std::prev(stretches.upper_bound(at));
+        if (within->second.longest > 0) {
+            const bool is_inner = sources.at(line->source) >= within->first;
+            (is_inner ? within->second.inner : within->second.before).push_back(line.get());
+        } else if (group.has_audio) stretches[at].before.push_back(line.get());
+        // Of one activation the source may run later: what is read is from an earlier call.
+        else stretches[0].before.push_back(line.get());
+    }
+    stretches.erase(program.steps.size());
+    for (auto at = stretches.begin(); at != stretches.end(); ++at) {
+        const auto next = std::next(at);
+        at->second.first = at->first;
+        at->second.count = (next == stretches.end() ? program.steps.size() : next->first) - at->first;
+        program.stretches.push_back(std::move(at->second));
+    }
 }
 
 void GenerationBuilder::add_step(GroupProgram& program, std::size_t index, bool varies) {
     const compile::PlanNode& node = plan().nodes[index];
     LiveNode& running = *made_->nodes[index];
     StepWires& wires = program.wires.emplace_back();
-    for (const Drive& drive : drives_[index])
-        wires.drives.push_back({live(drive.param), drive.source ? live(drive.source) : nullptr, drive.glide});
-    for (std::size_t k = 0; k < node.inputs.size(); ++k)
-        if (node.inputs[k].port->type) wires.inputs.push_back(running.inputs[k]);
+    for (const Drive& drive : drives_[index]) wires.drives.push_back({live(drive.param), drive.values, drive.stride});
+    for (std::size_t k = 0; k < node.inputs.size(); ++k) {
+        if (const auto batch = batches_.find(running.inputs[k]); batch != batches_.end())
+            wires.batches.push_back(batch->second);
+        else if (node.inputs[k].port->type) wires.inputs.push_back(running.inputs[k]);
+    }
     wires.time = &running.time;
     Step& step = program.steps.emplace_back();
     step.process = node.type->process;
@@ -58,7 +120,7 @@ void GenerationBuilder::add_step(GroupProgram& program, std::size_t index, bool 
         output.port = running.outputs[k];
         output.is_signal = &type == &value::signal;
         output.name = node.name + "." + node.outputs[k].name;
-        if (context_.take) output.take = context_.take(output.name, type, *running.group);
+        if (context_.take) output.offset = program.layout.add(output.name, type);
         if (context_.observer) output.seen = &observed(running, k, output.name);
         if (type.version) program.snapshots.push_back(static_cast<SnapshotOutput*>(running.outputs[k]));
     }

@@ -76,7 +76,14 @@ run::Link& GenerationBuilder::link_for(const compile::PlanWire& wire) {
     link.producer_period = producer.period;
     link.consumer_period = group_of(to).plan->period;
     link.latency = latency;
+    link.changes_within_calls = changes_within_calls(from.group, to.group);
     return link;
+}
+
+bool GenerationBuilder::changes_within_calls(int producer, int consumer) const {
+    const run::GroupRuntime& to = *made_->groups[static_cast<std::size_t>(consumer)];
+    const Flicks call = to.max_frames * to.plan->period;
+    return to.plan->has_audio && 2 * made_->plan.groups[static_cast<std::size_t>(producer)].period <= call;
 }
 
 void GenerationBuilder::connect_constant(const compile::PlanWire& wire) {
@@ -101,6 +108,8 @@ void GenerationBuilder::connect_delay(const compile::PlanWire& wire, const Outpu
     DelayLine& line = *program_of(group_index).delays.emplace_back(std::make_unique<DelayLine>());
     line.type = source.type;
     line.source = &source;
+    line.values = source.data;
+    line.stride = source.stride;
     line.target = target;
     line.param = wire.param;
     line.count = wire.delay;
@@ -114,9 +123,13 @@ void GenerationBuilder::connect_delay(const compile::PlanWire& wire, const Outpu
         else std::memcpy(place, source.data, size);
     }
     line.delayed.resize(static_cast<std::size_t>(group.max_frames) * size);
-    if (!target) return;
+    const std::ptrdiff_t stride = group.plan->has_audio ? static_cast<std::ptrdiff_t>(size) : 0;
+    if (!target) {
+        drives_[static_cast<std::size_t>(wire.to_node)].push_back({wire.param, line.delayed.data(), stride});
+        return;
+    }
     target->data = line.delayed.data();
-    target->stride = group.plan->has_audio ? static_cast<std::ptrdiff_t>(size) : 0;
+    target->stride = stride;
 }
 
 void GenerationBuilder::connect(const compile::PlanWire& wire) {
@@ -137,7 +150,7 @@ void GenerationBuilder::connect(const compile::PlanWire& wire) {
     }
     if (wire.mode == patch::WireMode::delay) return connect_delay(wire, source, target, to.group);
     if (!target) {
-        drives_[static_cast<std::size_t>(wire.to_node)].push_back({wire.param, &source, nullptr});
+        drives_[static_cast<std::size_t>(wire.to_node)].push_back({wire.param, source.data, source.stride});
         return;
     }
     target->data = source.data;

@@ -5,15 +5,17 @@
 
 #include "dsp/core/hash.hpp"
 #include "dsp/core/signal_hash.hpp"
+#include "engine/build/delay_line.hpp"
 #include "engine/io/device_guard.hpp"
+#include "engine/io/frames.hpp"
 #include "engine/observe/telemetry.hpp"
 #include "engine/run/link.hpp"
 #include "graph/node/device.hpp"
 #include "graph/node/setup.hpp"
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <string>
 #include <utility>
@@ -29,37 +31,16 @@ struct ParamRamp;
 
 namespace tactus::build {
 
-/// A number that drives a parameter before its node's step: from the same group, or gliding from another.
+/// Numbers that drive a parameter before its node's step, one for each activation of a call: from the same group, or from
+/// a wire that changes within calls.
 struct Drive {
     Param* param = nullptr;
-    const Output* source = nullptr;  ///< same group
-    const run::LinkWire* glide = nullptr;  ///< or a linear wire from another
-};
+    const std::byte* values = nullptr;
+    std::ptrdiff_t stride = 0;
 
-/// A wire that closes a loop inside a group: the value `count` activations ago.
-struct DelayLine {
-    const ValueType* type = nullptr;
-    const Output* source = nullptr;
-    Input* target = nullptr;
-    Param* param = nullptr;
-    std::int64_t count = 1;
-    std::vector<std::byte> history;  ///< `count` values, activation index modulo count
-    std::vector<std::byte> delayed;  ///< the values of this call
-    DelayLine* before = nullptr;  ///< the same wire in the program before, whose history goes on
-
-    /// Lays out what activations tick … tick + count − 1 see. Wait-free.
-    void recall(std::int64_t tick, int activations) noexcept {
-        for (int i = 0; i < activations; ++i)
-            std::memcpy(delayed.data() + static_cast<std::size_t>(i) * type->size, place(tick + i), type->size);
+    void apply(int activation) const noexcept {
+        param->drive(*reinterpret_cast<const double*>(values + activation * stride));
     }
-    /// Keeps what those activations made. Wait-free.
-    void remember(std::int64_t tick, int activations) noexcept {
-        for (int i = 0; i < activations; ++i)
-            std::memcpy(place(tick + i), source->data + i * source->stride, type->size);
-    }
-
-private:
-    std::byte* place(std::int64_t tick) { return history.data() + static_cast<std::size_t>(tick % count) * type->size; }
 };
 
 /// What every call touches of a node; 32 bytes, so that a long chain runs through few cache lines.
@@ -67,33 +48,38 @@ struct Step {
     void (*process)(void*, const Tick&) noexcept = nullptr;
     void* node = nullptr;
     std::uint32_t first_output = 0, output_count = 0;  ///< in the program's `published`
-    bool driven = false;  ///< numbers of this group, or gliding ones, drive its parameters
+    bool driven = false;  ///< numbers that may change within a call drive its parameters
     bool one_at_a_time = false;  ///< in an audio group: called once per activation
 };
 
 /// The rest of it, at the same index.
 struct StepWires {
     std::vector<Drive> drives;
-    std::vector<Input*> inputs;
+    std::vector<Input*> inputs;  ///< but for those of `batches`
+    std::vector<const run::LinkWire*> batches;  ///< that bring values at any activation of a call
     observe::NodeTelemetry* time = nullptr;
+    std::int64_t spent_ns = 0;  ///< in this call, in a cycle
+};
+
+/// Steps that follow each other. Those of a cycle run a few activations at a time, all others a whole call at once.
+struct Stretch {
+    std::size_t first = 0, count = 0;
+    int longest = 0;  ///< activations at a time, in a cycle; 0: it is none
+    std::vector<DelayLine*> inner;  ///< of the cycle
+    std::vector<DelayLine*> before;  ///< into one of the steps, from an earlier stretch or an earlier call
 };
 
 /// An output and the hash over all it gave. The values of a signal are there only until its last reader has run (see
-/// graph/compile/layout.hpp), so each is hashed and recorded right after its step.
+/// graph/compile/layout.hpp), so each is hashed and put into the frames right after its step.
 struct PublishedOutput {
     Output* port = nullptr;
     bool is_signal = false;
     Hash hash;
     SignalHash samples;
-    /// Where every value is recorded, or null: the control thread may set another while the group runs.
-    alignas(std::atomic_ref<RecordStream*>::required_alignment) RecordStream* take = nullptr;
+    std::size_t offset = 0;  ///< in the frames of the group
     observe::ObservedPort* seen = nullptr;  ///< where an observer finds it, or null
     std::string name;  ///< "node.port"
     int before = -1;  ///< the same output in the program before, whose hash goes on
-
-    static_assert(std::atomic_ref<RecordStream*>::is_always_lock_free);
-    void record_into(RecordStream* stream) noexcept { std::atomic_ref(take).store(stream, std::memory_order_release); }
-    RecordStream* recorded_into() noexcept { return std::atomic_ref(take).load(std::memory_order_acquire); }
 
     /// After `ran` activations of the group.
     std::uint64_t value(std::int64_t ran) const {
@@ -141,8 +127,14 @@ struct GroupProgram {
     SwitchGate* gate = nullptr;  ///< it takes over only when that is open; null: nothing is asked
     std::vector<Step> steps;
     std::vector<StepWires> wires;
+    std::vector<Stretch> stretches;  ///< of the steps, in order
     std::vector<PublishedOutput> published;  ///< every output, in the order of the steps
     bool hashes_outputs = true, records_outputs = false;
+    io::FrameLayout layout;  ///< of all outputs, when they are or may be recorded
+    std::vector<std::byte> frames;  ///< of a call
+    /// Where the frames go, or null: the control thread may set another while the group runs.
+    std::atomic<RecordStream*> recorded{nullptr};
+    static_assert(std::atomic<RecordStream*>::is_always_lock_free);
     std::int64_t ran = 0;  ///< activations of the group when the next program took over
     std::vector<run::Link*> inputs, outputs;  ///< links into and out of this group
     std::vector<const run::GroupRuntime*> producers;  ///< of each input link

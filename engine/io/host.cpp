@@ -74,7 +74,8 @@ void EngineHost::keep() {
     }
     for (auto& stream : opened_.streams) streams.push_back(std::move(stream));
     for (auto& card : opened_.cards) cards.push_back(std::move(card));
-    for (auto& notice : opened_.notices) notices.push_back(std::move(notice));
+    for (auto& notice : opened_.notices)
+        if (std::ranges::find(notices, notice) == notices.end()) notices.push_back(std::move(notice));
     opened_ = {};
 }
 
@@ -104,7 +105,8 @@ DevicePort& EngineHost::use_device(build::DeviceSlot& slot, DeviceUse use, const
     if (use == DeviceUse::drive && !slot.port.info.actuates_torque && slot.port.info.fingers == 0) {
         std::string notice =
             fmt::format("device '{}' gives forces only: torques that the patch computes for it are dropped", slot.name);
-        if (std::ranges::find(notices, notice) == notices.end()) opened_.notices.push_back(std::move(notice));
+        if (std::ranges::find(opened_.notices, notice) == opened_.notices.end())
+            opened_.notices.push_back(std::move(notice));
     }
     return slot.port;
 }

@@ -107,14 +107,19 @@ std::unique_ptr<Sink> make_csv_sink(const std::filesystem::path& path, const Str
 }
 
 Stream::Stream(StreamFormat format, std::unique_ptr<Sink> sink)
+    : Stream(format, std::move(sink), {format.type->size, longest_piece, ring_bytes}) {}
+
+Stream::Stream(StreamFormat format, std::unique_ptr<Sink> sink, const Room& room)
     : format_(std::move(format)),
+      size_(room.size),
+      longest_(room.longest),
       sink_(std::move(sink)),
-      ring_(std::make_unique<Ring<std::byte>>(ring_bytes)),
-      packed_(sizeof(Piece) + longest_piece * format_.type->size),
-      drained_(longest_piece * format_.type->size) {}
+      ring_(std::make_unique<Ring<std::byte>>(room.bytes)),
+      packed_(sizeof(Piece) + longest_ * size_),
+      drained_(longest_ * size_) {}
 
 bool Stream::write(std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept {
-    const std::size_t size = format_.type->size;
+    const std::size_t size = size_;
     const std::int64_t begin = std::max(first, from_),
                        end = std::min(first + static_cast<std::int64_t>(count), until());
     // Past its end it may have been completed already.
@@ -123,7 +128,7 @@ bool Stream::write(std::int64_t first, const void* values, std::size_t count, st
     count = static_cast<std::size_t>(end - begin);
     const Piece piece{begin, count};
     const std::size_t bytes = sizeof piece + count * size;
-    if (count > longest_piece || ring_->space() < bytes) {
+    if (count > longest_ || ring_->space() < bytes) {
         dropped_.fetch_add(count, std::memory_order_relaxed);
         return false;
     }
@@ -140,7 +145,7 @@ void Stream::drain() {
     Piece piece;
     // A piece is pushed whole, so once its head is there the rest is too.
     while (ring_->pop(reinterpret_cast<std::byte*>(&piece), sizeof piece) == sizeof piece) {
-        ring_->pop(drained_.data(), piece.count * format_.type->size);
+        ring_->pop(drained_.data(), piece.count * size_);
         if (!loss_.empty()) continue;
         try {
             sink_->take(piece.first, drained_.data(), piece.count);

@@ -40,6 +40,11 @@ std::unique_ptr<Sink> make_csv_sink(const std::filesystem::path& path, const Str
 class Stream : public RecordStream {
 public:
     Stream(StreamFormat format, std::unique_ptr<Sink> sink);
+    /// Values of `size` bytes, at most `longest` of them in one write, `bytes` of them in all until they are drained.
+    struct Room {
+        std::size_t size, longest, bytes;
+    };
+    Stream(StreamFormat format, std::unique_ptr<Sink> sink, const Room& room);
 
     /// Keeps activations from … until − 1 of those that are written. Before anybody writes.
     void begin_at(std::int64_t from) { from_ = from; }
@@ -73,6 +78,7 @@ private:
     void lose(const Error& error);
 
     StreamFormat format_;
+    std::size_t size_, longest_;
     std::unique_ptr<Sink> sink_;
     std::unique_ptr<Ring<std::byte>> ring_;
     std::vector<std::byte> packed_, drained_;  // of the writer, of the drainer

@@ -73,6 +73,11 @@ bool LiveDecisions::fades_for(const build::GroupProgram& next, std::int64_t tick
     return now;
 }
 
+std::int64_t LiveDecisions::readable_until(const Link& link, const GroupRuntime&, std::int64_t tick,
+                                           std::int64_t until) const noexcept {
+    return std::min(until, std::max(tick + link.longest_call(), link.window_end(tick)));
+}
+
 bool LiveDecisions::has_room(const std::vector<Link*>&, std::int64_t, int) const noexcept { return true; }
 
 LinkReading LiveDecisions::read(const Link& link, const GroupRuntime& producer, std::int64_t tick,

@@ -48,6 +48,8 @@ public:
     bool holds_off(std::int64_t tick, bool before) noexcept override;
     bool switches_to(const build::GroupProgram& next, std::int64_t tick) noexcept override;
     bool fades_for(const build::GroupProgram& next, std::int64_t tick) noexcept override;
+    std::int64_t readable_until(const Link& link, const GroupRuntime& producer, std::int64_t tick,
+                                std::int64_t until) const noexcept override;
     bool has_room(const std::vector<Link*>& links, std::int64_t tick, int frames) const noexcept override;
     LinkReading read(const Link& link, const GroupRuntime& producer, std::int64_t tick, int frames) noexcept override;
     bool drops(const Link& link, std::int64_t tick, int frames) noexcept override;

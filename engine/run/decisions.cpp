@@ -28,6 +28,13 @@ bool Decisions::holds_off(std::int64_t, bool before) noexcept { return before; }
 
 std::int64_t Decisions::awaited(const Link& link, std::int64_t tick) const noexcept { return link.wanted(tick); }
 
+std::int64_t Decisions::readable_until(const Link& link, const GroupRuntime& producer, std::int64_t tick,
+                                       std::int64_t until) const noexcept {
+    const std::int64_t last = producer.done() - 1;
+    if (last >= producer.end.load(std::memory_order_relaxed) - 1) return until;
+    return std::min(until, std::max(link.first_after(last), tick + 1));
+}
+
 bool Decisions::has_room(const std::vector<Link*>& links, std::int64_t tick, int frames) const noexcept {
     return std::ranges::all_of(links, [&](const Link* link) { return link->has_room(tick, frames); });
 }

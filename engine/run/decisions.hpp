@@ -91,6 +91,10 @@ public:
     // When to call, on the virtual clock. Live, nothing is waited for.
     /// The index of `link` that must be there before the call.
     virtual std::int64_t awaited(const Link& link, std::int64_t tick) const noexcept;
+    /// The first activation in tick + 1 … until − 1 for which `link` may not have its value yet, or `until`. The value for
+    /// `tick` is there, or will be missed.
+    virtual std::int64_t readable_until(const Link& link, const GroupRuntime& producer, std::int64_t tick,
+                                        std::int64_t until) const noexcept;
     /// There is room on all `links` for what has to be published.
     virtual bool has_room(const std::vector<Link*>& links, std::int64_t tick, int frames) const noexcept;
     /// There is room enough on `links` to begin.

@@ -51,8 +51,8 @@ Engine::Parts::Parts(const EngineOptions& options_)
       offline(options, timeline, recorder) {
     if (options.devices) host.imitate(*options.devices);
     if (options.take || options.tap)
-        context.take = [this](const std::string& port, const ValueType& type, const GroupRuntime& group) {
-            return recorder.stream_for(port, type, group);
+        context.take = [this](const io::FrameLayout& layout, const GroupRuntime& group) {
+            return recorder.stream_for(layout, group);
         };
 }
 

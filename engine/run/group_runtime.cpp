@@ -38,9 +38,14 @@ int GroupRuntime::cut(int frames) const noexcept {
     const auto cut_at = [&](std::int64_t tick) {
         if (tick > next_) until = std::min(until, tick);
     };
-    for (const Link* link : program_->inputs) cut_at(link->window_end(next_));
-    for (const auto& delay : program_->delays) cut_at(next_ + delay->count);
+    // Calls of two groups with calls of one length begin together, after skipped activations, too.
+    cut_at(ceil_div(next_ + 1, max_frames) * max_frames);
+    for (const Link* link : program_->inputs)
+        if (!link->changes_within_calls) cut_at(link->window_end(next_));
     until = decisions_->end_of_call(next_, ramps_.next_change(next_, until), upcoming_);
+    for (std::size_t i = 0; i < program_->inputs.size(); ++i)
+        if (const Link& link = *program_->inputs[i]; link.changes_within_calls)
+            until = decisions_->readable_until(link, *program_->producers[i], next_, until);
     return static_cast<int>(std::max<std::int64_t>(until - next_, 1));
 }
 
@@ -60,20 +65,48 @@ void GroupRuntime::acquire() noexcept {
     for (build::DeviceSlot* slot : program_->devices) decisions_->acquire(*slot, next_, elapsed);
 }
 
+bool GroupRuntime::read_link(Link& link, const GroupRuntime& producer, int frames) noexcept {
+    if (!link.changes_within_calls) {
+        const LinkReading reading = decisions_->read(link, producer, next_, frames);
+        link.read(reading.index);
+        link.deliver(next_, frames);
+        return reading.is_late;
+    }
+    for (int from = 0; from < frames;) {
+        const std::int64_t tick = next_ + from;
+        const LinkReading reading = decisions_->read(link, producer, tick, frames - from);
+        // What comes too late for one part of a call is not looked for again in the next.
+        const auto part =
+            reading.is_late ? frames - from : std::min<std::int64_t>(frames - from, link.window_end(tick) - tick);
+        link.deliver_part(reading.index, tick, from, static_cast<int>(part));
+        if (reading.is_late) return true;
+        from += static_cast<int>(part);
+    }
+    return false;
+}
+
 void GroupRuntime::read_links(int frames) noexcept {
     bool missed = false;
     for (std::size_t i = 0; i < program_->inputs.size(); ++i) {
-        Link& link = *program_->inputs[i];
         const GroupRuntime& producer = *program_->producers[i];
-        const LinkReading reading = decisions_->read(link, producer, next_, frames);
-        if (reading.is_late) {
-            missed = true;
-            producer.telemetry.awaited.fetch_add(1, std::memory_order_relaxed);
-        }
-        link.read(reading.index);
-        link.deliver(next_, frames);
+        if (!read_link(*program_->inputs[i], producer, frames)) continue;
+        missed = true;
+        producer.telemetry.awaited.fetch_add(1, std::memory_order_relaxed);
     }
     if (missed) telemetry.misses.fetch_add(1, std::memory_order_relaxed);
+}
+
+void GroupRuntime::note_readers(int frames) noexcept {
+    for (SnapshotOutput* output : program_->snapshots) {
+        // Whoever runs later in this call reads all that it gives; its first version is not older than those before.
+        output->oldest_readable =
+            frames > 1 ? output->type->version(output->data) : std::numeric_limits<std::int64_t>::max();
+        for (const Link* link : program_->outputs)
+            output->oldest_readable = std::min(output->oldest_readable, link->oldest_version(output));
+        for (const auto& delay : program_->delays)
+            if (delay->source == output)
+                output->oldest_readable = std::min(output->oldest_readable, delay->oldest_version());
+    }
 }
 
 void GroupRuntime::publish(int frames) noexcept {
@@ -86,8 +119,10 @@ void GroupRuntime::publish(int frames) noexcept {
         link->publish(next_, frames);
         ++took;
     }
-    for (SnapshotOutput* output : program_->snapshots)
-        output->last_was_dropped = took == 0 && !program_->outputs.empty();
+    for (SnapshotOutput* output : program_->snapshots) {
+        const bool waits = std::ranges::any_of(program_->delays, [&](const auto& d) { return d->source == output; });
+        output->last_was_dropped = took == 0 && !waits && !program_->outputs.empty();
+    }
 }
 
 int GroupRuntime::call(int frames) noexcept {
@@ -97,7 +132,8 @@ int GroupRuntime::call(int frames) noexcept {
 
 void GroupRuntime::begin_call(int frames) noexcept {
     ramps_.advance(next_);
-    int n = cut(plan->has_audio ? frames : 1);
+    // A hand is sampled at every activation: what it feels must not depend on how long a call is.
+    int n = cut(plan->has_audio && program_->devices.empty() ? frames : 1);
     // Who asked for room for more than one could wait for ever, for a reader that waits for the first of them.
     while (n > 1 && !decisions_->has_room(program_->outputs, next_, n)) n /= 2;
     begun_ = n;
@@ -106,14 +142,8 @@ void GroupRuntime::begin_call(int frames) noexcept {
     if (is_forsaken()) return;
     RealtimeScope scope;
     read_links(n);
-    for (SnapshotOutput* output : program_->snapshots) {
-        output->oldest_readable = std::numeric_limits<std::int64_t>::max();
-        for (const Link* link : program_->outputs)
-            output->oldest_readable = std::min(output->oldest_readable, link->oldest_version(output));
-    }
-    for (const auto& delay : program_->delays) delay->recall(next_, n);
+    note_readers(n);
     run_steps(n);
-    for (const auto& delay : program_->delays) delay->remember(next_, n);
 }
 
 int GroupRuntime::finish_call() noexcept {

@@ -112,15 +112,25 @@ private:
     bool switch_if_due() noexcept;
     void take_over(build::GroupProgram& next) noexcept;
     void read_links(int frames) noexcept;
+    /// True when something older was read than the schedule says.
+    bool read_link(Link& link, const GroupRuntime& producer, int frames) noexcept;
+    /// Tells nodes which of their snapshots are still looked at.
+    void note_readers(int frames) noexcept;
     void acquire() noexcept;
     void run_steps(int frames) noexcept;
     /// `watched`: what the steps give is hashed or recorded, or they are timed.
     template <bool watched>
-    void run_each(const Tick& tick, bool timed) noexcept;
-    void drive(const build::StepWires& step, int i) noexcept;
-    void run_one_at_a_time(const build::Step& step, const build::StepWires& of, const Tick& all) noexcept;
+    void run_each(const build::Stretch& stretch, const Tick& tick, bool timed) noexcept;
+    void run_cycle(const build::Stretch& stretch, const Tick& all, bool timed) noexcept;
+    /// A step for `part` of a call of `frames` activations, from its activation `from` on. Its ports move on.
+    void run_part(std::size_t step, const Tick& part, int from, int frames) noexcept;
+    void run_one_at_a_time(std::size_t step, const Tick& all) noexcept;
+    /// Points the ports of a step at what comes `by` activations later, its activation `to` in a call.
+    void move_ports(std::size_t step, int by, int to, int frames) noexcept;
+    void move_back(std::size_t step, int frames) noexcept;
     void hash_outputs(const build::Step& step, int frames) noexcept;
     void record_outputs(const build::Step& step, int frames) noexcept;
+    void put_into_frames(const build::PublishedOutput& output, int frames) noexcept;
     void publish(int frames) noexcept;
 
     static constexpr int timed_every = 64;  ///< nodes are timed in one call of so many
@@ -136,6 +146,7 @@ private:
     std::size_t taken_ = 0;  ///< of `scheduled`
     std::int64_t next_ = 0, last_ = -1, ran_ = 0;
     int closely_ = 0;  ///< calls still to be timed
+    RecordStream* recorded_ = nullptr;  ///< where the outputs of this call go
     int begun_ = 0;  ///< activations of the call that has begun and not ended
     std::uint64_t calls_ = 0;
     std::atomic<std::int64_t> plan_number_{-1};

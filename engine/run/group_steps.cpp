@@ -6,34 +6,82 @@
 #include "graph/node/node_memory.hpp"
 
 #include <algorithm>
-#include <span>
+#include <cstring>
+#include <utility>
 
 namespace tactus::run {
 
-void GroupRuntime::drive(const build::StepWires& step, int i) noexcept {
-    for (const build::Drive& drive : step.drives) {
-        const std::byte* value = drive.source
-                                     ? drive.source->data + i * drive.source->stride
-                                     : drive.glide->glide.data() + static_cast<std::size_t>(i) * sizeof(double);
-        drive.param->drive(*reinterpret_cast<const double*>(value));
+void GroupRuntime::move_ports(std::size_t step, int by, int to, int frames) noexcept {
+    const build::Step& moved = program_->steps[step];
+    for (Input* input : program_->wires[step].inputs) {
+        // A batch from another group belongs to the first activation of a call.
+        if (input->kind == InputKind::batch && input->times != &now) input->count = 0;
+        else input->data += by * input->stride;
     }
+    for (const LinkWire* wire : program_->wires[step].batches) {
+        Input& input = *wire->target;
+        input.data += static_cast<std::size_t>(input.count) * wire->type->size;
+        input.times += input.count;
+        input.count = to < frames ? wire->batch_counts[static_cast<std::size_t>(to)] : 0;
+    }
+    for (std::uint32_t k = moved.first_output; k < moved.first_output + moved.output_count; ++k)
+        program_->published[k].port->data += by * program_->published[k].port->stride;
 }
 
-void GroupRuntime::run_one_at_a_time(const build::Step& step, const build::StepWires& of, const Tick& all) noexcept {
-    const std::span<build::PublishedOutput> mine(program_->published.data() + step.first_output, step.output_count);
-    for (int i = 0; i < all.frames; ++i) {
-        drive(of, i);
-        step.process(step.node, {all.index + i, all.period, i == 0 ? all.elapsed : all.period, 1});
-        for (Input* input : of.inputs) {
-            // A batch from another group belongs to the first activation of a call.
-            if (input->kind == InputKind::batch && input->times != &now) input->count = 0;
-            else input->data += input->stride;
-        }
-        for (build::PublishedOutput& output : mine) output.port->data += output.port->stride;
+void GroupRuntime::move_back(std::size_t step, int frames) noexcept {
+    const build::Step& moved = program_->steps[step];
+    for (Input* input : program_->wires[step].inputs)
+        if (input->kind != InputKind::batch || input->times == &now) input->data -= frames * input->stride;
+    for (std::uint32_t k = moved.first_output; k < moved.first_output + moved.output_count; ++k)
+        program_->published[k].port->data -= frames * program_->published[k].port->stride;
+}
+
+void GroupRuntime::run_part(std::size_t at, const Tick& part, int from, int frames) noexcept {
+    const build::Step& step = program_->steps[at];
+    if (!step.driven && !(step.one_at_a_time && part.frames > 1)) {
+        step.process(step.node, part);
+        move_ports(at, part.frames, from + part.frames, frames);
+        return;
     }
-    for (Input* input : of.inputs)
-        if (input->kind != InputKind::batch || input->times == &now) input->data -= all.frames * input->stride;
-    for (build::PublishedOutput& output : mine) output.port->data -= all.frames * output.port->stride;
+    const Flicks start = now;
+    for (int i = 0; i < part.frames; ++i) {
+        for (const build::Drive& drive : program_->wires[at].drives) drive.apply(from + i);
+        now = (part.index + i) * part.period;
+        step.process(step.node, {part.index + i, part.period, i == 0 ? part.elapsed : part.period, 1});
+        move_ports(at, 1, from + i + 1, frames);
+    }
+    now = start;
+}
+
+void GroupRuntime::run_one_at_a_time(std::size_t step, const Tick& all) noexcept {
+    run_part(step, all, 0, all.frames);
+    move_back(step, all.frames);
+}
+
+void GroupRuntime::run_cycle(const build::Stretch& stretch, const Tick& all, bool timed) noexcept {
+    build::GroupProgram& program = *program_;
+    const std::size_t past = stretch.first + stretch.count;
+    for (int from = 0; from < all.frames;) {
+        const int count = std::min(stretch.longest, all.frames - from);
+        const Tick part{all.index + from, all.period, from == 0 ? all.elapsed : all.period, count};
+        for (build::DelayLine* line : stretch.inner) line->recall(part.index, from, count);
+        std::int64_t began = timed ? steady_ns() : 0;
+        for (std::size_t step = stretch.first; step < past; ++step) {
+            run_part(step, part, from, all.frames);
+            if (!timed) continue;
+            const std::int64_t now_ns = steady_ns();
+            program.wires[step].spent_ns += now_ns - began;
+            began = now_ns;
+        }
+        for (build::DelayLine* line : stretch.inner) line->remember(part.index, from, count);
+        from += count;
+    }
+    for (std::size_t step = stretch.first; step < past; ++step) {
+        move_back(step, all.frames);
+        if (program.hashes_outputs) hash_outputs(program.steps[step], all.frames);
+        if (program.records_outputs) record_outputs(program.steps[step], all.frames);
+        if (timed) program.wires[step].time->add(std::exchange(program.wires[step].spent_ns, 0));
+    }
 }
 
 void GroupRuntime::hash_outputs(const build::Step& step, int frames) noexcept {
@@ -54,11 +102,17 @@ void GroupRuntime::hash_outputs(const build::Step& step, int frames) noexcept {
 void GroupRuntime::record_outputs(const build::Step& step, int frames) noexcept {
     for (std::uint32_t k = step.first_output; k < step.first_output + step.output_count; ++k) {
         build::PublishedOutput& output = program_->published[k];
-        if (RecordStream* const stream = output.recorded_into())
-            stream->write(next_, output.port->data, static_cast<std::size_t>(frames), output.port->stride);
+        if (recorded_) put_into_frames(output, frames);
         if (output.seen)
             output.seen->see(next_, output.port->data, static_cast<std::size_t>(frames), output.port->stride);
     }
+}
+
+void GroupRuntime::put_into_frames(const build::PublishedOutput& output, int frames) noexcept {
+    const std::size_t size = output.port->type->size;
+    std::byte* to = program_->frames.data() + output.offset;
+    for (int i = 0; i < frames; ++i, to += program_->layout.bytes)
+        std::memcpy(to, output.port->data + i * output.port->stride, size);
 }
 
 /// Asks for the cache line of a node's ports and first parameters, a few steps before they are needed: nodes are
@@ -70,27 +124,28 @@ static void fetch_ahead(const build::Step* step, const build::Step* past) noexce
 }
 
 template <bool watched>
-void GroupRuntime::run_each(const Tick& tick, bool timed) noexcept {
+void GroupRuntime::run_each(const build::Stretch& stretch, const Tick& tick, bool timed) noexcept {
     const build::GroupProgram& program = *program_;
-    const build::Step* const past = program.steps.data() + program.steps.size();
+    const build::Step* const begin = program.steps.data();
+    const build::Step* const past = begin + stretch.first + stretch.count;
     [[maybe_unused]] std::int64_t began = watched && timed ? steady_ns() : 0;
-    for (const build::Step& step : program.steps) {
-        fetch_ahead(&step, past);
-        if (!step.driven && !(step.one_at_a_time && tick.frames > 1)) {
-            step.process(step.node, tick);
-        } else if (const build::StepWires& of = program.wires[static_cast<std::size_t>(&step - program.steps.data())];
-                   tick.frames == 1) {
-            drive(of, 0);
-            step.process(step.node, tick);
+    for (const build::Step* step = begin + stretch.first; step < past; ++step) {
+        fetch_ahead(step, past);
+        if (!step->driven && !(step->one_at_a_time && tick.frames > 1)) {
+            step->process(step->node, tick);
+        } else if (tick.frames == 1) {
+            for (const build::Drive& drive : program.wires[static_cast<std::size_t>(step - begin)].drives)
+                drive.apply(0);
+            step->process(step->node, tick);
         } else {
-            run_one_at_a_time(step, of, tick);
+            run_one_at_a_time(static_cast<std::size_t>(step - begin), tick);
         }
         if constexpr (watched) {
-            if (program.hashes_outputs) hash_outputs(step, tick.frames);
-            if (program.records_outputs) record_outputs(step, tick.frames);
+            if (program.hashes_outputs) hash_outputs(*step, tick.frames);
+            if (program.records_outputs) record_outputs(*step, tick.frames);
             if (!timed) continue;
             const std::int64_t now_ns = steady_ns();
-            program.wires[static_cast<std::size_t>(&step - program.steps.data())].time->add(now_ns - began);
+            program.wires[static_cast<std::size_t>(step - begin)].time->add(now_ns - began);
             began = now_ns;
         }
     }
@@ -101,8 +156,19 @@ void GroupRuntime::run_steps(int frames) noexcept {
     const Tick tick{next_, plan->period, elapsed, frames};
     const bool timed = times_nodes && (calls_++ % timed_every == 0 || closely_ > 0);
     closely_ = std::max(closely_ - 1, 0);
-    if (timed || program_->hashes_outputs || program_->records_outputs) run_each<true>(tick, timed);
-    else run_each<false>(tick, false);
+    recorded_ = program_->recorded.load(std::memory_order_acquire);
+    const bool watched = timed || program_->hashes_outputs || program_->records_outputs;
+    for (const build::Stretch& stretch : program_->stretches) {
+        for (build::DelayLine* line : stretch.before) line->recall(next_, 0, frames);
+        if (stretch.longest > 0) run_cycle(stretch, tick, timed);
+        else if (watched) run_each<true>(stretch, tick, timed);
+        else run_each<false>(stretch, tick, false);
+    }
+    for (const build::Stretch& stretch : program_->stretches)
+        for (build::DelayLine* line : stretch.before) line->remember(next_, 0, frames);
+    if (recorded_)
+        recorded_->write(next_, program_->frames.data(), static_cast<std::size_t>(frames),
+                         static_cast<std::ptrdiff_t>(program_->layout.bytes));
     ran_ += frames;
 }
 

@@ -13,6 +13,11 @@ void Link::prepare(Flicks slack, int producer_frames, int consumer_frames, std::
     // Slot m is wanted until the consumer's next read; latency and the lengths of calls on both sides add to that.
     const Flicks reach = consumer_period * consumer_frames + latency + slack;
     depth_ = ceil_div(reach, producer_period) + 2 + 2 * static_cast<std::int64_t>(producer_frames);
+    // Two groups whose calls begin together may read up to where the call before ended. Where they do not, or the
+    // latency is shorter, half of it is left to the producer.
+    const bool is_in_step = producer_frames * producer_period == consumer_frames * consumer_period &&
+                            latency >= consumer_frames * consumer_period;
+    longest_call_ = is_in_step ? consumer_frames : std::max<std::int64_t>(1, latency / (2 * consumer_period));
     const auto depth = static_cast<std::size_t>(depth_);
     stamp_ = std::vector<std::atomic<std::int64_t>>(depth);
     for (auto& stamp : stamp_) stamp.store(-1, std::memory_order_relaxed);
@@ -23,11 +28,17 @@ void Link::prepare(Flicks slack, int producer_frames, int consumer_frames, std::
         if (wire.starts_from_output) std::memcpy(wire.current.data(), wire.source->data, size);
         else wire.type->make_default(wire.current.data());
         wire.previous = wire.current;
-        if (wire.mode == patch::WireMode::linear) wire.glide.resize(size * static_cast<std::size_t>(consumer_frames));
-        if (wire.mode == patch::WireMode::batch) {
+        const auto frames = static_cast<std::size_t>(consumer_frames);
+        const bool is_batch = wire.mode == patch::WireMode::batch;
+        if (wire.mode == patch::WireMode::linear || (changes_within_calls && !is_batch))
+            wire.glide.resize(size * frames);
+        if (is_batch) {
             held_.resize(depth + (continued ? continued->stamp_.size() : 0));
-            wire.batch.resize(held_.size() * size);
-            wire.batch_times.resize(held_.size());
+            // What the first part of a call leaves behind may be written anew before the last part reads.
+            const std::size_t most = changes_within_calls ? 2 * held_.size() : held_.size();
+            wire.batch.resize(most * size);
+            wire.batch_times.resize(most);
+            if (changes_within_calls) wire.batch_counts.resize(frames);
         }
         if (wire.param) wire.param->drive(*reinterpret_cast<const double*>(wire.current.data()));
         if (wire.target) wire.point(*wire.target, producer_period);
@@ -137,19 +148,16 @@ void Link::list_held(std::int64_t newest) noexcept {
 }
 
 void Link::gather_batch(LinkWire& wire) noexcept {
-    int count = 0;
     for (std::size_t n = 0; n < held_count_; ++n) {
         const std::int64_t index = held_[n];
         if (index < first_.load(std::memory_order_acquire) && !wire.before) continue;
-        std::memcpy(wire.batch.data() + static_cast<std::size_t>(count) * wire.type->size, value(wire, index),
-                    wire.type->size);
-        wire.batch_times[static_cast<std::size_t>(count++)] = index * producer_period;
+        std::memcpy(wire.batch.data() + static_cast<std::size_t>(wire.batch_count) * wire.type->size,
+                    value(wire, index), wire.type->size);
+        wire.batch_times[static_cast<std::size_t>(wire.batch_count++)] = index * producer_period;
     }
-    wire.target->count = count;
 }
 
-void Link::read(std::int64_t index) noexcept {
-    fresh_ = true;
+void Link::take_values(std::int64_t index) noexcept {
     if (!held_.empty()) list_held(index);
     for (LinkWire& wire : wires) {
         if (wire.mode == patch::WireMode::batch) {
@@ -166,25 +174,35 @@ void Link::read(std::int64_t index) noexcept {
         if (now != wire.current.data()) std::memcpy(wire.current.data(), now, wire.type->size);
     }
     used_ = index;
+}
+
+void Link::read(std::int64_t index) noexcept {
+    fresh_ = true;
+    for (LinkWire& wire : wires) wire.batch_count = 0;
+    take_values(index);
     hold_from(index);
+}
+
+void Link::interpolate(LinkWire& wire, std::int64_t j, int from, int frames) const noexcept {
+    for (int i = 0; i < frames; ++i) {
+        const Flicks past = (j + i) * consumer_period - latency - used_ * producer_period;
+        const double t = std::clamp(static_cast<double>(past) / static_cast<double>(producer_period), 0.0, 1.0);
+        wire.type->interpolate(wire.previous.data(), wire.current.data(), t,
+                               wire.glide.data() + static_cast<std::size_t>(from + i) * wire.type->size);
+    }
 }
 
 void Link::deliver(std::int64_t j, int frames) noexcept {
     for (LinkWire& wire : wires) {
         if (wire.mode == patch::WireMode::batch) {
             // A batch is seen by one call only, however many calls share one read.
-            if (!fresh_) wire.target->count = 0;
+            wire.target->count = fresh_ ? wire.batch_count : 0;
             continue;
         }
         const std::byte* values = wire.current.data();
         std::ptrdiff_t stride = 0;
         if (wire.mode == patch::WireMode::linear) {
-            for (int i = 0; i < frames; ++i) {
-                const Flicks past = (j + i) * consumer_period - latency - used_ * producer_period;
-                const double t = std::clamp(static_cast<double>(past) / static_cast<double>(producer_period), 0.0, 1.0);
-                wire.type->interpolate(wire.previous.data(), wire.current.data(), t,
-                                       wire.glide.data() + static_cast<std::size_t>(i) * wire.type->size);
-            }
+            interpolate(wire, j, 0, frames);
             values = wire.glide.data();
             stride = static_cast<std::ptrdiff_t>(wire.type->size);
         }
@@ -196,6 +214,38 @@ void Link::deliver(std::int64_t j, int frames) noexcept {
         }
     }
     fresh_ = false;
+}
+
+void Link::deliver_part(std::int64_t index, std::int64_t j, int from, int frames) noexcept {
+    for (LinkWire& wire : wires) {
+        if (wire.mode != patch::WireMode::batch) continue;
+        if (from == 0) {
+            wire.batch_count = 0;
+            std::ranges::fill(wire.batch_counts, 0);
+        }
+        wire.batch_counts[static_cast<std::size_t>(from)] = -wire.batch_count;
+    }
+    take_values(index);
+    // Values of the first part may be snapshots, which nodes look into until the call ends.
+    if (from == 0) hold_from(index);
+    for (LinkWire& wire : wires) {
+        if (wire.mode == patch::WireMode::batch) {
+            wire.batch_counts[static_cast<std::size_t>(from)] += wire.batch_count;
+            if (from > 0) continue;
+            wire.target->data = wire.batch.data();
+            wire.target->times = wire.batch_times.data();
+            wire.target->count = wire.batch_count;
+            continue;
+        }
+        if (wire.mode == patch::WireMode::linear) interpolate(wire, j, from, frames);
+        else
+            for (int i = from; i < from + frames; ++i)
+                std::memcpy(wire.glide.data() + static_cast<std::size_t>(i) * wire.type->size, wire.current.data(),
+                            wire.type->size);
+        if (!wire.target) continue;
+        wire.target->data = wire.glide.data();
+        wire.target->stride = static_cast<std::ptrdiff_t>(wire.type->size);
+    }
 }
 
 }  // namespace tactus::run

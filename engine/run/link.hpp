@@ -28,9 +28,11 @@ struct LinkWire {
     bool starts_from_output = true;            ///< index −1 is what prepare set; else the type's default
     std::vector<std::byte> ring;               ///< depth values
     std::vector<std::byte> current, previous;  ///< values of the used index and of the one before it
-    std::vector<std::byte> glide;              ///< `linear`: one value per activation of a call
-    std::vector<std::byte> batch;              ///< `batch`: the values of a call, and when they were made
+    std::vector<std::byte> glide;  ///< one value per activation of a call; when it may change within a call
+    std::vector<std::byte> batch;  ///< `batch`: the values of a call, and when they were made
     std::vector<Flicks> batch_times;
+    int batch_count = 0;           ///< in `batch`
+    std::vector<int> batch_counts;  ///< per activation of a call; when they may come within a call
 
     /// Points an input at the values.
     void point(Input& input, Flicks producer_period) const;
@@ -46,6 +48,9 @@ public:
     const GroupRuntime *producer = nullptr, *consumer = nullptr;
     int id = 0;
     Flicks producer_period = 0, consumer_period = 0, latency = 0;
+    /// Values come so often that one call of the consumer, an audio group, reads several. Else calls are cut where
+    /// another value is due.
+    bool changes_within_calls = false;
     std::vector<LinkWire> wires;
     /// The link of the plan before that this one continues. It must live until `settled` and one call of the producer.
     Link* continued = nullptr;
@@ -60,9 +65,13 @@ public:
         return compile::source_index(j, consumer_period, latency, producer_period);
     }
     /// First activation after `j` that wants another index.
-    std::int64_t window_end(std::int64_t j) const {
-        return ceil_div((wanted(j) + 1) * producer_period + latency, consumer_period);
+    std::int64_t window_end(std::int64_t j) const { return first_after(wanted(j)); }
+    /// First activation that wants an index after `index`.
+    std::int64_t first_after(std::int64_t index) const {
+        return ceil_div((index + 1) * producer_period + latency, consumer_period);
     }
+    /// Live, the most activations of a call of the consumer, so that the producer has time for what the last one reads.
+    std::int64_t longest_call() const { return longest_call_; }
 
     // Producer's side.
     /// The producer publishes here from `index` on. Wait-free.
@@ -100,6 +109,9 @@ public:
     void read(std::int64_t index) noexcept;
     /// Points inputs at values for the call of activations j … j + frames − 1. Wait-free.
     void deliver(std::int64_t j, int frames) noexcept;
+    /// The same for a part of a call, which reads `index`: its activations from … from + frames − 1, the first of which
+    /// has index j. What the first part reads is kept until the next call. Wait-free.
+    void deliver_part(std::int64_t index, std::int64_t j, int from, int frames) noexcept;
 
     std::int64_t used() const { return used_; }
     std::int64_t depth() const { return depth_; }
@@ -120,11 +132,14 @@ private:
     }
     const std::byte* value(const LinkWire& wire, std::int64_t index) const noexcept;
     void hold_from(std::int64_t index) noexcept;
+    void take_values(std::int64_t index) noexcept;
+    void interpolate(LinkWire& wire, std::int64_t j, int from, int frames) const noexcept;
     /// Lists what lies between the used index and `newest`, in order.
     void list_held(std::int64_t newest) noexcept;
+    /// Appends what is listed.
     void gather_batch(LinkWire& wire) noexcept;
 
-    std::int64_t depth_ = 0;
+    std::int64_t depth_ = 0, longest_call_ = 1;
     /// Index whose values are in each slot, −1: none. What the reader may read is published by the writer's progress.
     std::vector<std::atomic<std::int64_t>> stamp_;
     std::vector<std::int64_t> held_;  ///< consumer's list of indices; empty when no wire is a batch

@@ -2,6 +2,7 @@
 // What a run is asked for, and what is said about an edit of it.
 #pragma once
 
+#include "engine/io/frames.hpp"
 #include "engine/io/host.hpp"
 #include "engine/take/take_writer.hpp"
 #include "graph/compile/plan.hpp"
@@ -23,9 +24,8 @@ namespace tactus::run {
 
 class GroupRuntime;
 
-/// Makes the stream that keeps every value of an output, "node.port", or null.
-using TapMaker =
-    std::function<std::unique_ptr<io::Stream>(const std::string& port, const ValueType&, const GroupRuntime&)>;
+/// Says where every value of the outputs of a group goes, as frames of that layout, or null.
+using TapMaker = std::function<std::unique_ptr<io::Sink>(const io::FrameLayout&, const GroupRuntime&)>;
 
 struct EngineOptions {
     double seconds = 1.0;
@@ -43,7 +43,7 @@ struct EngineOptions {
     io::AudioChoice audio;  ///< live only
     bool hash = true;  ///< keep `output_hash`; costs about as much per sample of a signal as a trivial node
     bool time_nodes = true;  ///< keep the time of each node, from one call in 64
-    TapMaker tap;  ///< where every value of an output goes; used by replay, which compares
+    TapMaker tap;  ///< where every value of the outputs goes; used by replay, which compares
 };
 
 struct LiveOptions {

@@ -18,8 +18,8 @@ constexpr Flicks record_lead = flicks_per_second / 50;
 
 TapMaker tap_maker(const EngineOptions& options) {
     if (options.tap || !options.take) return options.tap;
-    return [take = options.take](const std::string& port, const ValueType& type, const GroupRuntime& group) {
-        return take->stream(port, type, group);
+    return [take = options.take](const io::FrameLayout& layout, const GroupRuntime& group) {
+        return take->sink(layout, group);
     };
 }
 
@@ -35,8 +35,8 @@ Recorder::Recorder(const EngineOptions& options, io::EngineHost& host, Losses& l
     if (options.take && !options.tap) wants_ = records_ = was_recorded_ = options.record_values;
 }
 
-RecordStream* Recorder::stream_for(const std::string& port, const ValueType& type, const GroupRuntime& group) {
-    return records_ ? taps_.get(port, type, group) : nullptr;
+RecordStream* Recorder::stream_for(const io::FrameLayout& layout, const GroupRuntime& group) {
+    return records_ ? taps_.get(layout, group) : nullptr;
 }
 
 void Recorder::keep_opened() {
@@ -65,14 +65,14 @@ void Recorder::service(Timeline& timeline, bool is_building, Flicks now) {
 
 void Recorder::begin(Timeline& timeline, Flicks time) {
     records_ = was_recorded_ = true;
-    std::vector<std::pair<build::PublishedOutput*, RecordStream*>> begun;
+    std::vector<std::pair<build::GroupProgram*, RecordStream*>> begun;
     build::Generation& now = timeline.now();
     for (std::size_t g = 0; g < now.groups.size(); ++g)
-        for (build::PublishedOutput& output : now.programs[g]->published)
-            begun.emplace_back(&output, taps_.get(output.name, *output.port->type, *now.groups[g]));
+        if (build::GroupProgram& program = *now.programs[g]; !program.layout.columns.empty())
+            begun.emplace_back(&program, taps_.get(program.layout, *now.groups[g]));
     taps_.update();
     taps_.begin_at(time + record_lead);
-    for (const auto& [output, stream] : begun) output->record_into(stream);
+    for (const auto& [program, stream] : begun) program->recorded.store(stream, std::memory_order_release);
 }
 
 void Recorder::end(Flicks now) {
@@ -124,8 +124,9 @@ void Recorder::drain_full() {
 }
 
 void Recorder::finish_ended(const Timeline& timeline) {
-    taps_.finish_ended();
     std::unordered_set<const RecordStream*> in_use;
+    for (const auto& program : timeline.now().programs) in_use.insert(program->recorded.load());
+    taps_.finish_ended(in_use);
     for (const auto& node : timeline.now().nodes) in_use.insert(node->uses.streams.begin(), node->uses.streams.end());
     for (const auto& stream : host_.streams)
         if (!in_use.contains(stream.get())) stream->finish();

@@ -18,8 +18,8 @@ public:
     Recorder(const EngineOptions& options, io::EngineHost& host, Losses& losses);
 
     take::TakeWriter* take() const { return take_; }
-    /// Where a new plan records an output, or null. Whoever builds the plan.
-    RecordStream* stream_for(const std::string& port, const ValueType& type, const GroupRuntime& group);
+    /// Where a new plan records the outputs of a group, or null. Whoever builds the plan.
+    RecordStream* stream_for(const io::FrameLayout& layout, const GroupRuntime& group);
     /// What the nodes of a new plan opened belongs to the run from now on.
     void keep_opened();
 

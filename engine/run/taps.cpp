@@ -5,14 +5,36 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace tactus::run {
 
-RecordStream* Taps::get(const std::string& port, const ValueType& type, const GroupRuntime& group) {
-    const std::string name = fmt::format("{} {} {}", port, group.index, type.name);
-    Tap& tap = taps_[name];
-    if (!tap.stream) tap = {make_(port, type, group), &group};
+namespace {
+
+// What a disk may keep waiting, of the largest groups and of small ones.
+constexpr double waits_s = 0.25;
+constexpr std::size_t least_bytes = std::size_t{1} << 20, most_bytes = std::size_t{1} << 26;
+
+io::Stream::Room room_for(const io::FrameLayout& layout, const GroupRuntime& group) {
+    const auto frames = static_cast<std::size_t>(group.max_frames);
+    const double a_second = static_cast<double>(layout.bytes) * rate_of(group.plan->period);
+    const auto wanted = std::clamp(static_cast<std::size_t>(waits_s * a_second), least_bytes, most_bytes);
+    return {layout.bytes, frames, std::max(wanted, 4 * frames * layout.bytes)};
+}
+
+}  // namespace
+
+RecordStream* Taps::get(const io::FrameLayout& layout, const GroupRuntime& group) {
+    for (const Tap& tap : taps_)
+        if (tap.group == &group && tap.layout == layout && !(tap.stream && tap.stream->is_finished()))
+            return tap.stream.get();
+    StreamFormat format;
+    format.file = fmt::format("the streams of group '{}'", group.plan->name);
+    format.period = group.plan->period;
+    Tap& tap = taps_.emplace_back(Tap{nullptr, &group, layout});
+    if (std::unique_ptr<io::Sink> sink = make_(layout, group))
+        tap.stream = std::make_unique<io::Stream>(format, std::move(sink), room_for(layout, group));
     return tap.stream.get();
 }
 
@@ -21,17 +43,19 @@ void Taps::update() {
     const auto add = [this](const Tap& tap) {
         if (tap.stream && !tap.stream->is_finished()) open_.push_back(tap.stream.get());
     };
-    for (const auto& [name, tap] : taps_) add(tap);
+    for (const Tap& tap : taps_) add(tap);
     for (const Tap& tap : ending_) add(tap);
 }
 
 void Taps::begin_at(Flicks from) {
-    for (const auto& [name, tap] : taps_) tap.stream->begin_at(ceil_div(from, tap.group->plan->period));
+    for (const Tap& tap : taps_)
+        if (tap.stream) tap.stream->begin_at(ceil_div(from, tap.group->plan->period));
 }
 
 /// Groups still hold the streams and write to them: past their end they keep nothing.
 void Taps::end_at(Flicks until) {
-    for (auto& [name, tap] : taps_) {
+    for (Tap& tap : taps_) {
+        if (!tap.stream) continue;
         tap.stream->end_at(ceil_div(until, tap.group->plan->period));
         ending_.push_back(std::move(tap));
     }
@@ -49,17 +73,27 @@ void Taps::finish_past() {
     if (finished) update();
 }
 
-void Taps::finish_ended() {
-    for (const auto& [name, tap] : taps_)
-        if (tap.stream && tap.group->is_over()) tap.stream->finish();
+void Taps::finish_ended(const std::unordered_set<const RecordStream*>& in_use) {
+    for (auto tap = taps_.begin(); tap != taps_.end();) {
+        if (!tap->group->is_over() && in_use.contains(tap->stream.get())) {
+            ++tap;
+            continue;
+        }
+        if (tap->stream) {
+            tap->stream->finish();
+            ending_.push_back(std::move(*tap));
+        }
+        tap = taps_.erase(tap);
+    }
     for (const Tap& tap : ending_)
-        if (tap.stream && tap.group->is_over()) tap.stream->finish();
+        if (tap.group->is_over()) tap.stream->finish();
     update();
 }
 
 void Taps::finish() {
     for (io::Stream* tap : open_) tap->finish();
-    for (auto& [name, tap] : taps_) ending_.push_back(std::move(tap));
+    for (Tap& tap : taps_)
+        if (tap.stream) ending_.push_back(std::move(tap));
     taps_.clear();
 }
 
@@ -75,14 +109,13 @@ void Taps::drain_full() {
 void Taps::note_losses(Losses& losses) const {
     // Whoever builds a plan adds to `taps_`.
     for (io::Stream* tap : open_) losses.note(tap->loss());
-    for (const Tap& tap : ending_)
-        if (tap.stream) losses.note(tap.stream->loss());
+    for (const Tap& tap : ending_) losses.note(tap.stream->loss());
 }
 
 void Taps::note_drops(Losses& losses) const {
     for (const Tap& tap : ending_)
-        if (tap.stream && tap.stream->dropped() > 0)
-            losses.note(fmt::format("the take is not whole: {} values of {} were lost because the disk was too slow",
+        if (tap.stream->dropped() > 0)
+            losses.note(fmt::format("the take is not whole: {} ticks of {} were lost because the disk was too slow",
                                     tap.stream->dropped(), tap.stream->format().file));
 }
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The streams that keep every value of every output, while values are recorded.
+// The streams that keep every value of every output, one for each group, while values are recorded.
 #pragma once
 
 #include "engine/run/losses.hpp"
 #include "engine/run/options.hpp"
 
-#include <map>
+#include <list>
 #include <memory>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 namespace tactus::run {
@@ -17,9 +18,9 @@ class Taps {
 public:
     explicit Taps(TapMaker make) : make_(std::move(make)) {}
 
-    /// The stream of an output in a group; made when there is none. Null: the maker wants none. Whoever builds a plan
-    /// calls it.
-    RecordStream* get(const std::string& port, const ValueType& type, const GroupRuntime& group);
+    /// The stream of a group whose outputs have that layout; made when there is none. Null: the maker wants none.
+    /// Whoever builds a plan calls it.
+    RecordStream* get(const io::FrameLayout& layout, const GroupRuntime& group);
     /// Makes what `get` has added known to the other functions.
     void update();
     /// The streams keep values from a logical time on, or until one; then they belong to a stretch that ends.
@@ -27,8 +28,8 @@ public:
     void end_at(Flicks until);
     /// Completes those whose stretch is over.
     void finish_past();
-    /// Completes those whose group is over.
-    void finish_ended();
+    /// Completes those whose group is over, and those that no program writes to any more: an edit changed the outputs.
+    void finish_ended(const std::unordered_set<const RecordStream*>& in_use);
     /// Completes all. After the run.
     void finish();
 
@@ -44,9 +45,10 @@ private:
     struct Tap {
         std::unique_ptr<io::Stream> stream;
         const GroupRuntime* group;
+        io::FrameLayout layout;
     };
     TapMaker make_;
-    std::map<std::string, Tap> taps_;  // by output, group and type: one writing thread each
+    std::list<Tap> taps_;  // one writing thread each
     std::vector<Tap> ending_;  // of stretches that are over
     std::vector<io::Stream*> open_;  // those that may still be written
 };

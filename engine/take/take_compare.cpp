@@ -7,7 +7,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <map>
+#include <string_view>
 #include <tuple>
+#include <unordered_map>
+#include <utility>
 
 namespace tactus::take {
 
@@ -19,86 +23,92 @@ bool same_bits(const double* a, const double* b, std::size_t count) {
     });
 }
 
+/// What of a frame is in one file of the take.
+struct ComparedFile {
+    struct Output {
+        TakeStreamInfo info;
+        io::FrameColumn column;
+        bool differs = false;
+    };
+    std::vector<Output> outputs;
+    std::unique_ptr<TakeStreamReader> reader;
+    bool is_over = false;
+
+    const TakeStreamInfo& first() const { return outputs.front().info; }
+};
+
 class CompareSink : public io::Sink {
 public:
-    /// `stretches`: the streams of that output, in the order of their times.
-    CompareSink(TakeComparison& comparison, const Take& take, std::vector<TakeStreamInfo> stretches,
-                const ValueType& type)
-        : comparison_(comparison),
-          folder_(take.folder),
-          stretches_(std::move(stretches)),
-          type_(type),
-          names_(channels_of(type)),
-          got_(names_.size()) {
-        open();
-    }
+    CompareSink(TakeComparison& comparison, const Take& take, std::vector<ComparedFile> files, std::size_t frame_bytes)
+        : comparison_(comparison), folder_(take.folder), files_(std::move(files)), frame_bytes_(frame_bytes) {}
 
-    void take(std::int64_t first, const std::byte* values, std::size_t count) override {
+    void take(std::int64_t first, const std::byte* frames, std::size_t count) override {
         std::uint64_t compared = 0;
-        for (std::size_t i = 0; i < count && !differs_; ++i) {
-            const std::int64_t tick = first + static_cast<std::int64_t>(i);
-            const double* expected = recorded(tick);
-            if (!expected) continue;
-            to_frame(type_, values + i * type_.size, got_.data());
-            ++compared;
-            if (same_bits(expected, got_.data(), got_.size())) continue;
-            // What follows a difference differs too.
-            differs_ = true;
-            comparison_.differs({stretches_.front().port,
-                                 tick,
-                                 seconds(tick * stretches_.front().period),
-                                 names_,
-                                 {expected, expected + got_.size()},
-                                 got_});
-        }
+        for (ComparedFile& file : files_)
+            for (std::size_t i = 0; i < count; ++i)
+                compared += compare(file, first + static_cast<std::int64_t>(i), frames + i * frame_bytes_);
         comparison_.count(compared);
     }
     void finish() override {}
 
 private:
-    void open() {
-        const TakeStreamInfo& info = stretches_[at_];
-        reader_ = std::make_unique<TakeStreamReader>(folder_ / info.file, info);
-        if (reader_->channels() != static_cast<int>(names_.size()))
-            throw Error(fmt::format("{}: {} channels, but a {} has {}", info.file, reader_->channels(), type_.name,
-                                    names_.size()));
-    }
-    /// Null where nothing was recorded: before, between and after.
-    const double* recorded(std::int64_t tick) {
-        while (tick >= stretches_[at_].start + reader_->frames() && at_ + 1 < stretches_.size()) {
-            ++at_;
-            open();
+    /// Returns how many values it compared: none where nothing was recorded, before the file, between and after.
+    std::uint64_t compare(ComparedFile& file, std::int64_t tick, const std::byte* frame) {
+        if (file.is_over || tick < file.first().start) return 0;
+        if (!file.reader) file.reader = std::make_unique<TakeStreamReader>(folder_ / file.first().file, file.first());
+        if (!file.reader->frame(tick)) {
+            file.is_over = true;
+            file.reader.reset();
+            return 0;
         }
-        return reader_->frame(tick);
+        std::uint64_t compared = 0;
+        for (ComparedFile::Output& output : file.outputs) {
+            // What follows a difference differs too.
+            if (output.differs) continue;
+            const double* expected = file.reader->frame(tick, output.info);
+            const auto wide = static_cast<std::size_t>(output.info.channels);
+            got_.resize(wide);
+            to_frame(*output.column.type, frame + output.column.offset, got_.data());
+            ++compared;
+            output.differs = !same_bits(expected, got_.data(), wide);
+            if (output.differs)
+                comparison_.differs({output.info.port,
+                                     tick,
+                                     seconds(tick * output.info.period),
+                                     channels_of(*output.column.type),
+                                     {expected, expected + wide},
+                                     got_});
+        }
+        return compared;
     }
 
     TakeComparison& comparison_;
     std::filesystem::path folder_;
-    std::vector<TakeStreamInfo> stretches_;
-    std::size_t at_ = 0;
-    const ValueType& type_;
-    std::vector<std::string> names_;
+    std::vector<ComparedFile> files_;
+    std::size_t frame_bytes_;
     std::vector<double> got_;
-    std::unique_ptr<TakeStreamReader> reader_;
-    bool differs_ = false;
 };
 
 }  // namespace
 
-std::unique_ptr<io::Stream> TakeComparison::tap(const std::string& port, const ValueType& type,
-                                                const run::GroupRuntime& group) {
-    std::vector<TakeStreamInfo> stretches;
-    for (const TakeStreamInfo& stream : take_.streams)
-        if (stream.port == port && stream.group_number == group.index && stream.type == type.name)
-            stretches.push_back(stream);
-    if (stretches.empty()) return nullptr;
-    std::ranges::sort(stretches, {}, &TakeStreamInfo::start);
-    StreamFormat format;
-    format.file = stretches.front().file;
-    format.type = &type;
-    format.period = stretches.front().period;
-    return std::make_unique<io::Stream>(format,
-                                        std::make_unique<CompareSink>(*this, take_, std::move(stretches), type));
+std::unique_ptr<io::Sink> TakeComparison::tap(const io::FrameLayout& layout, const run::GroupRuntime& group) {
+    std::map<std::string, ComparedFile> files;
+    std::unordered_map<std::string_view, const io::FrameColumn*> columns;
+    for (const io::FrameColumn& column : layout.columns) columns.emplace(column.port, &column);
+    for (const TakeStreamInfo& stream : take_.streams) {
+        const auto column = columns.find(stream.port);
+        if (stream.group_number != group.index || column == columns.end() || stream.type != column->second->type->name)
+            continue;
+        const auto wide = channels_of(*column->second->type).size();
+        if (static_cast<std::size_t>(stream.channels) != wide)
+            throw Error(fmt::format("{}: {} channels of {}, but a {} has {}", stream.file, stream.channels, stream.port,
+                                    stream.type, wide));
+        files[stream.file].outputs.push_back({stream, *column->second, false});
+    }
+    if (files.empty()) return nullptr;
+    std::vector<ComparedFile> list;
+    for (auto& [name, file] : files) list.push_back(std::move(file));
+    return std::make_unique<CompareSink>(*this, take_, std::move(list), layout.bytes);
 }
 
 void TakeComparison::count(std::uint64_t values) {

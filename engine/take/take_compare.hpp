@@ -27,8 +27,8 @@ class TakeComparison {
 public:
     explicit TakeComparison(const Take& take) : take_(take) {}
 
-    /// Where the values of an output go: what EngineOptions::tap asks for. Null when the take has none of it.
-    std::unique_ptr<io::Stream> tap(const std::string& port, const ValueType& type, const run::GroupRuntime& group);
+    /// Where the values of a group go: what EngineOptions::tap asks for. Null when the take has none of them.
+    std::unique_ptr<io::Sink> tap(const io::FrameLayout& layout, const run::GroupRuntime& group);
 
     // After the run:
     std::uint64_t compared_values() const { return compared_; }

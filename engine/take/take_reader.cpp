@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
-#include <optional>
+#include <set>
 #include <sstream>
 
 namespace tactus::take {
@@ -72,25 +72,40 @@ io::RecordedDevice read_device(const Json& json) {
     return device;
 }
 
-TakeStreamInfo read_stream(const Json& json) {
+/// One output of a file, whose channels begin at `channel`.
+TakeStreamInfo read_output(const Json& file, const Json& output, int channel) {
     TakeStreamInfo info;
-    info.file = json.at("stream");
-    info.port = json.at("port");
-    info.group = json.at("group");
-    info.group_number = json.at("group_number");
-    info.type = json.at("type");
-    info.period = json.at("period_flicks");
-    info.start = json.at("start");
+    info.file = file.at("stream");
+    info.port = output.at("port");
+    info.group = file.at("group");
+    info.group_number = file.at("group_number");
+    info.type = output.at("type");
+    info.period = file.at("period_flicks");
+    info.start = file.at("start");
+    info.channel = channel;
+    info.channels = static_cast<int>(std::min<std::size_t>(output.at("channels").size(), most_channels));
     if (!info.file.starts_with("streams/") || info.file.find("..") != std::string::npos)
         throw Error(fmt::format("'{}' is no stream of the take", info.file));
     if (info.period < 1 || info.start < 0)
         throw Error(fmt::format("the stream of {} has no period, or begins before the run", info.port));
+    if (info.channels < 1 || info.channel + info.channels > most_channels)
+        throw Error(fmt::format("the stream of {} has no channels, or more than a file holds", info.port));
     return info;
+}
+
+void read_streams(const Json& json, std::vector<TakeStreamInfo>& streams) {
+    // Format 2: a file for each output.
+    if (!json.contains("outputs")) return streams.push_back(read_output(json, json, 0));
+    int channel = 0;
+    for (const Json& output : json.at("outputs")) {
+        streams.push_back(read_output(json, output, channel));
+        channel += streams.back().channels;
+    }
 }
 
 void read_event(const Json& json, Take& take) {
     if (json.contains("device")) take.devices.push_back(read_device(json));
-    else if (json.contains("stream")) take.streams.push_back(read_stream(json));
+    else if (json.contains("stream")) read_streams(json, take.streams);
     else if (json.contains("plan")) {
         TakenEdit edit;
         edit.number = json.at("plan");
@@ -115,11 +130,11 @@ Take Take::load(const fs::path& folder) {
     int line_number = 0;
     try {
         const Json json = Json::parse(file::read_whole_file(reading));
-        if (json.at("format") != take_format)
+        if (json.at("format") != take_format && json.at("format") != oldest_take_format)
             throw Error(
-                fmt::format("it has format {}, and this tactus reads format {}; replay it with the build that "
+                fmt::format("it has format {}, and this tactus reads formats {} and {}; replay it with the build that "
                             "made it, or record it again",
-                            json.at("format").dump(), take_format));
+                            json.at("format").dump(), oldest_take_format, take_format));
         take.about.patch_file = json.at("patch").get<std::string>();
         take.about.overrides.settings = json.at("settings");
         take.about.overrides.assets = json.at("asset_overrides");
@@ -183,13 +198,20 @@ std::vector<std::string> Take::changed_assets() const {
 
 namespace {
 
-/// Frames of a stream; nothing when it cannot be read.
-std::optional<std::int64_t> frames_in(const fs::path& folder, const TakeStreamInfo& stream) {
-    try {
-        return TakeStreamReader(folder / stream.file, stream).frames();
-    } catch (const Error&) {
-        return std::nullopt;
+/// Frames of each file of the streams; those that cannot be read are missing.
+std::map<std::string, std::int64_t> frames_of_files(const fs::path& folder,
+                                                    const std::vector<TakeStreamInfo>& streams) {
+    std::map<std::string, std::int64_t> frames;
+    std::set<std::string> unreadable;
+    for (const TakeStreamInfo& stream : streams) {
+        if (frames.contains(stream.file) || unreadable.contains(stream.file)) continue;
+        try {
+            frames[stream.file] = TakeStreamReader(folder / stream.file, stream).frames();
+        } catch (const Error&) {
+            unreadable.insert(stream.file);
+        }
     }
+    return frames;
 }
 
 }  // namespace
@@ -204,8 +226,9 @@ std::vector<TakeDamage> Take::damages() const {
     if (is_complete) {
         compare("timing.log", log.records, "records");
         compare("events.jsonl", lines, "lines");
-        for (const TakeStreamInfo& stream : streams)
-            compare(stream.file, frames_in(folder, stream).value_or(0), "values");
+        auto frames = frames_of_files(folder, streams);
+        for (const TakeStreamInfo& stream : streams) frames.try_emplace(stream.file, 0);
+        for (const auto& [file, count] : frames) compare(file, count, "values");
     }
     if (found.empty() && log.written && !log.is_whole)
         found.push_back({"timing.log", log.records, *log.written, "records"});
@@ -213,7 +236,8 @@ std::vector<TakeDamage> Take::damages() const {
 }
 
 void Take::drop_unreadable_streams() {
-    std::erase_if(streams, [this](const TakeStreamInfo& stream) { return !frames_in(folder, stream); });
+    const auto frames = frames_of_files(folder, streams);
+    std::erase_if(streams, [&](const TakeStreamInfo& stream) { return !frames.contains(stream.file); });
 }
 
 }  // namespace tactus::take

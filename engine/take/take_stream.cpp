@@ -15,7 +15,11 @@ namespace tactus::take {
 
 namespace {
 
-constexpr std::size_t frames_at_once = 1024;
+constexpr std::size_t numbers_at_once = 1 << 16;
+
+std::size_t frames_at_once(std::size_t channels) {
+    return std::clamp<std::size_t>(numbers_at_once / channels, 1, 1024);
+}
 
 /// The track names that audio editors show, as the iXML chunk has them.
 void write_names(SNDFILE* file, const std::vector<std::string>& names) {
@@ -29,6 +33,9 @@ void write_names(SNDFILE* file, const std::vector<std::string>& names) {
             "<NAME>{1}</NAME></TRACK>",
             i + 1, names[i]);
     xml += "</TRACK_LIST></BWFXML>";
+    // The library reads headers of up to 100 kB. What the channels are is in the take, too.
+    constexpr std::size_t most_bytes = 80'000;
+    if (xml.size() > most_bytes) return;
     if (xml.size() % 2 != 0) xml += ' ';
     SF_CHUNK_INFO chunk{};
     std::memcpy(chunk.id, "iXML", 4);
@@ -56,12 +63,23 @@ void to_frame(const ValueType& type, const void* value, double* frame) {
     frame[1] = static_cast<double>(hash.value() & 0xffffffffu);
 }
 
+namespace {
+
+struct Track {
+    const ValueType& type;
+    std::size_t offset;   // in the frame, bytes
+    std::size_t channel;  // the first
+};
+
+}  // namespace
+
 struct TakeStreamWriter::File {
     std::filesystem::path path;
-    const ValueType& type;
+    std::vector<Track> tracks;
+    std::size_t frame_bytes;
+    std::int64_t start, next;
     sound::SoundHandle handle;
     std::size_t channels = 0;
-    std::int64_t start = 0, next = 0;
     std::vector<double> frames, last;
     sf_count_t written = 0;  // frames
 
@@ -76,15 +94,22 @@ struct TakeStreamWriter::File {
     }
 };
 
-TakeStreamWriter::TakeStreamWriter(const std::filesystem::path& path, const TakeStreamInfo& info, const ValueType& type)
-    : file_(std::make_unique<File>(File{path, type, {}, 0, info.start, info.start, {}, {}, 0})) {
-    const auto names = channels_of(type);
+TakeStreamWriter::TakeStreamWriter(const std::filesystem::path& path, Flicks period, std::int64_t start,
+                                   std::vector<io::FrameColumn> columns, std::size_t frame_bytes)
+    : file_(std::make_unique<File>(File{path, {}, frame_bytes, start, start, {}, 0, {}, {}, 0})) {
+    std::vector<std::string> names;
+    for (const io::FrameColumn& column : columns) {
+        file_->tracks.push_back({*column.type, column.offset, names.size()});
+        const std::vector<std::string> channels = channels_of(*column.type);
+        for (const std::string& channel : channels)
+            names.push_back(channels.size() == 1 ? column.port : fmt::format("{} {}", column.port, channel));
+    }
     file_->channels = names.size();
-    file_->frames.resize(frames_at_once * names.size());
+    file_->frames.resize(frames_at_once(names.size()) * names.size());
     file_->last.resize(names.size());
     SF_INFO format{};
     format.channels = static_cast<int>(names.size());
-    format.samplerate = static_cast<int>(std::max<long>(1, std::lround(rate_of(info.period))));
+    format.samplerate = static_cast<int>(std::max<long>(1, std::lround(rate_of(period))));
     format.format = SF_FORMAT_RF64 | SF_FORMAT_DOUBLE;
     file_->handle.reset(sf_open(path.c_str(), SFM_WRITE, &format));
     if (!file_->handle) throw Error(fmt::format("{}: cannot write: {}", path.string(), sf_strerror(nullptr)));
@@ -95,19 +120,23 @@ TakeStreamWriter::TakeStreamWriter(const std::filesystem::path& path, const Take
 
 TakeStreamWriter::~TakeStreamWriter() = default;
 
-void TakeStreamWriter::write(std::int64_t first, const std::byte* values, std::size_t count) {
+void TakeStreamWriter::write(std::int64_t first, const std::byte* frames, std::size_t count) {
     File& file = *file_;
+    const std::size_t most = frames_at_once(file.channels);
     while (file.next < first) {
-        const auto some = static_cast<std::size_t>(std::min<std::int64_t>(first - file.next, frames_at_once));
+        const std::size_t some = std::min(static_cast<std::size_t>(first - file.next), most);
         for (std::size_t i = 0; i < some; ++i)
             std::ranges::copy(file.last, file.frames.begin() + static_cast<std::ptrdiff_t>(i * file.channels));
         file.put(file.frames.data(), some);
         file.next += static_cast<std::int64_t>(some);
     }
     for (std::size_t done = 0; done < count;) {
-        const std::size_t some = std::min(count - done, frames_at_once);
-        for (std::size_t i = 0; i < some; ++i)
-            to_frame(file.type, values + (done + i) * file.type.size, file.frames.data() + i * file.channels);
+        const std::size_t some = std::min(count - done, most);
+        for (std::size_t i = 0; i < some; ++i) {
+            const std::byte* frame = frames + (done + i) * file.frame_bytes;
+            double* numbers = file.frames.data() + i * file.channels;
+            for (const Track& track : file.tracks) to_frame(track.type, frame + track.offset, numbers + track.channel);
+        }
         file.put(file.frames.data(), some);
         done += some;
         std::copy_n(file.frames.data() + (some - 1) * file.channels, file.channels, file.last.data());
@@ -128,7 +157,8 @@ std::int64_t TakeStreamWriter::frames() const { return file_->next - file_->star
 struct TakeStreamReader::File {
     std::int64_t start = 0;
     sound::SoundHandle handle;
-    std::size_t channels = 0;
+    std::size_t channels = 0, first_channel = 0;  // of the file; of the output
+    int width = 0;                      // channels of the output
     std::int64_t length = 0;            // of the file
     std::int64_t first = 0, count = 0;  // activations in `frames`
     std::vector<double> frames;
@@ -140,17 +170,21 @@ TakeStreamReader::TakeStreamReader(const std::filesystem::path& path, const Take
     if (std::filesystem::exists(path)) file::require_file(path);
     file_->handle.reset(sf_open(path.c_str(), SFM_READ, &format));
     if (!file_->handle) throw Error(fmt::format("{}: cannot read: {}", path.string(), sf_strerror(nullptr)));
-    if (format.channels < 1 || format.channels > 64)
-        throw Error(fmt::format("{}: {} channels; a take has at most 64", path.string(), format.channels));
+    if (format.channels < info.channel + info.channels || format.channels > most_channels)
+        throw Error(fmt::format("{}: {} channels; {} needs those from {} to {}, and a file has at most {}",
+                                path.string(), format.channels, info.port, info.channel + 1,
+                                info.channel + info.channels, most_channels));
     file_->channels = static_cast<std::size_t>(format.channels);
+    file_->first_channel = static_cast<std::size_t>(info.channel);
+    file_->width = info.channels;
     file_->length = format.frames;
     file_->start = file_->first = info.start;
-    file_->frames.resize(frames_at_once * file_->channels);
+    file_->frames.resize(frames_at_once(file_->channels) * file_->channels);
 }
 
 TakeStreamReader::~TakeStreamReader() = default;
 
-int TakeStreamReader::channels() const { return static_cast<int>(file_->channels); }
+int TakeStreamReader::channels() const { return file_->width; }
 
 std::int64_t TakeStreamReader::frames() const { return file_->length; }
 
@@ -167,13 +201,19 @@ const double* TakeStreamReader::frame(std::int64_t activation) {
     if (activation < file.first) return nullptr;
     while (activation >= file.first + file.count) {
         file.first += file.count;
-        file.count = sf_readf_double(file.handle.get(), file.frames.data(), frames_at_once);
+        file.count = sf_readf_double(file.handle.get(), file.frames.data(),
+                                     static_cast<sf_count_t>(frames_at_once(file.channels)));
         if (file.count <= 0) {
             file.count = 0;
             return nullptr;
         }
     }
-    return file.frames.data() + static_cast<std::size_t>(activation - file.first) * file.channels;
+    return file.frames.data() + static_cast<std::size_t>(activation - file.first) * file.channels + file.first_channel;
+}
+
+const double* TakeStreamReader::frame(std::int64_t activation, const TakeStreamInfo& other) {
+    const double* own = frame(activation);
+    return own ? own - file_->first_channel + other.channel : nullptr;
 }
 
 }  // namespace tactus::take

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// One output in a take: every value it published, as a multichannel sound file of doubles that audio editors open. A
-// large value is kept as two numbers, the halves of its content's hash.
+// The outputs of a group in a take: every value they published, as a multichannel sound file of doubles that audio
+// editors open. A large value is kept as two numbers, the halves of its content's hash.
 #pragma once
 
 #include "dsp/core/time.hpp"
+#include "engine/io/frames.hpp"
 #include "graph/node/value.hpp"
 
 #include <cstdint>
@@ -14,6 +15,7 @@
 
 namespace tactus::take {
 
+/// One output in a file.
 struct TakeStreamInfo {
     std::string file;       ///< within the take
     std::string port;       ///< "node.port"
@@ -21,7 +23,11 @@ struct TakeStreamInfo {
     int group_number = 0;    ///< as in the timing log: an edit may end a group and begin another of that name
     Flicks period = 0;
     std::int64_t start = 0;  ///< activation of the file's first frame
+    int channel = 0, channels = 1;  ///< the first of its channels, and how many they are
 };
+
+/// Most channels of a file.
+inline constexpr int most_channels = 1024;
 
 /// Names of a type's channels.
 std::vector<std::string> channels_of(const ValueType& type);
@@ -31,13 +37,15 @@ void to_frame(const ValueType& type, const void* value, double* frame);
 class TakeStreamWriter {
 public:
     /// `path` appears at once and is readable while it grows. Throws Error.
-    TakeStreamWriter(const std::filesystem::path& path, const TakeStreamInfo& info, const ValueType& type);
+    /// `columns` of frames of `frame_bytes` make at most `most_channels` channels; the first frame is that of `start`.
+    TakeStreamWriter(const std::filesystem::path& path, Flicks period, std::int64_t start,
+                     std::vector<io::FrameColumn> columns, std::size_t frame_bytes);
     ~TakeStreamWriter();
     TakeStreamWriter(const TakeStreamWriter&) = delete;
     TakeStreamWriter& operator=(const TakeStreamWriter&) = delete;
 
-    /// Values of activations first … first + count − 1. The last value is repeated where activations never ran.
-    void write(std::int64_t first, const std::byte* values, std::size_t count);
+    /// Frames of activations first … first + count − 1. The last one is repeated where activations never ran.
+    void write(std::int64_t first, const std::byte* frames, std::size_t count);
     /// Tells the file's header how long it is by now.
     void update();
     void finish();
@@ -48,6 +56,7 @@ private:
     std::unique_ptr<File> file_;
 };
 
+/// Reads one output of a file.
 class TakeStreamReader {
 public:
     /// Throws Error.
@@ -56,12 +65,15 @@ public:
     TakeStreamReader(const TakeStreamReader&) = delete;
     TakeStreamReader& operator=(const TakeStreamReader&) = delete;
 
-    int channels() const;
+    int channels() const;  ///< of the output
     std::int64_t frames() const;  ///< in the file
     /// The next frame asked for will not lie before that of `activation`.
     void seek(std::int64_t activation);
-    /// The frame of an activation, or null when it is not in the file. Activations must be asked for in order.
+    /// The output's part of the frame of an activation, or null when it is not in the file. Activations must be asked
+    /// for in order.
     const double* frame(std::int64_t activation);
+    /// The same of another output of that file.
+    const double* frame(std::int64_t activation, const TakeStreamInfo& other);
 
 private:
     struct File;

@@ -5,6 +5,7 @@
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/run/group_runtime.hpp"
+#include "engine/take/take_sink.hpp"
 #include "graph/patch/sub_patch.hpp"
 
 #include <fmt/format.h>
@@ -12,8 +13,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cctype>
 #include <fstream>
-#include <functional>
 
 namespace tactus::take {
 
@@ -23,65 +24,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr auto flush_every = std::chrono::milliseconds(500);
-
-/// Opens its file with the first values: until then it is not known at which activation the output begins.
-class TakeSink : public io::Sink {
-public:
-    using Opened = std::function<void(const TakeStreamInfo&)>;
-    using Finished = std::function<void(const std::string& file, std::int64_t frames)>;
-    using Cut = std::function<void()>;
-    TakeSink(fs::path folder, TakeStreamInfo info, const ValueType& type, Opened opened, Finished finished, Cut cut)
-        : folder_(std::move(folder)),
-          info_(std::move(info)),
-          type_(type),
-          opened_(std::move(opened)),
-          finished_(std::move(finished)),
-          cut_(std::move(cut)) {}
-
-    void take(std::int64_t first, const std::byte* values, std::size_t count) override {
-        try {
-            write(first, values, count);
-        } catch (const Error&) {
-            cut_();
-            throw;
-        }
-    }
-    void finish() override {
-        if (!writer_) return;
-        try {
-            writer_->finish();
-        } catch (const Error&) {
-            cut_();
-            throw;
-        }
-        finished_(info_.file, writer_->frames());
-    }
-
-private:
-    void write(std::int64_t first, const std::byte* values, std::size_t count) {
-        const bool is_first = !writer_;
-        if (is_first) {
-            info_.start = first;
-            writer_ = std::make_unique<TakeStreamWriter>(folder_ / info_.file, info_, type_);
-        }
-        writer_->write(first, values, count);
-        // A file that found no room for anything is not told of.
-        if (is_first) opened_(info_);
-        const auto now = std::chrono::steady_clock::now();
-        if (now - updated_ < flush_every) return;
-        updated_ = now;
-        writer_->update();
-    }
-
-    fs::path folder_;
-    TakeStreamInfo info_;
-    const ValueType& type_;
-    Opened opened_;
-    Finished finished_;
-    Cut cut_;
-    std::unique_ptr<TakeStreamWriter> writer_;
-    std::chrono::steady_clock::time_point updated_ = std::chrono::steady_clock::now();
-};
 
 Json assets_json(const patch::Patch& patch) {
     Json assets = Json::array();
@@ -233,41 +175,55 @@ void TakeWriter::device(const build::DeviceSlot& slot) {
              .dump());
 }
 
-std::unique_ptr<io::Stream> TakeWriter::stream(const std::string& port, const ValueType& type,
-                                               const run::GroupRuntime& group) {
-    TakeStreamInfo info;
-    info.port = port;
-    info.group = group.plan->name;
-    info.group_number = group.index;
-    info.type = type.name;
-    info.period = group.plan->period;
-    std::string stem = "streams/" + port;
-    for (int again = 2; files_.contains(stem); ++again) stem = fmt::format("streams/{}-{}", port, again);
+std::string TakeWriter::file_for(const std::string& group) {
+    std::string name = group;
+    for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-' && c != '_') c = '-';
+    if (name.starts_with('.')) name.front() = '-';
+    std::string stem = "streams/" + name;
+    for (int again = 2; files_.contains(stem); ++again) stem = fmt::format("streams/{}-{}", name, again);
     files_.insert(stem);
-    info.file = stem + ".wav";
-    StreamFormat format;
-    format.file = info.file;
-    format.type = &type;
-    format.period = info.period;
-    const auto opened = [this, &type](const TakeStreamInfo& now) {
-        if (is_lost_) throw Error(loss());
-        line(Json{{"stream", now.file},
-                  {"port", now.port},
-                  {"group", now.group},
-                  {"group_number", now.group_number},
-                  {"type", now.type},
-                  {"period_flicks", now.period},
-                  {"rate_hz", rate_of(now.period)},
-                  {"start", now.start},
-                  {"channels", channels_of(type)}}
-                 .dump());
-    };
-    const auto finished = [this](const std::string& file, std::int64_t frames) {
-        const std::lock_guard lock(writing_);
-        frames_[file] = frames;
-    };
-    const auto cut = [this] { has_cut_stream_ = true; };
-    return std::make_unique<io::Stream>(format, std::make_unique<TakeSink>(folder_, info, type, opened, finished, cut));
+    return stem + ".wav";
+}
+
+std::unique_ptr<io::Sink> TakeWriter::sink(const io::FrameLayout& layout, const run::GroupRuntime& group) {
+    std::vector<TakeFile> files;
+    int channels = most_channels;
+    for (const io::FrameColumn& column : layout.columns) {
+        const auto wide = static_cast<int>(channels_of(*column.type).size());
+        if (channels + wide > most_channels) {
+            files.push_back({file_for(group.plan->name), {}});
+            channels = 0;
+        }
+        files.back().columns.push_back(column);
+        channels += wide;
+    }
+    return std::make_unique<TakeSink>(
+        folder_, group.plan->period, layout.bytes, std::move(files),
+        TakeSink::Told{
+            .opened = [this, &group](const TakeFile& file, std::int64_t start) { opened(file, start, group); },
+            .finished =
+                [this](const std::string& file, std::int64_t frames) {
+                    const std::lock_guard lock(writing_);
+                    frames_[file] = frames;
+                },
+            .cut = [this] { has_cut_stream_ = true; }});
+}
+
+void TakeWriter::opened(const TakeFile& file, std::int64_t start, const run::GroupRuntime& group) {
+    if (is_lost_) throw Error(loss());
+    Json outputs = Json::array();
+    for (const io::FrameColumn& column : file.columns)
+        outputs.push_back(
+            {{"port", column.port}, {"type", column.type->name}, {"channels", channels_of(*column.type)}});
+    line(Json{{"stream", file.name},
+              {"group", group.plan->name},
+              {"group_number", group.index},
+              {"period_flicks", group.plan->period},
+              {"rate_hz", rate_of(group.plan->period)},
+              {"start", start},
+              {"outputs", outputs}}
+             .dump());
 }
 
 std::string TakeWriter::describe_assets(const patch::Patch& patch) { return assets_json(patch).dump(); }

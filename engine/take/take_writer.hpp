@@ -4,9 +4,9 @@
 //
 //   take.json       the patch, what the command line changed, hashes of assets, build, CPU family, seconds asked for
 //   patch-N.toml    the text of the plan numbered N, 0 first
-//   events.jsonl    one line for each edit, each parameter set, each device opened, each stream
+//   events.jsonl    one line for each edit, each parameter set, each device opened, each file of streams
 //   timing.log      everything that timing decided, see engine/take/timing_log.hpp
-//   streams/        every published value of every output, see engine/take/take_stream.hpp
+//   streams/        every published value of every output, a file for each group, see engine/take/take_stream.hpp
 //   result.json     when the run came to its end and every stream is whole: hash of every output, and how much each file
 //                   of the take holds
 #pragma once
@@ -36,8 +36,10 @@ class GroupRuntime;
 
 namespace tactus::take {
 
-/// Of take.json; takes of another one are refused.
-constexpr int take_format = 2;
+struct TakeFile;
+
+/// Of take.json. Format 2, with a file for each output, is read, too; others are refused.
+constexpr int take_format = 3, oldest_take_format = 2;
 
 /// What a take says about the run it is of.
 struct TakeAbout {
@@ -60,7 +62,8 @@ public:
     /// The plan that runs first; before anything is recorded.
     void begin(const patch::Patch& patch, std::uint64_t plan_hash);
     void device(const build::DeviceSlot& slot);
-    std::unique_ptr<io::Stream> stream(const std::string& port, const ValueType& type, const run::GroupRuntime& group);
+    /// Where the frames of a group go: files of at most `most_channels` channels, opened with the first frame.
+    std::unique_ptr<io::Sink> sink(const io::FrameLayout& layout, const run::GroupRuntime& group);
     /// What an edit says of itself; reads all of its assets. Any thread. Throws Error.
     static std::string describe_assets(const patch::Patch& patch);
     /// The plan that takes over at `when`; `assets` as described.
@@ -89,6 +92,9 @@ public:
 
 private:
     void line(const std::string& json);
+    /// A name that no other file of the take has.
+    std::string file_for(const std::string& group);
+    void opened(const TakeFile& file, std::int64_t start, const run::GroupRuntime& group);
 
     std::filesystem::path folder_;
     TakeAbout about_;

@@ -17,6 +17,7 @@ std::optional<Plan> compile(const patch::Patch& patch, Catalogue catalogue, patc
     // An order is only worth finding among wires that exist: otherwise one slip is reported twice.
     if (problems.empty()) order_nodes(plan, problems);
     if (!problems.empty()) return std::nullopt;
+    order_feedback(plan);
     return plan;
 }
 

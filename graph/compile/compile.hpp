@@ -18,4 +18,8 @@ void resolve_wires(Plan& plan, patch::Problems& problems);
 /// Puts the nodes of each group in topological order, ties by name. A cycle is a problem that prints its path.
 void order_nodes(Plan& plan, patch::Problems& problems);
 
+/// In audio groups with delayed wires: orders nodes so that the source of a delayed wire runs before its target, and
+/// finds the cycles, in which that cannot be. A plan without problems only.
+void order_feedback(Plan& plan);
+
 }  // namespace tactus::compile

@@ -20,10 +20,15 @@ bool has_signal_port(const PlanNode& node) {
     return std::ranges::any_of(node.outputs, is_signal) || std::ranges::any_of(node.inputs, is_signal);
 }
 
-Flicks parse_latency(const patch::PatchGroup& group) {
+Flicks parse_latency(const patch::PatchGroup& group, Flicks period) {
+    constexpr int most_ticks = 1'000'000;  // as of a delay; 64 MB for a wire of poses
     const double flicks = parse_as(group.latency, "s") * static_cast<double>(flicks_per_second);
-    if (flicks < 1.0 || flicks > 9e15)
-        throw Error(fmt::format("a latency must be above zero, got '{}'", group.latency));
+    if (!(flicks >= 1.0)) throw Error(fmt::format("a latency must be above zero, got '{}'", group.latency));
+    if (flicks > most_ticks * static_cast<double>(period))
+        throw Error(
+            fmt::format("a latency may be {} ticks of its group at most, here {:g} s, got '{}'; wires keep the "
+                        "values of all that time in memory",
+                        most_ticks, most_ticks * seconds(period), group.latency));
     return std::llround(flicks);
 }
 
@@ -63,7 +68,7 @@ private:
         PlanGroup group;
         group.name = declared.name;
         group.period = patch::parse_rate(declared.rate);
-        if (!declared.latency.empty()) group.latency = parse_latency(declared);
+        if (!declared.latency.empty()) group.latency = parse_latency(declared, group.period);
         group.backlog = declared.backlog;
         group.backlog_given = declared.backlog >= 0;
         return group;

@@ -15,11 +15,22 @@ struct Life {
     int last = for_good;
 };
 
-std::vector<std::vector<Life>> lives_of(const Plan& plan) {
+/// Where in its group each node stands; those of a cycle at its end, for they run several times in a call.
+std::vector<int> places_of(const Plan& plan) {
     std::vector<int> place(plan.nodes.size());
-    for (const PlanGroup& group : plan.groups)
+    for (const PlanGroup& group : plan.groups) {
         for (std::size_t i = 0; i < group.order.size(); ++i)
             place[static_cast<std::size_t>(group.order[i])] = static_cast<int>(i);
+        for (const PlanCycle& cycle : group.cycles)
+            for (int i = cycle.first; i < cycle.first + cycle.count; ++i)
+                place[static_cast<std::size_t>(group.order[static_cast<std::size_t>(i)])] =
+                    cycle.first + cycle.count - 1;
+    }
+    return place;
+}
+
+std::vector<std::vector<Life>> lives_of(const Plan& plan) {
+    const std::vector<int> place = places_of(plan);
     std::vector<std::vector<Life>> lives;
     for (std::size_t n = 0; n < plan.nodes.size(); ++n) {
         auto& of_node = lives.emplace_back();

@@ -51,12 +51,19 @@ struct PlanWire {
     SourceLocation where;
 };
 
+/// Nodes of an audio group that feed each other through delayed wires. They stand next to each other in the order.
+struct PlanCycle {
+    int first = 0, count = 0;  ///< positions in the order of the group
+    int longest = 1;           ///< most activations at a time: the shortest delay within
+};
+
 struct PlanGroup {
     std::string name;
     Flicks period = 0, latency = 0;
     int backlog = 0;
     bool has_audio = false;   ///< some node has a signal port: calls may run several activations
     std::vector<int> order;   ///< nodes, in the order they run
+    std::vector<PlanCycle> cycles;  ///< audio groups only; in the order of their positions
     bool backlog_given = false;
 };
 

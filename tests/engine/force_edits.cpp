@@ -34,24 +34,23 @@ const std::string replaced = held("other", "\"hand.pose -> other.device\",\n\"pl
 /// Force on the hand at every tick of 600, with an edit at 300 ms.
 std::vector<double> forces(const std::string& edited) {
     struct Sink : io::Sink {
-        explicit Sink(std::vector<double>& forces_) : forces(forces_) {}
-        void take(std::int64_t, const std::byte* values, std::size_t count) override {
+        Sink(std::size_t offset_, std::size_t bytes_, std::vector<double>& forces_)
+            : offset(offset_), bytes(bytes_), forces(forces_) {}
+        void take(std::int64_t, const std::byte* frames, std::size_t count) override {
             for (std::size_t i = 0; i < count; ++i)
-                forces.push_back(glm::length(reinterpret_cast<const Wrench*>(values)[i].force));
+                forces.push_back(glm::length(reinterpret_cast<const Wrench*>(frames + i * bytes + offset)->force));
         }
         void finish() override {}
+        std::size_t offset, bytes;
         std::vector<double>& forces;
     };
     std::vector<double> seen;
     run::EngineOptions options;
     options.seconds = 0.6;
-    options.tap = [&](const std::string& port, const ValueType& type,
-                      const run::GroupRuntime& group) -> std::unique_ptr<io::Stream> {
-        if (port != "out.applied") return nullptr;
-        StreamFormat format;
-        format.type = &type;
-        format.period = group.plan->period;
-        return std::make_unique<io::Stream>(format, std::make_unique<Sink>(seen));
+    options.tap = [&](const io::FrameLayout& layout, const run::GroupRuntime&) -> std::unique_ptr<io::Sink> {
+        const auto column = std::ranges::find(layout.columns, "out.applied", &io::FrameColumn::port);
+        if (column == layout.columns.end()) return nullptr;
+        return std::make_unique<Sink>(column->offset, layout.bytes, seen);
     };
     run::Engine engine(compile_text(base), options);
     engine.schedule(compile_text(edited), 300 * ms);

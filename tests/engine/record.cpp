@@ -4,6 +4,8 @@
 #include "tests/engine/repeat.hpp"
 #include "tests/support/catch.hpp"
 
+#include <sndfile.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -110,9 +112,13 @@ TEST_CASE("a value that was changed in the second stretch of a take is found", "
     });
     REQUIRE(second != take.streams.end());
     std::fstream file(folder / second->file, std::ios::in | std::ios::out | std::ios::binary);
-    file.seekg(-8, std::ios::end);
+    // A number of `a.out` in the last frame.
+    SF_INFO format{};
+    sf_close(sf_open((folder / second->file).c_str(), SFM_READ, &format));
+    const std::int64_t from_end = 8 * (format.channels - second->channel);
+    file.seekg(-from_end, std::ios::end);
     const char byte = static_cast<char>(file.peek() ^ 0x10);
-    file.seekp(-8, std::ios::end);
+    file.seekp(-from_end, std::ios::end);
     file.put(byte);
     file.close();
     const Repetition again = repeat(folder, 1);

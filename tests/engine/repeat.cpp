@@ -19,8 +19,8 @@ Repetition repeat(const std::filesystem::path& folder, int threads) {
     options.seconds = take.about.seconds;
     options.replay = &take.log;
     options.devices = &take.devices;
-    options.tap = [&](const std::string& port, const ValueType& type, const run::GroupRuntime& group) {
-        return comparison.tap(port, type, group);
+    options.tap = [&comparison](const io::FrameLayout& layout, const run::GroupRuntime& group) {
+        return comparison.tap(layout, group);
     };
     run::Engine engine(compile_text(take.text), options);
     for (const auto& event : take.events) {

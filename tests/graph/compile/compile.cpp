@@ -188,3 +188,39 @@ TEST_CASE("a thousand nodes in a row are ordered") {
     CHECK(c.plan->groups[0].order.front() == 0);
     CHECK(c.plan->groups[0].order.back() == 999);
 }
+
+TEST_CASE("a latency of hours, which wires would keep in memory, is refused with the longest that there is") {
+    const auto grouped = [](const std::string& latency) {
+        return compiled("[groups.slow]\nrate = \"1 kHz\"\nlatency = \"" + latency +
+                        "\"\n[nodes.a]\ntype = \"source\"\ngroup = \"slow\"\n");
+    };
+    CHECK(grouped("1000 s").plan);
+    const Compiled refused = grouped("20 h");
+    CHECK_FALSE(refused.plan);
+    CHECK(refused.said.find("a latency may be 1000000 ticks of its group at most, here 1000 s, got '20 h'") !=
+          std::string::npos);
+}
+
+//      ┌────────────────┐ delay 3
+//  x ─► a ─► b ─► c     │
+//       ▲    └─► d ─────┘──► e    and y ─► x, delayed, against the order of the names
+TEST_CASE("a cycle in an audio group stands together, and the source of a delay stands before its target") {
+    const auto audio = [](const std::string& name, const std::string& type) { return a_node(name, type, "48 kHz"); };
+    const Compiled c = compiled(
+        "wires = [\"a.out -> b.in\", \"b.out -> c.in\", \"b.out -> d.in\", \"d.out -> a.in as delay 3\", "
+        "\"d.out -> e.in as delay 9\", \"y.out -> x.in as delay 1\"]\n" +
+        audio("a", "gain") + audio("b", "gain") + audio("c", "gain") + audio("d", "gain") + audio("e", "gain") +
+        audio("x", "gain") + audio("y", "wave"));
+    INFO(c.said);
+    REQUIRE(c.plan);
+    const compile::PlanGroup& group = c.plan->groups[0];
+    REQUIRE(group.cycles.size() == 1);
+    CHECK(group.cycles[0].count == 3);
+    CHECK(group.cycles[0].longest == 3);
+    const std::string order = order_of(*c.plan, 0);
+    INFO(order);
+    CHECK(order.find("a b d") != std::string::npos);
+    CHECK(order.find('y') < order.find('x'));
+    CHECK(order.find('d') < order.find('e'));
+    CHECK(order.find('d') < order.find('c'));
+}

@@ -100,8 +100,8 @@ int replay(const ReplayChoice& choice) {
         folder.emplace(OutputChoice{choice.out, choice.overwrite});
         options.folder = choice.out;
     }
-    options.tap = [&comparison](const std::string& port, const ValueType& type, const run::GroupRuntime& group) {
-        return comparison.tap(port, type, group);
+    options.tap = [&comparison](const io::FrameLayout& layout, const run::GroupRuntime& group) {
+        return comparison.tap(layout, group);
     };
     ReplayedTake repeated(take, options, assets);
     run::Engine& engine = repeated.engine();

@@ -15,22 +15,24 @@ namespace tactus::study {
 
 namespace {
 
-/// Keeps the values of one output as numbers.
+/// Keeps the values of some outputs as numbers.
 class KeptValues : public io::Sink {
 public:
-    KeptValues(const ValueType& type, std::vector<double>& into) : type_(type), into_(into) {}
-    void take(std::int64_t, const std::byte* values, std::size_t count) override {
-        for (std::size_t i = 0; i < count; ++i) {
-            double number = 0.0;
-            type_.to_columns(values + i * type_.size, &number);
-            into_.push_back(number);
-        }
+    explicit KeptValues(std::size_t frame_bytes) : frame_bytes_(frame_bytes) {}
+    void keep(const io::FrameColumn& column, std::vector<double>& into) { kept_.emplace_back(column, &into); }
+    void take(std::int64_t, const std::byte* frames, std::size_t count) override {
+        for (const auto& [column, into] : kept_)
+            for (std::size_t i = 0; i < count; ++i) {
+                double number = 0.0;
+                column.type->to_columns(frames + i * frame_bytes_ + column.offset, &number);
+                into->push_back(number);
+            }
     }
     void finish() override {}
 
 private:
-    const ValueType& type_;
-    std::vector<double>& into_;
+    std::size_t frame_bytes_;
+    std::vector<std::pair<io::FrameColumn, std::vector<double>*>> kept_;
 };
 
 std::vector<std::uint8_t> flags(const std::vector<double>& numbers) {
@@ -114,15 +116,15 @@ RigRun run_rig_cell(const session::PatchChoice& given, const RigNodes& nodes, co
     options.hash = false;
     options.time_nodes = false;
     double period = 0.0;
-    options.tap = [&](const std::string& port, const ValueType& type,
-                      const run::GroupRuntime& group) -> std::unique_ptr<io::Stream> {
-        const auto wanted = kept.find(port);
-        if (wanted == kept.end()) return nullptr;
-        period = seconds(group.plan->period);
-        StreamFormat format;
-        format.type = &type;
-        format.period = group.plan->period;
-        return std::make_unique<io::Stream>(format, std::make_unique<KeptValues>(type, wanted->second));
+    options.tap = [&](const io::FrameLayout& layout, const run::GroupRuntime& group) -> std::unique_ptr<io::Sink> {
+        auto sink = std::make_unique<KeptValues>(layout.bytes);
+        for (const io::FrameColumn& column : layout.columns) {
+            const auto wanted = kept.find(column.port);
+            if (wanted == kept.end()) continue;
+            period = seconds(group.plan->period);
+            sink->keep(column, wanted->second);
+        }
+        return sink;
     };
     run::Engine engine(session::load_plan(choice, assets), options);
     engine.render(1);

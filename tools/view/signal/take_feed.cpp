@@ -31,9 +31,13 @@ std::vector<Range> joined(std::vector<Range> stretches) {
 }  // namespace
 
 TakeFeed::TakeFeed(const take::Take& take) : take_(take) {
+    std::set<std::string> files;
     for (const take::TakeStreamInfo& info : take.streams) {
-        if (!type_named(info.type)) continue;  // of what is large only a hash is kept
+        const ValueType* const type = type_named(info.type);
+        if (!type) continue;  // of what is large only a hash is kept
+        if (take::channels_of(*type).size() != static_cast<std::size_t>(info.channels)) continue;
         streams_[info.port].push_back(&info);
+        if (!files.insert(info.file).second) continue;
         const take::TakeStreamReader reader(take.folder / info.file, info);
         const double begin = seconds(info.start * info.period);
         recorded_.push_back({begin, seconds((info.start + reader.frames()) * info.period)});
