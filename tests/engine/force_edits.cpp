@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What reaches the hand while the graph that makes the force is edited.
 #include "tests/engine/chaos.hpp"
+#include "tests/engine/column_tap.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -33,25 +34,11 @@ const std::string replaced = held("other", "\"hand.pose -> other.device\",\n\"pl
 
 /// Force on the hand at every tick of 600, with an edit at 300 ms.
 std::vector<double> forces(const std::string& edited) {
-    struct Sink : io::Sink {
-        Sink(std::size_t offset_, std::size_t bytes_, std::vector<double>& forces_)
-            : offset(offset_), bytes(bytes_), forces(forces_) {}
-        void take(std::int64_t, const std::byte* frames, std::size_t count) override {
-            for (std::size_t i = 0; i < count; ++i)
-                forces.push_back(glm::length(reinterpret_cast<const Wrench*>(frames + i * bytes + offset)->force));
-        }
-        void finish() override {}
-        std::size_t offset, bytes;
-        std::vector<double>& forces;
-    };
     std::vector<double> seen;
     run::EngineOptions options;
     options.seconds = 0.6;
-    options.tap = [&](const io::FrameLayout& layout, const run::GroupRuntime&) -> std::unique_ptr<io::Sink> {
-        const auto column = std::ranges::find(layout.columns, "out.applied", &io::FrameColumn::port);
-        if (column == layout.columns.end()) return nullptr;
-        return std::make_unique<Sink>(column->offset, layout.bytes, seen);
-    };
+    options.tap =
+        column_tap<Wrench>("out.applied", [&](const Wrench& given) { seen.push_back(glm::length(given.force)); });
     run::Engine engine(compile_text(base), options);
     engine.schedule(compile_text(edited), 300 * ms);
     engine.render(1);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a hand feels when the patch that makes its force is edited, or a parameter of it is set.
 #include "tests/engine/chaos.hpp"
+#include "tests/engine/column_tap.hpp"
 #include "tests/engine/repeat.hpp"
 #include "tests/engine/watched_hand.hpp"
 #include "tests/support/catch.hpp"
@@ -63,23 +64,7 @@ TEST_CASE("a parameter that no force depends on changes at once") {
     run::EngineOptions options;
     options.seconds = 0.6;
     std::vector<double> numbers;
-    struct Sink : io::Sink {
-        explicit Sink(std::vector<double>& to_) : to(to_) {}
-        void take(std::int64_t, const std::byte* values, std::size_t count) override {
-            to.insert(to.end(), reinterpret_cast<const double*>(values),
-                      reinterpret_cast<const double*>(values) + count);
-        }
-        void finish() override {}
-        std::vector<double>& to;
-    };
-    options.tap = [&](const std::string& port, const ValueType& type,
-                      const run::GroupRuntime& group) -> std::unique_ptr<io::Stream> {
-        if (port != "free.value") return nullptr;
-        StreamFormat format;
-        format.type = &type;
-        format.period = group.plan->period;
-        return std::make_unique<io::Stream>(format, std::make_unique<Sink>(numbers));
-    };
+    options.tap = column_tap<double>("free.value", [&](const double& number) { numbers.push_back(number); });
     watched_hand("left");
     run::Engine engine(compile_text(on_spring("1 N/mm", "spring", more + "1\n")), options);
     engine.schedule(compile_text(on_spring("1 N/mm", "spring", more + "5\n")), 300 * ms);
@@ -145,23 +130,8 @@ TEST_CASE("a log that changes a parameter at once is repeated so, and one that l
         options.seconds = 0.6;
         options.replay = &log;
         std::vector<double> forces;
-        struct Sink : io::Sink {
-            explicit Sink(std::vector<double>& to_) : to(to_) {}
-            void take(std::int64_t, const std::byte* values, std::size_t count) override {
-                for (std::size_t i = 0; i < count; ++i)
-                    to.push_back(glm::length(reinterpret_cast<const Wrench*>(values)[i].force));
-            }
-            void finish() override {}
-            std::vector<double>& to;
-        };
-        options.tap = [&](const std::string& port, const ValueType& type,
-                          const run::GroupRuntime& group) -> std::unique_ptr<io::Stream> {
-            if (port != "left_spring.wrench") return nullptr;
-            StreamFormat format;
-            format.type = &type;
-            format.period = group.plan->period;
-            return std::make_unique<io::Stream>(format, std::make_unique<Sink>(forces));
-        };
+        options.tap =
+            column_tap<Wrench>("left_spring.wrench", [&](const Wrench& w) { forces.push_back(glm::length(w.force)); });
         run::Engine engine(compile_text(text), options);
         engine.schedule_change(0, "left_spring", "stiffness", 8000.0);
         engine.render(1);
