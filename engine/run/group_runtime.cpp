@@ -152,6 +152,7 @@ int GroupRuntime::finish_call() noexcept {
     {
         RealtimeScope scope;
         publish(n);
+        hold_outputs(n);
     }
     for (build::DeviceSlot* slot : program_->driven) {
         telemetry.force_N.store(glm::length(slot->port.wrench.force), std::memory_order_relaxed);

@@ -128,6 +128,7 @@ private:
     /// Points the ports of a step at what comes `by` activations later, its activation `to` in a call.
     void move_ports(std::size_t step, int by, int to, int frames) noexcept;
     void move_back(std::size_t step, int frames) noexcept;
+    void hold_outputs(int frames) noexcept;
     void hash_outputs(const build::Step& step, int frames) noexcept;
     void record_outputs(const build::Step& step, int frames) noexcept;
     void put_into_frames(const build::PublishedOutput& output, int frames) noexcept;

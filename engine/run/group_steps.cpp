@@ -24,8 +24,25 @@ void GroupRuntime::move_ports(std::size_t step, int by, int to, int frames) noex
         input.times += input.count;
         input.count = to < frames ? wire->batch_counts[static_cast<std::size_t>(to)] : 0;
     }
-    for (std::uint32_t k = moved.first_output; k < moved.first_output + moved.output_count; ++k)
-        program_->published[k].port->data += by * program_->published[k].port->stride;
+    const bool may_hold = (moved.one_at_a_time || moved.driven) && to < frames;
+    for (std::uint32_t k = moved.first_output; k < moved.first_output + moved.output_count; ++k) {
+        Output& output = *program_->published[k].port;
+        const std::byte* const last = output.data + (by - 1) * output.stride;
+        output.data += by * output.stride;
+        if (may_hold) std::memcpy(output.data, last, output.type->size);
+    }
+}
+
+/// An output keeps its value until the node writes it: the last of a call is the first of the next.
+void GroupRuntime::hold_outputs(int frames) noexcept {
+    if (frames == 1) return;
+    for (const build::Step& step : program_->steps) {
+        if (!step.one_at_a_time && !step.driven) continue;
+        for (std::uint32_t k = step.first_output; k < step.first_output + step.output_count; ++k) {
+            const Output& output = *program_->published[k].port;
+            std::memcpy(output.data, output.data + (frames - 1) * output.stride, output.type->size);
+        }
+    }
 }
 
 void GroupRuntime::move_back(std::size_t step, int frames) noexcept {
