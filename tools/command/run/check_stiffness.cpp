@@ -2,6 +2,7 @@
 #include "tools/command/run/check_stiffness.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

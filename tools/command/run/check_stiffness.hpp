@@ -6,7 +6,7 @@
 #include "engine/run/engine.hpp"
 #include "graph/analyse/stiffness.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <string>
 #include <vector>
