@@ -2,12 +2,12 @@
 #include "graph/analyse/latency.hpp"
 #include "graph/analyse/stiffness.hpp"
 #include "tools/command/patch_options.hpp"
-#include "tools/command/run/check_stiffness.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/picture/report/comparison_figure.hpp"
 #include "tools/picture/report/z_width_figure.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/study/passivity/z_width.hpp"
+#include "tools/study/patch_stiffness.hpp"
 
 #include "engine/run/engine.hpp"
 
@@ -35,6 +35,18 @@ struct CheckChoice {
     bool json = false, z_width = false;
     std::string z_width_figure;
 };
+
+/// What a loop through a hand says; "ok" is null when the device states no damping.
+void add_stiffness(Json& row, const analyse::ForceLoop& loop) {
+    const analyse::Verdict verdict = loop.verdict();
+    row["latency_ms"] = loop.latency_s * 1e3;
+    row["damping_N_s_per_m"] = loop.damping;
+    row["stiffness_limit_N_per_mm"] = loop.limit * 1e-3;
+    row["max_stiffness_N_per_mm"] = loop.max_stiffness > 0.0 ? Json(loop.max_stiffness * 1e-3) : Json();
+    row["declared_N_per_mm"] = loop.declared ? Json(loop.declared->newton_per_metre * 1e-3) : Json();
+    row["declared_by"] = loop.declared ? Json(loop.declared->param) : Json();
+    row["ok"] = verdict == analyse::Verdict::unknown ? Json() : Json(verdict == analyse::Verdict::stable);
+}
 
 /// One row per path; a loop through a hand has its stiffness too.
 Json paths_json(const compile::Plan& plan, const std::vector<analyse::ForceLoop>& loops) {
@@ -163,6 +175,73 @@ void print_z_width(const Json& rows) {
         "with 1 N, begins to oscillate.\n");
 }
 
+/// By which law each node's bodies touch.
+Json contact_json(const std::vector<study::NodeContactLaw>& laws) {
+    Json rows = Json::array();
+    for (const study::NodeContactLaw& law : laws) {
+        Json row{{"node", law.node}, {"law", law.by_point ? "point" : "area"}};
+        if (law.by_point) row["stiffness_N_per_mm_per_point"] = law.stiffness * 1e-3;
+        else row["stiffness_N_per_mm_per_mm2"] = law.stiffness * 1e-9;
+        row["felt_at_most_N_per_mm"] = law.felt ? Json(*law.felt * 1e-3) : Json();
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+Json classes_json(const std::vector<study::ClassVerdict>& verdicts) {
+    Json rows = Json::array();
+    for (const study::ClassVerdict& v : verdicts)
+        rows.push_back({{"from", v.from},
+                        {"to", v.to},
+                        {"class", v.device.name},
+                        {"assumed_damping_N_s_per_m", v.device.damping},
+                        {"may_feel_N_per_mm", v.may_feel * 1e-3},
+                        {"ok", v.ok}});
+    return rows;
+}
+
+void print_contact(const Json& laws) {
+    if (laws.empty()) return;
+    fmt::print("\n{:<20} {:<36} {}\n", "contact", "law", "a hand feels at most");
+    for (const Json& row : laws) {
+        const std::string law =
+            row["law"] == "point"
+                ? fmt::format("per point: {:.4g} N/mm for each", row["stiffness_N_per_mm_per_point"].get<double>())
+                : fmt::format("per area: {:.4g} N/mm for each mm^2", row["stiffness_N_per_mm_per_mm2"].get<double>());
+        const Json& felt = row["felt_at_most_N_per_mm"];
+        fmt::print("{:<20} {:<36} {}\n", row["node"].get<std::string>(), law,
+                   felt.is_null() ? std::string("all of it, unless a node after it takes less")
+                                  : fmt::format("{:.4g} N/mm, its spring", felt.get<double>()));
+    }
+}
+
+void print_classes(const Json& classes) {
+    if (classes.empty()) return;
+    fmt::print("\n{:<38} {:<28} {:>12} {:>12}\n", "with another device", "path", "damping", "may feel");
+    for (const Json& row : classes)
+        fmt::print("{:<38} {:<28} {:>6.3g} N s/m {:>7.3g} N/mm{}\n", row["class"].get<std::string>(),
+                   row["from"].get<std::string>() + " -> " + row["to"].get<std::string>(),
+                   row["assumed_damping_N_s_per_m"].get<double>(), row["may_feel_N_per_mm"].get<double>(),
+                   row["ok"].get<bool>() ? "" : "  TOO STIFF");
+    fmt::print("Makers state no damping: it is assumed, with a light grip. Stiffness as makers state it.\n");
+}
+
+/// The part of a path's line after its latency.
+std::string stiffness_text(const Json& row) {
+    if (!row.contains("ok")) return {};
+    const double limit = row["stiffness_limit_N_per_mm"];
+    std::string text = limit > 0.0 ? fmt::format(" {:>7.3g} N/mm", limit) : fmt::format(" {:>12}", "unknown");
+    if (row["declared_by"].is_null()) return text;
+    const double declared = row["declared_N_per_mm"];
+    text += fmt::format(" {:>7.3g} N/mm  {}", declared, row["declared_by"].get<std::string>());
+    const Json& most = row["max_stiffness_N_per_mm"];
+    if (!most.is_null() && declared > most.get<double>())
+        text += fmt::format("  TOO STIFF: the device states {:.3g} N/mm", most.get<double>());
+    else if (row["ok"].is_null()) text += "  UNKNOWN: the device states no damping";
+    else if (!row["ok"].get<bool>()) text += "  TOO STIFF";
+    return text;
+}
+
 void print_loops(const Json& loops) {
     fmt::print("\n{:<32} {:>12} {:>12}\n", "admittance loop", "gain", "unstable from");
     for (const Json& loop : loops)
@@ -185,8 +264,8 @@ void print_check(const Json& json) {
         fmt::print("{}\n", line);
     }
     fmt::print("What a hand may feel before it hums: damping of the device / (period / 2 + latency).\n");
-    if (json.contains("contact")) print_contact_laws(json["contact"]);
-    if (json.contains("device_classes")) print_device_classes(json["device_classes"]);
+    if (json.contains("contact")) print_contact(json["contact"]);
+    if (json.contains("device_classes")) print_classes(json["device_classes"]);
 }
 
 /// No path is stiffer than a hand may feel it, and no loop unstable.
@@ -226,8 +305,8 @@ int check(const CheckChoice& choice) {
             const auto loops = analyse::force_loops(engine.plan(), stated_by(engine.host(), &DeviceInfo::damping),
                                                     stated_by(engine.host(), &DeviceInfo::max_stiffness));
             json["paths"] = paths_json(engine.plan(), loops);
-            json["contact"] = contact_laws_json(engine.nodes());
-            json["device_classes"] = device_classes_json(loops);
+            json["contact"] = contact_json(study::contact_laws(engine.nodes()));
+            json["device_classes"] = classes_json(study::class_verdicts(loops));
             json["admittance_loops"] = loops_json(engine.nodes());
             json["warnings"] = engine.host().notices;
             json["outputs"] = outputs_json(engine.nodes(), json["warnings"]);

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// By which law the bodies of a patch touch, and what other devices would make of its stiffness.
+#pragma once
+
+#include "engine/run/engine.hpp"
+#include "graph/analyse/stiffness.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::study {
+
+/// Of a node that computes contact of bodies.
+struct NodeContactLaw {
+    std::string node;
+    bool by_point = false;
+    double stiffness = 0.0;  ///< N/m per point, or N/m per m² of surface
+    std::optional<double> felt;  ///< N/m that a hand feels at most: the node's spring; none: all of it
+};
+
+std::vector<NodeContactLaw> contact_laws(const std::vector<std::shared_ptr<build::LiveNode>>& nodes);
+
+/// A loop through a hand with a device of a known class in place of the patch's own.
+struct ClassVerdict {
+    std::string from, to;
+    analyse::DeviceClass device;
+    double may_feel = 0.0;  ///< N/m: the lower of what its damping permits and what its maker states
+    bool ok = false;
+};
+
+/// For loops that declare a stiffness.
+std::vector<ClassVerdict> class_verdicts(const std::vector<analyse::ForceLoop>& loops);
+
+}  // namespace tactus::study
