@@ -59,34 +59,23 @@ TEST_CASE("a stiffness that an edit changes comes in over a tenth of a second") 
 }
 
 TEST_CASE("a parameter that no force depends on changes at once") {
-    const std::string more = "[nodes.free]\ntype = \"constant\"\nrate = \"1 kHz\"\nnumber = ";
-    run::EngineOptions options;
-    options.seconds = 0.6;
-    std::vector<double> numbers;
-    struct Sink : io::Sink {
-        explicit Sink(std::vector<double>& to_) : to(to_) {}
-        void take(std::int64_t, const std::byte* values, std::size_t count) override {
-            to.insert(to.end(), reinterpret_cast<const double*>(values),
-                      reinterpret_cast<const double*>(values) + count);
-        }
-        void finish() override {}
-        std::vector<double>& to;
-    };
-    options.tap = [&](const std::string& port, const ValueType& type,
-                      const run::GroupRuntime& group) -> std::unique_ptr<io::Stream> {
-        if (port != "free.value") return nullptr;
-        StreamFormat format;
-        format.type = &type;
-        format.period = group.plan->period;
-        return std::make_unique<io::Stream>(format, std::make_unique<Sink>(numbers));
+    const auto text = [](const std::string& number) {
+        PatchText patch;
+        add_hand(patch, "left");
+        patch.nodes.push_back({"free", "constant", "1 kHz", {{"number", number}}});
+        patch.nodes.push_back({"keeper", "keeper", "1 kHz", {}});
+        patch.wires.emplace_back("free.value -> keeper.number");
+        return patch.toml();
     };
     watched_hand("left");
-    run::Engine engine(compile_text(on_spring("1 N/mm", "spring", more + "1\n")), options);
-    engine.schedule(compile_text(on_spring("1 N/mm", "spring", more + "5\n")), 300 * ms);
+    run::EngineOptions options;
+    options.seconds = 0.6;
+    run::Engine engine(compile_text(text("1")), options);
+    engine.schedule(compile_text(text("5")), 300 * ms);
     engine.render(1);
-    REQUIRE(numbers.size() == 600);
-    CHECK(numbers[299] == 1.0);
-    CHECK(numbers[300] == 5.0);
+    REQUIRE(kept_values().size() == 600);
+    CHECK(kept_values()[299] == 1.0);
+    CHECK(kept_values()[300] == 5.0);
 }
 
 TEST_CASE("how a parameter comes in is a matter of the sample's index: threads and blocks cannot change a bit") {
@@ -121,7 +110,11 @@ TEST_CASE("a log that changes a parameter at once is repeated so, and one that l
     const auto path = scratch("old-log");
     for (const std::uint32_t activations : {0U, 100U}) {
         WatchedHand& hand = watched_hand("left");
-        const std::string text = on_spring("1 N/mm");
+        PatchText patch;
+        add_hand(patch, "left");
+        patch.nodes.push_back({"keeper", "keeper", "1 kHz", {}});
+        patch.wires.emplace_back("left_spring.wrench -> keeper.wrench");
+        const std::string text = patch.toml();
         std::uint64_t plan_hash = 0;
         {
             run::EngineOptions options;
@@ -144,27 +137,10 @@ TEST_CASE("a log that changes a parameter at once is repeated so, and one that l
         run::EngineOptions options;
         options.seconds = 0.6;
         options.replay = &log;
-        std::vector<double> forces;
-        struct Sink : io::Sink {
-            explicit Sink(std::vector<double>& to_) : to(to_) {}
-            void take(std::int64_t, const std::byte* values, std::size_t count) override {
-                for (std::size_t i = 0; i < count; ++i)
-                    to.push_back(glm::length(reinterpret_cast<const Wrench*>(values)[i].force));
-            }
-            void finish() override {}
-            std::vector<double>& to;
-        };
-        options.tap = [&](const std::string& port, const ValueType& type,
-                          const run::GroupRuntime& group) -> std::unique_ptr<io::Stream> {
-            if (port != "left_spring.wrench") return nullptr;
-            StreamFormat format;
-            format.type = &type;
-            format.period = group.plan->period;
-            return std::make_unique<io::Stream>(format, std::make_unique<Sink>(forces));
-        };
         run::Engine engine(compile_text(text), options);
         engine.schedule_change(0, "left_spring", "stiffness", 8000.0);
         engine.render(1);
+        const std::vector<double>& forces = kept_values();
         INFO(activations);
         REQUIRE(forces.size() == 600);
         CHECK(forces[299] == Approx(2.0));
