@@ -127,9 +127,9 @@ DevicePort& EngineHost::device(const std::string& wanted, DeviceUse use, const S
     };
     // A driver may block when it is opened.
     struct Opening {
-        explicit Opening(run::DriverGate& gate) : driver(gate) { driver.enter(); }
+        explicit Opening(DriverGate& gate) : driver(gate) { driver.enter(); }
         ~Opening() { driver.leave(); }
-        run::DriverGate& driver;
+        DriverGate& driver;
     };
     std::optional<Opening> opening(std::in_place, driver_);
     auto slot = std::make_unique<build::DeviceSlot>();

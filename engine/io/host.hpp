@@ -3,9 +3,9 @@
 #pragma once
 
 #include "engine/build/group_program.hpp"
+#include "engine/io/driver_gate.hpp"
 #include "engine/io/sound_card.hpp"
 #include "engine/io/streams.hpp"
-#include "engine/run/driver_gate.hpp"
 #include "graph/patch/patch.hpp"
 
 #include <filesystem>
@@ -92,7 +92,7 @@ private:
     };
 
     patch::Patch patch_;
-    run::DriverGate driver_;
+    DriverGate driver_;
     std::optional<std::vector<RecordedDevice>> recorded_;
     Opened opened_;
     std::unordered_set<std::string> files_opened_, files_before_;  ///< recordings since `begin`, and those of the run

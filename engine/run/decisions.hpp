@@ -5,7 +5,7 @@
 
 #include "dsp/core/ring.hpp"
 #include "engine/build/group_program.hpp"
-#include "engine/run/driver_gate.hpp"
+#include "engine/io/driver_gate.hpp"
 #include "engine/run/param_ramps.hpp"
 #include "engine/take/timing_log.hpp"
 
@@ -115,7 +115,7 @@ public:
     /// All activations before `tick` are complete.
     virtual void pass(std::int64_t tick) noexcept;
 
-    DriverGate driver;  ///< every call of a driver passes it
+    io::DriverGate driver;  ///< every call of a driver passes it
 
 protected:
     /// The newest index that is there, at most the wanted one.

@@ -6,7 +6,9 @@
 #include "engine/run/live_run.hpp"
 #include "graph/patch/sub_patch.hpp"
 
+#include <mutex>
 #include <utility>
+#include <vector>
 
 namespace tactus::run {
 
@@ -30,6 +32,15 @@ std::uint64_t hash_of(const patch::Patch& patch) {
     for (const patch::PatchAsset& asset : patch.assets) hash.add_text(asset.path.filename().string());
     hash.add_word(patch.seed);
     return hash.value();
+}
+
+/// Gives `thing` up: threads that were left behind in drivers may still refer to it.
+void keep_for_ever(std::shared_ptr<const void> thing) {
+    static std::mutex lock;
+    // Not destroyed at the end of the program either.
+    static auto& kept = *new std::vector<std::shared_ptr<const void>>;
+    const std::lock_guard guard(lock);
+    kept.push_back(std::move(thing));
 }
 
 }  // namespace

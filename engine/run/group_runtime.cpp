@@ -154,6 +154,7 @@ int GroupRuntime::finish_call() noexcept {
         publish(n);
         hold_outputs(n);
     }
+    committing_ = n;
     for (build::DeviceSlot* slot : program_->driven) {
         telemetry.force_N.store(glm::length(slot->port.wrench.force), std::memory_order_relaxed);
         slot->guard.note(slot->port.fault, next_, glm::length(slot->committed.force));
@@ -163,6 +164,7 @@ int GroupRuntime::finish_call() noexcept {
         decisions_->commit(*slot);
         if (is_forsaken()) return 0;
     }
+    committing_ = 0;
     telemetry.ticks.fetch_add(n, std::memory_order_relaxed);
     last_ = next_ + n - 1;
     next_ += n;
@@ -186,6 +188,15 @@ bool GroupRuntime::skip_as_decided() noexcept {
     telemetry.skipped.fetch_add(to - next_, std::memory_order_relaxed);
     next_ = to;
     done_.store(next_, std::memory_order_release);
+    return true;
+}
+
+bool GroupRuntime::forsake() noexcept {
+    if (!decisions_->driver.forsake()) return false;
+    // From here on the thread touches nothing, so that this one may. What the hands were to feel is computed.
+    next_ += committing_;
+    done_.store(next_, std::memory_order_release);
+    end_at(next_);
     return true;
 }
 

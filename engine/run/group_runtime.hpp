@@ -61,8 +61,9 @@ public:
     std::int64_t changes_given() const { return changes_.given; }
     /// How many of them it does not refer to any more. Any thread.
     std::int64_t changes_applied() const noexcept { return changes_.applied.load(std::memory_order_acquire); }
-    /// Leaves the group's thread behind if it is in a driver; nothing of the group may be destroyed then.
-    bool forsake() noexcept { return decisions_->driver.forsake(); }
+    /// Leaves the group's thread behind if it is in a driver, and ends the group with what it has computed. Nothing of the
+    /// group may be destroyed then.
+    bool forsake() noexcept;
     // Control thread, before the group's thread starts.
     /// The clock decides in real time. `pause` must outlive the group's thread.
     void decide_live(const PauseWindow& pause);
@@ -149,6 +150,7 @@ private:
     int closely_ = 0;  ///< calls still to be timed
     RecordStream* recorded_ = nullptr;  ///< where the outputs of this call go
     int begun_ = 0;  ///< activations of the call that has begun and not ended
+    int committing_ = 0;  ///< activations whose forces are being committed
     std::uint64_t calls_ = 0;
     std::atomic<std::int64_t> plan_number_{-1};
     std::atomic<bool> over_{false};

@@ -32,7 +32,7 @@ void Watchdog::begin() {
 void Watchdog::watch(build::DeviceSlot& slot) {
     const std::size_t count = count_.load(std::memory_order_relaxed);
     if (count == watches_.size()) throw Error(fmt::format("more than {} haptic devices in one run", watches_.size()));
-    watches_[count] = std::make_unique<DeviceWatch>(slot);
+    watches_[count] = std::make_unique<io::DeviceWatch>(slot);
     count_.store(count + 1, std::memory_order_release);
 }
 

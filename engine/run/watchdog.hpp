@@ -3,8 +3,7 @@
 // run is to pause or to end. Neither waits for a disk, for a group or for another device.
 #pragma once
 
-#include "engine/run/device_watch.hpp"
-#include "engine/run/live_time.hpp"
+#include "engine/io/device_watch.hpp"
 
 #include <array>
 #include <atomic>
@@ -46,7 +45,7 @@ private:
     void run() noexcept;
 
     std::function<void()> look_;
-    std::array<std::unique_ptr<DeviceWatch>, 32> watches_;
+    std::array<std::unique_ptr<io::DeviceWatch>, 32> watches_;
     std::atomic<std::size_t> count_{0};
     std::atomic<bool> ending_{false};
     std::thread thread_;

@@ -120,12 +120,28 @@ struct Still {
 };
 TACTUS_NODE(Still, pose, height)
 
+static std::vector<double> kept;
+
+const std::vector<double>& kept_values() { return kept; }
+
+/// Keeps what it sees.
+struct Keeper {
+    static constexpr auto about = "Keeps what it sees.";
+
+    In<double> number{optional, "a number"};
+    In<Wrench> wrench{optional, "a force", "N, N m"};
+
+    void prepare(const Setup&) { kept.clear(); }
+    void process(const Tick&) noexcept { kept.push_back(wrench.connected ? glm::length(wrench->force) : number.get()); }
+};
+TACTUS_NODE(Keeper, number, wrench)
+
 compile::Catalogue chaos_catalogue() {
     static const std::vector<const NodeType*> types = [] {
         const compile::Catalogue all = nodes::catalogue();
         std::vector<const NodeType*> with(all.begin(), all.end());
         for (const NodeType* type : {&node_type_Chaos(), &node_type_ChaosSignal(), &node_type_BatchSum(),
-                                     &node_type_Planted(), &node_type_Still()})
+                                     &node_type_Planted(), &node_type_Still(), &node_type_Keeper()})
             with.push_back(type);
         return with;
     }();

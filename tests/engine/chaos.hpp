@@ -14,6 +14,10 @@ namespace tactus::test {
 /// The types below plus the whole catalogue.
 compile::Catalogue chaos_catalogue();
 
+/// What the node type "keeper" has seen since it was prepared: at each tick its number, or the size of its force in N.
+/// For runs on one thread.
+const std::vector<double>& kept_values();
+
 /// A patch from lines: nodes as {name, type, rate} and wires as in a patch file's `wires`.
 struct PatchText {
     struct Node {

@@ -20,6 +20,12 @@ double WatchedHand::force() const {
     return given_.empty() ? 0.0 : given_.back().force_N;
 }
 
+double WatchedHand::force_at(std::int64_t ns) const {
+    const std::lock_guard lock(lock_);
+    const auto after = std::ranges::upper_bound(given_, ns, {}, &Given::ns);
+    return after == given_.begin() ? 0.0 : std::prev(after)->force_N;
+}
+
 double WatchedHand::ms_to_zero(std::int64_t ns) const {
     double last = 0.0;
     for (const Given& g : given())
@@ -36,6 +42,7 @@ double WatchedHand::largest_after(std::int64_t ns) const {
 }
 
 void WatchedHand::block() {
+    blocked_ns = steady_now();
     is_blocked = true;
     while (blocks != Blocks::never) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     is_blocked = false;
@@ -48,7 +55,9 @@ DeviceSample WatchedHand::acquire(double elapsed_s) {
     logical_s = logical_s + elapsed_s;
     DeviceSample sample;
     sample.pose.position.z = logical_s < 0.02 ? 0.0 : -depth;
-    sample.counter = ++count_;
+    ++count_;
+    if (!is_stale) counter_ = count_;
+    sample.counter = counter_;
     sample.valid = true;
     return sample;
 }

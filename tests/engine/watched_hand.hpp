@@ -27,11 +27,15 @@ struct WatchedHand {
     double depth = 2e-3;  ///< m
     std::atomic<Blocks> blocks{Blocks::never};
     std::atomic<bool> is_blocked{false};
+    std::atomic<std::int64_t> blocked_ns{0};  ///< since when
+    std::atomic<bool> is_stale{false};  ///< its samples are not counted any more
     std::atomic<double> logical_s{0.0};  ///< time that its ticks have come to
 
     std::vector<Given> given() const;
     /// The force after the last commit, N.
     double force() const;
+    /// The force at a time, N.
+    double force_at(std::int64_t ns) const;
     /// From `ns` on, how long the force needed to be zero and stay so, ms; 1e9: it never did.
     double ms_to_zero(std::int64_t ns) const;
     /// The largest force after `ns`, N.
@@ -48,7 +52,7 @@ private:
     mutable std::mutex lock_;
     std::vector<Given> given_;
     std::thread::id tick_;
-    std::int64_t count_ = 0;
+    std::int64_t count_ = 0, counter_ = 0;
 };
 
 /// Makes the driver `name` open this hand.

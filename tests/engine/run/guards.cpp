@@ -211,8 +211,13 @@ TEST_CASE("a driver that never comes back keeps neither the other hand's force n
         add_hand(patch, "left");
         add_hand(patch, "right");
         patch.nodes.push_back({"other", "chaos", "200 Hz", {}});
+        patch.nodes.push_back({"near", "chaos", "1 kHz", {}});
+        patch.wires.insert(patch.wires.end(), {"near.out -> other.in", "other.out -> near.in"});
+        const auto folder = scratch("never-back");
+        take::TakeWriter take(folder,
+                              {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 30.0, .live = true});
         const LiveOutcome o = run_case({patch.toml(), 30.0, [&](run::Engine&) { left.blocks = blocks; },
-                                        [&](run::Engine&) { return left.is_blocked && right.force() == 0.0; }},
+                                        [&](run::Engine&) { return left.is_blocked && right.force() == 0.0; }, &take},
                                        right);
         CHECK(right.ms_to_zero(o.done_ns) < prompt_ms + 5.0);
         CHECK(ms_between(o.stopped_ns, o.returned_ns) < 2000.0);
@@ -220,6 +225,10 @@ TEST_CASE("a driver that never comes back keeps neither the other hand's force n
         left.blocks = WatchedHand::Blocks::never;
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
         CHECK_FALSE(left.is_blocked);
+        const Repetition again = repeat(folder, 2);
+        CHECK_FALSE(again.difference);
+        CHECK(again.hashes == o.hashes);
+        std::filesystem::remove_all(folder);
     }
 }
 

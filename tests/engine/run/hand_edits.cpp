@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a hand feels when the patch that makes its force is edited, or a parameter of it is set.
 #include "tests/engine/chaos.hpp"
-#include "tests/engine/column_tap.hpp"
 #include "tests/engine/repeat.hpp"
 #include "tests/engine/watched_hand.hpp"
 #include "tests/support/catch.hpp"
@@ -60,18 +59,23 @@ TEST_CASE("a stiffness that an edit changes comes in over a tenth of a second") 
 }
 
 TEST_CASE("a parameter that no force depends on changes at once") {
-    const std::string more = "[nodes.free]\ntype = \"constant\"\nrate = \"1 kHz\"\nnumber = ";
+    const auto text = [](const std::string& number) {
+        PatchText patch;
+        add_hand(patch, "left");
+        patch.nodes.push_back({"free", "constant", "1 kHz", {{"number", number}}});
+        patch.nodes.push_back({"keeper", "keeper", "1 kHz", {}});
+        patch.wires.emplace_back("free.value -> keeper.number");
+        return patch.toml();
+    };
+    watched_hand("left");
     run::EngineOptions options;
     options.seconds = 0.6;
-    std::vector<double> numbers;
-    options.tap = column_tap<double>("free.value", [&](const double& number) { numbers.push_back(number); });
-    watched_hand("left");
-    run::Engine engine(compile_text(on_spring("1 N/mm", "spring", more + "1\n")), options);
-    engine.schedule(compile_text(on_spring("1 N/mm", "spring", more + "5\n")), 300 * ms);
+    run::Engine engine(compile_text(text("1")), options);
+    engine.schedule(compile_text(text("5")), 300 * ms);
     engine.render(1);
-    REQUIRE(numbers.size() == 600);
-    CHECK(numbers[299] == 1.0);
-    CHECK(numbers[300] == 5.0);
+    REQUIRE(kept_values().size() == 600);
+    CHECK(kept_values()[299] == 1.0);
+    CHECK(kept_values()[300] == 5.0);
 }
 
 TEST_CASE("how a parameter comes in is a matter of the sample's index: threads and blocks cannot change a bit") {
@@ -106,7 +110,11 @@ TEST_CASE("a log that changes a parameter at once is repeated so, and one that l
     const auto path = scratch("old-log");
     for (const std::uint32_t activations : {0U, 100U}) {
         WatchedHand& hand = watched_hand("left");
-        const std::string text = on_spring("1 N/mm");
+        PatchText patch;
+        add_hand(patch, "left");
+        patch.nodes.push_back({"keeper", "keeper", "1 kHz", {}});
+        patch.wires.emplace_back("left_spring.wrench -> keeper.wrench");
+        const std::string text = patch.toml();
         std::uint64_t plan_hash = 0;
         {
             run::EngineOptions options;
@@ -129,12 +137,10 @@ TEST_CASE("a log that changes a parameter at once is repeated so, and one that l
         run::EngineOptions options;
         options.seconds = 0.6;
         options.replay = &log;
-        std::vector<double> forces;
-        options.tap =
-            column_tap<Wrench>("left_spring.wrench", [&](const Wrench& w) { forces.push_back(glm::length(w.force)); });
         run::Engine engine(compile_text(text), options);
         engine.schedule_change(0, "left_spring", "stiffness", 8000.0);
         engine.render(1);
+        const std::vector<double>& forces = kept_values();
         INFO(activations);
         REQUIRE(forces.size() == 600);
         CHECK(forces[299] == Approx(2.0));

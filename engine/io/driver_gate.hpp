@@ -4,9 +4,8 @@
 #pragma once
 
 #include <atomic>
-#include <memory>
 
-namespace tactus::run {
+namespace tactus::io {
 
 class DriverGate {
     enum Place : int { outside, inside, forsaken };
@@ -30,7 +29,4 @@ private:
     std::atomic<int> place_{outside};
 };
 
-/// Gives `thing` up: threads that were left behind may still refer to it.
-void keep_for_ever(std::shared_ptr<const void> thing);
-
-}  // namespace tactus::run
+}  // namespace tactus::io

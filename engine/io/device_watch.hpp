@@ -4,12 +4,12 @@
 #pragma once
 
 #include "engine/build/group_program.hpp"
-#include "engine/run/driver_gate.hpp"
+#include "engine/io/driver_gate.hpp"
 
 #include <atomic>
 #include <thread>
 
-namespace tactus::run {
+namespace tactus::io {
 
 /// All functions: control thread.
 class DeviceWatch {
@@ -40,4 +40,4 @@ private:
     std::thread thread_;
 };
 
-}  // namespace tactus::run
+}  // namespace tactus::io
