@@ -5,6 +5,7 @@
 #include "tests/support/catch.hpp"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sndfile.h>
 #include <sys/resource.h>
 #include <nlohmann/json.hpp>
@@ -142,6 +143,24 @@ TEST_CASE("a file of a thousand channels can be read, whatever the names of its 
     CHECK(files_of(take).size() == 1);
     CHECK(take.damages().empty());
     CHECK(repeat(folder, 1).compared == 1000 * 200);
+    fs::remove_all(folder);
+}
+
+TEST_CASE("recording a thousand trivial nodes at 48 kHz takes less than 300 MB of memory") {
+    const auto folder = scratch("memory");
+    std::string text;
+    for (int i = 0; i < 1000; ++i) text += fmt::format("[nodes.n{}]\ntype = \"sine\"\nrate = \"48 kHz\"\n", i);
+    take::TakeWriter take(folder,
+                          {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 0.01, .live = false});
+    const auto allocated = [] { return mallinfo2().uordblks + mallinfo2().hblkhd; };
+    const std::size_t before = allocated();
+    run::EngineOptions options;
+    options.seconds = 0.01;
+    options.take = &take;
+    run::Engine engine(compile_text(text), options);
+    engine.render(1);
+    CHECK(allocated() - before < 300'000'000);
+    engine.finish();
     fs::remove_all(folder);
 }
 

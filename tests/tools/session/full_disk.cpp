@@ -185,6 +185,19 @@ TEST_CASE("a take that finds no room repeats the run as far as it goes", "[live]
     }
 }
 
+TEST_CASE("a run with 300 outputs is recorded whole where it may open 256 files", "[live]") {
+    const Folder folder;
+    std::string patch = "title = \"many\"\n";
+    for (int i = 0; i < 300; ++i)
+        patch += "[nodes.n" + std::to_string(i) + "]\ntype = \"constant\"\nrate = \"100 Hz\"\n";
+    folder.write("p.toml", patch);
+    const Outcome run =
+        shell(folder, "ulimit -n 256\n$T run p.toml --no-edits --seconds 0.3 --out out --record take\n");
+    INFO(run.out << run.err);
+    CHECK(run.code == 0);
+    CHECK(fs::exists(folder.path / "take/result.json"));
+}
+
 TEST_CASE("a timing log that finds no room keeps whole records and its name", "[live]") {
     if (is_sanitized()) return;
     const Folder folder;
