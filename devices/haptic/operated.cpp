@@ -20,7 +20,7 @@ DeviceInfo read_device_info(Options& options, const simulate::HandDynamics& hand
     info.max_force = options.quantity("max_force", "20 N", "0.1 N", "200 N");
     info.max_torque = options.quantity("max_torque", "1 N m", "0.001 N m", "20 N m");
     info.damping = hand.damping;
-    info.max_stiffness = 5000.0;  // what makers state for grounded desktop devices at 1 kHz
+    info.max_stiffness = 5000.0;  // typical specification of grounded desktop devices at 1 kHz
     info.actuates_torque = options.flag("torque", true);
     info.senses_rotation = true;
     return info;

@@ -27,7 +27,7 @@ struct CheckChoice {
     bool json = false;
 };
 
-/// One row per path; a loop through a hand has its stiffness too.
+/// One row per path; loops through a hand also have a stiffness.
 Json paths_json(const compile::Plan& plan, const std::vector<analyse::ForceLoop>& loops) {
     std::map<std::pair<std::string_view, std::string_view>, const analyse::ForceLoop*> by_ends;
     for (const analyse::ForceLoop& loop : loops)
@@ -69,7 +69,7 @@ Json check_json(const std::optional<compile::Plan>& plan, const patch::Problems&
     return json;
 }
 
-/// The position loops of admittance controllers: their gain, and from which on they would be unstable.
+/// The position loops of admittance controllers: gain and stability limit.
 Json loops_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes) {
     Json loops = Json::array();
     for (const auto& node : nodes) {
@@ -86,7 +86,7 @@ Json loops_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes) {
     return loops;
 }
 
-/// Damping of a device by its name in the patch, N·s/m; "" is the only one.
+/// Damping of a device by its name in the patch, N·s/m; "": the only device.
 std::function<double(const std::string&)> damping_of(const io::EngineHost& host) {
     return [&host](const std::string& name) {
         for (const auto& slot : host.devices)
@@ -122,10 +122,10 @@ void print_check(const Json& json) {
         }
         fmt::print("{}\n", line);
     }
-    fmt::print("What a hand may feel before it hums: damping of the device / (period / 2 + latency).\n");
+    fmt::print("Limit of stable stiffness: damping of the device / (period / 2 + latency).\n");
 }
 
-/// No path is stiffer than a hand may feel it, and no loop unstable.
+/// True when no path exceeds its stiffness limit and no loop is unstable.
 bool is_stable(const Json& json) {
     for (const char* key : {"paths", "admittance_loops"})
         if (json.contains(key))
@@ -143,7 +143,7 @@ int check(const CheckChoice& choice) {
         plan = session::read_plan(choice.patch, problems);
         if (plan) assets.load(*plan, problems);
         json = check_json(plan, problems);
-        // What only `prepare` can find: devices, file names, sizes.
+        // Finds errors that only `prepare` can find: devices, file names, sizes.
         if (problems.empty()) {
             const run::Engine engine(std::move(*plan), run::EngineOptions{});
             json["paths"] = paths_json(engine.plan(), analyse::force_loops(engine.plan(), damping_of(engine.host())));
