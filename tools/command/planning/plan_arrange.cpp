@@ -64,7 +64,7 @@ Verb plan_group_verb() {
             [](VerbOptions& verb) -> Action {
                 const auto choice = choice_of(verb, "group");
                 add_fragments(verb, *choice, "which ones");
-                verb.add("--name", choice->group, "name of the group (default: " group " and a number)");
+                verb.add("--name", choice->group, "name of the group (default: group and a number)");
                 return [choice] { return arrange(*choice); };
             }};
 }
