@@ -10,7 +10,7 @@ set_property(SOURCE tools/session/load_plan.cpp APPEND PROPERTY
 
 install(TARGETS tactus tactus-bench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 
-install(DIRECTORY assets/library/patches assets/library/rigs DESTINATION ${installed_library}
+install(DIRECTORY assets/library/patches assets/library/displays DESTINATION ${installed_library}
         FILES_MATCHING PATTERN "*.toml")
 # saw-vibration.json is what the commands that made the equaliser printed.
 foreach(kind bones cases equalisers saw)

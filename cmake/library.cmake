@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The library stands beside the command: patches and display rigs copied from assets/library, bones and recordings computed.
-foreach(kind patches rigs)
+# The library stands beside the command: patches and display files copied from assets/library, bones and recordings computed.
+foreach(kind patches displays)
   set(folder ${PROJECT_SOURCE_DIR}/assets/library/${kind})
   file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE ${folder} ${folder}/*.toml)
   foreach(file ${files})

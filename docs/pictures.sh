@@ -37,13 +37,13 @@ picture scene-pop-through pop-through --seconds 2 --frames 1 --view-from front
 picture scene-gripper gripper-on-arm --seconds 4 --frames 1
 picture scene-stereo fragments --seconds 2.2 --frames 1 --stereo side-by-side --size 1280x500
 
-# Rigs: both eyes of the screen above the mirror, and the outer directions of the multi-view screen.
-picture rig-mirror look-around --seconds 6 --frames 1 --display mirror --head head.pose --stereo side-by-side --size 1280x500
-if [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" rig-directions "* ]]; then
+# Displays: both eyes of the screen above the mirror, and the outer directions of the multi-view screen.
+picture display-mirror look-around --seconds 6 --frames 1 --display mirror --head head.pose --stereo side-by-side --size 1280x500
+if [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" display-directions "* ]]; then
     "$tactus" render look-around --seconds 6 --frames 1 --display directions --size 480x360 --out "$folder/directions" >/dev/null
     for n in 1 4; do
-        mv "$folder/directions/frame_0001_direction-$n.png" "$pictures/rig-direction-$n.png"
-        echo "rig-direction-$n.png"
+        mv "$folder/directions/frame_0001_direction-$n.png" "$pictures/display-direction-$n.png"
+        echo "display-direction-$n.png"
     done
 fi
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the commands end.
+// Exit codes of the commands.
 #pragma once
 
 namespace tactus {
@@ -8,8 +8,8 @@ enum ExitCode : int {
     done = 0,
     answer_is_no = 1,
     bad_input = 2,
-    machine_failed = 3,  ///< disk, memory or a device fell short
-    output_lost = 3      ///< the run went on without an output that could not be written
+    machine_failed = 3,  ///< failure of disk, memory or a device
+    output_lost = 3      ///< the run continued, but an output could not be written
 };
 
 }  // namespace tactus

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// make_library OUT_DIR: computes the bundled bones and the bundled saw, which are not kept in the repository.
+// make_library OUT_DIR: generates the bundled bones and saw recordings, which are not stored in the repository.
 #include "assets/cases/plan_file.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/library/broken_mandible.hpp"
@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The case of the patch 'planning-trauma': fragments, plan, the hand's script, and the truth, which the patch never
-/// reads.
+/// The case of the patch 'planning-trauma': fragments, plan, the script of the hand, and the ground truth, which the
+/// patch never reads.
 void make_case(const tactus::bone::Bone& mandible, const fs::path& folder) {
     fs::create_directories(folder);
     const tactus::library::BrokenMandible broken = tactus::library::break_mandible(mandible);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines on the terminal that are written over; nothing when standard error is no terminal.
+// Status lines that are overwritten in place; nothing when standard error is not a terminal.
 #pragma once
 
 #include <cstddef>
@@ -12,13 +12,13 @@
 
 namespace tactus {
 
-/// Says it, or not: a terminal or pipe that is closed ends nothing.
+/// Prints a text and ignores failures: a closed terminal or pipe must not end the program.
 inline void say(std::FILE* to, const std::string& text) {
     std::fputs(text.c_str(), to);
     std::fflush(to);
 }
 
-/// The first `columns` characters of a UTF-8 line: one that wraps could not be written over.
+/// The first `columns` characters of a UTF-8 line. A wrapped line could not be overwritten.
 inline std::string_view clipped(std::string_view line, std::size_t columns) {
     std::size_t seen = 0;
     for (std::size_t i = 0; i < line.size(); ++i)
@@ -30,7 +30,7 @@ class LiveLine {
 public:
     ~LiveLine() { clear(); }
     bool is_terminal() const { return is_terminal_; }
-    /// One line, or several with line ends between.
+    /// Shows one or several lines, separated by line ends.
     void show(std::string_view text) {
         if (!is_terminal_) return;
         std::string out = back();
@@ -55,7 +55,7 @@ public:
     }
 
 private:
-    /// To the start of what is shown, and erases it.
+    /// Erases the shown lines and moves the cursor to their start.
     std::string back() const {
         return (lines_ > 1 ? "\033[" + std::to_string(lines_ - 1) + "A" : std::string()) + "\r\033[J";
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Density of bones that come without one.
+// Assumed density for bones whose source has none, such as meshes.
 #pragma once
 
 #include "dsp/volume/grid.hpp"
@@ -8,7 +8,8 @@
 
 namespace tactus::bone {
 
-/// kg/m³ from signed distance: a cortex over the outer 2 mm that falls to a core at 3 mm, 0 outside. An assumption.
+/// Density in kg/m³ from the signed distance: cortex to 2 mm depth, then falling smoothly to the core at 3 mm
+/// (smoothstep); 0 outside. This is an assumption, not a measurement.
 volume::Grid assumed_density(const volume::Grid& distance);
 /// The same in words.
 std::string assumed_density_law();

@@ -27,9 +27,9 @@ namespace {
 constexpr std::string_view provenance_prefix = "provenance.";
 // Files without this number hold one bone whose name and provenance stand in the file's own metadata.
 constexpr const char* format_key = "tactus_format";
-// Format 3 stores only what lies near the bone; what is not stored has the grid's background value.
+// Format 3 stores only blocks near the bone. All other samples have the grid's background value.
 constexpr std::int32_t newest_format = 3, sparse_format = 3, dense_format = 2;
-// A sparse file may claim so many samples for each that it stores, and so many in all.
+// Limits of a sparse file: dense samples per stored sample, and dense samples in all.
 constexpr double most_claimed = 4096.0, most_samples = 1e9;
 constexpr const char* points_key = "points";
 
@@ -59,7 +59,7 @@ openvdb::FloatGrid::Ptr empty_vdb(const volume::Grid& grid, const std::string& n
 
 openvdb::FloatGrid::Ptr to_vdb(const volume::Grid& grid, const std::string& name) {
     auto vdb = empty_vdb(grid, name, 0.0f);
-    // Every sample is active, so that compression keeps its bits.
+    // All samples are active: compression may change the bits of inactive ones.
     for_each_block(grid.size, [&](const openvdb::Coord& first, const openvdb::Coord& end) {
         auto* leaf = vdb->tree().touchLeaf(first);
         for (int k = first.z(); k < end.z(); ++k)
@@ -73,7 +73,7 @@ struct VdbPair {
     openvdb::FloatGrid::Ptr distance, density;
 };
 
-// Blocks are freed on the way, so that a bone is not in memory twice.
+// Each block is freed once it is copied, so that the bone is never in memory twice.
 VdbPair to_vdb(SparseBone& bone) {
     VdbPair vdb{empty_vdb(bone.layout, "distance", bone.outside), empty_vdb(bone.layout, "density", 0.0f)};
     constexpr int side = SparseBone::side;
@@ -109,7 +109,8 @@ volume::Grid from_vdb(const openvdb::FloatGrid& vdb, bool is_sparse, const std::
     const double claimed = double(size.x()) * size.y() * size.z(), held = double(vdb.activeVoxelCount());
     if (size.x() < 1 || size.y() < 1 || size.z() < 1 ||
         (is_sparse ? claimed > most_claimed * held || claimed > most_samples : claimed != held))
-        throw Error(fmt::format("{}: grid '{}' does not hold the samples its size asks for", file, vdb.getName()));
+        throw Error(
+            fmt::format("{}: grid '{}' does not hold the number of samples that its size states", file, vdb.getName()));
     if (!is_finite(grid.origin) || !is_finite(grid.spacing) ||
         !(std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}) > 0.0))
         throw Error(fmt::format("{}: grid '{}' has no usable origin and spacing", file, vdb.getName()));
@@ -156,7 +157,7 @@ void add_place(Hash& hash, const volume::Grid& grid) {
     hash.add_bytes(&grid.spacing, sizeof grid.spacing);
 }
 
-// One that is made from the content keeps equal bones equal as files; OpenVDB draws a random one.
+// The identifier is a hash of the content, so that equal bones give equal files; OpenVDB would use a random one.
 std::string identifier_of(const Hash& hash) {
     const std::uint64_t content = hash.value();
     return fmt::format("{:08x}-{:04x}-4000-8000-{:012x}", content >> 32, content & 0xffff, content >> 16);
@@ -198,7 +199,7 @@ void write(const openvdb::GridPtrVec& grids, std::int32_t format, std::string id
            const std::filesystem::path& path) {
     SealedFile file(path, std::move(identifier));
     std::ostream out(&file);
-    // What the file throws must reach the caller.
+    // An Error thrown by the file must reach the caller unchanged.
     out.exceptions(std::ios::badbit);
     openvdb::MetaMap meta;
     meta.insertMeta(format_key, openvdb::Int32Metadata(format));

@@ -22,8 +22,8 @@ float threshold_of(const Bone& bone) {
     return std::isfinite(value) ? static_cast<float>(value) : 300.0f;
 }
 
-// What the saw or the surface took away must not show as bone: outside values fall to air within a voxel, from the
-// threshold on the surface.
+// Removed bone must not appear in the volume: outside the surface the values fall from the threshold to air within one
+// voxel.
 float hu_at(const Bone& bone, std::size_t n, float threshold, float voxel) {
     const float hu = hu_of_density(bone.density.values[n]), d = bone.distance.values[n];
     if (d <= -voxel) return hu;
@@ -37,7 +37,7 @@ float value_at(const Bone& bone, std::size_t n, BoneQuantity quantity, float thr
     return hu_at(bone, n, threshold, voxel);
 }
 
-// Samples from `base` to the first of `grid`; throws when they lie between those of `base`.
+// Offset in samples from `base` to the first sample of `grid`. Throws when the two lattices differ.
 std::array<int, 3> steps_between(const volume::Grid& base, const volume::Grid& grid) {
     std::array<int, 3> steps{};
     for (int axis = 0; axis < 3; ++axis) {
@@ -54,7 +54,7 @@ std::array<int, 3> steps_between(const volume::Grid& base, const volume::Grid& g
 }  // namespace
 
 volume::Grid volume_of_bones(std::span<const Bone> bones, BoneQuantity quantity) {
-    if (bones.empty()) throw Error("no bone to export");
+    if (bones.empty()) throw Error("there is no bone to export");
     const volume::Grid& base = bones.front().distance;
     std::array<int, 3> first{}, last{};
     for (const Bone& bone : bones) {

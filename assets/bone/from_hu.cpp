@@ -26,7 +26,7 @@ constexpr double density_slope = 1.067, density_offset = 131.0;
 
 using Box = volume::Components::Box;
 
-// Samples of air that bone is given around it, along each axis.
+// Margin of air around the bone, in samples along each axis.
 std::array<int, 3> reach_of(const Vec3& spacing) {
     std::array<int, 3> reach{};
     for (int axis = 0; axis < 3; ++axis)
@@ -34,8 +34,8 @@ std::array<int, 3> reach_of(const Vec3& spacing) {
     return reach;
 }
 
-// Samples around the components that are kept: some millimetres of air, but only four layers outside the volume, which
-// tell a face where the scan ends.
+// Box around the kept components with a margin of air; outside the volume only four layers, enough to close the bone
+// where the scan ends.
 Box room_around(const volume::Components& components, std::size_t keep, const volume::Grid& layout) {
     Box room = components.boxes.front();
     for (std::size_t n = 1; n < components.boxes.size() && (keep == 0 || n < keep); ++n)
@@ -51,7 +51,7 @@ Box room_around(const volume::Components& components, std::size_t keep, const vo
     return room;
 }
 
-// The same runs counted from the room's first sample; what lies outside of it is left out.
+// The same runs, counted from the first sample of the box; parts outside of it are dropped.
 volume::Components moved_into(const volume::Components& components, const Box& room) {
     volume::Components moved;
     volume::RunRows& rows = moved.rows;
@@ -75,7 +75,7 @@ int smoothing_passes(const Vec3& spacing) {
     return static_cast<int>(std::clamp(std::floor(3.0 * wanted * wanted / (voxel * voxel)), 0.0, 3.0));
 }
 
-// Samples of a layer that are worked on at one time; with what lies around them and beside them this makes some 25 bytes each.
+// Samples of a layer that are processed at a time; with their neighbourhood they need about 25 bytes each.
 constexpr std::size_t samples_at_once = std::size_t{8} << 20;
 
 int layers_at_once(const volume::Grid& layout) {
@@ -93,7 +93,8 @@ struct Source {
 
     int layers() const { return hu.layout.size[2]; }
 
-    // A box along x and y and what smoothing needs around it, so that its samples get the bits that the whole would.
+    // A box in x and y with the margin that smoothing needs, so that its samples get the same bits as when the whole
+    // layer is smoothed.
     void widen(std::array<int, 2>& low, std::array<int, 2>& high) const {
         for (std::size_t a = 0; a < 2; ++a) {
             low[a] = std::max(low[a] - 2 * passes - 1, 0);
@@ -106,7 +107,7 @@ struct Source {
         return slab;
     }
 
-    // The box along x and y around what reaches iso in a slab; high < low where nothing does.
+    // Bounding box in x and y of the samples of a slab that reach iso; high < low when none does.
     void box_of(const volume::Grid& slab, std::array<int, 2>& low, std::array<int, 2>& high) const {
         std::vector<std::array<int, 4>> boxes(static_cast<std::size_t>(slab.size[2]));
         run(slab.size[2], [&](int k) {
@@ -131,7 +132,7 @@ struct Source {
             }
     }
 
-    // What reaches iso once smoothed, over the whole volume.
+    // The smoothed samples that reach iso, over the whole volume.
     volume::RunRows runs(int at_once, const ImportInLayers& how) const {
         volume::RunRows rows{hu.layout.size, {0}, {}};
         for (int k = 0; k < layers(); k += at_once) {
@@ -155,16 +156,16 @@ struct Source {
     }
 };
 
-// Grey values and HU of the layers of the room around a bone, made on request.
+// Grey values and HU of the layers of the box around a bone, computed on request.
 struct Room {
     const Source& source;
     const Box& box;
-    const volume::Components& components;  // in samples of the room, as the hollows
+    const volume::Components& components;  // in samples of the box, like the hollows
     const volume::RunRows& hollows;
     std::size_t keep;
-    std::map<int, volume::CompactSlice> hu{};  // by layer of the room, inside of the volume
+    std::map<int, volume::CompactSlice> hu{};  // by layer of the box, inside the volume
 
-    // Samples of the volume in the room, along each axis.
+    // Range of the box that lies in the volume, in samples along each axis.
     std::array<int, 3> inner_first() const {
         return {std::max(box.first[0], 0), std::max(box.first[1], 0), std::max(box.first[2], 0)};
     }
@@ -181,8 +182,8 @@ struct Room {
         return room;
     }
 
-    // What stands around the volume: what touches the border at or above iso is mirrored about it, which puts the face
-    // half a voxel out.
+    // Values outside the volume: border samples at or above iso are mirrored about iso, which puts the closing face
+    // half a voxel outside.
     float beyond(float edge) const {
         return edge >= source.iso ? std::min(2.0f * source.iso - edge, source.iso - 1.0f) : edge;
     }
@@ -225,7 +226,7 @@ struct Room {
         return out;
     }
 
-    // Keeps the HU of new layers until their density is asked for.
+    // Stores the HU of new layers until their density is computed.
     void remember(const volume::Grid& part, const std::array<int, 2>& at, int first, int count, int part_first) {
         const std::array<int, 3> inner = inner_first(), inner_end = inner_last();
         std::vector<float> values;
@@ -241,7 +242,7 @@ struct Room {
         }
     }
 
-    // Density of layers whose grey values were made; afterwards their HU are forgotten.
+    // Density of layers whose grey values are computed; then frees their HU.
     volume::Grid density(int first, int count) {
         volume::Grid out = layout();
         out.size[2] = count;

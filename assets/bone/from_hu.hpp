@@ -14,51 +14,52 @@
 
 namespace tactus::bone {
 
-/// How the surface of a bone is taken from CT values.
+/// How the bone surface is extracted from CT values.
 struct BoneSurface {
-    float threshold = 300.0f;  ///< HU; bone is what lies at or above
-    std::size_t keep = 1;      ///< how many components, largest first; 0 keeps all
-    bool fill = true;          ///< hollows that do not reach the outside count as bone (their density stays low)
+    float threshold = 300.0f;  ///< HU; samples at or above it are bone
+    std::size_t keep = 1;      ///< number of components to keep, largest first; 0 keeps all
+    bool fill = true;          ///< closed hollows count as bone; they keep their low density
 };
 
-/// kg/m³ from HU by the default line, never below 0. Uncalibrated: no density phantom was in the scan.
+/// Density in kg/m³ from HU by the default linear relation, at least 0. Uncalibrated: no density phantom was in the
+/// scan.
 float density_of_hu(float hu);
-/// HU from kg/m³ by the same line.
+/// The inverse of density_of_hu for densities above 0, HU.
 float hu_of_density(float density);
-/// The same line in words, with its source.
+/// Describes the relation, with its source.
 std::string density_calibration();
 
-/// HU on a grid of LPS axes that need not be in memory.
+/// HU on a grid with LPS axes, delivered layer by layer.
 struct HuLayers {
-    /// Samples along x and y, from low to high (inclusive).
+    /// A range of samples in x and y, low to high inclusive.
     struct Window {
         std::array<int, 2> low, high;
     };
     volume::Grid layout;  ///< size, origin and spacing; no values
-    /// What a window shows of `count` layers from `first` on; asked for in ascending order, twice.
+    /// The samples of a window in `count` layers, starting at `first`. Called in ascending order, in two passes.
     std::function<volume::Grid(int first, int count, const Window& window)> layers;
 };
 
-/// How much is worked on at one time, and who hears of it. Changes no bit of the result.
+/// Chunk size and callbacks. They do not change the result.
 struct ImportInLayers {
     int at_once = 0;  ///< layers; 0: as many as have some million samples
     std::function<void(double share)> progress = [](double) {};
-    std::function<void()> check_values = [] {};  ///< called when all layers were read once; may throw
+    std::function<void()> check_values = [] {};  ///< called after the first pass over the layers; may throw
 };
 
 struct SparseHuBone {
     SparseBone bone;
     std::map<std::string, std::string> provenance;
-    std::size_t components = 0;  ///< found above the threshold, before any were taken out
+    std::size_t components = 0;  ///< found above the threshold, before selection
 };
 
-/// Builds distance and density on those samples of `hu` (LPS, m) that lie around the bone, with five millimetres and six
-/// samples of room; outside of the volume four layers of air are added, so that a bone cut by its border ends in a flat
-/// face half a voxel outside the last samples. Grey values are smoothed to about 0.3 mm (not at all where voxels are
-/// coarser: any scanner blurs more than that). Distances outside of the bone are not longer than five millimetres or six
-/// voxels. Throws Error when nothing reaches the threshold. Memory: some 25 bytes per sample of the layers that are
-/// worked on, 20 per run of neighbouring samples above the threshold, 24 per cell that the surface crosses, and the blocks
-/// of the result; none of it grows with what is not bone.
+/// Builds distance and density on the samples of `hu` (LPS, m) around the bone, with a margin of 5 mm and at least six
+/// samples. Outside the volume it adds four layers of air: a bone cut by the border of the scan ends in a flat face
+/// half a voxel outside the last samples. Grey values are smoothed to about 0.3 mm; coarser voxels are not smoothed,
+/// because any scanner blurs more than that. Distances outside the bone are clamped to 5 mm or six voxels. Throws Error
+/// when no sample reaches the threshold. Memory: about 25 bytes per sample of the layers in process, 20 per run of
+/// neighbouring samples above the threshold, 24 per cell that the surface crosses, and the blocks of the result.
+/// Samples that are not bone need no memory beyond that.
 SparseHuBone sparse_bone_from_hu(const HuLayers& hu, const BoneSurface& surface, const RunJobs& run = run_in_turn,
                                  const ImportInLayers& how = {});
 
@@ -67,7 +68,7 @@ struct HuBone {
     std::size_t components = 0;
 };
 
-/// The same with all samples in memory.
+/// The same for a volume in memory.
 HuBone bone_from_hu(volume::Grid hu, const BoneSurface& surface, const RunJobs& run = run_in_turn);
 
 }  // namespace tactus::bone

@@ -19,32 +19,33 @@ namespace tactus::bone {
 
 /// What to import and how. Files are LPS and in mm.
 struct ImportOptions {
-    /// A volume that read_volume takes (NRRD, NIfTI, a DICOM folder or file, InVesalius), or .stl, .ply, .obj.
+    /// A volume for read_volume (NRRD, NIfTI, a DICOM folder or file, InVesalius), or a mesh: .stl, .ply, .obj.
     std::filesystem::path input;
-    std::string series;                 ///< DICOM: which, by its UID or the end of it
-    double threshold = 300.0;  ///< HU; bone is what lies at or above. 300 is common for cortex and dense cores
+    std::string series;                 ///< DICOM: the series to read, by its UID or the end of it
+    double threshold = 300.0;  ///< HU; samples at or above it are bone. 300 is common for cortex and dense cores
     std::string crop;  ///< "x0:x1,y0:y1,z0:z1" in mm, LPS; empty for everything
-    std::string component = "largest";  ///< "largest", "all", or how many of the largest
+    std::string component = "largest";  ///< "largest", "all", or the number of components to keep, largest first
     std::optional<std::string>
-        unit;  ///< of a mesh's coordinates: "mm", "cm" or "m"; mm is assumed when it is plausible
+        unit;  ///< unit of a mesh's coordinates: "mm", "cm" or "m"; mm is assumed when the size is plausible
     std::optional<double> spacing;  ///< m, all axes; default: the CT's own; for meshes 0.4 mm or 1/400 of the extent
-    bool fill = true;  ///< closed hollows below the threshold are inside the bone
-    /// HU = first · value + second, for volumes of scanner numbers.
+    bool fill = true;  ///< closed hollows below the threshold count as bone
+    /// HU = first · value + second, for volumes with uncalibrated scanner values.
     std::optional<std::pair<double, double>> rescale;
-    /// kg/m³ throughout a mesh; default: an assumed cortex of 1800 over the outer 2 mm and a core of 400.
+    /// Uniform density of a mesh, kg/m³; default: an assumed cortex of 1800 to 2 mm depth and a core of 400.
     std::optional<double> mesh_density;
     std::string label;          ///< a label map: "all", one label's number or its name
-    std::filesystem::path ct;   ///< the CT that a label map was drawn on, in the same frame; may be empty
-    std::optional<double> pointshell;  ///< m: also spread points over the surface, about one per spacing²
-    bool pointshell_by_curvature = false;  ///< closer together where the surface turns
-    RunJobs run = run_in_turn;  ///< on which threads; the result has the same bits on any
-    int layers_at_once = 0;  ///< of a CT, in memory; 0: some million samples. The result has the same bits with any
+    std::filesystem::path ct;   ///< the CT of a label map, in the same frame; may be empty
+    std::optional<double> pointshell;  ///< m: also samples points on the surface, about one per spacing²
+    bool pointshell_by_curvature = false;  ///< closer together where curvature is high
+    RunJobs run = run_in_turn;  ///< threads; they do not change the bits of the result
+    int layers_at_once =
+        0;  ///< layers of a CT in memory; 0: some million samples. Does not change the bits of the result
 };
 
-/// What was imported, for people and programs.
+/// Summary of an import.
 struct ImportSummary {
     std::string frame;  ///< "LPS"
-    std::string hu;  ///< "calibrated", "masked" (0 instead of air) or "none" (a mesh)
+    std::string hu;  ///< "calibrated", "masked" (0 in place of air) or "none" (a mesh)
     std::array<double, 3> voxel_mm{};
     std::array<int, 3> size{};
     double bone_volume_mm3 = 0.0;  ///< enclosed by the surface
@@ -52,19 +53,19 @@ struct ImportSummary {
     struct {
         double min = 0.0, max = 0.0, mean = 0.0;
     } density;  ///< kg/m³ over the samples inside
-    std::size_t components = 0;  ///< found, before any were left out
-    std::size_t points = 0;  ///< of the pointshell
-    std::vector<std::string> notes;  ///< what was set right or assumed, one sentence each
+    std::size_t components = 0;  ///< found, before selection
+    std::size_t points = 0;  ///< number of pointshell points
+    std::vector<std::string> notes;  ///< corrections and assumptions, one sentence each
 };
 
-/// Called with the share done in [0, 1] and what is being done.
+/// Called with the progress in [0, 1] and the current step.
 using ImportProgress = std::function<void(double, std::string_view)>;
 
-/// Reads, checks and converts. Throws Error for input that cannot be a bone, saying what to do. `summary` may be null.
+/// Reads, checks and converts. Throws Error with a remedy for input that cannot become a bone. `summary` may be null.
 Bone import_bone(const ImportOptions& options, const ImportProgress& progress = {}, ImportSummary* summary = nullptr);
 
-/// The same straight into a bone file. A CT then takes memory for a few of its layers and for what lies near the bone, not
-/// for all of it; see ReorientedVolume for files that cannot be read layer by layer.
+/// The same, written to a bone file. A CT then needs memory for a few of its layers and for the blocks near the bone
+/// only; see ReorientedVolume for formats that cannot be read layer by layer.
 ImportSummary import_bone_file(const ImportOptions& options, const std::filesystem::path& out,
                                const ImportProgress& progress = {});
 
@@ -73,7 +74,8 @@ struct ImportedBone {
     ImportSummary summary;
 };
 
-/// One bone per chosen label of a label map, in ascending order of labels, in one frame. Throws Error like import_bone.
+/// One bone per selected label of a label map, in ascending order of labels, in one frame. Throws Error like
+/// import_bone.
 std::vector<ImportedBone> import_labels(const ImportOptions& options, const ImportProgress& progress = {});
 
 }  // namespace tactus::bone

@@ -21,7 +21,7 @@ namespace tactus::bone {
 namespace {
 
 constexpr double mm = 1e-3;
-constexpr double most_ct_voxels = 4e9;  // they are never all in memory
+constexpr double most_ct_voxels = 4e9;  // read in layers, never all in memory
 
 struct Range {
     Vec3 low{-std::numeric_limits<double>::infinity()}, high{std::numeric_limits<double>::infinity()};  // m
@@ -41,7 +41,7 @@ Range parse_crop(const std::string& text) {
     return range;
 }
 
-// Samples of the result: the file's own within the box, or new ones at `spacing`.
+// Grid of the result: the samples of the file within the crop box, or a new grid with `spacing`.
 volume::Grid ct_layout(const volume::Grid& ct, const Range& crop, std::optional<double> spacing) {
     volume::Grid layout{{}, {}, spacing ? Vec3(*spacing) : ct.spacing, {}};
     for (int axis = 0; axis < 3; ++axis) {
@@ -63,7 +63,7 @@ volume::Grid ct_layout(const volume::Grid& ct, const Range& crop, std::optional<
     return layout;
 }
 
-// "1 (femur), 2": what the structures of a label map are called.
+// "1 (femur), 2": the labels of a label map with their names.
 std::string list_of_labels(const volume::ScanVolume& about, const volume::Tally& tally) {
     std::vector<std::string> words;
     for (const int label : tally.labels) {
@@ -86,8 +86,8 @@ void require_hu(volume::ScanVolume& about, const volume::Tally& tally, const Imp
     if (options.rescale) about.hu = volume::HuKind::calibrated;
     if (about.hu != volume::HuKind::scanner) return;
     throw Error(
-        fmt::format("{}: values {:g} to {:g} are not HU (no air near -1000): scanner numbers. Say which of them are "
-                    "which HU, as in --hu-calibration 60:-1000,1100:40 (air and water or muscle), or convert the "
+        fmt::format("{}: values {:g} to {:g} are not HU (no air near -1000). Calibrate them with two points VALUE:HU, "
+                    "as in --hu-calibration 60:-1000,1100:40 (air and water or muscle), or convert the "
                     "file first",
                     file.string(), tally.low, tally.high));
 }
@@ -104,19 +104,19 @@ SparseImport import_ct(const ImportOptions& options, const ImportReport& report,
         source.settle();
         if (about.kind == volume::VolumeKind::labels && !options.rescale)
             throw Error(
-                fmt::format("{}: a label map, not a CT: its values are numbers of structures. Say which of them is the "
-                            "bone with --label N or its name, or --label all for one bone each ({})",
+                fmt::format("{}: this is a label map, not a CT. Choose the bone with --label and its number or name, "
+                            "or make one bone per label with --label all ({})",
                             options.input.string(), list_of_labels(about, source.tally())));
         require_hu(about, source.tally(), options, options.input);
     };
     if (source.is_turned()) check();
     const volume::Grid& ct = source.layout();
     const volume::Grid layout = ct_layout(ct, crop, options.spacing);
-    // Samples of the file itself need not be made anew, so only what is looked at is fetched.
+    // Without resampling, only the requested window is read.
     const bool same = ct.size == layout.size && ct.origin == layout.origin && ct.spacing == layout.spacing;
     const auto layers = [&](int first, int count, const HuLayers::Window& window) {
         if (same) return source.layers(first, count, {window.low, window.high});
-        // Whole layers are resampled, but not many at one time.
+        // Resampling works on whole layers, a few at a time.
         constexpr int at_once = 16;
         volume::Grid all;
         for (int k = first; k < first + count; k += at_once) {

@@ -18,7 +18,7 @@ namespace tactus::bone {
 
 namespace {
 
-// Those of the map that `wanted` means: "all", a number, or a name that the file gives.
+// The labels that `wanted` selects: "all", a number, or a name from the file.
 std::vector<volume::Segment> choose_segments(const std::string& wanted, const std::vector<int>& labels,
                                              const std::vector<volume::Segment>& named, const std::string& file) {
     if (labels.empty()) throw Error(fmt::format("{}: every voxel is 0; there is no label", file));
@@ -28,7 +28,7 @@ std::vector<volume::Segment> choose_segments(const std::string& wanted, const st
         const auto known =
             std::find_if(named.begin(), named.end(), [&](const volume::Segment& s) { return s.label == label; });
         all.push_back(known != named.end() ? *known : volume::Segment{label, "", {}});
-        // A name that another label has already would not tell them apart.
+        // Names must be unique: a second label of the same name gets its number.
         if (all.back().name.empty() || std::count(names.begin(), names.end(), all.back().name) > 0)
             all.back().name = fmt::format("label {}", label);
         names.push_back(all.back().name);
@@ -36,7 +36,7 @@ std::vector<volume::Segment> choose_segments(const std::string& wanted, const st
     if (wanted == "all") return all;
     for (const volume::Segment& segment : all)
         if (wanted == std::to_string(segment.label) || wanted == segment.name) return {segment};
-    throw Error(fmt::format("{}: has no label '{}' but {}{}", file, wanted, fmt::join(labels, ", "),
+    throw Error(fmt::format("{}: there is no label '{}'; there are {}{}", file, wanted, fmt::join(labels, ", "),
                             did_you_mean(wanted, names)));
 }
 
@@ -47,7 +47,7 @@ std::size_t pieces_of(volume::Grid distance) {
 
 constexpr double air_around = 5e-3;  // m
 
-// The samples at the ends of each label.
+// Bounding box of each label, in samples.
 std::map<int, volume::Components::Box> boxes_of(volume::ReorientedVolume& source) {
     constexpr int at_once = 16;
     const auto& size = source.layout().size;
@@ -60,7 +60,7 @@ std::map<int, volume::Components::Box> boxes_of(volume::ReorientedVolume& source
             for (int y = 0; y < slab.size[1]; ++y)
                 for (int x = 0; x < slab.size[0]; ++x) {
                     const float value = slab.at(x, y, z);
-                    // What is no label is refused later, when all of it is known.
+                    // Invalid values are reported after the whole map is read.
                     if (!(value > 0.0f && value <= 65535.0f) || boxes.size() > 1000) continue;
                     const std::array<int, 3> at{x, y, k + z};
                     if (const int label = static_cast<int>(value); label != last || !box) {
@@ -76,22 +76,22 @@ std::map<int, volume::Components::Box> boxes_of(volume::ReorientedVolume& source
     return boxes;
 }
 
-// The labels that there are, ascending. Throws Error when the values are none.
+// All labels of the map, ascending. Throws Error when the values are not labels.
 std::vector<int> labels_of(const volume::Tally& tally, const std::string& file) {
     if (!tally.whole)
         throw Error(
-            fmt::format("{}: values of {:g} to {:g} are no labels: labels are whole numbers from 0 to 65535; leave "
-                        "--label out for a CT",
+            fmt::format("{}: values of {:g} to {:g} are not labels: labels are whole numbers from 0 to 65535; for a CT "
+                        "leave out --label",
                         file, tally.low, tally.high));
     if (tally.labels.size() > 1000)
-        throw Error(
-            fmt::format("{}: more than 1000 different values are no labels but an image; leave --label out", file));
+        throw Error(fmt::format(
+            "{}: more than 1000 different values: this is an image, not a label map; leave out --label", file));
     std::vector<int> labels(tally.labels.begin(), tally.labels.end());
     std::erase(labels, 0);
     return labels;
 }
 
-// Samples of `source` around those of `box`, which count on `layout`; `more` samples beyond the air that a bone is given.
+// The part of `source` around `box` (in samples of `layout`), with the margin of air plus `more` samples.
 volume::Grid part_around(volume::ReorientedVolume& source, const volume::Grid& layout,
                          const volume::Components::Box& box, int more) {
     const volume::Grid& all = source.layout();
@@ -111,7 +111,7 @@ volume::Grid part_around(volume::ReorientedVolume& source, const volume::Grid& l
 
 std::vector<ImportedBone> import_labels(const ImportOptions& options, const ImportProgress& progress) {
     check_options(options);
-    if (!options.crop.empty()) throw Error("a crop box is for CT volumes; a label map's bones are cut out already");
+    if (!options.crop.empty()) throw Error("--crop is for CT volumes; in a label map the bones are separated already");
     const ImportReport report{progress};
     const std::string file = options.input.string();
     report(0.0, "reading");
@@ -141,7 +141,7 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
     std::vector<ImportedBone> bones;
     for (const volume::Segment& segment : chosen) {
         report(0.1 + 0.9 * static_cast<double>(bones.size()) / static_cast<double>(chosen.size()), segment.name);
-        // Only what lies around one label is in memory at one time.
+        // One label at a time is in memory.
         const volume::Components::Box& box = boxes.at(segment.label);
         const volume::Grid map = part_around(source, source.layout(), box, 0);
         const volume::Grid values = ct ? part_around(*ct, source.layout(), box, 4) : volume::Grid{};

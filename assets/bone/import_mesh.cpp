@@ -30,8 +30,8 @@ double unit_of(const ImportOptions& options, double extent) {
     if (extent < 5.0 || extent > 2000.0) {
         const std::string_view likely = extent < 0.005 ? "" : extent <= 2.0 ? "m" : extent < 5.0 ? "cm" : "";
         throw Error(
-            fmt::format("{}: {:.3g} across cannot be mm for a bone; say what its coordinates are with --unit mm, cm "
-                        "or m{}",
+            fmt::format("{}: the mesh is {:.3g} units across, which is not plausible in mm; give its unit with --unit "
+                        "mm, cm or m{}",
                         options.input.string(), extent,
                         likely.empty() ? ""
                                        : fmt::format(" (--unit {} would make it {:.0f} mm)", likely,
@@ -40,7 +40,7 @@ double unit_of(const ImportOptions& options, double extent) {
     return mm;
 }
 
-// Keeps the components of largest enclosed volume, each turned to look outwards.
+// Keeps the components that enclose the largest volumes and orients each outwards.
 mesh::Mesh largest_components(const mesh::Mesh& mesh, const mesh::MeshTopology& topology, std::size_t keep) {
     std::vector<mesh::Mesh> parts(topology.components);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -58,7 +58,8 @@ mesh::Mesh largest_components(const mesh::Mesh& mesh, const mesh::MeshTopology& 
     if (keep == 0 || keep > order.size()) keep = order.size();
     for (std::size_t n = 0; n < keep; ++n)
         for (auto t : parts[order[n].second].triangles) {
-            // Shells of hollows look inwards on purpose, so all components turn with the largest.
+            // The shells of hollows are oriented inwards on purpose, so all components are flipped together with the
+            // largest.
             if (order[0].first < 0.0) std::swap(t[1], t[2]);
             kept.triangles.push_back(t);
         }
@@ -68,7 +69,7 @@ mesh::Mesh largest_components(const mesh::Mesh& mesh, const mesh::MeshTopology& 
 }  // namespace
 
 Bone import_mesh(const ImportOptions& options, const ImportReport& report, ImportSummary& summary) {
-    if (!options.crop.empty()) throw Error("a crop box is for CT volumes; cut the mesh in a mesh editor");
+    if (!options.crop.empty()) throw Error("--crop is for CT volumes; cut the mesh in a mesh editor");
     const std::size_t keep = parse_component(options.component);
     report(0.0, "reading");
     mesh::MeshOrigin origin;

@@ -21,7 +21,7 @@ namespace {
 
 constexpr double mm = 1e-3;
 
-// A file, or all files of a folder by their names.
+// A file, or the files of a folder in order of their names.
 std::vector<std::filesystem::path> source_files(const std::filesystem::path& input) {
     if (!std::filesystem::is_directory(input)) return {input};
     std::vector<std::filesystem::path> files;
@@ -45,12 +45,13 @@ void check_output(const ImportOptions& options, const std::filesystem::path& out
     std::error_code ignored;
     for (const std::filesystem::path& source : {options.input, options.ct})
         if (!source.empty() && std::filesystem::equivalent(source, out, ignored))
-            throw Error(fmt::format("{}: would be overwritten by the bone; give another name with -o", out.string()));
+            throw Error(fmt::format(
+                "{}: this is the source, and the bone would overwrite it; give another name with -o", out.string()));
     const std::filesystem::path folder = out.has_parent_path() ? out.parent_path() : ".";
     if (!std::filesystem::is_directory(folder, ignored))
         throw Error(fmt::format("{}: cannot be written: there is no folder {}", out.string(), folder.string()));
     if (std::filesystem::is_directory(out, ignored))
-        throw Error(fmt::format("{}: is a folder; name the file that the bone goes to", out.string()));
+        throw Error(fmt::format("{}: this is a folder; name a file for the bone", out.string()));
 }
 
 std::size_t parse_component(const std::string& text) {

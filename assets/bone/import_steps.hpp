@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps that importing a CT, a mesh and a label map share.
+// Steps shared by the imports of CTs, meshes and label maps.
 #pragma once
 
 #include "assets/bone/import.hpp"
@@ -13,7 +13,7 @@
 
 namespace tactus::bone {
 
-/// Progress that may be listened to by nobody.
+/// A progress callback that may be empty.
 struct ImportReport {
     const ImportProgress& progress;
     void operator()(double share, std::string_view what) const {
@@ -21,45 +21,46 @@ struct ImportReport {
     }
 };
 
-/// A bone's samples, and what is known about it beside them.
+/// The samples of a bone, and its other properties.
 struct SparseImport {
     SparseBone bone;
     Bone about;  ///< without samples
 };
 
-/// Bone and density of a CT, or of a closed mesh; neither named nor measured yet.
+/// Distance and density from a CT or a closed mesh; name and measurements are still missing.
 SparseImport import_ct(const ImportOptions& options, const ImportReport& report, ImportSummary& summary);
 Bone import_mesh(const ImportOptions& options, const ImportReport& report, ImportSummary& summary);
 
-/// Throws Error for options that no file could be imported with.
+/// Throws Error for options that are invalid for every file.
 void check_options(const ImportOptions& options);
 
-/// Throws Error when `out` is one of the sources, or cannot be written: before minutes are spent on it, and before a
-/// patient's file is lost.
+/// Throws Error when `out` is one of the sources or cannot be written. Called first: an import takes minutes, and must
+/// never overwrite a patient's file.
 void check_output(const ImportOptions& options, const std::filesystem::path& out);
 
-/// How many of the largest components "largest", "all" or a number keeps; 0 for all. Throws Error for anything else.
+/// Number of components to keep for "largest", "all" or a number; 0 for all. Throws Error for anything else.
 std::size_t parse_component(const std::string& text);
 
 /// Throws Error for more voxels than `most`.
 void check_layout(const volume::Grid& layout, double most);
 
-/// What a line given for scanner numbers makes them. Throws Error when the numbers cannot be HU and none is.
+/// Applies the linear calibration to scanner values. Throws Error when the values are not HU and no calibration is
+/// given.
 void require_hu(volume::ScanVolume& about, const volume::Tally& tally, const ImportOptions& options,
                 const std::filesystem::path& file);
 
-/// Fills in frame, size, volume, area and densities. Throws Error for a bone without a sample inside.
+/// Fills in frame, size, volume, area and densities. Throws Error for a bone that has no sample inside.
 void measure(const Bone& bone, ImportSummary& summary);
 void measure(const SparseBone& bone, ImportSummary& summary, const RunJobs& run);
 
-/// Spreads the points that the options ask for.
+/// Samples the surface points when the options ask for them.
 void add_points(Bone& bone, const ImportOptions& options, ImportSummary& summary);
 
-/// Tells a bone where it came from.
+/// Sets the provenance of a bone.
 void add_provenance(Bone& bone, const ImportOptions& options, const ImportSummary& found,
                     const std::string& source_hash);
 
-/// Of a file, or of all files of a folder in the order of their names; 16 hexadecimal digits.
+/// Hash of a file, or of all files of a folder in the order of their names; 16 hexadecimal digits.
 std::string hash_of_source(const std::filesystem::path& path);
 
 }  // namespace tactus::bone

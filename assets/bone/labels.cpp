@@ -25,7 +25,7 @@ namespace {
 constexpr int relax_passes = 40;
 constexpr double air_around = 5e-3;  // m
 
-// Told apart also by people who see red and green alike (Okabe and Ito 2008), after the colour of bone.
+// Colours that people with red-green colour blindness can distinguish (Okabe and Ito 2008), after the colour of bone.
 const std::array<Vec3, 8> colours{Vec3(0.90, 0.86, 0.76), Vec3(0.34, 0.71, 0.91), Vec3(0.90, 0.62, 0.00),
                                   Vec3(0.00, 0.62, 0.45), Vec3(0.80, 0.47, 0.65), Vec3(0.94, 0.89, 0.26),
                                   Vec3(0.00, 0.45, 0.70), Vec3(0.84, 0.37, 0.00)};
@@ -34,7 +34,7 @@ struct Box {
     std::array<int, 3> first, last;
 };
 
-// One where the label is, on the samples around it; outside of the map counts as not labelled.
+// 1 at labelled samples, else 0, on the samples around the label; outside the map is not labelled.
 volume::Grid mask_of(const volume::Grid& labels, int label, std::size_t& count) {
     Box box{labels.size, {-1, -1, -1}};
     const auto wanted = static_cast<float>(label);
@@ -68,7 +68,7 @@ volume::Grid mask_of(const volume::Grid& labels, int label, std::size_t& count) 
     return mask;
 }
 
-// Grey values beside a surface of labels.
+// Grey values on both sides of the edge of a label.
 struct Grey {
     const volume::Grid& labels;
     const volume::Grid& mask;
@@ -83,7 +83,7 @@ struct Grey {
         return true;
     }
 
-    // Nothing labelled there, not even by another label.
+    // True when the sample has no label at all.
     bool is_background(const Vec3& at) const {
         const Vec3 u = glm::floor((at - labels.origin) / labels.spacing + 0.5);
         for (int a = 0; a < 3; ++a)
@@ -91,7 +91,7 @@ struct Grey {
         return labels.at(static_cast<int>(u.x), static_cast<int>(u.y), static_cast<int>(u.z)) == 0.0f;
     }
 
-    // visit(HU inside, HU outside) for the edges of a cell that lead from the label to background.
+    // Calls visit(HU inside, HU outside) for the edges of a cell that lead from the label to background.
     template <typename Visit>
     int for_each_edge(const std::array<int, 3>& cell, Visit visit) const {
         int crossings = 0;
@@ -114,7 +114,7 @@ struct Grey {
         return crossings;
     }
 
-    // The level that as many values inside miss as outside reach.
+    // The level with equal error: as many inside values lie below it as outside values above it.
     std::optional<double> level(const geometry::SurfaceNet& net) const {
         std::vector<double> inside, outside;
         for (const auto& cell : net.cell)
@@ -130,7 +130,7 @@ struct Grey {
     }
 };
 
-// Share of a cell's edges that cross the level, spread a little so that the surface does not tear where it ends.
+// Share of a cell's edges where the grey values cross the level, smoothed so that the surface stays continuous.
 std::vector<double> trust_in(const Grey& grey, const geometry::SurfaceNet& net, double level) {
     std::vector<double> trust;
     for (const auto& cell : net.cell) {
@@ -166,12 +166,12 @@ void move_to_level(const Grey& grey, geometry::SurfaceNet& net, double level) {
             at += move;
         }
         Vec3 move = at - net.vertices[n];
-        // A crossing that far off belongs to something else.
+        // A crossing that far away belongs to another structure.
         if (glm::length(move) < 1.2 * cell) net.vertices[n] += move * trust[n];
     }
 }
 
-// Shifts the whole surface until it encloses as much as the labelled voxels, of which every one stays inside.
+// Shifts the whole surface until it encloses the volume of the labelled voxels. Every labelled voxel stays inside.
 void keep_volume(volume::Grid& distance, const volume::Grid& mask, double voxels) {
     const double wanted = voxels * mask.spacing.x * mask.spacing.y * mask.spacing.z;
     const double cell = std::min({mask.spacing.x, mask.spacing.y, mask.spacing.z});
@@ -198,7 +198,7 @@ std::vector<int> labels_in(const volume::Grid& labels) {
     for (const float value : labels.values) {
         if (value == last) continue;
         if (!(value >= 0.0f && value <= 65535.0f) || value != std::floor(value))
-            throw Error(fmt::format("a value of {:g} is no label: labels are whole numbers from 0 to 65535", value));
+            throw Error(fmt::format("a value of {:g} is not a label: labels are whole numbers from 0 to 65535", value));
         seen[static_cast<std::size_t>(value)] = 1;
         last = value;
     }
@@ -206,7 +206,8 @@ std::vector<int> labels_in(const volume::Grid& labels) {
     for (int n = 1; n < 65536; ++n)
         if (seen[static_cast<std::size_t>(n)]) found.push_back(n);
     if (found.size() > 1000)
-        throw Error(fmt::format("{} different values are no labels but an image; leave --label out", found.size()));
+        throw Error(
+            fmt::format("{} different values: this is an image, not a label map; leave out --label", found.size()));
     return found;
 }
 
@@ -219,7 +220,7 @@ Bone bone_of_label(const volume::Grid& labels, const volume::Segment& segment, c
     geometry::relax(net, mask, relax_passes, run);
     bool from_grey = false;
     std::string surface = "label edges, staircase taken off, volume kept";
-    // A masked CT holds nothing beyond the labels that an edge could be seen against.
+    // A masked CT has no background values, so it shows no edge.
     if (how.hu && !how.hu_is_masked) {
         const Grey grey{labels, mask, *how.hu};
         if (const auto level = grey.level(net)) {

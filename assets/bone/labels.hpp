@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a label map to bones, one per label.
+// Bones from a label map, one per label.
 #pragma once
 
 #include "assets/bone/bone.hpp"
@@ -12,26 +12,26 @@
 
 namespace tactus::bone {
 
-/// The colour of a label that has none of its own, sRGB.
+/// Default colour of a label, sRGB.
 Vec3 label_colour(int label);
 
-/// How the bones of a label map get their surface, density and grid.
+/// Options for surface, density and grid of the bones of a label map.
 struct LabelBone {
     std::optional<double> spacing{};  ///< m, all axes; default: the label map's own
     const volume::Grid* hu = nullptr;         ///< a CT in HU of the same frame (LPS), on any grid
-    bool hu_is_masked = false;        ///< 0 around the bone: good for density, not for the surface
+    bool hu_is_masked = false;        ///< 0 around the bone: used for density, not for the surface
 };
 
-/// The labels of a map in ascending order, without 0. Throws Error for values that are no whole numbers in [0, 65535]
-/// and for more than 1000 different ones: then it is no label map.
+/// The labels of a map in ascending order, without 0. Throws Error for values that are not whole numbers in [0, 65535]
+/// and for more than 1000 different values, which means an image.
 std::vector<int> labels_in(const volume::Grid& labels);
 
-/// The bone of one label, on a grid of the map's frame with five millimetres and six samples of room. The surface is a
-/// net of one vertex per cell and sheet between samples that are in and out, with the staircase taken off and the volume
-/// of the labelled voxels kept by a shift of the whole surface. Where the neighbour is no other label and the CT's grey
-/// values cross the level that splits the two sides best, the surface goes to that crossing instead. Density from the
-/// CT, without one as in a mesh. `voxels` (may be null) takes the number of labelled samples. Throws Error for a label
-/// without samples.
+/// The bone of one label, on a grid in the map's frame with a margin of 5 mm and at least six samples. The surface is a
+/// surface net (one vertex per cell and sheet between inside and outside samples), smoothed to remove the staircase and
+/// shifted as a whole to keep the volume of the labelled voxels. Where the label borders on background and the CT's
+/// grey values cross the level that separates both sides best, the surface follows that crossing instead. Density comes
+/// from the CT; without a CT it is assumed, as for a mesh. `voxels` (may be null) receives the number of labelled
+/// samples. Throws Error for a label without samples.
 Bone bone_of_label(const volume::Grid& labels, const volume::Segment& segment, const LabelBone& how,
                    const RunJobs& run = run_in_turn, std::size_t* voxels = nullptr);
 

@@ -35,19 +35,19 @@ std::string to_bytes(std::span<const contact::SurfacePoint> points) {
 
 std::vector<contact::SurfacePoint> points_from(std::string_view bytes, const std::string& file) {
     if (!bytes.starts_with(mark))
-        throw Error(fmt::format("{}: its surface points are of a format that this program does not read", file));
+        throw Error(fmt::format("{}: its surface points have a format that this program does not read", file));
     std::uint64_t count = 0;
     if (bytes.size() >= head_size) std::memcpy(&count, bytes.data() + mark.size(), 8);
     if (bytes.size() < head_size || (bytes.size() - head_size) % point_size != 0 ||
         (bytes.size() - head_size) / point_size != count)
-        throw Error(fmt::format("{}: holds fewer or more surface points than it says", file));
+        throw Error(fmt::format("{}: the number of surface points differs from the stated count", file));
     std::vector<contact::SurfacePoint> points(count);
     const char* at = bytes.data() + head_size;
     for (contact::SurfacePoint& p : points) {
         double numbers[7];
         std::memcpy(numbers, at, sizeof numbers);
         for (const double number : numbers)
-            if (!std::isfinite(number)) throw Error(fmt::format("{}: a surface point is no number", file));
+            if (!std::isfinite(number)) throw Error(fmt::format("{}: a surface point is not a number", file));
         p = {{numbers[0], numbers[1], numbers[2]},
              {numbers[3], numbers[4], numbers[5]},
              numbers[6],

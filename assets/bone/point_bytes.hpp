@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surface points as bytes, for bone files.
+// Binary form of surface points, for bone files.
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
@@ -11,12 +11,12 @@
 
 namespace tactus::bone {
 
-/// A mark with the format's number, the count (64 bits), then position and normal (3 doubles each), area (double) and
-/// label (a byte) of each point; little-endian.
+/// Layout, little-endian: a mark with the format number, the count (64 bits), then for each point position and normal
+/// (3 doubles each), area (double) and label (1 byte).
 std::string to_bytes(std::span<const contact::SurfacePoint> points);
 
-/// What to_bytes wrote, every bit as it was. Throws Error, naming `file`, when the bytes are of a later format, not as
-/// many as the count asks for, or not finite.
+/// Reads the bytes of to_bytes back, bit for bit. Throws Error, naming `file`, when the format is newer, the length
+/// does not match the count, or a number is not finite.
 std::vector<contact::SurfacePoint> points_from(std::string_view bytes, const std::string& file);
 
 }  // namespace tactus::bone

@@ -19,9 +19,10 @@ namespace {
 
 constexpr std::string_view seal_mark = "TACTUSBONE000001";
 constexpr std::size_t seal_size = seal_mark.size() + 8;
-// Magic (8), file version (4), library version (8) and one flag stand before OpenVDB's identifier.
+// OpenVDB's identifier follows the magic (8 bytes), file version (4), library version (8) and one flag.
 constexpr std::size_t identifier_offset = 21, identifier_size = 36;
-constexpr std::size_t block_size = 1 << 20;  // whole words, so that the hash does not depend on it
+constexpr std::size_t block_size =
+    1 << 20;  // a multiple of the hash's word size, so that the block size does not change the hash
 
 }  // namespace
 
@@ -85,7 +86,7 @@ void SealedFile::flush_block() {
 std::string read_sealed(const std::filesystem::path& path) {
     std::string bytes = file::read_whole_file(path);
     if (bytes.size() < seal_size || bytes.compare(bytes.size() - seal_size, seal_mark.size(), seal_mark) != 0)
-        throw Error(fmt::format("{}: not a whole bone file; make it again with 'tactus import'", path.string()));
+        throw Error(fmt::format("{}: the bone file is incomplete; make it again with 'tactus import'", path.string()));
     std::uint64_t stated = 0;
     std::memcpy(&stated, bytes.data() + bytes.size() - sizeof stated, sizeof stated);
     bytes.resize(bytes.size() - seal_size);

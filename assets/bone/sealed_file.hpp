@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bone file on disk: what OpenVDB writes, with a mark and a checksum behind it.
+// A bone file on disk: the data of OpenVDB, followed by a mark and a checksum (the seal).
 #pragma once
 
 #include "assets/file/part_lock.hpp"
@@ -13,9 +13,9 @@
 
 namespace tactus::bone {
 
-/// Takes what OpenVDB writes to `path` + ".part" in blocks, so that a large bone is not in memory once more, with
-/// another identifier (36 characters) and with the seal behind it. The file appears under its name by seal(); without
-/// it nothing is left. Throws Error when it cannot be written.
+/// A stream buffer for OpenVDB that writes to `path` + ".part" in blocks, so that a large bone is not copied in memory.
+/// It replaces the identifier (36 characters) and appends the seal. seal() gives the file its name; without seal() the
+/// part is removed. Throws Error when it cannot be written.
 class SealedFile final : public std::streambuf {
 public:
     SealedFile(const std::filesystem::path& path, std::string identifier);
@@ -27,7 +27,7 @@ public:
 
 protected:
     int_type overflow(int_type next) override;
-    // OpenVDB asks where it is; it goes nowhere else in a stream.
+    // OpenVDB asks for the current position, but never seeks in a stream.
     pos_type seekoff(off_type by, std::ios_base::seekdir from, std::ios_base::openmode) override;
 
 private:
@@ -44,8 +44,8 @@ private:
     bool sealed_ = false;
 };
 
-/// What stands before the seal: OpenVDB trusts the sizes it reads, so only bytes that are known to be whole reach it.
-/// Throws Error for a file without seal or with another checksum.
+/// The content before the seal. OpenVDB trusts the sizes that it reads, so it only gets verified bytes. Throws Error
+/// when the seal is missing or the checksum differs.
 std::string read_sealed(const std::filesystem::path& path);
 
 }  // namespace tactus::bone

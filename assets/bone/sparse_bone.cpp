@@ -16,7 +16,7 @@ constexpr int side = SparseBone::side;
 
 std::size_t sample_index(int x, int y, int z) { return static_cast<std::size_t>((z * side + y) * side + x); }
 
-// Samples that `values` points to in a block; `elsewhere` where there is none.
+// The dense grid of one quantity, which `values` selects in a block; `elsewhere` where no block is stored.
 template <typename Values>
 volume::Grid dense(const SparseBone& sparse, float elsewhere, Values values) {
     volume::Grid grid = sparse.layout;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bone of which only the part near it is stored: what an import makes, and what its file holds.
+// A sparse bone: only blocks near the bone are stored. Import produces it, and bone files hold it.
 #pragma once
 
 #include "assets/bone/bone.hpp"
@@ -13,8 +13,8 @@
 
 namespace tactus::bone {
 
-/// Distance and density in blocks of 8 x 8 x 8 samples; no block where all samples are `outside` the bone. Memory is that of
-/// the blocks, and one pointer per block of the box around the bone.
+/// Distance and density in blocks of 8 x 8 x 8 samples. Blocks whose samples all have the distance `outside` are not
+/// stored. Memory: the blocks, and one pointer per block of the bounding box.
 struct SparseBone {
     static constexpr int side = 8;
     struct Block {
@@ -22,7 +22,7 @@ struct SparseBone {
     };
 
     volume::Grid layout;  ///< size, origin and spacing; no values
-    float outside = 0.0f;  ///< m: distance where no block is stored; none is longer. The density there is 0
+    float outside = 0.0f;  ///< m: distance where no block is stored, and the greatest distance. The density there is 0
     std::vector<std::unique_ptr<Block>> blocks;  ///< x fastest
 
     explicit SparseBone(volume::Grid size_and_place = {}, float outside_of_blocks = 0.0f);
@@ -30,26 +30,26 @@ struct SparseBone {
     std::size_t block_index(int bx, int by, int bz) const;
     std::size_t stored() const;  ///< blocks
 
-    /// Takes layers that start at a block's border and end at one or at the last: stores those blocks that reach nearer to
-    /// the bone than `outside`.
+    /// Adds layers. They start at a block border and end at one or at the last layer. Stores the blocks that have a
+    /// distance below `outside`.
     void add_layers(int first, const volume::Grid& distance, const volume::Grid& density, const RunJobs& run);
-    /// Distance of the samples from `low` on, as many as fit in `into`; beyond the last sample the last one again.
+    /// Copies the distances from sample `low` on into `into`; the last sample is repeated beyond the border.
     void copy_distance(const std::array<int, 3>& low, volume::Grid& into) const;
 };
 
-/// All samples; only the distance.
+/// The dense distance grid.
 Bone dense_of(const SparseBone& sparse);
 volume::Grid dense_distance_of(const SparseBone& sparse);
 
-/// Volume (m³) and area (m²) of the surface, and the densities of the samples inside.
+/// Volume (m³) and area (m²) of the surface, and statistics of the density inside.
 struct BoneMeasures {
     double volume = 0.0, area = 0.0, least = 0.0, most = 0.0, mean = 0.0;
     std::size_t inside = 0;
 };
 BoneMeasures measures_of(const SparseBone& bone, const RunJobs& run = run_in_turn);
 
-/// Like save_bone; frees blocks as they are written. What stands beside the grids is taken from `about`, whose own grids
-/// are not looked at.
+/// Like save_bone, but frees blocks as they are written. Name, colour, provenance and points come from `about`; its
+/// grids are ignored.
 void save_bone(SparseBone bone, const Bone& about, const std::filesystem::path& path);
 
 }  // namespace tactus::bone

@@ -36,7 +36,7 @@ constexpr std::uint32_t upper_extent = 1u << (leaf_side_bits + lower_side_bits +
 
 constexpr std::size_t values_in(std::uint32_t side_bits) { return std::size_t{1} << (3 * side_bits); }
 
-/// One bit per place of a node.
+/// One bit per child or voxel of a node.
 struct Mask {
     const unsigned char* bytes = nullptr;
     std::size_t size = 0;
@@ -53,18 +53,18 @@ public:
     Walk(std::string& bytes, const std::string& file) : bytes_(bytes), file_(file) {}
 
     void run() {
-        if (take<std::int64_t>() != vdb_magic) fail("is no OpenVDB file");
+        if (take<std::int64_t>() != vdb_magic) fail("is not an OpenVDB file");
         if (const auto format = take<std::uint32_t>(); format != vdb_format)
             fail(fmt::format("is of OpenVDB's format {}, not {}", format, vdb_format));
         skip(2 * sizeof(std::uint32_t));  // version of the library
-        if (take<std::uint8_t>() != 0) fail("has places of grids in its header");
+        if (take<std::uint8_t>() != 0) fail("has grid offsets in its header");
         skip(36);  // identifier
         pass_metadata();
-        // A grid is three texts and three places at the least.
+        // A grid takes at least three strings and three offsets.
         const std::uint32_t grids = take_count(36, "grids");
         for (std::uint32_t n = 0; n < grids; ++n) pass_grid();
-        if (at_ != bytes_.size()) fail(fmt::format("goes on for {} bytes after its last grid", bytes_.size() - at_));
-        // What OpenVDB keeps of each node: its values, or a pointer per value.
+        if (at_ != bytes_.size()) fail(fmt::format("has {} bytes after its last grid", bytes_.size() - at_));
+        // Memory that OpenVDB allocates per node: its values, or a pointer per value.
         file::require_room(static_cast<double>(memory_), file_, "its grids");
     }
 
@@ -77,7 +77,7 @@ private:
     std::size_t left() const { return bytes_.size() - at_; }
 
     const char* pass(std::size_t size) {
-        if (size > left()) fail(fmt::format("ends {} bytes too early", size - left()));
+        if (size > left()) fail(fmt::format("is {} bytes too short", size - left()));
         const char* from = bytes_.data() + at_;
         at_ += size;
         return from;
@@ -92,7 +92,7 @@ private:
         return value;
     }
 
-    /// A count of things of at least `least` bytes each.
+    /// Reads a count of items that take at least `least` bytes each.
     std::uint32_t take_count(std::size_t least, std::string_view what) {
         const auto count = take<std::uint32_t>();
         if (count > left() / least) fail(fmt::format("claims {} {}, more than it can hold", count, what));
@@ -105,7 +105,7 @@ private:
     }
 
     void pass_metadata() {
-        // Bytes of the types that OpenVDB reads without looking at the length beside them.
+        // Sizes of the types that OpenVDB reads without checking the stated length.
         constexpr std::pair<std::string_view, std::uint32_t> fixed[] = {
             {"bool", 1},   {"int32", 4},  {"int64", 8},  {"float", 4},  {"double", 8}, {"vec2i", 8},   {"vec2s", 8},
             {"vec2d", 16}, {"vec3i", 12}, {"vec3s", 12}, {"vec3d", 24}, {"mat4s", 64}, {"mat4d", 128},
@@ -118,11 +118,11 @@ private:
             const auto* known = std::ranges::find(fixed, type, &std::pair<std::string_view, std::uint32_t>::first);
             const std::uint32_t size = take_count(1, "bytes of one entry");
             if (known != std::end(fixed) ? size != known->second : type != "string" && type != loading_hints)
-                fail(fmt::format("has metadata that are no known type of {} bytes", size));
+                fail(fmt::format("has metadata that are not a known type of {} bytes", size));
             if (type == "bool" && left() > 0 && static_cast<unsigned char>(bytes_[at_]) > 1)
                 fail("has a truth value other than 0 and 1");
-            // OpenVDB goes by this, whatever the grid's type says, and would find half as many bytes in each node.
-            if (is_half && (type != "bool" || left() == 0 || bytes_[at_] != 0)) fail("has numbers of 16 bits");
+            // This flag overrides the type of the grid: OpenVDB would then read half as many bytes per node.
+            if (is_half && (type != "bool" || left() == 0 || bytes_[at_] != 0)) fail("has 16-bit numbers");
             if (type == loading_hints) bytes_.replace(type_at, skipped.size(), skipped);
             skip(size);
         }
@@ -147,10 +147,10 @@ private:
 
     void pass_grid() {
         const std::string_view name = take_text();
-        if (!names_.emplace(name).second) fail("has two grids of one name");
-        if (take_text() != float_tree) fail(fmt::format("has a grid that is no {}", float_tree));
+        if (!names_.emplace(name).second) fail("has two grids with the same name");
+        if (take_text() != float_tree) fail(fmt::format("has a grid that is not a {}", float_tree));
         if (!take_text().empty()) fail("has a grid that shares the tree of another");
-        skip(3 * sizeof(std::int64_t));  // places in a file; a stream has none
+        skip(3 * sizeof(std::int64_t));  // offsets in the file; unused in a stream
         packing_ = take<std::uint32_t>();
         if ((packing_ & ~7u) != 0 || (packing_ & (zip | blosc)) == (zip | blosc))
             fail(fmt::format("has a grid of unknown compression {}", packing_));
@@ -174,8 +174,8 @@ private:
             std::array<std::int32_t, 3> place;
             for (std::int32_t& number : place) number = take<std::int32_t>();
             for (const std::int32_t number : place)
-                if (static_cast<std::uint32_t>(number) % upper_extent != 0) fail("has a node at no place of its own");
-            // OpenVDB reads values in the order of the places, and one place once.
+                if (static_cast<std::uint32_t>(number) % upper_extent != 0) fail("has a node at an invalid position");
+            // OpenVDB reads values in the order of their positions, each position once.
             if (last && place <= *last) fail("has nodes that are out of order");
             last = place;
             pass_upper();
@@ -188,7 +188,7 @@ private:
         return {reinterpret_cast<const unsigned char*>(pass(size)), size};
     }
 
-    /// Masks and values of an inner node; returns the number of its children.
+    /// Checks masks and values of an inner node; returns its number of children.
     std::size_t pass_inner(std::uint32_t side_bits) {
         const std::size_t children = take_mask(side_bits).count();
         if (take_mask(side_bits).count() != 0) fail("has an active tile");
@@ -206,9 +206,10 @@ private:
             }
     }
 
-    /// Values of a node of which `active` places are on.
+    /// Checks the values of a node that has `active` active positions.
     void pass_values(std::uint32_t side_bits, std::size_t active) {
-        // What stands for the places that are off (io/Compression.h): how many values, and whether a mask chooses.
+        // How inactive values are stored (OpenVDB io/Compression.h): their number, and whether a mask selects between
+        // two.
         constexpr std::uint8_t all_values = 6;
         constexpr std::array<std::size_t, all_values + 1> values{0, 0, 1, 0, 1, 2, 0};
         const auto kind = take<std::uint8_t>();
@@ -219,11 +220,11 @@ private:
         pass_chunk(sizeof(float) * (only_active ? active : values_in(side_bits)));
     }
 
-    /// A chunk that becomes `size` bytes.
+    /// Checks a chunk that unpacks to `size` bytes.
     void pass_chunk(std::size_t size) {
         if ((packing_ & (zip | blosc)) == 0) return skip(size);
         const auto stated = take<std::int64_t>();
-        if (stated <= 0) {  // not packed: its size, negative
+        if (stated <= 0) {  // a negative size means not packed
             if (stated != -static_cast<std::int64_t>(size))
                 fail(fmt::format("has a plain chunk of {} bytes where a node has {}", stated, size));
             return skip(size);
@@ -232,25 +233,26 @@ private:
             fail(fmt::format("has a packed chunk of {} bytes, more than it holds", stated));
         const std::string_view chunk(pass(static_cast<std::size_t>(stated)), static_cast<std::size_t>(stated));
         if ((packing_ & blosc) != 0) check_blosc(chunk, size);
-        // zlib stops at the end of both the chunk and the node, and OpenVDB compares what came out.
+        // zlib stops at the end of the chunk and of the node, and OpenVDB checks the unpacked size.
     }
 
-    /// Blosc looks up both sizes in the chunk: they must be those of the chunk and of the node.
+    /// Blosc reads both sizes from the chunk: they must match the chunk and the node.
     void check_blosc(std::string_view chunk, std::size_t size) const {
         constexpr std::size_t head = 16;
         constexpr std::uint8_t version = 2, lz4 = 1;
-        if (chunk.size() < head) fail("has a packed chunk without a head");
+        if (chunk.size() < head) fail("has a packed chunk without a header");
         const auto number = [&](std::size_t at) {
             std::uint32_t value;
             std::memcpy(&value, chunk.data() + at, sizeof value);
             return value;
         };
         const auto byte = [&](std::size_t at) { return static_cast<std::uint8_t>(chunk[at]); };
-        if (byte(0) != version || byte(2) >> 5 != lz4) fail("has a chunk packed in an unknown way");
+        if (byte(0) != version || byte(2) >> 5 != lz4) fail("has a chunk with an unknown packing");
         const std::uint32_t unpacked = number(4), block = number(8), packed = number(12);
         if (unpacked != size)
-            fail(fmt::format("has a chunk that becomes {} bytes where a node has {}", unpacked, size));
-        if (packed != chunk.size()) fail(fmt::format("has a chunk of {} bytes that says {}", chunk.size(), packed));
+            fail(fmt::format("has a chunk that unpacks to {} bytes where a node has {}", unpacked, size));
+        if (packed != chunk.size())
+            fail(fmt::format("has a chunk of {} bytes whose header states {}", chunk.size(), packed));
         if (size > 0 && (block == 0 || block > size)) fail("has a chunk with blocks larger than itself");
     }
 

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenVDB trusts the sizes and counts of a file; a bone's seal finds damage, but anyone can compute it anew.
+// Checks an OpenVDB file before OpenVDB reads it, because OpenVDB trusts the sizes and counts in a file. The seal of a
+// bone file detects damage, but not a hostile file, whose author can compute the seal.
 #pragma once
 
 #include <string>
 
 namespace tactus::bone {
 
-/// Follows what OpenVDB will read of a file without its seal: header, metadata, and per grid the topology and the values
-/// of each node. Every count must fit in what is left of the file, and every chunk must hold, packed or not, as many bytes
-/// as its node has values. Only what this program writes is let through: format 224, 32-bit float trees 5-4-3 without
-/// active tiles, one buffer, no grids that share a tree. Metadata that only serve to load a file piece by piece get a type
-/// that OpenVDB skips. `file` is for messages. Throws Error; NoRoom when the trees would not fit in memory.
+/// Parses the bytes before the seal as OpenVDB would: header, metadata, and for each grid the topology and the values
+/// of each node. Every count must fit in the rest of the file, and every chunk must unpack to the size of its node.
+/// Accepts only the subset that this program writes: format 224, 32-bit float trees 5-4-3 without active tiles, one
+/// buffer, no shared trees. Metadata for delayed loading get a type that OpenVDB skips. `file` is for messages. Throws
+/// Error; NoRoom when the trees would not fit in memory.
 void check_vdb(std::string& bytes, const std::string& file);
 
 }  // namespace tactus::bone

@@ -19,8 +19,8 @@ namespace tactus::cases {
 
 namespace {
 
-constexpr double slab = 4e-3;        // m: how far from the fracture its own shape is followed
-constexpr double least_share = 0.2;  // of a piece's volume on either side of its fracture
+constexpr double slab = 4e-3;        // m: thickness of the layer around the fracture that follows its relief
+constexpr double least_share = 0.2;  // smallest share of a piece's volume on each side of its fracture
 constexpr int attempts = 40;
 constexpr std::size_t least_samples = 500;
 
@@ -50,7 +50,7 @@ std::size_t samples_inside(const volume::Grid& solid) {
     return static_cast<std::size_t>(std::ranges::count_if(solid.values, [](float d) { return d < 0.0f; }));
 }
 
-/// The samples around what is inside, with three more on each side.
+/// The bounding box of the inside samples with a margin of three samples.
 volume::Grid cropped(const volume::Grid& solid) {
     std::array<int, 3> first = solid.size, last{-1, -1, -1};
     for (std::size_t n = 0; n < solid.values.size(); ++n) {
@@ -89,7 +89,7 @@ Vec3 any_normal_to(const Vec3& axis) {
     return glm::normalize(glm::cross(axis, other));
 }
 
-/// A rough surface through a point; negative behind it, in m to first order.
+/// Signed distance (m, to first order) to a rough surface through a point; negative behind it.
 struct Crack {
     Vec3 at, normal, u, v;
     RoughSurface rough;
@@ -101,12 +101,12 @@ struct Crack {
 };
 
 struct Split {
-    std::vector<float> side;  ///< per sample: distance to the crack, ±slab away from it, NaN outside the bone
-    std::vector<std::size_t> surface;  ///< samples inside next to the crack
+    std::vector<float> side;  ///< per sample: distance to the crack, clamped to ±slab; NaN outside the bone
+    std::vector<std::size_t> surface;  ///< inside samples next to the crack
 };
 
-/// Follows a crack through the piece from where it starts: another part of the piece that its plane meets stays whole.
-/// Nothing when the piece hangs together around the crack or one side is too small.
+/// Grows a crack through the piece from its start: other parts of the piece that its plane crosses stay whole. None
+/// when the crack does not separate the piece, or when one side is too small.
 std::optional<Split> follow(const volume::Grid& solid, const Crack& crack, std::size_t start, std::size_t inside) {
     const double step = std::max({solid.spacing.x, solid.spacing.y, solid.spacing.z}), band = 2.0 * step;
     constexpr std::uint8_t unseen = 0, near = 1, behind = 2;
@@ -125,7 +125,7 @@ std::optional<Split> follow(const volume::Grid& solid, const Crack& crack, std::
     }
     for (const std::size_t n : queue)
         if (std::abs(split.side[n]) < 0.6 * step && solid.values[n] < 0.0f) split.surface.push_back(n);
-    // From behind the crack as far as one can go without crossing it.
+    // Flood fill from behind the crack without crossing it.
     std::vector<std::size_t> flood;
     std::size_t volume = 0;
     for (const std::size_t n : queue)
@@ -160,10 +160,10 @@ std::optional<Split> follow(const volume::Grid& solid, const Crack& crack, std::
 struct Chip {
     Vec3 centre;
     double radius;
-    bool from_behind;  ///< which side loses it
+    bool from_behind;  ///< the side that loses the chip
 };
 
-/// Bites along the crack, each off one of its sides, until they cover the share.
+/// Chips along the crack, each off one of its sides, until they cover the wanted share.
 std::vector<Chip> chips_of(const volume::Grid& solid, const Split& split, const Crack& crack,
                            const BreakOptions& options, const Random& random) {
     std::vector<Chip> chips;
@@ -220,7 +220,8 @@ std::array<volume::Grid, 2> break_in_two(const volume::Grid& solid, const BreakO
     for (int attempt = 0; attempt < attempts; ++attempt) {
         const Random random{seed * 977 + static_cast<std::uint64_t>(attempt)};
         const auto rank = static_cast<std::size_t>((1.0 + random.uniform(0)) / 3.0 * static_cast<double>(along.size()));
-        // The point of the piece nearest to the wanted place along its axis, from a random one of its samples on.
+        // Start of a crack: the sample nearest to a chosen position along the axis; the search begins at a random
+        // sample.
         const std::size_t first = random.bits(1) % inside.size();
         std::size_t start = inside[first];
         double nearest = std::numeric_limits<double>::infinity();
@@ -234,7 +235,7 @@ std::array<volume::Grid, 2> break_in_two(const volume::Grid& solid, const BreakO
         const Vec3 normal = std::cos(lean) * axis + std::sin(lean) * to, u = any_normal_to(normal);
         const Crack crack{position(solid, start), normal, u, glm::cross(normal, u),
                           RoughSurface(options.roughness, random.bits(4))};
-        // The relief may put the start off the crack; it is moved along the normal to lie on it.
+        // The relief displaces the crack from the start; shift it along the normal so that it passes through the start.
         Crack through = crack;
         through.at += normal * (-crack.rough(0.0, 0.0));
         const auto split = follow(solid, through, start, inside.size());
@@ -242,21 +243,21 @@ std::array<volume::Grid, 2> break_in_two(const volume::Grid& solid, const BreakO
         const std::vector<Chip> chips = chips_of(solid, *split, through, options, random);
         return {side_of(solid, *split, true, chips, options.kerf), side_of(solid, *split, false, chips, options.kerf)};
     }
-    throw Error("the bone cannot be broken into so many pieces: one of them has no place to break; ask for fewer");
+    throw Error("the bone cannot be broken into that many pieces: no further piece can be broken; ask for fewer");
 }
 
 }  // namespace
 
 std::vector<volume::Grid> break_bone(const volume::Grid& distance, const BreakOptions& options) {
-    if (options.pieces < 2 || options.pieces > 200) throw Error("a bone breaks into 2 to 200 pieces");
-    if (!(options.chips >= 0.0 && options.chips <= 0.9)) throw Error("chips take 0 to 90 % of a fracture's area");
+    if (options.pieces < 2 || options.pieces > 200) throw Error("the number of pieces must be 2 to 200");
+    if (!(options.chips >= 0.0 && options.chips <= 0.9)) throw Error("chips must take 0 to 90 % of a fracture's area");
     if (!(options.kerf >= 0.0 && options.kerf < 5e-3)) throw Error("the kerf must be between 0 and 5 mm");
     if (!(options.roughness >= 0.0 && options.roughness < 5e-3))
         throw Error("the roughness must be between 0 and 5 mm");
     if (!(options.chip_depth > 0.0 && options.chip_depth < 10e-3))
         throw Error("chips must be between 0 and 10 mm deep");
     if (samples_inside(distance) < least_samples * static_cast<std::size_t>(options.pieces))
-        throw Error(fmt::format("the bone has {} samples inside, too few for {} pieces; make it finer",
+        throw Error(fmt::format("the bone has {} samples inside, too few for {} pieces; use smaller voxels",
                                 samples_inside(distance), options.pieces));
     std::vector<volume::Grid> pieces{cropped(distance)};
     while (pieces.size() < static_cast<std::size_t>(options.pieces)) {

@@ -35,7 +35,7 @@ FragmentBone fragment_bone(const PlanFragment& fragment, const std::filesystem::
     } catch (const Error& error) {
         const bool is_bone = bone::file_of_bone(fragment.file).extension() == ".vdb";
         throw Error(fmt::format("fragment '{}': {}{}", fragment.name, error.what(),
-                                is_bone ? "" : "; a plan also takes the .vdb that 'tactus import' makes of it"));
+                                is_bone ? "" : "; or convert it with 'tactus import' and use the .vdb"));
     }
     return loaded;
 }

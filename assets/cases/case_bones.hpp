@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A plan with the bones of its fragments: what a patch takes as one asset.
+// A plan together with the bones of its fragments. A patch loads it as one asset.
 #pragma once
 
 #include "assets/bone/bone.hpp"
@@ -11,30 +11,30 @@
 
 namespace tactus::cases {
 
-/// A bone file ("FILE.vdb#NAME" for one of several), or what import makes of a mesh or a CT. Throws Error.
+/// Loads a bone file ("FILE.vdb#NAME" for one of several), or imports a mesh or a CT. Throws Error.
 bone::Bone bone_from_file(const std::filesystem::path& path, const RunJobs& run = run_in_turn);
 
-/// Where no paint is filed, it may be proposed.
+/// When the file has no paint, paint is proposed.
 enum class Paint { as_filed, or_proposed };
 
 struct FragmentBone {
     bone::Bone bone;                 ///< with points
-    bool was_painted = false;  ///< in its file
+    bool was_painted = false;  ///< the paint comes from the file
 };
 
 /// The bone of a fragment. Throws Error naming the fragment.
 FragmentBone fragment_bone(const PlanFragment& fragment, const std::filesystem::path& folder, Paint paint,
                            const RunJobs& run = run_in_turn);
 
-/// Throws Error for the first file that is missing or is not the one that the plan was made with.
+/// Throws Error for the first file that is missing or has changed since the plan was made.
 void check_files(const CasePlan& plan, const std::filesystem::path& folder);
 
 struct CaseBones {
-    CasePlan plan;            ///< files as absolute paths, so that the plan can be saved elsewhere
-    std::vector<bone::Bone> bones;  ///< one per fragment, none without points; unpainted ones with a proposal
+    CasePlan plan;            ///< with absolute paths, so that it can be saved in another folder
+    std::vector<bone::Bone> bones;  ///< one per fragment, with points; unpainted bones get proposed paint
 };
 
-/// Reads a plan and its fragments. Throws Error as load_case_plan and check_files do, and for what import refuses.
+/// Reads a plan and its fragments. Throws Error like load_case_plan, check_files and import.
 CaseBones load_case(const std::filesystem::path& path);
 
 }  // namespace tactus::cases

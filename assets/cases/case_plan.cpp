@@ -43,16 +43,16 @@ int group_meant(const PlanStep& step, const PlanState& state) {
 }
 
 void place(const CasePlan& plan, const PlanStep& step, PlanState& state) {
-    if (step.poses.size() != step.fragments.size()) refuse(step, "has not one pose for each fragment");
+    if (step.poses.size() != step.fragments.size()) refuse(step, "does not have one pose per fragment");
     for (std::size_t n = 0; n < step.poses.size(); ++n) {
         const std::string& name = plan.fragments[static_cast<std::size_t>(step.fragments[n])].name;
-        if (!is_valid(step.poses[n])) refuse(step, fmt::format("the pose of '{}' is none", name));
+        if (!is_valid(step.poses[n])) refuse(step, fmt::format("the pose of '{}' is not valid", name));
         if (state.arrangement.is_locked(step.fragments[n])) refuse(step, fmt::format("'{}' is locked", name));
     }
     fit::Arrangement& a = state.arrangement;
     const auto fit_of = [&state](int fragment) -> auto& { return state.fits[static_cast<std::size_t>(fragment)]; };
     for (std::size_t n = 0; n < step.poses.size(); ++n) a.place(step.fragments[n], step.poses[n]);
-    // What was fitted to one that stays behind fits no more.
+    // A fit to a fragment that does not move along is no longer valid.
     for (const int fragment : step.fragments)
         if (std::ranges::find(step.fragments, a.fitted_to(fragment)) == step.fragments.end()) {
             a.fit(fragment, fit::Arrangement::none);
@@ -95,7 +95,7 @@ void apply(const CasePlan& plan, const PlanStep& step, PlanState& state) {
         case StepKind::group: {
             if (step.group.empty()) refuse(step, "the group has no name");
             if (state.find_group(step.group) != fit::Arrangement::none)
-                refuse(step, fmt::format("there is a group '{}' already", step.group));
+                refuse(step, fmt::format("the group '{}' exists already", step.group));
             const int made = a.join(step.fragments);
             if (made == fit::Arrangement::none) refuse(step, "these move together already");
             state.group_names[static_cast<std::size_t>(made)] = step.group;
@@ -144,7 +144,7 @@ PlanState as_scanned(const CasePlan& plan) {
 
 void visit_steps(const CasePlan& plan, const std::function<void(int, const PlanState&, const PlanState&)>& visit) {
     const std::vector<int> before = plan.before();
-    // Of each step, and of the start, which is number 0 here: what follows it at once, and how much does in all.
+    // Per step, with the start as number 0: its direct successors, and the number of all steps after it.
     std::vector<std::vector<int>> next(before.size() + 1);
     std::vector<std::size_t> following(before.size() + 1, 0);
     const auto slot = [](int step) { return static_cast<std::size_t>(step + 1); };
@@ -155,7 +155,7 @@ void visit_steps(const CasePlan& plan, const std::function<void(int, const PlanS
         int step;
     };
     std::vector<Open> open;
-    // The longest way is gone last, so that few states wait at any time, whatever the tree.
+    // The largest branch is visited last: then few states are stored at a time for every shape of tree.
     const auto reach = [&](const std::shared_ptr<const PlanState>& state, int at) {
         auto& steps = next[slot(at)];
         std::ranges::stable_sort(steps, std::ranges::greater{}, [&](int n) { return following[slot(n)]; });
@@ -169,7 +169,7 @@ void visit_steps(const CasePlan& plan, const std::function<void(int, const PlanS
         try {
             apply(plan, plan.steps[static_cast<std::size_t>(now.step)], *to);
         } catch (const Error& error) {
-            throw Error(fmt::format("cannot be followed to step {}: {}", now.step, error.message()));
+            throw Error(fmt::format("step {} cannot be applied: {}", now.step, error.message()));
         }
         visit(now.step, *now.from, *to);
         reach(to, now.step);
@@ -215,7 +215,7 @@ int find_fragment(const CasePlan& plan, std::string_view name) {
 PlanStep placing(const CasePlan& plan, int fragment, const Pose& pose, std::string_view by) {
     fit::Arrangement arrangement = state_of(plan).arrangement;
     const std::string& name = plan.fragments[static_cast<std::size_t>(fragment)].name;
-    if (!is_valid(pose)) throw Error(fmt::format("'{}' cannot be placed there: the pose is none", name));
+    if (!is_valid(pose)) throw Error(fmt::format("'{}' cannot be placed: the pose is not valid", name));
     if (!arrangement.move(fragment, pose))
         throw Error(fmt::format("'{}' cannot be moved: it, or one that is grouped with it, is locked", name));
     PlanStep step;
@@ -239,7 +239,7 @@ void add_fragment(CasePlan& plan, const std::string& name, const std::filesystem
                   const std::filesystem::path& folder, const Vec3& colour) {
     if (name.empty()) throw Error(fmt::format("{}: the fragment has no name", file.string()));
     if (std::ranges::find(plan.fragments, name, &PlanFragment::name) != plan.fragments.end())
-        throw Error(fmt::format("{}: there is a fragment '{}' already; give this one another name, as in NAME={}",
+        throw Error(fmt::format("{}: the plan has a fragment '{}' already; choose another name, as in NAME={}",
                                 file.string(), name, file.string()));
     Hash hash;
     file::add_file(hash, bone::file_of_bone(file));
@@ -262,7 +262,7 @@ std::vector<std::string> changed_files(const CasePlan& plan, const std::filesyst
             return;
         }
         if (now.value() != hash)
-            problems.push_back(fmt::format("{}: its file {} is not the one that the plan was made with", what,
+            problems.push_back(fmt::format("{}: its file {} has changed since the plan was made", what,
                                            file_of(file, folder).string()));
     };
     for (const PlanFragment& fragment : plan.fragments)

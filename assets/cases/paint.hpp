@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which points of a fragment lie on its fracture, when the unbroken bone is known.
+// Labels the fracture points of a fragment when the unbroken bone is known.
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
@@ -10,8 +10,8 @@
 
 namespace tactus::cases {
 
-/// Labels the points that lie inside of the unbroken bone by more than 0.3 mm, and those within `spill` of
-/// them (m: paint beyond the rim). `into_bone` takes the points' frame to the bone's. Returns how many are labelled.
+/// Labels the points deeper than 0.3 mm inside the unbroken bone, and those within `spill` of them (m: paint beyond the
+/// rim). `into_bone` maps the points' frame to the bone's. Returns the number of labelled points.
 std::size_t paint_fracture(std::span<contact::SurfacePoint> points, const contact::Voxmap& bone, const Pose& into_bone,
                            double spill = 0.0);
 

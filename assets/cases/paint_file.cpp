@@ -23,8 +23,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double stroke_radius = 0.9e-3;  // m
-constexpr double rounding = 2e-6;  // m, more than what is lost of a place and a radius in the file
-constexpr double rim_share = 0.7;  // of the way to the next bare point: the rim lies about half way
+constexpr double rounding = 2e-6;  // m, more than the rounding of a position and a radius in the file
+constexpr double rim_share = 0.7;  // of the distance to the next unpainted point: the rim lies about half way
 
 struct Stroke {
     Vec3 place{0.0};
@@ -43,19 +43,19 @@ double radius_of(const Json& millimetres, const std::string& file, const char* w
 std::vector<Stroke> strokes_of(const Json& json, const char* key, double radius, const std::string& file) {
     std::vector<Stroke> strokes;
     if (!json.contains(key)) return strokes;
-    if (!json[key].is_array()) throw Error(fmt::format("{}: '{}' is no list of places", file, key));
+    if (!json[key].is_array()) throw Error(fmt::format("{}: '{}' is not a list of positions", file, key));
     for (const Json& at : json[key]) {
         if (!at.is_array() || (at.size() != 3 && at.size() != 4) ||
             !std::ranges::all_of(at, [](const Json& x) { return x.is_number(); }))
             throw Error(
-                fmt::format("{}: a stroke of '{}' is no list of three numbers, or four with its radius", file, key));
+                fmt::format("{}: a stroke of '{}' is not a list of three numbers, or four with its radius", file, key));
         strokes.push_back({1e-3 * Vec3(at[0].get<double>(), at[1].get<double>(), at[2].get<double>()),
                            at.size() == 4 ? radius_of(at[3], file, "the radius of a stroke") : radius});
     }
     return strokes;
 }
 
-/// Strokes that meet every painted point and no other one. The rim of the paint takes smaller ones than its middle.
+/// Strokes that cover exactly the painted points. Strokes at the rim are smaller than in the middle.
 std::vector<Stroke> covering_strokes(std::span<const contact::SurfacePoint> points) {
     std::vector<contact::SurfacePoint> painted;
     std::vector<Vec3> bare;
@@ -75,7 +75,7 @@ std::vector<Stroke> covering_strokes(std::span<const contact::SurfacePoint> poin
     std::vector<char> covered(painted.size(), 0);
     for (const std::size_t n : widest_first) {
         if (covered[n]) continue;
-        // They overlap, so that a surface with other points is painted without holes.
+        // Strokes overlap, so that they also paint another sampling of the surface without holes.
         neighbours.around(n, [&](std::size_t m) {
             covered[m] |= m == n || glm::length(painted[m].position - all[n].place) < 0.9 * all[n].radius - rounding;
         });

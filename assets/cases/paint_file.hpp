@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Paint on a surface as strokes of a brush, in a file that people can correct.
+// Paint on a surface as brush strokes, in a file that can be edited by hand.
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
@@ -12,23 +12,23 @@
 
 namespace tactus::cases {
 
-/// Reads {"radius_mm": r, "paint": [[x, y, z], ...], "erase": [[x, y, z], ...]} and labels the points within the
-/// radius of a stroke as fracture; those within it of an erasing stroke are none then. A stroke [x, y, z, r] has a radius
-/// of its own. Labels that no stroke meets are taken off unless `keep`. Throws Error.
+/// Reads {"radius_mm": r, "paint": [[x, y, z], ...], "erase": [[x, y, z], ...]}. Points within the radius of a paint
+/// stroke become fracture, then points within the radius of an erase stroke are unlabelled. A stroke [x, y, z, r] has
+/// its own radius. Other labels are removed unless `keep`. Throws Error.
 void paint_from_file(std::span<contact::SurfacePoint> points, const std::filesystem::path& path, bool keep = false);
 
-/// The same of a file's text; `file` is its name in messages.
+/// The same from the text of a file; `file` is its name in messages.
 void paint_from_text(std::span<contact::SurfacePoint> points, std::string_view text, const std::string& file,
                      bool keep = false);
 
-/// A painted face, for people: m.
+/// Summary of a painted face, m.
 struct PaintedFace {
     std::size_t points = 0;
     double area = 0.0;
     Vec3 middle{0.0}, normal{0.0};
 };
 
-/// Writes the paint of a surface as such a file, with the faces it falls into beside. Read back onto the same surface it
+/// Writes the paint of a surface as such a file, with a summary of its faces. Reading it back onto the same surface
 /// paints the same points. Throws Error.
 std::vector<PaintedFace> write_paint_file(std::span<const contact::SurfacePoint> points, const std::string& bone,
                                           const std::filesystem::path& path);

@@ -68,17 +68,17 @@ Json json_of(const CasePlan& plan, const PlanStep& step) {
     return json;
 }
 
-/// One line, as names and paths are.
+/// A text without line breaks, as names and paths must be.
 bool is_plain(const std::string& text) {
     return std::ranges::none_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x20; });
 }
 
-/// One object of the file, read with its place in it: "steps[3].poses[0]".
+/// A JSON object with its position in the file, such as "steps[3].poses[0]", for messages.
 class Item {
 public:
     Item(const Json& json, std::string where, const std::string& file)
         : json_(json), where_(std::move(where)), file_(file) {
-        if (!json.is_object()) fail("is no object");
+        if (!json.is_object()) fail("is not an object");
     }
 
     [[noreturn]] void fail(const std::string& what) const {
@@ -93,12 +93,12 @@ public:
     std::string text(const char* key) const {
         const Json& value = at(key);
         if (!value.is_string() || !is_plain(value.get_ref<const std::string&>()))
-            fail(fmt::format("has a '{}' that is no plain text", key));
+            fail(fmt::format("has a '{}' that is not a one-line text", key));
         return value.get<std::string>();
     }
     double number(const char* key) const { return number(at(key), key); }
     double number(const Json& value, const char* key) const {
-        if (!value.is_number()) fail(fmt::format("has a '{}' that is no number", key));
+        if (!value.is_number()) fail(fmt::format("has a '{}' that is not a number", key));
         const double number = value.get<double>();
         if (!std::isfinite(number)) fail(fmt::format("has a '{}' that is not finite", key));
         return number;
@@ -107,18 +107,18 @@ public:
         const Json& value = at(key);
         if (!value.is_number_integer() || value.get<std::int64_t>() < -1 ||
             value.get<std::int64_t>() >= static_cast<std::int64_t>(count))
-            fail(fmt::format("has a '{}' that is no step before it", key));
+            fail(fmt::format("has a '{}' that is not an earlier step", key));
         return static_cast<int>(value.get<std::int64_t>());
     }
     const Json& list(const char* key) const {
         const Json& value = at(key);
-        if (!value.is_array()) fail(fmt::format("has a '{}' that is no list", key));
+        if (!value.is_array()) fail(fmt::format("has a '{}' that is not a list", key));
         return value;
     }
     std::vector<double> numbers(const char* key, std::size_t count) const {
         std::vector<double> numbers;
         for (const Json& value : list(key)) numbers.push_back(number(value, key));
-        if (numbers.size() != count) fail(fmt::format("has a '{}' that has not {} numbers", key, count));
+        if (numbers.size() != count) fail(fmt::format("has a '{}' that does not have {} numbers", key, count));
         return numbers;
     }
     Vec3 vector(const char* key) const {
@@ -128,7 +128,7 @@ public:
     std::uint64_t hash(const char* key) const {
         const std::string digits = text(key);
         if (digits.size() != 16 || digits.find_first_not_of("0123456789abcdef") != std::string::npos)
-            fail(fmt::format("has a '{}' that is no hash", key));
+            fail(fmt::format("has a '{}' that is not a hash", key));
         return std::stoull(digits, nullptr, 16);
     }
     Item item(const char* key) const { return {at(key), inside(key), file_}; }
@@ -138,7 +138,7 @@ public:
     Pose pose() const {
         const auto q = numbers("quaternion_wxyz", 4);
         const Pose pose{vector("position_m"), {q[0], q[1], q[2], q[3]}};
-        if (!is_valid(pose)) fail("is no pose: its quaternion has not unit length");
+        if (!is_valid(pose)) fail("is not a pose: its quaternion does not have unit length");
         return pose;
     }
 
@@ -157,7 +157,7 @@ PlanFit read_fit(const Item& item) {
 
 MirrorTarget read_mirror(const Item& item) {
     const Vec3 normal = item.vector("plane_normal");
-    if (!(std::abs(glm::length(normal) - 1.0) < 1e-6)) item.fail("has a 'plane_normal' that has not unit length");
+    if (!(std::abs(glm::length(normal) - 1.0) < 1e-6)) item.fail("has a 'plane_normal' that does not have unit length");
     return {item.text("file"),        item.hash("hash"),        normal, item.number("plane_offset_m"),
             item.item("pose").pose(), item.number("residual_m")};
 }
@@ -166,7 +166,7 @@ StepKind read_kind(const Item& item) {
     const std::string name = item.text("kind");
     for (int n = 0; n <= static_cast<int>(StepKind::mirror); ++n)
         if (name == name_of(static_cast<StepKind>(n))) return static_cast<StepKind>(n);
-    item.fail(fmt::format("is of a kind '{}' that is not known", name));
+    item.fail(fmt::format("has the unknown kind '{}'", name));
 }
 
 PlanStep read_step(const CasePlan& plan, const Item& item) {
@@ -180,7 +180,7 @@ PlanStep read_step(const CasePlan& plan, const Item& item) {
     if (item.has("fragments"))
         for (const Json& name : item.list("fragments")) {
             if (!name.is_string() || !is_plain(name.get_ref<const std::string&>()))
-                item.fail("has a 'fragments' with something that is no name");
+                item.fail("has a 'fragments' list with an element that is not a name");
             try {
                 step.fragments.push_back(find_fragment(plan, name.get<std::string>()));
             } catch (const Error& error) {
@@ -231,13 +231,13 @@ void read_alternatives(CasePlan& plan, const Item& top) {
             }))
             item.fail(fmt::format("has the name '{}', which is empty or taken", alternative.name));
         if (!fit::is_on_way(before, alternative.place.head, alternative.place.tip))
-            item.fail("has a head that is not on the way to its tip");
+            item.fail("has a head that is not on the path to its tip");
         plan.alternatives.push_back(std::move(alternative));
     }
     const std::string current = top.text("current");
     const auto found = std::ranges::find(plan.alternatives, current, &PlanAlternative::name);
     if (found == plan.alternatives.end())
-        top.fail(fmt::format("has '{}' as current alternative, which is none", current));
+        top.fail(fmt::format("has the current alternative '{}', which does not exist", current));
     plan.current = static_cast<int>(found - plan.alternatives.begin());
 }
 
@@ -245,13 +245,12 @@ Json parsed(std::string_view text, const std::string& file) {
     try {
         return Json::parse(text);
     } catch (const Json::parse_error& error) {
-        // The parser counts bytes from 1 and names the one after the text when that ends too early.
+        // The parser counts bytes from 1 and reports the byte after the text when the text ends too early.
         const bool cut = error.byte > text.size();
-        throw Error(fmt::format("{}: {} at byte {} of {}; {}", file, cut ? "the plan ends in the middle" : "no JSON",
-                                error.byte, text.size(),
-                                cut ? "was it copied incompletely? Take the whole file" : "a plan is a JSON file"));
+        throw Error(fmt::format("{}: {} at byte {} of {}; {}", file, cut ? "the plan is cut short" : "not JSON",
+                                error.byte, text.size(), cut ? "copy the whole file again" : "a plan is a JSON file"));
     } catch (const Json::exception&) {
-        throw Error(fmt::format("{}: holds a number that is out of all range", file));
+        throw Error(fmt::format("{}: a number is out of range", file));
     }
 }
 
@@ -281,10 +280,10 @@ CasePlan read_plan_text(std::string_view text, const std::string& file) {
     const Json json = parsed(text, file);
     const Item top(json, "", file);
     if (!top.has("format") || json["format"] != format_name)
-        throw Error(fmt::format("{}: is no plan; a plan says \"format\": \"{}\"", file, format_name));
+        throw Error(fmt::format("{}: is not a plan; a plan says \"format\": \"{}\"", file, format_name));
     if (const Json& version = top.at("version"); version != plan_file_version)
-        throw Error(fmt::format("{}: is a plan of version {}; this program reads version {}; nothing was changed", file,
-                                version.dump(), plan_file_version));
+        throw Error(fmt::format("{}: the plan has version {}, but this program reads version {}; nothing was changed",
+                                file, version.dump(), plan_file_version));
     if (top.text("frame") != "LPS" || top.text("unit") != "m") top.fail("must have frame \"LPS\" and unit \"m\"");
     CasePlan plan;
     plan.title = top.text("title");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plans on disk: JSON, numbers so that reading gives the same bits.
+// Plan files: JSON, with numbers that read back to the same bits.
 #pragma once
 
 #include "assets/cases/case_plan.hpp"
@@ -12,25 +12,23 @@ namespace tactus::cases {
 
 inline constexpr int plan_file_version = 1;
 
-/// The text of a plan file. Lengths are m, quaternions w x y z; every number is written with as many digits as its bits
-/// need.
+/// The text of a plan file. Lengths in m, quaternions w x y z; numbers have as many digits as an exact round trip
+/// needs.
 std::string plan_text(const CasePlan& plan);
 
-/// A plan from its text; `file` is its name in messages. Throws Error, saying where, for text that is no plan, that
-/// ends in
-/// the middle, of another version, with two fragments of one name, steps that follow none or cannot be applied, and
-/// poses that are none.
+/// Parses a plan; `file` is its name in messages. Throws Error with the position for text that is not a plan, is cut
+/// short, has another version, duplicate fragment names, steps without predecessor or that cannot be applied, or
+/// invalid poses.
 CasePlan read_plan_text(std::string_view text, const std::string& file);
 
-/// Reads a plan file. Throws Error as above. A plan that was being written when the machine failed is the last whole
-/// one.
+/// Reads a plan file. Throws Error as above. After a crash during a save, the file holds the last complete plan.
 CasePlan load_case_plan(const std::filesystem::path& path);
 
-/// Writes beside, makes sure of the disk, and renames: after a crash the file is the old plan or the new one. Throws
+/// Writes a temporary file, syncs it to disk and renames it: after a crash the file is the old or the new plan. Throws
 /// Error.
 void save_case_plan(const CasePlan& plan, const std::filesystem::path& path);
 
-/// Now, as "2026-01-31T12:34:56.789Z".
+/// The current time as "2026-01-31T12:34:56.789Z".
 std::string time_of_day();
 
 }  // namespace tactus::cases

@@ -16,14 +16,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Whether `text` is a plan all of whose steps `plan` has too.
+/// True when `text` is a plan and `plan` contains all of its steps.
 bool is_continued(const std::string& text, const CasePlan& plan) {
     try {
         CasePlan old = read_plan_text(text, "old");
         if (old.steps.size() > plan.steps.size()) return false;
         CasePlan begun = plan;
         begun.steps.resize(old.steps.size());
-        // Only steps and fragments matter: files may be named from another folder, and heads stand where they like.
+        // Compares steps and fragments only; paths and heads may differ.
         const auto bare = [](CasePlan& p) {
             p.title.clear();
             p.alternatives = {{"main", {}}};
@@ -54,8 +54,7 @@ void PlanKeeper::move_old_aside() {
         if (fs::exists(aside, failure)) continue;
         fs::rename(file_, aside, failure);
         if (failure)
-            throw Error(
-                fmt::format("{}: the plan that is there cannot be moved aside: {}", file_.string(), failure.message()));
+            throw Error(fmt::format("{}: the existing plan cannot be renamed: {}", file_.string(), failure.message()));
         return;
     }
 }
@@ -85,7 +84,7 @@ void PlanKeeper::finish() {
         } catch (const Error& another) {
             throw Error(fmt::format("{}; {}", error.message(), another.message()));
         }
-        throw Error(fmt::format("{}; the plan with all of its steps is in {}", error.message(), spare.string()));
+        throw Error(fmt::format("{}; the complete plan was saved to {}", error.message(), spare.string()));
     }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plan of a run on disk: every step soon after it was done.
+// Keeps the plan file of a run up to date.
 #pragma once
 
 #include "assets/cases/plan_lock.hpp"
@@ -13,21 +13,21 @@
 
 namespace tactus::cases {
 
-/// Adds the steps of a run to a plan file. What the file held before is moved aside when the run does not continue it:
-/// "case.plan.json.1", the next free number.
+/// Adds the steps of a run to a plan file. When the run does not continue the existing plan, the old file is renamed to
+/// "case.plan.json.1", or the next free number.
 class PlanKeeper {
 public:
-    /// Writes the plan as the run finds it. Throws Error when that is not possible, before anything was done.
+    /// Writes the plan at the start of the run. Throws Error when it cannot be written.
     PlanKeeper(CasePlan plan, std::filesystem::path file);
 
     void add(const StepRow& row, double second);
-    /// The file holds all steps when it returns, or what it held before; throws Error then, and may be called again.
+    /// Saves all steps. On failure the file keeps its content and Error is thrown; it may be called again.
     void save();
-    /// The last `save`. When there is still no room for the file, the plan goes to the folder of temporary files and the
-    /// Error says where.
+    /// The last `save`. If the file still cannot be written, the plan is saved to the temporary folder and the Error
+    /// names the path.
     void finish();
 
-    /// What was no step of the plan and was left out; empty: nothing.
+    /// Rows that were not valid steps and were left out; empty: none.
     const std::string& trouble() const { return trouble_; }
 
 private:

@@ -19,7 +19,7 @@ namespace {
 
 constexpr useconds_t pause_us = 20'000;
 
-/// Whoever held the lock before may have taken its file away.
+/// The previous holder of the lock may have removed its file.
 bool is_still_there(int handle, const std::filesystem::path& file) {
     struct stat held{}, named{};
     return ::fstat(handle, &held) == 0 && ::stat(file.c_str(), &named) == 0 && held.st_dev == named.st_dev &&
@@ -40,7 +40,7 @@ PlanLock::PlanLock(const std::filesystem::path& plan, std::chrono::milliseconds 
         ::close(handle_);
         if (std::chrono::steady_clock::now() > until)
             throw Error(
-                fmt::format("{}: another program is changing this plan, a run or another 'tactus plan'; nothing was "
+                fmt::format("{}: another program (a run or another 'tactus plan') is changing this plan; nothing was "
                             "changed, try again when it has ended",
                             plan.string()));
         ::usleep(pause_us);

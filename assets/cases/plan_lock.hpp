@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One program at a time changes a plan.
+// A lock: one program at a time changes a plan.
 #pragma once
 
 #include <chrono>
@@ -7,11 +7,11 @@
 
 namespace tactus::cases {
 
-/// Held from reading a plan to writing it, or for as long as a run adds to it. A file beside the plan, ".NAME.lock",
-/// stands for it; the system lets go of it when its holder dies, however that was.
+/// Held from reading a plan to writing it, or during a run that adds to it. Locks the file ".NAME.lock" beside the
+/// plan; the system releases it when the holder dies.
 class PlanLock {
 public:
-    /// Waits so long for others. Throws Error when they take longer, and when the folder cannot be written to.
+    /// Waits for other holders up to a limit. Throws Error after that, and when the folder is not writable.
     explicit PlanLock(const std::filesystem::path& plan, std::chrono::milliseconds patience = std::chrono::seconds(5));
     ~PlanLock();
     PlanLock(const PlanLock&) = delete;

@@ -15,7 +15,7 @@ namespace tactus::cases {
 
 namespace {
 
-/// Mean of 1 − cos between a point's normal and those nearby.
+/// Roughness: mean of 1 − cos of the angle between a point's normal and the normals nearby.
 std::vector<double> roughness_of(std::span<const contact::SurfacePoint> points, double near) {
     const geometry::Neighbours neighbours(points, near);
     std::vector<double> rough(points.size());
@@ -30,7 +30,7 @@ std::vector<double> roughness_of(std::span<const contact::SurfacePoint> points, 
     return rough;
 }
 
-/// Labels the patches of what is broken that hang together and are large enough, and nothing else.
+/// Labels the connected patches of broken points that are large enough, and nothing else.
 std::size_t label_patches(std::span<contact::SurfacePoint> points, const std::vector<std::uint8_t>& broken, double near,
                           double least_area) {
     for (contact::SurfacePoint& p : points) p.label = contact::surface_label::none;
@@ -53,7 +53,7 @@ geometry::PointTree tree_of(std::span<const contact::SurfacePoint> other) {
     return geometry::PointTree(places);
 }
 
-/// m: points of one patch are no farther apart.
+/// m: greatest distance between neighbours in one patch.
 double patch_gap(std::span<const contact::SurfacePoint> points) {
     double largest = 0.0;
     for (const contact::SurfacePoint& p : points) largest = std::max(largest, p.area);
@@ -68,7 +68,7 @@ std::size_t propose_fracture(std::span<contact::SurfacePoint> points, const Prop
     std::vector<std::uint8_t> broken(points.size(), 0);
     std::vector<double> nearby;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        // The median keeps a sharp rim, which is rough along a line only, from spreading.
+        // A median, because a sharp rim is rough along a line only and would spread in a mean.
         nearby.clear();
         neighbours.around(i, [&](std::size_t j) {
             if (glm::dot(points[i].normal, points[j].normal) > 0.0) nearby.push_back(rough[j]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A first guess of where a fragment is broken, to be corrected by hand.
+// Proposes the fracture surface of a fragment, for correction by hand.
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
@@ -11,45 +11,45 @@
 namespace tactus::cases {
 
 struct ProposalOptions {
-    double near = 1.5e-3;      ///< m: how far the roughness of a place is looked at
-    double smooth = 3.0e-3;    ///< m: neighbours this far away vote on it
-    double roughness = 0.06;   ///< mean of 1 − cos of the angle between normals nearby, above which it is broken
+    double near = 1.5e-3;      ///< m: radius for the roughness of a point
+    double smooth = 3.0e-3;    ///< m: radius for the median over neighbours
+    double roughness = 0.06;   ///< threshold of roughness (mean of 1 − cos of the angle between normals)
     double least_area = 20e-6;  ///< m², smaller patches are left out
 };
 
-/// Labels the points of rough patches: broken bone is rougher within a millimetre or two than grown bone, which bends
-/// over centimetres. Teeth, sutures and sharp rims are rough as well. Other labels are taken off. Returns how many
-/// points are labelled.
+/// Labels rough patches: broken bone is rougher at the scale of 1 to 2 mm than natural bone surface, which curves over
+/// centimetres. Teeth, sutures and sharp rims are rough as well. Removes other labels. Returns the number of labelled
+/// points.
 std::size_t propose_fracture(std::span<contact::SurfacePoint> points, const ProposalOptions& options = {});
 
 struct FacingOptions {
-    double reach = 10e-3;      ///< m: how far the other fragment may be, as they lie in the scan
+    double reach = 10e-3;      ///< m: greatest distance to the other fragment, as scanned
     double least_area = 20e-6;  ///< m², smaller patches are left out
 };
 
-/// Labels the points that look at another fragment which looks back at them: fragments of one scan were not moved far, and
-/// grown bone rarely faces grown bone so near. For smooth or coarse scans, where broken bone is no rougher than the rest.
-/// Other labels are taken off. Returns how many points are labelled. Throws Error when `other` has no points.
+/// Labels the points that face points of another fragment at a small distance: fragments in one scan are not far from
+/// their place, and natural surfaces rarely face each other that closely. For smooth or coarse scans, where roughness
+/// does not show the fracture. Removes other labels. Returns the number of labelled points. Throws Error when `other`
+/// has no points.
 std::size_t propose_facing(std::span<contact::SurfacePoint> points, std::span<const contact::SurfacePoint> other,
                            const FacingOptions& options = {});
 
 struct IntactOptions {
-    double deep = 2e-3;  ///< m: what lies deeper in the unbroken bone is broken
-    double askew = 0.7e-3;  ///< m: and what lies deeper than this and does not look the way its surface does,
-    double looks_along = 0.3;  ///< by the cosine between their normals
-    double smooth = 3e-3;  ///< m: neighbours this far away vote on it
+    double deep = 2e-3;  ///< m: points deeper in the unbroken bone are broken
+    double askew = 0.7e-3;  ///< m: so are points deeper than this whose normal differs from the bone's,
+    double looks_along = 0.3;  ///< when the cosine between the normals is below this
+    double smooth = 3e-3;  ///< m: radius for the median over neighbours
     double least_area = 50e-6;  ///< m², smaller patches are left out
 };
 
-/// Labels the points that lie well within the unbroken bone: the healthy side mirrored, or an earlier scan, laid where
-/// the fragment belongs. `place` takes the points there. Finds broken bone however smooth it is and wherever it lies,
-/// and what differs between the sides of a body as well. Other labels are taken off. Returns how many points are
-/// labelled.
+/// Labels the points well inside the unbroken bone (the mirrored healthy side, or an earlier scan) registered to the
+/// fragment; `place` maps the points into it. Independent of roughness and distance, but also labels differences
+/// between the sides of the body. Removes other labels. Returns the number of labelled points.
 std::size_t propose_inside(std::span<contact::SurfacePoint> points, const fit::RegistrationTarget& intact,
                            const Pose& place, const IntactOptions& options = {});
 
-/// Takes the label off patches that nowhere come within `reach` (m) of the other fragment's points, as they lie in the
-/// scan. Returns how many points stay labelled. Throws Error when `other` has no points.
+/// Removes the label of patches that have no point within `reach` (m) of the other fragment, as scanned. Returns the
+/// number of points that stay labelled. Throws Error when `other` has no points.
 std::size_t keep_patches_near(std::span<contact::SurfacePoint> points, std::span<const contact::SurfacePoint> other,
                               double reach);
 

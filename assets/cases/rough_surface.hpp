@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The relief of a broken surface about its plane.
+// A simulated fracture surface: its relief about a plane.
 #pragma once
 
 #include "dsp/core/random.hpp"
@@ -10,7 +10,8 @@
 
 namespace tactus::cases {
 
-/// Waves in random directions of the plane, from 9 mm down to 1.5 mm long, shorter ones lower: smooth and rough alike.
+/// A sum of sine waves in random directions, with wavelengths from 9 to 1.5 mm and smaller amplitudes for shorter
+/// waves.
 class RoughSurface {
 public:
     /// `roughness`: root mean square height, m.
@@ -27,7 +28,7 @@ public:
         }
         for (Wave& wave : wave_) wave.height *= roughness / std::sqrt(power);
     }
-    /// Height over the place (y, z) of the plane, all in m.
+    /// Height at (y, z) of the plane, m.
     double operator()(double y, double z) const {
         double height = 0.0;
         for (const Wave& wave : wave_) height += wave.height * std::sin(wave.y * y + wave.z * z + wave.phase);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double room = 5e-3;
 
-/// Samples around what is inside of the solid once it is moved.
+/// Grid around the moved solid.
 volume::Grid layout_of(const volume::Grid& solid, const Pose& placement, const Vec3& voxel) {
     Vec3 low(std::numeric_limits<double>::infinity()), high(-low);
     for (int k = 0; k < solid.size[2]; ++k)
@@ -39,7 +39,7 @@ volume::Grid layout_of(const volume::Grid& solid, const Pose& placement, const V
     return layout;
 }
 
-/// Gaussian along one axis, border repeated.
+/// Gaussian filter along one axis; the border value is repeated.
 void blur_along(volume::Grid& grid, int axis, double sigma_samples) {
     const int reach = static_cast<int>(std::ceil(3.0 * sigma_samples));
     if (!(sigma_samples > 0.05)) return;
@@ -86,7 +86,7 @@ volume::Grid scan_solid(const volume::Grid& solid, const Pose& placement, const 
         for (int j = 0; j < grey.size[1]; ++j)
             for (int i = 0; i < grey.size[0]; ++i) {
                 const volume::Sample here = map.sample(back.position + turn * grey.position(i, j, k));
-                // The share of the voxel that bone fills.
+                // Partial volume: the share of the voxel that is bone.
                 const double share = here.inside ? std::clamp(0.5 - here.value / edge, 0.0, 1.0) : 0.0;
                 grey.values.push_back(static_cast<float>(share));
             }

@@ -17,11 +17,11 @@ const std::array<std::string_view, step_row_columns> step_row_names{
 
 namespace {
 
-constexpr double most_lost = 1000.0;  // steps that never came
+constexpr double most_lost = 1000.0;  // lost steps tolerated before a row counts as invalid
 
 int whole(double value, double low, double high, const char* what) {
     if (!(value >= low && value <= high) || value != std::floor(value))
-        throw Error(fmt::format("steps of the run: {} is no {}", value, what));
+        throw Error(fmt::format("steps of the run: {} is not a valid {}", value, what));
     return static_cast<int>(value);
 }
 
@@ -68,7 +68,7 @@ int RunSteps::head_of(double number, std::size_t count) const {
 
 void RunSteps::go(int head) {
     if (head == plan_.place().head) return;
-    // What could be redone still can, when the new place lies on the way there.
+    // Redo stays possible when the new position lies on the path to the tip.
     const auto before = plan_.before();
     const int tip = fit::is_on_way(before, head, plan_.place().tip) ? plan_.place().tip : head;
     state_ = state_of(plan_, head);
@@ -76,7 +76,7 @@ void RunSteps::go(int head) {
 }
 
 void RunSteps::finish_step(double second) {
-    // What follows a step that is left out follows the one before it.
+    // Successors of a step that is left out follow its predecessor.
     numbers_.push_back(plan_.place().head);
     go(head_of(rows_.front().after, numbers_.size() - 1));
     numbers_.back() = plan_.place().head;
@@ -85,7 +85,7 @@ void RunSteps::finish_step(double second) {
 }
 
 void RunSteps::add(const StepRow& row, double second) {
-    // A step of which a row was lost is none.
+    // A step with a lost row is dropped.
     if (!rows_.empty() && (row.step != rows_.back().step || row.left != rows_.back().left - 1.0)) rows_.clear();
     if (row.kind == row_goes_to) return go(head_of(row.after, numbers_.size()));
     const auto next = static_cast<double>(numbers_.size());

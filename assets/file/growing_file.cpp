@@ -25,7 +25,7 @@ GrowingFile::GrowingFile(const std::filesystem::path& path, std::filesystem::pat
     : shown_(shown.empty() ? path : std::move(shown)),
       handle_(::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666)) {
     if (handle_ < 0) fail(errno);
-    // Emptied only by the one that has it. Other failures: a file system without locks.
+    // Truncated only after the lock is held. Other failures mean a file system without locks.
     if (::flock(handle_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
         ::close(handle_);
         throw Error(fmt::format("{}: another program writes to this file; choose another name", shown_.string()));
@@ -41,7 +41,7 @@ GrowingFile::~GrowingFile() {
     try {
         close();
     } catch (const Error&) {
-        // Whoever wants to know closes it.
+        // The destructor ignores failures; call close() to see them.
     }
 }
 
@@ -72,7 +72,7 @@ void GrowingFile::flush() {
         const int code = count < 0 ? errno : EIO;
         const auto cut = std::ranges::upper_bound(ends_, written);
         if (cut != ends_.begin()) size_ += static_cast<std::int64_t>(*(cut - 1));
-        // Should that fail as well, a part of a record stands at the end; readers of what a crash left know that.
+        // If truncation fails as well, the file ends with a partial record, which readers of crashed runs accept.
         while (::ftruncate(handle_, size_) != 0 && errno == EINTR) {
         }
         fail(code);
@@ -91,7 +91,7 @@ void GrowingFile::close() {
         shut();
         throw;
     }
-    // Network disks say only now that there was no room.
+    // Network file systems may report a full disk only on close.
     if (!shut() && !has_failed_) fail(errno);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file that grows by whole records. When the disk is full it ends with the last record that found room.
+// An append-only file of whole records. On a full disk it ends with the last complete record.
 #pragma once
 
 #include <cstddef>
@@ -13,19 +13,20 @@ namespace tactus::file {
 
 class GrowingFile {
 public:
-    /// Empties or makes `path`. Messages name `shown`. Throws Error.
+    /// Creates or truncates `path`. Messages name `shown`. Throws Error.
     explicit GrowingFile(const std::filesystem::path& path, std::filesystem::path shown = {});
-    /// Closes; records that still wait are written where that is possible.
+    /// Closes; writes buffered records if possible.
     ~GrowingFile();
     GrowingFile(GrowingFile&&) = delete;
     GrowingFile& operator=(GrowingFile&&) = delete;
 
-    /// Adds a record, which reaches the system with `flush`, or when enough of them wait. Throws Error, once: from then
-    /// on the file takes nothing more and `append`, `flush` and `close` do nothing.
+    /// Buffers a record; it is written by `flush`, or when the buffer is full. Throws Error on the first failure; after
+    /// that `append`, `flush` and `close` do nothing.
     void append(std::string_view record);
-    /// Hands all records to the system: a crash of the program loses nothing of them. Throws Error as `append`.
+    /// Writes all buffered records to the system, so that a crash of the program does not lose them. Throws Error like
+    /// `append`.
     void flush();
-    /// The same, and closes. Throws Error as `append`.
+    /// Flushes and closes. Throws Error like `append`.
     void close();
 
 private:
@@ -34,7 +35,7 @@ private:
     std::filesystem::path shown_;
     int handle_ = -1;
     std::string waiting_;
-    std::vector<std::size_t> ends_;  // of the records in it
+    std::vector<std::size_t> ends_;  // end of each buffered record
     std::int64_t size_ = 0;  // in bytes, of the whole records in the file
     bool has_failed_ = false;
 };

@@ -16,7 +16,7 @@ namespace tactus::file {
 
 namespace {
 
-/// Whoever held it before may have renamed or removed it.
+/// The previous holder may have renamed or removed the file.
 bool is_still_there(int handle, const std::filesystem::path& file) {
     struct stat held{}, named{};
     return ::fstat(handle, &held) == 0 && ::stat(file.c_str(), &named) == 0 && held.st_dev == named.st_dev &&
@@ -26,7 +26,7 @@ bool is_still_there(int handle, const std::filesystem::path& file) {
 }  // namespace
 
 PartLock::PartLock(const std::filesystem::path& part, const std::filesystem::path& path) {
-    // File systems that give a file another number each time it is asked for have no lock.
+    // Some file systems report a new inode number on each call; locks cannot work there.
     constexpr int most_tries = 100;
     for (int n = 1;; ++n) {
         handle_ = ::open(part.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
@@ -39,7 +39,7 @@ PartLock::PartLock(const std::filesystem::path& part, const std::filesystem::pat
                             "another name",
                             path.string()));
         }
-        // Other failures: a file system without locks.
+        // Other failures mean a file system without locks.
         if (code != 0 || n == most_tries || is_still_there(handle_, part)) return;
         ::close(handle_);
     }

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// One program at a time writes a file that is renamed when it is whole.
+// A lock: one program at a time writes a file that is renamed when it is complete.
 #pragma once
 
 #include <filesystem>
 
 namespace tactus::file {
 
-/// Makes `part` where it is missing and holds it until destroyed; the system lets go when the holder dies. Without it two
-/// programs would write into one part, and the first to end would give the mixture its name.
+/// Creates `part` if missing and locks it until destroyed; the system releases the lock when the holder dies. Without
+/// it two programs could write one part file, and the first to finish would rename a mixture of both.
 class PartLock {
 public:
-    /// Messages name `path`. Throws Error when another program holds the part, or it cannot be made.
+    /// Messages name `path`. Throws Error when another program holds the part, or when it cannot be created.
     PartLock(const std::filesystem::path& part, const std::filesystem::path& path);
     ~PartLock();
     PartLock(const PartLock&) = delete;

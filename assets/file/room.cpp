@@ -43,18 +43,18 @@ std::uint64_t parse_memory_size(const std::string& text) {
     while (!unit.empty() && unit.front() == ' ') unit.remove_prefix(1);
     if (failure == std::errc{} && std::isfinite(number))
         for (const auto& [name, factor] : units)
-            // Less than a megabyte holds nothing, and more than 2^62 bytes no machine has.
+            // At least 1 MB, and at most 2^62 bytes.
             if (unit == name && number * factor >= 1e6 && number * factor < 0x1p62)
                 return static_cast<std::uint64_t>(number * factor);
-    throw Error(fmt::format("'{}' is no size of memory; write it as \"2 GB\" or \"500 MB\", at least 1 MB", text));
+    throw Error(fmt::format("'{}' is not a size of memory; write it as \"2 GB\" or \"500 MB\", at least 1 MB", text));
 }
 
 void require_room(double bytes, const std::filesystem::path& file, std::string_view what) {
     const std::uint64_t most = memory_limit();
     if (bytes <= static_cast<double>(most)) return;
     throw NoRoom(
-        fmt::format("{}: {} need {:.0f} MB of memory, more than the {:.0f} MB that one file may take; allow more with "
-                    "--memory, or use a smaller file",
+        fmt::format("{}: {} need {:.0f} MB of memory; the limit for one file is {:.0f} MB; raise it with --memory, or "
+                    "use a smaller file",
                     file.string(), what, std::ceil(bytes / 1e6), std::floor(static_cast<double>(most) / 1e6)));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much memory one file may ask for.
+// The memory limit for one file.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace tactus::file {
 
-/// A file needs more memory than there is for it: nothing is wrong with the file. It is a bad_alloc, so that whoever
-/// handles short memory handles this.
+/// Thrown when a valid file needs more memory than the limit. Derives from bad_alloc, so that handlers of memory
+/// shortage catch it.
 class NoRoom : public std::bad_alloc {
 public:
     explicit NoRoom(std::string message) : message_(std::move(message)) {}
@@ -21,19 +21,19 @@ private:
     std::string message_;
 };
 
-/// Bytes that one file may become in memory; until it is set, half of the machine's memory. Any thread may ask; set it
-/// before others read files.
+/// Greatest size of one file in memory, bytes; default: half of the machine's memory. Any thread may read it; set it
+/// before other threads read files.
 std::uint64_t memory_limit();
 void set_memory_limit(std::uint64_t bytes);
 
 /// "2 GB", "500 MB", "1.5 GiB" or a plain number of bytes. Throws Error.
 std::uint64_t parse_memory_size(const std::string& text);
 
-/// Throws NoRoom when `what` of `file`, `bytes` in memory, is more than memory_limit().
+/// Throws NoRoom when `what` of `file` needs more than memory_limit() bytes.
 void require_room(double bytes, const std::filesystem::path& file, std::string_view what);
 
-/// Throws Error when `file` claims more than it can hold: `claimed` against `most`, in the same unit, as in
-/// require_possible(frames, 8192.0 * bytes, file, "samples").
+/// Throws Error when the header of `file` claims more than the file can hold: `claimed` > `most`, in the same unit, as
+/// in require_possible(frames, 8192.0 * bytes, file, "samples").
 void require_possible(double claimed, double most, const std::filesystem::path& file, std::string_view what);
 
 }  // namespace tactus::file

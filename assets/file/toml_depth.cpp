@@ -8,8 +8,8 @@ namespace tactus::file {
 
 namespace {
 
-/// Offset behind the string that opens at `at`. An unterminated one ends with its line, or with the text when it may
-/// span lines; the parser will say so.
+/// Offset after the string that starts at `at`. An unterminated string ends with its line, or with the text if it may
+/// span lines; the parser reports it.
 std::size_t end_of_string(std::string_view text, std::size_t at) {
     const char quote = text[at];
     const std::string_view fence = quote == '"' ? "\"\"\"" : "'''";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A guard in front of the TOML parser, which nests one table per dot of a key and frees them by recursion.
+// Guards the TOML parser against stack overflow: it nests one table per dot of a key and frees them recursively.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,10 @@
 
 namespace tactus::file {
 
-/// Dots that one key may have: no file of ours needs more than two, as in [nodes.hand].
+/// Greatest number of dots in a key. Our files need at most two, as in [nodes.hand].
 inline constexpr int most_dots_in_key = 32;
 
-/// Offset of the first dot that is one too many, or nothing. Dots in strings and comments do not count.
+/// Offset of the first dot beyond the limit, if any. Dots in strings and comments do not count.
 std::optional<std::size_t> overlong_key(std::string_view toml);
 
 }  // namespace tactus::file

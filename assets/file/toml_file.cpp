@@ -49,8 +49,7 @@ const toml::table& TomlFile::as_table(const toml::node& node) const {
 void TomlFile::know(const toml::table& table, const std::vector<std::string>& names) const {
     for (const auto& [key, value] : table)
         if (std::ranges::find(names, key.str()) == names.end())
-            fail(value,
-                 fmt::format("'{}' is nothing that {} knows{}", key.str(), what_, did_you_mean(key.str(), names)));
+            fail(value, fmt::format("unknown key '{}' in {}{}", key.str(), what_, did_you_mean(key.str(), names)));
 }
 
 std::string TomlFile::word(const toml::node& node) const {

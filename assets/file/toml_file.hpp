@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all readers of TOML files share: parsing that no text can crash, and errors with line and column. The parser's own
-// header is heavy and stays in the .cpp of those who look into tables.
+// Base of all TOML readers: safe parsing, and errors with line and column. The parser's header is heavy, so only .cpp
+// files include it.
 #pragma once
 
 #include "dsp/core/error.hpp"
@@ -26,23 +26,23 @@ struct TomlTableDeleter {
 };
 using TomlTable = std::unique_ptr<toml::table, TomlTableDeleter>;
 
-/// `file` names the text in messages. Throws Error at the place where it is not TOML.
+/// Parses `text`; `file` names it in messages. Throws Error with the position of a syntax error.
 TomlTable parse_toml(std::string_view text, const std::string& file);
 
-/// The place of something in that file.
+/// Position of a node in that file.
 SourceLocation toml_place(const std::string& file, const toml::source_region& source);
 
-/// A file that is read value by value. Its members throw Error at the value that is wrong.
+/// A TOML file in memory. Its members throw Error with the position of a wrong value.
 class TomlFile {
 public:
-    /// `what` it is, for messages: "a display rig". Throws Error when it cannot be read or is not TOML.
+    /// `what`: kind of file for messages, such as "a display file". Throws Error when it cannot be read or is not TOML.
     TomlFile(const std::filesystem::path& path, std::string what);
 
     const std::string& file() const { return file_; }
     const toml::table& root() const { return *root_; }
     [[noreturn]] void fail(const toml::node& node, const std::string& message) const;
     const toml::table& as_table(const toml::node& node) const;
-    /// Fails at the first key that is none of `names`.
+    /// Fails at the first key that is not in `names`.
     void know(const toml::table& table, const std::vector<std::string>& names) const;
     std::string word(const toml::node& node) const;
 

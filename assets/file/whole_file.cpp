@@ -40,9 +40,11 @@ std::uintmax_t require_file(const std::filesystem::path& path) {
     switch (status.type()) {
         case std::filesystem::file_type::regular: break;
         case std::filesystem::file_type::not_found: refuse("no such file"); break;
-        case std::filesystem::file_type::directory: refuse("no such file: it is a folder"); break;
+        case std::filesystem::file_type::directory: refuse("this is a folder, not a file"); break;
         case std::filesystem::file_type::none: refuse(fmt::format("cannot be read: {}", failure.message())); break;
-        default: refuse("is a pipe, a socket or a device; only files are read. Write it to a file first");
+        default:
+            refuse(
+                "this is a pipe, a socket or a device; only regular files can be read. Write the data to a file first");
     }
     const std::uintmax_t size = std::filesystem::file_size(path, failure);
     if (failure) refuse(fmt::format("cannot be read: {}", failure.message()));
@@ -60,7 +62,7 @@ std::string read_whole_file(const std::filesystem::path& path) {
 
 void add_file(Hash& hash, const std::filesystem::path& path) {
     const auto [file, size] = open_regular(path);
-    // A multiple of the hash's words: only the last block may end within one.
+    // A multiple of the hash's word size: only the last block may end within a word.
     std::vector<char> block(std::size_t{1} << 16);
     for (std::uintmax_t left = size; left > 0;) {
         const auto wanted = static_cast<std::size_t>(std::min<std::uintmax_t>(left, block.size()));
@@ -75,7 +77,7 @@ namespace {
 
 enum class Disk { whenever, now };
 
-/// The names of a folder reach the disk. A file system that cannot say so is left to itself.
+/// Syncs the directory entry to disk. Failures of file systems that do not support this are ignored.
 void sync_folder(const std::filesystem::path& folder) {
     const int handle = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (handle < 0) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole files as bytes: read at once, hashed in blocks, written beside and renamed.
+// Whole files as bytes: read, hash, and write atomically (temporary file, then rename).
 #pragma once
 
 #include "dsp/core/hash.hpp"
@@ -11,21 +11,20 @@
 
 namespace tactus::file {
 
-/// Every reader asks this before it opens a file: a pipe or a device would make it wait, or never end. Throws Error
-/// unless `path` is a regular file; gives its size in bytes.
+/// Size of a regular file in bytes. Throws Error for anything else: reading a pipe or a device could block or never
+/// end. Every reader calls this before it opens a file.
 std::uintmax_t require_file(const std::filesystem::path& path);
 
 /// All bytes of a regular file. Throws Error.
 std::string read_whole_file(const std::filesystem::path& path);
 
-/// Adds the bytes of a file of any size to `hash`, as one add_bytes would. Throws Error.
+/// Adds the bytes of a file to `hash`, in blocks. Throws Error.
 void add_file(Hash& hash, const std::filesystem::path& path);
 
-/// Writes `bytes` to `path` + ".part" and renames it. On failure nothing is left behind and Error is thrown.
+/// Writes `bytes` to `path` + ".part" and renames it. On failure it removes the part and throws Error.
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// The same, and the disk has both the bytes and the name before it returns: after a power failure the old file or the
-/// new one is there.
+/// The same, synced to disk: after a power failure the old or the new file exists.
 void write_durable_file(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace tactus::file

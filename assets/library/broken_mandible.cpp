@@ -34,7 +34,7 @@ Vec3 middle_of(const std::vector<contact::SurfacePoint>& points) {
     return middle;
 }
 
-/// Turned about its middle and moved.
+/// Rotated about its centre and translated.
 Pose about(const Vec3& middle, const Vec3& translation, const Vec3& rotation) {
     const Quat q = rotation_by(rotation);
     return {middle + translation - q * middle, q};
@@ -44,13 +44,13 @@ std::size_t samples_inside(const volume::Grid& solid) {
     return static_cast<std::size_t>(std::ranges::count_if(solid.values, [](float d) { return d < 0.0f; }));
 }
 
-/// A painted point where it belongs, and which face of which piece it is of.
+/// A painted point in place, with its piece and face.
 struct FacePoint {
     Vec3 position, normal;
     std::size_t face;
 };
 
-/// The painted points of each piece where it belongs. Faces are numbered through.
+/// The painted points of each piece in place. Faces are numbered consecutively over all pieces.
 std::vector<std::vector<FacePoint>> paint_of(const BrokenMandible& broken) {
     std::vector<std::vector<FacePoint>> paint(broken.fragments.size());
     std::size_t faces = 0;
@@ -65,14 +65,14 @@ std::vector<std::vector<FacePoint>> paint_of(const BrokenMandible& broken) {
     return paint;
 }
 
-/// How much of a piece's largest fitting face lies on what stands, in points; 0 when none touches it. A face that is
-/// covered as a whole shows its place better than a larger one that is not.
+/// Number of points of a piece's best face that touch placed pieces; 0 when no face touches. A face that is covered
+/// completely defines the position better than a larger one that is covered in part.
 double worth_of(const std::vector<FacePoint>& piece, const std::vector<FacePoint>& standing,
                 const geometry::PointTree& tree, double kerf) {
     struct Covered {
         std::size_t near = 0, touching = 0;
     };
-    constexpr std::size_t least_touching = 40;  // what the matcher takes for a face
+    constexpr std::size_t least_touching = 40;  // smallest face that the matcher accepts, points
     std::map<std::pair<std::size_t, std::size_t>, Covered> covered;
     for (const FacePoint& p : piece) {
         const FacePoint& other = standing[tree.nearest(p.position)];
@@ -91,8 +91,8 @@ double worth_of(const std::vector<FacePoint>& piece, const std::vector<FacePoint
     return most;
 }
 
-/// Pieces so that each, when its turn comes, has as large a face as possible against `first` or one of those before it;
-/// none that touches none of them. They are done then.
+/// Order of assembly: each next piece has the largest possible face against `first` or an earlier piece. Ends when no
+/// other piece touches them.
 std::vector<std::size_t> order_from(std::size_t first, const std::vector<std::vector<FacePoint>>& paint, double kerf,
                                     std::vector<char>& done) {
     std::vector<FacePoint> standing = paint[first];
@@ -115,7 +115,7 @@ std::vector<std::size_t> order_from(std::size_t first, const std::vector<std::ve
     }
 }
 
-/// From which side a piece comes to its place with the most room to those that stand, of the sides before the bone.
+/// The direction in front of the bone from which a piece reaches its place with the most clearance to placed pieces.
 Vec3 way_in(const std::vector<contact::SurfacePoint>& points, const Pose& truth, const geometry::PointTree& tree,
             const std::vector<Vec3>& standing) {
     Vec3 best(0.0, -1.0, 0.0);
@@ -136,7 +136,7 @@ Vec3 way_in(const std::vector<contact::SurfacePoint>& points, const Pose& truth,
     return best;
 }
 
-/// Lines of a script, one after the other in time.
+/// Builds the lines of a hand script in order of time.
 class Script {
 public:
     void go(double seconds, const Pose& to, const char* held) {
@@ -164,7 +164,7 @@ private:
     Pose at_;
 };
 
-/// Snap while the matcher looks twice, settle, and let go before anything pulls at the piece again.
+/// Snap for two searches of the matcher, settle, and release before the piece is pulled again.
 void snap_and_settle(Script& script) {
     script.stay(0.05, "trigger second");
     script.stay(0.95, "trigger second third");
@@ -193,14 +193,14 @@ std::string script_of(const BrokenMandible& broken, const BrokenMandibleOptions&
         const Vec3 translation =
             way_in(broken.fragments[n].points, broken.truth[n], geometry::PointTree(standing), standing);
         stand(n);
-        // Off the table, before its place, and in.
+        // Lift the piece, move it in front of its place, and insert it.
         script.go(0.4, about(middle, Vec3(0.0, 25e-3, 0.0), Vec3(0.0)) * grip, "trigger");
         script.go(0.8, about(place, 40e-3 * translation, Vec3(0.0)) * beside * grip, "trigger");
         script.go(0.6, beside * grip, "trigger");
         script.stay(0.2, "trigger");
         snap_and_settle(script);
     }
-    // Twice more, now that all neighbours are there; the hand reaches for a piece only about where it is.
+    // Settle each piece twice more, now with all neighbours in place. The hand grasps a piece only near its position.
     for (const std::uint64_t pass : {6u, 9u})
         for (const std::size_t n : order) {
             const Random random{options.seed * 7919 + n};
@@ -229,7 +229,7 @@ BrokenMandible break_mandible(const bone::Bone& bone, const BrokenMandibleOption
         const Random random{options.seed * 1009 + n};
         const volume::Grid& solid = solids[n];
         const Vec3 middle = solid.position(solid.size[0] / 2, solid.size[1] / 2, solid.size[2] / 2);
-        // Laid out in rows before the bone.
+        // The pieces lie in rows in front of the bone.
         const Vec3 to = centre + Vec3(36e-3 * (static_cast<double>(n % 4) - 1.5), -options.distance,
                                       36e-3 * (static_cast<double>(n / 4) - 1.0));
         const Pose placement = n == 0 ? Pose{} : about(middle, to - middle, options.rotation * direction(random, 0));

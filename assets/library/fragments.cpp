@@ -50,7 +50,7 @@ bone::Bone fragment(double side, const cases::RoughSurface& fracture, const Frac
             }
     bone.distance = volume::distance_to_iso(solid, 0.0f);
     bone.density = bone.distance;
-    // Cortex of 2.5 mm around a porous core, also where it broke.
+    // Cortex of 2.5 mm around a porous core; the fracture shows both.
     for (int k = 0; k < solid.size[2]; ++k)
         for (int j = 0; j < solid.size[1]; ++j)
             for (int i = 0; i < solid.size[0]; ++i)

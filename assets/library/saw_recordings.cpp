@@ -21,22 +21,22 @@ namespace tactus::library {
 namespace {
 
 constexpr int sample_rate = 48000;                  // Hz
-constexpr std::size_t count = 2 * sample_rate;      // every rate below makes a whole number of cycles in it
-constexpr double full_scale = 1000.0;               // m/s², above five times the rms of the loudest
+constexpr std::size_t count = 2 * sample_rate;      // a whole number of cycles for every rate used
+constexpr double full_scale = 1000.0;               // m/s², more than five times the rms of the loudest sound
 constexpr double greatest_rate = 233.0;             // Hz
 constexpr double stroke = 3.0e-3;                   // m
 constexpr double tooth_pitch = 25.4e-3 / 18.0;      // m
-constexpr double free_air_level = 90.5;             // m/s² rms at the greatest rate: the calmest air-driven saw
-constexpr double cutting_level = 182.0;             // and the roughest, here at the greatest load
-constexpr double greatest_load = 12.0;              // N
+constexpr double free_air_level = 90.5;  // m/s² rms at the greatest rate: the published minimum of air-driven saws
+constexpr double cutting_level = 182.0;  // the published maximum, used at the greatest load
+constexpr double greatest_load = 12.0;  // N
 constexpr std::array<double, 3> rates{150.0, 190.0, greatest_rate};
 constexpr std::array<double, 3> loads{3.0, 7.0, greatest_load};
 
-// Orders of the drive: the blade's own acceleration, the slant of a connecting rod ten strokes long (second order), and
-// the play of the guides, which fades towards higher orders.
+// Orders of the drive: the stroke (first), the obliquity of a connecting rod ten strokes long (second), and the play of
+// the guides, which decreases towards higher orders.
 constexpr std::array<double, 10> order_levels{1.0, 0.32, 0.22, 0.16, 0.10, 0.08, 0.05, 0.04, 0.025, 0.02};
 
-// Shares of the power that cutting adds.
+// Shares of the power added by cutting.
 constexpr double chip_share = 0.6, tooth_share = 0.3, friction_share = 0.1;
 
 using Signal = std::vector<double>;
@@ -45,7 +45,7 @@ double angle(std::size_t i, double rate) {
     return 2.0 * std::numbers::pi * std::fmod(rate * static_cast<double>(i) / sample_rate, 1.0);
 }
 
-/// Adds `part`, freed of its mean and brought to the given rms.
+/// Adds `part` without its mean, scaled to the given rms.
 void add(Signal& sum, const Signal& part, double rms) {
     double mean = 0.0, power = 0.0;
     for (double x : part) mean += x / static_cast<double>(count);
@@ -57,7 +57,7 @@ void add(Signal& sum, const Signal& part, double rms) {
 Signal drive(double rate, const Random& random) {
     Signal out(count);
     for (std::size_t k = 0; k < order_levels.size(); ++k) {
-        // The first order is the stroke itself, whose phase is given: the blade is at its end at angle 0.
+        // The first order is the stroke itself; the blade is at its end position at angle 0.
         const double phase = k == 0 ? 0.0 : 2.0 * std::numbers::pi * random.uniform(k);
         for (std::size_t i = 0; i < count; ++i)
             out[i] += order_levels[k] * std::cos(static_cast<double>(k + 1) * angle(i, rate) + phase);
@@ -65,18 +65,19 @@ Signal drive(double rate, const Random& random) {
     return out;
 }
 
-/// Chips break at random, as often as the blade is fast: noise of 300 to 1500 Hz that swells twice a cycle.
+/// Chips break at random, at a rate proportional to the blade's speed: noise from 300 to 1500 Hz, modulated twice per
+/// cycle.
 Signal chips(double rate, const Random& random) {
     Signal noise(count), out(count);
     for (std::size_t i = 0; i < count; ++i) noise[i] = random.normal(i + 100);
     signal::Biquad above{signal::highpass(300.0, sample_rate)}, below{signal::lowpass(1500.0, sample_rate)};
-    // Once round to settle, once to keep: the end then runs into the start.
+    // The first period lets the filter settle, the second is kept, so that the loop is seamless.
     for (int round = 0; round < 2; ++round)
         for (std::size_t i = 0; i < count; ++i) out[i] = below(above(noise[i] * std::abs(std::sin(angle(i, rate)))));
     return out;
 }
 
-/// Teeth meet an edge of the kerf one after another: a tone that glides with the blade's speed, up to 1.56 kHz.
+/// Tooth passing: a tone whose frequency follows the blade's speed, up to 1.56 kHz.
 Signal teeth(double rate) {
     Signal out(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -86,7 +87,7 @@ Signal teeth(double rate) {
     return out;
 }
 
-/// Dry friction against the motion; it turns over while the blade is slower than a tenth of its greatest speed.
+/// Coulomb friction against the motion, with a smooth reversal below a tenth of the greatest speed.
 Signal friction(double rate) {
     Signal out(count);
     for (std::size_t i = 0; i < count; ++i) out[i] = std::tanh(10.0 * std::sin(angle(i, rate)));
@@ -97,7 +98,7 @@ Signal friction(double rate) {
 std::vector<float> synthesise(double rate, double load, std::uint64_t seed) {
     const Random random{seed};
     const double speed = rate / greatest_rate;
-    // The stroke stays the same, so the blade's acceleration goes with the square of the rate.
+    // The stroke is constant, so the acceleration is proportional to the square of the rate.
     const double blade = free_air_level * speed * speed;
     const double cut =
         std::sqrt(cutting_level * cutting_level - free_air_level * free_air_level) * (load / greatest_load) * speed;
@@ -108,7 +109,7 @@ std::vector<float> synthesise(double rate, double load, std::uint64_t seed) {
         add(parts, teeth(rate), cut * std::sqrt(tooth_share));
         add(parts, friction(rate), cut * std::sqrt(friction_share));
     }
-    // The parts share orders, so their powers alone do not make the level.
+    // The parts are correlated, so the level is measured on their sum.
     add(sum, parts, std::hypot(blade, cut));
     std::vector<float> out(count);
     for (std::size_t i = 0; i < count; ++i) out[i] = static_cast<float>(sum[i] / full_scale);
@@ -146,7 +147,7 @@ void make_saw_recordings(const std::filesystem::path& folder) {
         record(rate, 0.0);
         for (const double load : loads) record(rate, load);
     }
-    // Last, so that a set that is there is whole.
+    // Written last: a set that exists is complete.
     file::write_whole_file(folder / "reciprocating.toml", set);
 }
 

@@ -28,10 +28,10 @@ void check_numbers(const geometry::TriangleSurface& mesh, const std::string& fil
     for (const auto& t : mesh.triangles)
         for (const int v : t)
             if (v < 0 || static_cast<std::size_t>(v) >= mesh.vertices.size())
-                throw Error(fmt::format("{}: a triangle names a point that is not there", file));
+                throw Error(fmt::format("{}: a triangle refers to a point that does not exist", file));
 }
 
-// Returns how many triangles had no area and were dropped.
+// Drops triangles without area; returns their number.
 std::size_t join_equal_points(geometry::TriangleSurface& mesh) {
     std::vector<int> order(mesh.vertices.size());
     std::iota(order.begin(), order.end(), 0);
@@ -78,7 +78,7 @@ double Words::number(const std::string& file) {
     if (code == std::errc::result_out_of_range) return value;
     if (word.empty()) throw Error(fmt::format("{}: cut short; copy the file again", file));
     if (code != std::errc{} || end != word.data() + word.size())
-        throw Error(fmt::format("{}: '{}' is no number", file, word.substr(0, 40)));
+        throw Error(fmt::format("{}: '{}' is not a number", file, word.substr(0, 40)));
     return value;
 }
 

@@ -38,7 +38,7 @@ Mesh surface_of(const volume::Grid& distance) {
 
 double volume_of(const geometry::TriangleSurface& mesh) {
     if (mesh.vertices.empty()) return 0.0;
-    const Vec3 base = mesh.vertices.front();  // near the mesh, so that little cancels
+    const Vec3 base = mesh.vertices.front();  // near the mesh, to avoid cancellation
     double six = 0.0;
     for (const auto& t : mesh.triangles)
         six += glm::dot(corner(mesh, t, 0) - base, glm::cross(corner(mesh, t, 1) - base, corner(mesh, t, 2) - base));

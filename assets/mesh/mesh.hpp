@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangle meshes: from files, from a distance grid, and what can be measured on them.
+// Triangle meshes: from files, from a distance grid, and measurements on them.
 #pragma once
 
 #include "assets/volume/patient_frame.hpp"
@@ -10,21 +10,21 @@
 
 namespace tactus::mesh {
 
-/// Triangles with shared vertices (m inside; as in the file after load_mesh), and optionally one unit normal each.
+/// Triangles with shared vertices (m; after load_mesh the unit of the file), and optionally a unit normal per vertex.
 struct Mesh : geometry::TriangleSurface {
     std::vector<Vec3> normals;  ///< empty or one per vertex
 };
 
-/// What load_mesh found in a file besides its triangles.
+/// Properties of a mesh file, found by load_mesh.
 struct MeshOrigin {
-    volume::Frame frame = volume::Frame::lps;       ///< what the coordinates were in
+    volume::Frame frame = volume::Frame::lps;       ///< frame of the coordinates in the file
     bool frame_stated = false;      ///< by "SPACE=RAS" or "SPACE=LPS" in a header or comment; else LPS is assumed
-    std::size_t without_area = 0;   ///< triangles dropped, for two of their corners are one point
+    std::size_t without_area = 0;   ///< triangles dropped because two corners coincide
 };
 
-/// STL (binary, text), PLY or OBJ. Coordinates in LPS, times `scale`, in double precision as they stand in the file;
-/// equal points are joined, triangles without area dropped. Throws Error for damaged files, coordinates that are no
-/// numbers and files without triangles. `origin` may be null.
+/// STL (binary, text), PLY or OBJ. Coordinates in LPS, times `scale`, in double precision; equal points are joined,
+/// triangles without area dropped. Throws Error for damaged files, coordinates that are no numbers and files without
+/// triangles. `origin` may be null.
 Mesh load_mesh(const std::filesystem::path& path, double scale = 1.0, MeshOrigin* origin = nullptr);
 
 /// The zero surface of a signed distance (m, negative inside) with normals from its gradient.
@@ -34,12 +34,12 @@ double volume_of(
     const geometry::TriangleSurface& mesh);  ///< m³, positive when triangles look outwards; mesh must be closed
 double area_of(const geometry::TriangleSurface& mesh);    ///< m²
 
-/// How the triangles hang together. Watertight: every edge has two triangles that pass it in opposite directions.
+/// Topology of a mesh. Watertight: every edge has two triangles that traverse it in opposite directions.
 struct MeshTopology {
     std::size_t boundary_edges = 0;      ///< with one triangle
     std::size_t non_manifold_edges = 0;  ///< with more than two triangles
-    std::size_t flipped_edges = 0;       ///< with two triangles that pass it the same way
-    std::size_t components = 0;          ///< joined through vertices
+    std::size_t flipped_edges = 0;       ///< with two triangles that traverse it in the same direction
+    std::size_t components = 0;          ///< connected through vertices
     std::vector<int> component_of;       ///< per triangle, in order of first appearance
 
     bool is_watertight() const { return boundary_edges + non_manifold_edges + flipped_edges == 0; }

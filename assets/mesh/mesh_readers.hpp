@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The readers behind load_mesh, one per format: from the bytes of a file to points and triangles as they stand there.
+// The readers of load_mesh, one per format: parse the bytes of a file into points and triangles.
 #pragma once
 
 #include "assets/volume/patient_frame.hpp"
@@ -11,7 +11,7 @@
 
 namespace tactus::mesh {
 
-/// Triangles of a file (polygons as fans) with its points in its own unit and frame, not yet joined or checked.
+/// Triangles of a file (polygons become fans) with points in the file's unit and frame, not merged or checked.
 struct MeshText {
     geometry::TriangleSurface surface;
     std::optional<volume::Frame> frame;  ///< from "SPACE=RAS" or "SPACE=LPS" in a header or comment
@@ -21,16 +21,16 @@ MeshText read_stl(const std::string& bytes, const std::string& file);
 MeshText read_ply(const std::string& bytes, const std::string& file);
 MeshText read_obj(const std::string& bytes, const std::string& file);
 
-/// What a header or comment says about the frame, if it does.
+/// The frame that a header or comment states, if any.
 std::optional<volume::Frame> stated_frame(std::string_view text);
 
-/// Splits text at blanks and line ends without copying it.
+/// Splits text at whitespace without copying it.
 class Words {
 public:
     explicit Words(std::string_view text) : text_(text) {}
     /// The next word, "" at the end.
     std::string_view next();
-    /// The next word as a number. Throws Error naming `file` when it is none.
+    /// The next word as a number. Throws Error naming `file` when it is not a number.
     double number(const std::string& file);
 
 private:

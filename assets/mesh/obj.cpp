@@ -17,7 +17,7 @@ int index_of(std::string_view word, std::size_t points, const std::string& file)
     const long long index = number < 0 ? static_cast<long long>(points) + number : number - 1;
     if (code != std::errc{} || (end != word.data() + word.size() && *end != '/') || number == 0 || index < 0 ||
         index >= 2147483647)
-        throw Error(fmt::format("{}: '{}' names no point", file, word.substr(0, 40)));
+        throw Error(fmt::format("{}: '{}' does not refer to a point", file, word.substr(0, 40)));
     return static_cast<int>(index);
 }
 

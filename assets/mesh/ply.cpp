@@ -20,7 +20,7 @@ enum class Coding { text, little, big };
 struct Property {
     std::string name;
     std::string type;
-    std::string count_type;  // of a list; empty for one number
+    std::string count_type;  // type of a list's length; empty for a single number
 };
 
 struct Element {
@@ -35,7 +35,7 @@ struct Header {
     std::size_t size = 0;
 };
 
-// Numbers in the body, in whichever coding.
+// Reads numbers of the body, in text or binary.
 class Body {
 public:
     Body(std::string_view bytes, Coding coding, const std::string& file)
@@ -51,7 +51,7 @@ public:
         if (type == "uint" || type == "uint32") return take<std::uint32_t>();
         if (type == "float" || type == "float32") return static_cast<double>(take<float>());
         if (type == "double" || type == "float64") return take<double>();
-        throw Error(fmt::format("{}: numbers of PLY type '{}' are not known", file_, type));
+        throw Error(fmt::format("{}: unknown PLY type '{}'", file_, type));
     }
 
 private:
@@ -90,7 +90,7 @@ Header header_of(std::string_view bytes, const std::string& file, std::optional<
         Words words(line);
         const std::string_view first = words.next();
         if (first == "end_header") {
-            if (!has_coding) throw Error(fmt::format("{}: no 'format' line in its PLY header", file));
+            if (!has_coding) throw Error(fmt::format("{}: the PLY header has no 'format' line", file));
             header.size = at;
             return header;
         }
@@ -99,7 +99,7 @@ Header header_of(std::string_view bytes, const std::string& file, std::optional<
         } else if (first == "format") {
             const std::string_view name = words.next();
             if (name != "ascii" && name != "binary_little_endian" && name != "binary_big_endian")
-                throw Error(fmt::format("{}: PLY format '{}' is not known", file, name));
+                throw Error(fmt::format("{}: unknown PLY format '{}'", file, name));
             header.coding = name == "ascii" ? Coding::text : name == "binary_big_endian" ? Coding::big : Coding::little;
             has_coding = true;
         } else if (first == "element") {
@@ -111,7 +111,7 @@ Header header_of(std::string_view bytes, const std::string& file, std::optional<
                     fmt::format("{}: cut short: its header asks for more elements than the file has bytes", file));
         } else if (first == "property") {
             if (header.elements.empty())
-                throw Error(fmt::format("{}: a property of no element in its PLY header", file));
+                throw Error(fmt::format("{}: the PLY header has a property before any element", file));
             Property property;
             property.type = words.next();
             if (property.type == "list") {
@@ -122,7 +122,7 @@ Header header_of(std::string_view bytes, const std::string& file, std::optional<
             header.elements.back().properties.push_back(property);
         }
     }
-    throw Error(fmt::format("{}: no end of its PLY header", file));
+    throw Error(fmt::format("{}: the PLY header has no end", file));
 }
 
 void read_element(Body& body, const Element& element, const std::string& file, geometry::TriangleSurface& surface) {

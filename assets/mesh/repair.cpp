@@ -19,10 +19,10 @@ namespace {
 using Triangle = std::array<int, 3>;
 constexpr double largest_hole_share = 0.05;
 
-// One side of a triangle, by its points in ascending order.
+// A side of a triangle, with its points in ascending order.
 struct Side {
     int low = 0, high = 0;
-    bool forward = false;  // passed from low to high
+    bool forward = false;  // traversed from low to high
     int triangle = 0;
     std::pair<int, int> edge() const { return {low, high}; }
 };
@@ -48,7 +48,7 @@ void for_each_edge(const std::vector<Side>& sides, Visit visit) {
     }
 }
 
-// Of triangles on the same points one is kept, none when as many look one way as the other.
+// Of duplicate triangles one is kept; none when both orientations are equally frequent.
 std::size_t drop_duplicates(std::vector<Triangle>& triangles) {
     std::map<Triangle, std::vector<int>> groups;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -77,8 +77,8 @@ std::size_t drop_duplicates(std::vector<Triangle>& triangles) {
     return std::erase_if(triangles, [&](const Triangle&) { return dropped[n++]; });
 }
 
-// Turns triangles so that neighbours over an edge of two pass it in opposite directions; in each connected patch the
-// smaller part turns.
+// Orients triangles consistently: neighbours over a manifold edge traverse it in opposite directions. In each connected
+// patch the smaller part is flipped.
 std::size_t orient(std::vector<Triangle>& triangles) {
     struct Link {
         int to;
@@ -119,8 +119,8 @@ std::size_t orient(std::vector<Triangle>& triangles) {
 
 using Loop = std::vector<int>;
 
-// Directed edges that close what is open, as loops that visit no point twice. Each point has as many edges in as out,
-// so a walk always comes back.
+// Directed edges that close the boundary, as simple loops. Every point has equal in- and out-degree, so each walk
+// returns to its start.
 std::vector<Loop> loops_of(std::map<int, std::vector<int>> next) {
     std::vector<Loop> loops;
     while (!next.empty()) {
@@ -164,13 +164,12 @@ void close_loop(const Loop& loop, geometry::TriangleSurface& mesh) {
 std::string MeshRepair::describe() const {
     std::string text;
     const auto add = [&text](std::string part) { text += (text.empty() ? "" : "; ") + part; };
-    if (duplicates > 0) add(fmt::format("{} duplicate triangles taken out", duplicates));
-    if (turned > 0) add(fmt::format("{} triangles turned about", turned));
+    if (duplicates > 0) add(fmt::format("{} duplicate triangles removed", duplicates));
+    if (turned > 0) add(fmt::format("{} triangles flipped", turned));
     if (holes > 0)
         add(fmt::format("{} hole{} closed ({} boundary edges, {:.2g} % of the surface)", holes, holes == 1 ? "" : "s",
                         boundary_edges, 100.0 * hole_share));
-    if (non_manifold_edges > 0)
-        add(fmt::format("{} edges with more than two triangles left as they are", non_manifold_edges));
+    if (non_manifold_edges > 0) add(fmt::format("{} edges with more than two triangles kept", non_manifold_edges));
     return text;
 }
 
@@ -190,11 +189,10 @@ MeshRepair repair(geometry::TriangleSurface& mesh, const std::string& file) {
         for (; net > 0; --net) missing[sides[n].high].push_back(sides[n].low);
         for (; net < 0; ++net) missing[sides[n].low].push_back(sides[n].high);
     });
-    if (one_sided * 1000 > sides.size())  // a fold or two is closed like a hole
-        throw Error(
-            fmt::format("{}: the surface has one side only: {} edges join triangles that look to opposite sides and "
-                        "cannot be turned; repair the mesh first",
-                        file, one_sided));
+    if (one_sided * 1000 > sides.size())  // a few folds are closed like holes
+        throw Error(fmt::format(
+            "{}: the surface is not orientable: {} edges join triangles of opposite orientation; repair the mesh first",
+            file, one_sided));
     const double area = area_of(mesh);
     const std::vector<Loop> loops = loops_of(std::move(missing));
     for (const Loop& loop : loops) close_loop(loop, mesh);

@@ -52,11 +52,12 @@ MeshText read_stl(const std::string& bytes, const std::string& file) {
     std::uint32_t triangles = 0;
     if (bytes.size() >= 84) std::memcpy(&triangles, bytes.data() + 80, 4);
     if (bytes.size() < 84 || bytes.size() < 84 + std::uint64_t{50} * triangles)
-        throw Error(fmt::format("{}: cut short or no STL: its header asks for {} triangles, {} bytes are there", file,
-                                triangles, bytes.size()));
+        throw Error(
+            fmt::format("{}: cut short or not an STL file: the header states {} triangles, but the file has {} bytes",
+                        file, triangles, bytes.size()));
     if (triangles > 500'000'000) throw Error(fmt::format("{}: {} triangles are too many", file, triangles));
     for (std::uint32_t n = 0; n < triangles; ++n) {
-        std::array<float, 9> numbers;  // behind the normal, which the corners give better
+        std::array<float, 9> numbers;  // the corners; the stored normal is skipped
         std::memcpy(numbers.data(), bytes.data() + 84 + std::size_t{50} * n + 12, sizeof numbers);
         std::array<Vec3, 3> corners;
         for (std::size_t c = 0; c < 3; ++c)

@@ -34,7 +34,7 @@ void append(std::string& bytes, const Vec3& v) {
 }
 
 std::string stl_of(std::span<const ColouredSurface> surfaces, std::uint32_t triangles) {
-    // Readers take a file that begins with "solid" for text.
+    // The header must not begin with "solid": readers would parse the file as text.
     std::string bytes = fmt::format("{:<80}", fmt::format("Tactus. {} unit=mm", space));
     bytes.reserve(84 + std::size_t{50} * triangles);
     append(bytes, triangles);
@@ -78,7 +78,7 @@ std::string ply_of(std::span<const ColouredSurface> surfaces, std::uint32_t tria
     return bytes;
 }
 
-// Two steps onto the surface between the samples, each at most a quarter of a cell.
+// Two Newton steps onto the interpolated surface, each at most a quarter of a cell.
 void settle(geometry::TriangleSurface& surface, const volume::Grid& distance) {
     const volume::CubicInterpolant f{distance};
     const double cell = std::min({distance.spacing.x, distance.spacing.y, distance.spacing.z});
@@ -98,7 +98,7 @@ void settle(geometry::TriangleSurface& surface, const volume::Grid& distance) {
 void write_mesh(std::span<const ColouredSurface> surfaces, const std::filesystem::path& path) {
     std::size_t triangles = 0;
     for (const auto& each : surfaces) triangles += each.surface.triangles.size();
-    if (triangles == 0) throw Error(fmt::format("{}: nothing to write: the surface has no triangles", path.string()));
+    if (triangles == 0) throw Error(fmt::format("{}: the surface has no triangles; nothing is written", path.string()));
     if (triangles > 500'000'000)
         throw Error(fmt::format("{}: {} triangles are too many for a file", path.string(), triangles));
     const std::string kind = path.extension().string();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes to files, in LPS and mm.
+// Writes meshes to files, in LPS and mm.
 #pragma once
 
 #include "dsp/geometry/iso_surface.hpp"
@@ -9,19 +9,19 @@
 
 namespace tactus::mesh {
 
-/// A surface and the colour it is drawn in (sRGB, 0 to 1).
+/// A surface and its colour (sRGB, 0 to 1).
 struct ColouredSurface {
     geometry::TriangleSurface surface;  ///< m, LPS
     Vec3 colour{0.90, 0.86, 0.76};
 };
 
-/// Writes all surfaces into one binary STL or PLY (by extension), coordinates in mm. The header says SPACE=LPS, which
-/// 3D Slicer and others look for; PLY keeps shared vertices and colours. Throws Error for other extensions, when there is
-/// no triangle, and when the file cannot be written; it appears whole or not at all.
+/// Writes all surfaces into one binary STL or PLY (by extension), coordinates in mm. The header states SPACE=LPS, which
+/// 3D Slicer and others read; PLY keeps shared vertices and colours. Written atomically. Throws Error for other
+/// extensions, for no triangles, and when the file cannot be written.
 void write_mesh(std::span<const ColouredSurface> surfaces, const std::filesystem::path& path);
 
-/// The zero surface of a signed distance (m, negative inside) for use elsewhere: a net with vertices on the surface of the
-/// cubic interpolant, or tetrahedra where the net would not be watertight.
+/// The zero surface of a signed distance (m, negative inside) for other programs: a surface net with vertices on the
+/// cubic interpolant, or marching tetrahedra if the net is not watertight.
 geometry::TriangleSurface export_surface(const volume::Grid& distance);
 
 }  // namespace tactus::mesh

@@ -26,7 +26,7 @@ SourceLocation location(const toml::node& node, const std::filesystem::path& pat
 
 double quantity(const toml::node& node, const std::filesystem::path& path, std::string_view like) {
     if (!node.is_string())
-        throw Error(location(node, path), fmt::format("a quantity with its unit is written as \"1 {}\"", like));
+        throw Error(location(node, path), fmt::format("a quantity with its unit is expected, as in \"1 {}\"", like));
     try {
         return parse_as(node.as_string()->get(), like);
     } catch (const Error& error) {
@@ -66,7 +66,7 @@ vibration::Equaliser load_equaliser(const std::filesystem::path& path) {
         if (name == "kind") {
             const std::string kind = text(node, path);
             if (kind != "linear_phase" && kind != "minimum_phase")
-                throw Error(location(node, path), "'kind' is \"minimum_phase\" or \"linear_phase\"");
+                throw Error(location(node, path), "'kind' must be \"minimum_phase\" or \"linear_phase\"");
             out.kind = kind == "linear_phase" ? vibration::EqualiserKind::linear_phase
                                               : vibration::EqualiserKind::minimum_phase;
         } else if (name == "rate") {
@@ -75,23 +75,23 @@ vibration::Equaliser load_equaliser(const std::filesystem::path& path) {
             out.delay = quantity(node, path, "s");
         } else if (name == "band") {
             const toml::array* band = node.as_array();
-            if (!band || band->size() != 2) throw Error(location(node, path), "'band' is two frequencies");
+            if (!band || band->size() != 2) throw Error(location(node, path), "'band' must be two frequencies");
             out.lowest = quantity(*band->get(0), path, "Hz");
             out.highest = quantity(*band->get(1), path, "Hz");
         } else if (name == "mean_gain") {
             const auto value = node.value<double>();
-            if (!value || !std::isfinite(*value)) throw Error(location(node, path), "'mean_gain' is a number");
+            if (!value || !std::isfinite(*value)) throw Error(location(node, path), "'mean_gain' must be a number");
             out.mean_gain = *value;
         } else if (name == "unit") {
             out.unit = text(node, path);
         } else if (name == "taps") {
             const toml::array* taps = node.as_array();
             if (!taps || taps->empty() || taps->size() > most_taps)
-                throw Error(location(node, path), fmt::format("'taps' is a list of 1 to {} numbers", most_taps));
+                throw Error(location(node, path), fmt::format("'taps' must be a list of 1 to {} numbers", most_taps));
             for (const toml::node& tap : *taps) {
                 const auto value = tap.value<double>();
                 if (!value || !(std::abs(*value) <= 1e6))
-                    throw Error(location(tap, path), "a tap is a number between -1e6 and 1e6");
+                    throw Error(location(tap, path), "a tap must be a number from -1e6 to 1e6");
                 out.taps.push_back(static_cast<float>(*value));
             }
         } else if (name != "title") {
@@ -103,7 +103,7 @@ vibration::Equaliser load_equaliser(const std::filesystem::path& path) {
         throw Error(whole, "an equaliser needs 'rate' and 'taps'; make one with 'tactus equalise'");
     if (!(out.rate >= 1.0 && out.rate <= 1e6)) throw Error(whole, "the equaliser's rate must be 1 Hz to 1 MHz");
     if (!(out.delay >= 0.0 && out.delay * out.rate < static_cast<double>(out.taps.size())))
-        throw Error(whole, "the equaliser's delay must be shorter than the equaliser");
+        throw Error(whole, "the delay must be shorter than the impulse response");
     return out;
 }
 

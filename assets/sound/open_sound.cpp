@@ -16,12 +16,12 @@ namespace tactus::sound {
 namespace {
 
 constexpr int fastest_rate = 10'000'000;  // Hz; no sound card or data logger for vibration is faster
-/// Of silence: FLAC packs 65535 samples into some 13 bytes, Vorbis 4096 into two.
+/// Best compression, of silence: FLAC packs 65535 samples into about 13 bytes, Vorbis 4096 into two.
 constexpr double most_frames_per_byte = 8192.0;
-/// A length that libsndfile does not know is given as its largest number.
+/// libsndfile reports an unknown length as the largest number.
 constexpr sf_count_t unknown_length = sf_count_t{1} << 62;
 
-/// libsndfile plays a RIFF file that lost its tail as if it had been made that short.
+/// libsndfile reads a truncated RIFF file without an error.
 void check_riff_length(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     unsigned char head[8] = {};
@@ -29,10 +29,9 @@ void check_riff_length(const std::filesystem::path& path) {
     const std::uintmax_t promised =
         8u + (head[4] | head[5] << 8 | head[6] << 16 | static_cast<std::uintmax_t>(head[7]) << 24);
     const std::uintmax_t present = std::filesystem::file_size(path);
-    // Programs that stream leave the length at its largest value.
+    // Streaming programs leave the length field at its largest value.
     if (promised < 0xFFFFFF00u && present < promised)
-        throw Error(
-            fmt::format("{}: the sound is cut short: {} of {} bytes are there", path.string(), present, promised));
+        throw Error(fmt::format("{}: the sound is cut short: it has {} of {} bytes", path.string(), present, promised));
 }
 
 }  // namespace
@@ -48,8 +47,7 @@ SoundHandle open_sound(const std::filesystem::path& path, SF_INFO& info) {
     if (info.frames <= 0) fail("the sound is empty");
     if (info.samplerate <= 0 || info.channels <= 0) fail("the sound's header is damaged");
     if (info.samplerate > fastest_rate)
-        fail(
-            fmt::format("its header claims {} samples per second; at most {} are read", info.samplerate, fastest_rate));
+        fail(fmt::format("its header states {} samples per second; the limit is {}", info.samplerate, fastest_rate));
     if (info.frames < unknown_length)
         file::require_possible(static_cast<double>(info.frames), most_frames_per_byte * size, path, "samples");
     return file;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the readers of this folder share; includes libsndfile.
+// Shared by the readers of this folder; includes libsndfile.
 #pragma once
 
 #include <sndfile.h>
@@ -14,12 +14,12 @@ struct CloseSound {
 };
 using SoundHandle = std::unique_ptr<SNDFILE, CloseSound>;
 
-/// Cuts a file that is being written behind that frame: a full disk may have taken a part of the next one.
+/// Truncates a file after that frame: on a full disk a part of the next frame may have been written.
 inline void keep_whole_frames(SNDFILE* file, sf_count_t frames) {
     sf_command(file, SFC_FILE_TRUNCATE, &frames, sizeof frames);
 }
 
-/// Opens for reading and fills `info`. Throws Error when the file is missing, no sound, empty, or cut short.
+/// Opens for reading and fills `info`. Throws Error when the file is missing, not a sound, empty, or cut short.
 SoundHandle open_sound(const std::filesystem::path& path, SF_INFO& info);
 
 }  // namespace tactus::sound

@@ -36,11 +36,11 @@ Calibration parse_calibration(const std::string& text) {
         out.factor = quantity.value / out.si;
         out.is_acceleration = quantity.dimension == parse_unit("m/s^2").dimension;
     } catch (const Error& error) {
-        throw Error(fmt::format("a calibration is a quantity such as \"9.81 m/s^2\": {}", error.message()));
+        throw Error(fmt::format("a calibration must be a quantity such as \"9.81 m/s^2\": {}", error.message()));
     }
     if (out.unit.empty() || !(std::abs(out.factor) > 0.0) || !std::isfinite(out.factor))
         throw Error(fmt::format(
-            "a calibration is a quantity other than 0 with its unit, such as \"9.81 m/s^2\", not '{}'", text));
+            "a calibration must be a quantity other than 0 with its unit, such as \"9.81 m/s^2\", not '{}'", text));
     out.known = true;
     return out;
 }
@@ -54,7 +54,7 @@ struct RecordReader::Source {
     std::vector<std::string> names;
     Calibration calibration;
     std::optional<LogFacts> log;
-    std::size_t block = 0;  // frames of a sound that are read at once
+    std::size_t block = 0;  // frames per read of a sound
     std::vector<double> interleaved;
 };
 

@@ -20,8 +20,8 @@ namespace tactus::sound {
 namespace {
 
 constexpr double lowest_rate = 5.0, highest_rate = 1000.0;  // Hz
-constexpr double lowest_heard = 60.0, highest_heard = 400.0; // Hz: where a rate that nobody stated is looked for
-constexpr double usual_load = 7.0;                          // N: thrust of a hand on a bone saw
+constexpr double lowest_heard = 60.0, highest_heard = 400.0; // Hz: search range for an unstated rate
+constexpr double usual_load = 7.0;                          // N: typical thrust on a bone saw
 
 const std::array<std::string, 7> set_keys{"title",  "note",       "licence",  "synthesised",
                                           "sensor", "full_scale", "recording"};
@@ -29,7 +29,7 @@ const std::array<std::string, 8> recording_keys{"file", "state", "rate",   "load
                                                 "loop", "note",  "sensor", "full_scale"};
 const std::array<std::string, 2> states{"cutting", "free_air"};
 
-/// [begin, end) of the part to use.
+/// [begin, end) of the selected part, in samples.
 struct Part {
     std::size_t begin, end;
 };
@@ -45,21 +45,21 @@ void load_samples(Recording& r) {
     r.samples = mix_to_mono(sound);
 }
 
-/// Estimates the rate where nobody stated it. Throws Error when the sound has no rate or is too short for it.
+/// Estimates an unstated rate. Throws Error when the sound has no clear rate or is too short.
 void settle_rate(Recording& r) {
     const Part part = part_of(r);
     if (r.rate == 0.0) {
         const auto part_used = std::span(r.samples).subspan(part.begin, part.end - part.begin);
         const signal::Comb heard = signal::fit_comb(part_used, r.sample_rate, lowest_heard, highest_heard);
         if (heard.confidence < signal::sure_of_comb)
-            throw Error(fmt::format("no rate of reciprocation can be heard in '{}'; state it, rate = \"233 Hz\"",
+            throw Error(fmt::format("no rate of reciprocation was found in '{}'; state it, as in rate = \"233 Hz\"",
                                     r.file.filename().string()));
         r.rate = heard.best.frequency;
         r.rate_estimated = true;
     }
     const double cycles = static_cast<double>(part.end - part.begin) / r.sample_rate * r.rate;
     if (cycles < static_cast<double>(vibration::CycleLoop::fewest_cycles))
-        throw Error(fmt::format("'{}' holds only {:.1f} cycles at {:.4g} Hz; {} are needed", r.file.filename().string(),
+        throw Error(fmt::format("'{}' has only {:.1f} cycles at {:.4g} Hz; {} are needed", r.file.filename().string(),
                                 cycles, r.rate, vibration::CycleLoop::fewest_cycles));
 }
 
@@ -77,13 +77,13 @@ public:
         set.note = text_of(root, "note");
         set.licence = text_of(root, "licence");
         if (const toml::node* flag = root.get("synthesised")) {
-            if (!flag->is_boolean()) throw Error(location(flag->source()), "'synthesised' is true or false");
+            if (!flag->is_boolean()) throw Error(location(flag->source()), "'synthesised' must be true or false");
             set.synthesised = flag->as_boolean()->get();
         }
         sensor_ = text_of(root, "sensor");
         if (const toml::node* value = root.get("full_scale")) full_scale_ = full_scale(*value);
         const toml::node* list = root.get("recording");
-        if (!list) throw Error({path_.string(), 1, 1}, "the set has no recording; begin each with [[recording]]");
+        if (!list) throw Error({path_.string(), 1, 1}, "the set has no recording; start each with [[recording]]");
         const toml::array* items = list->as_array();
         if (!items) throw Error(location(list->source()), "a recording begins with [[recording]], in two brackets");
         if (items->empty()) throw Error(location(list->source()), "the set has no recording");
@@ -93,8 +93,9 @@ public:
         for (const toml::node& item : *items) {
             set.recordings.push_back(recording(item));
             if (set.recordings.back().full_scale.has_value() != set.calibrated())
-                throw Error(location(item.source()),
-                            "some recordings are calibrated (full_scale) and some not: their levels do not compare");
+                throw Error(
+                    location(item.source()),
+                    "some recordings are calibrated (full_scale) and some are not: their levels cannot be compared");
         }
         return set;
     }
@@ -114,7 +115,7 @@ private:
 
     std::string text(const toml::node& value, std::string_view key) const {
         if (const auto* found = value.as_string()) return found->get();
-        throw Error(location(value.source()), fmt::format("'{}' is a text; put it in quotes", key));
+        throw Error(location(value.source()), fmt::format("'{}' must be a text in quotes", key));
     }
     std::string text_of(const toml::table& table, std::string_view key) const {
         const toml::node* value = table.get(key);
@@ -134,7 +135,7 @@ private:
         if (const auto* word = value.as_string(); word && word->get() == "uncalibrated") return std::nullopt;
         const double found = quantity(value, "full_scale", "m/s^2");
         if (std::isfinite(found) && found > 0.0) return found;
-        throw Error(location(value.source()), "'full_scale' is above 0 m/s^2, or \"uncalibrated\"");
+        throw Error(location(value.source()), "'full_scale' must be above 0 m/s^2, or \"uncalibrated\"");
     }
 
     Recording recording(const toml::node& item) const {
@@ -144,12 +145,13 @@ private:
         Recording r;
         const toml::node *file = table->get("file"), *state = table->get("state");
         if (!file) throw Error(location(item.source()), "the recording has no file = \"…\"");
-        if (!state) throw Error(location(item.source()), "the recording has no state; \"cutting\" or \"free_air\"");
+        if (!state)
+            throw Error(location(item.source()), "the recording has no state; write \"cutting\" or \"free_air\"");
         r.file = path_.parent_path() / text(*file, "file");
         const std::string word = text(*state, "state");
         if (std::find(states.begin(), states.end(), word) == states.end())
-            throw Error(location(state->source()), fmt::format("unknown state '{}'; a saw is cutting or free_air{}",
-                                                               word, did_you_mean(word, states)));
+            throw Error(location(state->source()),
+                        fmt::format("unknown state '{}'; use cutting or free_air{}", word, did_you_mean(word, states)));
         r.cutting = word == "cutting";
         r.note = text_of(*table, "note");
         r.sensor = table->contains("sensor") ? text_of(*table, "sensor") : sensor_;
@@ -158,7 +160,7 @@ private:
         const toml::node* rate = table->get("rate");
         if (rate) r.rate = quantity(*rate, "rate", "Hz");
         if (rate && !(r.rate >= lowest_rate && r.rate <= highest_rate))
-            throw Error(location(rate->source()), "'rate' is 5 Hz to 1 kHz");
+            throw Error(location(rate->source()), "'rate' must be 5 Hz to 1 kHz");
         load(*table, item, r);
         try {
             load_samples(r);
@@ -180,13 +182,14 @@ private:
         if (!value) throw Error(location(item.source()), "a cutting recording needs its load, such as load = \"7 N\"");
         if (!r.cutting) throw Error(location(value->source()), "in free air there is no load; remove it");
         r.load = quantity(*value, "load", "N");
-        if (!(std::isfinite(r.load) && r.load > 0.0)) throw Error(location(value->source()), "'load' is above 0 N");
+        if (!(std::isfinite(r.load) && r.load > 0.0))
+            throw Error(location(value->source()), "'load' must be above 0 N");
     }
 
     void loop(const toml::node& value, Recording& r) const {
         const toml::array* bounds = value.as_array();
         if (!bounds || bounds->size() != 2)
-            throw Error(location(value.source()), "'loop' is begin and end: loop = [\"0.1 s\", \"2.4 s\"]");
+            throw Error(location(value.source()), "'loop' must be begin and end: loop = [\"0.1 s\", \"2.4 s\"]");
         r.loop_begin = quantity(*bounds->get(0), "loop", "s");
         r.loop_end = quantity(*bounds->get(1), "loop", "s");
         const double length = static_cast<double>(r.samples.size()) / r.sample_rate;
@@ -205,9 +208,10 @@ private:
 
 RecordingSet load_recording_set(const std::filesystem::path& path, std::optional<double> rate) {
     if (rate && !(*rate >= lowest_rate && *rate <= highest_rate))
-        throw Error(fmt::format("{}: the rate of a saw is 5 Hz to 1 kHz", path.string()));
+        throw Error(fmt::format("{}: the rate of a saw must be 5 Hz to 1 kHz", path.string()));
     if (path.extension() == ".toml") {
-        if (rate) throw Error(fmt::format("{}: a set states its rates itself; leave out the rate", path.string()));
+        if (rate)
+            throw Error(fmt::format("{}: a recording set states its own rates; leave out the rate", path.string()));
         return SetReader(path).read();
     }
     Recording r;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings of a saw, each with what was going on while it was made.
+// Recordings of a saw, each with its conditions: state, rate and load.
 #pragma once
 
 #include "dsp/vibration/saw_voice.hpp"
@@ -13,11 +13,11 @@ namespace tactus::sound {
 
 struct Recording {
     std::filesystem::path file;
-    bool cutting = false;              ///< in bone; else in free air
-    double rate = 0.0;                 ///< strokes to and fro per second, Hz
-    bool rate_estimated = false;       ///< from the sound, because nobody stated it
+    bool cutting = false;              ///< cutting bone; else in free air
+    double rate = 0.0;                 ///< reciprocation rate (strokes back and forth per second), Hz
+    bool rate_estimated = false;       ///< estimated from the sound, because the set does not state it
     double load = 0.0;                 ///< thrust, N; 0 in free air
-    std::string sensor;                ///< what it was recorded with, in words
+    std::string sensor;                ///< description of the sensor
     std::string note;
     std::optional<double> full_scale;  ///< m/s² at sample value 1; empty when uncalibrated
     double loop_begin = 0.0;           ///< s
@@ -38,22 +38,22 @@ struct RecordingSet {
 /// Reads a set (TOML) and all its sounds:
 ///
 ///     title = "…"   note = "…"   licence = "…"   synthesised = true
-///     sensor = "contact microphone"      # sensor and full_scale hold for every recording that has none of its own
+///     sensor = "contact microphone"      # sensor and full_scale are the defaults of all recordings
 ///     full_scale = "98.1 m/s^2"          # or "uncalibrated", the default
 ///     [[recording]]
-///     file  = "cutting_233.flac"         # against the folder of the set
+///     file  = "cutting_233.flac"         # relative to the folder of the set
 ///     state = "cutting"                  # or "free_air"
 ///     rate  = "233 Hz"                   # of reciprocation, 5 Hz to 1 kHz
 ///     load  = "7 N"                      # cutting only, required there
 ///     loop  = ["0.1 s", "2.4 s"]         # optional: the part to use
 ///     note  = "…"
 ///
-/// A sound file in place of a set becomes a set of one cutting recording at 7 N, uncalibrated, its rate estimated from
-/// the sound unless `rate` (Hz) tells it; SawVoice plays it 12 dB lower in free air. Calibrated and uncalibrated
-/// recordings do not mix. Throws Error with file, line and column.
+/// A plain sound file becomes a set of one uncalibrated cutting recording at 7 N; its rate is estimated unless `rate`
+/// (Hz) is given; SawVoice plays it 12 dB lower in free air. A set cannot mix calibrated and uncalibrated recordings.
+/// Throws Error with file, line and column.
 RecordingSet load_recording_set(const std::filesystem::path& path, std::optional<double> rate = std::nullopt);
 
-/// The set as SawVoice::prepare takes it; points into `set`.
+/// The input of SawVoice::prepare; refers to `set`.
 std::vector<vibration::SawRecording> saw_recordings(const RecordingSet& set);
 
 }  // namespace tactus::sound

@@ -33,7 +33,7 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-/// Cells between commas or semicolons, empty ones kept; else words between blanks.
+/// Splits a line at commas or semicolons, keeping empty cells; otherwise at blanks.
 std::vector<std::string_view> cells_of(std::string_view line) {
     std::vector<std::string_view> cells;
     const bool has_comma = line.find_first_of(",;") != std::string_view::npos;
@@ -72,7 +72,7 @@ public:
             else row(cells_of(line));
         }
         vibration::FrequencyResponse& response = file_.identified.response;
-        if (response.hz.size() < 3) throw Error({path_.string(), 0, 0}, "a response needs 3 frequencies or more");
+        if (response.hz.size() < 3) throw Error({path_.string(), 0, 0}, "a response needs at least 3 frequencies");
         if (!has_phase_) assume_minimum_phase(response);
         return std::move(file_);
     }
@@ -88,7 +88,7 @@ private:
         if (key == "unit") file_.unit = value;
         if (key == "latency_s") {
             const auto latency = number_in(value);
-            if (!latency) fail("latency_s is a number of seconds");
+            if (!latency) fail("latency_s must be a number of seconds");
             file_.identified.response.latency = *latency;
         }
     }
@@ -104,7 +104,7 @@ private:
             else if (name.starts_with("coherence")) coherence_ = i;
             else if (name.starts_with("order_")) {
                 const auto order = number_in(std::string_view(name).substr(6));
-                if (!order || *order < 2.0 || *order > 100.0) fail(fmt::format("'{}' is no order", name));
+                if (!order || *order < 2.0 || *order > 100.0) fail(fmt::format("'{}' is not an order", name));
                 orders_.push_back(i);
                 file_.identified.distortions.push_back({static_cast<int>(*order), {}});
             }
@@ -130,7 +130,7 @@ private:
         const double hz = value(hz_), level = value(level_);
         if (!(hz >= 0.0)) fail("a frequency must not be negative");
         if (hz == 0.0) return;  // tables of transforms begin there
-        if (!response.hz.empty() && hz <= response.hz.back()) fail("frequencies must rise from line to line");
+        if (!response.hz.empty() && hz <= response.hz.back()) fail("frequencies must increase from line to line");
         if (std::abs(level) > 400.0) fail("a level must lie between -400 and 400 dB");
         const double phase = has_phase_ ? value(phase_) * std::numbers::pi / 180.0 : 0.0;
         response.hz.push_back(hz);

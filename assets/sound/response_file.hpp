@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measured frequency responses on disk.
+// Files of measured frequency responses.
 #pragma once
 
 #include "dsp/vibration/identify.hpp"
@@ -10,7 +10,7 @@
 namespace tactus::sound {
 
 struct ResponseFile {
-    std::string title;  ///< what was measured
+    std::string title;  ///< the measured path
     std::string unit;   ///< of the gain, "m/s^2 per V"; empty when unknown
     vibration::Identified identified;
 };
@@ -19,18 +19,18 @@ struct ResponseFile {
 ///
 ///     # title = "saw-vibration: actuator.drive to actuator.signal"
 ///     # unit = "m/s^2 per V"
-///     # latency_s = 0.0026667          (taken out of the phase)
+///     # latency_s = 0.0026667          (removed from the phase)
 ///     frequency_hz,level_db,phase_deg,coherence,order_2,order_3,…
 ///     22.5,-14.21,171.3,0.99998,0.00021,0.00004,…
 ///
-/// level_db is 20 log10 of the gain; order_n the amplitude at n × frequency over that at the frequency, empty where the
-/// sweep did not reach. Throws Error.
+/// level_db is 20 log10 of the gain; order_n is the amplitude at n × frequency relative to the fundamental, empty
+/// beyond the sweep. Throws Error.
 void save_response(const ResponseFile& file, const std::filesystem::path& path);
 
-/// Reads what `save_response` writes, and tables of other programs: columns separated by commas, semicolons, blanks or
-/// tabs; frequency in Hz, level in dB and, optionally, phase in degrees, in that order unless a line of names says
-/// otherwise; lines that begin with #, * or ; are remarks. Without phases the system is taken to be of minimum phase.
-/// At most 1 000 000 lines. Throws Error with the line.
+/// Reads files of `save_response`, and tables of other programs: columns separated by commas, semicolons, blanks or
+/// tabs; frequency in Hz, level in dB and optionally phase in degrees, in this order unless a header line names the
+/// columns; lines that begin with #, * or ; are comments. Without phase, minimum phase is assumed. At most 1 000 000
+/// lines. Throws Error with the line.
 ResponseFile load_response(const std::filesystem::path& path);
 
 }  // namespace tactus::sound

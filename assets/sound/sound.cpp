@@ -26,7 +26,7 @@ Sound load_sound(const std::filesystem::path& path) {
         fail("the sound is longer than 2^28 samples; cut it first");
     Sound sound{info.samplerate, info.channels, static_cast<std::size_t>(info.frames), {}};
     file::require_room(double(info.frames) * info.channels * sizeof(float), path, "its samples");
-    // A header may claim anything: memory grows with what is really there.
+    // The stated length is not trusted: memory grows with the data that is read.
     const std::size_t chunk_frames = std::min<std::size_t>(65536, sound.frames);
     std::vector<float> chunk(chunk_frames * static_cast<std::size_t>(info.channels));
     for (sf_count_t got; (got = sf_readf_float(file.get(), chunk.data(), static_cast<sf_count_t>(chunk_frames))) > 0;)
@@ -51,7 +51,7 @@ std::vector<float> mix_to_mono(const Sound& sound) {
 
 namespace {
 
-/// As its header says; none when it cannot be read.
+/// The length in the header; none when it cannot be read.
 sf_count_t frames_in(const std::filesystem::path& path) {
     SF_INFO info{};
     const SoundHandle sound(sf_open(path.c_str(), SFM_READ, &info));
@@ -84,7 +84,7 @@ SoundWriter::SoundWriter(std::filesystem::path path, int channels, int rate, Sou
     info.format = format == SoundFormat::flac ? SF_FORMAT_FLAC | SF_FORMAT_PCM_24 : SF_FORMAT_WAV | SF_FORMAT_FLOAT;
     file_->handle.reset(sf_open(file_->part.c_str(), SFM_WRITE, &info));
     if (!file_->handle) throw Error(fmt::format("{}: cannot write: {}", file_->path.string(), sf_strerror(nullptr)));
-    // The PEAK chunk carries the time of writing: without it the same samples give the same bytes.
+    // The PEAK chunk stores the time of writing. Without it the same samples give the same bytes.
     sf_command(file_->handle.get(), SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);
     if (format == SoundFormat::flac) sf_command(file_->handle.get(), SFC_SET_CLIPPING, nullptr, SF_TRUE);
 }
@@ -111,10 +111,10 @@ void SoundWriter::finish() {
     }
     sf_write_sync(file_->handle.get());
     bool failed = sf_error(file_->handle.get()) != SF_ERR_NO_ERROR || sf_close(file_->handle.release()) != 0;
-    // A disk that fails takes no new header either, and libsndfile does not say so.
+    // On a failing disk the header cannot be updated either, which libsndfile does not report.
     failed = failed || (file_->has_failed && frames_in(file_->part) != file_->frames);
     if (failed)
-        throw Error(fmt::format("{}: the sound could not be completed; is the disk full? What was written is in {}",
+        throw Error(fmt::format("{}: the sound could not be completed; is the disk full? The part is in {}",
                                 file_->path.string(), file_->part.string()));
     std::error_code failure;
     std::filesystem::rename(file_->part, file_->path, failure);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sound files, in and out.
+// Reads and writes sound files.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,8 @@ struct Sound {
     double duration() const { return static_cast<double>(frames) / rate; }  ///< s
 };
 
-/// Reads whatever libsndfile knows (WAV, FLAC, AIFF, Ogg and others). Throws Error when the file is missing, is no
-/// sound, is cut short, is empty, holds a NaN or an infinity, or has more than 2^28 samples.
+/// Reads every format of libsndfile (WAV, FLAC, AIFF, Ogg and others). Throws Error when the file is missing, not a
+/// sound, cut short or empty, contains NaN or infinity, or has more than 2^28 samples.
 Sound load_sound(const std::filesystem::path& path);
 
 /// The mean of all channels.
@@ -27,12 +27,11 @@ std::vector<float> mix_to_mono(const Sound& sound);
 
 enum class SoundFormat {
     float_wav,  ///< 32-bit float, may exceed full scale; the same samples give the same bytes
-    flac,       ///< 24 bit, cut at full scale
+    flac,       ///< 24 bit, clipped at full scale
 };
 
-/// Writes beside the file (name + ".part") and renames when finished. An unfinished file is removed. On a full disk the
-/// sound ends with the last frame that found room.
-/// For offline work and threads without a deadline.
+/// Writes to a part file (name + ".part") and renames it when finished. An unfinished file is removed. On a full disk
+/// the sound ends with the last complete frame. For offline work and threads without a deadline.
 class SoundWriter {
 public:
     /// `rate` in Hz. Throws Error when the file cannot be made.
@@ -43,8 +42,8 @@ public:
 
     /// `samples`: interleaved, frames × channels. Throws Error when the disk is full; nothing more may be written then.
     void write(const float* samples, std::size_t frames);
-    /// Completes the file under its own name, after a failed `write` too: with what was written; without any sample there
-    /// is no file. Throws Error and leaves the part when that is not possible. Nothing may be written afterwards.
+    /// Completes the file and gives it its name, also after a failed `write`, with the samples written so far; without
+    /// samples no file is made. On failure throws Error and leaves the part. No writes may follow.
     void finish();
 
 private:

@@ -41,10 +41,10 @@ std::size_t SoundReader::read(double* samples, std::size_t frames) {
             fail(fmt::format("the sound holds a NaN or an infinity at {:.6g} s",
                              static_cast<double>(file_->done + i / channels()) / rate()));
     file_->done += count;
-    // A length that libsndfile does not know is given as its largest number.
+    // libsndfile reports an unknown length as the largest number.
     constexpr std::size_t unknown = std::size_t{1} << 62;
     if (count == 0 && file_->done < this->frames() && this->frames() < unknown)
-        fail(fmt::format("the sound is cut short: {} of {} samples are there", file_->done, this->frames()));
+        fail(fmt::format("the sound is cut short: it has {} of {} samples", file_->done, this->frames()));
     return count;
 }
 

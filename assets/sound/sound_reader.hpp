@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sound file in pieces: for records that do not fit in memory.
+// Reads a sound file in blocks, for records that do not fit in memory.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@ namespace tactus::sound {
 
 class SoundReader {
 public:
-    /// Anything libsndfile knows: WAV, W64, AIFF, CAF, FLAC and others, any number of channels, any rate. Throws Error
-    /// when the file is missing, no sound, empty, or shorter than its header says.
+    /// Opens any format of libsndfile (WAV, W64, AIFF, CAF, FLAC and others), with any number of channels and any rate.
+    /// Throws Error when the file is missing, not a sound, empty, or shorter than its header states.
     explicit SoundReader(std::filesystem::path path);
     ~SoundReader();
     SoundReader(SoundReader&&) noexcept;
@@ -20,11 +20,11 @@ public:
 
     double rate() const noexcept;  ///< Hz
     std::size_t channels() const noexcept;
-    std::size_t frames() const noexcept;  ///< as the header says
+    std::size_t frames() const noexcept;  ///< as stated in the header
 
-    /// Up to `frames` frames, interleaved, into `samples` (frames × channels); full scale is ±1, floats may go beyond.
-    /// Returns the number of frames; 0 at the end. Throws Error when the file is damaged, ends early, or holds a NaN or
-    /// an infinity.
+    /// Reads up to `frames` interleaved frames into `samples` (frames × channels); full scale is ±1, floats may exceed
+    /// it. Returns the number of frames, 0 at the end. Throws Error when the file is damaged, ends early, or contains
+    /// NaN or infinity.
     std::size_t read(double* samples, std::size_t frames);
 
 private:

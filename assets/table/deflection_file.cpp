@@ -23,7 +23,7 @@ simulate::LineFit load_force_calibration(const std::filesystem::path& path) {
     const NumberTable file = load_number_table(path);
     const std::vector<double> readings = file.numbers("reading"), forces = file.numbers("force_N");
     if (std::set<double>(forces.begin(), forces.end()).size() < 3)
-        throw Error({path.string(), 0, 0}, "a calibration needs three different forces or more");
+        throw Error({path.string(), 0, 0}, "a calibration needs at least three different forces");
     const simulate::LineFit fit = simulate::fit_line(readings, forces);
     if (!(fit.r_squared > 0.99))
         throw Error({path.string(), 0, 0},

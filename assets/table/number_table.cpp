@@ -54,7 +54,7 @@ std::vector<double> NumberTable::numbers(std::string_view name) const {
         const auto [stop, failure] = std::from_chars(begin, end, value);
         if (failure != std::errc{} || stop != end || !std::isfinite(value))
             throw Error({file, lines[row], 1},
-                        fmt::format("column '{}' holds '{}', which is no number", name, column[row]));
+                        fmt::format("column '{}' holds '{}', which is not a number", name, column[row]));
         all.push_back(value);
     }
     return all;
@@ -82,13 +82,14 @@ NumberTable read_number_table(std::string_view text, const std::string& file) {
         const auto row = cells(line, separator);
         if (row.size() != table.names.size())
             throw Error({file, number, 1},
-                        fmt::format("{} fields where the line of names has {}", row.size(), table.names.size()));
+                        fmt::format("the row has {} fields, the header has {}", row.size(), table.names.size()));
         if ((table.rows() + 1) * table.names.size() > most_cells)
             throw Error({file, number, 1}, fmt::format("more than {} fields", most_cells));
         for (std::size_t i = 0; i < row.size(); ++i) table.words[i].emplace_back(row[i]);
         table.lines.push_back(number);
     }
-    if (table.names.empty()) throw Error({file, 1, 1}, "empty; a line of column names is expected");
+    if (table.names.empty())
+        throw Error({file, 1, 1}, "the file is empty; a header line with column names is expected");
     return table;
 }
 

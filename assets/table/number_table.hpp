@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables of measurements as text: CSV with a line of names.
+// Tables of measurements: CSV with a header line.
 #pragma once
 
 #include <filesystem>
@@ -11,21 +11,22 @@ namespace tactus::table {
 
 struct NumberTable {
     std::string file;
-    std::vector<std::string> names;                ///< of the columns, as written
+    std::vector<std::string> names;                ///< column names, as written
     std::vector<std::vector<std::string>> words;   ///< per column and row
 
     std::size_t rows() const { return words.empty() ? 0 : words.front().size(); }
     bool has(std::string_view name) const;
-    /// The numbers of a column. Throws Error naming the columns there are, or the line that holds no number.
+    /// The numbers of a column. Throws Error with the available columns, or with the line of a cell that is not a
+    /// number.
     std::vector<double> numbers(std::string_view name) const;
-    /// The cells of a column as they stand. Throws Error naming the columns there are.
+    /// The cells of a column as text. Throws Error with the available columns.
     const std::vector<std::string>& text(std::string_view name) const;
 
-    std::vector<int> lines;  ///< of the file, per row
+    std::vector<int> lines;  ///< line in the file, per row
 };
 
-/// Fields are separated by commas, semicolons or tabs, whichever the line of names has; lines that start with '#' are
-/// comments. Throws Error with file:line for rows of another length and tables of more than 20 million cells.
+/// Reads a table. Fields are separated by commas, semicolons or tabs, as in the header; lines that start with '#' are
+/// comments. Throws Error with file:line for rows of another length and for more than 20 million cells.
 NumberTable read_number_table(std::string_view text, const std::string& file);
 NumberTable load_number_table(const std::filesystem::path& path);
 

@@ -44,7 +44,7 @@ public:
         if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);
         std::string_view line;
         if (!next(line)) fail(0, "the file is empty; a CSV log with a time column is needed");
-        if (rest_.data() != nullptr && line.find('\0') != std::string_view::npos) fail(1, "this is no text file");
+        if (rest_.data() != nullptr && line.find('\0') != std::string_view::npos) fail(1, "this is not a text file");
         choose_separator(line);
         split(line);
         std::vector<std::string> names;
@@ -55,7 +55,7 @@ public:
         for (std::size_t i = 0; i < fields_.size(); ++i)
             names.push_back(has_header ? std::string(fields_[i]) : std::to_string(i + 1));
         if (names.size() < 2)
-            fail(1, "there is one column only; a time column and a value column are needed, separated by , ; or tab");
+            fail(1, "there is only one column; a time column and a value column are needed, separated by , ; or tab");
         choose_columns(names);
         if (!has_header) row(line, rest_.empty());
         while (next(line)) row(line, rest_.empty());
@@ -74,7 +74,7 @@ private:
             line = trimmed_end(rest_.substr(0, end));
             rest_.remove_prefix(std::min(end + 1, rest_.size()));
             ++line_;
-            if (line.size() > 65536) fail(1, "the line is longer than 64 KiB; this is no CSV log");
+            if (line.size() > 65536) fail(1, "the line is longer than 64 KiB; this is not a CSV log");
             if (!line.empty() && line.front() != '#') return true;
         }
         return false;
@@ -87,7 +87,7 @@ private:
 
     void choose_separator(std::string_view line) {
         std::ptrdiff_t most = 0;
-        // A line of decimal commas has as many commas as semicolons, or more: semicolons come first.
+        // With decimal commas a line may have more commas than semicolons, so semicolons take precedence.
         for (const char candidate : {';', '\t', ','}) {
             const std::ptrdiff_t count = std::count(line.begin(), line.end(), candidate);
             if (count > 0 && most == 0) separator_ = candidate, most = count;
@@ -142,7 +142,7 @@ private:
             };
             const auto found = std::find_if(names.begin(), names.end(), speaks_of_time);
             if (found == names.end())
-                fail(1, fmt::format("no column speaks of time; name it with --time-column, there are {}",
+                fail(1, fmt::format("no column name contains a time; name the column with --time-column; there are {}",
                                     fmt::join(names, ", ")));
             time_ = static_cast<std::size_t>(found - names.begin());
         }
@@ -176,14 +176,14 @@ private:
             }
         }
         if (!selection_.time_unit.empty())
-            fail(0, fmt::format("the unit of time is s, ms, us or ns, not '{}'", selection_.time_unit));
+            fail(0, fmt::format("the unit of time must be s, ms, us or ns, not '{}'", selection_.time_unit));
     }
 
     void row(std::string_view line, bool is_last) {
         split(line);
         const std::size_t most = std::max(time_, *std::max_element(columns_.begin(), columns_.end()));
         if (fields_.size() <= most) {
-            // A logger that lost power leaves half a line.
+            // A logger that lost power may leave an incomplete last line.
             if (is_last) {
                 ++log_.lost_rows;
                 return;
@@ -207,12 +207,12 @@ private:
         for (std::size_t i = 0; i < values_.size(); ++i) log_.columns[i].push_back(values_[i]);
     }
 
-    /// True when the field is lost.
+    /// True when the field has no value.
     bool take(std::size_t column, double& number) const {
         const Cell cell = parse(fields_[column], number);
         if (cell == Cell::garbage)
             fail(static_cast<int>(column) + 1,
-                 fmt::format("'{}' in field {} is no number", fields_[column].substr(0, 40), column + 1));
+                 fmt::format("'{}' in field {} is not a number", fields_[column].substr(0, 40), column + 1));
         return cell == Cell::lost;
     }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Logs of samples as text: CSV with a time column, as microcontrollers and data loggers write them.
+// Sample logs: CSV with a time column, as microcontrollers and data loggers write them.
 #pragma once
 
 #include <cstddef>
@@ -11,25 +11,27 @@
 namespace tactus::table {
 
 struct LogSelection {
-    std::string time_column;           ///< name or number from 1; empty: the first whose name speaks of time
-    std::vector<std::string> columns;  ///< names or numbers from 1; empty: the only other one, or those named like axes
-    std::string time_unit;  ///< "s", "ms", "us" or "ns"; empty: as the column's name ends, else s
+    std::string time_column;           ///< name or number from 1; empty: the first whose name indicates time
+    std::vector<std::string>
+        columns;  ///< names or numbers from 1; empty: the only other column, or those named like axes
+    std::string time_unit;  ///< "s", "ms", "us" or "ns"; empty: from the end of the column name, else s
 };
 
 struct SampleLog {
     std::vector<double> times;  ///< s, never decreasing
-    std::vector<std::string> names;  ///< of the chosen columns
+    std::vector<std::string> names;  ///< names of the chosen columns
     std::vector<std::vector<double>> columns;  ///< values per chosen column, as many as times
     std::string time_name;
-    std::size_t lost_rows = 0;  ///< without a number in a chosen column, or cut short at the end
+    std::size_t lost_rows = 0;  ///< rows without a number in a chosen column, or an incomplete last row
 };
 
-/// Fields are separated by commas, semicolons or tabs (whichever the header has most of); lines that start with '#' are
-/// comments; the first other line names the columns, or they are called 1, 2, …. With semicolons a number may have a
-/// decimal comma. An empty field or "nan" makes a lost row. Throws Error with file:line:column.
+/// Parses a log. Fields are separated by commas, semicolons or tabs (the most frequent in the header); lines that start
+/// with '#' are comments; the first other line names the columns, otherwise they are called 1, 2, …. With semicolons a
+/// number may have a decimal comma. A row with an empty field or "nan" counts as lost. Throws Error with
+/// file:line:column.
 SampleLog read_sample_log(std::string_view text, const std::string& file, const LogSelection& selection);
 
-/// The same from a file of at most 4 GiB.
+/// The same for a file of at most 4 GiB.
 SampleLog load_sample_log(const std::filesystem::path& path, const LogSelection& selection);
 
 }  // namespace tactus::table

@@ -54,7 +54,8 @@ Thresholds load_thresholds(const std::filesystem::path& path) {
             }
             const auto value = node.is_number() ? node.value<double>() : std::nullopt;
             if (!value || !std::isfinite(*value))
-                throw Error(at(node.source()), fmt::format("'{}' is a number, or false when it is not judged", name));
+                throw Error(at(node.source()),
+                            fmt::format("'{}' must be a number, or false when it is not judged", name));
             out.*member = *value;
         }
         if (!known)

@@ -20,7 +20,7 @@ namespace {
 
 struct Field {
     std::string_view text;
-    int column = 0;  // of its first character, from 1
+    int column = 0;  // position of its first character, from 1
 };
 
 std::vector<Field> split(std::string_view line) {
@@ -36,7 +36,7 @@ std::vector<Field> split(std::string_view line) {
     }
 }
 
-/// A column with the factor that brings it to SI.
+/// A column and its factor to SI.
 struct Column {
     std::size_t index = 0;
     double factor = 1.0;
@@ -79,8 +79,8 @@ public:
         while (next(line))
             if (!line.empty()) row(line, out);
         if (out.samples.empty()) {
-            if (out.lost > 0) fail(0, "every sample of the tool is lost; choose another tool");
-            if (selection_.trial == 0) fail(0, "there is a header but no sample");
+            if (out.lost > 0) fail(0, "all samples of the tool are lost; choose another tool");
+            if (selection_.trial == 0) fail(0, "the file has a header but no samples");
             fail(0, fmt::format("there is no trial {}; there are {}", selection_.trial, fmt::join(trials_, ", ")));
         }
         out.median_step_s = median_step(out.samples);
@@ -100,7 +100,7 @@ private:
     bool next(std::string& line) {
         ++line_;
         if (!std::getline(stream_, line)) return false;
-        if (line.size() > longest_line) fail(1, "the line is longer than 64 KiB; this is no CSV of a trajectory");
+        if (line.size() > longest_line) fail(1, "the line is longer than 64 KiB; this is not a CSV of a trajectory");
         if (!line.empty() && line.back() == '\r') line.pop_back();
         return true;
     }
@@ -121,7 +121,7 @@ private:
         fail(1, fmt::format("there is no column {}{}", fmt::join(wanted, " or "), tools()));
     }
 
-    /// The tools whose columns the file has, for the message about a missing column.
+    /// The tools in the file, for the message about a missing column.
     std::string tools() const {
         std::vector<std::string> found;
         for (const std::string& name : names_)
@@ -135,7 +135,7 @@ private:
         const char* const end = field.text.data() + field.text.size();
         const auto [stop, error] = std::from_chars(field.text.data(), end, value);
         if (error != std::errc{} || stop != end || !std::isfinite(value))
-            fail(field.column, fmt::format("'{}' in column {} is no finite number", field.text, name));
+            fail(field.column, fmt::format("'{}' in column {} is not a finite number", field.text, name));
         return value;
     }
 
@@ -147,7 +147,7 @@ private:
         const double time = value(time_);
         if (has_time_ && time <= last_time_)
             fail(fields[time_.index].column,
-                 fmt::format("time {} s does not follow {} s; times must increase", time, last_time_));
+                 fmt::format("time {} s comes after {} s; times must increase", time, last_time_));
         last_time_ = time;
         has_time_ = true;
         bool breaks = false;
@@ -168,7 +168,7 @@ private:
         const double length = std::sqrt(glm::dot(q, q));
         if (!(std::abs(length - 1.0) <= 0.01))
             fail(fields[rotation_[1].index].column,
-                 fmt::format("the quaternion has length {:.4g}; a rotation has length 1", length));
+                 fmt::format("the quaternion has length {:.4g}; a rotation must have length 1", length));
         sample.pose.orientation = q / length;
         if (breaks && !out.samples.empty()) out.breaks.push_back(out.samples.size());
         out.samples.push_back(sample);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From DICOM images to a volume: which belong together, in which order, and where they lie.
+// Builds a volume from DICOM images: selects the series, sorts the slices and finds their geometry.
 #include "assets/volume/dicom_images.hpp"
 #include "assets/volume/readers.hpp"
 #include "dsp/core/error.hpp"
@@ -28,7 +28,7 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(
              folder, std::filesystem::directory_options::skip_permission_denied)) {
-        // A table of contents holds no pictures, whole or not.
+        // A DICOMDIR contains no images.
         if (!entry.is_regular_file() || entry.path().filename() == "DICOMDIR" || !is_dicom_file(entry.path())) continue;
         files.push_back(entry.path());
         if (files.size() > most_files)
@@ -39,11 +39,11 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
     return files;
 }
 
-// Those of a folder, or of a file; of a file with one image also its neighbours of the same series.
+// The images of a folder or of a file. A file with a single image adds the other files of its series in the folder.
 Images collect(const std::filesystem::path& path) {
     if (!std::filesystem::is_directory(path)) {
         Images own = dicom_images(path);
-        if (own.empty()) throw Error(fmt::format("{}: holds no picture that can be read as DICOM", path.string()));
+        if (own.empty()) throw Error(fmt::format("{}: no image can be read as DICOM", path.string()));
         if (own.size() > 1) return own;
         const auto folder = std::filesystem::absolute(path).parent_path();
         Images all;
@@ -62,11 +62,11 @@ Images collect(const std::filesystem::path& path) {
         Images found = dicom_images(file);
         all.insert(all.end(), found.begin(), found.end());
     }
-    if (all.empty()) throw Error(fmt::format("{}: holds no DICOM pictures", path.string()));
+    if (all.empty()) throw Error(fmt::format("{}: the folder has no DICOM images", path.string()));
     return all;
 }
 
-// The images of the one series that was asked for, or of the only one. Scout views do not count as one.
+// The images of the selected series, or of the only one. Scout views are not counted.
 Images choose(Images all, const std::string& wanted, const std::string& place) {
     std::map<std::string, Images> series;
     for (DicomImage& image : all) series[image.series].push_back(std::move(image));
@@ -79,9 +79,10 @@ Images choose(Images all, const std::string& wanted, const std::string& place) {
     }
     if (fitting.size() == 1) return std::move(series[fitting.front()]);
     if (wanted.empty())
-        throw Error(fmt::format("{}: holds {} series; choose one with --series UID:{}", place, series.size(), list));
-    throw Error(fmt::format("{}: --series {} names {} of its {} series:{}", place, wanted, fitting.size(),
-                            series.size(), list));
+        throw Error(
+            fmt::format("{}: there are {} series; choose one with --series UID:{}", place, series.size(), list));
+    throw Error(
+        fmt::format("{}: --series {} matches {} of {} series:{}", place, wanted, fitting.size(), series.size(), list));
 }
 
 std::string where(const DicomImage& image) {
@@ -95,25 +96,24 @@ void check_alike(const Images& images, const std::string& place) {
     for (const DicomImage& image : images) {
         const std::string name = where(image);
         if (!image.position || glm::length(image.along_row) < 0.5 || glm::length(image.along_column) < 0.5)
-            throw Error(fmt::format("{}: {} does not say where in the patient it lies (image position and orientation)",
-                                    place, name));
+            throw Error(fmt::format("{}: {} has no image position and orientation", place, name));
         if (!(image.row_spacing > 0.0) || !(image.column_spacing > 0.0))
-            throw Error(fmt::format("{}: {} does not give its pixel spacing", place, name));
+            throw Error(fmt::format("{}: {} has no pixel spacing", place, name));
         if (image.rows != first.rows || image.columns != first.columns)
             throw Error(
-                fmt::format("{}: images of different size in one series: {} has {} x {}, {} has {} x {}; take out "
-                            "those that do not belong",
+                fmt::format("{}: images of different size in one series: {} has {} x {}, {} has {} x {}; remove the "
+                            "images that do not belong",
                             place, where(first), first.columns, first.rows, name, image.columns, image.rows));
         if (glm::length(image.along_row - first.along_row) + glm::length(image.along_column - first.along_column) >
             1e-3)
-            throw Error(fmt::format("{}: {} and {} are oriented differently; take out those that do not belong", place,
-                                    where(first), name));
+            throw Error(fmt::format("{}: {} and {} have different orientations; remove the images that do not belong",
+                                    place, where(first), name));
         if (std::abs(image.row_spacing - first.row_spacing) + std::abs(image.column_spacing - first.column_spacing) >
             1e-4)
             throw Error(fmt::format("{}: {} and {} differ in pixel spacing", place, where(first), name));
     }
     const double cosine = glm::dot(glm::normalize(first.along_row), glm::normalize(first.along_column));
-    if (std::abs(cosine) > 1e-3) throw Error(fmt::format("{}: rows and columns are not square to each other", place));
+    if (std::abs(cosine) > 1e-3) throw Error(fmt::format("{}: rows and columns are not orthogonal", place));
 }
 
 struct Slices {
@@ -132,15 +132,15 @@ Slices in_order(Images images, const std::string& place) {
             const DicomImage& before = slices.images.back();
             if (image.file == before.file || dicom_samples({image}) != dicom_samples({before}))
                 throw Error(
-                    fmt::format("{}: two different images at one place ({} and {}): several phases or "
-                                "reconstructions in one series; keep the files of one",
+                    fmt::format("{}: two different images at the same position ({} and {}): the series has several "
+                                "phases or reconstructions; keep the files of one",
                                 place, where(before), where(image)));
             continue;
         }
         slices.height.push_back(h);
         slices.images.push_back(std::move(image));
     }
-    if (slices.images.size() < 2) throw Error(fmt::format("{}: one slice is no volume", place));
+    if (slices.images.size() < 2) throw Error(fmt::format("{}: one slice is not a volume", place));
     return slices;
 }
 
@@ -151,14 +151,14 @@ double median_gap(const std::vector<double>& height) {
     return gaps[gaps.size() / 2];
 }
 
-// A few gaps of just two or three slices between even ones: slices are missing, and nobody should invent them.
+// A few gaps of two or three slice steps among even ones: slices are missing and must not be interpolated.
 void check_complete(const Slices& slices, const std::string& place) {
     const double usual = median_gap(slices.height);
     std::size_t wide = 0, at = 0;
     for (std::size_t n = 1; n < slices.height.size(); ++n) {
         const double times = (slices.height[n] - slices.height[n - 1]) / usual, whole = std::round(times);
         if (whole >= 2.0 && std::abs(times - whole) < 0.03) ++wide, at = n;
-        else if (std::abs(times - 1.0) > 0.03) return;  // truly uneven
+        else if (std::abs(times - 1.0) > 0.03) return;  // the spacing is irregular
     }
     if (wide > 0 && wide <= std::max<std::size_t>(1, slices.height.size() / 10))
         throw Error(
@@ -168,7 +168,7 @@ void check_complete(const Slices& slices, const std::string& place) {
                         where(slices.images[at]), slices.height[at] - slices.height[at - 1], usual));
 }
 
-// The values of a series' slices, decoded when they are asked for. A file of several frames is decoded once and kept.
+// Decodes the slices of a series on request. A multi-frame file is decoded once and cached.
 class Samples {
 public:
     Samples(const Slices& slices, std::size_t each) : slices_(slices), each_(each) {}
@@ -195,7 +195,7 @@ private:
     std::map<std::filesystem::path, std::vector<CompactSlice>> frames_;
 };
 
-// Evenly spaced slices from four of the file each: a cubic with the slopes of a parabola.
+// Evenly spaced slices by cubic Hermite interpolation over four slices of the file, with slopes from parabolas.
 class ResampledSlices {
 public:
     ResampledSlices(const Slices& slices, std::size_t each) : h_(slices.height), each_(each) {}
@@ -236,7 +236,7 @@ private:
     std::map<std::size_t, std::vector<float>> slices_;
 };
 
-// Steps between slices may lean (a tilted gantry) but must lie on one line.
+// Slice positions may be oblique (a tilted gantry) but must be collinear.
 Vec3 line_through(const Slices& slices, const std::string& place) {
     const Vec3 start = *slices.images.front().position;
     const double all = slices.height.back() - slices.height.front();
@@ -244,7 +244,7 @@ Vec3 line_through(const Slices& slices, const std::string& place) {
     for (std::size_t n = 0; n < slices.images.size(); ++n) {
         const Vec3 off = *slices.images[n].position - start - per_mm * (slices.height[n] - slices.height.front());
         if (glm::length(off) > 0.1)
-            throw Error(fmt::format("{}: {} lies {:.2f} mm beside the line of the others", place,
+            throw Error(fmt::format("{}: {} lies {:.2f} mm off the line of the other slices", place,
                                     where(slices.images[n]), glm::length(off)));
     }
     return per_mm;
@@ -273,7 +273,7 @@ public:
             shortest = std::min(shortest, gap);
             if (std::abs(gap - mean) > 0.01 * mean + 0.005) about.uniform = false;
         }
-        // Not finer than a quarter of the mean: one close pair must not multiply the volume.
+        // At least a quarter of the mean spacing: one close pair of slices must not multiply the volume.
         const double wanted = about.uniform ? mean : std::max(shortest, 0.25 * mean);
         const int layers = about.uniform ? count : static_cast<int>(std::lround(all / wanted)) + 1;
         gap_ = all / (layers - 1);
@@ -285,14 +285,13 @@ public:
         about.map.origin = *first.position * 1e-3;
         check_map(about.map, place);
         if (!about.uniform)
-            about.notes.push_back(
-                fmt::format("slices {:.3g} mm apart at the closest and {:.3g} mm on the mean were "
-                            "interpolated to {:.3g} mm",
-                            shortest, mean, gap_));
+            about.notes.push_back(fmt::format(
+                "slices with a spacing of at least {:.3g} mm, {:.3g} mm on average, were interpolated to {:.3g} mm",
+                shortest, mean, gap_));
         if (found > slices_.images.size())
-            about.notes.push_back(fmt::format("{} images were there twice", found - slices_.images.size()));
+            about.notes.push_back(fmt::format("{} duplicate images ignored", found - slices_.images.size()));
         if (first.is_inverted)
-            about.notes.push_back("MONOCHROME1: meant to be shown inverted; its values are taken as they are");
+            about.notes.push_back("MONOCHROME1: only the display is inverted; the values are not changed");
         samples_.emplace(slices_, slice_size());
         resampled_.emplace(slices_, slice_size());
     }

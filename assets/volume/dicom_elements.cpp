@@ -34,10 +34,10 @@ public:
         }
         while (!syntax_.empty() && (syntax_.back() == '\0' || syntax_.back() == ' ')) syntax_.remove_suffix(1);
         if (syntax_.empty()) fail("it does not say its transfer syntax");
-        if (syntax_ == "1.2.840.10008.1.2.1.99") fail("deflated files are not read; write it without");
+        if (syntax_ == "1.2.840.10008.1.2.1.99") fail("deflated files are not supported; save it without deflate");
         implicit_ = syntax_ == "1.2.840.10008.1.2";
         big_ = syntax_ == "1.2.840.10008.1.2.2";
-        if (at_ >= bytes_.size()) fail("cut short: it holds nothing but a header");
+        if (at_ >= bytes_.size()) fail("cut short: it has only a header");
         elements(bytes_.size(), 0, false);
     }
 
@@ -81,7 +81,7 @@ private:
         constexpr std::string_view kinds =
             "AE AS AT CS DA DS DT FD FL IS LO LT OB OD OF OL OV OW PN SH SL SQ SS ST SV TM UC UI UL UN UR US UT UV ";
         const std::size_t place = kinds.find(std::string(e.kind) + ' ');
-        if (place == std::string_view::npos || place % 3 != 0) fail("an element of unknown kind");
+        if (place == std::string_view::npos || place % 3 != 0) fail("an element with an unknown value representation");
         at_ += 2;
         constexpr std::string_view wide = "OB OD OF OL OV OW SQ SV UC UN UR UT UV ";
         if (wide.find(std::string(e.kind) + ' ') != std::string_view::npos) {
@@ -93,16 +93,16 @@ private:
         return e;
     }
 
-    // Elements up to `end`, or to the mark that ends an item of undefined length.
+    // Walks the elements up to `end`, or to the delimiter of an item of undefined length.
     void elements(std::size_t end, int depth, bool to_mark) {
-        if (depth > deepest) fail("sequences too deep in one another");
+        if (depth > deepest) fail("sequences are nested too deeply");
         while (at_ < end) {
             const Element e = element();
             if (e.group == 0xfffe) {
                 if (to_mark && e.number == 0xe00d && e.length == 0) return;
-                fail("an item where none can be");
+                fail("an item outside a sequence");
             }
-            // The element's own head may reach beyond what holds it.
+            // The element's header may reach beyond its container.
             if (at_ > end) fail("cut short: an element reaches beyond its sequence");
             const bool is_pixels = e.group == 0x7fe0 && e.number == 0x10;
             if (e.length == undefined || e.kind == "SQ") {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bare structure of a DICOM file.
+// Checks the structure of a DICOM file.
 #pragma once
 
 #include <filesystem>
 
 namespace tactus::volume {
 
-/// Walks over all elements, sequences and items of a file with the DICM mark. Throws Error when one does not lie within
-/// the file or within what holds it. GDCM ends the program at some of these, so it only gets files that pass.
+/// Walks all elements, sequences and items of a file with the DICM mark. Throws Error when one does not lie within the
+/// file or its container. GDCM aborts the program on some of these errors, so it only gets files that pass.
 void check_dicom_elements(const std::filesystem::path& path);
 
 }  // namespace tactus::volume

@@ -28,7 +28,7 @@ namespace {
 const gdcm::Tag pixel_data(0x7fe0, 0x0010);
 constexpr std::string_view big_endian = "1.2.840.10008.1.2.2";
 
-// GDCM writes to the terminal on its own; what matters is in our Error.
+// GDCM prints to the terminal; our Error has the relevant text.
 void silence() {
     gdcm::Trace::DebugOff();
     gdcm::Trace::WarningOff();
@@ -44,7 +44,7 @@ std::string text_of(const gdcm::DataSet& set, gdcm::Tag tag) {
     return text;
 }
 
-// Numbers written as text with backslashes between them.
+// Numbers as text, separated by backslashes (DICOM DS).
 std::vector<double> decimals_of(const gdcm::DataSet& set, gdcm::Tag tag) {
     const std::string text = text_of(set, tag);
     std::vector<double> numbers;
@@ -99,7 +99,7 @@ void take_rescale(const gdcm::DataSet& set, DicomImage& image) {
     image.rescale_type = text_of(set, {0x0028, 0x1054});
 }
 
-// An enhanced file says per frame, or once for all, where frames lie and what their numbers mean.
+// Enhanced files state position and rescale per frame, or once for all frames.
 void take_functional_groups(const gdcm::DataSet& set, std::size_t frame, DicomImage& image) {
     const gdcm::DataSet* shared = item_of(set, {0x5200, 0x9229}, 0);
     const gdcm::DataSet* own = item_of(set, {0x5200, 0x9230}, frame);
@@ -117,11 +117,11 @@ void take_functional_groups(const gdcm::DataSet& set, std::size_t frame, DicomIm
 void check_claim(const DicomImage& image, int frames, int bits, bool compressed) {
     const std::string file = image.file.string();
     if (image.rows < 1 || image.columns < 1)
-        throw Error(fmt::format("{}: a picture of {} rows and {} columns", file, image.rows, image.columns));
+        throw Error(fmt::format("{}: the image has {} rows and {} columns", file, image.rows, image.columns));
     std::error_code failure;
     const auto size = static_cast<double>(std::filesystem::file_size(image.file, failure));
     const double asked = double(image.rows) * image.columns * frames * bits / 8.0;
-    // No transfer syntax packs pictures with noise by thousands; empty ones come close to it.
+    // No transfer syntax compresses noisy images by a factor of thousands; empty images come close.
     if (failure || asked > size * (compressed ? 2000.0 : 1.0))
         throw Error(fmt::format(
             "{}: cut short: its header asks for {:.0f} bytes of samples, more than the file can hold", file, asked));
@@ -169,12 +169,12 @@ std::vector<DicomImage> dicom_images(const std::filesystem::path& file) {
         image.is_localizer = text_of(set, {0x0008, 0x0008}).find("LOCALIZER") != std::string::npos;
         image.is_inverted = text_of(set, {0x0028, 0x0004}) == "MONOCHROME1";
         if (binary_of(set, {0x0028, 0x0002}, 1) != 1)
-            throw Error(fmt::format("{}: a picture in colour is no CT", file.string()));
-        // GDCM asks such kinds for their number of frames without looking whether it is there.
+            throw Error(fmt::format("{}: this is a colour image, not a CT", file.string()));
+        // GDCM reads the number of frames of these classes without checking that it exists.
         gdcm::MediaStorage kind;
         kind.SetFromFile(reader.GetFile());
         if (kind.GetModalityDimension() > 2 && !set.FindDataElement(gdcm::Tag(0x0028, 0x0008)))
-            throw Error(fmt::format("{}: of a kind with several frames, but it does not say how many", file.string()));
+            throw Error(fmt::format("{}: a multi-frame image without a number of frames", file.string()));
         const gdcm::TransferSyntax& syntax = reader.GetFile().GetHeader().GetDataSetTransferSyntax();
         image.syntax = gdcm::TransferSyntax::GetTSString(syntax) ? gdcm::TransferSyntax::GetTSString(syntax) : "";
         take_geometry(set, set, set, image);
@@ -182,7 +182,7 @@ std::vector<DicomImage> dicom_images(const std::filesystem::path& file) {
         const auto counted = decimals_of(set, {0x0028, 0x0008});
         const double frames = counted.empty() ? 1.0 : counted[0];
         if (!(frames >= 1.0 && frames <= 100000.0))
-            throw Error(fmt::format("{}: {:g} frames cannot be", file.string(), frames));
+            throw Error(fmt::format("{}: {:g} frames are not possible", file.string(), frames));
         check_claim(image, static_cast<int>(frames), binary_of(set, {0x0028, 0x0100}, 16), syntax.IsEncapsulated());
         const bool enhanced = set.FindDataElement(gdcm::Tag(0x5200, 0x9230));
         for (int frame = 0; frame < static_cast<int>(frames); ++frame) {
@@ -204,12 +204,12 @@ std::vector<float> dicom_samples(const std::vector<DicomImage>& images) {
     const DicomImage& first = images.front();
     const std::string file = first.file.string();
     const auto refuse = [&](std::string_view why) {
-        throw Error(fmt::format("{}: its picture cannot be decoded ({}): {}", file, first.syntax, why));
+        throw Error(fmt::format("{}: the image cannot be decoded ({}): {}", file, first.syntax, why));
     };
     try {
         gdcm::ImageReader reader;
         reader.SetFileName(file.c_str());
-        if (!reader.Read()) refuse("damaged, cut short, or a compression that GDCM does not know");
+        if (!reader.Read()) refuse("damaged, cut short, or compressed in a way that GDCM does not support");
         const gdcm::Image& picture = reader.GetImage();
         const gdcm::PixelFormat& format = picture.GetPixelFormat();
         const Layout layout{format.GetBitsAllocated(), format.GetBitsStored(), format.GetHighBit(),
@@ -218,12 +218,13 @@ std::vector<float> dicom_samples(const std::vector<DicomImage>& images) {
             refuse(fmt::format("{} bits per sample", layout.bits_allocated));
         if (layout.bits_stored < 1 || layout.bits_stored > layout.bits_allocated ||
             layout.high_bit >= layout.bits_allocated)
-            refuse("its header contradicts itself about the bits of a sample");
+            refuse("its header has contradictory bit depths");
         const auto bytes = static_cast<std::size_t>(layout.bits_allocated / 8);
-        if (bytes == 4 && first.syntax == big_endian) refuse("GDCM swaps its samples of 32 bits wrongly");
+        if (bytes == 4 && first.syntax == big_endian) refuse("GDCM does not swap 32-bit samples correctly");
         const std::size_t each = static_cast<std::size_t>(first.rows) * static_cast<std::size_t>(first.columns);
-        if (picture.GetBufferLength() != each * images.size() * bytes) refuse("not as many samples as its header says");
-        // Its bytes as GDCM keeps them, as they are handed out, and as float.
+        if (picture.GetBufferLength() != each * images.size() * bytes)
+            refuse("the number of samples differs from the header");
+        // The bytes in GDCM, the copy that it returns, and the floats.
         file::require_room(double(picture.GetBufferLength()) * (2.0 + sizeof(float) / double(bytes)), file,
                            "its samples");
         std::vector<char> buffer(picture.GetBufferLength());

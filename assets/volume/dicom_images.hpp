@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The images in a DICOM file: what their headers say, and their samples.
+// The images in a DICOM file: headers and samples.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -12,7 +12,7 @@
 
 namespace tactus::volume {
 
-/// One image: a file, or one frame of a multi-frame file. Lengths in mm, LPS, as in the standard.
+/// An image: a file, or a frame of a multi-frame file. Lengths in mm, LPS, as in the standard.
 struct DicomImage {
     std::filesystem::path file;
     int frame = 0;                      ///< from 0
@@ -25,15 +25,15 @@ struct DicomImage {
     double slope = 1.0, intercept = 0.0;
     bool has_rescale = false;
     bool is_localizer = false;
-    bool is_inverted = false;  ///< MONOCHROME1: shown with low values bright; the values themselves mean the same
+    bool is_inverted = false;  ///< MONOCHROME1: displayed with low values bright; the values are not affected
 };
 
-/// The images of a file, in the order of its frames; none when it holds no pictures (reports, DICOMDIR). Throws Error
-/// for pictures that claim more samples than the file can hold, or are not grey.
+/// The images of a file in order of frames; none for files without images (reports, DICOMDIR). Throws Error for images
+/// that claim more samples than the file can hold, and for colour images.
 std::vector<DicomImage> dicom_images(const std::filesystem::path& file);
 
-/// The samples of all frames of a file, rescaled by each frame's slope and intercept. Throws Error when they cannot be
-/// decoded. `images` are those of the file, as dicom_images gave them.
+/// The samples of all frames, rescaled by each frame's slope and intercept. `images`: the result of dicom_images for
+/// this file. Throws Error when they cannot be decoded.
 std::vector<float> dicom_samples(const std::vector<DicomImage>& images);
 
 }  // namespace tactus::volume

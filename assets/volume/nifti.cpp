@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// NIfTI-1 and NIfTI-2, one file with header and samples. Layout of the headers: nifti1.h and nifti2.h of the NIfTI
-// Data Format Working Group.
+// NIfTI-1 and NIfTI-2 in a single file. Layout of the headers: nifti1.h and nifti2.h of the NIfTI Data Format Working
+// Group.
 #include "assets/volume/readers.hpp"
 #include "assets/volume/sample_stream.hpp"
 #include "dsp/core/error.hpp"
@@ -20,7 +20,7 @@ namespace {
 
 constexpr int label_intent = 1002;
 
-// Numbers at fixed places of a header in either byte order.
+// Reads numbers at fixed offsets of a header in either byte order.
 struct Fields {
     std::vector<char> bytes;
     bool swapped = false;
@@ -36,7 +36,7 @@ struct Fields {
     }
 };
 
-// What both versions say, in one shape.
+// The fields of both versions.
 struct Header {
     std::array<std::int64_t, 8> dim{};
     std::array<double, 8> pixdim{};
@@ -78,20 +78,19 @@ Header header_of(PackedFile& file, Fields& fields, const std::string& name) {
     if (is_size(348)) {
         if (std::memcmp(&fields.bytes[344], "ni1", 4) == 0)
             throw Error(
-                fmt::format("{}: the samples are in another file (.img); write one .nii file of the pair", name));
+                fmt::format("{}: the samples are in another file (.img); convert the pair to one .nii file", name));
         if (std::memcmp(&fields.bytes[344], "n+1", 4) != 0)
-            throw Error(
-                fmt::format("{}: no NIfTI but an older Analyze file, which does not say left from right", name));
+            throw Error(fmt::format(
+                "{}: this is an Analyze file, which does not distinguish left from right; NIfTI is needed", name));
         Header h = take<std::int16_t, float, std::int16_t>(fields, {40, 76, 256, 268, 280, 112, 116, 70, 252, 254, 68});
         h.vox_offset = fields.get<float>(108);
         h.units = fields.bytes[123];
         return h;
     }
-    if (!is_size(540)) throw Error(fmt::format("{}: no NIfTI header", name));
+    if (!is_size(540)) throw Error(fmt::format("{}: not a NIfTI header", name));
     fields.bytes.resize(540);
     file.read(std::span(fields.bytes).subspan(348));
-    if (std::memcmp(&fields.bytes[4], "n+2", 4) != 0)
-        throw Error(fmt::format("{}: no NIfTI-2 file with header and samples in one", name));
+    if (std::memcmp(&fields.bytes[4], "n+2", 4) != 0) throw Error(fmt::format("{}: not a single-file NIfTI-2", name));
     Header h = take<std::int64_t, double, std::int32_t>(fields, {16, 104, 352, 376, 400, 176, 184, 12, 344, 348, 504});
     h.vox_offset = static_cast<double>(fields.get<std::int64_t>(168));
     h.units = fields.get<std::int32_t>(500);
@@ -110,7 +109,7 @@ SampleType type_of(int datatype, const std::string& name) {
         case 768: return {SampleType::uint32};
         case 1024: return {SampleType::int64};
         case 1280: return {SampleType::uint64};
-        default: throw Error(fmt::format("{}: samples of NIfTI type {} are no plain numbers", name, datatype));
+        default: throw Error(fmt::format("{}: samples of NIfTI type {} are not real numbers", name, datatype));
     }
 }
 
@@ -130,7 +129,7 @@ SampleMap<Frame::ras> from_quaternion(const Header& h, double unit) {
     const Mat3 rotation = glm::mat3_cast(glm::normalize(Quat(a, b, c, d)));
     SampleMap<Frame::ras> map;
     for (int axis = 0; axis < 3; ++axis) {
-        // The sign of pixdim[0] says whether the third axis is mirrored.
+        // The sign of pixdim[0] mirrors the third axis.
         const double flip = axis == 2 && h.pixdim[0] < 0.0 ? -unit : unit;
         map.step[axis] = rotation[axis] * (h.pixdim[static_cast<std::size_t>(axis) + 1] * flip);
         map.origin[axis] = h.offset[static_cast<std::size_t>(axis)] * unit;
@@ -143,7 +142,7 @@ void read_geometry(const Header& h, ScanVolume& volume, const std::string& name)
     const double unit = code == 1 ? 1.0 : code == 3 ? 1e-6 : 1e-3;
     if (h.sform <= 0 && h.qform <= 0)
         throw Error(
-            fmt::format("{}: has neither sform nor qform, so nobody knows left from right; set one where the file "
+            fmt::format("{}: has neither sform nor qform, so left and right are unknown; set one where the file "
                         "was made",
                         name));
     const SampleMap<Frame::ras> map = h.sform > 0 ? from_rows(h, unit) : from_quaternion(h, unit);
@@ -155,8 +154,7 @@ void read_geometry(const Header& h, ScanVolume& volume, const std::string& name)
         const Vec3 last(volume.size[0] - 1, volume.size[1] - 1, volume.size[2] - 1);
         const double apart = std::max(glm::length(map(last) - other(last)), glm::length(map.origin - other.origin));
         if (!(apart < 1e-4))
-            volume.notes.push_back(
-                fmt::format("sform and qform differ by {:.3g} mm; the sform was taken", apart * 1e3));
+            volume.notes.push_back(fmt::format("sform and qform differ by {:.3g} mm; the sform is used", apart * 1e3));
     }
 }
 
@@ -167,19 +165,19 @@ public:
         PackedFile file(path);
         Fields fields;
         const Header h = header_of(file, fields, name);
-        if (h.dim[0] < 3 || h.dim[0] > 7) throw Error(fmt::format("{}: has {} axes, a volume has 3", name, h.dim[0]));
+        if (h.dim[0] < 3 || h.dim[0] > 7)
+            throw Error(fmt::format("{}: has {} axes; a volume must have 3", name, h.dim[0]));
         for (std::size_t n = 4; n <= static_cast<std::size_t>(h.dim[0]); ++n)
             if (h.dim[n] != 1)
-                throw Error(
-                    fmt::format("{}: holds a series of {} volumes; take one of them out first", name, h.dim[n]));
+                throw Error(fmt::format("{}: has {} volumes; extract one of them first", name, h.dim[n]));
         const SampleType type = type_of(h.datatype, name);
         const std::size_t count = checked_count({h.dim[1], h.dim[2], h.dim[3]}, name);
         const auto header_size = static_cast<double>(fields.bytes.size());
         if (!(h.vox_offset >= header_size && h.vox_offset <= 1e8))
-            throw Error(fmt::format("{}: the samples cannot start at byte {:g}", name, h.vox_offset));
+            throw Error(fmt::format("{}: an invalid start of the samples, byte {:g}", name, h.vox_offset));
         if (h.vox_offset + static_cast<double>(count * type.bytes()) > file.most_bytes())
             throw Error(
-                fmt::format("{}: cut short: its header asks for {} voxels, more than the file can hold", name, count));
+                fmt::format("{}: cut short: its header states {} voxels, more than the file can hold", name, count));
         about.format = "NIfTI";
         about.source = path.filename().string();
         about.encoding = file.is_packed() ? "gzip" : "raw";

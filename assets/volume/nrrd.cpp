@@ -38,24 +38,24 @@ std::string teem_message() {
     return message.substr(message.rfind('\n') == std::string::npos ? 0 : message.rfind('\n') + 1);
 }
 
-// Bytes that hold samples, over all data files of the header.
+// Total size of the data files of a header, bytes.
 double bytes_on_disk(const std::filesystem::path& path, const NrrdIoState& io) {
     std::error_code failure;
     double sum = 0.0;
     const auto add = [&](const std::filesystem::path& file) {
         const auto size = std::filesystem::file_size(file, failure);
-        if (failure) throw Error(fmt::format("{}: its data file {} is not there", path.string(), file.string()));
+        if (failure) throw Error(fmt::format("{}: its data file {} is missing", path.string(), file.string()));
         sum += static_cast<double>(size);
     };
     if (io.dataFNFormat)
-        throw Error(fmt::format("{}: numbered data files are not read; join them with 'unu'", path.string()));
+        throw Error(fmt::format("{}: numbered data files are not supported; join them with 'unu'", path.string()));
     if (io.dataFNArr && io.dataFNArr->len > 0)
         for (unsigned n = 0; n < io.dataFNArr->len; ++n) add(path.parent_path() / io.dataFN[n]);
     else add(path);
     return sum;
 }
 
-// The least number of file bytes per sample that an encoding can need; deflate cannot pack better than 1032 to 1.
+// Lower bound of file bytes per sample for an encoding; deflate compresses at most 1032 to 1.
 double least_bytes(const Nrrd& nrrd, const NrrdIoState& io) {
     const double size = static_cast<double>(nrrdTypeSize[nrrd.type]);
     if (io.encoding == nrrdEncodingGzip) return size / 1032.0;
@@ -65,18 +65,18 @@ double least_bytes(const Nrrd& nrrd, const NrrdIoState& io) {
     return size / 10000.0;
 }
 
-// `first` is the first of the three axes of space; before it stands the axis of a segmentation's layers, if any.
+// `first`: the first spatial axis; before it is the axis of the segmentation layers, if any.
 void read_geometry(const Nrrd& nrrd, unsigned first, ScanVolume& volume, const std::string& file) {
     const bool is_ras = nrrd.space == nrrdSpaceRightAnteriorSuperior;
     if (!is_ras && nrrd.space != nrrdSpaceLeftPosteriorSuperior && nrrd.space != nrrdSpaceLeftAnteriorSuperior)
         throw Error(
-            fmt::format("{}: no usable 'space' (spacing and directions of the patient are unknown); write "
+            fmt::format("{}: no usable 'space' (the patient's directions are unknown); write "
                         "'space: left-posterior-superior', 'space directions' and 'space origin' into the header",
                         file));
     for (unsigned n = 0; n < 3; ++n)
         if (nrrd.spaceUnits[n] && *nrrd.spaceUnits[n] && std::string_view(nrrd.spaceUnits[n]) != "mm")
             throw Error(
-                fmt::format("{}: space units '{}' are not mm; rewrite the header in mm", file, nrrd.spaceUnits[n]));
+                fmt::format("{}: space units '{}' are not mm; convert the header to mm", file, nrrd.spaceUnits[n]));
     SampleMap<Frame::lps> map;
     for (unsigned n = 0; n < 3; ++n) {
         const double flip = nrrd.space == nrrdSpaceLeftAnteriorSuperior && n == 1 ? -1e-3 : 1e-3;
@@ -85,7 +85,7 @@ void read_geometry(const Nrrd& nrrd, unsigned first, ScanVolume& volume, const s
             map.step[static_cast<int>(axis)][row] = nrrd.axis[first + axis].spaceDirection[n] * flip;
         map.origin[row] = nrrd.spaceOrigin[n] * flip;
     }
-    if (!is_finite(map.origin)) map.origin = Vec3(0.0);  // none given
+    if (!is_finite(map.origin)) map.origin = Vec3(0.0);  // not given
     volume.map = is_ras ? to_lps(SampleMap<Frame::ras>{map.step, map.origin}) : map;
     volume.file_frame = is_ras ? Frame::ras : Frame::lps;
     check_map(volume.map, file);
@@ -104,7 +104,7 @@ struct Layered {
     int label = 0;  // in its layer
 };
 
-// What 3D Slicer says about the structures of a .seg.nrrd: Segment0_Name, Segment0_LabelValue, Segment0_Color, ...
+// Segments as 3D Slicer describes them in a .seg.nrrd: Segment0_Name, Segment0_LabelValue, Segment0_Color, ...
 std::vector<Layered> segments_of(const Nrrd& nrrd) {
     std::vector<Layered> found;
     for (int n = 0; n < 100000; ++n) {
@@ -123,7 +123,7 @@ std::vector<Layered> segments_of(const Nrrd& nrrd) {
 
 void check_header(const Nrrd& header, const NrrdIoState& io, const std::filesystem::path& path, unsigned first) {
     const std::string file = path.string();
-    if (nrrdTypeBlock == header.type) throw Error(fmt::format("{}: holds blocks, not numbers", file));
+    if (nrrdTypeBlock == header.type) throw Error(fmt::format("{}: the samples are blocks, not numbers", file));
     std::array<std::int64_t, 3> size{};
     for (unsigned axis = 0; axis < 3; ++axis)
         size[axis] = static_cast<std::int64_t>(std::min<std::size_t>(header.axis[first + axis].size, 1u << 30));
@@ -131,12 +131,12 @@ void check_header(const Nrrd& header, const NrrdIoState& io, const std::filesyst
     for (unsigned axis = 0; axis < header.dim; ++axis) count *= static_cast<double>(header.axis[axis].size);
     if (count * least_bytes(header, io) > bytes_on_disk(path, io) + 64.0)
         throw Error(
-            fmt::format("{}: cut short: its header asks for {:.0f} voxels, more than the file can hold", file, count));
+            fmt::format("{}: cut short: its header states {:.0f} voxels, more than the file can hold", file, count));
     checked_count(size, file);
-    if (count > 2e9) throw Error(fmt::format("{}: {:.0f} samples in its layers are too many", file, count));
+    if (count > 2e9) throw Error(fmt::format("{}: too many samples in its layers: {:.0f}", file, count));
 }
 
-// Where samples begin in a file with header and samples: behind the first empty line.
+// Start of the samples in a file with attached header: after the first empty line.
 std::uint64_t end_of_header(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     std::string line;
@@ -145,7 +145,7 @@ std::uint64_t end_of_header(const std::filesystem::path& path) {
         at += line.size() + 1;
         if (line.empty() || line == "\r") return at;
     }
-    throw Error(fmt::format("{}: cut short: its header has no end", path.string()));
+    throw Error(fmt::format("{}: cut short: the header has no end", path.string()));
 }
 
 std::optional<SampleType> type_of(int type) {
@@ -164,7 +164,7 @@ std::optional<SampleType> type_of(int type) {
     }
 }
 
-// Where the samples of one data file begin, `bytes` long unless packed, with the lines and bytes that the header skips.
+// Start of the samples in a data file, after the skipped lines and bytes; `bytes`: length of unpacked samples.
 std::uint64_t start_of_samples(const std::filesystem::path& path, std::uint64_t start, const NrrdIoState& io,
                                double bytes) {
     const auto cut_short = [&] { return Error(fmt::format("{}: cut short; copy the file again", path.string())); };
@@ -177,14 +177,14 @@ std::uint64_t start_of_samples(const std::filesystem::path& path, std::uint64_t 
     }
     if (io.encoding != nrrdEncodingRaw) return start;
     if (io.byteSkip >= 0) return start + static_cast<std::uint64_t>(io.byteSkip);
-    // Counted from the end: -1 is the last possible place.
+    // A negative skip counts from the end: -1 means that the samples end the file.
     const double from_end = static_cast<double>(std::filesystem::file_size(path)) - bytes + (double(io.byteSkip) + 1.0);
     if (from_end < static_cast<double>(start)) throw cut_short();
     return static_cast<std::uint64_t>(from_end);
 }
 
-// Samples of plain or gzip'ed files, in blocks: teem would hold the whole file beside them, and forgets zlib's buffers
-// where packing is damaged. None for what only teem reads.
+// Streams the samples of raw or gzipped files: teem would load the whole file, and leaks zlib's buffers on damaged
+// data. None for encodings that only teem reads.
 std::optional<SampleStream> stream_of(const Nrrd& header, const NrrdIoState& io, const std::filesystem::path& path,
                                       std::size_t samples) {
     const bool is_gzip = io.encoding == nrrdEncodingGzip;
@@ -193,10 +193,10 @@ std::optional<SampleStream> stream_of(const Nrrd& header, const NrrdIoState& io,
     const bool is_apart = io.dataFNArr && io.dataFNArr->len > 0;
     const std::size_t files = is_apart ? io.dataFNArr->len : 1;
     if (samples % files != 0)
-        throw Error(fmt::format("{}: its samples do not fill {} data files evenly", path.string(), files));
+        throw Error(fmt::format("{}: its samples cannot be divided evenly among {} data files", path.string(), files));
     if (is_gzip && io.byteSkip < 0)
         throw Error(
-            fmt::format("{}: bytes of a packed file cannot be skipped from its end; unpack it with 'unu save "
+            fmt::format("{}: a negative byte skip needs an unpacked file; unpack it with 'unu save "
                         "-f nrrd -e raw'",
                         path.string()));
     const bool swapped = io.endian != airEndianUnknown && io.endian != airMyEndian() && type->bytes() > 1;
@@ -211,7 +211,7 @@ std::optional<SampleStream> stream_of(const Nrrd& header, const NrrdIoState& io,
     return SampleStream(std::move(pieces), *type, swapped, is_gzip);
 }
 
-// teem reads a number of text into a buffer of fixed size, however long it is.
+// teem reads text numbers into a buffer of fixed size without checking their length.
 void check_text(const std::filesystem::path& path, std::uint64_t start) {
     constexpr std::size_t longest = 500;
     std::ifstream file(path, std::ios::binary);
@@ -223,7 +223,7 @@ void check_text(const std::filesystem::path& path, std::uint64_t start) {
         for (const char c : std::span(block).first(static_cast<std::size_t>(file.gcount()))) {
             length = std::isspace(static_cast<unsigned char>(c)) ? 0 : length + 1;
             if (length > longest)
-                throw Error(fmt::format("{}: a number of more than {} letters in its text", path.string(), longest));
+                throw Error(fmt::format("{}: a text number has more than {} characters", path.string(), longest));
         }
     } while (file);
 }
@@ -240,8 +240,8 @@ public:
         segments_ = segments_of(*header);
         const unsigned first = header->dim == 4 && !segments_.empty() ? 1 : 0;
         if (header->dim != 3 + first)
-            throw Error(
-                fmt::format("{}: has {} axes, a CT volume has 3 (take one frame with 'unu slice')", file, header->dim));
+            throw Error(fmt::format("{}: has {} axes; a CT volume must have 3 (extract one frame with 'unu slice')",
+                                    file, header->dim));
         about.format = "NRRD";
         about.source = path.filename().string();
         about.encoding = io->encoding->name;
@@ -284,7 +284,8 @@ public:
 
     void settle(const Tally& tally) override {
         if (covered_ > 0)
-            about.notes.push_back(fmt::format("{} voxels lie in several segments; the last one has them", covered_));
+            about.notes.push_back(
+                fmt::format("{} voxels lie in several segments; the last segment takes them", covered_));
         covered_ = 0;
         settle_meaning(about, tally, integers_);
     }
@@ -294,26 +295,28 @@ private:
         throw Error(fmt::format("{}: cannot be read as NRRD: {}", file, teem_message()));
     }
 
-    // Segments that overlap are stored in layers; in one label map each gets a number of its own, later ones on top.
+    // Overlapping segments are stored in layers; in one label map each gets its own number, and later segments
+    // overwrite earlier ones.
     void flatten_segments() {
         for (std::size_t s = 0; s < segments_.size(); ++s) {
             Layered& segment = segments_[s];
             segment.label = segment.segment.label;
             if (layers_ > 1) {
                 if (segment.layer < 0 || static_cast<std::size_t>(segment.layer) >= layers_)
-                    throw Error(fmt::format("{}: segment {} is in layer {}, but there are {}", about.source, s,
+                    throw Error(fmt::format("{}: segment {} is in layer {}, but there are {} layers", about.source, s,
                                             segment.layer, layers_));
                 segment.segment.label = static_cast<int>(s) + 1;
             }
             about.segments.push_back(segment.segment);
         }
         if (layers_ > 1)
-            about.notes.push_back(fmt::format("{} layers of segments became one label map, numbered from 1", layers_));
+            about.notes.push_back(
+                fmt::format("{} segment layers were merged into one label map, numbered from 1", layers_));
     }
 
-    // Text and bzip2: all at once.
+    // Text and bzip2 are read at once.
     void read_by_teem(const std::string& file) {
-        // Its numbers as they are, and as float.
+        // The numbers in the type of the file, and as float.
         file::require_room(12.0 * double(about.count()) * double(layers_), file, "its samples");
         const NrrdPointer nrrd(nrrdNew(), nrrdNuke);
         if (nrrdLoad(nrrd.get(), file.c_str(), nullptr)) refuse(file);
@@ -331,7 +334,7 @@ private:
     std::optional<SampleStream> stream_;
     std::vector<float> whole_;
     std::size_t layers_ = 1, covered_ = 0;
-    int counted_ = 0;  // slices whose covered voxels are counted
+    int counted_ = 0;  // slices whose overlapping voxels are counted
     bool integers_ = false;
 };
 

@@ -69,7 +69,7 @@ PackedFile::PackedFile(const std::filesystem::path& path, std::uint64_t start, b
         throw Error(fmt::format("{}: cannot be read", name_));
     }
     gzbuffer(handle(file_), 1u << 18);
-    gzdirect(handle(file_));  // looks at the first bytes
+    gzdirect(handle(file_));  // detects gzip from the first bytes
 }
 
 PackedFile::~PackedFile() {
@@ -89,7 +89,7 @@ std::size_t PackedFile::read_some(std::span<char> out) {
     while (done < out.size()) {
         const auto part = static_cast<unsigned>(std::min<std::size_t>(out.size() - done, 1u << 26));
         const int got = gzread(handle(file_), out.data() + done, part);
-        if (got < 0) throw Error(fmt::format("{}: its packing is damaged; copy the file again", name_));
+        if (got < 0) throw Error(fmt::format("{}: its compressed data are damaged; copy the file again", name_));
         if (got == 0) break;
         done += static_cast<std::size_t>(got);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two frames that patient data come in, as types: a map from samples to one cannot be taken for the other.
+// The two frames of patient data, LPS and RAS, as types, so that they cannot be confused.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -9,8 +9,8 @@ namespace tactus::volume {
 /// Axes towards left, posterior, superior (DICOM, and this program inside) or right, anterior, superior (NIfTI).
 enum class Frame { lps, ras };
 
-/// Where sample (i, j, k) of a volume lies: origin + step · (i, j, k), in m. Columns of `step` may have any length and
-/// need not be square to each other (a tilted gantry shears a volume).
+/// Position of sample (i, j, k) of a volume: origin + step · (i, j, k), m. The columns of `step` may have any length
+/// and need not be orthogonal (a tilted gantry shears a volume).
 template <Frame frame>
 struct SampleMap {
     Mat3 step{1.0};
@@ -19,7 +19,7 @@ struct SampleMap {
     Vec3 operator()(const Vec3& index) const { return origin + step * index; }
 };
 
-/// The same points in the other frame: x and y change their sign.
+/// The same map in the other frame: x and y change sign.
 inline Vec3 turned_about_z(const Vec3& p) { return {-p.x, -p.y, p.z}; }
 
 inline SampleMap<Frame::lps> to_lps(const SampleMap<Frame::ras>& map) {

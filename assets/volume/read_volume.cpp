@@ -23,7 +23,7 @@ bool ends_with(const std::filesystem::path& path, std::string_view ending) {
     return name.ends_with(ending);
 }
 
-// The first bytes tell NRRD and DICOM; gzip'ed files and NIfTI go by their names.
+// NRRD and DICOM are detected by their first bytes, gzipped files and NIfTI by their names.
 Format format_of(const std::filesystem::path& path) {
     if (std::filesystem::is_directory(path)) return Format::dicom;
     file::require_file(path);
@@ -49,7 +49,7 @@ std::unique_ptr<SliceReader> open_volume(const std::filesystem::path& path, cons
         case Format::none: break;
     }
     throw Error(fmt::format(
-        "{}: no volume that can be read: a DICOM folder or file, .nrrd, .nhdr, .nii, .nii.gz or .inv3", path.string()));
+        "{}: not a supported volume; use a DICOM folder or file, .nrrd, .nhdr, .nii, .nii.gz or .inv3", path.string()));
 }
 
 ScanVolume read_volume(const std::filesystem::path& path, const ReadOptions& options) {

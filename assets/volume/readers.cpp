@@ -18,7 +18,7 @@ namespace {
 constexpr double most_voxels = 1e9;
 constexpr int highest_label = 255;
 
-// Small whole numbers, most of them background. A masked CT also has many zeros, but grey values beyond 255.
+// Labels are small whole numbers, most of them 0. A masked CT also has many zeros, but grey values above 255.
 bool looks_like_labels(const Tally& tally) {
     return tally.whole && tally.high <= float(highest_label) && tally.labels.size() >= 2 &&
            tally.labels.size() <= 128 && tally.zeros * 2 > tally.count;
@@ -35,11 +35,11 @@ HuKind guess_hu(const Tally& tally) {
 std::size_t checked_count(const std::array<std::int64_t, 3>& size, const std::string& file) {
     double count = 1.0;
     for (const std::int64_t n : size) {
-        if (n < 1 || n > 1'000'000) throw Error(fmt::format("{}: {} samples along an axis cannot be", file, n));
+        if (n < 1 || n > 1'000'000) throw Error(fmt::format("{}: {} samples along an axis are not possible", file, n));
         count *= static_cast<double>(n);
     }
     if (count > most_voxels)
-        throw Error(fmt::format("{}: {:.0f} voxels are too many (at most 1e9); crop it first", file, count));
+        throw Error(fmt::format("{}: too many voxels: {:.0f} (at most 1e9); crop the file first", file, count));
     return static_cast<std::size_t>(count);
 }
 
@@ -52,13 +52,11 @@ void check_map(const SampleMap<Frame::lps>& map, const std::string& file) {
                             "give its spacing and directions in mm",
                             file, axis));
     }
-    if (!is_finite(map.origin)) throw Error(fmt::format("{}: the place of its first voxel is not a number", file));
+    if (!is_finite(map.origin)) throw Error(fmt::format("{}: the position of the first voxel is not a number", file));
     const Vec3 a = glm::normalize(map.step[0]), b = glm::normalize(map.step[1]), c = glm::normalize(map.step[2]);
     if (!(std::abs(glm::dot(glm::cross(a, b), c)) > 0.3))
-        throw Error(
-            fmt::format("{}: its axes lean onto each other by more than 70 degrees; the directions in its header "
-                        "must be wrong",
-                        file));
+        throw Error(fmt::format(
+            "{}: its axes are sheared by more than 70 degrees; the directions in the header must be wrong", file));
 }
 
 void settle_meaning(ScanVolume& volume, const Tally& tally, bool integers) {

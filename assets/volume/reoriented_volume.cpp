@@ -21,7 +21,7 @@ constexpr double most_voxels = 1e9;
 
 using Axes = std::array<int, 3>;
 
-// Which file axis runs along x, y and z of LPS; -1 where none does.
+// The file axis along x, y and z of LPS; -1 when none is parallel.
 Axes axes_of(const SampleMap<Frame::lps>& map) {
     Axes file_axis{-1, -1, -1};
     for (int from = 0; from < 3; ++from) {
@@ -32,13 +32,13 @@ Axes axes_of(const SampleMap<Frame::lps>& map) {
     return file_axis;
 }
 
-// Catmull-Rom weights of the samples base - 1 .. base + 2 at the fraction t.
+// Catmull–Rom weights of the samples base - 1 .. base + 2 at fraction t.
 std::array<double, 4> cubic(double t) {
     return {((-0.5 * t + 1.0) * t - 0.5) * t, (1.5 * t - 2.5) * t * t + 1.0, ((-1.5 * t + 2.0) * t + 0.5) * t,
             (0.5 * t - 0.5) * t * t};
 }
 
-// The spacing of the file axis that runs most along each axis of LPS; the smallest where one would count twice.
+// Per LPS axis the spacing of the most parallel file axis; the smallest spacing when one file axis would be used twice.
 Vec3 spacing_for(const ScanVolume& in) {
     const Vec3 steps = in.spacing();
     std::array<bool, 3> used{};
@@ -55,7 +55,7 @@ Vec3 spacing_for(const ScanVolume& in) {
     return spacing;
 }
 
-// A volume that is in memory already.
+// A volume in memory.
 class HeldSlices final : public SliceReader {
 public:
     explicit HeldSlices(ScanVolume volume) : values_(std::move(volume.values)) { about = std::move(volume); }
@@ -112,13 +112,13 @@ void ReorientedVolume::box_around() {
     double count = 1.0;
     for (int axis = 0; axis < 3; ++axis) count *= std::floor((high[axis] - low[axis]) / layout_.spacing[axis]) + 1.0;
     if (!(count <= most_voxels))
-        throw Error("the turned volume would need more than a billion voxels on LPS axes; crop the file first");
+        throw Error("the rotated volume would need more than a billion voxels on LPS axes; crop the file first");
     for (int axis = 0; axis < 3; ++axis)
         layout_.size[static_cast<std::size_t>(axis)] =
             static_cast<int>((high[axis] - low[axis]) / layout_.spacing[axis]) + 1;
 }
 
-// One after the other from the file, then all cores count and pack what was read.
+// Slices are read one by one; then all cores count and pack them.
 void ReorientedVolume::read(const std::vector<int>& slices, bool keep) {
     constexpr std::size_t at_once = 8;
     std::vector<std::vector<float>> values(std::min(at_once, slices.size()), std::vector<float>(reader_.slice_size()));
@@ -139,7 +139,7 @@ void ReorientedVolume::read(const std::vector<int>& slices, bool keep) {
     }
 }
 
-// Holds the slices from `first` to `last`, and no others unless they would be dear to read again.
+// Caches the slices from `first` to `last`; others are dropped unless reading them again is slow.
 void ReorientedVolume::hold(int first, int last) {
     std::vector<int> passed, wanted;
     for (int n = 0; n < static_cast<int>(slices_.size()); ++n) {
@@ -147,7 +147,7 @@ void ReorientedVolume::hold(int first, int last) {
         const bool needed = (n >= first || keep_all_) && n <= last;
         if (!keep_all_ && !needed) slices_[slot] = {};
         if (needed && slices_[slot].empty()) wanted.push_back(n);
-        // Passed over on the way, so it costs nothing to look at it now.
+        // The slice is read on the way, so its values are counted now at no cost.
         else if (n < first && !reader_.in_any_order() && !is_counted_[slot]) passed.push_back(n);
     }
     read(passed, false);
@@ -217,7 +217,7 @@ double ReorientedVolume::nearest_at(const Vec3& u) const {
 
 void ReorientedVolume::sorted_row(int first, int j, int k, std::span<float> out) const {
     const auto& size = layout_.size;
-    std::array<int, 3> at{};  // in the file
+    std::array<int, 3> at{};  // index in the file
     const auto place = [&](std::size_t axis, int n) {
         at[static_cast<std::size_t>(file_axis_[axis])] = mirrored_[axis] ? size[axis] - 1 - n : n;
     };

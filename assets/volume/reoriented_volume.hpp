@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A volume on axes of LPS, a few layers at a time.
+// Reorients a volume to LPS axes, a few layers at a time.
 #pragma once
 
 #include "assets/volume/slice_reader.hpp"
@@ -14,16 +14,16 @@
 
 namespace tactus::volume {
 
-/// The volume of a reader with its axes along those of LPS: mirrored and permuted axes are sorted, turned and sheared ones
-/// interpolated onto the box around them (cubic; labels: the nearest sample), the outside being its lowest value.
+/// A volume with axes along LPS. Mirrored and permuted axes are reordered. Rotated and sheared volumes are interpolated
+/// onto their bounding box (cubic; labels: nearest sample); samples outside get the lowest value.
 ///
-/// Only those slices are held that the layers asked for are made of, two bytes per sample where all values are whole
-/// numbers. These are few where slices of the file lie across the patient and follow each other upwards; with a tilted
-/// gantry as many as a layer cuts; all where slices lie along the patient, where the volume is turned by much, or where a
-/// packed file runs downwards.
+/// Memory: only the slices needed for the requested layers are cached, with 2 bytes per sample when all values are
+/// whole numbers. These are few when the slices are axial and ascending; with a tilted gantry, as many as a layer
+/// crosses; all of them when the slices are sagittal or coronal, when the volume is strongly rotated, or when a packed
+/// file runs downwards.
 class ReorientedVolume {
 public:
-    /// Throws Error when the box around a turned volume has more than a billion samples.
+    /// Throws Error when the bounding box of a rotated volume has more than a billion samples.
     ReorientedVolume(SliceReader& reader, RunJobs run);
 
     /// Size, origin and spacing; no values.
@@ -31,21 +31,21 @@ public:
     bool is_turned() const { return turned_; }
     const std::string& source() const { return reader_.about.source; }
 
-    /// Sets what the values mean (reader.about.kind, .hu): reads all slices that nobody asked for yet.
+    /// Determines the kind of values (reader.about.kind, .hu); reads all slices that were not read yet.
     void settle();
     const Tally& tally() const { return tally_; }
 
-    /// From now on values are first · value + second.
+    /// Applies first · value + second to all values from now on.
     void set_line(std::optional<std::pair<double, double>> line) { line_ = line; }
 
-    /// Samples along x and y, from low to high (inclusive).
+    /// A range of samples in x and y, low to high inclusive.
     struct Window {
         std::array<int, 2> low, high;
     };
     Window whole_layer() const { return {{0, 0}, {layout_.size[0] - 1, layout_.size[1] - 1}}; }
 
-    /// `count` layers from `first` on, or what a window shows of them; cheap in ascending order. Layers of a turned volume
-    /// need settle() before.
+    /// `count` layers from `first` on, or a window of them; fast in ascending order. A rotated volume needs settle()
+    /// first.
     Grid layers(int first, int count) { return layers(first, count, whole_layer()); }
     Grid layers(int first, int count, const Window& window);
 
@@ -68,9 +68,9 @@ private:
     RunJobs run_;
     Grid layout_;
     bool turned_ = false, settled_ = false, keep_all_ = false;
-    Axes file_axis_{0, 1, 2};  // that runs along x, y and z
-    std::array<bool, 3> mirrored_{};  // by axes of the layout
-    Mat3 back_{1.0};  // from m to samples of the file
+    Axes file_axis_{0, 1, 2};  // along x, y and z
+    std::array<bool, 3> mirrored_{};  // per axis of the layout
+    Mat3 back_{1.0};  // maps m to samples of the file
     std::size_t width_ = 0;
     std::vector<CompactSlice> slices_;
     std::vector<char> is_counted_;
@@ -78,9 +78,9 @@ private:
     std::optional<std::pair<double, double>> line_;
 };
 
-/// The samples from `low` to `high` (inclusive), read a few layers at a time.
+/// Reads the samples from `low` to `high` (inclusive), a few layers at a time.
 Grid part_of(ReorientedVolume& layers, const std::array<int, 3>& low, const std::array<int, 3>& high);
-/// All samples.
+/// Reads all samples.
 Grid whole_of(ReorientedVolume& layers);
 
 }  // namespace tactus::volume

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A volume of patient data that is read slice by slice, so that it never stands in memory as a whole.
+// Reads a scan slice by slice, so that it never has to be in memory as a whole.
 #pragma once
 
 #include "assets/volume/scan_volume.hpp"
@@ -13,17 +13,17 @@
 
 namespace tactus::volume {
 
-/// What all values together say about a volume.
+/// Statistics over all values of a volume.
 struct Tally {
     float low = 0.0f, high = 0.0f;
     std::size_t count = 0, zeros = 0, border = 0, border_zeros = 0;
     bool finite = true;
     bool whole = true;          ///< all are whole numbers from 0 to 65535
-    std::set<int> labels{};     ///< the different values, as long as `whole`; once there are more than 1000, not all
+    std::set<int> labels{};     ///< distinct values while `whole` is true; incomplete above 1000
 
-    /// Slice k of `size`.
+    /// Counts slice k.
     void add(std::span<const float> slice, int k, const std::array<int, 3>& size);
-    /// What was counted elsewhere.
+    /// Merges another tally.
     void add(const Tally& other);
 };
 
@@ -34,14 +34,14 @@ public:
     SliceReader& operator=(const SliceReader&) = delete;
     virtual ~SliceReader() = default;
 
-    /// All but the values. What they mean is only known after settle().
+    /// All properties but the values. Kind and hu are valid after settle().
     ScanVolume about;
 
-    /// The values of slice k along the file's third axis. Throws Error for what is cut short or damaged.
+    /// The values of slice k along the file's third axis. Throws Error for truncated or damaged data.
     virtual void read(int k, std::span<float> values) = 0;
-    /// Whether slices cost the same in any order; else they are cheap only in ascending order.
+    /// True when slices can be read in any order at the same cost; false: only ascending order is fast.
     virtual bool in_any_order() const { return true; }
-    /// Sets kind and hu, once all slices are in the tally. Throws Error when a value is not a number.
+    /// Sets kind and hu from the tally of all slices. Throws Error when a value is not a number.
     virtual void settle(const Tally& tally) = 0;
 
     std::size_t slice_size() const {
@@ -49,10 +49,10 @@ public:
     }
 };
 
-/// Opens what read_volume reads: checks all that can be checked before the values are. Throws Error as it does.
+/// Opens the formats of read_volume and checks everything but the values. Throws Error like read_volume.
 std::unique_ptr<SliceReader> open_volume(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// The volume with all its values.
+/// Reads the whole volume.
 ScanVolume read_all(SliceReader& reader);
 
 }  // namespace tactus::volume

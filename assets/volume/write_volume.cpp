@@ -24,11 +24,11 @@ std::string gzipped(const std::string& bytes) {
     z_stream stream{};
     constexpr int with_gzip_header = 15 + 16, memory = 8;
     if (deflateInit2(&stream, 4, Z_DEFLATED, with_gzip_header, memory, Z_DEFAULT_STRATEGY) != Z_OK)
-        throw Error("zlib cannot begin to compress");
+        throw Error("zlib cannot start to compress");
     std::string out;
     std::size_t at = 0;
     int state = Z_OK;
-    // In pieces: zlib counts what it is given in 32 bits.
+    // In pieces, because zlib's sizes have 32 bits.
     while (state != Z_STREAM_END) {
         if (stream.avail_in == 0 && at < bytes.size()) {
             const std::size_t piece = std::min<std::size_t>(bytes.size() - at, 1 << 28);
@@ -73,7 +73,7 @@ std::string nrrd_of(const Grid& grid, WrittenType type) {
            gzipped(samples_of(grid, type));
 }
 
-// The header of NIfTI-1: 348 bytes at fixed places, then 4 that say no extension follows.
+// The NIfTI-1 header: 348 bytes with fixed offsets, then 4 bytes for "no extension".
 std::string nifti_of(const Grid& grid, WrittenType type) {
     std::string header(352, '\0');
     const auto put = [&header](std::size_t at, auto value) { std::memcpy(header.data() + at, &value, sizeof value); };
@@ -90,13 +90,13 @@ std::string nifti_of(const Grid& grid, WrittenType type) {
     put(70, static_cast<std::int16_t>(type == WrittenType::int16 ? 4 : 16));
     put(72, static_cast<std::int16_t>(type == WrittenType::int16 ? 16 : 32));
     put(76, 1.0f);     // qfac: right-handed
-    put(108, 352.0f);  // where samples begin
+    put(108, 352.0f);  // offset of the samples
     put(112, 1.0f);    // slope
     header[123] = 2;   // mm
     std::memcpy(header.data() + 148, "Tactus", 6);
-    put(252, std::int16_t{1});  // scanner coordinates, in both forms
+    put(252, std::int16_t{1});  // scanner coordinates, for qform and sform
     put(254, std::int16_t{1});
-    // LPS axes in RAS: half a turn about z, as quaternion (0, 0, 0, 1).
+    // LPS axes in RAS: a rotation by 180° about z, quaternion (0, 0, 0, 1).
     put(264, 1.0f);
     put(268, static_cast<float>(-o.x)), put(272, static_cast<float>(-o.y)), put(276, static_cast<float>(o.z));
     put(280, static_cast<float>(-h.x)), put(292, static_cast<float>(-o.x));

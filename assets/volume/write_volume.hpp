@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volumes to files that other programs read.
+// Writes volumes in formats of other programs.
 #pragma once
 
 #include "dsp/volume/grid.hpp"
@@ -9,13 +9,13 @@
 
 namespace tactus::volume {
 
-/// How samples are stored.
+/// Storage type of the samples.
 enum class WrittenType { int16, float32 };
 
-/// Writes a grid (LPS, m) as NRRD (.nrrd: LPS, mm, gzip) or NIfTI-1 (.nii, .nii.gz: RAS, mm; the samples stay in their
-/// order, the header says which way they run). For int16 values are rounded and clamped. Throws Error for other
-/// extensions, for more than 32767 samples along an axis of a NIfTI file, and when the file cannot be written; it appears
-/// whole or not at all.
+/// Writes a grid (LPS, m) as NRRD (.nrrd: LPS, mm, gzip) or NIfTI-1 (.nii, .nii.gz: RAS, mm; the order of the samples
+/// is kept, and the header states their directions). int16 values are rounded and clamped. Written atomically. Throws
+/// Error for other extensions, for more than 32767 samples along an axis of a NIfTI file, and when the file cannot be
+/// written.
 void write_volume(const Grid& grid, WrittenType type, const std::filesystem::path& path);
 
 }  // namespace tactus::volume

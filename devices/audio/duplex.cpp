@@ -19,7 +19,7 @@ namespace tactus::audio {
 
 namespace {
 
-/// What the callback and the waiting thread share.
+/// State shared by the callback and the waiting thread.
 struct Exchange {
     std::vector<float> out, in;
     std::size_t outputs = 1, inputs = 1, output_channel = 0, input_channel = 0;
@@ -57,13 +57,13 @@ PaDeviceIndex find_duplex(const std::string& wanted) {
         const std::string name = audio_device_name(i);
         names += fmt::format("{}'{}'", names.empty() ? "" : ", ", name);
         if (!wanted.empty() && name.find(wanted) != std::string::npos) return i;
-        // JACK owns the card when it runs; otherwise what the system plays on, if that listens too.
+        // JACK owns the card when it runs; otherwise the system's default output, if it can also record.
         const bool is_default = info.hostApi == jack || i == Pa_GetDefaultOutputDevice();
         if (best == paNoDevice || (is_default && Pa_GetDeviceInfo(best)->hostApi != jack)) best = i;
     }
-    if (names.empty()) throw Error("no sound device on this machine both plays and listens");
+    if (names.empty()) throw Error("no sound device on this machine has both outputs and inputs");
     if (!wanted.empty())
-        throw Error(fmt::format("no sound device '{}' both plays and listens; there are: {}", wanted, names));
+        throw Error(fmt::format("no sound device '{}' with both outputs and inputs; there are: {}", wanted, names));
     return best;
 }
 
@@ -105,7 +105,7 @@ Captured play_and_capture(const Duplex& duplex, const std::vector<float>& sample
     }
     if (error != paNoError) {
         if (stream != nullptr) Pa_CloseStream(stream);
-        throw Error(fmt::format("'{}' cannot play and listen at {:g} Hz: {}", captured.device, duplex.rate,
+        throw Error(fmt::format("'{}' cannot play and record at {:g} Hz: {}", captured.device, duplex.rate,
                                 Pa_GetErrorText(error)));
     }
     if (const PaStreamInfo* reported = Pa_GetStreamInfo(stream)) {
@@ -120,7 +120,7 @@ Captured play_and_capture(const Duplex& duplex, const std::vector<float>& sample
         before = now;
         if (progress) progress(static_cast<double>(now) / static_cast<double>(samples.size()));
         if (idle < 300) continue;
-        // Stopping a stream whose server died would block for ever: it is left to the end of the process.
+        // Stopping a stream whose server died would block forever, so it is left open until the process ends.
         static_cast<void>(shared.release());
         static_cast<void>(session.release());
         throw Error(fmt::format("'{}' has stopped answering", captured.device));

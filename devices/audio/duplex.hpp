@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Playing and listening at the same time, in step.
+// Synchronous playback and recording.
 #pragma once
 
 #include <functional>
@@ -9,21 +9,22 @@
 namespace tactus::audio {
 
 struct Duplex {
-    std::string device;      ///< part of a name from `list_audio_outputs` that also listens; "" the default
+    std::string
+        device;      ///< part of a name from `list_audio_outputs`; the device must also have inputs; "": the default
     double rate = 48000.0;   ///< Hz
     int output_channel = 0;  ///< from 0
     int input_channel = 0;
 };
 
 struct Captured {
-    std::string device;          ///< what it really was
+    std::string device;          ///< name of the device used
     std::vector<float> samples;  ///< one per sample played, captured in the same callback
     double output_latency = 0.0, input_latency = 0.0;  ///< as the driver reports them, s
-    int underflows = 0;          ///< times the card lost sound in either direction
+    int underflows = 0;          ///< underflows and overflows of the card
 };
 
-/// Plays `samples` (within ±1) once and returns what came in meanwhile, sample for sample. Blocks; `progress` is told
-/// the fraction done. Throws Error when there is no such device or it stops answering.
+/// Plays `samples` (within ±1) once and returns the simultaneous recording, sample for sample. Blocks; calls `progress`
+/// with the fraction done. Throws Error when there is no such device or it stops answering.
 Captured play_and_capture(const Duplex& duplex, const std::vector<float>& samples,
                           const std::function<void(double)>& progress = {});
 

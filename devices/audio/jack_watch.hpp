@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What PortAudio does not pass on of a JACK server.
+// Observes the state of a JACK server that PortAudio does not report.
 #pragma once
 
 #include <atomic>
@@ -7,13 +7,13 @@
 
 namespace tactus::audio {
 
-/// A second, silent client of the server that PortAudio plays on. In freewheel the server does not keep time and waits
-/// for every client: only then may a callback wait.
+/// A second, silent client of the server that PortAudio uses. In freewheel mode the server does not run in real time
+/// and waits for every client; only then may a callback wait.
 class JackWatch {
 public:
-    /// Never throws; without a server it sees nothing.
+    /// Never throws; without a server it reports nothing.
     JackWatch() noexcept;
-    /// Must not run when the server is gone: libjack would wait for it. See `is_gone`.
+    /// Must not be called when the server is gone, because libjack would wait for it. See `is_gone`.
     ~JackWatch();
     JackWatch(const JackWatch&) = delete;
     JackWatch& operator=(const JackWatch&) = delete;

@@ -21,7 +21,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// The default of JACK when it runs, since it then owns the card, otherwise the system's.
+/// JACK's default output when JACK runs, because it then owns the card; otherwise the system's.
 PaDeviceIndex default_output() {
     const PaHostApiIndex jack = Pa_HostApiTypeIdToHostApiIndex(paJACK);
     if (jack >= 0 && Pa_GetHostApiInfo(jack)->defaultOutputDevice != paNoDevice)
@@ -41,11 +41,11 @@ PaDeviceIndex find_output(const std::string& wanted) {
     if (names.empty()) throw Error("there is no sound output on this machine");
     if (!wanted.empty()) throw Error(fmt::format("there is no sound output '{}'; there are: {}", wanted, names));
     const PaDeviceIndex index = default_output();
-    if (index == paNoDevice) throw Error(fmt::format("no sound output is the default; choose one of: {}", names));
+    if (index == paNoDevice) throw Error(fmt::format("there is no default sound output; choose one of: {}", names));
     return index;
 }
 
-/// All that a stream's callback may touch, and the stream. It outlives the sink when the card does not let go.
+/// The stream and all data of its callback. Outlives the sink when the card does not close.
 struct OpenStream {
     OpenStream(int channels, std::size_t frames, std::size_t start) : state(channels, frames, start) {}
 
@@ -59,7 +59,7 @@ std::int64_t steady_now_ns() {
     return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// A server in freewheel waits for its clients: the engine's sound is worth waiting for, though not for ever.
+/// In freewheel mode the server waits for its clients, so the callback waits for the engine's sound, up to a limit.
 void wait_for_sound(const StreamState& state, unsigned long frames) {
     for (int i = 0; i < 5000 && !state.can_feed(frames); ++i) std::this_thread::sleep_for(200us);
 }
@@ -109,14 +109,15 @@ private:
     void open(double rate, int channels) {
         const QuietStderr quiet;
         const auto start = static_cast<std::size_t>(std::lround(lead_s_ * rate));
-        // Room for a card or an engine that stands still a while, and for the largest buffers of cards.
+        // Capacity for short stalls of the card or the engine, and for the largest buffers of cards.
         open_ = std::make_shared<OpenStream>(channels, 4 * start + 16384, start);
         PaStreamParameters parameters{};
         parameters.device = find_output(device_);
         const PaDeviceInfo& info = *Pa_GetDeviceInfo(parameters.device);
         name_ = audio_device_name(parameters.device);
         if (channels < 1 || channels > info.maxOutputChannels)
-            throw Error(fmt::format("'{}' has {} channels, {} are needed", name_, info.maxOutputChannels, channels));
+            throw Error(
+                fmt::format("'{}' has {} channels, but {} are needed", name_, info.maxOutputChannels, channels));
         if (info.hostApi == Pa_HostApiTypeIdToHostApiIndex(paJACK)) open_->jack = std::make_unique<JackWatch>();
         parameters.channelCount = channels;
         parameters.sampleFormat = paFloat32;
@@ -130,7 +131,7 @@ private:
                                 rate, Pa_GetErrorText(error), info.defaultSampleRate));
     }
 
-    /// Until all is played, or the card asks no more.
+    /// Waits until everything is played, or the card stops calling.
     void play_out() const {
         open_->state.end();
         std::int64_t frames = open_->state.progress().frames;
@@ -142,8 +143,8 @@ private:
         }
     }
 
-    /// Stopping a stream whose server died blocks for ever: that is left to a thread that nobody waits for longer than
-    /// a living card needs, together with all that the stream may still touch.
+    /// Stopping a stream whose server died blocks forever. A detached thread does it and owns all data of the stream;
+    /// the caller waits only as long as a working card needs.
     void release() {
         if (!open_) return;
         play_out();

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// PortAudio while somebody uses it. Included by the drivers only.
+// RAII for the initialisation of PortAudio. Included by the drivers only.
 #pragma once
 
 #include <string>
 
 namespace tactus::audio {
 
-/// PortAudio in use; it counts its users itself. Throws Error when the sound system cannot be used.
+/// Initialises PortAudio, which counts its users. Throws Error when the sound system cannot be used.
 class PortAudioSession {
 public:
     PortAudioSession();

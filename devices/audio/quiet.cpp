@@ -28,7 +28,7 @@ QuietStderr::~QuietStderr() {
 }
 
 void require_alsa_default() {
-    // PortAudio has loaded it already when it was built for ALSA; otherwise there is nothing to check.
+    // PortAudio has loaded the library when it was built for ALSA; otherwise there is nothing to check.
     void* const library = ::dlopen("libasound.so.2", RTLD_NOW | RTLD_NOLOAD);
     if (library == nullptr) return;
     using Update = int (*)();

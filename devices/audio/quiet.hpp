@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sound libraries that write to stderr, or end the process, when a machine has no card.
+// Workarounds for sound libraries that write to stderr or abort the process when a machine has no card.
 #pragma once
 
 namespace tactus::audio {
 
-/// Sends stderr of the whole process to nowhere while it lives. ALSA and JACK print some sixty lines when asked for
-/// cards that are not there.
+/// Redirects stderr of the whole process to /dev/null during its lifetime. ALSA and JACK print about sixty lines when
+/// they search for missing cards.
 class QuietStderr {
 public:
     QuietStderr();
@@ -17,7 +17,7 @@ private:
     int saved_ = -1;
 };
 
-/// Throws Error when ALSA's configuration lacks the default device: PortAudio would abort the process on it.
+/// Throws Error when ALSA's configuration lacks the default device, on which PortAudio would abort the process.
 void require_alsa_default();
 
 }  // namespace tactus::audio

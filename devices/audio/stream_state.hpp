@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the engine's thread and the card's callback share.
+// State shared by the engine's thread and the card's callback.
 #pragma once
 
 #include "dsp/core/ring.hpp"
@@ -12,18 +12,18 @@
 
 namespace tactus::audio {
 
-/// Interleaved frames on their way to a card, and what happened to them.
+/// A ring of interleaved frames for a card, with statistics.
 class StreamState {
     static_assert(std::atomic<std::int64_t>::is_always_lock_free);
 
 public:
-    /// Holds at least `frames`; playing begins once `start` frames more than the card asks for are there.
+    /// Capacity: at least `frames`. Playback starts when the ring holds `start` frames more than the card requests.
     StreamState(int channels, std::size_t frames, std::size_t start = 0)
         : channels_(static_cast<std::size_t>(channels)),
           start_(start),
           ring_(std::max<std::size_t>(frames, 1) * channels_) {}
 
-    /// Accepts whole frames as far as there is room. One writing thread; wait-free.
+    /// Accepts as many whole frames as fit. One writing thread; wait-free.
     std::size_t write(const float* interleaved, std::size_t frames) noexcept {
         const std::size_t accepted = std::min(frames, writable());
         ring_.push(interleaved, accepted * channels_);
@@ -34,20 +34,20 @@ public:
     std::size_t writable() const noexcept { return ring_.space() / channels_; }
     /// Any thread; wait-free.
     void leave_out(std::int64_t frames) noexcept { unwanted_.fetch_add(frames, std::memory_order_relaxed); }
-    /// No more will be written: what is there is played, silence after it is none of our business. Any thread.
+    /// Marks the end of the sound: the rest is played, and silence after it does not count as underflow. Any thread.
     void end() noexcept { ending_.store(true, std::memory_order_release); }
     bool is_ending() const noexcept { return ending_.load(std::memory_order_acquire); }
     bool is_empty() const noexcept { return ring_.size() == 0; }
 
-    /// `feed` would find all of that many frames, or silence is due. The card's thread; wait-free.
+    /// True when `feed` would find that many frames, or when silence is due. The card's thread; wait-free.
     bool can_feed(std::size_t frames) const noexcept {
         if (is_ending() || written_.load(std::memory_order_relaxed) == 0) return true;
         const auto skipped = static_cast<std::size_t>(unwanted_.load(std::memory_order_relaxed) - left_out_);
         return ring_.size() / channels_ >= enough(frames) + skipped;
     }
 
-    /// Fills what the card asks for at `steady_ns`, with silence where nothing is there. Silence before playing began
-    /// is no underflow. The card's thread; wait-free.
+    /// Fills the card's buffer at `steady_ns`, with silence for missing frames. Silence before playback started is no
+    /// underflow. The card's thread; wait-free.
     void feed(float* output, std::size_t frames, std::int64_t steady_ns) noexcept {
         const std::size_t wanted = frames * channels_;
         is_playing_ = is_playing_ || is_ending() ||
@@ -61,7 +61,7 @@ public:
         }
         taken_count_ += static_cast<std::int64_t>(got / channels_);
         largest_count_ = std::max(largest_count_, static_cast<std::int64_t>(frames));
-        // Readers take the values only between two equal even versions.
+        // A sequence lock: readers accept the values only between two equal even versions.
         const std::uint64_t version = version_.load(std::memory_order_relaxed);
         version_.store(version + 1, std::memory_order_relaxed);
         frames_.store(frames_.load(std::memory_order_relaxed) + static_cast<std::int64_t>(frames),
@@ -72,7 +72,7 @@ public:
         version_.store(version + 2, std::memory_order_release);
     }
 
-    /// Any thread. Lock-free: repeats only when a callback came in between.
+    /// Any thread. Lock-free: retries only when a callback wrote in between.
     AudioProgress progress() const noexcept {
         for (;;) {
             const std::uint64_t version = version_.load(std::memory_order_acquire);
@@ -98,13 +98,13 @@ private:
         count.store(count.load(std::memory_order_relaxed) + more, std::memory_order_relaxed);
     }
 
-    /// Frames that must be there for a callback to play: from the first one on, those it asks for.
+    /// Frames that the ring must hold for playback; after the start, those that the callback requests.
     std::size_t enough(std::size_t frames) const noexcept {
         if (is_playing_) return frames;
         return start_ == 0 ? 1 : std::min(start_ + frames, ring_.capacity() / channels_);
     }
 
-    /// Uses the card's own buffer as the place to throw things to.
+    /// Discards frames by reading them into the card's buffer.
     void throw_away(float* output, std::size_t room) noexcept {
         std::int64_t left = is_playing_ ? unwanted_.load(std::memory_order_relaxed) - left_out_ : 0;
         while (left > 0) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Line drawings with text, as SVG for print and as pixels.
+// Line drawings with text, output as SVG or as pixels.
 #pragma once
 
 #include "devices/display/offscreen.hpp"
@@ -22,7 +22,7 @@ struct FigurePoint {
 
 enum class TextAnchor { start, middle, end };
 
-/// What has been drawn, in order. One unit is a CSS pixel.
+/// A list of drawing commands. One unit is a CSS pixel.
 class Figure {
 public:
     Figure(double width, double height) : width_(width), height_(height) {}
@@ -31,17 +31,17 @@ public:
     void line(std::vector<FigurePoint> points, Colour colour, double width, double dash = 0.0);
     void fill(std::vector<FigurePoint> outline, Colour colour);
     void rectangle(double x, double y, double width, double height, Colour colour);
-    /// `at` is on the base line. `turned`: reads upwards.
+    /// `at` is on the base line. `turned`: rotated, reads upwards.
     void text(FigurePoint at, std::string text, double size, Colour colour = {}, TextAnchor anchor = TextAnchor::start,
               bool bold = false, bool turned = false);
-    /// Until `unclip`, nothing outside of this rectangle is drawn.
+    /// Clips to this rectangle until `unclip`.
     void clip(double x, double y, double width, double height);
     void unclip();
 
-    /// A complete SVG file on a white ground.
+    /// A complete SVG file with a white background.
     std::string svg() const;
-    /// The same in pixels, `scale` of them per unit. Text uses a scalable font of the system, a plain one built in when
-    /// there is none. Throws Error beyond 16384 pixels.
+    /// The same as pixels, `scale` per unit. Text uses a scalable system font, or a built-in bitmap font. Throws Error
+    /// for more than 16384 pixels per side.
     Image image(double scale = 2.0) const;
 
     double width() const { return width_; }

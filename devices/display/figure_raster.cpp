@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures in pixels: every shape is filled on a grid three times as fine, then averaged.
+// Rasterises figures: fills every shape on a 3 × 3 finer grid and averages (supersampling).
 #include "devices/display/figure.hpp"
 #include "devices/display/system_font.hpp"
 #include "dsp/core/error.hpp"
@@ -28,7 +28,7 @@ namespace {
 
 constexpr int fine = 3;
 
-/// A font file of the system, empty when none of the usual ones is installed.
+/// Data of a system font; empty when none of the usual fonts is installed.
 std::string font_bytes(bool bold) {
     std::ifstream file(system_font(bold), std::ios::binary);
     if (!file) return {};
@@ -51,7 +51,7 @@ public:
         good_ = !bytes_.empty() && stbtt_InitFont(&info_, data, stbtt_GetFontOffsetForIndex(data, 0)) != 0;
     }
 
-    /// Outlines of a text whose base line begins at the origin, x to the right, y downwards; `width` becomes its width.
+    /// Outlines of a text with its base line at the origin, x to the right, y downwards; sets `width`.
     std::vector<std::vector<FigurePoint>> outlines(const std::string& text, double size, double& width) const {
         return good_ ? scalable(text, size, width) : plain(text, size, width);
     }
@@ -101,7 +101,7 @@ private:
         std::vector<Vertex> quads(copy.size() * 80 + 4);
         const int count = stb_easy_font_print(0.0f, 0.0f, copy.data(), nullptr, quads.data(),
                                               static_cast<int>(quads.size() * sizeof(Vertex)));
-        const double scale = size / 10.0, base = 8.0;  // its letters are 7 high and stand on line 8
+        const double scale = size / 10.0, base = 8.0;  // its letters are 7 units high; the base line is at 8
         width = scale * stb_easy_font_width(copy.data());
         std::vector<std::vector<FigurePoint>> shapes;
         for (int q = 0; q < count; ++q) {
@@ -127,7 +127,7 @@ public:
         width_ = static_cast<int>(std::lround(figure.width_ * scale)) * fine;
         height_ = static_cast<int>(std::lround(figure.height_ * scale)) * fine;
         if (width_ < fine || height_ < fine || width_ > 16384 * fine || height_ > 16384 * fine)
-            throw Error("a picture is 1 to 16384 pixels wide and high");
+            throw Error("a picture must be 1 to 16384 pixels wide and high");
         pixels_.assign(3 * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 255);
         unclip();
     }
@@ -154,7 +154,7 @@ private:
 
     void unclip() { left_ = 0, top_ = 0, right_ = width_, bottom_ = height_; }
 
-    /// Fills what lies inside by the non-zero rule, row by row.
+    /// Scanline fill with the non-zero winding rule.
     void fill(const Shapes& shapes, const Colour& colour) {
         struct Edge {
             double x0, y0, x1, y1;
@@ -201,7 +201,7 @@ private:
         }
     }
 
-    /// Each piece of the line as a bar with round ends, all in one fill so that joints are not painted twice.
+    /// Each segment becomes a bar with round ends; all are filled at once, so that joints are not painted twice.
     void stroke(const Figure::Line& line) {
         Shapes bars;
         double travelled = 0.0;

@@ -11,10 +11,9 @@ namespace tactus::display {
 namespace {
 
 [[noreturn]] void fail(const char* step) {
-    throw Error(
-        fmt::format("no pictures without a display: {} failed (EGL error {:#x}); install libegl-mesa0 and "
-                    "libgl1-mesa-dri",
-                    step, eglGetError()));
+    throw Error(fmt::format(
+        "cannot draw pictures offscreen: {} failed (EGL error {:#x}); install libegl-mesa0 and libgl1-mesa-dri", step,
+        eglGetError()));
 }
 
 }  // namespace
@@ -39,7 +38,7 @@ SurfacelessContext::SurfacelessContext() {
     }
 }
 
-// The display stays initialised: it is one per process, and others may use it.
+// The EGL display stays initialised: there is one per process, and others may use it.
 SurfacelessContext::~SurfacelessContext() {
     eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display_, context_);

@@ -3,7 +3,7 @@
 
 namespace tactus::display {
 
-/// A current OpenGL 3.3 core context without a surface, for as long as it lives. Throws Error when there is none.
+/// A surfaceless OpenGL 3.3 core context, current during its lifetime. Throws Error when it cannot be created.
 class SurfacelessContext {
 public:
     SurfacelessContext();

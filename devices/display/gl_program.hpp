@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program of shaders.
+// A shader program.
 #pragma once
 
 #include <utility>
 
 namespace tactus::display {
 
-/// A linked pair of shaders. The context it was made in must be current whenever it is used or destroyed.
+/// A linked vertex and fragment shader. Its context must be current when it is used or destroyed.
 class GlProgram {
 public:
-    /// Throws Error with what the driver says.
+    /// Throws Error with the driver's message.
     GlProgram(const char* vertex, const char* fragment);
     ~GlProgram();
     GlProgram(GlProgram&& other) noexcept : program_(std::exchange(other.program_, 0)) {}

@@ -20,12 +20,12 @@ Colour colour_of(const Vec3& c) {
     return {byte(c.x), byte(c.y), byte(c.z)};
 }
 
-/// Generous: figures tell no widths of text.
+/// An upper estimate, because figures do not measure text.
 double width_of(const std::string& text, bool bold = false) {
     return static_cast<double>(text.size()) * size * (bold ? 0.66 : 0.58);
 }
 
-/// Dimensions that follow a picture's, so that text is readable in large and small ones.
+/// Text size relative to the picture, so that it is readable in large and small pictures.
 double scale_for(int width, int height) { return std::clamp(std::min(width, height) / 600.0, 0.55, 4.0); }
 
 Image flipped(Image image, Flip flip) {
@@ -42,7 +42,7 @@ Image flipped(Image image, Flip flip) {
     return image;
 }
 
-/// Onto `image` at (x, y), as opaque as told.
+/// Blends onto `image` at (x, y) with the given opacity.
 void lay_over(Image& image, const Image& over, int x, int y, double opacity) {
     for (int v = std::max(0, -y); v < std::min(over.height, image.height - y); ++v)
         for (int u = std::max(0, -x); u < std::min(over.width, image.width - x); ++u) {

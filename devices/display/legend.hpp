@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the colours of a picture mean, and how large things are, drawn into its corners.
+// Colour legend and scale bar in the corners of a picture.
 #pragma once
 
 #include "devices/display/offscreen.hpp"
@@ -18,28 +18,28 @@ struct Legend {
     };
     struct Scale {
         std::string title, low_text, high_text;
-        Vec3 low{0.0}, high{1.0};  ///< a steady mixture between the two
+        Vec3 low{0.0}, high{1.0};  ///< a gradient between the two
     };
     std::string title;
     std::vector<Scale> scales;
     std::vector<Entry> entries;
-    std::vector<std::string> warnings;  ///< in red: what could not be shown
+    std::vector<std::string> warnings;  ///< shown in red: what could not be drawn
 
     bool empty() const { return title.empty() && scales.empty() && entries.empty() && warnings.empty(); }
 };
 
-/// What the colours of a bone mean.
+/// The legend of bone colours.
 Legend::Scale density_scale(const geometry::DensityColours& colours);
 
-/// The legend on a light ground, as an image of its own; `scale` pixels per unit, 13 units for a line of text.
+/// The legend as an image with a light background; `scale` pixels per unit, 13 units per line of text.
 Image legend_image(const Legend& legend, double scale);
 
-/// Puts the legend into the lower left corner, a tenth of what is behind shining through.
+/// Draws the legend into the lower left corner with 90 % opacity.
 void add_legend(Image& image, const Legend& legend);
-/// The same in `width` columns from `x` on, in the corner that is the lower left one for who sees the picture.
+/// The same within `width` columns from `x` on, in the corner that the viewer sees as the lower left one.
 void add_legend(Image& image, const Legend& legend, int x, int width, Flip flip);
 
-/// A bar of a round length in the lower right corner. `metres_per_pixel` holds at the depth of what is looked at.
+/// A scale bar of a round length in the lower right corner. `metres_per_pixel` holds at the depth of the target.
 void add_scale_bar(Image& image, double metres_per_pixel);
 
 }  // namespace tactus::display

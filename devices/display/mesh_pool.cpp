@@ -65,7 +65,7 @@ void MeshPool::describe_vertices() const {
     for (GLuint location = 0; location < 3; ++location) glEnableVertexAttribArray(location);
 }
 
-/// Moves to a longer buffer when needed; what is in it stays.
+/// Grows the buffer when needed and keeps its content.
 void MeshPool::ensure(std::uint32_t& buffer, std::size_t& size, std::size_t wanted) {
     if (wanted <= size) return;
     const std::size_t longer = std::max(wanted, 2 * size);
@@ -131,7 +131,7 @@ MeshPool::Place MeshPool::put(const geometry::SurfacePatch& patch) {
 
 void MeshPool::set_part(Mesh mesh, std::uint32_t number, const geometry::SurfacePatch& patch) {
     if (std::ranges::any_of(patch.triangles, [&](std::uint32_t v) { return v >= patch.vertices.size(); }))
-        throw Error("a mesh for a picture names a vertex that it does not have");
+        throw Error("a mesh refers to a vertex that does not exist");
     Parts& parts = meshes_[static_cast<std::size_t>(mesh)];
     const auto known = parts.of.find(number);
     if (known == parts.of.end() && patch.triangles.empty()) return;
@@ -155,7 +155,7 @@ std::size_t MeshPool::triangles(Mesh mesh) const {
     return count;
 }
 
-/// One level for all parts, so that they fit together.
+/// All parts use the same level of detail, so that they match at their borders.
 std::size_t MeshPool::level_for(const Parts& parts, const Mat4& to_clip, int width, int height, double grain) const {
     if (!parts.grid || !(grain > 0.0)) return 0;
     const auto row = [&](int n) { return Vec3(to_clip[0][n], to_clip[1][n], to_clip[2][n]); };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes that stay on the graphics card. A mesh is made of parts, such as the bricks of a bone, that are replaced one by
-// one; those of its parts that are in the picture are drawn by one call, however many they are. What is seen from afar is
-// drawn with fewer triangles where the picture may.
+// Meshes in GPU memory. A mesh consists of parts, such as the bricks of a bone, that are replaced one by one; all
+// visible parts are drawn with one call. Distant meshes may be drawn with fewer triangles (level of detail).
 #pragma once
 
 #include "dsp/display/camera.hpp"
@@ -17,20 +16,20 @@
 
 namespace tactus::display {
 
-/// The box around its vertices.
+/// The bounding box of its vertices.
 Bounds bounds_of(const geometry::SurfacePatch& patch);
 
-/// Places in a long buffer, in powers of two, so that what is given back fits again.
+/// Allocates ranges of a buffer in powers of two, so that freed ranges can be reused.
 class BufferShelf {
 public:
-    /// First element of a place for at least `count`. `end()` may grow.
+    /// First element of a range of at least `count`. `end()` may grow.
     std::size_t take(std::size_t count);
     void give_back(std::size_t first, std::size_t count);
     std::size_t end() const { return end_; }
     static std::size_t room_for(std::size_t count);
 
 private:
-    std::map<std::size_t, std::vector<std::size_t>> free_;  // by size
+    std::map<std::size_t, std::vector<std::size_t>> free_;  // free ranges by size
     std::size_t end_ = 0;
 };
 
@@ -45,16 +44,17 @@ public:
     MeshPool& operator=(const MeshPool&) = delete;
 
     Mesh make();
-    /// One that is also kept with the cells of CoarseSurface; `grid`: what its parts are made from.
+    /// A mesh with levels of detail by CoarseSurface; `grid`: the grid of its parts.
     Mesh make(const geometry::SurfaceGrid& grid);
     void remove(Mesh mesh);
-    /// Replaces one part; an empty one takes it away. Throws Error when a triangle names a vertex that is not there.
+    /// Replaces a part; an empty part removes it. Throws Error when a triangle refers to a missing vertex.
     void set_part(Mesh mesh, std::uint32_t part, const geometry::SurfacePatch& patch);
-    /// Draws the parts that are within a picture of `width` × `height` pixels; `to_clip` starts from the frame of the mesh.
-    /// Its cells may be `grain` pixels wide where it is nearest, 0: all triangles. Returns how many were drawn.
+    /// Draws the visible parts in a picture of `width` × `height` pixels; `to_clip` maps the mesh frame to clip space.
+    /// `grain`: greatest width of a level-of-detail cell at the nearest point, pixels; 0: all triangles. Returns the
+    /// number of triangles drawn.
     std::size_t draw(Mesh mesh, const Mat4& to_clip, int width, int height, double grain) const;
-    std::size_t triangles(Mesh mesh) const;  ///< all of them
-    /// Rises whenever a mesh changes.
+    std::size_t triangles(Mesh mesh) const;  ///< in all
+    /// Increases whenever a mesh changes.
     std::uint64_t changes() const { return changes_; }
 
 private:
@@ -62,7 +62,7 @@ private:
         std::size_t first_vertex = 0, vertices = 0, first_index = 0, indices = 0;
     };
     struct Part {
-        std::array<Place, 1 + geometry::CoarseSurface::factors.size()> levels;  // all triangles first
+        std::array<Place, 1 + geometry::CoarseSurface::factors.size()> levels;  // full detail first
         Bounds bounds;
     };
     struct Parts {
@@ -80,7 +80,7 @@ private:
     std::vector<Parts> meshes_;
     geometry::CoarseSurface coarse_;
     std::uint64_t changes_ = 0;
-    // What the driver is given.
+    // Buffers for the driver.
     mutable std::vector<const Part*> seen_;
     mutable std::vector<std::int32_t> counts_, bases_;
     mutable std::vector<const void*> offsets_;

@@ -18,7 +18,7 @@ geometry::SurfacePatch patch_of(const PictureMesh& mesh) {
     const std::size_t vertices = mesh.positions.size() / 3;
     if (mesh.positions.size() != 3 * vertices || mesh.normals.size() != 3 * vertices ||
         mesh.colours.size() != 3 * vertices || mesh.triangles.size() % 3 != 0)
-        throw Error("a mesh for a picture needs position, normal and colour per vertex and whole triangles");
+        throw Error("a mesh needs position, normal and colour per vertex, and three vertices per triangle");
     geometry::SurfacePatch patch;
     patch.triangles = mesh.triangles;
     for (std::size_t i = 0; i < 3 * vertices; i += 3) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of triangle meshes without a display or window: OpenGL 3.3 through surfaceless EGL. On a machine without a
-// graphics card Mesa renders in software; LP_NUM_THREADS limits its threads.
+// Offscreen rendering of triangle meshes: OpenGL 3.3 through surfaceless EGL. Without a graphics card Mesa renders in
+// software; LP_NUM_THREADS limits its threads.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -11,7 +11,7 @@
 
 namespace tactus::display {
 
-/// A lit triangle mesh; both sides of a triangle are seen.
+/// A lit, two-sided triangle mesh.
 struct PictureMesh {
     std::vector<float> positions;          ///< x y z per vertex, m
     std::vector<float> normals;            ///< x y z per vertex, need not be of unit length
@@ -19,7 +19,7 @@ struct PictureMesh {
     std::vector<std::uint32_t> triangles;  ///< three vertices each
 };
 
-/// Where a picture is taken from: perspective, `eye` looks at `target`. m, rad.
+/// A perspective camera at `eye` that looks at `target`. m, rad.
 struct View {
     Vec3 eye{0.0, 0.0, 1.0};
     Vec3 target{0.0, 0.0, 0.0};
@@ -39,13 +39,13 @@ struct Image {
     }
 };
 
-/// The view along `direction` (from the eye into the scene) that just holds the sphere around the box of `low` and
-/// `high` in a picture of `aspect` = width / height. `up` must not be parallel to `direction`.
+/// The view along `direction` (from the eye into the scene) that fits the bounding sphere of the box from `low` to
+/// `high` into a picture of `aspect` = width / height. `up` must not be parallel to `direction`.
 View fit_view(const Vec3& low, const Vec3& high, const Vec3& direction, const Vec3& up = {0.0, 0.0, 1.0},
               double aspect = 1.0);
 
-/// Renders with two lights, anti-aliased, on a light neutral background. Throws Error when no OpenGL context can be had,
-/// when a mesh's arrays do not fit together, or for a size outside 1 to 8192 pixels. The same machine gives the same
+/// Renders anti-aliased, with two lights on a light neutral background. Deterministic on one machine. Throws Error when
+/// there is no OpenGL context, when the arrays of a mesh have inconsistent lengths, or for a size outside 1 to 8192
 /// pixels.
 Image render_picture(std::span<const PictureMesh> meshes, const View& view, int width, int height);
 

@@ -19,8 +19,8 @@ constexpr int most_pixels_per_side = 8192;
 
 int checked(int width, int height) {
     if (width < 1 || height < 1 || width > most_pixels_per_side || height > most_pixels_per_side)
-        throw Error(
-            fmt::format("a picture of {} x {} pixels; each side must be 1 to {}", width, height, most_pixels_per_side));
+        throw Error(fmt::format("a picture cannot have {} x {} pixels; each side must be 1 to {}", width, height,
+                                most_pixels_per_side));
     return width;
 }
 
@@ -54,7 +54,7 @@ PictureMaker::PictureMaker(int width, int height) : width_(checked(width, height
     renderer_ = std::make_unique<SceneRenderer>();
 }
 
-// With the context everything made in it is gone.
+// Objects are deleted together with their context.
 PictureMaker::~PictureMaker() = default;
 
 Image PictureMaker::draw(const Picture& picture, std::span<const DrawnView> views) {
@@ -73,7 +73,7 @@ Image PictureMaker::draw(const Picture& picture, std::span<const DrawnView> view
     glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
     if (const GLenum error = glGetError(); error != GL_NO_ERROR)
         throw Error(fmt::format("the graphics driver reports error {:#x} for a picture", error));
-    // OpenGL's first row is the lowest.
+    // OpenGL's first row is the bottom row.
     for (std::size_t top = 0, bottom = static_cast<std::size_t>(height_) - 1; top < bottom; ++top, --bottom)
         std::swap_ranges(image.rgb.data() + top * row, image.rgb.data() + (top + 1) * row,
                          image.rgb.data() + bottom * row);

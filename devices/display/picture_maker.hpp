@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of a scene without a window.
+// Offscreen pictures of a scene.
 #pragma once
 
 #include "devices/display/gl_context.hpp"
@@ -11,10 +11,10 @@
 
 namespace tactus::display {
 
-/// Holds an OpenGL context of its own, which is the current one of its thread for as long as it lives.
+/// Owns an OpenGL context that is current in its thread during its lifetime.
 class PictureMaker {
 public:
-    /// Throws Error when no OpenGL context can be had, and for a size outside 1 to 8192 pixels.
+    /// Throws Error when there is no OpenGL context, and for a size outside 1 to 8192 pixels.
     PictureMaker(int width, int height);
     ~PictureMaker();
 
@@ -22,7 +22,7 @@ public:
     int width() const { return width_; }
     int height() const { return height_; }
 
-    /// Four samples per pixel where the driver has them. The same scene gives the same pixels on one machine.
+    /// Four samples per pixel if the driver supports it. Deterministic on one machine.
     Image draw(const Picture& picture, std::span<const DrawnView> views);
 
 private:

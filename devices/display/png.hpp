@@ -7,10 +7,10 @@
 
 namespace tactus::display {
 
-/// Writes `path` + ".part" and renames it when whole. Throws Error when the file cannot be written.
+/// Writes a PNG file atomically. Throws Error when it cannot be written.
 void write_png(const Image& image, const std::string& path);
 
-/// The bytes of such a file, for pages that carry their pictures.
+/// The bytes of a PNG file, for HTML pages with embedded pictures.
 std::string png_bytes(const Image& image);
 
 }  // namespace tactus::display

@@ -28,7 +28,7 @@ void set(GLint location, const Vec3& value) {
     glUniform3f(location, static_cast<float>(value.x), static_cast<float>(value.y), static_cast<float>(value.z));
 }
 
-/// The clip plane as the mesh sees it: what is below zero of it is taken away.
+/// The clip plane in the frame of the mesh: the negative side is removed.
 void set_clip(const GlProgram& program, const Picture& picture, const DrawnMesh& drawn) {
     glm::vec4 plane(0.0f, 0.0f, 0.0f, 1.0f);
     if (picture.clip && drawn.is_clipped) {
@@ -47,7 +47,7 @@ void check_version() {
         glGetIntegerv(GL_MINOR_VERSION, &minor);
     }
     if (!text || major * 10 + minor < 33)
-        throw Error(fmt::format("pictures of the scene need OpenGL 3.3; here is {}",
+        throw Error(fmt::format("pictures of the scene need OpenGL 3.3; the driver has {}",
                                 text ? reinterpret_cast<const char*>(text) : "none"));
 }
 
@@ -79,18 +79,18 @@ std::vector<DrawnView> views_of(const OrbitCamera& camera, const Bounds& scene, 
     const bool halves = mode == StereoMode::side_by_side;
     const double aspect = static_cast<double>(halves ? width / 2 : width) / std::max(height, 1);
     if (mode == StereoMode::mono) return {{camera.projection(aspect, scene), 0, 0, width, height, Channel::all}};
-    // The two eyes look through one window that stands at the target.
+    // Both eyes share a virtual screen at the target.
     const double tall = camera.distance * std::tan(0.5 * camera.vertical_field_of_view_rad);
     const Vec3 right = camera.orientation * Vec3(tall * aspect, 0.0, 0.0);
     const Vec3 up = camera.orientation * Vec3(0.0, tall, 0.0);
     const Screen window{camera.target - right - up, camera.target + right - up, camera.target - right + up};
     const Eyes eyes = eyes_of({camera.eye(), camera.orientation}, separation.value_or(camera.distance / 30.0));
-    const RigView both[] = {{0, eyes.left, through_screen(window, eyes.left, scene)},
-                            {0, eyes.right, through_screen(window, eyes.right, scene)}};
+    const ScreenView both[] = {{0, eyes.left, through_screen(window, eyes.left, scene)},
+                               {0, eyes.right, through_screen(window, eyes.right, scene)}};
     return views_of(both, width, height, mode);
 }
 
-std::vector<DrawnView> views_of(std::span<const RigView> eyes, int width, int height, StereoMode mode, Flip flip) {
+std::vector<DrawnView> views_of(std::span<const ScreenView> eyes, int width, int height, StereoMode mode, Flip flip) {
     if (eyes.size() < 2 || mode == StereoMode::mono)
         return {{eyes.front().projection, 0, 0, width, height, Channel::all, flip}};
     const Projection &left = eyes[0].projection, &right = eyes[1].projection;
@@ -138,7 +138,7 @@ void SceneRenderer::draw_meshes(const Picture& picture, const DrawnView& view, b
                 pool_->draw(drawn.mesh, projection.to_clip * to_eye, view.width, view.height, picture.grain);
         };
         if (see_through) {
-            // The far side first, so that a body shines through itself in one order only.
+            // Back faces first, so that transparent bodies are blended in a fixed order.
             glEnable(GL_CULL_FACE);
             for (const GLenum hidden : {GL_FRONT, GL_BACK}) {
                 glCullFace(hidden);
@@ -156,7 +156,7 @@ void SceneRenderer::draw_meshes(const Picture& picture, const DrawnView& view, b
     }
 }
 
-/// What shines through, where it lies behind something.
+/// Draws the occluded part of meshes that shine through.
 void SceneRenderer::draw_hidden(const Picture& picture, const DrawnView& view) {
     Picture hidden;
     for (const DrawnMesh& drawn : picture.meshes)
@@ -256,7 +256,7 @@ std::optional<Picked> SceneRenderer::pick(const Picture& picture, const DrawnVie
     const GLfloat farthest = 1.0f;
     glClearBufferuiv(GL_COLOR, 0, nothing);
     glClearBufferfv(GL_DEPTH, 0, &farthest);
-    // The one pixel is blown up to the whole target.
+    // The picked pixel is scaled to the whole target.
     const Mat4 to_clip = glm::scale(Mat4(1.0), Vec3(view.width, view.height, 1.0)) *
                          glm::translate(Mat4(1.0), Vec3(-u, -v, 0.0)) * view.projection.to_clip;
     const GlProgram& program = programs_->pick;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the graphics card runs for a scene. Light is computed in linear light and shown as sRGB.
+// The shaders of the scene. Lighting is computed in linear RGB and converted to sRGB.
 #pragma once
 
 namespace tactus::display::scene_shaders {
@@ -19,7 +19,7 @@ uniform vec3 sky, ground;
 out vec4 colour;
 void main() { colour = vec4(mix(ground, sky, height), 1.0); })";
 
-// `keep`: a plane in the frame of the mesh; what is below zero of it is taken away.
+// `keep`: a plane in the frame of the mesh; its negative side is removed.
 inline constexpr const char* mesh_vertex = R"(#version 330 core
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -37,8 +37,8 @@ void main() {
     gl_Position = to_clip * at;
 })";
 
-// The lights stand with the camera: a key from upper left, a fill from the right, and one from behind that draws a fine
-// bright rim; `way` turns them where the picture is seen in a mirror. A section is flat: it is the inner side of the far wall that is seen there.
+// The lights move with the camera: key light from the upper left, fill light from the right, rim light from behind;
+// `way` flips them for pictures seen in a mirror. A section shows the back faces of the far wall in a flat colour.
 inline constexpr const char* mesh_fragment = R"(#version 330 core
 in vec3 eye_position, eye_normal;
 in vec4 surface;
@@ -54,7 +54,7 @@ void main() {
     }
     vec3 n = normalize(eye_normal);
     vec3 v = normalize(-eye_position);
-    // The triangle's own normal decides which side is seen: an interpolated one may point away at the rim.
+    // The face normal decides which side is visible; an interpolated normal may point away at the rim.
     if (dot(n, cross(dFdx(eye_position), dFdy(eye_position))) < 0.0) n = -n;
     vec3 key = normalize(vec3(-0.45 * way.x, 0.65 * way.y, 0.65));
     vec3 fill = normalize(vec3(0.85 * way.x, 0.05 * way.y, 0.35));
@@ -67,7 +67,7 @@ void main() {
     colour = vec4(pow(clamp(light, 0.0, 1.0), vec3(1.0 / 2.2)), opacity * surface.a);
 })";
 
-// Drawn a little nearer than they are, so that dots on a surface are not lost in it.
+// Depth is biased towards the viewer, so that dots on a surface stay visible.
 inline constexpr const char* point_vertex = R"(#version 330 core
 layout(location = 0) in vec3 position;
 layout(location = 2) in vec4 colour;

@@ -20,7 +20,7 @@ std::uint32_t add_vertex(geometry::SurfacePatch& patch, const Vec3& at, const Ve
     return static_cast<std::uint32_t>(patch.vertices.size() - 1);
 }
 
-/// An axis with two directions square to it.
+/// An axis with two orthogonal directions.
 struct Around {
     Vec3 axis, u, v;
 
@@ -35,7 +35,7 @@ struct Around {
     }
 };
 
-/// The band between two circles; a radius of nought closes it. Seen from outside when `to` lies along the axis.
+/// The band between two circles; a radius of 0 closes it. Faces outwards when `to` lies along the axis.
 void add_band(geometry::SurfacePatch& patch, const Around& around, const Vec3& from, double from_radius, const Vec3& to,
               double to_radius, const Vec3& colour) {
     const double rise = glm::dot(to - from, around.axis), shrink = from_radius - to_radius;
@@ -125,7 +125,7 @@ void add_blade(geometry::SurfacePatch& patch, const contact::BladeShape& shape, 
     for (int n = 0; n < teeth; ++n) {
         const double x = -0.5 * shape.length + n * tooth;
         const auto corner = [&](double u, double v, double z) { return Vec3(x + u * tooth, v, z); };
-        // A tooth is a prism whose edge lies in the tooth line.
+        // A tooth is a prism with its edge on the tooth line.
         add_triangle(patch, corner(0, root, half), corner(1, root, half), corner(0.5, 0, half), colour);
         add_triangle(patch, corner(1, root, -half), corner(0, root, -half), corner(0.5, 0, -half), colour);
         for (const double side : {0.0, 1.0}) {

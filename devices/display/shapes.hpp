@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Simple bodies for pictures. All functions add to a patch. m; colours sRGB 0 to 1.
+// Simple shapes for pictures. All functions append to a surface patch. Lengths in m; colours sRGB, 0 to 1.
 #pragma once
 
 #include "dsp/contact/blade.hpp"
@@ -8,20 +8,20 @@
 
 namespace tactus::display {
 
-/// Flat: its three vertices are its own.
+/// A flat-shaded triangle: its vertices are not shared.
 void add_triangle(geometry::SurfacePatch& patch, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& colour,
                   double opacity = 1.0);
 void add_ball(geometry::SurfacePatch& patch, const Vec3& centre, double radius, const Vec3& colour);
-/// Between two opposite corners, in a frame.
+/// A box between two opposite corners, in a frame.
 void add_box(geometry::SurfacePatch& patch, const Vec3& low, const Vec3& high, const Vec3& colour,
              const Pose& frame = {});
-/// Shaft and head, the tip at `to`; nothing when both ends are one.
+/// An arrow with shaft and head, the tip at `to`; nothing when both ends coincide.
 void add_arrow(geometry::SurfacePatch& patch, const Vec3& from, const Vec3& to, double radius, const Vec3& colour);
-/// Three thin arrows: x red, y green, z blue.
+/// Coordinate axes: x red, y green, z blue.
 void add_axes(geometry::SurfacePatch& patch, const Pose& pose, double length);
 /// A saw blade with teeth, as BladeShape describes it.
 void add_blade(geometry::SurfacePatch& patch, const contact::BladeShape& shape, const Vec3& colour);
-/// A square of a plane, seen from both sides.
+/// A two-sided square of a plane.
 void add_square(geometry::SurfacePatch& patch, const Vec3& centre, const Vec3& normal, double side, const Vec3& colour,
                 double opacity);
 

@@ -114,7 +114,8 @@ bool FrameReader::take(std::uint8_t byte) noexcept {
     return look();
 }
 
-/// Looks at what is held from its start. What is no frame is given up byte by byte, so that a good one inside is found.
+/// Parses the buffer from its start. Drops one byte at a time when there is no valid frame, so that a valid frame
+/// inside is found.
 bool FrameReader::look() noexcept {
     while (size_ > 0) {
         const std::uint8_t* p = held_.data();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frames that a host and a gripper's controller exchange over a serial line. All numbers little-endian:
+// The serial protocol between host and gripper controller. All numbers little-endian:
 //
 //     offset  bytes
 //     0       2      A5 5A
@@ -12,13 +12,13 @@
 //
 //     drive, n = 14:   0  flags: bit 0 run (else hold), bit 1 low-friction mode    1  zero
 //                      2  int32 speed of finger, µm/s      6  int32 speed of thumb      10  int32 cord of the rig, µm
-//     sample, n = 20:  0  flags: bits 0, 1 finger and thumb slip; 2, 3 they are driven to their limit;
-//                         4 holds because no drive came for 50 ms or the last said hold
-//                      1  number of fingers    2  uint16 sequence of the drive that holds
+//     sample, n = 20:  0  flags: bits 0, 1: finger, thumb slip; 2, 3: finger, thumb drive saturated;
+//                         4: holding, because no drive frame arrived for 50 ms or the last one requested hold
+//                      1  number of fingers    2  uint16 sequence number of the active drive frame
 //                      4  int32 encoder of finger, pulses    8  of thumb    12  int32 gauge of finger, counts    16  of thumb
 //
-// A controller sends a sample at 150 Hz or faster and must hold its motors when no good drive frame came for 50 ms. A
-// 32-bit checksum because a 16-bit one would let one of 65 536 broken frames move a finger.
+// A controller sends samples at 150 Hz or faster and must hold its motors when no valid drive frame arrives for 50 ms.
+// The checksum has 32 bits, because with 16 bits one of 65 536 damaged frames could move a finger.
 #pragma once
 
 #include <array>
@@ -57,7 +57,7 @@ std::uint32_t crc32(std::span<const std::uint8_t> bytes) noexcept;
 
 Frame pack(const DriveFrame& drive, std::uint16_t sequence) noexcept;
 Frame pack(const SampleFrame& sample, std::uint16_t sequence) noexcept;
-/// False when it is of another kind or length.
+/// False for another kind or length.
 bool unpack(const Frame& frame, DriveFrame& out) noexcept;
 bool unpack(const Frame& frame, SampleFrame& out) noexcept;
 
@@ -67,14 +67,14 @@ struct FrameBytes {
 };
 FrameBytes encode(const Frame& frame) noexcept;
 
-/// Finds frames in a stream of bytes that may be cut, broken or mixed with others. Allocates nothing.
+/// Finds frames in a byte stream with gaps, errors and foreign data. Does not allocate.
 class FrameReader {
 public:
     struct Counts {
         std::uint64_t good = 0, bad_checksum = 0, bad_header = 0, skipped_bytes = 0;
     };
 
-    /// Takes a byte; true when it completes a good frame, which then is `frame()`.
+    /// Adds a byte. True when it completes a valid frame, which is then `frame()`.
     bool take(std::uint8_t byte) noexcept;
     const Frame& frame() const noexcept { return frame_; }
     const Counts& counts() const noexcept { return counts_; }

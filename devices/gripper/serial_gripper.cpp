@@ -13,7 +13,7 @@ namespace tactus::gripper {
 
 namespace {
 
-/// A number that differs by more than this backwards is from a controller that was started anew.
+/// A sequence number further back than this means that the controller was restarted.
 constexpr int longest_step_back = 1000;
 
 std::int32_t micro(double si) noexcept {
@@ -57,7 +57,7 @@ void SerialGripper::listen(double elapsed_s) noexcept {
         ++counts_.reopened;
     }
     std::array<std::uint8_t, 512> arrived;
-    // A bound, so that a line that floods cannot keep the tick.
+    // Limits the bytes per tick, so that a flooded line cannot delay it.
     for (int piece = 0; piece < 8; ++piece) {
         const std::size_t count = port_.read(arrived);
         for (std::size_t i = 0; i < count; ++i)
@@ -109,8 +109,7 @@ std::unique_ptr<HapticDevice> open_serial_gripper(Options& options, const haptic
     const double baud = options.quantity("baud", "115200", "9600", "1000000");
     s.baud = static_cast<int>(baud);
     if (s.baud != baud || !SerialPort::knows_baud(s.baud))
-        throw Error(options.where("baud"),
-                    fmt::format("{}: option 'baud' is none of the usual rates", options.owner()));
+        throw Error(options.where("baud"), fmt::format("{}: option 'baud' is not a standard rate", options.owner()));
     s.fingers = static_cast<int>(options.quantity("fingers", "1", "1", "2"));
     s.pulse = 1.0 / options.quantity("encoder", "3555.6 mm^-1", "0.01 mm^-1", "1e7 mm^-1");
     const double newton = options.quantity("newton_per_count", "1 mN", "1e-9 N", "100 N");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A gripper whose controller is at a serial port and speaks the frames of devices/gripper/frame.hpp.
+// A gripper with a controller on a serial port. Protocol: devices/gripper/frame.hpp.
 #pragma once
 
 #include "devices/gripper/frame.hpp"
@@ -21,11 +21,11 @@ struct SerialGripperSettings {
     int baud = 115200;
     int fingers = 1;
     double pulse = 4.5e-3 / 16e3;  ///< m of the finger per pulse of its encoder
-    std::array<simulate::LineFit, 2> gauge{{{1e-3, 0.0, 1.0, 0.0}, {1e-3, 0.0, 1.0, 0.0}}};  ///< N from counts
+    std::array<simulate::LineFit, 2> gauge{{{1e-3, 0.0, 1.0, 0.0}, {1e-3, 0.0, 1.0, 0.0}}};  ///< counts to N
     double max_speed = 0.07;       ///< m/s
-    double least_speed = 0.0;      ///< m/s; the motor turns no slower
-    double timeout = 0.02;         ///< s without a good sample after which the device is not valid
-    double reopen_every = 0.25;    ///< s between attempts to find a line again that is gone
+    double least_speed = 0.0;      ///< m/s; slowest speed of the motor
+    double timeout = 0.02;         ///< s without a valid sample until the device is invalid
+    double reopen_every = 0.25;    ///< s between attempts to reopen a lost line
 };
 
 class SerialGripper final : public HapticDevice {
@@ -36,7 +36,7 @@ public:
 
     /// Opens the line. Throws Error.
     explicit SerialGripper(SerialGripperSettings settings);
-    /// Tells the motors to hold.
+    /// Makes the motors hold.
     ~SerialGripper() override;
 
     const DeviceInfo& info() const override { return info_; }

@@ -44,7 +44,7 @@ std::string SerialPort::open(const std::string& path, int baud) {
     termios line{};
     if (::tcgetattr(file, &line) != 0) {
         ::close(file);
-        return fmt::format("{} is no serial line", path);
+        return fmt::format("{} is not a serial line", path);
     }
     ::cfmakeraw(&line);
     line.c_cflag |= CLOCAL | CREAD;
@@ -72,7 +72,7 @@ std::size_t SerialPort::read(std::span<std::uint8_t> into) noexcept {
     if (file_ < 0) return 0;
     const ssize_t count = ::read(file_, into.data(), into.size());
     if (count > 0) return static_cast<std::size_t>(count);
-    // With VMIN 0 a silent line reads as 0 bytes; one that is gone says EIO or the like.
+    // With VMIN 0 an idle line reads 0 bytes; a lost line gives EIO or a similar error.
     if (count < 0 && errno != EAGAIN && errno != EINTR) close();
     return 0;
 }

@@ -16,14 +16,14 @@ public:
     SerialPort(const SerialPort&) = delete;
     SerialPort& operator=(const SerialPort&) = delete;
 
-    /// Empty when it is open; else why it is not, for people. `baud` is one that termios knows.
+    /// Opens the line. Returns an empty text, or the reason of the failure. `baud` must be a rate of termios.
     std::string open(const std::string& path, int baud) noexcept(false);
     void close() noexcept;
     bool is_open() const noexcept { return file_ >= 0; }
 
-    /// What has arrived, at most the size of `into`; closes the line when it is gone.
+    /// Reads the available bytes, at most the size of `into`; closes the line when it is lost.
     std::size_t read(std::span<std::uint8_t> into) noexcept;
-    /// True when all of it was taken; the line may be full or gone.
+    /// True when everything was written; false when the buffer is full or the line is lost.
     bool write(std::span<const std::uint8_t> bytes) noexcept;
 
     static bool knows_baud(int baud) noexcept;

@@ -17,7 +17,7 @@ namespace {
 
 enum class PlantedFault : std::size_t { none, nan, stuck, unplugged };
 
-/// Something that breaks at a time, to see what the patch makes of it.
+/// A simulated fault with a start and an end, to test the reaction of a patch.
 struct Breakage {
     PlantedFault kind = PlantedFault::none;
     double from = 0.0, until = 0.0;  ///< s
@@ -78,7 +78,7 @@ private:
     double time_ = 0.0;
 };
 
-/// What both grippers share.
+/// Base of both grippers.
 simulate::Finger read_finger(Options& options) {
     static const std::array<std::string, 2> holders{"rig", "hand"};
     simulate::Finger finger;
@@ -95,7 +95,7 @@ simulate::Finger read_finger(Options& options) {
     finger.gauge.random.seed = static_cast<std::uint64_t>(options.quantity("seed", "1", "0", "4294967295"));
     const double delay = options.quantity("delay", "1", "0", "8");
     if (delay != std::floor(delay))
-        throw Error(options.where("delay"), options.owner() + ": option 'delay' is a whole number of ticks");
+        throw Error(options.where("delay"), options.owner() + ": option 'delay' must be a whole number of ticks");
     finger.delay = static_cast<int>(delay);
     return finger;
 }
@@ -134,7 +134,7 @@ std::unique_ptr<HapticDevice> open_walking_gripper(Options& options, const hapti
     const Breakage breakage = read_breakage(options);
     options.finish();
     finger.motor = simulate::WalkingMotor{s};
-    finger.encoder.step = s.leverage / pulses;  // the encoder is on the rod
+    finger.encoder.step = s.leverage / pulses;  // the encoder measures the rod
     return std::make_unique<SimulatedGripper>(
         describe_gripper("simulated gripper, walking motor", 1, s.max_speed(), 0.0), std::vector{finger}, breakage);
 }

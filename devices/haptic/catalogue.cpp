@@ -20,13 +20,13 @@ std::vector<HapticDriver>& drivers() {
     static std::vector<HapticDriver> all{
         {"simulated", "a hand that presses a blade with a set thrust and saws",
          [](Options& options, const PathResolver&) { return open_simulated(options); }},
-        {"scripted", "a hand that goes to given places at given times and yields to force", open_scripted},
-        {"replay", "a recorded movement led through a hand that yields to force", open_replay},
+        {"scripted", "a hand that moves to given poses at given times and yields to force", open_scripted},
+        {"replay", "a recorded movement as the intention of a hand that yields to force", open_replay},
         {"wqsm_gripper", "a simulated gripper with a walking quasi-static motor, on a rig or in a hand",
          gripper::open_walking_gripper},
         {"twum_gripper", "a simulated gripper with two traveling-wave ultrasonic motors, on a rig or in a hand",
          gripper::open_wave_gripper},
-        {"serial_gripper", "a gripper whose controller is at a serial port", gripper::open_serial_gripper, true},
+        {"serial_gripper", "a gripper with a controller on a serial port", gripper::open_serial_gripper, true},
     };
     return all;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The haptic drivers there are.
+// The catalogue of haptic drivers.
 #pragma once
 
 #include "devices/haptic/replay.hpp"
@@ -15,23 +15,23 @@ namespace tactus::haptic {
 
 struct HapticDriver {
     std::string name;
-    std::string summary;  ///< one line for people
+    std::string summary;  ///< one line, shown to users
     std::unique_ptr<HapticDevice> (*open)(Options& options, const PathResolver& resolve);
-    bool is_real = false;  ///< hardware: runs in real time only
+    bool is_real = false;  ///< hardware; runs in real time only
 };
 
-/// All drivers, in the order in which they are listed to users.
+/// All drivers, in the order of listings.
 std::span<const HapticDriver> haptic_drivers();
 
-/// Adds a driver that the program brings along: a device in the laboratory, or one that a test plays. Before anything
-/// is opened; a driver of the same name is replaced.
+/// Registers a driver of an embedding program or a test. Call it before any device is opened; a driver of the same name
+/// is replaced.
 void add_haptic_driver(HapticDriver driver);
 
 /// True for a driver of hardware.
 bool is_real_driver(std::string_view driver);
 
-/// Opens a device of the driver `driver` with the options a patch gives it. `where` is where the patch names the
-/// driver. Throws Error on an unknown driver, listing all, and on options the driver refuses.
+/// Opens a device with the options of a patch. `where`: position of the driver's name in the patch. Throws Error for an
+/// unknown driver, listing all, and for invalid options.
 std::unique_ptr<HapticDevice> open_haptic_device(std::string_view driver, const SourceLocation& where, Options& options,
                                                  const PathResolver& resolve);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every simulated device shares: a hand on it that feels its force.
+// Base of all simulated devices: a simulated hand that holds the device and feels its force.
 #pragma once
 
 #include "dsp/simulate/device_model.hpp"
@@ -13,16 +13,15 @@
 
 namespace tactus::haptic {
 
-/// Reads the options of the hand and of what the device can do: mass, inertia, stiffness, damping, angular_stiffness,
-/// angular_damping, max_force, max_torque, torque (false: a
-/// device of three degrees of freedom, that gives none), and model, a device as it is; with one, mass and inertia are
-/// those of the hand alone.
+/// Reads the options of the hand and the device: mass, inertia, stiffness, damping, angular_stiffness, angular_damping,
+/// max_force, max_torque, max_stiffness, torque (false: a device without torque, with three degrees of freedom), and
+/// model, a simulated commercial device; with one, mass and inertia are those of the hand alone.
 simulate::HandDynamics read_hand(Options& options);
 DeviceInfo read_device_info(Options& options, const simulate::HandDynamics& hand, std::string name);
 /// None: an ideal device.
 const simulate::DeviceModel* read_model(Options& options);
 
-/// The force that a device was given last. A watchdog may give one while the device is read.
+/// The last commanded force. A watchdog may set it while the device is read.
 class SharedWrench {
     static_assert(std::atomic<double>::is_always_lock_free);
 
@@ -32,7 +31,7 @@ public:
         const double all[6] = {w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z};
         for (int i = 0; i < 6; ++i) parts_[i].store(all[i], std::memory_order_relaxed);
     }
-    /// Wait-free. While another thread sets it, some parts may be old ones.
+    /// Wait-free. During a concurrent write some components may be old.
     Wrench get() const noexcept {
         double all[6];
         for (int i = 0; i < 6; ++i) all[i] = parts_[i].load(std::memory_order_relaxed);
@@ -43,8 +42,8 @@ private:
     std::atomic<double> parts_[6] = {};
 };
 
-/// A device moved by a hand that `Operator` leads. Operator: the call of `advance` in dsp/simulate/hand.hpp, `start()`
-/// and `buttons()`.
+/// A device in a simulated hand. `Operator` gives the intended motion: it needs the call operator for `advance` in
+/// dsp/simulate/hand.hpp, `start()` and `buttons()`.
 template <typename Operator>
 class OperatedDevice final : public HapticDevice {
 public:

@@ -15,7 +15,7 @@ namespace tactus::haptic {
 namespace {
 
 struct Replaying {
-    std::shared_ptr<const simulate::TrajectoryPlayer> player;  // shared by the copy that `prepare` goes back to
+    std::shared_ptr<const simulate::TrajectoryPlayer> player;  // shared with the copy that `prepare` restores
     double trigger_from = 0.0;                       // s
     double time = 0.0;
     std::size_t hint = 0;
@@ -52,7 +52,7 @@ std::unique_ptr<HapticDevice> open_replay(Options& options, const PathResolver& 
     selection.tool = options.text("tool", "");
     const double trial = options.quantity("trial", "0", "0", "1000000");
     if (trial != std::floor(trial))
-        throw Error(options.where("trial"), fmt::format("{}: option 'trial' is a whole number", options.owner()));
+        throw Error(options.where("trial"), fmt::format("{}: option 'trial' must be a whole number", options.owner()));
     selection.trial = static_cast<int>(trial);
     const double max_speed = options.quantity("max_speed", "100 mm/s", "1 mm/s", "2 m/s");
     static const std::array<std::string, 2> places{"rest", "recorded"};
@@ -66,9 +66,9 @@ std::unique_ptr<HapticDevice> open_replay(Options& options, const PathResolver& 
     options.finish();
     if (file.empty())
         throw Error(options.where(),
-                    fmt::format("{} replays a recording; name it with the option 'file'", options.owner()));
+                    fmt::format("{} needs a recording; name it with the option 'file'", options.owner()));
     table::Trajectory trajectory = table::read_trajectory(resolve(file), selection);
-    // Tools work towards −z of the device, as with the simulated hand.
+    // The tool's working direction is −z of the device, as for the simulated hand.
     if (at_rest) simulate::align_to_rest(trajectory.samples, Vec3(0.0, 0.0, -1.0), reach);
     simulate::TrajectoryRules rules = trajectory.rules();
     rules.max_speed = max_speed;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Driver "replay": a recorded movement is what the hand intends; the hand still yields to the device's force.
+// Driver "replay": a simulated hand follows a recorded movement and yields to the device's force.
 #pragma once
 
 #include "graph/node/device.hpp"
@@ -12,10 +12,10 @@
 
 namespace tactus::haptic {
 
-/// Finds the file that a patch names. Throws Error when there is none.
+/// Resolves the name of a file in a patch. Throws Error when it does not exist.
 using PathResolver = std::function<std::filesystem::path(const std::string&)>;
 
-/// Bit of `DeviceSample::buttons`: nothing was recorded here, the hand waits or moves on to the next segment.
+/// Bit of `DeviceSample::buttons` that marks a gap of the recording: the hand waits or moves to the next segment.
 inline constexpr std::uint32_t button_gap = 2u;
 
 /// Options: file, tool, trial (see TrajectorySelection), trigger (always, from, never), trigger_from, max_speed (across

@@ -18,7 +18,7 @@
 namespace tactus::haptic {
 namespace {
 
-/// Bits of DeviceSample::buttons that are held from a time on.
+/// The buttons held from a time on, as bits of DeviceSample::buttons.
 struct Press {
     double time = 0.0;
     std::uint32_t buttons = 0;
@@ -27,7 +27,7 @@ struct Press {
 struct Following {
     simulate::ScriptOperator moves;
     double trigger_on = 0.0, trigger_off = 0.0;
-    std::shared_ptr<const std::vector<Press>> presses;  // shared by the copy that `prepare` goes back to
+    std::shared_ptr<const std::vector<Press>> presses;  // shared with the copy that `prepare` restores
 
     simulate::Intention operator()(double h, const Wrench& force, const Pose& hand) noexcept {
         return moves(h, force, hand);
@@ -51,7 +51,7 @@ Vec3 three(std::string_view text, std::string_view example) {
     std::istringstream words{std::string(text)};
     std::string number[3], unit, more;
     if (!(words >> number[0] >> number[1] >> number[2] >> unit) || words >> more)
-        throw Error(fmt::format("'{}' is not three numbers and a unit, as \"{}\" is", text, example));
+        throw Error(fmt::format("'{}' must be three numbers and a unit, as in \"{}\"", text, example));
     Vec3 value;
     for (int axis = 0; axis < 3; ++axis) value[axis] = parse_as(number[axis] + " " + unit, example.substr(6));
     return value;
@@ -71,8 +71,8 @@ simulate::HandTarget read_target(std::string_view text) {
     return target;
 }
 
-/// Calls take(part) for the parts of a list with semicolons, each a time, a colon and what belongs to it. Throws Error
-/// where the option stands; times must rise.
+/// Calls take(part) for the parts "TIME: REST" of a list with semicolons or lines. `take` returns the time; times must
+/// increase. Throws Error with the position of the option.
 template <class Take>
 void read_list(Options& options, const char* name, const std::string& text, const Take& take) {
     double last = -1.0;
@@ -91,12 +91,12 @@ void read_list(Options& options, const char* name, const std::string& text, cons
         } catch (const Error& error) {
             fail(error.message());
         }
-        if (!(time > last)) fail(fmt::format("times must rise; '{}' does not", one));
+        if (!(time > last)) fail(fmt::format("times must increase; '{}' is not later than the previous one", one));
         last = time;
     }
 }
 
-/// Bit 1 is the gap of a replayed hand.
+/// Bit 1 is reserved for the gaps of a replayed hand.
 constexpr std::uint32_t button_bits[] = {button_trigger, 4u, 8u, 16u};
 
 std::uint32_t read_buttons(std::string_view text) {
@@ -112,8 +112,8 @@ std::uint32_t read_buttons(std::string_view text) {
     return buttons;
 }
 
-/// Targets and buttons: of the options, or of the file that one of them names. In a file, a line is a target, and what
-/// stands behind a bar is held from then on.
+/// Targets and buttons from the options, or from a script file: one target per line; the buttons after '|' are held
+/// from then on.
 void read_script(Options& options, const PathResolver& resolve, std::vector<simulate::HandTarget>& targets,
                  std::vector<Press>& presses) {
     const std::string asset = options.text("file", "");
@@ -126,7 +126,7 @@ void read_script(Options& options, const PathResolver& resolve, std::vector<simu
         return targets.back().time;
     });
     if (targets.empty())
-        throw Error(options.where("targets"), fmt::format("{}: option 'targets' names no place", options.owner()));
+        throw Error(options.where("targets"), fmt::format("{}: option 'targets' has no target", options.owner()));
     read_list(options, "buttons", options.text("buttons", ""), [&](std::string_view one) {
         const auto colon = one.find(':');
         if (colon == std::string_view::npos)

@@ -47,7 +47,7 @@ simulate::StrokePlan read_plan(Options& options) {
     plan.start.position.x = options.quantity("start_x", "0 mm", "-1 m", "1 m");
     plan.start.position.y = options.quantity("start_y", "0 mm", "-1 m", "1 m");
     plan.start.position.z = options.quantity("start_z", "0 mm", "-1 m", "1 m");
-    // A turn about one axis is any orientation.
+    // Every orientation is a rotation about one axis.
     const Vec3 turn_axis = read_axis(options, "turn_axis", "0 0 1");
     plan.start.orientation = rotation_by(turn_axis * options.quantity("turn", "0 deg", "-360 deg", "360 deg"));
     plan.stroke_axis = read_axis(options, "stroke_axis", "1 0 0");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Driver "simulated": an operator who presses a blade into whatever is in the way and saws.
+// Driver "simulated": a simulated hand that presses a blade with a set thrust and saws.
 #pragma once
 
 #include "graph/node/device.hpp"

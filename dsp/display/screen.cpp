@@ -85,7 +85,7 @@ Eyes eyes_of(const Pose& head, double between) {
     return {head.position - half, head.position + half};
 }
 
-Pose DisplayRig::place_before(std::size_t screen, double away) const {
+Pose DisplayGeometry::place_before(std::size_t screen, double away) const {
     const Screen& seen = screens[screen];
     check(seen);
     const Vec3 right = glm::normalize(seen.right()), up = glm::normalize(seen.up()), normal = seen.normal();
@@ -99,28 +99,28 @@ Pose DisplayRig::place_before(std::size_t screen, double away) const {
     return {mirror->reflected(middle + away * normal), glm::quat_cast(Mat3(-way * turned(right), way * high, back))};
 }
 
-Mat4 DisplayRig::seen_world() const {
+Mat4 DisplayGeometry::seen_world() const {
     return matrix_of(Pose{visuo_haptic_offset, {1.0, 0.0, 0.0, 0.0}} * haptic_world) * Mat4(haptic_stretch);
 }
 
-RigView DisplayRig::view(std::size_t screen, const Vec3& eye, const Bounds& scene) const {
+ScreenView DisplayGeometry::view(std::size_t screen, const Vec3& eye, const Bounds& scene) const {
     const Mat4 placed = seen_world();
     const Bounds world = moved(scene, placed);
-    RigView view{screen, eye, {}};
+    ScreenView view{screen, eye, {}};
     view.projection = is_mirrored(screen) ? through_mirror(screens[screen], *mirror, eye, world)
                                           : through_screen(screens[screen], eye, world);
     view.projection.to_eye = view.projection.to_eye * placed;
     return view;
 }
 
-std::vector<RigView> DisplayRig::views(const Pose& head, bool stereo, const Bounds& scene) const {
+std::vector<ScreenView> DisplayGeometry::views(const Pose& head, bool stereo, const Bounds& scene) const {
     if (!is_valid(head)) throw Error("the pose of the head is not valid");
     const Eyes eyes = eyes_of(head, between_eyes);
     return views(stereo ? std::vector{eyes.left, eyes.right} : std::vector{head.position}, scene);
 }
 
-std::vector<RigView> DisplayRig::views(const std::vector<Vec3>& eyes, const Bounds& scene) const {
-    std::vector<RigView> views;
+std::vector<ScreenView> DisplayGeometry::views(const std::vector<Vec3>& eyes, const Bounds& scene) const {
+    std::vector<ScreenView> views;
     for (std::size_t screen = 0; screen < screens.size(); ++screen)
         for (const Vec3& eye : eyes) views.push_back(view(screen, eye, scene));
     return views;

@@ -17,7 +17,7 @@ namespace tactus::display {
 /// A flat screen, by three of its corners as seen from its front.
 struct Screen {
     Vec3 low_left{0.0}, low_right{0.0}, high_left{0.0};
-    bool in_mirror = true;  ///< seen in the mirror of its rig, if there is one
+    bool in_mirror = true;  ///< seen in the mirror, if the display has one
 
     Vec3 right() const { return low_right - low_left; }  ///< along the lower edge, its length
     Vec3 up() const { return high_left - low_left; }
@@ -55,8 +55,8 @@ struct Eyes {
 };
 Eyes eyes_of(const Pose& head, double between);
 
-/// One picture of a rig.
-struct RigView {
+/// The picture of one eye on one screen.
+struct ScreenView {
     std::size_t screen = 0;
     Vec3 eye{0.0};
     Projection projection;
@@ -64,7 +64,7 @@ struct RigView {
 
 /// Screens that show one world together. The pose of the haptic world in the viewer's world decides whether objects
 /// appear where they are felt.
-struct DisplayRig {
+struct DisplayGeometry {
     std::vector<Screen> screens;
     std::optional<Plane> mirror;
     double between_eyes = 0.063;  ///< m
@@ -76,12 +76,12 @@ struct DisplayRig {
 
     /// Left and right eye on every screen (`stereo`), else one in the middle. `scene` and the projections refer to the
     /// world of the simulation. Throws Error as through_screen does.
-    std::vector<RigView> views(const Pose& head, bool stereo, const Bounds& scene) const;
+    std::vector<ScreenView> views(const Pose& head, bool stereo, const Bounds& scene) const;
     /// One picture for each eye on each screen of a display with several fixed viewpoints, such as one projector per
     /// direction.
-    std::vector<RigView> views(const std::vector<Vec3>& eyes, const Bounds& scene) const;
+    std::vector<ScreenView> views(const std::vector<Vec3>& eyes, const Bounds& scene) const;
     /// What one eye sees on one screen.
-    RigView view(std::size_t screen, const Vec3& eye, const Bounds& scene) const;
+    ScreenView view(std::size_t screen, const Vec3& eye, const Bounds& scene) const;
 
     bool is_mirrored(std::size_t screen) const { return mirror && screens[screen].in_mirror; }
     /// A head that looks straight at the middle of a screen, or of its image in the mirror, from `away` m. Up is z, or

@@ -166,7 +166,7 @@ TEST_CASE("at most twenty source files stand side by side") {
     }
 }
 
-TEST_CASE("below the nodes nobody knows a node type, a patch or a rig by its name") {
+TEST_CASE("below the nodes nobody knows a node type, a patch or a display file by its name") {
     // One-word names such as "scene" are words of the language as well.
     std::set<std::string> names;
     for (const fs::path& file : files_under("nodes", {".cpp"}))

@@ -22,7 +22,7 @@ endif()
 
 foreach(part bin/tactus-bench share/doc/tactus/README.md share/doc/tactus/docs/reference/nodes.md
              share/tactus/library/cases/mandible-twelve/case.plan.json share/tactus/library/equalisers/saw-vibration.toml
-             share/tactus/library/rigs/mirror.toml share/tactus/library/patches/parts/handle.toml)
+             share/tactus/library/displays/mirror.toml share/tactus/library/patches/parts/handle.toml)
   if(NOT EXISTS ${SCRATCH}/moved/${part})
     message(FATAL_ERROR "not installed: ${part}")
   endif()

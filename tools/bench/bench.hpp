@@ -14,9 +14,9 @@ using command::Action;
 using command::Verb;
 using command::VerbOptions;
 
-/// What most of them take.
+/// Options shared by most benchmarks.
 struct BenchChoice {
-    int rounds = 3;  ///< the best of so many counts
+    int rounds = 3;  ///< number of repetitions; the best one counts
     bool json = false;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a point of a pointshell costs against a voxmap, beside OpenVDB reading the same places.
+// Cost per point of a pointshell against a voxmap, compared with OpenVDB sampling the same positions.
 #include "dsp/contact/pointshell_contact.hpp"
 #include "dsp/contact/pointshell_kernel.hpp"
 #include "dsp/contact/shape.hpp"
@@ -35,8 +35,8 @@ contact::Voxmap ball(double radius) {
                                   [=](const Vec3& p) { return contact::Ball{radius}.distance(p); });
 }
 
-// A shell just below the surface of the ball: every point in contact, as between fitted fracture surfaces. The points
-// stand about one voxel apart, which is as close as they are any use.
+// A shell just below the surface of the ball: every point is in contact, as between fitted fracture surfaces. The
+// spacing is about one voxel; closer points add no information.
 constexpr Case cases[] = {
     {"conforming", 5'000, 24.0, 0.0},
     {"conforming", 50'000, 76.0, 0.0},
@@ -46,7 +46,7 @@ constexpr Case cases[] = {
     {"light", 50'000, 60.0, 2.0},
     {"light", 1'000'000, 60.0, 2.0},
 };
-/// Held in a hole of its own size: no point can be left out.
+/// The shell in a hole of its own size: no point can be culled.
 constexpr Case frames_of_coupling[] = {{"converged frame", 5'000, 24.0, 0.0}, {"converged frame", 50'000, 76.0, 0.0}};
 
 Json measure(const Case& c, int rounds) {
@@ -57,12 +57,12 @@ Json measure(const Case& c, int rounds) {
     contact::PointshellContact contact(shell.nodes.size());
     const ContactGridPeer peer(map.grid);
     const int frames = rounds * std::clamp(2'000'000 / c.points, 10, 200);
-    // Reading single places is what the peer does, so it is compared where every point is read.
+    // The peer samples single positions, so the comparison uses cases in which every point is sampled.
     const bool has_peer = c.distance == 0.0 && c.budget > static_cast<std::size_t>(c.points);
     std::vector<double> ours, theirs;
     contact::ContactSum sum;
     double checked = 0.0;
-    for (int frame = -1; frame < frames; ++frame) {  // the first is not counted
+    for (int frame = -1; frame < frames; ++frame) {  // the first frame warms up
         const Pose pose = pose_of(c, static_cast<std::uint64_t>(frame + 1));
         const contact::ContactPair pair{&shell, pose, &map, {}, true};
         const double begin = thread_seconds();
@@ -102,7 +102,7 @@ Json measure(const Case& c, int rounds) {
     return row;
 }
 
-/// What the program beside this one measures with FCL and Bullet; empty without it.
+/// Results of the separate program that measures FCL and Bullet; empty without it.
 Json contact_libraries(const Case& c, int rounds) {
     Json found = Json::array();
     std::error_code failure;
@@ -120,8 +120,8 @@ Json contact_libraries(const Case& c, int rounds) {
     return found;
 }
 
-/// A hand that wanders by 1 mm and some degrees at up to 3 Hz holds the shell in a hole that it all but fills: each
-/// frame is solved until springs and contact balance.
+/// A hand moves the shell by 1 mm and a few degrees at up to 3 Hz in a tight hole; each frame solves the balance of
+/// springs and contact.
 Json measure_frames(const Case& c, int rounds) {
     const double radius = c.radius * voxel;
     const contact::Pointshell shell = contact::make_pointshell(contact::spread_over_ball(c.points, radius));
@@ -141,7 +141,7 @@ Json measure_frames(const Case& c, int rounds) {
     std::vector<double> seconds;
     double balanced = 0.0, evaluations = 0.0;
     const int frames = 300 * rounds;
-    for (int frame = -20; frame < frames; ++frame) {  // until it has settled nothing counts
+    for (int frame = -20; frame < frames; ++frame) {  // the first 20 frames settle
         const double w = 6.283185307179586e-3 * frame;
         const Vec3 at =
             1e-3 * Vec3(std::sin(0.7 * w) + 0.2 * std::sin(2.9 * w), std::sin(0.9 * w + 1.0), std::sin(1.1 * w + 2.0));
@@ -192,12 +192,12 @@ void print_libraries(const Json& rows) {
             for (const Json& peer : row["libraries"]) {
                 if (!any)
                     fmt::print(
-                        "\nFCL and Bullet, the nearest that they have: the same shell as a triangle mesh against a "
-                        "solid "
-                        "ball given by\nformula, every contact wanted. Comparable: the shape, the poses, that all that "
-                        "touches is found. Not comparable: they\nread no distance field, and give depth and normal of "
-                        "each triangle but no energy, gradient or stiffness. A field costs\nus the same whatever its "
-                        "shape; a mesh in the place of the ball would cost them more.\n{:8} {:26} {:>9} {:>10} {:>9} "
+                        "\nFCL and Bullet, closest equivalent: the same shell as a triangle mesh against an "
+                        "analytic\nball, with all contacts. Comparable: shape, poses, and that every contact is found. "
+                        "Not comparable: the libraries\nuse no distance field, and return depth and normal per "
+                        "triangle but no energy, gradient or stiffness. The cost of a\nfield does not depend on its "
+                        "shape; a mesh in place of the ball would cost the libraries more.\n{:8} {:26} {:>9} {:>10} "
+                        "{:>9} "
                         "{:>9} {:>9} {:>6}\n",
                         "", "", "corners", "contacts", "ns/point", "p50 us", "p99 us", "ratio");
                 any = true;
@@ -229,7 +229,7 @@ int bench_contact(const BenchChoice& choice) {
     }
     for (std::size_t i = 0; i < std::size(cases); ++i) {
         const Case& c = cases[i];
-        // Theirs depends neither on interpolation nor on a budget.
+        // The peers depend neither on interpolation nor on a budget.
         if (c.points > 50'000 && c.distance == 0.0) continue;
         if (c.interpolation != contact::Interpolation::trilinear) continue;
         Json found = contact_libraries(c, choice.rounds);
@@ -244,10 +244,12 @@ int bench_contact(const BenchChoice& choice) {
 }
 
 Verb contact_verb() {
-    return {"contact", "time of a pointshell's point against a voxmap, beside OpenVDB",
+    return {"contact", "time per pointshell point against a voxmap, compared with OpenVDB",
             [](VerbOptions& verb) -> Action {
                 const auto choice = std::make_shared<BenchChoice>();
-                verb.add("--rounds", choice->rounds, "more rounds, steadier figures").shows_default().range(1, 1000);
+                verb.add("--rounds", choice->rounds, "number of rounds; more rounds reduce scatter")
+                    .shows_default()
+                    .range(1, 1000);
                 verb.flag("--json", choice->json, "as JSON");
                 return [choice] { return bench_contact(*choice); };
             }};

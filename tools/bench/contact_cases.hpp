@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `bench contact` measures: a ball of points against a ball of distances, posed anew each frame.
+// Cases of `bench contact`: a spherical pointshell against the distance field of a ball, with a new pose in each frame.
 #pragma once
 
 #include "dsp/contact/contact_law.hpp"
@@ -24,16 +24,16 @@ inline constexpr double cover = 0.3e-3;  // m, from a shell within the ball to i
 struct Case {
     const char* name;
     int points;
-    double radius;  ///< of the shell, in voxels
-    double distance;   ///< of the centres, in radii: 0 for a shell within the ball, 2 for two balls that touch
+    double radius;  ///< radius of the shell, in voxels
+    double distance;  ///< distance of the centres, in radii: 0 for a shell within the ball, 2 for two touching balls
     contact::Interpolation interpolation = contact::Interpolation::trilinear;
     std::size_t budget = std::numeric_limits<std::size_t>::max();
 
-    /// m, of the ball that the shell is held against.
+    /// Radius of the ball, m.
     double ball() const { return radius * voxel + (distance > 0.0 ? 0.0 : cover); }
 };
 
-/// Of the shell: any turn, pressed in by 0.1 to 0.2 mm, nothing like the frame before.
+/// A random pose of the shell, 0.1 to 0.2 mm deep, independent of the previous frame.
 inline Pose pose_of(const Case& c, std::uint64_t frame) {
     const Random random{7};
     const auto normal = [&](std::uint64_t n) { return random.normal(16 * frame + n); };
@@ -43,7 +43,7 @@ inline Pose pose_of(const Case& c, std::uint64_t frame) {
     return {way * (c.distance > 0.0 ? c.distance * c.radius * voxel - press : 0.5 * press), turn};
 }
 
-/// Processor time of this thread, s: other work on the machine counts only by what it takes from the caches.
+/// Processor time of this thread, s. Other load on the machine has an effect only through the caches.
 inline double thread_seconds() {
     timespec t;
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

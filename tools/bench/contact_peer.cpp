@@ -19,7 +19,7 @@ ContactGridPeer::ContactGridPeer(const volume::Grid& distance) : tree_(std::make
     const auto [nx, ny, nz] = distance.size;
     const openvdb::CoordBBox box(openvdb::Coord(0), openvdb::Coord(nx - 1, ny - 1, nz - 1));
     tree_->grid = openvdb::FloatGrid::create(1.0f);
-    // No sample equals its background but for the tolerance, so nothing is pruned.
+    // The tolerance is zero, so that no sample is pruned.
     const openvdb::tools::Dense<const float, openvdb::tools::LayoutXYZ> dense(box, distance.values.data());
     openvdb::tools::copyFromDense(dense, *tree_->grid, 0.0f, /*serial=*/true);
     tree_->origin = distance.origin;

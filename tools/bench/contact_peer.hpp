@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same distances in OpenVDB, read by its own trilinear stencil.
+// The same distances in OpenVDB, sampled with its trilinear stencil.
 #pragma once
 
 #include "dsp/core/types.hpp"
@@ -18,8 +18,8 @@ public:
     ContactGridPeer(const ContactGridPeer&) = delete;
     ContactGridPeer& operator=(const ContactGridPeer&) = delete;
 
-    /// Value and gradient at every point, moved by the pose; returns a sum over all, so that nothing is left out. No
-    /// forces are made of them.
+    /// Samples value and gradient at every transformed point; returns a sum, so that the compiler cannot remove the
+    /// work. Computes no forces.
     double read(std::span<const Vec3> points, const Pose& pose) const;
 
 private:

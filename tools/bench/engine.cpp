@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a node costs: a chain of gains in this engine, and the same chain in Pure Data and scsynth, in one run.
+// Cost per node: a chain of gains in this engine, in Pure Data and in scsynth.
 #include "engine/run/engine.hpp"
 #include "graph/analyse/latency.hpp"
 #include "graph/analyse/stiffness.hpp"
@@ -32,7 +32,7 @@ double processor_seconds() {
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// Processor time of all threads: other work on the machine does not count.
+/// Processor time of all threads; other load on the machine does not count.
 double seconds_of(const std::function<void()>& work) {
     const double begin = processor_seconds();
     work();
@@ -73,16 +73,16 @@ double run_here(const Chain& chain, bool hash, bool time_nodes) {
     return seconds_of([&] { engine.render(1); });
 }
 
-/// One way to run a chain; the time of what does not grow with the sound is in `time` too.
+/// A method to run a chain; `time` includes start-up.
 struct Runner {
     std::string name;
     std::function<std::optional<double>(const Chain&)> time;
     bool works = true;
-    std::array<double, 4> best{1e9, 1e9, 1e9, 1e9};  ///< of all rounds, as `measure` takes them
+    std::array<double, 4> best{1e9, 1e9, 1e9, 1e9};  ///< best times of all rounds, in the order of `measure`
     std::optional<double> ns_per_node = std::nullopt;
 };
 
-/// Time of a longer and a shorter piece, with and without nodes: what is left is the nodes' own.
+/// Times of a long and a short run, with and without nodes. The differences isolate the cost of the nodes.
 void measure(Runner& runner, const Chain& chain) {
     if (!runner.works) return;
     const Chain brief{chain.nodes, chain.block, 0.01}, bare{0, chain.block, chain.seconds},
@@ -108,14 +108,14 @@ Json row(const std::string& name, int nodes, int block, double ns, const Runner*
 }
 
 void bench_chain(int nodes, int block, int rounds, const std::filesystem::path& folder, Json& rows) {
-    // About half a second of work at 5 ns per node; more for those that take long to load.
+    // About half a second of work at 5 ns per node; more for programs that load slowly.
     const double work = nodes < 10000 ? 0.5 : 2.0;
     const Chain chain{nodes, block, std::max(0.1, work / (rate / block * nodes * 5e-9))};
     Runner here[] = {{"gain", [](const Chain& c) { return std::optional(run_here(c, false, true)); }},
                      {"gain, outputs hashed", [](const Chain& c) { return std::optional(run_here(c, true, true)); }}};
     Runner peers[] = {{"pure data", [&](const Chain& c) { return run_in_pure_data(c, folder); }},
                       {"scsynth", [&](const Chain& c) { return run_in_scsynth(c, folder); }}};
-    // In turn: what else the machine does meanwhile falls on all of them.
+    // Interleaved, so that other load affects all methods alike.
     for (int i = 0; i < rounds; ++i) {
         for (Runner& runner : here) measure(runner, chain);
         for (Runner& runner : peers) measure(runner, chain);
@@ -124,7 +124,7 @@ void bench_chain(int nodes, int block, int rounds, const std::filesystem::path& 
         for (const Runner& peer : peers) rows.push_back(row(runner.name, nodes, block, *runner.ns_per_node, &peer));
 }
 
-/// From a text to a plan that runs, for 1000 nodes: the best of several, ns per node.
+/// Time from patch text to runnable plan, best of several, ns per node.
 void bench_compile(int rounds, Json& rows) {
     constexpr int nodes = 1000;
     const std::string text = patch_of(nodes);
@@ -142,10 +142,10 @@ void bench_compile(int rounds, Json& rows) {
     rows.push_back(row("prepare", nodes, 0, prepared * 1e9 / nodes, nullptr));
 }
 
-/// What a node of a large patch costs beside one of a small patch: 1 when all steps take time in proportion.
+/// Compile time per node of a large patch relative to a small one; 1 means linear time.
 void bench_scaling(int rounds, Json& rows) {
     constexpr std::array<int, 2> sizes{10'000, 100'000};
-    constexpr double brief = 0.002;  // s of sound: what is measured is the way there
+    constexpr double brief = 0.002;  // s of sound; start-up dominates
     std::array<double, 2> checked{1e9, 1e9}, rendered{1e9, 1e9};
     for (int i = 0; i < rounds; ++i)
         for (std::size_t k = 0; k < sizes.size(); ++k) {
@@ -176,7 +176,7 @@ void bench_scaling(int rounds, Json& rows) {
     add("render 2 ms", rendered);
 }
 
-/// What timing every node in one call of 64 adds to a tick of 1 ms.
+/// Cost of timing every node in one of 64 calls, relative to a tick of 1 ms.
 void bench_telemetry(int rounds, Json& rows) {
     constexpr int nodes = 1000, block = 48;
     const Chain chain{nodes, block, 2.0};
@@ -237,10 +237,12 @@ int bench_engine(const BenchChoice& choice) {
 }
 
 Verb engine_verb() {
-    return {"engine", "time of a node in a chain, beside Pure Data and scsynth; compile time",
+    return {"engine", "time per node in a chain, compared with Pure Data and scsynth; compile time",
             [](VerbOptions& verb) -> Action {
                 const auto choice = std::make_shared<BenchChoice>();
-                verb.add("--rounds", choice->rounds, "the best of so many counts").shows_default().range(1, 1000);
+                verb.add("--rounds", choice->rounds, "number of repetitions; the best one counts")
+                    .shows_default()
+                    .range(1, 1000);
                 verb.flag("--json", choice->json, "as JSON");
                 return [choice] { return bench_engine(*choice); };
             }};

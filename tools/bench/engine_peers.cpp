@@ -26,7 +26,7 @@ void write_file(const std::filesystem::path& path, const std::string& bytes) {
     if (!file || std::fclose(file) != 0 || !written) throw Error(fmt::format("{}: cannot write", path.string()));
 }
 
-/// Processor time of a program without input and output, s: other work on the machine does not count.
+/// Runs a program without input and output; returns its processor time, s.
 std::optional<double> time_of(std::vector<std::string> words) {
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
@@ -50,7 +50,7 @@ std::optional<double> time_of(std::vector<std::string> words) {
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-// What OSC and synth definitions are made of: everything big endian.
+// Big-endian primitives of OSC and synth definitions.
 void put32(std::string& out, std::uint32_t v) {
     for (int shift = 24; shift >= 0; shift -= 8) out += static_cast<char>(v >> shift);
 }
@@ -102,7 +102,7 @@ std::string synth_definition(int nodes) {
     return out;
 }
 
-/// One message as a bundle with a time in s, behind its length, as a score file has it.
+/// A message as a time-stamped bundle with its length before it, as in a score file.
 void put_at(std::string& score, double time, const std::string& message) {
     std::string bundle;
     put_text(bundle, "#bundle");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `tactus-bench`, which `tactus bench` runs: figures of this machine.
+// `tactus-bench`: the benchmarks, started by `tactus bench`.
 #include "tools/bench/bench.hpp"
 
 int main(int argc, char** argv) {
@@ -7,5 +7,6 @@ int main(int argc, char** argv) {
     const command::Verbs verbs{bench::engine_verb(), bench::contact_verb(), bench::view_verb(),
                                bench::scrub_verb(),  bench::snap_verb(),    bench::passivity_verb()};
     return command::command_line(
-        {"tactus bench", "figures of this machine, beside other programs where they are installed", verbs}, argc, argv);
+        {"tactus bench", "benchmarks of this machine, compared with other programs if they are installed", verbs}, argc,
+        argv);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What it costs to look at any instant of a take: to repeat its run once, and then to jump.
+// Cost of random access to a take: repeating the run once, and then each jump.
 #include "tools/bench/bench.hpp"
 #include "tools/view/take_bench.hpp"
 
@@ -60,10 +60,10 @@ int bench_scrub(const ScrubBenchChoice& choice) {
 }
 
 Verb scrub_verb() {
-    return {"scrub", "time to jump to any instant of a take, its bones and bodies included",
+    return {"scrub", "time to jump to any instant of a take, including bones and bodies",
             [](VerbOptions& verb) -> Action {
                 const auto choice = std::make_shared<ScrubBenchChoice>();
-                verb.add("take", choice->take, "folder that --record made").required();
+                verb.add("take", choice->take, "folder of a take, made with --record").required();
                 verb.add("--jumps", choice->jumps, "how many").shows_default().range(1, 100'000);
                 verb.flag("--json", choice->json, "as JSON");
                 return [choice] { return bench_scrub(*choice); };

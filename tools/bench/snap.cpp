@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often snap-to-fit finds the place of a fragment, beside ICP in its usual forms, on the same simulated fractures.
+// Success rate of snap-to-fit on simulated fractures, compared with common variants of ICP.
 #include "assets/library/mandible.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
@@ -48,7 +48,7 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-/// What a method did over all trials of a case and start.
+/// Results of a method over all trials of a case and start.
 struct Tally {
     std::vector<double> error, angle, time;
     int failures_flagged = 0, failures = 0, alarms = 0, judged = 0;
@@ -93,7 +93,7 @@ struct TimedFit {
     }
 };
 
-/// `anywhere`: the global fit of the pair, which no start changes, once it is known.
+/// `anywhere`: the cached result of the global fit, which does not depend on the start.
 void try_all(const FracturePair& pair, const IcpTarget& target, const Pose& start, const SnapBenchChoice& choice,
              std::optional<TimedFit>& anywhere, Tallies& tallies) {
     for (const auto& [name, mode] : modes) {
@@ -136,7 +136,7 @@ Json row_of(const FractureCase& c, const FractureStart& start, const std::string
     return row;
 }
 
-/// Our modes as they are, each peer by the schedule that served it best.
+/// All own modes, and each peer with its best schedule.
 void add_rows(Json& rows, const FractureCase& c, const FractureStart& start, const SnapBenchChoice& choice,
               const Tallies& tallies) {
     for (const auto& [name, mode] : modes)
@@ -189,7 +189,7 @@ void print_live(const Json& rows) {
                    row["p99_ms"].get<double>(), 100.0 * row["success"].get<double>());
 }
 
-/// What an outlier of a chain of pieces is must be seen: the worst beside the median.
+/// Reports the worst piece beside the median, because errors add up along a chain of pieces.
 Json whole_case_row(const bone::Bone& bone, const WholeCase& kind, const SnapBenchChoice& choice) {
     const WholeCaseResult r = put_together(bone, kind, choice.seed, choice.seeds);
     return {{"case", kind.name},
@@ -220,7 +220,7 @@ void print_whole_case(const Json& row) {
         row["islands"].get<int>(), row["without_neighbours"].get<int>(), row["median_ms"].get<double>());
 }
 
-/// The whole cases that are asked for by name.
+/// The whole cases selected by name.
 Json whole_case_rows(const SnapBenchChoice& choice, const bone::Bone& bone) {
     Json rows = Json::array();
     for (const WholeCase& kind : whole_cases()) {
@@ -300,7 +300,7 @@ Verb snap_verb() {
                 const std::vector<std::string> methods{"extended",  "global",    "baseline",
                                                        "icp_point", "icp_plane", "gicp"};
                 verb.add("--seed", choice->seed, "of the first fracture").shows_default();
-                verb.add("--seeds", choice->seeds, "so many fractures of each kind").shows_default().range(1, 10'000);
+                verb.add("--seeds", choice->seeds, "number of fractures of each kind").shows_default().range(1, 10'000);
                 verb.add("--trials", choice->trials, "starts for each fracture and distance")
                     .shows_default()
                     .range(1, 1000);
@@ -312,8 +312,8 @@ Verb snap_verb() {
                          "extended, global, baseline, icp_point, icp_plane, gicp (default: all)")
                     .separated_by(',')
                     .one_of(methods);
-                verb.add("--bone", choice->bone, "what is broken (default: the bundled jaw)");
-                verb.flag("--pushed", choice->pushed, "starts are moved apart until bone does not lie in bone");
+                verb.add("--bone", choice->bone, "bone to break (default: the bundled jaw)");
+                verb.flag("--pushed", choice->pushed, "move the starts apart until the bones do not overlap");
                 verb.flag("--json", choice->json, "as JSON");
                 verb.old([](std::vector<std::string>& words) {
                     command::rename_value(words, "--method", "thesis", "baseline");

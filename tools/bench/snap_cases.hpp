@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fractures with a known truth, and starts beside it.
+// Fractures with ground truth, and start poses with errors.
 #pragma once
 
 #include "dsp/fit/fit_surface.hpp"
@@ -10,16 +10,16 @@
 
 namespace tactus::bench {
 
-/// What is done to a fracture before the pieces are to be put together.
+/// Properties of a simulated fracture.
 struct FractureKind {
     const char* name;
     double roughness;  ///< m
     double chips;      ///< share of the area
     double spill;      ///< m, paint beyond the fracture's rim
-    double noise;      ///< of the scan, share of the contrast
+    double noise;      ///< noise of the scan, share of the contrast
 };
 
-/// How far beside its place a fragment starts.
+/// Error of the start pose.
 struct FractureStart {
     double offset_mm, angle_deg;
 };
@@ -29,7 +29,7 @@ struct FractureCase {
     std::vector<FractureStart> starts;
 };
 
-/// All that success is measured on, by name.
+/// All cases, by name.
 const std::vector<FractureCase>& fracture_cases();
 
 struct FracturePair {
@@ -37,15 +37,15 @@ struct FracturePair {
     fit::FitSurface moving, fixed;
     Pose truth;  ///< of the moving piece in the fixed one's frame
 
-    /// Root mean square over the moving piece's surface of how far a pose is from the truth, m.
+    /// Target registration error: rms distance between a pose and the truth over the moving piece's surface, m.
     double error(const Pose& pose) const;
 };
 
-/// Breaks `bone` in two, scans each half as it lies, with a turn of its own, and paints what was not its surface before.
+/// Breaks `bone` in two, scans each half with its own rotation, and paints the surface that did not exist before.
 FracturePair make_fracture_pair(const volume::Grid& bone, const FractureKind& kind, std::uint64_t seed);
 
-/// The truth, moved by `offset` (m) and turned by `angle` (rad) about the middle of the moving paint in random
-/// directions; if `pushed`, then moved out along the fracture's normal until the paints do not cut into each other.
+/// The truth, translated by `offset` (m) and rotated by `angle` (rad) about the centre of the moving paint in random
+/// directions; if `pushed`, then moved along the fracture's normal until the painted surfaces do not overlap.
 Pose start_beside(const FracturePair& pair, double offset, double angle, bool pushed, std::uint64_t seed);
 
 }  // namespace tactus::bench

@@ -21,14 +21,14 @@ namespace {
 constexpr double mm = 1e-3, degree = std::numbers::pi / 180.0;
 constexpr int all_ticks = 3000;
 
-/// Within 2 mm and 2 degrees of the place where the fragment fits, at up to 1.1 Hz; of a handle `arm` from its middle.
+/// Motion within 2 mm and 2 degrees of the fitted pose, at up to 1.1 Hz, of a handle `arm` from the fragment's centre.
 Pose wandering_hand(const Vec3& arm, double t) {
     const double w = 2.0 * std::numbers::pi * t;
     return {arm + mm * Vec3(0.5 + 1.5 * std::sin(0.7 * w), std::sin(0.9 * w), std::sin(1.1 * w)),
             rotation_by(degree * Vec3(2.0 * std::sin(0.8 * w), 2.0 * std::sin(w), std::sin(0.5 * w)))};
 }
 
-/// As the node snap_to_fit sets it while a fragment lies where it fits.
+/// The settings of the node snap_to_fit near a fit.
 fit::FitLaw law_of(fit::FitMode mode) {
     fit::FitLaw law;
     law.reach = 4.0 * mm;
@@ -48,7 +48,7 @@ fit::FitLaw law_of(fit::FitMode mode) {
 
 std::vector<LiveTicks> bench_snap_live() {
     library::FractureOptions options;
-    options.spacing *= 0.82;  // about 5,000 painted points on both together
+    options.spacing *= 0.82;  // about 5,000 painted points in total
     const std::vector<bone::Bone> bones = library::make_fragments(options);
     const fit::FitSurface moving = fit::make_live_fit_surface(bones[1].points, bones[1].distance),
                           fixed = fit::make_live_fit_surface(bones[0].points, bones[0].distance);

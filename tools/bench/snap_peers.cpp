@@ -17,14 +17,14 @@ namespace {
 
 constexpr int most_iterations = 100, annealed_iterations = 60;
 constexpr double trimmed_share = 0.8, widest = 8e-3, finest = 0.8e-3;
-constexpr double flatness = 1e-3;  // variance along the normal over that within the plane, as GICP has it
+constexpr double flatness = 1e-3;  // variance along the normal relative to the plane, as in GICP
 
 struct Match {
     std::size_t from, to;
     double distance2;
 };
 
-/// What a pair's difference is weighed with: all directions alike, the normal alone, or both planes' covariances.
+/// Weight of a pair's difference: identity, normal only, or the covariances of both planes.
 Mat3 weighing(IcpKind kind, const Vec3& fixed_normal, const Vec3& moving_normal) {
     if (kind == IcpKind::point) return Mat3(1.0);
     if (kind == IcpKind::plane) return glm::outerProduct(fixed_normal, fixed_normal);
@@ -79,7 +79,7 @@ Pose run_icp(const fit::FitSurface& moving, const IcpTarget& target, const Pose&
             const Mat3 w = weighing(kind, fixed.normal[m.to], turn * moving.normal[m.from]);
             const Vec3 force = w * (pose.position + arm - fixed.position[m.to]);
             const Vec3 torque = glm::cross(arm, force);
-            // Columns of the motion of x: the axes, and each axis crossed with the arm.
+            // Jacobian of the motion of x: the axes, and each axis crossed with the arm.
             Vec3 motion[6];
             for (int a = 0; a < 3; ++a) {
                 motion[a] = Vec3(a == 0, a == 1, a == 2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Iterative closest point in its usual forms, which snap-to-fit is measured against.
+// Common variants of iterative closest point (ICP), as baselines for snap-to-fit.
 #pragma once
 
 #include "dsp/fit/fit_surface.hpp"
@@ -12,13 +12,13 @@ namespace tactus::bench {
 
 /// Point to point (Besl and McKay 1992), point to plane (Chen and Medioni 1992), plane to plane (GICP, Segal 2009).
 enum class IcpKind { point, plane, generalised };
-/// Which pairs count: all, the nearest 80 %, or those within a threshold that falls from 8 mm to 0.8 mm.
+/// Pair selection: all, the nearest 80 % (trimmed), or those within a threshold that decreases from 8 mm to 0.8 mm.
 enum class IcpSchedule { unlimited, trimmed, annealed };
 
 std::string_view name_of(IcpKind kind);
 std::string_view name_of(IcpSchedule schedule);
 
-/// Nearest points by a balanced tree over the painted points of the fixed side.
+/// Nearest neighbours from a k-d tree of the painted points of the fixed side.
 class IcpTarget {
 public:
     explicit IcpTarget(const fit::FitSurface& fixed) : surface_(fixed), tree_(fixed.position) {}
@@ -31,7 +31,7 @@ private:
     geometry::PointTree tree_;
 };
 
-/// From `start` (between the middles of the paints) to where it settles, at most 100 iterations.
+/// Iterates from `start` (relative to the centres of the paints) to convergence, at most 100 iterations.
 Pose run_icp(const fit::FitSurface& moving, const IcpTarget& fixed, const Pose& start, IcpKind kind,
              IcpSchedule schedule);
 

@@ -30,7 +30,7 @@ void put_together_once(const library::BrokenMandible& broken, WholeCaseResult& r
         stands[n] = 1;
     };
     stand(0);
-    // What lost pieces cut off has no place of its own: its first piece is put where it belongs.
+    // A part that lost pieces disconnect has no reference: its base piece is placed at the truth.
     std::vector<std::size_t> order = broken.order;
     for (const auto& island : broken.islands) {
         stand(island.front());

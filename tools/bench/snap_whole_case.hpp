@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A jaw in twelve pieces, put together from beside each place by the matcher alone, without a hand.
+// Assembles a jaw in twelve pieces with the matcher alone, each piece from a start near its place.
 #pragma once
 
 #include "assets/bone/bone.hpp"
@@ -14,26 +14,26 @@ namespace tactus::bench {
 struct WholeCase {
     std::string_view name;
     double kerf;  ///< m, bone lost all along the fractures
-    int missing;  ///< of the smallest pieces
+    int missing;  ///< number of the smallest pieces that are missing
 };
 
-/// Whole, with lost bone, and with lost pieces.
+/// The cases: complete, with lost bone, and with lost pieces.
 const std::vector<WholeCase>& whole_cases();
 
-/// What became of every piece that moves, over all seeds.
+/// Results of every moving piece, over all seeds.
 struct WholeCaseResult {
-    std::vector<double> error, angle, seconds;  ///< m of a piece's middle, degrees, processor time of a look
-    std::vector<double> gap;  ///< m, mean signed distance of what lies on each other: what of a kerf stays open
+    std::vector<double> error, angle, seconds;  ///< m, of a piece's centre; degrees; s, processor time of a search
+    std::vector<double> gap;  ///< m, mean signed distance of touching faces: the part of the kerf that stays open
     int fitted = 0;  ///< pieces with the verdict `fit`
-    int within = 0;  ///< of these, within 0.3 mm and 0.5 degrees
-    int islands = 0;  ///< parts that lost pieces cut off: each on its first piece, which is given its place
-    int alone = 0;  ///< pieces that touch no other, for their neighbours are missing
+    int within = 0;  ///< fitted pieces within 0.3 mm and 0.5 degrees
+    int islands = 0;  ///< parts disconnected by lost pieces; the base piece of each is placed at the truth
+    int alone = 0;  ///< pieces without any neighbour
 
     double worst_error() const;
     double worst_angle() const;
 };
 
-/// Each piece starts 5 mm and 10 degrees beside its place, is fitted, and settled twice more when all are there.
+/// Each piece starts 5 mm and 10 degrees from its place, is fitted, and is settled twice more when all are placed.
 WholeCaseResult put_together(const bone::Bone& bone, const WholeCase& kind, std::uint64_t seed, int seeds);
 
 }  // namespace tactus::bench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What it costs to keep the surface of a bone up to date while it is sawn: the bricks that a cut changed, beside OpenVDB's
-// volumeToMesh of the whole, in processor time; and what a picture of a large bone costs.
+// Cost of remeshing a bone while it is sawn (only changed bricks, compared with OpenVDB's volumeToMesh of the whole
+// bone; processor time), and of drawing a large bone.
 #include "dsp/carve/carver.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/geometry/brick_surface.hpp"
@@ -24,7 +24,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Processor time of all threads, ms: other work on the machine does not count.
+/// Processor time of all threads, ms; other load on the machine does not count.
 double now_ms() {
     timespec t;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
@@ -79,7 +79,7 @@ int bench_view(const BenchChoice& choice) {
             std::vector<carve::CarveSample> path;
             for (int n = 0; n < poses; ++n) {
                 const double depth = -12.5e-3 + 5e-3 * (tick + n / double(poses)) / 60.0;
-                // y of the blade leads into the bone, along the scene's y; x across the shaft.
+                // The blade's y axis points into the bone, along the scene's y; x is across the shaft.
                 path.push_back({{{0.0, depth, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 1e-3, 7.0, 228.0, true});
             }
             carver.update(editor, path);
@@ -102,13 +102,13 @@ int bench_view(const BenchChoice& choice) {
         peer_triangles = peer.triangles();
         peer_ms.push_back(now_ms() - begin);
     }
-    if (cuts_ms.empty()) throw Error("the saw of the benchmark cut nothing");
+    if (cuts_ms.empty()) throw Error("the saw of the benchmark did not cut");
     std::optional<PictureCosts> pictures;
     try {
         make_shaft(distance, density, 1.43);
         pictures = picture_costs(distance, density, choice.rounds);
     } catch (const Error& error) {
-        fmt::print(stderr, "tactus: no pictures are measured: {}\n", error.what());
+        fmt::print(stderr, "tactus: pictures are not measured: {}\n", error.what());
     }
     Json result{{"remesh_median_ms", quantile(cuts_ms, 0.5)},
                 {"remesh_p99_ms", quantile(cuts_ms, 0.99)},
@@ -147,10 +147,12 @@ int bench_view(const BenchChoice& choice) {
 }
 
 Verb view_verb() {
-    return {"view", "time to remesh what a cut changed of a bone, beside OpenVDB's volumeToMesh",
+    return {"view", "time to remesh the changed bricks of a bone, compared with OpenVDB's volumeToMesh",
             [](VerbOptions& verb) -> Action {
                 const auto choice = std::make_shared<BenchChoice>();
-                verb.add("--rounds", choice->rounds, "more rounds, steadier figures").shows_default().range(1, 100);
+                verb.add("--rounds", choice->rounds, "number of rounds; more rounds reduce scatter")
+                    .shows_default()
+                    .range(1, 100);
                 verb.flag("--json", choice->json, "as JSON");
                 return [choice] { return bench_view(*choice); };
             }};

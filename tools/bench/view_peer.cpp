@@ -15,7 +15,7 @@ struct ViewGridPeer::Tree {
     openvdb::FloatGrid::Ptr grid;
 };
 
-/// A level set with a band of three voxels, as OpenVDB likes it best.
+/// A level set with a narrow band of three voxels, OpenVDB's standard form.
 ViewGridPeer::ViewGridPeer(const volume::Grid& distance) : tree_(std::make_unique<Tree>()) {
     openvdb::initialize();
     const auto band = static_cast<float>(3.0 * distance.spacing.x);

@@ -16,7 +16,7 @@ public:
     ViewGridPeer(const ViewGridPeer&) = delete;
     ViewGridPeer& operator=(const ViewGridPeer&) = delete;
 
-    /// Meshes all of it by volumeToMesh and counts; a quad counts as two.
+    /// Meshes the whole grid with volumeToMesh; returns the number of triangles, two per quad.
     std::size_t triangles() const;
 
 private:

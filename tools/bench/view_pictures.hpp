@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a picture of a large bone costs, with every triangle and with what a picture of something that moves has.
+// Cost of drawing a large bone, with all triangles and with the level of detail for moving scenes.
 #pragma once
 
 #include "dsp/volume/grid.hpp"
@@ -12,7 +12,7 @@ namespace tactus::bench {
 
 struct PictureCost {
     std::string what;  ///< "all of it, moving"
-    double ms = 0.0;   ///< by the clock on the wall, the best of some
+    double ms = 0.0;   ///< wall-clock time, best of several
     std::size_t triangles = 0;  ///< drawn
 };
 
@@ -22,7 +22,7 @@ struct PictureCosts {
     std::vector<PictureCost> pictures;
 };
 
-/// Four samples per pixel. Throws Error when no OpenGL context can be had.
+/// Four samples per pixel. Throws Error when there is no OpenGL context.
 PictureCosts picture_costs(const volume::Grid& distance, const volume::Grid& density, int rounds);
 
 }  // namespace tactus::bench

@@ -34,7 +34,8 @@ std::vector<std::string> run_batch(std::size_t count, int jobs, std::string_view
         try {
             job(index, tell);
         } catch (const std::bad_alloc& error) {
-            // Nothing is wrong with the file, which is another exit code; one of many keeps the others' answers.
+            // Too little memory is not a fault of the file and has another exit code; with several files the other
+            // results are kept.
             if (count == 1) throw;
             failures[index] = error.what();
         } catch (const std::exception& error) {

@@ -17,7 +17,7 @@ namespace tactus::command {
 
 namespace {
 
-/// Puts the words of today in the place of old ones, behind the verb.
+/// Replaces old spellings after the verb by the current ones.
 void modernise(const OldSpellings& old, std::vector<std::string>& words) {
     if (old.rewrite) old.rewrite(words);
     for (std::string& word : words)
@@ -26,7 +26,7 @@ void modernise(const OldSpellings& old, std::vector<std::string>& words) {
             else if (word.starts_with(before + "=")) word = now + word.substr(before.size());
 }
 
-/// Where the verb stands: the first word behind the options of the program itself.
+/// Index of the verb: the first word after the program's own options.
 std::size_t place_of_verb(const CLI::App& app, const std::vector<std::string>& words) {
     std::size_t place = 0;
     for (; place < words.size() && words[place].starts_with('-'); ++place)
@@ -35,7 +35,7 @@ std::size_t place_of_verb(const CLI::App& app, const std::vector<std::string>& w
     return std::min(place, words.size());
 }
 
-/// The verb of a word, also by its old name, which the word then loses; null: there is none.
+/// The verb with this name; an old name is replaced by the current one in `word`. Null: none.
 const Verb* verb_of(const Verbs& verbs, std::string& word) {
     for (const Verb& verb : verbs)
         if (word == verb.name || (verb.old_name && word == verb.old_name)) {
@@ -45,13 +45,13 @@ const Verb* verb_of(const Verbs& verbs, std::string& word) {
     return nullptr;
 }
 
-/// The verb that was given, also within a group.
+/// The given verb, also within a group.
 const CLI::App* given_verb(const CLI::App& app) {
     const auto below = app.get_subcommands();
     return below.empty() ? &app : given_verb(*below.front());
 }
 
-/// As the program calls itself when a system call failed.
+/// Reports a failed system call; returns the exit code.
 int failed_call(const std::system_error& error) {
     say(stderr, fmt::format("tactus: {}\n", error.what()));
     for (const std::errc full :
@@ -61,7 +61,7 @@ int failed_call(const std::system_error& error) {
     return bad_input;
 }
 
-/// What is handed to another program, when the verb is one; the words that are left are ours.
+/// Arguments to forward when the verb is another program; they are removed from `words`.
 std::vector<std::string> words_handed_on(const Program& program, const CLI::App& app, const DeclaredVerbs& declared,
                                          std::vector<std::string>& words) {
     std::size_t place = place_of_verb(app, words);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Completion of verbs, options and the values that an option chooses from; elsewhere files.
+// Shell completion of verbs, options and option values; otherwise of files.
 #include "tools/command/manual.hpp"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ std::vector<std::string> options_in(const VerbPage& page) {
     return names;
 }
 
-/// Between single quotes of fish.
+/// Quotes a text for fish.
 std::string quoted(const std::string& text) {
     std::string out = "'";
     for (const char c : text) {
@@ -32,14 +32,14 @@ std::string quoted(const std::string& text) {
     return out + "'";
 }
 
-/// Between single quotes of a POSIX shell.
+/// Quotes a text for a POSIX shell.
 std::string shell_quoted(const std::string& text) {
     std::string out = "'";
     for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
     return out + "'";
 }
 
-/// Cases of `words`: what may follow the verbs "plan move" (no verb: ""), and the values of options.
+/// Entries for the `case` of completion words, such as "plan move" (no verb: ""), and for option values.
 void add_bash(std::string& cases, std::string& values, const std::string& words, const VerbPage& page) {
     cases += fmt::format("        '{}') words='{} {}' ;;\n", words, fmt::join(verbs_in(page), " "),
                          fmt::join(options_in(page), " "));
@@ -53,7 +53,27 @@ void add_bash(std::string& cases, std::string& values, const std::string& words,
         add_bash(cases, values, words.empty() ? verb.name : words + " " + verb.name, verb);
 }
 
-/// The verbs typed so far, as the words of a `case`.
+/// Entries of a zsh `case` for the values of options: "'plan snap --mode') values=(extended global) ;;".
+void add_zsh_values(std::string& cases, const std::string& words, const VerbPage& page) {
+    for (const OptionPage& option : page.options)
+        if (!option.choices.empty())
+            for (const std::string& name : option.names)
+                if (name.starts_with('-'))
+                    cases +=
+                        fmt::format("        ('{} {}') values=({}) ;;\n", words, name, fmt::join(option.choices, " "));
+    for (const VerbPage& verb : page.verbs)
+        add_zsh_values(cases, words.empty() ? verb.name : words + " " + verb.name, verb);
+}
+
+/// The program's own options that take a value, as a pattern of a `case`; the value is not a verb.
+std::string valued_options(const VerbPage& program) {
+    std::vector<std::string> names{"''"};  // never empty
+    for (const OptionPage& option : program.options)
+        if (!option.value.empty()) names.insert(names.end(), option.names.begin(), option.names.end());
+    return fmt::format("{}", fmt::join(names, "|"));
+}
+
+/// Patterns of a `case` for the verbs typed so far.
 std::string groups_of(const VerbPage& page) {
     std::vector<std::string> groups;
     for (const VerbPage& verb : page.verbs)
@@ -101,7 +121,10 @@ std::string bash_completion(const VerbPage& program) {
 _{0}() {{
     local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} verb= words= i
     for ((i = 1; i < COMP_CWORD; ++i)); do
-        [[ ${{COMP_WORDS[i]}} == -* ]] && continue
+        case ${{COMP_WORDS[i]}} in
+        {4}) ((++i)); continue ;;
+        -*) continue ;;
+        esac
         case $verb in
         '') verb=${{COMP_WORDS[i]}} ;;
         {1}) verb="$verb ${{COMP_WORDS[i]}}" ;;
@@ -118,32 +141,42 @@ _{0}() {{
 }}
 complete -o default -F _{0} {0}
 )",
-                       program.name, groups_of(program), cases, values);
+                       program.name, groups_of(program), cases, values, valued_options(program));
 }
 
 std::string zsh_completion(const VerbPage& program) {
-    std::string cases;
+    std::string cases, values;
     add_zsh(cases, "", program);
+    add_zsh_values(values, "", program);
     return fmt::format(R"(#compdef {0}
 # zsh completion of {0}; written by '{0} generate zsh'
 _{0}() {{
     local verb='' i
-    local -a said
+    local -a said values
     for ((i = 2; i < CURRENT; ++i)); do
-        [[ $words[i] == -* ]] && continue
+        case $words[i] in
+        ({3}) ((++i)); continue ;;
+        (-*) continue ;;
+        esac
         case $verb in
         ('') verb=$words[i] ;;
         ({1}) verb="$verb $words[i]" ;;
         (*) break ;;
         esac
     done
+    case "$verb $words[CURRENT-1]" in
+{4}    esac
+    if (( $#values )); then
+        compadd -a values
+        return
+    fi
     case $verb in
 {2}    esac
     _describe '{0}' said || _files
 }}
 _{0} "$@"
 )",
-                       program.name, groups_of(program), cases);
+                       program.name, groups_of(program), cases, valued_options(program), values);
 }
 
 std::string fish_completion(const VerbPage& program) {
@@ -152,7 +185,7 @@ std::string fish_completion(const VerbPage& program) {
     for (const VerbPage& verb : program.verbs) {
         const std::string here = "__fish_seen_subcommand_from " + verb.name;
         if (verb.verbs.empty()) {
-            // The verbs of a group have names of their own kind: "plan snap" is no "snap".
+            // Verbs of a group are separate: "plan snap" is not "snap".
             std::string others;
             for (const VerbPage& group : program.verbs)
                 if (!group.verbs.empty()) others += "; and not __fish_seen_subcommand_from " + group.name;

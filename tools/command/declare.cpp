@@ -29,7 +29,7 @@ void declare(CLI::App& app, const Program& program, DeclaredVerbs& declared) {
     app.set_version_flag("--version", version_text(program.name), "print version, build type and compiler");
     app.add_option_function<std::string>(
            "--memory", [](const std::string& size) { file::set_memory_limit(file::parse_memory_size(size)); },
-           "most memory that one file may take, as in \"2 GB\" (default: half of the machine's)")
+           "memory limit for one file, such as \"2 GB\" (default: half of the machine's)")
         ->trigger_on_parse();
     declare_verbs(app, program.verbs, declared);
 }

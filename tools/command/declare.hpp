@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verbs of a program as declarations of CLI11, for reading a command line and for writing manuals.
+// Declares the verbs of a program in CLI11, for parsing command lines and for writing manuals.
 #pragma once
 
 #include "tools/command/options.hpp"
@@ -8,7 +8,7 @@
 
 namespace tactus::command {
 
-/// What was declared for a verb: what runs with it, and what it still understands.
+/// The declaration of a verb: its action and its old spellings.
 struct DeclaredVerb {
     const Verb* verb = nullptr;
     Action run;

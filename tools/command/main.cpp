@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 int main(int argc, char** argv) {
-    // Where one of the three standard streams is closed, the next file that is opened would take its number, and what is
-    // said would go into that file.
+    // If a standard stream is closed, the next opened file would get its descriptor, and messages would be written into
+    // that file.
     for (int handle = ::open("/dev/null", O_RDWR); handle >= 0; handle = ::open("/dev/null", O_RDWR))
         if (handle > STDERR_FILENO) {
             ::close(handle);

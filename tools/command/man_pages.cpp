@@ -10,7 +10,7 @@ namespace tactus::command {
 
 namespace {
 
-/// Troff reads a dash as a hyphen, and a line that begins with a dot or an apostrophe as a request.
+/// Escapes text for troff: a dash is a hyphen there, and a line that begins with a dot or an apostrophe is a request.
 std::string troff(const std::string& text) {
     std::string out;
     for (const char c : text) {
@@ -35,7 +35,7 @@ std::string option_text(const OptionPage& option) {
     if (option.is_required) text += " (required)";
     text += "\n" + troff(option.about);
     if (!option.shown_default.empty())
-        text += fmt::format("{}Default: {}.", option.about.empty() ? "" : "\n", troff(option.shown_default));
+        text += fmt::format("{}(default: {})", option.about.empty() ? "" : " ", troff(option.shown_default));
     return text + "\n";
 }
 

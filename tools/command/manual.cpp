@@ -11,7 +11,7 @@ namespace tactus::command {
 
 namespace {
 
-/// Of "TEXT:{hann,hamming}": the words between the braces.
+/// The words between the braces of "TEXT:{hann,hamming}".
 std::vector<std::string> choices_of(const std::string& value) {
     std::vector<std::string> choices;
     const std::size_t open = value.find('{'), close = value.find('}');
@@ -35,7 +35,7 @@ OptionPage page_of(const CLI::Option& option) {
     page.about = option.get_description();
     page.choices = choices_of(page.value);
     page.is_required = option.get_required();
-    // Without a unit, a number or a choice, a text may be a file.
+    // A text without unit, range or choices may be a file.
     page.is_file = page.value == "TEXT";
     return page;
 }

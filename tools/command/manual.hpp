@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the declarations of a program say, as plain data, and the texts that are made of it.
+// The declarations of a program as plain data, and generators of manuals and completions.
 #pragma once
 
 #include "tools/command/options.hpp"
@@ -11,14 +11,14 @@
 namespace tactus::command {
 
 struct OptionPage {
-    std::vector<std::string> names;    ///< with dashes; one without dashes is positional
+    std::vector<std::string> names;    ///< with dashes; without dashes for a positional argument
     std::string value;                 ///< "TIME:0.001 to 1000000"; "": a flag
     std::string shown_default, about;
-    std::vector<std::string> choices;  ///< when the value is one of these
+    std::vector<std::string> choices;  ///< allowed values, if limited
     bool is_positional = false, is_required = false, is_file = false;
 };
 
-/// A program or a verb. What is hidden is left out.
+/// A program or a verb, without hidden parts.
 struct VerbPage {
     std::string name, about, job;  ///< name: one word, "tactus" or "render"
     std::vector<OptionPage> options;
@@ -27,7 +27,7 @@ struct VerbPage {
 
 VerbPage pages_of(const Program& program);
 
-/// Manual pages, section 1: file name and troff text. One of the program, one per verb.
+/// Manual pages, section 1: file name and troff text. One for the program, one per verb.
 std::vector<std::pair<std::string, std::string>> man_pages(const VerbPage& program);
 std::string bash_completion(const VerbPage& program);
 std::string zsh_completion(const VerbPage& program);

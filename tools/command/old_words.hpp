@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Old spellings that one word alone does not tell: for VerbOptions::old.
+// Old spellings of option values, for VerbOptions::old.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace tactus::command {
 
-/// The value of `option` that was called `before` is `now`, also where it stands among others in a list "a,b".
+/// Renames the value `before` of `option` to `now`, also in a list "a,b".
 inline void rename_value(std::vector<std::string>& words, const std::string& option, const std::string& before,
                          const std::string& now) {
     const auto rename = [&](std::string& text, std::size_t from) {

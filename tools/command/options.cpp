@@ -19,14 +19,14 @@ namespace tactus::command {
 namespace {
 
 bool is_bare_number(const std::string& text) {
-    // As CLI11 reads numbers, which also takes "1e3", "+5" and " 5".
+    // Parses numbers like CLI11, which also accepts "1e3", "+5" and " 5".
     char* end = nullptr;
     std::strtod(text.c_str(), &end);
     while (end && *end == ' ') ++end;
     return !text.empty() && end && *end == '\0';
 }
 
-/// What stands for the value in help texts.
+/// Placeholder of the value in help texts.
 std::string name_of_unit(const std::string& unit) {
     const Dimension dimension = parse_unit(unit).dimension;
     for (const auto& [like, name] : {std::pair{"s", "TIME"},
@@ -54,7 +54,7 @@ std::pair<double, double> parse_band(const std::string& text, const std::string&
             high = frequency_of(text.substr(colon + 1));
         }
     } catch (const Error&) {
-        low = 0.0;  // said below
+        low = 0.0;  // reported below
     }
     if (!(low > 0.0) || !(high > low) || !std::isfinite(high))
         throw Error(fmt::format("{} takes LOW:HIGH in Hz, as in {} 200:600 or \"200 Hz:1 kHz\", not '{}'", option,

@@ -14,60 +14,60 @@ class Option;
 
 namespace tactus::command {
 
-/// One option of a verb, as it is declared. Copies stand for the same option.
+/// A declared option of a verb. Copies refer to the same option.
 class Option {
 public:
     explicit Option(CLI::Option* option) : option_(option) {}
 
     Option& required();
-    Option& shows_default();                              ///< the help text states the value that it has now
+    Option& shows_default();                              ///< the help text states the current value as default
     Option& range(int least, int most);                   ///< inclusive
     Option& range(double least, double most);             ///< inclusive
     Option& positive();                                   ///< a number above 0
-    /// The number may have a unit: "2 min" for unit("s"). Without one it is in `unit`, which is that of the value, too.
+    /// Accepts a unit: "2 min" for unit("s"). A plain number, and the stored value, are in `unit`.
     Option& unit(const std::string& unit);
-    Option& one_of(const std::vector<std::string>& all);  ///< of these texts
-    Option& one_each();  ///< of several values each has the option's name before it
-    Option& separated_by(char delimiter);  ///< several values in one text
-    Option& count(int values);  ///< exactly so many values
+    Option& one_of(const std::vector<std::string>& all);  ///< allowed values
+    Option& one_each();  ///< every value needs its own option name
+    Option& separated_by(char delimiter);  ///< several values in one argument
+    Option& count(int values);  ///< exact number of values
     Option& count(int least, int most);  ///< of values
     Option& needs(const Option& other);
     Option& excludes(const Option& other);
     Option& about(const std::string& text);
-    Option& hidden();  ///< works, but no help text shows it: an old spelling
+    Option& hidden();  ///< accepted, but not shown in help texts: an old spelling
 
 private:
     CLI::Option* option_;
 };
 
-/// What a verb still understands although no help text shows it.
+/// Old spellings that a verb accepts; no help text shows them.
 struct OldSpellings {
-    std::vector<std::pair<std::string, std::string>> renamed;  ///< option before, option now
-    std::function<void(std::vector<std::string>&)> rewrite;  ///< of all words behind the verb; may be null
+    std::vector<std::pair<std::string, std::string>> renamed;  ///< old option, current option
+    std::function<void(std::vector<std::string>&)> rewrite;  ///< applied to all words after the verb; may be null
 };
 
-/// What a verb takes. What it reads into must live until the verb has run.
+/// Declares the options of a verb. Referenced variables must live until the verb has run.
 class VerbOptions {
 public:
     VerbOptions(CLI::App& app, OldSpellings& old) : app_(app), old_(old) {}
 
-    /// `name`: "--out", "-o,--out", or without dashes a positional argument. For texts, paths, numbers, std::optional of
-    /// numbers, and std::vector of texts, paths and numbers.
+    /// `name`: "--out", "-o,--out", or without dashes for a positional argument. T: texts, paths, numbers,
+    /// std::optional of numbers, and std::vector of texts, paths and numbers.
     template <class T>
     Option add(const std::string& name, T& value, const std::string& about);
-    /// Calls `take` with the value, for double and std::string. It may throw Error.
+    /// Calls `take` with the value. T: double or std::string. `take` may throw Error.
     template <class T>
     Option call(const std::string& name, std::function<void(const T&)> take, const std::string& about);
-    /// True when it is given; a name with '!' before it: false when it is given.
+    /// Sets `value` to true when given; with '!' before the name, to false.
     Option flag(const std::string& name, bool& value, const std::string& about);
-    /// LOW:HIGH, frequencies in Hz or with a unit, as in "200:600" or "200 Hz:1 kHz". The help text states the band that
-    /// it has now.
+    /// LOW:HIGH, frequencies in Hz or with a unit, as in "200:600" or "200 Hz:1 kHz". The help text states the current
+    /// band as default.
     Option band(const std::string& name, double& low, double& high, const std::string& about);
-    /// `before` is another spelling of the option `now`, which no help text shows.
+    /// Accepts `before` as an old spelling of the option `now`; no help text shows it.
     void old(const std::string& before, const std::string& now) { old_.renamed.emplace_back(before, now); }
-    /// Changes what was typed behind the verb, where a word alone does not tell which spelling was meant.
+    /// Rewrites the words after the verb, for old spellings that depend on context.
     void old(std::function<void(std::vector<std::string>&)> rewrite) { old_.rewrite = std::move(rewrite); }
-    /// One that is there already. Throws when it is not.
+    /// A declared option. Throws when it does not exist.
     Option find(const std::string& name);
     /// Called when all options of the verb are read. It may throw Error.
     void check(std::function<void()> function);
@@ -80,28 +80,28 @@ private:
 /// "200:600" or "200 Hz:1 kHz" → Hz, low and high. Throws Error that names the option.
 std::pair<double, double> parse_band(const std::string& text, const std::string& option);
 
-/// What runs once the command line is read; returns the exit code.
+/// The action of a verb; returns the exit code.
 using Action = std::function<int()>;
 
 struct Verb;
 using Verbs = std::vector<Verb>;
 
-/// Something that the command does, or a group of such. Each lives in a file of its name.
+/// A verb, or a group of verbs. Each is defined in a file of its name.
 struct Verb {
     const char* name;
     const char* about;
-    /// Adds the options and returns what runs with them. Null for a group and for another program.
+    /// Declares the options and returns the action. Null for a group and for another program.
     Action (*add)(VerbOptions& options);
-    /// Of a group. Null otherwise.
+    /// The verbs of a group. Null otherwise.
     const Verbs& (*verbs)() = nullptr;
-    /// Runs another program with all arguments behind the verb. Null otherwise.
+    /// Runs another program with all arguments after the verb. Null otherwise.
     int (*forward)(const std::vector<std::string>& arguments) = nullptr;
-    const char* job = "";  ///< heading in the help text; "": that of all
-    const char* old_name = nullptr;  ///< understood as well, and not shown
+    const char* job = "";  ///< heading in the help text; "": none
+    const char* old_name = nullptr;  ///< accepted as well, but not shown
     bool is_hidden = false;  ///< no help text shows it
 };
 
-/// A program that is a list of verbs.
+/// A program: a list of verbs.
 struct Program {
     const char* name;
     const char* about;
@@ -111,7 +111,7 @@ struct Program {
 /// "tactus 0.1.0, Release, GCC 12.2.0": version, build type and compiler.
 std::string version_text(const char* program);
 
-/// Reads the command line and runs the verb. Says on standard error what is wrong and returns the exit code.
+/// Parses the command line and runs the verb. Prints errors on standard error and returns the exit code.
 int command_line(const Program& program, int argc, char** argv);
 
 }  // namespace tactus::command

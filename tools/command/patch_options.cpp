@@ -10,7 +10,7 @@ void add_patch_options(VerbOptions& verb, session::PatchChoice& choice) {
 
 void add_override_options(VerbOptions& verb, session::PatchChoice& choice) {
     verb.add("--set", choice.overrides.settings, "change a parameter: NODE.PARAM=VALUE").one_each();
-    verb.add("--asset", choice.overrides.assets, "use another file: NAME=PATH").one_each();
+    verb.add("--asset", choice.overrides.assets, "use another file for an asset: NAME=PATH").one_each();
     verb.add("--seed", choice.seed, "seed of the random numbers");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every verb that compiles a patch is given.
+// Options of every verb that compiles a patch.
 #pragma once
 
 #include "tools/command/options.hpp"

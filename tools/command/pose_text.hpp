@@ -26,9 +26,9 @@ Json motion_json(const study::Motion& motion) {
 /// "X,Y,Z,QW,QX,QY,QZ" in mm. Throws Error naming the option.
 Pose pose_of_text(const std::string& text, std::string_view option);
 
-/// What people are told of a fit that repeats the scan (dsp/fit/as_scanned.hpp).
+/// Explanation of a fit that only reproduces the scan (dsp/fit/as_scanned.hpp).
 inline constexpr std::string_view as_scanned_note =
-    "they touch like that in the scan already: a border between two labels fits itself wherever the fragments lie, and "
-    "says nothing of where they belong; compare with the healthy side ('tactus plan mirror')";
+    "the fit only reproduces the scanned position: the border between two labels fits itself wherever the fragments "
+    "lie, so it does not show where they belong; compare with the healthy side ('tactus plan mirror')";
 
 }  // namespace tactus::command

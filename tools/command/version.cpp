@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only file of the command whose compile command names version and build type.
+// The only file that is compiled with the version and the build type.
 #include "tools/command/options.hpp"
 
 #include <fmt/format.h>

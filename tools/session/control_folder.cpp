@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::string_view ending = ".socket";
 
-/// Of "123.socket"; 0: no such name.
+/// The process number of "123.socket"; 0: another name.
 int process_of(std::string_view name) {
     if (!name.ends_with(ending)) return 0;
     name.remove_suffix(ending.size());
@@ -75,7 +75,7 @@ std::string ControlFolder::name_of(int process) { return fmt::format("{}{}", pro
 sockaddr_un ControlFolder::address(const std::string& name) const {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
-    // By the descriptor: the path may be too long for a socket, or may lead elsewhere by now.
+    // Via the descriptor: the path may be too long for a socket, or may have been replaced.
     const std::string path = fmt::format("/proc/self/fd/{}/{}", folder_, name);
     if (folder_ < 0 || path.size() >= sizeof address.sun_path) throw Error("there is no control socket");
     std::strcpy(address.sun_path, path.c_str());
@@ -106,7 +106,7 @@ int ControlFolder::try_connection(const std::string& name) const {
     const sockaddr_un address = this->address(name);
     const int code = ::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ? 0 : errno;
     ::close(socket);
-    // So many wait that there is no room in the queue: somebody is there.
+    // The queue of connections is full: a process is listening.
     return code == EAGAIN ? 0 : code;
 }
 

@@ -33,7 +33,7 @@ struct Descriptor {
 
 ControlSocket::ControlSocket()
     : folder_(ControlFolder::Missing::make), name_(ControlFolder::name_of(static_cast<int>(::getpid()))) {
-    // A socket refuses connections as well between its binding and its listening: only one run is there at a time.
+    // A socket also refuses connections between bind and listen, so this section is locked.
     const bool is_locked = folder_.lock();
     if (is_locked) folder_.remove_refusing();
     Descriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
@@ -64,7 +64,7 @@ bool ControlSocket::listen_to(Caller& caller, const std::function<std::string(co
     for (std::size_t end; (end = caller.received.find('\n')) != std::string::npos;) {
         const std::string said = answer(caller.received.substr(0, end)) + "\n";
         caller.received.erase(0, end + 1);
-        // Who does not listen to the answer does not get it.
+        // An answer that the client does not read is dropped.
         if (::send(caller.descriptor, said.data(), said.size(), MSG_NOSIGNAL) < 0) return false;
     }
     return !has_gone && caller.received.size() <= longest_line;
@@ -87,7 +87,7 @@ std::string ask_run(int process, const std::string& line) {
         const std::vector<int> processes = folder.listening();
         if (processes.empty()) throw Error("no patch runs; start one with 'tactus run PATCH'");
         if (processes.size() > 1)
-            throw Error(fmt::format("several patches run; say which with --process: {}", fmt::join(processes, ", ")));
+            throw Error(fmt::format("several patches run; choose one with --process: {}", fmt::join(processes, ", ")));
         process = processes.front();
     }
     const Descriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How another program talks to a patch that runs: lines of text over a local socket that only its user can reach.
+// Remote control of a running patch: lines of text over a local socket that only its user can access.
 #pragma once
 
 #include "tools/session/control_folder.hpp"
@@ -10,7 +10,7 @@
 
 namespace tactus::session {
 
-/// The run's side.
+/// The server side, in the run.
 class ControlSocket {
 public:
     /// Listens as PID.socket in `control_folder`. Throws Error.
@@ -19,7 +19,7 @@ public:
     ControlSocket(const ControlSocket&) = delete;
     ControlSocket& operator=(const ControlSocket&) = delete;
 
-    /// Answers every whole line that has come with what `answer` makes of it. Never waits.
+    /// Answers every complete line with `answer`(line). Does not block.
     void serve(const std::function<std::string(const std::string& line)>& answer);
 
 private:
@@ -35,8 +35,8 @@ private:
     std::vector<Caller> callers_;
 };
 
-/// The other side: sends one line to a run and returns its answer. `process` 0: the only one that runs. Throws Error
-/// when there is none, several, it is not this user's, or it does not answer within 5 s.
+/// The client side: sends one line to a run and returns its answer. `process` 0: the only run. Throws Error when there
+/// is no run, several, one of another user, or no answer within 5 s.
 std::string ask_run(int process, const std::string& line);
 
 }  // namespace tactus::session

@@ -18,7 +18,7 @@ namespace tactus::session {
 
 namespace {
 
-/// The parameter of a button: any other number than before is a press.
+/// The parameter of a button: every change of its value is a press.
 constexpr const char* press = "press";
 
 }  // namespace
@@ -33,7 +33,7 @@ LiveControl::LiveControl(run::Engine& engine, PatchChoice choice, compile::Asset
       watch_(file_) {
     watch_.follow(patch::part_files(engine.plan().patch));
     if (!watch_.is_working())
-        say_(fmt::format("{} cannot be watched; edits take effect at the next start", file_.string()));
+        say_(fmt::format("{} cannot be watched for changes; edits take effect at the next start", file_.string()));
     try {
         socket_ = std::make_unique<ControlSocket>();
     } catch (const Error& error) {
@@ -47,7 +47,7 @@ void LiveControl::tend() {
 }
 
 void LiveControl::take_over_file() {
-    // Read here: what the take keeps is what is compiled, even if the file changes again.
+    // The text is read once, so that the take stores exactly the compiled text.
     patch::Patch patch;
     try {
         patch::Problems unread;
@@ -78,7 +78,7 @@ void LiveControl::edit(std::string text) {
         if (outcome.error) say_(fmt::format("{}\nthe edit was not made; the patch runs on as it was", *outcome.error));
         else {
             watch_.follow(patch::part_files(engine_.plan().patch));
-            say_(fmt::format("edit {} takes over at {:.3f} s; {} of {} nodes go on", outcome.generation,
+            say_(fmt::format("edit {} takes effect at {:.3f} s; {} of {} nodes continue", outcome.generation,
                              seconds(outcome.when), outcome.kept, outcome.nodes));
         }
     });
@@ -107,10 +107,10 @@ std::string LiveControl::trigger(const std::string& given) {
         if (live->name == node) param = found->second;
     }
     if (!param)
-        throw Error(buttons.empty() ? fmt::format("'{}' is no button; this patch has none", given)
-                                    : fmt::format("'{}' is no button; this patch has {}{}", given,
+        throw Error(buttons.empty() ? fmt::format("'{}' is not a button; this patch has none", given)
+                                    : fmt::format("'{}' is not a button; this patch has {}{}", given,
                                                   fmt::join(buttons, ", "), did_you_mean(given, buttons)));
-    // Whoever ticks writes the parameter once it was set, so it is read before the first press only.
+    // Once set, the ticking thread writes the parameter, so it is read before the first press only.
     const auto told = presses_.find(node);
     const double next = std::floor(told == presses_.end() ? param->value : told->second) + 1.0;
     const Flicks when = engine_.set(given, press, fmt::format("{:.0f}", next));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What changes a patch while it runs: its file being saved, and lines on the control socket.
+// Changes of a running patch: saved edits of its file, and commands on the control socket.
 #pragma once
 
 #include "engine/run/engine.hpp"
@@ -17,24 +17,25 @@ namespace tactus::session {
 
 class LiveControl {
 public:
-    /// `say` tells the user of edits and of why one was not made.
+    /// `say` reports edits and failures to the user.
     LiveControl(run::Engine& engine, PatchChoice choice, compile::AssetCache& assets,
                 std::function<void(const std::string&)> say);
 
-    /// From LiveOptions::watch.
+    /// Called from LiveOptions::watch.
     void tend();
 
-    /// From there, too: this text takes over, as if it had been saved.
+    /// Also called from there: edits the run to this text, as if it had been saved.
     void edit(std::string text);
-    /// Who takes over what was saved, instead of this.
+    /// Handler of a saved file, in place of the default.
     std::function<void()> saved;
 
 private:
     void take_over_file();
     std::string answer(const std::string& line);
-    /// "NODE.PARAM=VALUE". Returns what the caller is told. Throws Error.
+    /// Sets "NODE.PARAM=VALUE". Returns the answer for the caller. Throws Error.
     std::string set(const std::string& setting);
-    /// Presses the button `node`: its parameter 'press' counts up. Returns what the caller is told. Throws Error.
+    /// Presses the button `node` by incrementing its parameter 'press'. Returns the answer for the caller. Throws
+    /// Error.
     std::string trigger(const std::string& node);
 
     run::Engine& engine_;
@@ -44,7 +45,7 @@ private:
     std::filesystem::path file_;
     PatchWatch watch_;
     std::unique_ptr<ControlSocket> socket_;
-    std::map<std::string, double> presses_;  // by node: what 'press' was set to last
+    std::map<std::string, double> presses_;  // last value of 'press', by node
 };
 
 }  // namespace tactus::session

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a run goes, as a table for people: its groups, and the nodes that take longest.
+// Status of a run as a text table: its groups, and the slowest nodes.
 #pragma once
 
 #include "engine/run/engine.hpp"
@@ -9,17 +9,17 @@
 
 namespace tactus::session {
 
-/// Time of a node in one call of its group.
+/// Time of a node per call of its group.
 struct NodeTime {
     std::string node, group;
     double mean_us = 0.0, max_us = 0.0;
-    double share = 0.0;  ///< mean over the period of the group's calls
+    double share = 0.0;  ///< mean time relative to the group's period
 };
 
-/// At most `count` nodes, the largest share first. Control thread, or after the run.
+/// At most `count` nodes, largest share first. For the control thread, or after the run.
 std::vector<NodeTime> slowest_nodes(const run::Engine& engine, std::size_t count);
 
-/// "3 skipped (2 woken late, 1 preempted)", or "" when there is nothing.
+/// "3 skipped (2 woken late, 1 preempted)", or "" for none.
 std::string describe_lateness(const run::GroupRuntime& group);
 
 /// "+12 ppm, 0 underflows (0 frames of silence), 0 frames dropped, 0 left out".

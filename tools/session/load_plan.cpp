@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The library that came with the command: beside it in a build folder, else where it is installed.
+/// The bundled library: beside the command in a build folder, otherwise at its installed place.
 fs::path library_of_command() {
     std::error_code failure;
     const fs::path self = fs::read_symlink("/proc/self/exe", failure);
@@ -48,9 +48,9 @@ bool is_of_library(const fs::path& file) {
 
 namespace {
 
-/// A file as it is, or one of a folder of the library.
+/// A file by path, or by name in a folder of the library.
 fs::path find_bundled(const std::string& name, const char* what, const char* where) {
-    // A folder may well have a patch's name: that of its results.
+    // A folder of results may have the name of a patch.
     const bool is_folder = fs::is_directory(name);
     if (fs::exists(name) && !is_folder) return name;
     const fs::path folder = library_folder() / where;
@@ -82,7 +82,17 @@ std::string with_commas(std::size_t number) {
 
 fs::path find_patch(const std::string& name) { return find_bundled(name, "patch", "patches"); }
 
-fs::path find_rig(const std::string& name) { return find_bundled(name, "rig", "rigs"); }
+fs::path find_display(const std::string& name) {
+    // The folder was called rigs before: paths into it, and own libraries that have it, still work.
+    const fs::path path(name), folder = path.parent_path();
+    if (!fs::exists(path) && folder.filename() == "rigs")
+        if (const fs::path renamed = folder.parent_path() / "displays" / path.filename(); fs::exists(renamed))
+            return renamed;
+    const fs::path old = library_folder() / "rigs" / (name + ".toml");
+    if (!fs::exists(path) && !fs::exists(library_folder() / "displays" / (name + ".toml")) && fs::exists(old))
+        return old;
+    return find_bundled(name, "display", "displays");
+}
 
 std::optional<compile::Plan> plan_of(patch::Patch patch, const patch::PatchOverrides& overrides,
                                      std::optional<std::uint64_t> seed, compile::AssetCache* assets,
@@ -90,7 +100,7 @@ std::optional<compile::Plan> plan_of(patch::Patch patch, const patch::PatchOverr
     patch::read_parts(patch);
     patch::apply_overrides(patch, overrides, problems);
     if (seed) patch.seed = *seed;
-    // Without a sound text, what the compiler would say is mostly echo.
+    // After syntax errors, errors of the compiler would mostly be consequences.
     if (!problems.empty()) return std::nullopt;
     std::optional<compile::Plan> plan = compile::compile(patch, nodes::catalogue(), problems);
     if (plan && assets) assets->load(*plan, problems);
@@ -131,7 +141,7 @@ void throw_problems(const patch::Problems& problems) {
 std::unique_ptr<take::TakeWriter> make_take(const PatchChoice& choice, const fs::path& folder, double seconds,
                                             bool live) {
     take::TakeAbout about{find_patch(choice.patch), choice.overrides, choice.seed, seconds, live};
-    // A take is replayed from any folder.
+    // Absolute paths, because a take may be replayed from any folder.
     for (std::string& asset : about.overrides.assets)
         if (const auto equals = asset.find('='); equals != std::string::npos)
             asset = asset.substr(0, equals + 1) + fs::absolute(asset.substr(equals + 1)).string();

@@ -21,9 +21,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr off_t room_for_summary = 256 * 1024;  // bytes; several times what one takes
+constexpr off_t room_for_summary = 256 * 1024;  // bytes; several times the usual size
 
-/// The first file in it that looks like what a run leaves; the part files of one that was killed are among them.
+/// The first file that looks like the result of a run, including part files of a killed run.
 std::string result_in(const fs::path& folder) {
     constexpr std::array<std::string_view, 6> endings{".part", ".csv", ".wav", ".vdb", ".png", ".plan.json"};
     std::string found;
@@ -38,7 +38,7 @@ std::string result_in(const fs::path& folder) {
     return found;
 }
 
-/// Leads to the folder from now on; a file of that name that is no link stays.
+/// Points the link to the folder; an existing file that is not a link is kept.
 void link_to(const fs::path& folder, const fs::path& link) {
     std::error_code failure;
     if (fs::exists(fs::symlink_status(link, failure)) && !fs::is_symlink(link, failure)) return;
@@ -80,7 +80,7 @@ std::string OutputFolder::take(const fs::path& folder, bool overwrite) {
     if (failure) throw Error(fmt::format("{}: cannot make the folder: {}", folder.string(), failure.message()));
     lock_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (lock_ < 0) throw Error(fmt::format("{}: cannot be used: {}", folder.string(), std::strerror(errno)));
-    // Other failures: a file system without locks.
+    // Other failures mean a file system without locks.
     if (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
         let_go();
         return fmt::format("{}: another run writes to this folder; choose another one", folder.string());
@@ -88,7 +88,7 @@ std::string OutputFolder::take(const fs::path& folder, bool overwrite) {
     if (const std::string found = result_in(folder); !found.empty() && !overwrite) {
         let_go();
         return fmt::format(
-            "{}: the folder holds results already ({}); choose another one, or --overwrite to write over them",
+            "{}: the folder already has results ({}); choose another one, or use --overwrite to replace them",
             folder.string(), found);
     }
     path_ = folder;
@@ -123,7 +123,7 @@ void OutputFolder::write_summary(std::string_view text) {
         written += static_cast<std::size_t>(count);
     }
     if (::ftruncate(summary_, static_cast<off_t>(text.size())) != 0) fail(errno);
-    // From here on the part is whole and stays.
+    // From here on the part file is complete and kept.
     if (::close(std::exchange(summary_, -1)) != 0 && errno != EINTR) fail(errno);
     if (std::rename(part_.c_str(), summary.c_str()) != 0) fail(errno);
 }

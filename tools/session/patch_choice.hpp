@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which patch, and what is changed of it.
+// A patch with overrides, as given on the command line.
 #pragma once
 
 #include "graph/patch/patch.hpp"

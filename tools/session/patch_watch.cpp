@@ -22,7 +22,7 @@ PatchWatch::~PatchWatch() {
 void PatchWatch::watch(const std::filesystem::path& file) {
     if (descriptor_ < 0) return;
     const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
-    // The same folder has the same number, however often it is asked for.
+    // inotify returns the same number for the same folder.
     const int number = inotify_add_watch(descriptor_, folder.c_str(), IN_CLOSE_WRITE | IN_MOVED_TO);
     if (number >= 0) files_.push_back({number, file.filename()});
 }

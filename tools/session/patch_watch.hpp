@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Notices that a patch file was saved, however the editor does it.
+// Detects that a patch file was saved, by any method of editors.
 #pragma once
 
 #include <chrono>
@@ -10,24 +10,24 @@
 
 namespace tactus::session {
 
-/// Watches the folder, not the file: editors write beside and rename.
+/// Watches the folder, because editors write a temporary file and rename it.
 class PatchWatch {
 public:
-    /// Never throws; a folder that cannot be watched is never seen to change.
+    /// Never throws; changes in a folder that cannot be watched are not detected.
     explicit PatchWatch(const std::filesystem::path& file);
     ~PatchWatch();
     PatchWatch(const PatchWatch&) = delete;
     PatchWatch& operator=(const PatchWatch&) = delete;
 
     bool is_working() const { return !files_.empty(); }
-    /// From now on these count as well, and no others that were told before: the patches within.
+    /// Replaces the list of additional files, the sub-patches.
     void follow(const std::vector<std::filesystem::path>& files);
-    /// True once per save: a file was closed or renamed, and then left alone for 100 ms. Never waits.
+    /// True once per save: a file was closed or renamed and then not changed for 100 ms. Does not block.
     bool was_saved();
 
 private:
     struct Watched {
-        int folder;  ///< as inotify numbers it
+        int folder;  ///< inotify watch descriptor
         std::string name;
     };
     void watch(const std::filesystem::path& file);

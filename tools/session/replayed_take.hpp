@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A take made ready to run again: its plans, edits and parameter changes.
+// Prepares a take for replay: its plans, edits and parameter changes.
 #pragma once
 
 #include "engine/run/engine.hpp"
@@ -12,8 +12,7 @@ namespace tactus::session {
 
 class ReplayedTake {
 public:
-    /// `options` says what is wanted of the repetition; what repeats the run is filled in. `take` must outlive it. Throws
-    /// Error.
+    /// Completes `options` of the replay with the data of the take, which must outlive it. Throws Error.
     ReplayedTake(const take::Take& take, run::EngineOptions options, compile::AssetCache& assets);
 
     run::Engine& engine() { return *engine_; }

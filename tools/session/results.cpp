@@ -26,7 +26,7 @@ Vec3 vector_of(const Report& report, const char* key, const Vec3& otherwise) {
     return list && list->size() == 3 ? Vec3((*list)[0], (*list)[1], (*list)[2]) : otherwise;
 }
 
-/// From before the cut and a little to its sides, so that the kerf shows its depth.
+/// Camera in front of the cut and slightly to the side, so that the depth of the kerf is visible.
 Vec3 towards_site(const Report& report) {
     const Vec3 normal = vector_of(report, "normal", Vec3(0.0, -1.0, 0.3));
     const Vec3 stroke = vector_of(report, "stroke", Vec3(1.0, 0.0, 0.0));
@@ -73,7 +73,7 @@ WrittenFiles write_results(const Report& report, const std::filesystem::path& fo
             written.losses.emplace_back(error.what());
         }
     };
-    // A bone before its picture: it can be drawn again.
+    // The bone is written before its picture, which can be made again.
     for (const auto& [name, result] : report.results)
         if (const auto* bone = std::any_cast<std::shared_ptr<const bone::Bone>>(&result))
             write(bones, name + ".vdb", [&, file = folder / (name + ".vdb")] { bone::save_bone(**bone, file); });

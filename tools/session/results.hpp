@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `render` and `run` leave in the folder besides the recordings.
+// Files of `render` and `run` besides the recordings.
 #pragma once
 
 #include "engine/run/engine.hpp"
@@ -12,11 +12,11 @@ namespace tactus::session {
 
 struct WrittenFiles {
     std::vector<std::string> names;
-    std::vector<std::string> losses;  ///< why a file could not be written, which it names
+    std::vector<std::string> losses;  ///< reasons why files could not be written, with their names
 };
 
-/// The bones of the report as they were cut, one bone file each, and pictures of them, seen from where they were cut.
-/// A machine that cannot draw is told on standard error.
+/// Writes the cut bones of the report, one bone file each, and a picture of each cut. Failures to draw are reported on
+/// standard error.
 WrittenFiles write_results(const Report& report, const std::filesystem::path& folder);
 
 }  // namespace tactus::session

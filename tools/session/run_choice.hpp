@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a live run is asked for.
+// Options of a live run.
 #pragma once
 
 #include "tools/session/patch_choice.hpp"
@@ -16,11 +16,11 @@ struct RunChoice : PatchChoice {
     std::string audio;         ///< "", "file", "none", "default" or part of a card's name
     double audio_margin = 10;  ///< ms
     std::filesystem::path out, log, record;
-    bool overwrite = false;   ///< results that the folder holds
-    bool is_further = false;  ///< a run before it in the same window has that folder
-    bool keeps_journal = false;  ///< so that recording can begin within the run
-    bool edits = true;  ///< take over the patch file when it is saved, and listen to 'set'
-    bool json = false;  ///< the summary is wanted as JSON, and nothing is said besides
+    bool overwrite = false;   ///< replace existing results
+    bool is_further = false;  ///< an earlier run in the same window uses the folder
+    bool keeps_journal = false;  ///< allows recording to start during the run
+    bool edits = true;  ///< apply saved edits of the patch file, and accept 'set' and 'trigger'
+    bool json = false;  ///< print the summary as JSON and nothing else
 };
 
 }  // namespace tactus::session

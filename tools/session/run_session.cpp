@@ -21,16 +21,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Without --seconds the run lasts until Ctrl-C: a hundred years, which logical time in flicks holds four times over.
+// Without --seconds the run lasts until Ctrl-C: a limit of 100 years, a quarter of what logical time in flicks can hold.
 constexpr double for_ever = 100.0 * 365.25 * 86400.0;
 
-/// The log may be anywhere, but not where a recording is.
+/// The log must not have the path of a recording.
 void check_log(const run::Engine& engine, const fs::path& log, const fs::path& folder) {
     std::error_code ignored;
     const fs::path file = fs::weakly_canonical(log, ignored);
     for (const auto& stream : engine.host().streams)
         if (!log.empty() && file == fs::weakly_canonical(folder / stream->format().file, ignored))
-            throw Error(fmt::format("--log {}: a recording of the patch goes to this file", log.string()));
+            throw Error(fmt::format("--log {}: the patch records to this file; choose another one", log.string()));
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ RunSession::RunSession(const RunChoice& choice, compile::AssetCache& assets, obs
     options.audio = {choice.audio, choice.audio_margin * 1e-3};
     if (choice.dilate != 1.0) {
         if (options.audio.is_required())
-            throw Error("a card plays at its own pace: --dilate needs --audio file or none");
+            throw Error("--dilate needs --audio file or none, because a sound card runs in real time");
         if (choice.audio.empty()) options.audio.device = "file";
     }
     compile::Plan plan = load_plan(choice, assets);
@@ -64,11 +64,11 @@ RunSession::RunSession(const RunChoice& choice, compile::AssetCache& assets, obs
 
 RunSession::~RunSession() { drop_journal(); }
 
-/// A take without values, which becomes one with them when that is asked for.
+/// A take without values (journal), which can become a full take during the run.
 void RunSession::begin_journal(run::EngineOptions& options) {
     constexpr std::string_view name = "journal-";
     std::error_code ignored;
-    // What runs that were killed have left.
+    // Remains of killed runs.
     for (const auto& entry : fs::directory_iterator(folder(), ignored)) {
         const std::string file = entry.path().filename().string();
         if (!file.starts_with(name) || file.find_first_not_of("0123456789", name.size()) != file.npos) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One live run as the command line asked for it, from the patch's text to the summary.
+// One live run, from the patch's text to the summary.
 #pragma once
 
 #include "engine/run/engine.hpp"
@@ -23,25 +23,24 @@ public:
     ~RunSession();
 
     struct Hooks {
-        std::function<void()> tend;  ///< about every 20 ms, on the thread that runs
+        std::function<void()> tend;  ///< called about every 20 ms on the running thread
         std::function<void(const std::string&)> say;
     };
-    /// Runs until its time is over or `stop` is set. Throws Error.
+    /// Runs until the end time, or until `stop` is set. Throws Error.
     void run(const Hooks& hooks, const std::atomic<bool>& stop);
-    /// From Hooks::tend: the run is recorded from now on, in that folder when it is the first time; or no more. Throws
-    /// Error.
+    /// Called from Hooks::tend: starts or stops recording. The first start uses the given folder. Throws Error.
     void record(const std::filesystem::path& folder);
     void stop_recording() { engine_->record(false); }
-    /// Completes recordings and writes pictures, bones and the summary. What finds no room is among the losses.
+    /// Completes recordings and writes pictures, bones and the summary. Failed writes are added to the losses.
     void finish();
-    /// What could not be written to its end, and why; grows while it runs.
+    /// Files that could not be completed, and why; grows during the run.
     std::vector<std::string> losses() const;
 
     run::Engine& engine() { return *engine_; }
-    /// Null unless it runs and may be edited.
+    /// Null unless the run is active and accepts edits.
     LiveControl* control() { return control_.get(); }
     const std::filesystem::path& folder() const { return folder_->path(); }
-    /// After `finish`.
+    /// Valid after `finish`.
     const std::string& summary_json() const { return json_; }
     const std::string& summary_text() const { return text_; }
 
@@ -52,8 +51,8 @@ private:
     RunChoice choice_;
     compile::AssetCache& assets_;
     std::unique_ptr<OutputFolder> folder_;
-    std::vector<std::string> late_losses_;  // of what is written after the run
-    bool is_journal_ = false;  // the take is not asked for yet
+    std::vector<std::string> late_losses_;  // of files written after the run
+    bool is_journal_ = false;  // the take is only a journal so far
     std::unique_ptr<take::TakeWriter> take_;
     std::unique_ptr<run::Engine> engine_;
     std::unique_ptr<LiveControl> control_;

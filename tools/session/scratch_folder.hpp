@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder that lives as long as the object.
+// A temporary folder, removed with the object.
 #pragma once
 
 #include "dsp/core/error.hpp"
@@ -12,7 +12,7 @@ namespace tactus::session {
 
 class ScratchFolder {
 public:
-    /// Throws Error when the system's folder for temporary files is not writable.
+    /// Throws Error when the system's temporary folder is not writable.
     ScratchFolder() {
         std::string name = (std::filesystem::temp_directory_path() / "tactus-XXXXXX").string();
         if (::mkdtemp(name.data()) == nullptr) throw Error(name + ": cannot make a temporary folder");

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Signals that ask a run to end in order, and those that must not end it.
+// Handling of signals: those that end a run in an orderly way, and those that must not end it.
 #pragma once
 
 #include <atomic>
 
 namespace tactus::session {
 
-/// From now on SIGINT, SIGTERM and SIGHUP set the flag, and writing to a pipe or terminal that is closed is an error that
-/// can be passed over. A SIGHUP that was ignored stays ignored (nohup).
+/// Installs handlers: SIGINT, SIGTERM and SIGHUP set the flag; SIGPIPE is ignored, so that writing to a closed pipe is
+/// an ordinary error. A SIGHUP that was ignored stays ignored (nohup).
 const std::atomic<bool>& stop_on_signals();
 
 }  // namespace tactus::session

@@ -12,7 +12,7 @@ namespace tactus::session {
 
 namespace {
 
-constexpr double worth_a_note = 1e-4;  // share of clipped samples
+constexpr double worth_a_note = 1e-4;  // fraction of clipped samples
 
 }  // namespace
 
@@ -46,16 +46,16 @@ TakeFile::TakeFile(const TakeChoice& choice)
     if (choice.channel == 0 && channels > 1)
         notes_.push_back(fmt::format("the {} is the mean of {} channels", role, channels));
     if (pieces.size() > 1)
-        notes_.push_back(fmt::format("the {} has gaps: the longest of its {} pieces is compared, {:.3g} s", role,
+        notes_.push_back(fmt::format("the {} has gaps: only the longest of its {} parts is compared, {:.3g} s", role,
                                      pieces.size(), static_cast<double>(frames_) / rate()));
     if (reader_->log())
-        notes_.push_back(fmt::format("the {} is a log of {:.4g} rows a second, faithful to about {:.0f} Hz", role,
+        notes_.push_back(fmt::format("the {} is a log with {:.4g} rows per second, reliable to about {:.0f} Hz", role,
                                      rate(), reader_->log()->usable));
     const double share =
         static_cast<double>(longest.clipped()) / static_cast<double>(std::max<std::size_t>(1, frames_));
     if (share > worth_a_note)
         notes_.push_back(
-            fmt::format("the {} is clipped: {:.2g} % of its samples stand at its limits", role, 100.0 * share));
+            fmt::format("the {} is clipped: {:.2g} % of its samples are at the limits", role, 100.0 * share));
 }
 
 void TakeFile::mix(const sound::RecordBlock& block, std::vector<double>& out) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file as a take to be compared: one channel of it, or their mean, read from the disk as often as needed.
+// A file as a take for comparison: one channel, or the mean of all, read from disk as often as needed.
 #pragma once
 
 #include "assets/sound/record_reader.hpp"
@@ -13,7 +13,7 @@ namespace tactus::session {
 
 struct TakeChoice {
     std::filesystem::path file;
-    std::string role;      ///< "reference" or "output", for what is said about it
+    std::string role;      ///< "reference" or "output", for messages
     table::LogSelection log;
     double scale = 1.0;    ///< units per full scale, or per unit of a log
     int channel = 0;       ///< from 1; 0: the mean of all
@@ -21,22 +21,22 @@ struct TakeChoice {
 
 class TakeFile {
 public:
-    /// Reads all of the file once. Of a log with gaps, the longest piece is the take. Throws Error.
+    /// Reads the whole file once. For a log with gaps, the longest part is the take. Throws Error.
     explicit TakeFile(const TakeChoice& choice);
 
     signal::Take take() const;
     const std::filesystem::path& file() const { return choice_.file; }
     double rate() const { return reader_->rate(); }  ///< Hz
-    double peak() const { return peak_; }            ///< largest distance from zero, with the scale
+    double peak() const { return peak_; }            ///< greatest absolute value, scaled
     const std::vector<std::string>& notes() const { return notes_; }
 
 private:
-    /// One value of the chosen channel, or the mean, per frame.
+    /// Per frame the value of the channel, or the mean.
     void mix(const sound::RecordBlock& block, std::vector<double>& out) const;
 
     TakeChoice choice_;
     std::shared_ptr<sound::RecordReader> reader_;
-    std::size_t piece_ = 0, frames_ = 0;  // which one, and how long it is
+    std::size_t piece_ = 0, frames_ = 0;  // index and length of the part
     double peak_ = 0.0;
     std::vector<std::string> notes_;
 };

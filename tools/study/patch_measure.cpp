@@ -19,7 +19,7 @@ MeasuredPatch measured_patch(const patch::Patch& patch, const MeasuredPath& path
     const patch::SignalEnd in = patch::find_signal(patch, path.in, "--in", catalogue),
                            out = patch::find_signal(patch, path.out, "--out", catalogue);
     const SourceLocation where{fmt::format("--in {} --out {}", path.in, path.out), 0, 0};
-    if (out.is_input) throw Error(where, fmt::format("'{}' is an input; --out takes what a node puts out", path.out));
+    if (out.is_input) throw Error(where, fmt::format("'{}' is an input; --out must be an output", path.out));
     if (in.node->group != out.node->group ||
         (in.node->group.empty() && patch::parse_rate(in.node->rate) != patch::parse_rate(out.node->rate)))
         throw Error(where, "both ends must run at one rate, in one group");

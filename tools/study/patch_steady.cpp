@@ -30,7 +30,7 @@ const OptionText* setting(const patch::PatchNode& node, std::string_view name) {
     return found == node.settings.end() ? nullptr : &*found;
 }
 
-/// The output that is recorded under that name of a file; empty when there is none.
+/// The output that is recorded to that file name; empty: none.
 std::string recorded_as(const patch::Patch& patch, std::string_view file) {
     for (const patch::PatchNode& node : patch.nodes) {
         const OptionText* name = node.type == "record" ? setting(node, "file") : nullptr;
@@ -49,21 +49,22 @@ SawPath find_saw_path(const patch::Patch& patch, const std::string& saw, const s
     SawPath path{saw, out, {}};
     if (saw.empty()) {
         const patch::PatchNode* found = only_node(patch, "saw");
-        if (!found) throw Error(where, "the patch has not one node of type 'saw'; say which with --saw NODE");
+        if (!found)
+            throw Error(where, "the patch does not have exactly one node of type 'saw'; choose one with --saw NODE");
         path.saw = found->name;
     } else if (const auto named = std::ranges::find(patch.nodes, saw, &patch::PatchNode::name);
                named == patch.nodes.end() || named->type != "saw") {
-        throw Error(SourceLocation{"--saw " + saw, 0, 0}, "there is no node of type 'saw' of that name");
+        throw Error(SourceLocation{"--saw " + saw, 0, 0}, "there is no node of type 'saw' with this name");
     }
     const patch::PatchNode* actuator = only_node(patch, "actuator");
     if (out.empty()) path.out = recorded_as(patch, "handle.wav");
     if (path.out.empty() && actuator) path.out = actuator->name + ".signal";
     if (path.out.empty())
         throw Error(where,
-                    "nothing is recorded as handle.wav and there is not one actuator; say where the vibration reaches "
-                    "the hand with --out NODE.PORT");
+                    "no port is recorded as handle.wav and the number of actuators is not one; name the port of the "
+                    "handle's vibration with --out NODE.PORT");
     if (patch::find_signal(patch, path.out, "--out", catalogue).is_input)
-        throw Error(SourceLocation{"--out " + path.out, 0, 0}, "that is an input; name what a node puts out");
+        throw Error(SourceLocation{"--out " + path.out, 0, 0}, "this is an input; name an output");
     if (actuator) path.drive = actuator->name + ".voltage";
     return path;
 }

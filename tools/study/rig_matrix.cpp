@@ -28,7 +28,7 @@ public:
         if (const auto* node = root.get("amplitudes")) m.amplitudes = quantities(*node, "mm");
         if (const auto* node = root.get("cycles")) {
             m.cycles = static_cast<int>(node->value_or<std::int64_t>(0));
-            if (m.cycles < 2 || m.cycles > 1000) fail(*node, "cycles is a whole number from 2 to 1000");
+            if (m.cycles < 2 || m.cycles > 1000) fail(*node, "cycles must be a whole number from 2 to 1000");
         }
         if (const auto* node = root.get("objects")) m.objects = objects(*node);
         if (const auto* node = root.get("crossover")) {
@@ -82,7 +82,7 @@ private:
             if (const auto* b = table.get("damping")) object.damping = quantity(*b, "N s/mm");
             if (const auto* kind = table.get("kind")) {
                 if (word(*kind) == "wall") object.kind = control::ObjectKind::wall;
-                else if (word(*kind) != "elastic") fail(*kind, "kind is \"elastic\" or \"wall\"");
+                else if (word(*kind) != "elastic") fail(*kind, "kind must be \"elastic\" or \"wall\"");
             }
             if (object.kind == control::ObjectKind::elastic && object.stiffness == 0.0 && object.damping == 0.0)
                 fail(one, "an object needs a stiffness or a damping, or kind = \"wall\"");
@@ -99,7 +99,7 @@ private:
         for (const auto& [motor, options] : table)
             for (const auto& [option, ends] : as_table(options)) {
                 const std::vector<std::string> both = words(ends);
-                if (both.size() != 2) fail(ends, "two ends are expected, as in [\"1 ms\", \"4 ms\"]");
+                if (both.size() != 2) fail(ends, "two limits are expected, as in [\"1 ms\", \"4 ms\"]");
                 all.push_back({std::string(motor.str()), std::string(option.str()), both[0], both[1]});
             }
         return all;

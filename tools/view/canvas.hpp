@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A plane that is looked at through a window: panned and zoomed.
+// A plane with pan and zoom.
 #pragma once
 
 #include <algorithm>
@@ -32,18 +32,18 @@ struct Canvas {
 
     Point to_pixel(Point world) const { return (world - origin) * zoom; }
     Point to_world(Point pixel) const { return pixel * (1.0 / zoom) + origin; }
-    /// What the window shows of the plane.
+    /// The visible part of the plane.
     Box visible(double width, double height) const {
         return {origin.x, origin.y, origin.x + width / zoom, origin.y + height / zoom};
     }
     void pan(Point pixels) { origin = origin - pixels * (1.0 / zoom); }
-    /// What lies under `pixel` stays there.
+    /// Zooms about `pixel`, which keeps its position.
     void zoom_at(Point pixel, double factor) {
         const Point fixed = to_world(pixel);
         zoom = std::clamp(zoom * factor, least_zoom, most_zoom);
         origin = fixed - pixel * (1.0 / zoom);
     }
-    /// Shows all of `what` with a margin, in its middle, at most at `largest` pixels per unit.
+    /// Centres and fits `what` with a margin, at most at `largest` pixels per unit.
     void fit(const Box& what, double width, double height, double largest = 1.25) {
         constexpr double margin = 12.0;
         const double across = (width - 2 * margin) / std::max(1.0, what.width());

@@ -31,7 +31,7 @@ const Feed* Desk::feed() const {
     return live_.get();
 }
 
-/// A run that begins anew is seen anew; what is shown of the one before goes.
+/// A new run resets everything that shows the previous run.
 void Desk::follow_run() {
     if (take_) {
         take_->tend(static_cast<double>(ImGui::GetIO().DeltaTime));
@@ -102,11 +102,11 @@ void Desk::shortcuts() {
 }
 
 void Desk::ask_farewell() {
-    if (farewell == Farewell::asks && !ImGui::IsPopupOpen("The patch still runs"))
-        ImGui::OpenPopup("The patch still runs");
+    if (farewell == Farewell::asks && !ImGui::IsPopupOpen("The patch is still running"))
+        ImGui::OpenPopup("The patch is still running");
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
-    if (!ImGui::BeginPopupModal("The patch still runs", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-    ImGui::Text("The window closes. What becomes of the run?");
+    if (!ImGui::BeginPopupModal("The patch is still running", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+    ImGui::Text("The window is closing. Continue the run?");
     const auto choose = [&](const char* label, Farewell what) {
         if (!ImGui::Button(label)) return;
         farewell = what;
@@ -114,7 +114,7 @@ void Desk::ask_farewell() {
     };
     choose("End it", Farewell::ends);
     ImGui::SameLine();
-    choose("Let it go on", Farewell::goes_on);
+    choose("Continue the run", Farewell::goes_on);
     ImGui::SameLine();
     choose("Keep the window", Farewell::none);
     if (farewell == Farewell::none) bench_.want_edits();
@@ -155,7 +155,7 @@ void Desk::draw() {
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0.0f, 0.0f));
     ImGui::BeginChild("left", vec({left, height}));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0.0f, 0.0f));
-    // Without scopes the patch has their place.
+    // Without scopes the patch panel uses their space.
     const double bar = 64.0 * fonts_.scale;
     panel("patch", 0.0, scopes_.list().empty() ? std::max(height - bar, 0.5 * height) : patch_height_ * height);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, vec({8.0 * fonts_.scale, 6.0 * fonts_.scale}));
@@ -175,7 +175,7 @@ void Desk::draw() {
     ImGui::EndChild();
     splitter("between left and right", true, height, left_, width);
     ImGui::BeginChild("right", vec({0.0, height}));
-    // Without anything in space the node has its place.
+    // Without a scene the node panel uses its space.
     if (scene_.is_empty()) scene_.rest();
     else draw_scene(height);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, vec({8.0 * fonts_.scale, 6.0 * fonts_.scale}));
@@ -207,7 +207,7 @@ void Desk::draw() {
     ImGui::Dummy(vec({1.0, gap}));
     show_messages(messages);
     ask_farewell();
-    // One question at a time.
+    // One dialog at a time.
     if (farewell != Farewell::asks) questions.draw();
     ImGui::End();
     if (std::exchange(scene_.wants_calibration, false)) calibration_.is_open = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything in the window, side by side.
+// The layout of the window: all panels.
 #pragma once
 
 #include "tools/view/patch/node_panel.hpp"
@@ -22,7 +22,7 @@ class Desk {
 public:
     Desk(Window& window, Workbench& bench, TakeBench* take);
 
-    /// One picture of all, between Window::begin and Window::end.
+    /// Draws one frame, between Window::begin and Window::end.
     void draw();
 
     Workbench& bench() { return bench_; }
@@ -34,14 +34,14 @@ public:
     ScenePanel& scene() { return scene_; }
     const Feed* feed() const;
 
-    /// Asked when the window is to be closed: end the run, or let it go on?
+    /// Dialog when the window closes: end or continue the run?
     enum class Farewell { none, asks, ends, goes_on } farewell = Farewell::none;
-    /// Before that, and when the window opens: what becomes of edits that are not saved?
+    /// Dialogs for unsaved edits: before closing, and when the window opens.
     Questions questions;
 
 private:
     void follow_run();
-    /// `height` of one that stands upright; others are as wide as their place.
+    /// `height`: of a vertical splitter; a horizontal one fills the width.
     void splitter(const char* id, bool upright, double height, double& share, double whole);
     void panel(const char* id, double width, double height);
     void draw_scene(double height);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawing on a part of the window, with the fonts of the window.
+// Draws on a part of the window with the window's fonts.
 #pragma once
 
 #include "tools/view/canvas.hpp"
@@ -20,7 +20,7 @@ struct Fonts {
     double scale;  ///< of the window's contents
 };
 
-/// Text of any size, from the font that was made nearest to it.
+/// Text of any size, from the font with the nearest size.
 class Painter {
 public:
     Painter(ImDrawList* list, const Fonts& fonts) : list_(list), fonts_(fonts) {}
@@ -35,14 +35,14 @@ public:
     }
     /// `at` is the upper left corner.
     void text(Point at, double size, ImU32 ink, std::string_view text, bool heavy = false) const {
-        // Letters that begin between two pixels look washed out.
+        // Aligned to pixels, because text between pixels is blurred.
         const ImVec2 whole(static_cast<float>(static_cast<int>(at.x)), static_cast<float>(static_cast<int>(at.y)));
         list_->AddText(font(size, heavy), static_cast<float>(size), whole, ink, text.data(), text.data() + text.size());
     }
     void text_left_of(Point at, double size, ImU32 ink, std::string_view words, bool heavy = false) const {
         text({at.x - width_of(words, size, heavy), at.y}, size, ink, words, heavy);
     }
-    /// As much of a text as fits.
+    /// Truncates a text to a width.
     std::string shortened(std::string text, double size, double width, bool heavy = false) const {
         if (width_of(text, size, heavy) <= width) return text;
         while (text.size() > 1 && width_of(text + "…", size, heavy) > width) {

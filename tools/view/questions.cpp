@@ -11,7 +11,7 @@ namespace tactus::view {
 
 namespace {
 
-/// Opens a question and keeps it open until it is answered. True: its contents are to be drawn.
+/// Opens a modal dialog until it is answered. True: draw its content.
 bool begin_question(const char* title) {
     if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
@@ -37,7 +37,7 @@ void Questions::draw() {
 
 void Questions::ask_leaving() {
     if (!begin_question("Unsaved edits")) return;
-    ImGui::Text("Edits of %s are not saved.", bench_.editor().file().filename().c_str());
+    ImGui::Text("%s has unsaved edits.", bench_.editor().file().filename().c_str());
     if (answer("Save", "save edits")) {
         if (bench_.save()) leaving = Leaving::leaves;
         else {
@@ -59,7 +59,7 @@ void Questions::ask_name() {
         std::copy_n(free.c_str(), std::min(free.size(), name_.size() - 1), name_.begin());
     }
     if (!begin_question("Save as")) return;
-    ImGui::Text("The library stays as it is. Save the patch as:");
+    ImGui::Text("Patches of the library cannot be changed. Save the patch as:");
     ImGui::SetNextItemWidth(36.0f * ImGui::GetFontSize());
     ImGui::InputText("##file", name_.data(), name_.size());
     mark_spot("file name");
@@ -78,10 +78,10 @@ void Questions::ask_name() {
 }
 
 void Questions::offer_edits() {
-    if (!begin_question("Edits of an earlier window")) return;
-    ImGui::Text("A window on this patch went before its edits were saved:\n%s", bench_.offer()->c_str());
+    if (!begin_question("Unsaved edits of an earlier window")) return;
+    ImGui::Text("An earlier window on this patch closed with unsaved edits:\n%s", bench_.offer()->c_str());
     if (answer("Restore", "restore edits")) bench_.restore_edits();
-    // Asked anew for the next one.
+    // The next file opens another dialog.
     else if (answer("Discard", "discard edits")) bench_.discard_offer();
     ImGui::EndPopup();
 }

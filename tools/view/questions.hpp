@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the window asks about edits that are not saved: when it is to be closed, when it opens, and for a name.
+// Dialogs about unsaved edits: when the window closes, when it opens, and for a file name.
 #pragma once
 
 #include "tools/view/workbench.hpp"
@@ -13,10 +13,10 @@ class Questions {
 public:
     explicit Questions(Workbench& bench) : bench_(bench) {}
 
-    /// Within a picture, above all else.
+    /// Draws the dialogs on top of everything.
     void draw();
 
-    /// The window is to be closed: save, do not save, or keep it open?
+    /// Dialog when the window closes: save, do not save, or keep it open?
     enum class Leaving { none, asks, leaves } leaving = Leaving::none;
 
 private:
@@ -26,7 +26,7 @@ private:
 
     Workbench& bench_;
     std::array<char, 1024> name_{};
-    std::string problem_;  // with the name that was given last
+    std::string problem_;  // problem of the last entered name
     bool leaves_when_saved_ = false;
 };
 

@@ -15,7 +15,7 @@ namespace {
 
 enum class Sign { play, pause, stop, record };
 
-/// A button with a sign that needs no letter of a font.
+/// A button with a drawn symbol.
 bool sign_button(const char* id, Sign sign, ImU32 ink, bool is_on, const char* tip) {
     const float size = ImGui::GetFrameHeight();
     if (is_on) ImGui::PushStyleColor(ImGuiCol_Button, faded(ink, 0.35));
@@ -39,7 +39,7 @@ bool sign_button(const char* id, Sign sign, ImU32 ink, bool is_on, const char* t
     return pressed;
 }
 
-/// A button with a word, which is its name for scripts, too.
+/// A text button; the text is its name for scripts.
 bool button(const char* label) {
     const bool pressed = ImGui::Button(label);
     mark_spot(label);
@@ -104,7 +104,7 @@ void take_line(Workbench& bench, TakeBench& take) {
     if (ImGui::SliderFloat("##time", &at, 0.0f, static_cast<float>(take.length()), "%.3f s"))
         take.go_to(static_cast<double>(at));
     mark_spot("time");
-    // What was recorded, beneath the line of time.
+    // The recorded stretches, below the time line.
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     for (const Range& stretch : take.feed().recorded()) {
         const auto x = [&](double t) { return low.x + static_cast<float>(t / take.length()) * (high.x - low.x); };

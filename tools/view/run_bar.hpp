@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Run, pause, record, undo, save, and where in time the window is.
+// The toolbar: run, pause, record, undo, save, and the time.
 #pragma once
 
 #include "tools/view/painter.hpp"
@@ -9,7 +9,7 @@ namespace tactus::view {
 
 class TakeBench;
 
-/// `take` is null in a run.
+/// `take`: null for a run.
 void run_bar(Workbench& bench, TakeBench* take, const Fonts& fonts);
 
 }  // namespace tactus::view

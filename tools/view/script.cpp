@@ -21,7 +21,7 @@ namespace tactus::view {
 
 namespace {
 
-constexpr double longest_wait = 60.0;  // s, of what should come by itself
+constexpr double longest_wait = 60.0;  // s, for conditions to wait for
 
 const std::vector<std::string> commands{
     "open",      "run",        "stop",    "pause",      "resume", "record", "select",    "set",     "reset",
@@ -30,7 +30,7 @@ const std::vector<std::string> commands{
     "hover",     "click",      "drag",    "wheel",      "wait",   "until",  "frames",    "size",    "minimise",
     "restore",   "screenshot", "close",   "say",        "from",   "stereo", "clip",      "measure", "check",
     "scale",     "press",      "double",  "slide",      "pull",   "type",   "key",       "cost",    "head",
-    "rig",       "offset",     "screens", "shut"};
+    "display",   "offset",     "screens", "shut"};
 
 std::vector<std::string> words_of(const std::string& line) {
     std::vector<std::string> words;
@@ -62,6 +62,7 @@ Script::Script(const std::filesystem::path& file) : file_(file) {
             line.is_refused = true;
             line.words.erase(line.words.begin());
         }
+        if (!line.words.empty() && line.words.front() == "rig") line.words.front() = "display";  // its name before
         if (line.words.empty() || std::ranges::find(commands, line.words.front()) == commands.end()) {
             const std::string name = line.words.empty() ? "" : line.words.front();
             throw Error({file.string(), number, 1},
@@ -74,7 +75,7 @@ Script::Script(const std::filesystem::path& file) : file_(file) {
 const std::string& Script::word(const Line& line, std::size_t i) const {
     if (i >= line.words.size())
         throw Error({file_.string(), line.number, 1},
-                    fmt::format("'{}' needs {} words more", line.words.front(), i + 1 - line.words.size()));
+                    fmt::format("'{}' needs {} more words", line.words.front(), i + 1 - line.words.size()));
     return line.words[i];
 }
 
@@ -83,7 +84,7 @@ double Script::number(const Line& line, std::size_t i) const {
     double value = 0.0;
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (failure != std::errc{} || end != text.data() + text.size())
-        throw Error({file_.string(), line.number, 1}, fmt::format("'{}' is no number", text));
+        throw Error({file_.string(), line.number, 1}, fmt::format("'{}' is not a number", text));
     return value;
 }
 
@@ -103,19 +104,19 @@ void Script::step(Desk& desk, Window& window) {
         }
         since_.reset();
         ++next_;
-        // Another patch is another desk.
+        // Another patch has another desk.
         if (line.words.front() == "open") return;
     }
 }
 
-/// Commands that change the patch: all may be refused.
+/// Commands that change the patch; each may be refused.
 bool Script::edit(const Line& line, Desk& desk) {
     Workbench& bench = desk.bench();
     const std::string& what = line.words.front();
     const auto split = [&](std::size_t i) {
         const std::string& text = word(line, i);
         const std::size_t dot = text.find('.');
-        if (dot == std::string::npos) throw Error(fmt::format("'{}' is no NODE.NAME", text));
+        if (dot == std::string::npos) throw Error(fmt::format("'{}' is not NODE.NAME", text));
         return std::pair(text.substr(0, dot), text.substr(dot + 1));
     };
     if (what == "set") return bench.set(split(1).first, split(1).second, word(line, 2));
@@ -129,7 +130,7 @@ bool Script::edit(const Line& line, Desk& desk) {
     if (what == "redo") return bench.redo();
     if (what == "save") return line.words.size() > 1 ? bench.save_as(line.words[1]) : bench.save();
     if (what == "wire") {
-        if (!bench.draft()) throw Error("there is no node that waits for wires");
+        if (!bench.draft()) throw Error("there is no node draft that needs wires");
         bench.connect_draft(word(line, 1), word(line, 2));
         return true;
     }
@@ -147,7 +148,7 @@ bool Script::wait_for(const Line& line, Desk& desk, Window& window) {
     if (what == "wait") return waited >= number(line, 1);
     if (what == "frames") return pictures_ >= static_cast<int>(number(line, 1));
     if (what == "screenshot") {
-        // One picture to draw what was done, one to keep.
+        // The first frame draws the changes, the second is saved.
         if (pictures_ == 1) window.want_picture();
         if (pictures_ < 2) return false;
         display::write_png(window.picture(), word(line, 1));
@@ -186,7 +187,7 @@ bool Script::wait_for(const Line& line, Desk& desk, Window& window) {
         mouse_ = Mouse{{number(line, 1), number(line, 2)}, false, false, pictures_ == 1 ? number(line, 3) : 0.0};
         return pictures_ >= 3;
     }
-    if (waited > longest_wait) throw Error(fmt::format("'{}' did not come about within {} s", what, longest_wait));
+    if (waited > longest_wait) throw Error(fmt::format("'{}' was not reached within {} s", what, longest_wait));
     if (what == "scene") return !desk.take() || desk.take()->scene_is_there();
     // until SECONDS | until paused | until recording | until over
     const auto status = desk.bench().status();
@@ -207,7 +208,7 @@ bool Script::perform(const Line& line, Desk& desk, Window& window) {
     if (is("set", "reset", "connect", "disconnect", "remove", "rename", "undo", "redo", "save", "wire", "add")) {
         const bool made = edit(line, desk);
         if (made == line.is_refused)
-            throw Error(made                       ? "was expected to be refused"
+            throw Error(made                       ? "was expected to be refused, but was accepted"
                         : bench.messages().empty() ? "was refused"
                                                    : bench.messages().back().text);
         return true;
@@ -241,7 +242,7 @@ bool Script::perform(const Line& line, Desk& desk, Window& window) {
         desk.scene().look_from(*view);
     } else if (is("stereo")) desk.scene().use_stereo(word(line, 1));
     else if (is("head")) desk.scene().use_head(line.words.size() > 1 ? line.words[1] : "");
-    else if (is("rig")) desk.scene().use_rig(line.words.size() > 1 ? line.words[1] : "");
+    else if (is("display")) desk.scene().use_display(line.words.size() > 1 ? line.words[1] : "");
     else if (is("offset")) desk.scene().use_offset(word(line, 1));
     else if (is("screens")) desk.scene().show_screens(line.words.size() < 2 || line.words[1] != "off");
     else if (is("clip")) desk.scene().clip(static_cast<int>(number(line, 1)), number(line, 2));

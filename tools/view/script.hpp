@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is done in the window, line by line from a file: for tests, and for the pictures of the documentation.
+// Runs window commands from a file, line by line: for tests, and for the pictures of the documentation.
 #pragma once
 
 #include "tools/view/canvas.hpp"
@@ -17,21 +17,21 @@ class Window;
 
 class Script {
 public:
-    /// Throws Error when the file cannot be read or a line has no known command.
+    /// Throws Error when the file cannot be read or a command is unknown.
     explicit Script(const std::filesystem::path& file);
 
-    /// Opens another patch, or a take, in the same window.
+    /// Callback that opens another patch or take in the same window.
     std::function<void(const std::string& patch)> open;
 
-    /// After each picture: does what comes next, up to the next line that takes its time. Throws Error where one fails;
-    /// one that begins with '!' must be refused.
+    /// Called after each frame: runs the next lines up to one that must wait. Throws Error when a line fails; a line
+    /// that begins with '!' must be refused.
     void step(Desk& desk, Window& window);
-    /// Before each picture: where the mouse is.
+    /// The mouse state, queried before each frame.
     void move_mouse() const;
     bool is_done() const { return next_ >= lines_.size(); }
     bool wants_to_close() const { return closes_; }
 
-    /// What stands on a keyboard.
+    /// Keyboard state.
     struct Keys {
         std::string text;
         int key = -1;
@@ -52,7 +52,7 @@ private:
 
     /// "ctrl+z", "enter", "delete", "space" or a letter. Throws Error.
     static Keys key_named(const std::string& name);
-    /// False: not done yet, asks again after the next picture.
+    /// False: not finished; called again after the next frame.
     bool perform(const Line& line, Desk& desk, Window& window);
     bool edit(const Line& line, Desk& desk);
     bool use_hand(const Line& line, Desk& desk);
@@ -63,10 +63,10 @@ private:
     std::filesystem::path file_;
     std::vector<Line> lines_;
     std::size_t next_ = 0;
-    std::optional<double> since_;  ///< when the line that waits began, s
+    std::optional<double> since_;  ///< start of the waiting line, s
     int pictures_ = 0;  ///< since then
     std::optional<Mouse> mouse_;
-    Point from_, to_;  ///< of the hand
+    Point from_, to_;  ///< motion of the mouse
     Keys keys_;
     double cost_began_ = 0.0;
     bool closes_ = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A script's hand: mouse and keys.
+// Mouse and keyboard of a script.
 #include "tools/view/desk.hpp"
 #include "tools/view/script.hpp"
 #include "tools/view/spots.hpp"
@@ -32,7 +32,7 @@ Script::Keys Script::key_named(const std::string& name) {
 
 namespace {
 
-/// Letters, then keys: held in one picture, free in the next.
+/// Letters, then keys: pressed in one frame, released in the next.
 void press_keys(const Script::Keys& keys) {
     ImGuiIO& io = ImGui::GetIO();
     if (!keys.text.empty()) io.AddInputCharactersUTF8(keys.text.c_str());
@@ -51,22 +51,23 @@ void Script::move_mouse() const {
     io.MouseDown[0] = mouse_->left;
     io.MouseDown[1] = mouse_->right;
     io.MouseWheel = static_cast<float>(mouse_->wheel);
-    // A machine that draws slowly takes long between two presses.
+    // A slow machine takes longer between two presses.
     io.MouseDoubleClickTime = 5.0f;
 }
 
 namespace {
 
-/// Where "record", "saw.load" or "blade" stands.
+/// The position of "record", "saw.load" or "blade".
 Point place(const std::string& name, const Desk& desk) {
     if (const auto box = spot(name)) return box->middle();
     if (const auto at = desk.patch().place_of(name)) return *at;
-    throw Error(fmt::format("'{}' is not in sight", name));
+    throw Error(fmt::format("'{}' is not visible", name));
 }
 
 }  // namespace
 
-/// Press, double press, slide and pull: as slowly as hands are, because what is under the mouse is known a picture late.
+/// Press, double press, slide and pull at the speed of a hand, because the item under the mouse is known one frame
+/// later.
 bool Script::use_hand(const Line& line, Desk& desk) {
     constexpr int looks = 3, presses = 5, arrives = 12, lets_go = 14, done_at = 17;
     const std::string& what = line.words.front();

@@ -12,7 +12,7 @@ namespace {
 
 using Spots = std::unordered_map<std::string, Box>;
 
-/// Of this picture, and of the one before.
+/// Of this frame, and of the previous one.
 std::pair<Spots, Spots>& spots() {
     static std::pair<Spots, Spots> both;
     return both;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the controls of the window stand, by name: so that a script can press them as a hand would.
+// Positions of the window's controls by name, so that scripts can press them with the mouse.
 #pragma once
 
 #include "tools/view/canvas.hpp"
@@ -9,11 +9,11 @@
 
 namespace tactus::view {
 
-/// The control that was drawn last. Of the thread of the window.
+/// Registers the control drawn last. Only on the window's thread.
 void mark_spot(const std::string& name);
-/// As of the last picture; none: it was not drawn.
+/// Position in the last frame; none: not drawn.
 std::optional<Box> spot(const std::string& name);
-/// Before each picture.
+/// Called before each frame.
 void forget_spots();
 
 }  // namespace tactus::view

@@ -18,16 +18,16 @@ using session::ReplayedTake;
 
 namespace {
 
-/// Ends a repetition that nobody waits for any more.
+/// Stops a repetition that is no longer needed.
 struct Outdated {};
 
-/// What is seen of a run is there for as long as the run is.
+/// Observed values live as long as the run.
 struct Repetition {
     observe::Observer observer{observe::Observer::Pace::kept};
     std::unique_ptr<ReplayedTake> run;
 };
 
-/// What the scenes of all patches of a take need; a text that does not compile needs nothing.
+/// The outputs for the scenes of all patches of a take; a text that does not compile has none.
 std::set<std::string> scene_ports(const take::Take& take) {
     std::vector<std::string> texts{take.text};
     for (const auto& event : take.events)
@@ -65,7 +65,7 @@ void TakeBench::tend(double elapsed) {
 void TakeBench::show_scene() {
     const std::shared_ptr<observe::Observer> observer = scene();
     if (!observer) return;
-    // What the repetition has not reached as a whole is not looked at.
+    // Instants that the repetition has not completed are not shown.
     observer->advance(static_cast<Flicks>(std::min(time(), repeated()) * static_cast<double>(flicks_per_second)));
 }
 
@@ -88,8 +88,8 @@ std::string TakeBench::scene_note() const {
     const std::lock_guard lock(lock_);
     if (!problem_.empty()) return problem_;
     if (is_whole_) return doubt_;
-    if (repeated_ < 0.0) return "scene: preparing the run …";
-    return fmt::format("scene: the run is repeated, {:.1f} s by now", repeated_);
+    if (repeated_ < 0.0) return "scene: preparing the repetition …";
+    return fmt::format("scene: repeating the run, at {:.1f} s", repeated_);
 }
 
 void TakeBench::work() {
@@ -99,12 +99,12 @@ void TakeBench::work() {
         if (doubts.empty()) doubts = take_.differences();
         if (!doubts.empty()) {
             const std::lock_guard lock(lock_);
-            doubt_ = "the scene may be another: " + doubts.front();
+            doubt_ = "the scene may differ: " + doubts.front();
         }
         run::EngineOptions options;
         options.observer = &repetition->observer;
         options.hash = options.time_nodes = false;
-        // At least one tick of everything: what nodes begin with is only there when they were prepared.
+        // At least one tick: initial values exist only after the nodes are prepared.
         options.seconds = std::max(length(), 1e-3);
         repetition->run = std::make_unique<ReplayedTake>(take_, options, assets_);
         for (const std::string& port : scene_ports_) repetition->observer.watch(port, observe::Watch::latest, this);

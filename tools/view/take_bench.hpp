@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A take that is looked at, at any instant: its values from its recordings, its bones from one repetition of the run, of
-// which all that changed is kept.
+// Random access to a take: values come from its recordings, bones from one repetition of the run with a history of all
+// changes.
 #pragma once
 
 #include "engine/observe/observer.hpp"
@@ -20,7 +20,7 @@ namespace tactus::view {
 
 class TakeBench {
 public:
-    /// Throws Error when the folder is no take.
+    /// Throws Error when the folder is not a take.
     explicit TakeBench(const std::filesystem::path& folder);
     ~TakeBench();
 
@@ -31,14 +31,14 @@ public:
     void go_to(double seconds);
     void play(bool wanted) { is_playing_ = wanted; }
     bool is_playing() const { return is_playing_; }
-    /// Once per picture: `elapsed` s of real time since the last.
+    /// Called once per frame; `elapsed`: real time since the last call, s.
     void tend(double elapsed);
 
-    /// What the run had made of the scene by then, null before it is there at all.
+    /// The scene at the current time; null before the repetition has started.
     std::shared_ptr<observe::Observer> scene() const;
-    /// The run was repeated up to here, s; beyond, the scene stands still.
+    /// The run is repeated up to this time, s; later the scene does not change.
     double repeated() const;
-    bool scene_is_there() const;  ///< of the time that is shown
+    bool scene_is_there() const;  ///< true when the scene of the shown time is complete
     std::string scene_note() const;
 
 private:

@@ -8,7 +8,7 @@
 
 namespace tactus::view {
 
-/// As Dear ImGui packs it: alpha, blue, green, red.
+/// Packed as in Dear ImGui: alpha, blue, green, red.
 constexpr std::uint32_t colour(std::uint32_t rgb, std::uint32_t alpha = 255) {
     return alpha << 24 | (rgb & 0xFF) << 16 | (rgb & 0xFF00) | rgb >> 16;
 }
@@ -26,10 +26,10 @@ inline constexpr std::uint32_t curves[] = {colour(0x5ab0ff), colour(0xff9f5a), c
                                            colour(0xffe06b), colour(0xff7b93), colour(0x78e0e6), colour(0xb9c4d4)};
 }  // namespace tone
 
-/// Of a wire by what it carries; null: anything.
+/// Colour of a wire by its type; null: any type.
 std::uint32_t colour_of(const ValueType* type);
 
-/// Of every widget, for contents that are `scale` times as large as on a common screen.
+/// Sets colours and sizes of all widgets; `scale`: relative to a standard screen.
 void apply_theme(double scale);
 
 }  // namespace tactus::view

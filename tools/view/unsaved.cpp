@@ -23,26 +23,26 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int most_kept = 99;  // of one patch in one folder
+constexpr int most_kept = 99;  // files per patch and folder
 
-/// The file itself, where a link leads to it.
+/// Resolves a link to the file.
 fs::path true_path(const fs::path& patch) {
     std::error_code failure;
     fs::path path = fs::weakly_canonical(fs::absolute(patch), failure);
     return failure ? fs::absolute(patch).lexically_normal() : path;
 }
 
-/// Without a home: nothing.
+/// Empty without a home folder.
 std::optional<fs::path> state_folder() {
     const char* given = std::getenv("XDG_STATE_HOME");
-    // The specification tells to ignore a relative one.
+    // The XDG specification requires to ignore a relative path.
     if (given && fs::path(given).is_absolute()) return fs::path(given) / "tactus" / "unsaved";
     const char* home = std::getenv("HOME");
     if (!home || !fs::path(home).is_absolute()) return std::nullopt;
     return fs::path(home) / ".local" / "state" / "tactus" / "unsaved";
 }
 
-/// Names without number and extension: beside the patch, and among those of all patches.
+/// Path stems without number and extension: beside the patch, and in the common folder.
 struct Stems {
     std::optional<fs::path> beside, state;
 };
@@ -61,7 +61,7 @@ fs::path numbered(const fs::path& stem, int number) {
     return number == 1 ? stem.string() + ".toml" : fmt::format("{}-{}.toml", stem.string(), number);
 }
 
-/// A file that nobody else has, empty still. Throws Error.
+/// Creates a new, empty file exclusively. Throws Error.
 fs::path reserve(const fs::path& stem) {
     for (int number = 1; number <= most_kept; ++number) {
         const fs::path path = numbered(stem, number);
@@ -72,7 +72,7 @@ fs::path reserve(const fs::path& stem) {
         }
         if (errno != EEXIST) throw Error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
     }
-    throw Error(fmt::format("{}.toml: {} are there already", stem.string(), most_kept));
+    throw Error(fmt::format("{}.toml: there are {} such files already", stem.string(), most_kept));
 }
 
 fs::path keep_at(const fs::path& stem, std::string_view text) {
@@ -118,7 +118,7 @@ std::vector<fs::path> find_unsaved(const fs::path& patch) {
         for (int number = 1; number <= most_kept; ++number) {
             const fs::path path = numbered(*stem, number);
             std::error_code failure;
-            // An empty one was reserved and never written.
+            // An empty file was reserved and never written.
             if (!fs::is_regular_file(path, failure) || fs::file_size(path, failure) == 0 || failure) continue;
             kept.push_back({path, fs::last_write_time(path, failure)});
         }

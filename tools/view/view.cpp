@@ -22,10 +22,10 @@ using Clock = std::chrono::steady_clock;
 
 namespace {
 
-// A screen shows no more, and without one nothing else would hold the window back.
+// Limits the frame rate, also when vertical sync does not.
 constexpr auto picture_time = std::chrono::microseconds(16'667);
 
-/// One window, and what stands in it.
+/// The window and its content.
 class Viewer {
 public:
     Viewer(const ViewChoice& view, const std::atomic<bool>& interrupted)
@@ -43,7 +43,7 @@ public:
     void open_patch(const RunChoice& choice) {
         close();
         choice_ = choice;
-        // What was opened before may have left results in the folder.
+        // An earlier run in this window may have left results in the folder.
         choice_.is_further = std::exchange(has_opened_, true);
         bench_ = std::make_unique<Workbench>(choice_);
         bench_->find_kept_edits();
@@ -64,7 +64,7 @@ public:
 
     Workbench& bench() { return *bench_; }
 
-    /// Until the window closes. True: the run is to go on without it.
+    /// Runs until the window closes. True: continue the run without it.
     bool show() {
         for (;;) {
             const auto begin = Clock::now();
@@ -84,7 +84,7 @@ public:
     }
 
 private:
-    /// Whatever way the patch leaves the window. A take's is only looked at.
+    /// Called on every way out of a patch. The patch of a take is read-only.
     void keep_edits() noexcept {
         if (bench_ && !take_) bench_->keep_edits();
     }
@@ -114,11 +114,11 @@ private:
         open_patch(choice);
     }
 
-    /// Whether the run goes on, once the window is to close.
+    /// True when the run continues after the window closes.
     std::optional<bool> farewell() {
         using Farewell = Desk::Farewell;
         const bool runs = bench_->running() && !bench_->running()->is_over();
-        // A run of stated length takes its window along; a script is played to its end.
+        // A run of limited length closes the window at its end; a script is run to its end.
         if (choice_.seconds && bench_->running() && !runs && (!script_ || script_->is_done())) return false;
         if (script_ && script_->wants_to_close()) return view_.keep_running;
         using Leaving = Questions::Leaving;
@@ -152,7 +152,7 @@ private:
     bool has_opened_ = false;
 
 public:
-    /// Closes the window and leaves the bench with its run.
+    /// Closes the window but keeps the bench with its run.
     std::unique_ptr<Workbench> let_go() {
         keep_edits();
         desk_.reset();
@@ -174,7 +174,7 @@ int view_run(const ViewedRunChoice& choice, const std::atomic<bool>& interrupted
     }
     ViewedRun* const run = bench->running();
     if (!run) return done;
-    if (goes_on && !choice.json) say(stderr, "the window is closed; the patch runs on, Ctrl-C ends it\n");
+    if (goes_on && !choice.json) say(stderr, "the window is closed; the patch keeps running, Ctrl-C ends it\n");
     while (!run->is_over()) {
         if (!goes_on || interrupted) run->stop();
         std::this_thread::sleep_for(std::chrono::milliseconds(20));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The window: on a run, or on a take.
+// The window on a run or a take.
 #pragma once
 
 #include "tools/view/view_choice.hpp"
@@ -8,8 +8,8 @@
 
 namespace tactus::view {
 
-/// Runs a patch with a window on it. Ends when the window is closed, or with the run when that is to go on.
-/// Throws Error when no window can be opened.
+/// Runs a patch with a window. Ends when the window is closed, or with the run if that continues. Throws Error when no
+/// window can be opened.
 int view_run(const ViewedRunChoice& choice, const std::atomic<bool>& interrupted);
 
 /// Opens a window on a take. Throws Error.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the window is asked for.
+// Options of the window.
 #pragma once
 
 #include "tools/picture/scene/sight_choice.hpp"
@@ -9,13 +9,13 @@
 
 namespace tactus::view {
 
-/// The window on a run.
+/// Options of the window on a run.
 struct ViewChoice {
     bool wanted = false;
-    bool keep_running = false;                ///< closing the window leaves the run alive
-    std::filesystem::path script;             ///< what is done in the window, instead of by hand
-    std::filesystem::path reference;          ///< sound file whose spectrum stands behind the signals'
-    double scale = 0.0;                       ///< of the window's contents, 0: what the screen says
+    bool keep_running = false;                ///< closing the window does not end the run
+    std::filesystem::path script;             ///< file of window commands
+    std::filesystem::path reference;          ///< sound file whose spectrum is drawn behind those of the signals
+    double scale = 0.0;                       ///< scale of the content, 0: that of the screen
     picture::SightChoice sight;
 };
 

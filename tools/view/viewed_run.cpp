@@ -142,7 +142,7 @@ void ViewedRun::set(const std::string& node, const std::string& param, const std
 
 void ViewedRun::edit(const std::string& text) {
     ask([text](RunSession& session) {
-        if (!session.control()) throw Error("this run takes no edits (--no-edits)");
+        if (!session.control()) throw Error("this run does not accept edits (--no-edits)");
         session.control()->edit(text);
     });
 }

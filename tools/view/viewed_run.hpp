@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A live run on threads of its own, beside a window: what it tells is copied, what it is asked for is queued.
+// A live run on its own threads beside a window: status is copied, commands are queued.
 #pragma once
 
 #include "engine/observe/observer.hpp"
@@ -28,51 +28,51 @@ struct GroupStatus {
     std::string name;
     double rate = 0.0;  ///< Hz
     std::int64_t ticks = 0, missed = 0;
-    double late_p99_ms = 0.0, late_max_ms = 0.0, execution_us = 0.0, load = 0.0;  ///< load: of its period
+    double late_p99_ms = 0.0, late_max_ms = 0.0, execution_us = 0.0, load = 0.0;  ///< load: fraction of the period
 };
 struct NodeStatus {
     std::string name;
-    double mean_us = 0.0, max_us = 0.0, share = 0.0;  ///< of the group's period
+    double mean_us = 0.0, max_us = 0.0, share = 0.0;  ///< share: fraction of the group's period
 };
 
 struct RunStatus {
     enum class State { loading, runs, fades, stands, over } state = State::loading;
     double time = 0.0;  ///< logical, s
-    double force = 0.0;  ///< on the hand, N
+    double force = 0.0;  ///< force on the hand, N
     std::vector<GroupStatus> groups;
     std::vector<NodeStatus> nodes;
     std::vector<std::string> faults;
     std::int64_t edits = 0;
     bool is_recording = false;
-    std::string failure;  ///< why it is over before its time
+    std::string failure;  ///< why it ended early; empty: it did not
 };
 
 class ViewedRun {
 public:
-    /// Starts at once; loading happens on its own thread.
+    /// Starts at once; loads on its own thread.
     ViewedRun(RunChoice choice, compile::AssetCache& assets, observe::Observer& observer);
     /// Ends the run and waits for it.
     ~ViewedRun();
 
     /// At most a tenth of a second old.
     std::shared_ptr<const RunStatus> status() const;
-    /// What was said since the last call.
+    /// Messages since the last call.
     std::vector<std::string> messages();
-    /// The patch's file was saved since the last call.
+    /// True when the patch file was saved since the last call.
     bool file_was_saved() { return saved_.exchange(false); }
     bool is_over() const { return over_; }
 
     void set(const std::string& node, const std::string& param, const std::string& value);
     void edit(const std::string& text);
     void pause(bool wanted);
-    /// From now on, in that folder when it is the first time.
+    /// Starts recording; the first call sets the folder.
     void record(const std::filesystem::path& folder);
     void stop_recording();
     void stop() { stop_ = true; }
 
-    /// After its end: what the command prints.
+    /// The summary for the command, after the end.
     std::string summary_json() const, summary_text() const;
-    /// What it could not write to its end, and why; after it is over.
+    /// Files that could not be completed, and why; after the end.
     std::vector<std::string> losses() const;
 
 private:
@@ -94,7 +94,7 @@ private:
     std::size_t told_notices_ = 0;
     std::string json_, text_;
     std::vector<std::string> losses_;
-    std::unique_ptr<RunSession> session_;  // also when it is over: what was seen last stays to be seen
+    std::unique_ptr<RunSession> session_;  // kept after the end, so that the last values stay visible
     std::atomic<bool> stop_{false}, over_{false}, saved_{false};
     std::thread thread_;
 };

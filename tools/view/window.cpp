@@ -58,11 +58,11 @@ Window::Window(const std::string& title, int width, int height, double scale) {
     scale_ = scale > 0.0 ? scale : scale_of_screen(window_);
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
-    io.IniFilename = nullptr;  // nothing is written beside the patch
+    io.IniFilename = nullptr;  // no settings file is written
     load_fonts();
     apply_theme(scale_);
     if (!ImGui_ImplGlfw_InitForOpenGL(window_, true) || !ImGui_ImplOpenGL3_Init("#version 330"))
-        throw Error("the window's contents cannot be drawn: OpenGL 3.3 refuses their shaders");
+        throw Error("the window cannot be drawn: OpenGL 3.3 rejects the shaders");
 }
 
 Window::~Window() {
@@ -111,7 +111,7 @@ bool Window::begin() {
     }
     glfwGetFramebufferSize(window_, &width_, &height_);
     if (width_ < 1 || height_ < 1) return false;
-    // It may have been moved to another screen.
+    // The window may have moved to another screen.
     if (const double scale = scale_of_screen(window_); follows_screen_ && scale != scale_) rescale(scale);
     began_s_ = glfwGetTime();
     ImGui_ImplOpenGL3_NewFrame();

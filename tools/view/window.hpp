@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A window with OpenGL 3.3 and Dear ImGui in it. All calls from the thread that made it.
+// A window with OpenGL 3.3 and Dear ImGui. All calls on the creating thread.
 #pragma once
 
 #include "devices/display/offscreen.hpp"
@@ -14,38 +14,38 @@ namespace tactus::view {
 
 class Window {
 public:
-    /// `scale` of what is in it, 0: as the screen says. Throws Error when there is no display or no OpenGL 3.3.
+    /// `scale`: of the content, 0: that of the screen. Throws Error without a display or OpenGL 3.3.
     Window(const std::string& title, int width, int height, double scale);
     ~Window();
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
-    /// Takes in input. False while it is minimised: then nothing is to be drawn, and a moment was waited.
+    /// Processes input. False while minimised: it has then waited for a moment, and nothing is drawn.
     bool begin();
-    /// Shows what was drawn; waits for the screen.
+    /// Shows the frame; waits for vertical sync.
     void end();
 
     bool wants_to_close() const;
     void keep_open();
-    /// As its frame's button does.
+    /// Same as the close button.
     void close();
     void set_title(const std::string& title);
     void resize(int width, int height);
     void minimise(bool wanted);
-    /// Contents of another size, as on a screen with other pixels. Before `begin`.
+    /// Changes the scale of the content. Call it before `begin`.
     void rescale(double scale);
     int width() const { return width_; }  ///< pixels
     int height() const { return height_; }
     double scale() const { return scale_; }
-    /// Spent between `begin` and `end` so far, s.
+    /// Total time between `begin` and `end`, s.
     double drawn_s() const { return drawn_s_; }
-    /// Keeps what the next `end` shows, in `picture`.
+    /// Captures the next frame in `picture`.
     void want_picture();
     const display::Image& picture() const { return shown_; }
 
     ImFont* body = nullptr;
     ImFont* bold = nullptr;
-    ImFont* large = nullptr;  ///< twice the size, for what is magnified
+    ImFont* large = nullptr;  ///< twice the size, for magnified text
 
 private:
     void load_fonts();

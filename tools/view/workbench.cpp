@@ -2,7 +2,6 @@
 #include "tools/view/workbench.hpp"
 
 #include "assets/file/whole_file.hpp"
-#include "nodes/catalogue.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/view/patch/patch_change.hpp"
 
@@ -27,30 +26,7 @@ std::string_view without_mark(std::string_view text) {
     return text;
 }
 
-struct PortLister : MemberVisitor {
-    explicit PortLister(Draft& draft_) : draft(draft_) {}
-    void input(std::string_view name, Input& port) override {
-        draft.inputs.push_back({std::string(name),
-                                std::string(port.about),
-                                std::string(port.unit),
-                                port.type,
-                                port.is_optional,
-                                false,
-                                false,
-                                {}});
-    }
-    void output(std::string_view name, Output& port) override {
-        draft.outputs.push_back(
-            {std::string(name), std::string(port.about), std::string(port.unit), port.type, true, false, false, {}});
-    }
-    Draft& draft;
-};
-
 }  // namespace
-
-bool Draft::is_complete() const {
-    return std::ranges::all_of(inputs, [](const PicturePort& p) { return p.is_optional || p.is_connected; });
-}
 
 Workbench::Workbench(const RunChoice& choice) : choice_(choice) {
     const fs::path file = find_patch(choice.patch);
@@ -85,21 +61,21 @@ std::optional<std::string> Workbench::check(std::string_view text) {
     return problems.list.front().what();
 }
 
-/// Makes the plan that was checked last the one that is shown.
+/// Shows the plan that was checked last.
 void Workbench::adopt() {
     plan_ = std::move(checked_);
     picture_ = plan_ ? picture_of(*plan_) : PatchPicture{};
     ++plan_version_;
 }
 
-/// The text has changed by itself: taken back, or saved elsewhere.
+/// Handles a text changed by undo, or saved by another program.
 void Workbench::adopt_text() {
     if (const auto problem = check(editor_->text())) tell(*problem, true);
     adopt();
     follow();
 }
 
-/// Lets the run take over what the text says now; one that does not compile changes nothing.
+/// Applies the current text to the run, unless it does not compile.
 void Workbench::follow() {
     if (!run_ || !plan_) return;
     const PatchChange change = followed_ ? change_between(*followed_, *plan_) : PatchChange{{}, true};
@@ -175,53 +151,12 @@ void Workbench::check_saved() {
     throw_problems(problems);
     const PatchChange change = plan_ && saved ? change_between(*plan_, *saved) : PatchChange{{}, true};
     if (change.needs_edit || !change.settings.empty())
-        throw Error(fmt::format("{}: compiles to another plan than the one shown", editor_->file().string()));
+        throw Error(fmt::format("{}: the saved file compiles to a different plan than the one shown",
+                                editor_->file().string()));
 }
 
 void Workbench::turn(const std::string& node, const std::string& param, const std::string& value) {
     if (run_) run_->set(node, param, value);
-}
-
-std::string Workbench::free_name(const std::string& type) const {
-    std::string name = type;
-    for (int i = 2; picture_.find(name) >= 0; ++i) name = fmt::format("{}_{}", type, i);
-    return name;
-}
-
-void Workbench::begin_draft(const std::string& type, int group) {
-    const auto found = std::ranges::find(nodes::catalogue(), type, [](const NodeType* t) { return t->name; });
-    if (found == nodes::catalogue().end() || !plan_) return tell(fmt::format("no node type '{}'", type), true);
-    Draft draft;
-    draft.node.name = free_name(type);
-    draft.node.type = type;
-    const compile::PlanGroup& lane = plan_->groups[static_cast<std::size_t>(group)];
-    const auto named = std::ranges::find(plan_->patch.groups, lane.name, &patch::PatchGroup::name);
-    if (named != plan_->patch.groups.end()) draft.node.group = lane.name;
-    else draft.node.rate = lane.name;
-    const compile::NodeInstance fresh((*found)->create(), (*found)->destroy);
-    PortLister lister(draft);
-    (*found)->visit(fresh.get(), lister);
-    draft_ = std::move(draft);
-    if (!draft_->is_complete()) return tell(fmt::format("{} needs wires to its inputs", draft_->node.name));
-    const edit::NewNode node = draft_->node;
-    draft_.reset();
-    add(node);
-}
-
-void Workbench::connect_draft(const std::string& from, const std::string& input) {
-    if (!draft_) return;
-    const auto port = std::ranges::find(draft_->inputs, input, &PicturePort::name);
-    if (port == draft_->inputs.end()) return;
-    std::erase_if(draft_->node.wires, [&](const edit::WireText& w) { return w.to.ends_with("." + input); });
-    draft_->node.wires.push_back({from, draft_->node.name + "." + input, {}});
-    port->is_connected = true;
-    if (!draft_->is_complete()) return;
-    const edit::NewNode node = draft_->node;
-    if (add(node)) draft_.reset();
-    else {
-        draft_->node.wires.pop_back();
-        std::ranges::find(draft_->inputs, input, &PicturePort::name)->is_connected = false;
-    }
 }
 
 std::optional<std::string> Workbench::objection(const std::string& from, const std::string& to) const {
@@ -248,9 +183,9 @@ void Workbench::run() {
     choice.is_further = choice.is_further || runs_ > 1;
     has_take_ = !choice.record.empty();
     run_ = std::make_unique<ViewedRun>(choice, assets_, *observer_);
-    // The next run is another take.
+    // The next run makes another take.
     choice_.record.clear();
-    // The run begins with the file; what is not saved takes over at once.
+    // The run starts with the saved file; unsaved edits are applied at once.
     followed_ = editor_->is_saved() ? plan_ : nullptr;
     if (!followed_) follow();
 }
@@ -301,14 +236,14 @@ bool Workbench::has_same_parts() {
     return checked_ && checked_->patch.parts == plan_->patch.parts;
 }
 
-/// As an edit, which can be taken back.
+/// Applied as an edit, which can be undone.
 void Workbench::take_over_file() {
     try {
         const bool is_new = editor_->reload();
-        // A patch within it may have been saved instead.
+        // A sub-patch may have been saved instead.
         const bool is_known = !is_new && plan_ && (plan_->patch.parts.empty() || has_same_parts());
         if (is_known) return;
-        tell("the file was saved elsewhere; it is taken over");
+        tell("the file was saved by another program; its text is used now");
         adopt_text();
     } catch (const Error& error) {
         tell(error.what(), true);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be done with a patch and its run in the window, without the window: the panels and scripts both call this.
+// The model of the window: edits and runs of a patch, independent of the user interface. Called by panels and scripts.
 #pragma once
 
 #include "engine/observe/observer.hpp"
@@ -19,12 +19,12 @@
 
 namespace tactus::view {
 
-/// A node that is to come, while its inputs still lack wires: only as a whole it can become an edit.
+/// A new node whose inputs still lack wires. It becomes an edit when it is complete.
 struct Draft {
     edit::NewNode node;
     std::vector<PicturePort> inputs, outputs;
 
-    bool is_complete() const;  ///< every input that needs a wire has one
+    bool is_complete() const;  ///< true when every required input has a wire
 };
 
 struct Message {
@@ -34,90 +34,90 @@ struct Message {
 
 class Workbench {
 public:
-    /// Reads the patch; whether it compiles is told in `messages`. Throws Error when it cannot be read at all.
+    /// Reads the patch; compile errors go to `messages`. Throws Error when it cannot be read.
     explicit Workbench(const RunChoice& choice);
 
     const edit::PatchEditor& editor() const { return *editor_; }
-    /// Of the text; null when it does not compile, which only a file saved elsewhere can do.
+    /// The plan of the text; null when it does not compile, which happens only for files saved by other programs.
     const compile::Plan* plan() const { return plan_.get(); }
     const PatchPicture& picture() const { return picture_; }
-    /// Rises whenever plan and picture are new.
+    /// Increases when plan and picture change.
     std::int64_t plan_version() const { return plan_version_; }
     std::string title() const;
     const std::deque<Message>& messages() const { return messages_; }
     void tell(std::string text, bool is_problem = false);
 
-    // Edits. False: refused, and `messages` says why; the text is as it was.
+    // Edits. False: refused; the reason is in `messages`, and the text is not changed.
     bool set(const std::string& node, const std::string& param, const std::string& value);
     bool reset(const std::string& node, const std::string& param);
     bool add(const edit::NewNode& node);
     bool remove(const std::string& node);
     bool rename(const std::string& from, const std::string& to);
-    /// "node.port" to "node.port"; a wire that leads there gives way.
+    /// Wires "node.port" to "node.port"; replaces an existing wire to that input.
     bool connect(const std::string& from, const std::string& to, const std::string& mode = {});
     bool disconnect(const std::string& to);
     bool undo();
     bool redo();
-    /// A patch of the library is not changed: then it is refused, and `wants_name` is set.
+    /// Refused for a patch of the library; then sets `wants_name`.
     bool save();
-    /// As another file, which must not be there yet; the patch is that one from then on. A relative name is in the
-    /// working folder.
+    /// Saves as a new file and continues with it. The file must not exist. A relative name refers to the working
+    /// folder.
     bool save_as(const std::string& name);
-    /// What a copy could be called, in the working folder.
+    /// A proposed name for a copy in the working folder.
     std::filesystem::path free_file() const;
     bool wants_name = false;
 
-    // Edits that are not saved.
-    bool has_unsaved_edits() const;  ///< and were not dropped
-    /// They are not wanted: `keep_edits` leaves them.
+    // Unsaved edits.
+    bool has_unsaved_edits() const;  ///< unsaved and not dropped
+    /// Discards them: `keep_edits` does not keep them.
     void drop_edits();
-    /// They are wanted after all.
+    /// Revokes drop_edits.
     void want_edits() { dropped_version_ = -1; }
-    /// Before the bench goes: keeps them in a file, and says on standard error where.
+    /// Called at the end: keeps them in a file and prints the path on standard error.
     void keep_edits() noexcept;
-    /// Finds what earlier windows on this patch have kept.
+    /// Finds edits kept by earlier windows on this patch.
     void find_kept_edits();
-    /// A file with edits of an earlier window that waits to be restored or discarded.
+    /// A file of kept edits that can be restored or discarded.
     std::optional<std::filesystem::path> offer() const;
-    /// They are an edit of the text; their file goes when the patch is saved.
+    /// Restores them as an edit; their file is removed when the patch is saved.
     bool restore_edits();
     void discard_offer();
-    /// While a slider moves: the run follows, the text does not yet.
+    /// For a moving slider: changes the run but not the text.
     void turn(const std::string& node, const std::string& param, const std::string& value);
 
-    /// Begins a draft of that type in a group of the picture; without inputs to wire it becomes an edit at once.
+    /// Starts a draft of a node type in a group; without required inputs it becomes an edit at once.
     void begin_draft(const std::string& type, int group);
     std::optional<Draft>& draft() { return draft_; }
-    /// Wires an output to an input of the draft; as soon as it is complete it becomes an edit.
+    /// Wires an output to an input of the draft; a complete draft becomes an edit.
     void connect_draft(const std::string& from, const std::string& input);
-    /// A name of that kind that no node has yet.
+    /// A free node name for the type.
     std::string free_name(const std::string& type) const;
 
-    /// Throws Error unless the file compiles to the plan that is shown.
+    /// Throws Error unless the saved file compiles to the shown plan.
     void check_saved();
-    /// Why that wire cannot be, or nothing.
+    /// Why the wire is not possible; none: it is.
     std::optional<std::string> objection(const std::string& from, const std::string& to) const;
 
     // The run.
     void run();
     void stop();
     void pause(bool wanted);
-    /// From now on, or no more. What runs is not disturbed; where nothing runs, a run begins.
+    /// Starts or stops recording without disturbing the run; starts a run when none is active.
     void record(bool wanted);
     bool is_recording() const { return status()->is_recording; }
     const std::filesystem::path& take() const { return last_take_; }
     ViewedRun* running() { return run_.get(); }
     std::shared_ptr<const RunStatus> status() const;
     std::shared_ptr<observe::Observer> observer() const { return observer_; }
-    /// Rises with every run that begins: what was seen of the one before is over.
+    /// Increases with every new run.
     int runs() const { return runs_; }
 
-    /// Once per picture.
+    /// Called once per frame.
     void tend();
 
-    /// Asked for in the window, for who holds this bench: to look at `take()`, or from a take back at its patch.
+    /// Requests of the window to its owner: open `take()`, or return from a take to its patch.
     bool wants_take = false, wants_patch = false;
-    bool has_patch_behind = false;  ///< a take that was opened from the run of a patch
+    bool has_patch_behind = false;  ///< the take was opened from a patch
 
 private:
     bool edit(const edit::PatchEditor::Edit& how, std::string done);
@@ -135,7 +135,7 @@ private:
     std::unique_ptr<edit::PatchEditor> editor_;
     std::unique_ptr<compile::Plan> checked_;
     std::shared_ptr<const compile::Plan> plan_;
-    std::shared_ptr<const compile::Plan> followed_;  // what the run was brought to last
+    std::shared_ptr<const compile::Plan> followed_;  // the plan last applied to the run
     PatchPicture picture_;
     std::int64_t plan_version_ = 0;
     std::deque<Message> messages_;
@@ -144,9 +144,9 @@ private:
     std::unique_ptr<ViewedRun> run_;
     std::filesystem::path last_take_;
     int runs_ = 0;
-    bool has_take_ = false;  // the run was recorded, at least in part
+    bool has_take_ = false;  // the run was recorded at least in part
     std::vector<std::filesystem::path> offers_;
-    std::filesystem::path restored_;  // where the edits that were restored are kept until the patch is saved
+    std::filesystem::path restored_;  // file of restored edits, removed when the patch is saved
     std::int64_t dropped_version_ = -1;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Saving at the bench, and what becomes of edits that are not saved.
+// Saving, and handling of unsaved edits.
 #include "tools/view/workbench.hpp"
 
 #include "assets/file/whole_file.hpp"
@@ -21,14 +21,14 @@ bool Workbench::save() {
     try {
         if (session::is_of_library(editor_->file())) {
             wants_name = true;
-            tell(fmt::format("{} belongs to the library and is not changed; save it under another name",
+            tell(fmt::format("{} belongs to the library and cannot be changed; save it under another name",
                              editor_->file().string()),
                  true);
             return false;
         }
         if (editor_->is_changed_elsewhere()) {
             take_over_file();
-            tell("not saved: undo brings your own text back, and then it can be saved", true);
+            tell("not saved: the text does not compile; undo to your own text and save again", true);
             return false;
         }
         editor_->save();
@@ -56,15 +56,15 @@ bool Workbench::save_as(const std::string& name) {
         fs::path file = fs::absolute(name);
         if (file.extension() != ".toml") file += ".toml";
         if (session::is_of_library(file))
-            throw Error(fmt::format("{}: belongs to the library; choose another", file.string()));
+            throw Error(fmt::format("{}: this file belongs to the library; choose another", file.string()));
         if (fs::exists(fs::symlink_status(file)))
-            throw Error(fmt::format("{}: is there already; choose another name", file.string()));
+            throw Error(fmt::format("{}: the file exists already; choose another name", file.string()));
         const fs::path folder = fs::absolute(editor_->file()).parent_path();
         editor_->save_as(file, [&](std::string_view text) { return edit::with_absolute_paths(text, folder); });
         wants_name = false;
         tell(fmt::format("saved {}", file.string()));
         drop_restored();
-        // The same patch from another folder: the run has nothing to take over.
+        // The same patch in another folder: nothing to apply to the run.
         if (const auto problem = check(editor_->text())) tell(*problem, true);
         adopt();
         if (followed_ && plan_) followed_ = plan_;
@@ -88,12 +88,12 @@ void Workbench::drop_restored() {
 }
 
 fs::path Workbench::keep_text() const {
-    // What was restored is in the text, or was taken back in it.
+    // The restored edits are in the saved text, or were undone.
     if (!restored_.empty()) try {
             file::write_durable_file(restored_, editor_->text());
             return restored_;
         } catch (const Error&) {
-            // Elsewhere, as if it had not been there.
+            // Kept under another name, and the original is not touched.
         }
     return keep_unsaved(editor_->file(), editor_->text());
 }
@@ -103,16 +103,16 @@ void Workbench::keep_edits() noexcept {
     try {
         const fs::path kept = keep_text();
         dropped_version_ = editor_->version();
-        fmt::print(stderr, "tactus: edits of {} are not saved; they are kept in {}, and the next window offers them\n",
+        fmt::print(stderr, "tactus: unsaved edits of {} are kept in {}; the next window offers to restore them\n",
                    editor_->file().string(), kept.string());
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "tactus: edits that are not saved are lost: %s\n", error.what());
+        std::fprintf(stderr, "tactus: unsaved edits are lost: %s\n", error.what());
     }
 }
 
 void Workbench::find_kept_edits() {
     for (const fs::path& file : find_unsaved(editor_->file())) try {
-            // Saved since, by whatever program.
+            // Saved in the meantime by another program.
             if (file::read_whole_file(file) == editor_->text()) fs::remove(file);
             else offers_.push_back(file);
         } catch (const std::exception& error) {
@@ -131,10 +131,10 @@ bool Workbench::restore_edits() {
         const fs::path file = offers_.back();
         std::string text = file::read_whole_file(file);
         offers_.pop_back();
-        // One that was restored before stays where it is.
+        // Edits restored earlier keep their file.
         restored_ = file;
         editor_->replace(std::move(text));
-        tell(fmt::format("the edits of {} are in the patch again; undo takes them back", file.string()));
+        tell(fmt::format("the edits of {} are restored; undo reverts them", file.string()));
         adopt_text();
         return true;
     } catch (const Error& error) {

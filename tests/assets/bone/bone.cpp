@@ -82,7 +82,7 @@ TEST_CASE("a bone file cut short anywhere or with one byte changed is refused by
 TEST_CASE("what is no bone file is refused") {
     const TemporaryFolder folder;
     file::write_whole_file(folder / "text.vdb", "a text, not a volume");
-    CHECK_THROWS_WITH(bone::load_bone(folder / "text.vdb"), ContainsSubstring("not a whole bone file"));
+    CHECK_THROWS_WITH(bone::load_bone(folder / "text.vdb"), ContainsSubstring("the bone file is incomplete"));
     CHECK_THROWS_WITH(bone::load_bone(folder / "absent.vdb"), ContainsSubstring("no such file"));
     CHECK_THROWS_AS(bone::load_bone(folder.path), Error);
 }

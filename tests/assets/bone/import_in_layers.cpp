@@ -176,7 +176,7 @@ TEST_CASE(
     std::filesystem::create_symlink(folder / "ct.nrrd", folder / "same.vdb");
     for (const char* out : {"ct.nrrd", "./ct.nrrd", "same.vdb"})
         CHECK_THROWS_WITH(bone::import_bone_file(options, folder / out, progress),
-                          ContainsSubstring("would be overwritten"));
+                          ContainsSubstring("the bone would overwrite it"));
     CHECK_THROWS_WITH(bone::import_bone_file(options, folder / "none/bone.vdb", progress),
                       ContainsSubstring("there is no folder"));
     CHECK_THROWS_WITH(bone::import_bone_file(options, folder.path, progress), ContainsSubstring("is a folder"));

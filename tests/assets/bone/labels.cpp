@@ -240,9 +240,9 @@ TEST_CASE("what is no label map is refused in one sentence") {
     for (int n = 0; n < 1600; ++n) grid.values.push_back(float(n));
     CHECK_THROWS_WITH(bone::labels_in(grid), ContainsSubstring("1599 different values"));
     grid.values[5] = 0.5f;
-    CHECK_THROWS_WITH(bone::labels_in(grid), ContainsSubstring("0.5 is no label"));
+    CHECK_THROWS_WITH(bone::labels_in(grid), ContainsSubstring("0.5 is not a label"));
     grid.values[5] = -1000.0f;
-    CHECK_THROWS_WITH(bone::labels_in(grid), ContainsSubstring("-1000 is no label"));
+    CHECK_THROWS_WITH(bone::labels_in(grid), ContainsSubstring("-1000 is not a label"));
     grid.values.assign(1600, 0.0f);
     CHECK(bone::labels_in(grid).empty());
 }

@@ -166,13 +166,13 @@ TEST_CASE("what is no plan of ours is refused in one line that says what to do")
         return "";
     };
     for (std::size_t length = 1; length + 2 < text.size(); length += 37)
-        CHECK_THAT(refusal(text.substr(0, length)), Catch::Matchers::ContainsSubstring("ends in the middle"));
+        CHECK_THAT(refusal(text.substr(0, length)), Catch::Matchers::ContainsSubstring("is cut short"));
     CHECK_THAT(refusal(replaced(text, "\"version\": 1", "\"version\": 2")),
-               Catch::Matchers::ContainsSubstring("version 2; this program reads version 1; nothing was changed"));
+               Catch::Matchers::ContainsSubstring("version 2, but this program reads version 1; nothing was changed"));
     CHECK_THAT(refusal(replaced(text, "\"name\": \"b\"", "\"name\": \"a\"")),
                Catch::Matchers::ContainsSubstring("another fragment has"));
     CHECK_THAT(refusal(replaced(text, "\"after\": 0", "\"after\": 1")),
-               Catch::Matchers::ContainsSubstring("no step before it"));
+               Catch::Matchers::ContainsSubstring("not an earlier step"));
     CHECK_THAT(refusal(replaced(text, "\"kind\": \"lock\"", "\"kind\": \"eat\"")),
                Catch::Matchers::ContainsSubstring("'eat'"));
     CHECK_THAT(refusal(replaced(text, "\"current\": \"other\"", "\"current\": \"x\"")),
@@ -213,7 +213,7 @@ TEST_CASE("a file that is gone or has changed since is named, and names of fragm
     file::write_whole_file(file, "two");
     REQUIRE(cases::changed_files(plan, file.parent_path()).size() == 1);
     CHECK_THAT(cases::changed_files(plan, file.parent_path())[0],
-               Catch::Matchers::ContainsSubstring("not the one that the plan was made with"));
+               Catch::Matchers::ContainsSubstring("has changed since the plan was made"));
     std::filesystem::remove(file);
     CHECK_THAT(cases::changed_files(plan, file.parent_path())[0], Catch::Matchers::ContainsSubstring("is missing"));
 }

@@ -111,7 +111,7 @@ TEST_CASE("a plan whose folder is gone at the end is put aside with all of its s
     std::filesystem::create_directories(file.parent_path());
 }
 
-TEST_CASE("a plan of another run is never written over, and one that is continued is") {
+TEST_CASE("a plan of another run is never overwritten, and one that is continued is") {
     const TemporaryFolder folder;
     const auto file = folder / "case.plan.json";
     {
@@ -148,7 +148,8 @@ TEST_CASE("two keepers of one plan: the second is refused until the first has en
     {
         const cases::PlanKeeper first(two(), file);
         CHECK_THROWS_WITH(cases::PlanKeeper(two(), file),
-                          Catch::Matchers::ContainsSubstring("another program is changing this plan"));
+                          Catch::Matchers::ContainsSubstring(
+                              "another program (a run or another 'tactus plan') is changing this plan"));
     }
     CHECK_NOTHROW(cases::PlanKeeper(two(), file));
     CHECK_THROWS_WITH(cases::PlanKeeper(two(), folder / "none" / "case.plan.json"),

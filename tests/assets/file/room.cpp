@@ -22,7 +22,7 @@ TEST_CASE("sizes of memory are read with their units, and what is none is refuse
     CHECK(file::parse_memory_size("2000000") == 2'000'000u);
     for (const char* text : {"", "GB", "-2 GB", "0", "2 XB", "1 kB", "nan GB", "1e300 GB", "2 GB or so"}) {
         CAPTURE(text);
-        CHECK_THROWS_WITH(file::parse_memory_size(text), ContainsSubstring("is no size of memory"));
+        CHECK_THROWS_WITH(file::parse_memory_size(text), ContainsSubstring("is not a size of memory"));
     }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/file/toml_file.hpp"
 
-#include "assets/display/rig_file.hpp"
+#include "assets/display/display_file.hpp"
 #include "assets/sound/equaliser_file.hpp"
 #include "assets/sound/recording_set.hpp"
 #include "assets/table/thresholds.hpp"
@@ -23,7 +23,7 @@ TEST_CASE("a key of a hundred thousand parts is refused by every reader of TOML,
     const std::filesystem::path file = folder / "deep.toml";
     std::ofstream(file) << deep;
     const auto refusal = ContainsSubstring("at most 32 dots");
-    CHECK_THROWS_WITH(display::load_rig_file(file), refusal);
+    CHECK_THROWS_WITH(display::load_display_file(file), refusal);
     CHECK_THROWS_WITH(sound::load_recording_set(file), refusal);
     CHECK_THROWS_WITH(sound::load_equaliser(file), refusal);
     CHECK_THROWS_WITH(table::load_thresholds(file), refusal);

@@ -93,7 +93,7 @@ TEST_CASE("holes, duplicates and turned triangles are repaired and counted, and 
     CHECK(mesh::topology_of(mesh).is_watertight());
     CHECK(mesh::volume_of(mesh) == Approx(whole).epsilon(1e-3));
     CHECK_THAT(done.describe(),
-               ContainsSubstring("2 holes closed (7 boundary edges") && ContainsSubstring("3 triangles turned"));
+               ContainsSubstring("2 holes closed (7 boundary edges") && ContainsSubstring("3 triangles flipped"));
 }
 
 TEST_CASE("two balls that share one edge keep their insides") {

@@ -48,8 +48,8 @@ TEST_CASE("a damaged equaliser is refused with its place") {
     const TemporaryFolder folder;
     const std::pair<const char*, const char*> slips[] = {
         {"rate = \"48 kHz\"\ntaps = [1, \"x\"]", ":2:"},
-        {"rate = \"48 kHz\"\ntaps = [1e9]", "between -1e6 and 1e6"},
-        {"rate = \"48 kHz\"\ntaps = [nan]", "between -1e6 and 1e6"},
+        {"rate = \"48 kHz\"\ntaps = [1e9]", "from -1e6 to 1e6"},
+        {"rate = \"48 kHz\"\ntaps = [nan]", "from -1e6 to 1e6"},
         {"rate = \"48 kHz\"\ntaps = []", "list"},
         {"rate = 48000\ntaps = [1]", ":1:"},
         {"rate = \"48 s\"\ntaps = [1]", ":1:"},

@@ -116,8 +116,7 @@ TEST_CASE("a sound file is a set of one cutting recording") {
     CHECK_FALSE(told.recordings[0].rate_estimated);
     CHECK_THROWS_WITH(sound::load_recording_set(folder / "a.wav", 2000.0), ContainsSubstring("5 Hz to 1 kHz"));
     folder.load(cutting);
-    CHECK_THROWS_WITH(sound::load_recording_set(folder / "set.toml", 100.0),
-                      ContainsSubstring("states its rates itself"));
+    CHECK_THROWS_WITH(sound::load_recording_set(folder / "set.toml", 100.0), ContainsSubstring("states its own rates"));
 }
 
 TEST_CASE("noise has no rate, and a sound of a few cycles is too short") {

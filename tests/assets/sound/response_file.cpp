@@ -80,7 +80,7 @@ TEST_CASE("a table that is no response is refused with its line") {
         {"10 nan\n20 0\n30 0\n", ":1:"},
         {"10 1e9\n20 0\n30 0\n", "-400 and 400"},
         {"apples,pears\n1,2\n2,3\n3,4\n", "no columns"},
-        {"frequency_hz,level_db,order_x\n", "no order"},
+        {"frequency_hz,level_db,order_x\n", "is not an order"},
         {"hz,db\n1,2\nhz,db\n", ":3:"},
         {"# latency_s = soon\n", "seconds"},
     };

@@ -95,10 +95,10 @@ TEST_CASE("samples as text are read, and a number of thousands of letters among 
     for (const char letter : {'(', '1', 'a'}) {
         file::write_whole_file(folder / "a.nrrd", text + "1 2 3 " + std::string(100000, letter) + " 5 6 7 8\n");
         CHECK_THROWS_WITH(volume::read_volume(folder / "a.nrrd"),
-                          ContainsSubstring("a number of more than 500 letters"));
+                          ContainsSubstring("a text number has more than 500 characters"));
     }
     text.insert(text.size() - 1, "data file: a.txt\n");
     file::write_whole_file(folder / "a.nhdr", text);
     file::write_whole_file(folder / "a.txt", "1 2 3 " + std::string(100000, '7') + " 5 6 7 8\n");
-    CHECK_THROWS_WITH(volume::read_volume(folder / "a.nhdr"), ContainsSubstring("a number of more than 500 letters"));
+    CHECK_THROWS_WITH(volume::read_volume(folder / "a.nhdr"), ContainsSubstring("a text number has more than 500 characters"));
 }

@@ -126,7 +126,7 @@ TEST_CASE("a port that is none is refused with its name") {
     gripper::SerialGripperSettings s;
     s.port = "/dev/null";
     CHECK_THROWS_WITH(gripper::SerialGripper(s), Catch::Matchers::ContainsSubstring("/dev/null") &&
-                                                     Catch::Matchers::ContainsSubstring("no serial line"));
+                                                     Catch::Matchers::ContainsSubstring("not a serial line"));
     s.port = "/nowhere/tty";
     CHECK_THROWS_WITH(gripper::SerialGripper(s), Catch::Matchers::ContainsSubstring("cannot open /nowhere/tty"));
 }

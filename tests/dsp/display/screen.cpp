@@ -116,18 +116,18 @@ TEST_CASE("dsp: in a mirror the world stands where it is, and triangles turn the
 }
 
 TEST_CASE("dsp: an offset between seeing and feeling moves what is seen by just so much") {
-    display::DisplayRig rig;
-    rig.screens = {leaning()};
-    rig.haptic_world = {{0.01, 0.02, 0.03}, coupling::rotation_xyz({0.1, 0.2, 0.3})};
-    const display::Screen& screen = rig.screens.front();
+    display::DisplayGeometry geometry;
+    geometry.screens = {leaning()};
+    geometry.haptic_world = {{0.01, 0.02, 0.03}, coupling::rotation_xyz({0.1, 0.2, 0.3})};
+    const display::Screen& screen = geometry.screens.front();
     const Pose head{screen.low_left + 0.5 * (screen.right() + screen.up()) + 0.6 * screen.normal(), {1, 0, 0, 0}};
     const Vec3 felt(0.0, 0.05, 0.02);
-    const auto co_located = rig.views(head, true, around(felt));
+    const auto co_located = geometry.views(head, true, around(felt));
     REQUIRE(co_located.size() == 2);
-    rig.visuo_haptic_offset = {0.30, 0.0, 0.0};
-    const auto apart = rig.views(head, true, around(felt));
+    geometry.visuo_haptic_offset = {0.30, 0.0, 0.0};
+    const auto apart = geometry.views(head, true, around(felt));
     for (std::size_t eye = 0; eye < 2; ++eye) {
-        const Vec3 seen = rig.haptic_world.apply(felt);
+        const Vec3 seen = geometry.haptic_world.apply(felt);
         CHECK(glm::length(pixel(co_located[eye].projection, felt) - analytic(screen, co_located[eye].eye, seen)) <
               1e-6);
         CHECK(glm::length(pixel(apart[eye].projection, felt) -
@@ -136,15 +136,15 @@ TEST_CASE("dsp: an offset between seeing and feeling moves what is seen by just 
 }
 
 TEST_CASE("dsp: a display of many directions has one picture for each eye on each screen") {
-    display::DisplayRig rig;
-    rig.screens = {leaning(), leaning()};
+    display::DisplayGeometry geometry;
+    geometry.screens = {leaning(), leaning()};
     std::vector<Vec3> eyes;
-    for (int n = 0; n < 8; ++n) eyes.push_back(rig.screens[0].low_left + Vec3(0.05 * n, -0.6, 0.3));
-    const auto views = rig.views(eyes, around(Vec3(0.0)));
+    for (int n = 0; n < 8; ++n) eyes.push_back(geometry.screens[0].low_left + Vec3(0.05 * n, -0.6, 0.3));
+    const auto views = geometry.views(eyes, around(Vec3(0.0)));
     REQUIRE(views.size() == 16);
     CHECK(views[9].screen == 1);
     CHECK(views[9].eye == eyes[1]);
-    CHECK(rig.views(Pose{eyes[2], {1, 0, 0, 0}}, false, around(Vec3(0.0))).size() == 2);
+    CHECK(geometry.views(Pose{eyes[2], {1, 0, 0, 0}}, false, around(Vec3(0.0))).size() == 2);
 }
 
 TEST_CASE("dsp: screens without area, skewed ones and eyes behind them are refused") {
@@ -160,32 +160,34 @@ TEST_CASE("dsp: screens without area, skewed ones and eyes behind them are refus
     CHECK_THROWS_WITH(display::through_screen(good, Vec3(std::nan("")), {}),
                       Catch::Matchers::ContainsSubstring("in front"));
     CHECK_THROWS_AS(
-        (display::DisplayRig{{good}, {}, 0.063, {}, {}}.views({Vec3(std::nan("")), {1, 0, 0, 0}}, true, {})), Error);
+        (display::DisplayGeometry{{good}, {}, 0.063, {}, {}}.views({Vec3(std::nan("")), {1, 0, 0, 0}}, true, {})),
+        Error);
 }
 
 TEST_CASE(
     "dsp: a head before a screen, or before its image in a mirror, looks straight at it with its eyes the right way") {
-    display::DisplayRig rig;
-    rig.screens = {{{-0.26, 0.15, 0.15}, {0.26, 0.15, 0.15}, {-0.26, -0.15, 0.15}}, leaning()};
-    rig.mirror = display::Plane{{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}};
-    rig.screens[1].in_mirror = false;
+    display::DisplayGeometry geometry;
+    geometry.screens = {{{-0.26, 0.15, 0.15}, {0.26, 0.15, 0.15}, {-0.26, -0.15, 0.15}}, leaning()};
+    geometry.mirror = display::Plane{{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}};
+    geometry.screens[1].in_mirror = false;
     for (std::size_t screen = 0; screen < 2; ++screen) {
-        const Pose head = rig.place_before(screen, 0.6);
+        const Pose head = geometry.place_before(screen, 0.6);
         CHECK(is_valid(head));
         const Vec3 ahead = head.position - 0.6 * head.rotate({0.0, 0.0, 1.0});
-        Vec3 middle = rig.screens[screen].low_left + 0.5 * (rig.screens[screen].right() + rig.screens[screen].up());
-        if (screen == 0) middle = rig.mirror->reflected(middle);
+        Vec3 middle = geometry.screens[screen].low_left +
+                      0.5 * (geometry.screens[screen].right() + geometry.screens[screen].up());
+        if (screen == 0) middle = geometry.mirror->reflected(middle);
         CHECK(glm::length(ahead - middle) < 1e-12);
         // What is nearer than the screen is seen by the left eye farther to the right.
         const Vec3 near = head.position - 0.4 * head.rotate({0.0, 0.0, 1.0});
         const display::Eyes eyes = display::eyes_of(head, 0.064);
-        const auto left = rig.view(screen, eyes.left, around(near)).projection.seen(near);
-        const auto right = rig.view(screen, eyes.right, around(near)).projection.seen(near);
+        const auto left = geometry.view(screen, eyes.left, around(near)).projection.seen(near);
+        const auto right = geometry.view(screen, eyes.right, around(near)).projection.seen(near);
         REQUIRE((left && right));
         CHECK(left->x - right->x > 0.05);
     }
     // The image of a flat monitor lies beneath the mirror; who sits at its near side has y ahead.
-    CHECK(rig.place_before(0, 0.6).rotate({1.0, 0.0, 0.0}).x == Approx(1.0));
-    CHECK(rig.is_mirrored(0));
-    CHECK_FALSE(rig.is_mirrored(1));
+    CHECK(geometry.place_before(0, 0.6).rotate({1.0, 0.0, 0.0}).x == Approx(1.0));
+    CHECK(geometry.is_mirrored(0));
+    CHECK_FALSE(geometry.is_mirrored(1));
 }

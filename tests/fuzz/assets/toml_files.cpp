@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // All that is written in TOML beside patches: any text is read as each of them or refused with one message.
-#include "assets/display/rig_file.hpp"
+#include "assets/display/display_file.hpp"
 #include "assets/sound/equaliser_file.hpp"
 #include "assets/sound/recording_set.hpp"
 #include "assets/table/thresholds.hpp"
@@ -25,7 +25,7 @@ void try_reader(const std::filesystem::path& path, Load load) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const tactus::MemoryFile file(data, size, "file.toml");
-    try_reader(file.path(), [](const auto& path) { tactus::display::load_rig_file(path); });
+    try_reader(file.path(), [](const auto& path) { tactus::display::load_display_file(path); });
     try_reader(file.path(), [](const auto& path) { tactus::study::load_rig_matrix(path); });
     try_reader(file.path(), [](const auto& path) { tactus::table::load_thresholds(path); });
     try_reader(file.path(), [](const auto& path) { tactus::sound::load_equaliser(path); });

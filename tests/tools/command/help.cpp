@@ -123,6 +123,11 @@ TEST_CASE("manual pages and completions name every verb and its options") {
     CHECK(completed("tactus render p.toml --job", 3) == "--jobs\n");
     CHECK(completed("tactus plan mo", 2) == "move\n");
     CHECK(completed("tactus snap --mode b", 3) == "baseline\n");
+    CHECK(completed("tactus --memory render spec", 3) == "spectrum\n");
+    const std::string snap = slurp(folder.path / "tactus-snap.1");
+    CHECK(snap.find("(default: extended)") != std::string::npos);
+    CHECK(slurp(folder.path / "_tactus").find("('snap --mode') values=(extended global baseline) ;;") !=
+          std::string::npos);
     for (const char* file : {"_tactus", "tactus.fish"}) {
         const std::string text = slurp(folder.path / file);
         for (const char* word : {"spectrum", "gripper", "band", "jobs"}) CHECK(text.find(word) != std::string::npos);

@@ -3,12 +3,17 @@
 #include "tests/tools/run_command.hpp"
 #include "tools/command/old_words.hpp"
 #include "tools/command/options.hpp"
+#include "tools/session/load_plan.hpp"
+#include "tools/view/script.hpp"
 
 #include "dsp/core/error.hpp"
 #include "tests/support/catch.hpp"
 
 #include <nlohmann/json.hpp>
 
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +24,17 @@ using tactus::test::slurp;
 using namespace tactus;
 
 namespace {
+
+/// $TACTUS_LIBRARY is `folder` while this lives.
+struct OwnLibrary {
+    explicit OwnLibrary(const std::filesystem::path& folder) { ::setenv("TACTUS_LIBRARY", folder.c_str(), 1); }
+    ~OwnLibrary() {
+        if (before) ::setenv("TACTUS_LIBRARY", before->c_str(), 1);
+        else ::unsetenv("TACTUS_LIBRARY");
+    }
+    std::optional<std::string> before =
+        std::getenv("TACTUS_LIBRARY") ? std::optional<std::string>(std::getenv("TACTUS_LIBRARY")) : std::nullopt;
+};
 
 bool shows(const Outcome& help, const std::string& text) { return help.out.find(text) != std::string::npos; }
 
@@ -76,6 +92,30 @@ TEST_CASE("old spellings still work") {
         0);
     CHECK(slurp(old_way) == slurp(new_way));
     CHECK(folder.tactus("snap none.vdb none.vdb --mode thesis").err.find("none.vdb") != std::string::npos);
+}
+
+TEST_CASE("a display file is found by path, by name, in a library with the old folder, and by its path before") {
+    const Folder folder;
+    const OwnLibrary library(folder.path);
+    std::filesystem::create_directories(folder.path / "displays");
+    std::filesystem::create_directories(folder.path / "rigs");
+    const auto now = folder.write("displays/mirror.toml", "");
+    const auto own = folder.write("rigs/own.toml", "");
+    CHECK(session::find_display(now.string()) == now);
+    CHECK(session::find_display("mirror") == now);
+    CHECK(session::find_display((folder.path / "rigs/mirror.toml").string()) == now);
+    CHECK(session::find_display("own") == own);
+    CHECK(session::find_display(own.string()) == own);
+    CHECK_THROWS_WITH(session::find_display("mirrors"),
+                      "no display 'mirrors': neither a file nor one of the library (mirror); did you mean 'mirror'?");
+}
+
+TEST_CASE("a script of the window understands 'display', and 'rig' without telling of it") {
+    const Folder folder;
+    CHECK_NOTHROW(view::Script(folder.write("new", "display mirror\n")));
+    CHECK_NOTHROW(view::Script(folder.write("old", "rig mirror\n")));
+    CHECK_THROWS_WITH(view::Script(folder.write("wrong", "rigg mirror\n")),
+                      !Catch::Matchers::ContainsSubstring("'rig'"));
 }
 
 TEST_CASE("quantities have units, or are in the unit of the help text") {

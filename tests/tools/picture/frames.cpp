@@ -211,13 +211,13 @@ std::array<double, 2> orange(const Pixels& picture, double at_x, double at_y, in
 }  // namespace
 
 TEST_CASE(
-    "frames through a rig show the tool within half a pixel of where the hand feels it, in a mirror, for both eyes",
+    "frames through a display show the tool within half a pixel of where the hand feels it, in a mirror, for both eyes",
     "[slow]") {
     if (!can_render()) return;
     const Folder folder;
     folder.write("still.toml", still_hand);
     // A monitor of 520 x 292.5 mm that looks down on a horizontal mirror, and one to the left of it, of another shape.
-    folder.write("rig.toml", R"(between_eyes = "64 mm"
+    folder.write("display.toml", R"(between_eyes = "64 mm"
 [device]
 position = "-20 mm, 30 mm, -140 mm"
 rotation = "0 deg, 0 deg, 15 deg"
@@ -248,7 +248,7 @@ stereo = "mono"
         const Outcome outcome =
             folder.tactus("render " + (folder.path / "still.toml").string() +
                           " --seconds 0.1 --frames 1 --stereo side-by-side --display " +
-                          (folder.path / "rig.toml").string() + " --head head.pose --set " + at_head +
+                          (folder.path / "display.toml").string() + " --head head.pose --set " + at_head +
                           " --size 1280x720 --overwrite --out " + (folder.path / "out").string());
         INFO(outcome.err);
         REQUIRE(outcome.code == 0);
@@ -280,13 +280,13 @@ TEST_CASE("stereo pictures have a legend for each eye at one place, and an offse
     if (!can_render()) return;
     const Folder folder;
     folder.write("still.toml", still_hand);
-    folder.write("rig.toml", R"([[screens]]
+    folder.write("display.toml", R"([[screens]]
 low_left  = "-260 mm, 0 mm, -150 mm"
 low_right = "260 mm, 0 mm, -150 mm"
 high_left = "-260 mm, 0 mm, 150 mm"
 )");
     const std::string render = "render " + (folder.path / "still.toml").string() +
-                               " --seconds 0.1 --frames 1 --display " + (folder.path / "rig.toml").string() +
+                               " --seconds 0.1 --frames 1 --display " + (folder.path / "display.toml").string() +
                                " --size 800x300 --overwrite --out " + (folder.path / "out").string();
     const auto picture = [&](const std::string& how) {
         REQUIRE(folder.tactus(render + " " + how).code == 0);

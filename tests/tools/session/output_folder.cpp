@@ -35,7 +35,7 @@ TEST_CASE("a folder that holds results is refused, and written over when that is
         const std::string summary = slurp(folder.path / out / "summary.json");
         const Outcome again = shell(folder, line);
         CHECK(again.code == 2);
-        CHECK_THAT(again.err, ContainsSubstring("holds results already") && ContainsSubstring("--overwrite"));
+        CHECK_THAT(again.err, ContainsSubstring("already has results") && ContainsSubstring("--overwrite"));
         CHECK(slurp(folder.path / out / "summary.json") == summary);
         CHECK(shell(folder, line + " --overwrite").code == 0);
         // What a run that was killed has left is a result as well.
@@ -111,5 +111,5 @@ TEST_CASE("a recording cannot have the name of a file that the run itself writes
     const Outcome log =
         folder.tactus("run " + file + live + "--seconds 0.1 --out " + out + " --log " + out + "/table.csv");
     CHECK(log.code == 2);
-    CHECK_THAT(log.err, ContainsSubstring("--log") && ContainsSubstring("a recording of the patch goes to this file"));
+    CHECK_THAT(log.err, ContainsSubstring("--log") && ContainsSubstring("the patch records to this file"));
 }

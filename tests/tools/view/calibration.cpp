@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rig is calibrated in the window, with a simulated hand that touches what it is led to.
-#include "assets/display/rig_file.hpp"
+// A display is calibrated in the window, with a simulated hand that touches what it is led to.
+#include "assets/display/display_file.hpp"
 #include "dsp/core/random.hpp"
 #include "dsp/coupling/placement.hpp"
 #include "tests/tools/view/on_display.hpp"
@@ -15,7 +15,7 @@ using namespace tactus::test;
 
 namespace {
 
-/// How a rig really stands: a monitor above a half-transparent mirror, seen as `image`, and a device beneath.
+/// How a display really stands: a monitor above a half-transparent mirror, seen as `image`, and a device beneath.
 const Pose device{{0.03, -0.24, -0.28}, coupling::rotation_xyz({0.2, -0.1, 0.4})};
 const display::Plane mirror{{0.0, 0.0, 0.0}, glm::normalize(Vec3(0.0, -0.25, 0.97))};
 const display::Screen image{{0.26, -0.14, -0.2}, {-0.26, -0.14, -0.2}, {0.26, 0.14, -0.12}};
@@ -42,8 +42,9 @@ private:
 
 }  // namespace
 
-TEST_CASE("in the window a rig is calibrated by noisy touches within 1 mm, one that missed asked for again, and used",
-          "[display]") {
+TEST_CASE(
+    "in the window a display is calibrated by noisy touches within 1 mm, one that missed asked for again, and used",
+    "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;
     Hand hand;
@@ -89,7 +90,7 @@ frames 2
 screenshot chosen.png
 press file
 key ctrl+a
-type nowhere/rig.toml
+type nowhere/display.toml
 press begin
 run
 until {0:.1f}
@@ -100,7 +101,7 @@ frames 5
 screenshot kept.png
 press file
 key ctrl+a
-type rig.toml
+type display.toml
 press write
 frames 5
 screenshot done.png
@@ -111,27 +112,28 @@ close
         on(display, folder, "run touch.toml --view --view-script script --audio file --out out --json");
     INFO(outcome.err);
     REQUIRE(outcome.code == 0);
-    REQUIRE(fs::exists(folder.path / "rig.toml"));
-    const display::RigFile rig = display::load_rig_file(folder.path / "rig.toml");
+    REQUIRE(fs::exists(folder.path / "display.toml"));
+    const display::DisplayFile written = display::load_display_file(folder.path / "display.toml");
     double worst = 0.0;
     for (int corner = 0; corner < 8; ++corner) {
         const Vec3 felt = work + 0.1 * Vec3((corner & 1) * 2 - 1, (corner & 2) - 1, (corner >> 2) * 2 - 1);
         const Vec3 read = device.inverse().apply(felt);
-        worst = std::max(worst, glm::length(rig.rig.haptic_world.apply(rig.rig.haptic_stretch * read) - felt));
+        worst = std::max(
+            worst, glm::length(written.geometry.haptic_world.apply(written.geometry.haptic_stretch * read) - felt));
     }
     CHECK(worst < 1e-3);
     CHECK(worst > 1e-6);  // the noise went somewhere
-    REQUIRE(rig.rig.mirror);
-    REQUIRE(rig.screens.size() == 1);
-    CHECK(rig.screens[0].name == "monitor");
-    const display::Screen& screen = rig.rig.screens[0];
-    CHECK(glm::length(rig.rig.mirror->reflected(screen.low_left) - image.low_left) < 1e-3);
-    CHECK(glm::length(rig.rig.mirror->reflected(screen.low_right) - image.low_right) < 1e-3);
-    CHECK(glm::length(rig.rig.mirror->reflected(screen.high_left) - image.high_left) < 1e-3);
-    // A file that could not be written cost no touch, and the scene is seen through the rig from when it is written.
+    REQUIRE(written.geometry.mirror);
+    REQUIRE(written.screens.size() == 1);
+    CHECK(written.screens[0].name == "monitor");
+    const display::Screen& screen = written.geometry.screens[0];
+    CHECK(glm::length(written.geometry.mirror->reflected(screen.low_left) - image.low_left) < 1e-3);
+    CHECK(glm::length(written.geometry.mirror->reflected(screen.low_right) - image.low_right) < 1e-3);
+    CHECK(glm::length(written.geometry.mirror->reflected(screen.high_left) - image.high_left) < 1e-3);
+    // A file that could not be written cost no touch, and the scene is seen through the display from when it is written.
     for (const char* name : {"chosen", "again", "kept", "done"})
         check_picture(folder.path / (std::string(name) + ".png"), 1600, 1000);
     CHECK(beside_screen(folder.path / "kept.png") == 0);
     CHECK(beside_screen(folder.path / "done.png") > 5000);
-    CHECK(slurp(folder.path / "rig.toml").find("touches") != std::string::npos);
+    CHECK(slurp(folder.path / "display.toml").find("touches") != std::string::npos);
 }

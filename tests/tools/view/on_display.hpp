@@ -40,7 +40,7 @@ struct Picture {
 /// Without pixels when it is no picture.
 Picture read_picture(const std::filesystem::path& png);
 
-/// Pixels of the scene's panel that are beside the tile of a screen: a rig's screen has a shape of its own.
+/// Pixels of the scene's panel that are beside the tile of a screen: a display's screen has a shape of its own.
 int beside_screen(const std::filesystem::path& png);
 
 /// A picture of the whole window with contents: dark panels, letters with smooth edges, curves.

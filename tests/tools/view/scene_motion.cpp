@@ -44,7 +44,7 @@ TEST_CASE("a scene looks otherwise when anything in it moves, changes, is cut, o
     moved.points.resize(1);
     CHECK(looks_of(moved, 1, views, legend) != before);
     display::Legend other = legend;
-    other.warnings.push_back("no valid pose: the head stays");
+    other.warnings.push_back("not a valid pose: the head stays");
     CHECK(looks_of(picture, 1, views, other) != before);
     other = legend;
     other.entries[0].colour.x = 1.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stereo, heads and rigs in the window, as people use them.
+// Stereo, heads and display files in the window, as people use them.
 #include "tests/support/catch.hpp"
 #include "tests/tools/view/on_display.hpp"
 
@@ -9,7 +9,7 @@ using namespace tactus::test;
 
 namespace {
 
-const char* const rig = R"([[screens]]
+const char* const projectors = R"([[screens]]
 name = "left projector"
 low_left  = "-260 mm, 0 mm, -150 mm"
 low_right = "260 mm, 0 mm, -150 mm"
@@ -47,12 +47,12 @@ frequency = "1 Hz"
 
 }  // namespace
 
-TEST_CASE("in the window the scene is seen in stereo, with a head, through a rig and in windows of their own",
+TEST_CASE("in the window the scene is seen in stereo, with a head, through a display and in separate windows",
           "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;
     folder.write("patch.toml", look_around);
-    folder.write("rig.toml", rig);
+    folder.write("display.toml", projectors);
     folder.write("script", R"(until 0.1
 frames 3
 screenshot mono.png
@@ -66,16 +66,16 @@ head head.pose
 frames 4
 screenshot head.png
 stereo mono
-rig rig.toml
+display display.toml
 frames 4
-screenshot rig.png
+screenshot through.png
 offset study
 frames 4
 screenshot offset.png
 ! set head.frequency "1 mm"
 screens off
 frames 2
-rig
+rig                 # the word before: display
 screens on
 frames 4
 screens off
@@ -89,7 +89,7 @@ close
     INFO(done.err);
     REQUIRE(done.code == 0);
     std::string before;
-    for (const char* name : {"mono", "side", "anaglyph", "head", "rig", "offset"}) {
+    for (const char* name : {"mono", "side", "anaglyph", "head", "through", "offset"}) {
         const std::string now = slurp(folder.path / (std::string(name) + ".png"));
         CHECK(now.size() > 10000);
         CHECK(now != before);
@@ -97,15 +97,15 @@ close
     }
 }
 
-TEST_CASE("the command line opens the windows of a rig, and a driver without two buffers is told from one with",
+TEST_CASE("the command line opens the windows of a display, and a driver without two buffers is told from one with",
           "[display]") {
     NEEDS_DISPLAY(display)
     const Folder folder;
     folder.write("patch.toml", look_around);
-    folder.write("rig.toml", rig);
-    folder.write("script", "until 0.3\nframes 5\nscreenshot rig.png\nstop\nuntil over\nclose\n");
+    folder.write("display.toml", projectors);
+    folder.write("script", "until 0.3\nframes 5\nscreenshot through.png\nstop\nuntil over\nclose\n");
     const std::string run = "run patch.toml --view --view-script script --audio file --overwrite --out out --json ";
-    const Outcome through = on(display, folder, run + "--display rig.toml --head head.pose --offset study");
+    const Outcome through = on(display, folder, run + "--display display.toml --head head.pose --offset study");
     INFO(through.err);
     CHECK(through.code == 0);
     // Without buffers for two eyes it says so in the window and shows them side by side.
@@ -113,7 +113,7 @@ TEST_CASE("the command line opens the windows of a rig, and a driver without two
     CHECK(on(display, folder, run + "--display nowhere.toml").code == 2);
     CHECK(on(display, folder, run + "--stereo cross-eyed").err.find("side-by-side") != std::string::npos);
     // A monitor that is not there is told, and the run goes on.
-    folder.write("far.toml", std::string(rig) + "monitor = 9\n");
+    folder.write("far.toml", std::string(projectors) + "monitor = 9\n");
     CHECK(on(display, folder, run + "--display far.toml").code == 0);
 }
 
@@ -121,9 +121,9 @@ TEST_CASE("an edit that leaves nothing in space closes the scene, and one that u
     NEEDS_DISPLAY(display)
     const Folder folder;
     folder.write("patch.toml", std::string(look_around) + "[nodes.tone]\ntype = \"sine\"\nrate = \"48 kHz\"\n");
-    folder.write("rig.toml", rig);
+    folder.write("display.toml", projectors);
     folder.write("script", R"(until 0.1
-rig rig.toml
+display display.toml
 screens on
 frames 4
 screenshot before.png
@@ -150,14 +150,14 @@ close
     CHECK(beside_screen(folder.path / "again.png") > 1000);
 }
 
-TEST_CASE("a window that draws a rig changes no bit of what a patch computes", "[display][live]") {
+TEST_CASE("a window that draws a display changes no bit of what a patch computes", "[display][live]") {
     NEEDS_DISPLAY(display)
     const Folder folder;
     folder.write("patch.toml", look_around);
-    folder.write("rig.toml", rig);
-    const auto [seen, late] =
-        hash_of(display, folder,
-                "run patch.toml --view --display rig.toml --head head.pose --seconds 1 --audio file --out out --json");
+    folder.write("display.toml", projectors);
+    const auto [seen, late] = hash_of(
+        display, folder,
+        "run patch.toml --view --display display.toml --head head.pose --seconds 1 --audio file --out out --json");
     const auto plain = hash_of(display, folder, "render patch.toml --seconds 1 --out plain --json").first;
     if (late > 0) tactus::test::skip("the machine was too busy for the live run to keep its schedule");
     else CHECK(seen == plain);

@@ -87,7 +87,7 @@ TEST_CASE("edits that are not saved are kept beside the patch, offered to the ne
     CHECK(find_unsaved(patch).empty());
 }
 
-TEST_CASE("kept edits are never written over: what was not answered is offered again, the newest first") {
+TEST_CASE("kept edits are never overwritten: what was not answered is offered again, the newest first") {
     const Folder folder;
     const fs::path patch = folder.write("voice.toml", voice);
     const std::string first = leave_edit(choice_of(patch), "220 Hz"), second = leave_edit(choice_of(patch), "330 Hz");

@@ -18,7 +18,7 @@ namespace {
 
 struct ExportChoice {
     std::filesystem::path input, out;
-    std::string bone;             // empty: all of the file
+    std::string bone;             // empty: all bones of the file
     std::string quantity = "hu";  // of a volume: "hu", "density" or "distance"
     bool json = false;
 };
@@ -87,7 +87,7 @@ Action add(VerbOptions& verb) {
     verb.add("bone", choice->input, "bone file; FILE.vdb#NAME for one of several").required();
     verb.add("-o,--out", choice->out, ".stl or .ply: the surface; .nrrd, .nii or .nii.gz: a volume").required();
     verb.add("--bone", choice->bone, "one of several bones (default: all)");
-    verb.add("--quantity", choice->quantity, "what a volume holds")
+    verb.add("--quantity", choice->quantity, "quantity of a volume")
         .one_of({"hu", "density", "distance"})
         .shows_default();
     verb.flag("--json", choice->json, "print a summary as JSON");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Breaks a bone: fragments as a scan shows them, displaced, and where they belong.
+// tactus fracture: simulated, displaced fragments of a bone, with ground truth.
 #include "tools/study/bones/fracture.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/write_mesh.hpp"
@@ -62,7 +62,7 @@ int fracture(const FractureChoice& choice) {
                {"missing", settings.missing}};
     study::break_and_scan(bone, settings, [&](study::ScannedFragment fragment) {
         const std::size_t number = truth["fragments"].size() + 1;
-        // A bone that cannot be broken leaves no folder behind.
+        // The folder is made after the bone is broken, so that a failure leaves no folder.
         if (number == 1) session::make_output_folder(choice.out);
         const std::string name = fmt::format("fragment_{:02}", number);
         fragment.bone.name = name;
@@ -85,7 +85,7 @@ Action add(VerbOptions& verb) {
     verb.add("bone", choice->bone, "bone file, or anything that import reads").required();
     verb.add("-o,--out", choice->out, "folder for the fragments and truth.json").required();
     verb.add("--pieces", choice->settings.pieces, "number of pieces").shows_default().range(2, 200);
-    verb.add("--seed", choice->settings.seed, "another seed, another fracture").shows_default();
+    verb.add("--seed", choice->settings.seed, "seed of the random fracture").shows_default();
     verb.add("--chips", choice->chips, "share of each fracture that is chipped off one side, %").range(0.0, 90.0);
     verb.add("--kerf", choice->kerf, "bone lost all along the fractures, mm").unit("mm").range(0.0, 5.0);
     verb.add("--missing", choice->settings.missing, "number of the smallest pieces that are lost").range(0, 198);
@@ -101,11 +101,11 @@ Action add(VerbOptions& verb) {
     verb.add("--noise", choice->noise, "noise of the scan, standard deviation, % of the contrast of bone")
         .shows_default()
         .range(0.0, 20.0);
-    verb.add("--spread", choice->spread, "how far fragments are moved, mm")
+    verb.add("--spread", choice->spread, "displacement of the fragments, mm")
         .unit("mm")
         .shows_default()
         .range(0.0, 1000.0);
-    verb.add("--turn", choice->turn, "how far fragments are turned, degrees")
+    verb.add("--turn", choice->turn, "rotation of the fragments, degrees")
         .unit("deg")
         .shows_default()
         .range(0.0, 180.0);
@@ -119,6 +119,8 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb fracture_verb() { return {"fracture", "break a bone into pieces and scan them, with the truth beside", add}; }
+Verb fracture_verb() {
+    return {"fracture", "break a bone into pieces and simulate scans of them, with ground truth", add};
+}
 
 }  // namespace tactus::command

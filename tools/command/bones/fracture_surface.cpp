@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Proposes where a fragment is broken, and takes corrections by hand.
+// tactus fracture-surface: proposes the fracture surface of a fragment and applies manual corrections.
 #include "tools/study/bones/fracture_surface.hpp"
 #include "assets/cases/paint_file.hpp"
 #include "dsp/core/error.hpp"
@@ -57,13 +57,14 @@ void print(const study::FractureSurface& found, const std::vector<cases::Painted
         fmt::print("{:.0f} mm² about {:.1f} {:.1f} {:.1f} mm, looking along {:.2f} {:.2f} {:.2f}\n", f.area * 1e6, p.x,
                    p.y, p.z, f.normal.x, f.normal.y, f.normal.z);
     }
-    if (faces.empty()) fmt::print("nothing looks broken; paint it by hand, or lower --roughness\n");
+    if (faces.empty()) fmt::print("no fracture surface found; paint it by hand, or lower --roughness\n");
 }
 
 int fracture_surface(const FractureSurfaceChoice& choice) {
     const auto extension = choice.out.extension();
     if (extension != ".json" && extension != ".vdb")
-        throw Error(fmt::format("{}: paint goes to a .json file of strokes or a .vdb bone file", choice.out.string()));
+        throw Error(
+            fmt::format("{}: paint can be written as .json (strokes) or .vdb (bone file)", choice.out.string()));
     study::FractureSurfaceSettings settings = choice.settings;
     settings.reach = choice.reach * 1e-3;
     if (choice.least_area) settings.least_area = *choice.least_area * 1e-6;
@@ -83,29 +84,30 @@ Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<FractureSurfaceChoice>();
     study::FractureSurfaceSettings& settings = choice->settings;
     verb.add("bone", settings.bone, "bone file or closed mesh").required();
-    verb.add("-o,--out", choice->out,
-             ".json: strokes of a brush, to be corrected by hand; .vdb: the bone with its paint")
+    verb.add("-o,--out", choice->out, ".json: brush strokes for correction by hand; .vdb: the bone with its paint")
         .required();
     verb.add("--paint", settings.paint, "use this file of strokes instead of the proposal");
-    verb.flag("--correct", settings.correct, "use its strokes on top of the proposal");
+    verb.flag("--correct", settings.correct, "apply the strokes of --paint on top of the proposal");
     verb.add("--facing", settings.facing,
-             "another fragment of the same scan: what faces it is proposed, however smooth");
-    const Option intact = verb.add("--intact", settings.intact,
-                                   "the unbroken bone, wherever it lies: what lies inside of it is "
-                                   "proposed; with --facing only what is near that");
-    verb.flag("--mirror", settings.mirror, "that is the other side of the body").needs(intact);
+             "another fragment of the same scan: propose the surface that faces it, also when it is smooth");
+    const Option intact = verb.add(
+        "--intact", settings.intact,
+        "the unbroken bone, in any position: propose the surface inside of it; with --facing only near that fragment");
+    verb.flag("--mirror", settings.mirror, "mirror the unbroken bone: it is from the other side of the body")
+        .needs(intact);
     verb.add("--main", settings.main,
-             "the fragment of the same scan that the unbroken bone is laid on first (default: this one)")
+             "the fragment of the same scan to which the unbroken bone is registered first (default: this one)")
         .needs(intact);
     verb.add("--reach", choice->reach, "greatest distance to --facing or --intact, mm")
         .unit("mm")
         .shows_default()
         .range(0.1, 100.0);
-    verb.flag("--keep", settings.keep, "start from the paint that the bone file has; without any, from the proposal");
-    verb.add("--roughness", settings.roughness, "from which on a place is broken: mean of 1 - cos of normals")
+    verb.flag("--keep", settings.keep, "start from the paint in the bone file, or from the proposal when it has none");
+    verb.add("--roughness", settings.roughness,
+             "roughness above which a point counts as broken: mean of 1 - cos of normals")
         .shows_default()
         .range(0.0, 1.0);
-    verb.add("--least-area", choice->least_area, "smaller patches are left out, mm² (default: 20, with --intact 50)")
+    verb.add("--least-area", choice->least_area, "smallest patch, mm² (default: 20, with --intact 50)")
         .unit("mm^2")
         .range(0.0, 1e5);
     verb.flag("--json", choice->json, "as JSON");
@@ -114,6 +116,8 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb fracture_surface_verb() { return {"fracture-surface", "propose where a fragment is broken; 1: nowhere", add}; }
+Verb fracture_surface_verb() {
+    return {"fracture-surface", "propose the fracture surface of a fragment; 1: none found", add};
+}
 
 }  // namespace tactus::command

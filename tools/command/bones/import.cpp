@@ -78,7 +78,7 @@ int import_bone(const ImportChoice& choice) {
     bone::ImportOptions options = choice;
     options.run = study::on_threads();
     if (!choice.label.empty()) return import_label_map(choice, options, progress, line);
-    if (!choice.ct.empty()) throw Error("--ct goes with a label map: say which label with --label N or --label all");
+    if (!choice.ct.empty()) throw Error("--ct is for label maps: choose a label with --label N or --label all");
     const bone::ImportSummary summary = bone::import_bone_file(options, choice.out, progress);
     line.clear();
     nlohmann::ordered_json json = json_of(summary);
@@ -107,9 +107,12 @@ Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<ImportChoice>();
     verb.add("input", choice->input, "the file").required();
     verb.add("-o,--out", choice->out, "OpenVDB file for the bone").required();
-    verb.add("--threshold", choice->threshold, "CT number from which on there is bone, HU").unit("HU").shows_default();
+    verb.add("--threshold", choice->threshold, "CT number at and above which a voxel is bone, HU")
+        .unit("HU")
+        .shows_default();
     verb.add("--crop", choice->crop, "x0:x1,y0:y1,z0:z1 in mm, LPS");
-    verb.add("--component", choice->component, "largest, all, or how many of the largest").shows_default();
+    verb.add("--component", choice->component, "parts to keep: largest, all, or a number, largest first")
+        .shows_default();
     verb.add("--unit", choice->unit, "unit of a mesh: mm, cm or m").one_of({"mm", "cm", "m"});
     verb.call<double>(
             "--spacing,--isotropic", [choice](const double& mm) { choice->spacing = mm * 1e-3; },
@@ -132,11 +135,11 @@ Action add(VerbOptions& verb) {
         "scanner numbers to HU: SLOPE,INTERCEPT");
     verb.call<double>(
             "--pointshell", [choice](const double& mm) { choice->pointshell = mm * 1e-3; },
-            "also spread points over the surface for contact, this far apart, mm")
+            "also sample contact points on the surface with this spacing, mm")
         .unit("mm");
-    verb.flag("--by-curvature", choice->pointshell_by_curvature, "points closer together where the surface turns");
-    verb.add("--label", choice->label, "the file is a label map: a label's number or name, or all; a bone each");
-    verb.add("--ct", choice->ct, "the CT a label map was drawn on: grey values for surface and density");
+    verb.flag("--by-curvature", choice->pointshell_by_curvature, "closer points where curvature is high");
+    verb.add("--label", choice->label, "for a label map: number or name of a label, or all for one bone per label");
+    verb.add("--ct", choice->ct, "the CT of a label map: grey values for surface and density");
     verb.flag("--json", choice->json, "print a summary as JSON");
     return [choice] { return import_bone(*choice); };
 }

@@ -21,7 +21,7 @@ using study::Inspection;
 
 struct InfoChoice {
     std::filesystem::path input;
-    std::filesystem::path out;  // of the picture: a file, or a folder for INPUT.png; empty: none
+    std::filesystem::path out;  // picture: a file, or a folder for INPUT.png; empty: none
     std::string series;         // of a DICOM folder
     bool json = false;
 };
@@ -44,7 +44,7 @@ nlohmann::ordered_json json_of(const Inspection& found) {
     return json;
 }
 
-// Bars by the logarithm of the count: a CT is mostly air.
+// Logarithmic bars, because a CT is mostly air.
 std::string bars(const volume::Histogram& histogram) {
     std::uint64_t most = 1;
     for (const std::uint64_t count : histogram.counts) most = std::max(most, count);
@@ -70,8 +70,8 @@ std::string text_of(const Inspection& found) {
     }
     if (found.threshold)
         text += fmt::format("suggested threshold: {:.0f} ({})\n", *found.threshold,
-                            found.hu == "masked" ? "half the median of what is not masked"
-                                                 : "Otsu's method twice: air off, then bone from the rest");
+                            found.hu == "masked" ? "half the median of the unmasked values"
+                                                 : "Otsu's method twice: first air, then bone");
     text += fmt::format("{} component{}:\n", found.parts_in_all, found.parts_in_all == 1 ? "" : "s");
     for (const InspectedPart& part : found.parts) {
         const auto& b = part.bounds_mm;
@@ -113,6 +113,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb info_verb() { return {"info", "what is in a CT, label map, mesh or bone file", add}; }
+Verb info_verb() { return {"info", "summarise a CT, label map, mesh or bone file", add}; }
 
 }  // namespace tactus::command

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lays one surface on another of the same shape, whole or the part of it that is elsewhere.
+// tactus register: registers a surface to another one of the same shape, as a whole or by parts.
 #include "tools/command/options.hpp"
 #include "tools/command/pose_text.hpp"
 #include "tools/exit_code.hpp"
@@ -74,7 +74,7 @@ int register_surfaces(const RegisterChoice& choice) {
     fmt::print("median distance {:.2f} mm (before {:.2f} mm), 90 % within {:.2f} mm\n", r.median * 1e3, r.before * 1e3,
                r.p90 * 1e3);
     if (found.region) print_region(*found.region);
-    else if (settings.region) fmt::print("no part of it lies elsewhere\n");
+    else if (settings.region) fmt::print("no part is displaced\n");
     return done;
 }
 
@@ -82,26 +82,26 @@ Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<RegisterChoice>();
     study::RegisterSettings& settings = choice->settings;
     verb.add("moving", settings.moving, "bone file or mesh, which need not be closed").required();
-    verb.add("fixed", settings.fixed, "what it is laid on").required();
-    verb.flag("--mirror", settings.mirror, "the moving one is of the other side of the body");
-    verb.flag("--anywhere", settings.anywhere, "from any position (default: from where they lie)");
+    verb.add("fixed", settings.fixed, "bone file or mesh to register to").required();
+    verb.flag("--mirror", settings.mirror, "the moving surface is from the other side of the body");
+    verb.flag("--anywhere", settings.anywhere, "start from any position (default: from the position in the files)");
     verb.flag("--region", settings.region,
-              "also find the part that lies elsewhere than the rest, and lay it on its place by itself");
-    verb.add("--away", choice->away, "from which distance on a point lies elsewhere, mm")
+              "also find a part that is displaced against the rest, and register it separately");
+    verb.add("--away", choice->away, "distance above which a point counts as displaced, mm")
         .unit("mm")
         .shows_default()
         .range(0.01, 100.0);
-    verb.add("--gap", choice->gap, "points of a region are no farther apart, mm")
+    verb.add("--gap", choice->gap, "greatest gap between points of a region, mm")
         .unit("mm")
         .shows_default()
         .range(0.1, 100.0);
-    verb.add("--margin", choice->margin, "by which a region is grown, mm").unit("mm").shows_default().range(0.0, 100.0);
+    verb.add("--margin", choice->margin, "margin added to a region, mm").unit("mm").shows_default().range(0.0, 100.0);
     verb.flag("--json", choice->json, "as JSON");
     return [choice] { return register_surfaces(*choice); };
 }
 
 }  // namespace
 
-Verb register_verb() { return {"register", "lay a surface on another one of the same shape", add}; }
+Verb register_verb() { return {"register", "register a surface to another one of the same shape", add}; }
 
 }  // namespace tactus::command

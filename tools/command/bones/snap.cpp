@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One fit of two fragments, with its verdict.
+// tactus snap: fits two fragments and reports a verdict.
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/old_words.hpp"
@@ -34,7 +34,7 @@ study::FragmentPaint strokes_of(const Json& strokes, const char* side, const std
     study::FragmentPaint paint{{}, {}, 1e-3 * strokes.value("radius_mm", 1.0), file};
     for (const Json& at : strokes[side]) {
         if (!at.is_array() || at.size() != 3 || !std::ranges::all_of(at, [](const Json& x) { return x.is_number(); }))
-            throw Error(fmt::format("{}: a stroke of '{}' is no list of three numbers", file, side));
+            throw Error(fmt::format("{}: a stroke of '{}' is not a list of three numbers", file, side));
         paint.strokes.emplace_back(1e-3 * at[0].get<double>(), 1e-3 * at[1].get<double>(), 1e-3 * at[2].get<double>());
     }
     return paint;
@@ -115,13 +115,14 @@ int snap(const SnapChoice& choice) {
 
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<SnapChoice>();
-    verb.add("moving", choice->settings.moving, "the fragment that is to move: bone file or closed mesh").required();
-    verb.add("fixed", choice->settings.fixed, "the one that stands").required();
+    verb.add("moving", choice->settings.moving, "the moving fragment: bone file or closed mesh").required();
+    verb.add("fixed", choice->settings.fixed, "the fixed fragment").required();
     verb.add("--paint", choice->paint,
-             "auto: what the bone files have painted, or else a proposal; or a JSON file of brush strokes, or two of "
-             "'fracture-surface': MOVING.json,FIXED.json")
+             "auto: the paint in the bone files, otherwise a proposal; or a JSON file of brush strokes, or two files "
+             "of 'fracture-surface': MOVING.json,FIXED.json")
         .shows_default();
-    verb.add("--start", choice->start, "X,Y,Z,QW,QX,QY,QZ in mm: where the moving one is (default: as filed)");
+    verb.add("--start", choice->start,
+             "X,Y,Z,QW,QX,QY,QZ in mm: start pose of the moving fragment (default: as in the file)");
     verb.add("--mode", choice->mode, "extended and baseline (Olsson 2015) start from there, global from anywhere")
         .one_of({"extended", "global", "baseline"})
         .shows_default();
@@ -132,6 +133,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb snap_verb() { return {"snap", "where a fragment fits another, and how sure that is", add}; }
+Verb snap_verb() { return {"snap", "fit a fragment to another one, with a verdict", add}; }
 
 }  // namespace tactus::command

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From touched places to the file of a display rig.
+// tactus calibrate: touched positions in, a display file out.
 #include "assets/display/touch_file.hpp"
 #include "assets/file/whole_file.hpp"
 #include "devices/haptic/catalogue.hpp"
@@ -28,9 +28,9 @@ struct CalibrateChoice {
     study::CalibrationSettings settings;
     std::filesystem::path out, touches, keep, base;
     std::string device;
-    std::vector<std::string> device_options, tracker_options;  // NAME=VALUE, of their drivers
+    std::vector<std::string> device_options, tracker_options;  // driver options, NAME=VALUE
     bool json = false;
-    int show = 0;  // monitor, from 1, that shows the marks
+    int show = 0;  // monitor for the marks, from 1
 };
 
 std::unique_ptr<HapticDevice> open(const std::string& driver, const std::vector<std::string>& given) {
@@ -38,7 +38,7 @@ std::unique_ptr<HapticDevice> open(const std::string& driver, const std::vector<
     for (const std::string& one : given) {
         const std::size_t equals = one.find('=');
         if (equals == std::string::npos || equals == 0)
-            throw Error(fmt::format("an option of a device is NAME=VALUE, not '{}'", one));
+            throw Error(fmt::format("a device option must be NAME=VALUE, not '{}'", one));
         options.push_back({one.substr(0, equals), one.substr(equals + 1), {}});
     }
     tactus::Options all(fmt::format("device '{}'", driver), std::move(options));
@@ -48,14 +48,14 @@ std::unique_ptr<HapticDevice> open(const std::string& driver, const std::vector<
     return device;
 }
 
-/// The touches of a device, or those of a file.
-std::vector<display::RigTouch> touches_of(const CalibrateChoice& choice, const display::RigFile& base,
-                                          const display::RigFitOptions& options) {
+/// Touches from the device, or from a file.
+std::vector<display::Touch> touches_of(const CalibrateChoice& choice, const display::DisplayFile& base,
+                                       const display::DisplayFitOptions& options) {
     if (!choice.touches.empty()) return display::load_touches(choice.touches);
-    std::vector<display::RigTouch> steps = study::calibration_steps(choice.settings);
+    std::vector<display::Touch> steps = study::calibration_steps(choice.settings);
     study::check_screens(choice.settings, base);
     study::TouchLead lead(std::move(steps), !choice.settings.tracker.empty(),
-                          [&](std::span<const display::RigTouch> done) { display::fit_rig(done, options); });
+                          [&](std::span<const display::Touch> done) { display::fit_display(done, options); });
     study::TipReader tip(
         open(choice.device, choice.device_options), haptic::is_real_driver(choice.device),
         display::parse_vector(choice.settings.tip, "mm"),
@@ -64,7 +64,7 @@ std::vector<display::RigTouch> touches_of(const CalibrateChoice& choice, const d
     if (choice.show > 0) window.emplace(choice.show);
     const bool can_ask = ::isatty(STDIN_FILENO) != 0;
     study::TouchSession session;
-    session.show = [&](const display::RigTouch& step, std::size_t number, std::size_t of) {
+    session.show = [&](const display::Touch& step, std::size_t number, std::size_t of) {
         if (!choice.json)
             fmt::print(stderr, "{:2} of {}: {}; press {}\n", number + 1, of, study::prompt_of(step),
                        can_ask ? "the button, or Enter" : "the button");
@@ -84,12 +84,13 @@ std::vector<display::RigTouch> touches_of(const CalibrateChoice& choice, const d
 }
 
 int calibrate(const CalibrateChoice& choice) {
-    const display::RigFile base = choice.base.empty() ? display::RigFile{} : display::load_rig_file(choice.base);
-    const display::RigFitOptions options = study::fit_options(choice.settings, base);
-    const std::vector<display::RigTouch> touches = touches_of(choice, base, options);
-    // Touches are worth keeping also when nothing comes of them.
+    const display::DisplayFile base =
+        choice.base.empty() ? display::DisplayFile{} : display::load_display_file(choice.base);
+    const display::DisplayFitOptions options = study::fit_options(choice.settings, base);
+    const std::vector<display::Touch> touches = touches_of(choice, base, options);
+    // Touches are kept even if the fit fails.
     if (!choice.keep.empty()) file::write_whole_file(choice.keep, display::touches_text(touches));
-    const display::RigFit fit = display::fit_rig(touches, options);
+    const display::DisplayFit fit = display::fit_display(touches, options);
     const study::TouchesOff all = study::touches_off(fit);
     nlohmann::ordered_json parts = nlohmann::ordered_json::array();
     std::string text;
@@ -97,7 +98,7 @@ int calibrate(const CalibrateChoice& choice) {
         nlohmann::ordered_json off = nlohmann::ordered_json::array();
         text += study::part_text(part) + "\n";
         for (std::size_t i = 0; i < part.touches.size(); ++i) {
-            const display::RigTouch& touch = touches[part.touches[i]];
+            const display::Touch& touch = touches[part.touches[i]];
             text += fmt::format("  touch {:2}  {:6.2f} mm  {}\n", part.touches[i] + 1, part.off[i] * 1e3, touch.name());
             off.push_back({{"touch", part.touches[i] + 1}, {"off_mm", part.off[i] * 1e3}, {"of", touch.name()}});
         }
@@ -106,9 +107,10 @@ int calibrate(const CalibrateChoice& choice) {
                          {"worst_mm", part.residual.worst * 1e3},
                          {"touches", off}});
     }
-    study::write_calibrated(choice.out, study::calibrated_rig(base, fit), fit);
+    study::write_calibrated(choice.out, study::calibrated_display(base, fit), fit);
     if (choice.json)
-        fmt::print("{}\n", nlohmann::ordered_json{{"rig", choice.out.string()},
+        fmt::print("{}\n", nlohmann::ordered_json{{"display", choice.out.string()},
+                                                  {"rig", choice.out.string()},  // the key before
                                                   {"rms_mm", all.rms * 1e3},
                                                   {"worst_mm", all.worst * 1e3},
                                                   {"parts", parts}}
@@ -123,35 +125,30 @@ int calibrate(const CalibrateChoice& choice) {
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<CalibrateChoice>();
     verb.add("-o,--out", choice->out, "TOML file for the display").required();
-    const Option device =
-        verb.add("--device", choice->device, "driver of the device that touches; 'devices' lists them");
+    const Option device = verb.add("--device", choice->device, "driver of the touching device; 'devices' lists them");
     verb.add("--touches", choice->touches, "a CSV of touches instead of a device").excludes(device);
-    verb.add("--option", choice->device_options, "of the device's driver: NAME=VALUE").one_each();
-    verb.add("--tip", choice->settings.tip, "what touches, in the frame of the handle").shows_default();
-    verb.add("--screen", choice->settings.screens, "a screen whose marks are touched; more than once: several")
-        .one_each();
-    verb.add("--image", choice->settings.images, "a screen whose marks are touched where the mirror shows them")
-        .one_each();
+    verb.add("--option", choice->device_options, "option of the device's driver: NAME=VALUE").one_each();
+    verb.add("--tip", choice->settings.tip, "position of the tip in the frame of the handle").shows_default();
+    verb.add("--screen", choice->settings.screens, "a screen whose marks are touched; may be repeated").one_each();
+    verb.add("--image", choice->settings.images, "a screen whose marks are touched at their mirror image").one_each();
     verb.flag("--mirror", choice->settings.mirror, "touch the mirror as well");
-    verb.add("--places", choice->settings.places,
-             "CSV (x_mm, y_mm, z_mm) of places that are known in the viewer's world");
+    verb.add("--places", choice->settings.places, "CSV (x_mm, y_mm, z_mm) of positions known in the viewer's world");
     verb.add("--tracker", choice->settings.tracker,
-             "driver that tells where the tip is in the viewer's world, instead");
-    verb.add("--tracker-option", choice->tracker_options, "of that driver: NAME=VALUE").one_each();
+             "instead: driver of a tracker that measures the tip in the viewer's world");
+    verb.add("--tracker-option", choice->tracker_options, "option of the tracker's driver: NAME=VALUE").one_each();
     verb.add("--grid", choice->settings.grid, "marks along each side of a screen").shows_default().range(2, 9);
     verb.add("--points", choice->settings.points, "touches of the mirror, and of the workspace with a tracker")
         .shows_default()
         .range(4, 100);
     verb.add("--show", choice->show, "show the marks on this monitor, from 1").range(1, 64);
-    verb.flag("--affine", choice->settings.affine, "take up scales and skews of the device");
-    verb.add("--tolerance", choice->settings.tolerance, "a touch farther off what the others say is refused")
-        .shows_default();
-    verb.add("--base", choice->base, "display file whose values are kept where nothing is touched");
+    verb.flag("--affine", choice->settings.affine, "also estimate scale and skew of the device");
+    verb.add("--tolerance", choice->settings.tolerance, "greatest residual of a touch").shows_default();
+    verb.add("--base", choice->base, "display file with the values of untouched parts");
     verb.add("--keep", choice->keep, "write the touches as CSV, for --touches");
     verb.flag("--json", choice->json, "as JSON");
     verb.check([choice = choice.get()] {
         if (choice->device.empty() == choice->touches.empty())
-            throw Error("say what touches: --device DRIVER, or --touches FILE");
+            throw Error("choose the source of touches: --device DRIVER or --touches FILE");
     });
     return [choice] { return calibrate(*choice); };
 }
@@ -160,7 +157,7 @@ Action add(VerbOptions& verb) {
 
 Verb calibrate_verb() {
     return {"calibrate",
-            "find where screens, mirror and device stand, by touching them with the device: a file for --display", add};
+            "calibrate a display: find screens, mirror and device by touching them; writes a file for --display", add};
 }
 
 }  // namespace tactus::command

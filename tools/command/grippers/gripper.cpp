@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How faithfully a gripper renders objects.
+// tactus gripper: measures how faithfully a gripper renders objects on the test rig.
 #include "assets/file/whole_file.hpp"
 #include "devices/display/png.hpp"
 #include "tools/command/batch.hpp"
@@ -23,10 +23,10 @@ namespace tactus::command {
 namespace {
 
 struct RigChoice {
-    session::PatchChoice patch;  // may be a CSV file of a rig's record instead
+    session::PatchChoice patch;  // or a CSV record of a rig
     std::filesystem::path matrix, out;
     int threads = 0;           // 0: one per core
-    bool keep_series = false;  // write what was measured as series.csv
+    bool keep_series = false;  // write the samples to series.csv
     bool json = false;
 };
 
@@ -53,14 +53,14 @@ study::RigReport recorded(const RigChoice& choice) {
     std::vector<std::string> notes;
     study::RigReport report = study::study_rig_series(study::load_rig_series(choice.patch.patch, notes));
     report.title = "Test rig: " + std::filesystem::path(choice.patch.patch).filename().string();
-    report.source = fmt::format("{} records as they were measured.", report.rows.size());
+    report.source = fmt::format("{} measured records.", report.rows.size());
     report.notes = std::move(notes);
     return report;
 }
 
 int judge(const RigChoice& choice) {
     const bool is_record = choice.patch.patch.ends_with(".csv");
-    if (is_record && !choice.matrix.empty()) throw Error("a record says itself what was tried; leave --matrix out");
+    if (is_record && !choice.matrix.empty()) throw Error("a record contains its own conditions; leave out --matrix");
     study::RigMatrix matrix;
     if (!choice.matrix.empty()) matrix = study::load_rig_matrix(choice.matrix);
     session::make_output_folder(choice.out);
@@ -82,11 +82,12 @@ Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<RigChoice>();
     add_patch_options(verb, choice->patch);
     verb.find("patch").about("patch with a gripper on a test rig, such as gripper-wqsm, or a CSV record of a real one");
-    verb.add("--matrix", choice->matrix, "TOML file of what is tried (default: the matrix of Olsson 2015)");
+    verb.add("--matrix", choice->matrix, "TOML file with the test matrix (default: the matrix of Olsson 2015)");
     verb.add("-o,--out", choice->out, "folder for report.html, rig.json and rig.csv").required();
     verb.add("--jobs", choice->threads, "cells at a time, 0: one per core").range(0, 64);
     verb.old("--threads", "--jobs");
-    verb.flag("--series", choice->keep_series, "also write every sample to series.csv, which this verb reads as well");
+    verb.flag("--series", choice->keep_series,
+              "also write all samples to series.csv, a record that this verb can read");
     verb.flag("--json", choice->json, "print the result as JSON");
     return [choice] { return judge(*choice); };
 }

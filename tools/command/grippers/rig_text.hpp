@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a rig found, as JSON, CSV and text.
+// Results of a rig study as JSON, CSV and text.
 #pragma once
 
 #include "tools/study/grippers/rig_report.hpp"

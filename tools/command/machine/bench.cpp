@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hands the benchmarks on to the program that has them.
+// tactus bench: runs the program tactus-bench.
 #include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
 
@@ -16,14 +16,14 @@ namespace tactus::command {
 
 namespace {
 
-/// Only returns by throwing Error.
+/// Replaces the process; throws Error on failure.
 int run_tactus_bench(const std::vector<std::string>& arguments) {
     std::error_code failure;
     const auto self = std::filesystem::read_symlink("/proc/self/exe", failure);
     const std::filesystem::path program = self.parent_path() / "tactus-bench";
     if (failure || !std::filesystem::exists(program))
         throw Error(
-            fmt::format("the benchmarks are a program of their own, {}, which is not there; build it with "
+            fmt::format("the benchmarks are in a separate program, {}, which does not exist; build it with "
                         "'cmake --build BUILD_FOLDER --target tactus-bench', or install it beside tactus",
                         program.string()));
     std::string name = program.string();
@@ -39,7 +39,7 @@ int run_tactus_bench(const std::vector<std::string>& arguments) {
 }  // namespace
 
 Verb bench_verb() {
-    return {"bench", "figures of this machine, beside other programs where they are installed", nullptr, nullptr,
+    return {"bench", "benchmarks of this machine, compared with other programs if they are installed", nullptr, nullptr,
             run_tactus_bench};
 }
 

@@ -53,6 +53,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb devices_verb() { return {"devices", "haptic drivers and sound outputs of this machine", add}; }
+Verb devices_verb() { return {"devices", "list haptic drivers and sound outputs of this machine", add}; }
 
 }  // namespace tactus::command

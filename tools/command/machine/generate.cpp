@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes manual pages and completions, for packages.
+// tactus generate (hidden): writes manual pages and shell completions, for packages.
 #include "assets/file/whole_file.hpp"
 #include "tools/command/catalogue.hpp"
 #include "tools/command/manual.hpp"
@@ -31,7 +31,7 @@ int generate(const GenerateChoice& choice) {
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<GenerateChoice>();
     verb.add("what", choice->what, "what to write").required().one_of({"man", "bash", "zsh", "fish"});
-    verb.add("folder", choice->folder, "where to write it; made if missing").required();
+    verb.add("folder", choice->folder, "output folder; made if missing").required();
     return [choice] { return generate(*choice); };
 }
 

@@ -126,6 +126,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb nodes_verb() { return {"nodes", "the node types: ports, parameters, units, ranges", add}; }
+Verb nodes_verb() { return {"nodes", "list the node types with ports, parameters, units and ranges", add}; }
 
 }  // namespace tactus::command

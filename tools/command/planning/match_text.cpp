@@ -8,7 +8,8 @@ namespace tactus::command {
 void print_match(const cases::CasePlan& plan, const study::PlanMatch& found) {
     const fit::FragmentMatch& match = found.match;
     const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
-    if (match.partner == fit::Arrangement::none) fmt::print("{}: nothing near looks against it\n", name(match.moving));
+    if (match.partner == fit::Arrangement::none)
+        fmt::print("{}: no other fragment faces it at a small distance\n", name(match.moving));
     else
         fmt::print("{} to {}: {}, {} faces, score {:.2f}, margin {:.2f}, {:.0f} mm² on each other, {:.3f} mm rms{}\n",
                    name(match.moving), name(match.partner), fit::name_of(match.verdict), match.faces,

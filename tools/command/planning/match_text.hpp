@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was found for a fragment of a plan, as text and JSON.
+// The match of a fragment of a plan as text and JSON.
 #pragma once
 
 #include "tools/command/pose_text.hpp"
@@ -29,7 +29,7 @@ Json match_json(const cases::CasePlan& plan, const study::PlanMatch& found) {
             {"paint", found.was_painted ? "file" : "proposed"}};
 }
 
-/// One line for people, on standard output.
+/// Prints one line on standard output.
 void print_match(const cases::CasePlan& plan, const study::PlanMatch& found);
 
 }  // namespace tactus::command

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Alternatives of a plan: places in its history with a name.
+// tactus plan alternative: named branches of a plan's history.
 #include "dsp/core/error.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/study/planning/plan_case.hpp"
@@ -36,8 +36,9 @@ int go_to_alternative(const AlternativeChoice& choice) {
     auto found = find(choice.alternative);
     if (choice.remove) {
         if (found == plan.alternatives.end() || found - plan.alternatives.begin() == plan.current)
-            throw Error(fmt::format("'{}' cannot be removed: it is {}", choice.alternative,
-                                    found == plan.alternatives.end() ? "not there" : "where the plan stands"));
+            throw Error(
+                fmt::format("'{}' cannot be removed: {}", choice.alternative,
+                            found == plan.alternatives.end() ? "it does not exist" : "it is the current alternative"));
         if (found - plan.alternatives.begin() < plan.current) --plan.current;
         plan.alternatives.erase(found);
     } else if (found == plan.alternatives.end()) {
@@ -48,7 +49,7 @@ int go_to_alternative(const AlternativeChoice& choice) {
         plan.current = static_cast<int>(plan.alternatives.size()) - 1;
     } else if (!choice.from.empty()) {
         throw Error(
-            fmt::format("there is an alternative '{}' already; leave --from out to go there", choice.alternative));
+            fmt::format("the alternative '{}' exists already; leave out --from to switch to it", choice.alternative));
     } else plan.current = static_cast<int>(found - plan.alternatives.begin());
     cases::save_case_plan(plan, choice.plan);
     return show_change(choice);
@@ -57,14 +58,16 @@ int go_to_alternative(const AlternativeChoice& choice) {
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<AlternativeChoice>();
     add_plan_options(verb, *choice);
-    verb.add("name", choice->alternative, "which (default: list them)");
-    verb.add("--from", choice->from, "begin it where this one stands");
-    verb.flag("--remove", choice->remove, "forget the name; its steps stay in the file");
+    verb.add("name", choice->alternative, "name of the alternative (default: list all)");
+    verb.add("--from", choice->from, "begin it at the state of this alternative");
+    verb.flag("--remove", choice->remove, "remove the name; its steps stay in the file");
     return [choice] { return go_to_alternative(*choice); };
 }
 
 }  // namespace
 
-Verb plan_alternative_verb() { return {"alternative", "begin one where the plan stands, or go to another", add}; }
+Verb plan_alternative_verb() {
+    return {"alternative", "begin an alternative at the current state, or switch to another", add};
+}
 
 }  // namespace tactus::command

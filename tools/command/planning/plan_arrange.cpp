@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Groups, locks and hides fragments: one step of the plan each.
+// tactus plan group, add, ungroup, remove, lock, unlock, hide, unhide: each adds one step to the plan.
 #include "dsp/core/error.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/study/planning/plan_case.hpp"
@@ -9,7 +9,7 @@ namespace tactus::command {
 namespace {
 
 struct ArrangeChoice : PlanChoice {
-    std::string kind;  // of the step, as the plan's file calls it; "unhide" is "show" there
+    std::string kind;  // kind of step as in the plan file; "unhide" is called "show" there
     std::string group;
 };
 
@@ -46,7 +46,7 @@ std::shared_ptr<ArrangeChoice> choice_of(VerbOptions& verb, const char* kind) {
     return choice;
 }
 
-/// A verb that takes fragments and nothing else.
+/// A verb whose only arguments are fragments.
 template <const char* kind>
 Action add_simple(VerbOptions& verb) {
     const auto choice = choice_of(verb, kind);
@@ -60,16 +60,17 @@ constexpr char remove_kind[] = "remove", lock_kind[] = "lock", unlock_kind[] = "
 }  // namespace
 
 Verb plan_group_verb() {
-    return {"group", "let fragments, and the groups they are in, move as one", [](VerbOptions& verb) -> Action {
+    return {"group", "group fragments, and the groups they are in, so that they move together",
+            [](VerbOptions& verb) -> Action {
                 const auto choice = choice_of(verb, "group");
                 add_fragments(verb, *choice, "which ones");
-                verb.add("--name", choice->group, "of the group (default: a number)");
+                verb.add("--name", choice->group, "name of the group (default: group and a number)");
                 return [choice] { return arrange(*choice); };
             }};
 }
 
 Verb plan_add_verb() {
-    return {"add", "fragments, and the groups they are in, become part of a group", [](VerbOptions& verb) -> Action {
+    return {"add", "add fragments, and the groups they are in, to a group", [](VerbOptions& verb) -> Action {
                 const auto choice = choice_of(verb, "add");
                 verb.add("group", choice->group, "which group").required();
                 add_fragments(verb, *choice, "which ones");
@@ -78,17 +79,19 @@ Verb plan_add_verb() {
 }
 
 Verb plan_ungroup_verb() {
-    return {"ungroup", "the parts of a group stand on their own", [](VerbOptions& verb) -> Action {
+    return {"ungroup", "dissolve a group into its parts", [](VerbOptions& verb) -> Action {
                 const auto choice = choice_of(verb, "ungroup");
                 verb.add("group", choice->group, "which group").required();
                 return [choice] { return arrange(*choice); };
             }};
 }
 
-Verb plan_remove_verb() { return {"remove", "fragments leave all groups", add_simple<remove_kind>}; }
-Verb plan_lock_verb() { return {"lock", "fragments, and what is grouped with them, stay", add_simple<lock_kind>}; }
-Verb plan_unlock_verb() { return {"unlock", "they may move again", add_simple<unlock_kind>}; }
-Verb plan_hide_verb() { return {"hide", "fragments are left out of pictures and fits", add_simple<hide_kind>}; }
-Verb plan_unhide_verb() { return {"unhide", "they are there again", add_simple<unhide_kind>}; }
+Verb plan_remove_verb() { return {"remove", "remove fragments from all groups", add_simple<remove_kind>}; }
+Verb plan_lock_verb() {
+    return {"lock", "lock fragments and their groups, so that they cannot be moved", add_simple<lock_kind>};
+}
+Verb plan_unlock_verb() { return {"unlock", "unlock fragments", add_simple<unlock_kind>}; }
+Verb plan_hide_verb() { return {"hide", "hide fragments in pictures and fits", add_simple<hide_kind>}; }
+Verb plan_unhide_verb() { return {"unhide", "show hidden fragments again", add_simple<unhide_kind>}; }
 
 }  // namespace tactus::command

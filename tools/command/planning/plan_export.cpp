@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A plan for other programs: meshes where they are planned, transforms as ITK reads them, landmarks for 3D Slicer.
+// tactus plan export: placed meshes, ITK transforms and 3D Slicer landmarks.
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/write_mesh.hpp"
 #include "dsp/core/error.hpp"
@@ -26,7 +26,7 @@ struct ExportChoice : PlanChoice {
     std::filesystem::path out;
 };
 
-/// ITK keeps transforms from the parent, which is the inverse of what was moved; LPS, mm. Rows of the matrix, then the
+/// ITK stores the transform from the parent, which is the inverse of the motion; LPS, mm. Rows of the matrix, then the
 /// translation.
 std::string tfm_of(const Pose& placed) {
     const Pose back = placed.inverse();
@@ -43,7 +43,7 @@ struct Landmark {
     Vec3 position;  ///< m
 };
 
-/// The middle of a surface, and the points of it that lie farthest out along six directions.
+/// Landmarks: the centroid of a surface and its extreme points along six directions.
 std::vector<Landmark> landmarks_of(const std::vector<contact::SurfacePoint>& points) {
     Vec3 middle(0.0);
     for (const contact::SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
@@ -58,7 +58,7 @@ std::vector<Landmark> landmarks_of(const std::vector<contact::SurfacePoint>& poi
     return marks;
 }
 
-/// Control points of a Slicer markup, turned and moved by `pose`.
+/// Control points of a Slicer markup, transformed by `pose`.
 std::string markup_of(const std::string& fragment, const std::vector<Landmark>& marks, const Pose& pose) {
     const Mat3 m = glm::mat3_cast(pose.orientation);
     Json orientation = Json::array(), points = Json::array();
@@ -91,7 +91,7 @@ std::string markup_of(const std::string& fragment, const std::vector<Landmark>& 
     return json.dump(2) + "\n";
 }
 
-/// Names of fragments may hold what a file's name must not.
+/// Replaces characters of a fragment's name that a file name must not contain.
 std::string file_name_of(const std::string& fragment) {
     std::string name = fragment;
     for (char& c : name)
@@ -141,12 +141,14 @@ Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<ExportChoice>();
     add_plan_options(verb, *choice);
     verb.add("-o,--out", choice->out, "folder for meshes and tables").required();
-    verb.add("--format", choice->format, "of the meshes").one_of({"stl", "ply"}).shows_default();
+    verb.add("--format", choice->format, "format of the meshes").one_of({"stl", "ply"}).shows_default();
     return [choice] { return export_plan(*choice); };
 }
 
 }  // namespace
 
-Verb plan_export_verb() { return {"export", "placed fragments, transforms and landmarks for other programs", add}; }
+Verb plan_export_verb() {
+    return {"export", "write placed fragments, transforms and landmarks for other programs", add};
+}
 
 }  // namespace tactus::command

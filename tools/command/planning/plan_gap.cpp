@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gap, contact and overlap of fragments as a plan places them.
+// tactus plan gap: gap, contact and overlap of placed fragments.
 #include "dsp/core/error.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/study/planning/plan_matching.hpp"
@@ -32,14 +32,14 @@ void print(const cases::CasePlan& plan, const std::vector<study::PlanGap>& gaps)
     for (const study::PlanGap& g : gaps)
         fmt::print(
             "{} and {}: {:.0f} mm² face each other, {:.0f} mm² touch; gap {:.2f} mm (95 %: {:.2f} mm), "
-            "{:.1f} mm³ in each other, {:.2f} mm deep\n",
+            "{:.1f} mm³ overlap, {:.2f} mm deep\n",
             name(g.first), name(g.second), g.gap.facing_area * 1e6, g.gap.contact_area * 1e6,
             study::shown_mm(g.gap.median * 1e3), g.gap.p95 * 1e3, g.overlap * 1e9, g.gap.deepest * 1e3);
 }
 
 int gap(const PlanChoice& choice) {
     const cases::CasePlan plan = cases::load_case_plan(choice.plan);
-    if (!choice.names.empty() && choice.names.size() != 2) throw Error("'plan gap' takes two fragments, or none");
+    if (!choice.names.empty() && choice.names.size() != 2) throw Error("'plan gap' needs two fragments, or none");
     const std::filesystem::path folder = choice.plan.parent_path();
     std::optional<std::pair<int, int>> pair;
     if (!choice.names.empty())
@@ -53,12 +53,12 @@ int gap(const PlanChoice& choice) {
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<PlanChoice>();
     add_plan_options(verb, *choice);
-    verb.add("fragments", choice->names, "two of them (default: all pairs that face each other)");
+    verb.add("fragments", choice->names, "two fragments (default: all pairs that face each other)");
     return [choice] { return gap(*choice); };
 }
 
 }  // namespace
 
-Verb plan_gap_verb() { return {"gap", "gap, contact and overlap of fragments as they are placed", add}; }
+Verb plan_gap_verb() { return {"gap", "measure gap, contact and overlap of placed fragments", add}; }
 
 }  // namespace tactus::command

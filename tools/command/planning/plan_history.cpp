@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Goes back and forth in the steps of a plan.
+// tactus plan undo and redo.
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/study/planning/plan_case.hpp"
 
@@ -45,14 +45,14 @@ std::shared_ptr<HistoryChoice> choice_of(VerbOptions& verb) {
 }  // namespace
 
 Verb plan_undo_verb() {
-    return {"undo", "steps back; none is lost", [](VerbOptions& verb) -> Action {
-                return [choice = choice_of(verb)] { return go(*choice, fit::undone, "nothing is left to undo"); };
+    return {"undo", "undo steps; they stay in the plan", [](VerbOptions& verb) -> Action {
+                return [choice = choice_of(verb)] { return go(*choice, fit::undone, "there is nothing to undo"); };
             }};
 }
 
 Verb plan_redo_verb() {
-    return {"redo", "steps on again", [](VerbOptions& verb) -> Action {
-                return [choice = choice_of(verb)] { return go(*choice, fit::redone, "nothing is left to redo"); };
+    return {"redo", "redo steps", [](VerbOptions& verb) -> Action {
+                return [choice = choice_of(verb)] { return go(*choice, fit::redone, "there is nothing to redo"); };
             }};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The healthy side of a plan's case as a target.
+// tactus plan mirror: registers the mirrored healthy side as a target.
 #include "tools/study/planning/plan_mirror.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/command/pose_text.hpp"
@@ -38,13 +38,13 @@ Json comparison_json(const std::string& fragment, const study::MirrorComparison&
 
 void print_faces(const std::string& fragment, const char* when, const std::string& main,
                  const study::FacesThere& faces) {
-    fmt::print("  {} {}: {:.0f} mm² touch {}, {:.0f} mm³ in each other, {:.2f} mm deep\n", fragment, when,
+    fmt::print("  {} {}: {:.0f} mm² touch {}, {:.0f} mm³ overlap, {:.2f} mm deep\n", fragment, when,
                faces.gap.contact_area * 1e6, main, faces.overlap * 1e9, faces.gap.deepest * 1e3);
 }
 
 void print_comparison(const std::string& fragment, const std::string& main, const study::MirrorComparison& c) {
     fmt::print(
-        "{}: {:.2f} mm and {:.2f}° from where it lies best on the target; median {:.2f} mm, there "
+        "{}: {:.2f} mm and {:.2f}° from its best pose on the target; median {:.2f} mm, there "
         "{:.2f} mm\n",
         fragment, 1e3 * c.away.distance, c.away.angle_deg, c.registration.before * 1e3, c.registration.median * 1e3);
     print_faces(fragment, "where it was", main, c.before);
@@ -74,7 +74,7 @@ int mirror(const MirrorChoice& choice) {
     step.by = "command";
     step.mirror = laid.target;
     study::do_step(plan, std::move(step), choice.plan);
-    // The others against the mirrored side as it lies now.
+    // Compares the other fragments with the registered mirrored side.
     const fit::RegistrationTarget target(laid.surface);
     Json others = Json::array();
     for (std::size_t n = 1; n < numbers.size(); ++n) {
@@ -98,13 +98,15 @@ Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<MirrorChoice>();
     add_plan_options(verb, *choice);
     verb.add("healthy", choice->healthy, "bone file or mesh of the other side").required();
-    add_fragments(verb, *choice, "the one that stands; more of them are compared, or moved with --settle");
-    verb.flag("--settle", choice->settle, "move the others to where they lie best on the target");
+    add_fragments(verb, *choice, "the fixed fragment; further fragments are compared, or moved with --settle");
+    verb.flag("--settle", choice->settle, "move the other fragments to their best pose on the target");
     return [choice] { return mirror(*choice); };
 }
 
 }  // namespace
 
-Verb plan_mirror_verb() { return {"mirror", "the healthy side, mirrored and laid on a fragment, as a target", add}; }
+Verb plan_mirror_verb() {
+    return {"mirror", "mirror the healthy side and register it to a fragment, as a target", add};
+}
 
 }  // namespace tactus::command

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Places a fragment.
+// tactus plan move: places a fragment.
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/command/pose_text.hpp"
 #include "tools/study/planning/plan_case.hpp"
@@ -30,6 +30,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb plan_move_verb() { return {"move", "place a fragment and all that is grouped with it", add}; }
+Verb plan_move_verb() { return {"move", "place a fragment and its group", add}; }
 
 }  // namespace tactus::command

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes a plan of files.
+// tactus plan new: makes a plan from files.
 #include "assets/bone/labels.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/planning/plan_options.hpp"
@@ -17,7 +17,7 @@ struct NewChoice : PlanChoice {
     std::string title;
 };
 
-/// "NAME=FILE" or "FILE", whose stem, or the bone's name in it, is the fragment's.
+/// "NAME=FILE" or "FILE"; the default name is the stem of the file, or the name of the bone in it.
 void add_file_of(cases::CasePlan& plan, const std::string& text, const fs::path& folder) {
     const auto equals = text.find('=');
     const bool is_named = equals != std::string::npos && !fs::exists(text);
@@ -27,7 +27,7 @@ void add_file_of(cases::CasePlan& plan, const std::string& text, const fs::path&
     if (bone::file_of_bone(file) == file && file.extension() == ".vdb") {
         const auto bones = bone::load_bones(file);
         if (bones.size() > 1 && is_named)
-            throw Error(fmt::format("{}: holds {} bones; name one of them, as in {}={}#{}", file.string(), bones.size(),
+            throw Error(fmt::format("{}: there are {} bones; choose one, as in {}={}#{}", file.string(), bones.size(),
                                     name, file.string(), bones.front().name));
         for (const bone::Bone& bone : bones)
             found.emplace_back(bones.size() > 1 ? bone.name : file.stem().string(),
@@ -41,14 +41,14 @@ void add_file_of(cases::CasePlan& plan, const std::string& text, const fs::path&
     for (auto& [own, path] : found) {
         cases::add_fragment(plan, is_named ? name : own, path, folder,
                             bone::label_colour(static_cast<int>(plan.fragments.size()) + 1));
-        // Metres, open surfaces and broken files come out now, not in the middle of a session.
+        // Loads every file now, so that wrong units, open surfaces and damaged files are reported before the session.
         study::load_fragment(plan.fragments.back(), folder);
     }
 }
 
 int make_plan(const NewChoice& choice) {
     if (fs::exists(choice.plan))
-        throw Error(fmt::format("{}: is there already; a plan is never written over", choice.plan.string()));
+        throw Error(fmt::format("{}: the file exists already; a plan is never overwritten", choice.plan.string()));
     const cases::PlanLock lock(choice.plan);
     cases::CasePlan plan;
     plan.title = choice.title.empty() ? choice.plan.stem().stem().string() : choice.title;
@@ -62,12 +62,12 @@ Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<NewChoice>();
     add_plan_options(verb, *choice);
     verb.add("files", choice->names, "bone files or closed meshes, FILE or NAME=FILE").required();
-    verb.add("--title", choice->title, "what the case is called");
+    verb.add("--title", choice->title, "title of the case");
     return [choice] { return make_plan(*choice); };
 }
 
 }  // namespace
 
-Verb plan_new_verb() { return {"new", "a plan of fragments as they were scanned", add}; }
+Verb plan_new_verb() { return {"new", "make a plan of fragments at their scanned poses", add}; }
 
 }  // namespace tactus::command

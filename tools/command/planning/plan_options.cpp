@@ -4,7 +4,7 @@
 namespace tactus::command {
 
 void add_plan_options(VerbOptions& verb, PlanChoice& choice) {
-    verb.add("plan", choice.plan, "the plan, a JSON file").required();
+    verb.add("plan", choice.plan, "plan file, JSON").required();
     verb.flag("--json", choice.json, "as JSON");
 }
 

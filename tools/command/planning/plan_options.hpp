@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the verbs of a plan share.
+// Options and output shared by the verbs of plans.
 #pragma once
 
 #include "tools/command/options.hpp"
@@ -14,7 +14,7 @@ namespace tactus::command {
 
 struct PlanChoice {
     std::filesystem::path plan;
-    std::vector<std::string> names;  ///< of fragments
+    std::vector<std::string> names;  ///< names of fragments
     bool json = false;
 };
 
@@ -22,9 +22,9 @@ struct PlanChoice {
 void add_plan_options(VerbOptions& verb, PlanChoice& choice);
 Option add_fragments(VerbOptions& verb, PlanChoice& choice, const char* about);
 
-/// What the plan holds, for people or as JSON, on standard output.
+/// Prints the plan as text or JSON on standard output.
 int show_plan(const PlanChoice& choice);
-/// After a change: programs are told what the plan holds now.
+/// Prints the plan after a change, with --json only.
 int show_change(const PlanChoice& choice);
 
 }  // namespace tactus::command

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plan as one page.
+// tactus plan report: the plan as one HTML page.
 #include "assets/file/whole_file.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/picture/report/plan_page.hpp"
@@ -15,7 +15,7 @@ struct ReportChoice : PlanChoice {
     std::filesystem::path out;
 };
 
-/// Beside the plan, without its endings.
+/// Default path: beside the plan, without its extensions.
 std::filesystem::path page_of(const std::filesystem::path& plan) {
     std::string stem = plan.filename().string();
     for (const char* ending : {".json", ".plan"})
@@ -41,6 +41,8 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb plan_report_verb() { return {"report", "one page with pictures, gaps, fits and the order of steps", add}; }
+Verb plan_report_verb() {
+    return {"report", "write an HTML page with pictures, gaps, fits and the order of steps", add};
+}
 
 }  // namespace tactus::command

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Seats fitted fragments of a plan once more.
+// tactus plan settle: refines fitted fragments against all their neighbours.
 #include "dsp/core/error.hpp"
 #include "tools/command/planning/match_text.hpp"
 #include "tools/command/planning/plan_options.hpp"
@@ -15,7 +15,7 @@ struct SettleChoice : PlanChoice {
     int passes = 1;
 };
 
-/// Those that are named, or all that were fitted and may move.
+/// The named fragments, or all fitted fragments that are not locked.
 std::vector<int> settled_fragments(const cases::CasePlan& plan, const std::vector<std::string>& names) {
     std::vector<int> numbers;
     for (const std::string& name : names) numbers.push_back(cases::find_fragment(plan, name));
@@ -24,7 +24,7 @@ std::vector<int> settled_fragments(const cases::CasePlan& plan, const std::vecto
         for (int n = 0; n < static_cast<int>(plan.fragments.size()); ++n)
             if (state.fits[static_cast<std::size_t>(n)] && state.arrangement.can_move(n)) numbers.push_back(n);
     }
-    if (numbers.empty()) throw Error("nothing was fitted yet; 'tactus plan snap' comes first");
+    if (numbers.empty()) throw Error("no fragment is fitted yet; run 'tactus plan snap' first");
     return numbers;
 }
 
@@ -51,7 +51,7 @@ int settle(const SettleChoice& choice) {
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<SettleChoice>();
     add_plan_options(verb, *choice);
-    verb.add("fragments", choice->names, "which ones (default: all that were fitted)");
+    verb.add("fragments", choice->names, "fragments to settle (default: all fitted ones)");
     verb.add("--passes", choice->passes, "how often").range(1, 20);
     return [choice] { return settle(*choice); };
 }
@@ -59,8 +59,7 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb plan_settle_verb() {
-    return {"settle", "seat fitted fragments once more, each on all of its neighbours together; 1: one does not fit",
-            add};
+    return {"settle", "refine fitted fragments, each against all its neighbours; 1: one does not fit", add};
 }
 
 }  // namespace tactus::command

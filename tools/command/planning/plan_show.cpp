@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a plan holds, for people and programs.
+// tactus plan show: the content of a plan as text or JSON.
 #include "assets/cases/plan_file.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/command/pose_text.hpp"
@@ -110,8 +110,7 @@ int show_plan(const PlanChoice& choice) {
 }
 
 Verb plan_show_verb() {
-    return {"show", "fragments, groups, alternatives, and what is wrong with the files",
-            [](VerbOptions& verb) -> Action {
+    return {"show", "show fragments, groups, alternatives, and problems of the files", [](VerbOptions& verb) -> Action {
                 const auto choice = std::make_shared<PlanChoice>();
                 add_plan_options(verb, *choice);
                 return [choice] { return show_plan(*choice); };

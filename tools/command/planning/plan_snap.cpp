@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Brings a fragment of a plan to where its fracture fits.
+// tactus plan snap: moves a fragment of a plan to the pose where its fracture fits.
 #include "dsp/core/error.hpp"
 #include "tools/command/planning/match_text.hpp"
 #include "tools/command/planning/plan_options.hpp"
@@ -33,7 +33,7 @@ int snap_fragment(const SnapChoice& choice) {
     const study::PlanMatch found =
         choice.mode == "global" ? matching.anywhere(a, moving, only) : matching.near(a, moving, only);
     const bool fits = found.match.verdict == fit::FitVerdict::fit;
-    // What may fail comes before the plan is changed.
+    // Everything that may fail runs before the plan is changed.
     const auto target = study::target_distances(state, folder, matching.fragment(moving), found.from, found.match.pose);
     if (fits) study::do_step(plan, study::step_of(plan, found.match, "snap"), choice.plan);
     if (choice.json) {
@@ -53,10 +53,9 @@ int snap_fragment(const SnapChoice& choice) {
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<SnapChoice>();
     add_plan_options(verb, *choice);
-    add_fragments(verb, *choice,
-                  "the one that moves, with its group, and the one that stands (default: the best of all)")
+    add_fragments(verb, *choice, "the moving fragment (with its group) and the fixed one (default: the best match)")
         .count(1, 2);
-    verb.add("--mode", choice->mode, "extended starts from where it is, global from anywhere")
+    verb.add("--mode", choice->mode, "extended: from the current pose; global: from any pose")
         .one_of({"extended", "global"})
         .shows_default();
     return [choice] { return snap_fragment(*choice); };
@@ -64,6 +63,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb plan_snap_verb() { return {"snap", "bring a fragment to where its fracture fits another; 1: it does not", add}; }
+Verb plan_snap_verb() { return {"snap", "fit the fracture of a fragment to another fragment; 1: no fit", add}; }
 
 }  // namespace tactus::command

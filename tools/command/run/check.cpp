@@ -48,7 +48,7 @@ void add_stiffness(Json& row, const analyse::ForceLoop& loop) {
     row["ok"] = verdict == analyse::Verdict::unknown ? Json() : Json(verdict == analyse::Verdict::stable);
 }
 
-/// One row per path; a loop through a hand has its stiffness too.
+/// One row per path; loops through a hand also have a stiffness.
 Json paths_json(const compile::Plan& plan, const std::vector<analyse::ForceLoop>& loops) {
     std::map<std::pair<std::string_view, std::string_view>, const analyse::ForceLoop*> by_ends;
     for (const analyse::ForceLoop& loop : loops)
@@ -84,7 +84,7 @@ Json check_json(const std::optional<compile::Plan>& plan, const patch::Problems&
     return json;
 }
 
-/// The position loops of admittance controllers: their gain, and from which on they would be unstable.
+/// The position loops of admittance controllers: gain and stability limit.
 Json loops_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes) {
     Json loops = Json::array();
     for (const auto& node : nodes) {
@@ -263,12 +263,12 @@ void print_check(const Json& json) {
         line += stiffness_text(path);
         fmt::print("{}\n", line);
     }
-    fmt::print("What a hand may feel before it hums: damping of the device / (period / 2 + latency).\n");
+    fmt::print("Limit of stable stiffness: damping of the device / (period / 2 + latency).\n");
     if (json.contains("contact")) print_contact(json["contact"]);
     if (json.contains("device_classes")) print_classes(json["device_classes"]);
 }
 
-/// No path is stiffer than a hand may feel it, and no loop unstable.
+/// True when no path exceeds its stiffness limit and no loop is unstable.
 bool is_stable(const Json& json) {
     for (const char* key : {"paths", "admittance_loops"})
         if (json.contains(key))
@@ -299,7 +299,7 @@ int check(const CheckChoice& choice) {
         plan = session::read_plan(choice.patch, problems);
         if (plan) assets.load(*plan, problems);
         json = check_json(plan, problems);
-        // What only `prepare` can find: devices, file names, sizes.
+        // Finds errors that only `prepare` can find: devices, file names, sizes.
         if (problems.empty()) {
             const run::Engine engine(std::move(*plan), run::EngineOptions{});
             const auto loops = analyse::force_loops(engine.plan(), stated_by(engine.host(), &DeviceInfo::damping),

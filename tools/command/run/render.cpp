@@ -30,7 +30,7 @@ struct RenderChoice : PatchChoice {
     int threads = 0;      // 0: one per core
     std::string block;    // "", a number, or "random"
     std::filesystem::path log, record;
-    bool overwrite = false;  // results that the folder holds
+    bool overwrite = false;  // replace existing results
     FrameChoice frames;
     bool json = false;
 };
@@ -39,7 +39,7 @@ int parse_block(const std::string& text) {
     int block = 0;
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), block);
     if (failure != std::errc{} || end != text.data() + text.size() || block < 1 || block > 65536)
-        throw Error(fmt::format("--block takes a number from 1 to 65536 or 'random', not '{}'", text));
+        throw Error(fmt::format("--block must be a number from 1 to 65536 or 'random', not '{}'", text));
     return block;
 }
 
@@ -122,14 +122,14 @@ namespace {
 
 void add_frame_options(VerbOptions& verb, FrameChoice& choice) {
     const Option frames = verb.add("--frames", choice.frames,
-                                   "number of pictures of the scene, evenly over the time: frame_0001.png, ...")
+                                   "number of pictures of the scene, evenly spaced in time: frame_0001.png, ...")
                               .range(1, 100000);
     const auto add = [&](const char* name, std::string& value, const char* about) {
         verb.add(name, value, about).shows_default().needs(frames);
     };
     add("--view-from", choice.view_from, "front, back, left, right, top, bottom or iso");
     add("--size", choice.size, "size of the pictures in pixels, WIDTHxHEIGHT");
-    add("--clip", choice.clip, "cut the scene open along an axis: x, -y, \"z=12 mm\"");
+    add("--clip", choice.clip, "clip the scene at a plane: x, -y, \"z=12 mm\"");
     add_sight_options(verb, choice.sight, &frames);
 }
 
@@ -141,8 +141,8 @@ Action add_render(VerbOptions& verb) {
     verb.flag("--overwrite", choice->overwrite, "replace results that the folder already holds");
     verb.add("--jobs", choice->threads, "threads, 0: one per core").range(0, 64);
     verb.old("--threads", "--jobs");
-    verb.add("--block", choice->block, "most samples per call, or 'random'; does not change the output");
-    verb.add("--log", choice->log, "repeat the timing decisions of a live run, a file of 'run --log'");
+    verb.add("--block", choice->block, "greatest number of samples per call, or 'random'; does not change the output");
+    verb.add("--log", choice->log, "use the timing decisions of a live run, from a file of 'run --log'");
     verb.add("--record", choice->record, "record the run as a take, a folder that 'replay' repeats");
     add_frame_options(verb, choice->frames);
     verb.flag("--json", choice->json, "print the summary as JSON");

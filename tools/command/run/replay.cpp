@@ -29,13 +29,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct ReplayChoice {
-    std::filesystem::path take, out;  // out: where the results of the run go; empty: nowhere
+    std::filesystem::path take, out;  // out: folder for the results; empty: none
     bool json = false;
     bool overwrite = false;
-    bool anyway = false;  // although assets have changed
+    bool anyway = false;  // even if assets have changed
 };
 
-/// Outputs whose hashes differ although no value did: values that the streams do not hold.
+/// Outputs with different hashes but equal values: the take does not store all of their values.
 std::vector<std::string> differing_hashes(const take::Take& take, const run::Engine& engine) {
     std::vector<std::string> ports;
     if (take.result.empty()) return ports;
@@ -65,16 +65,16 @@ struct Verdict {
 
 void print(const Verdict& verdict, std::size_t outputs, double seconds) {
     for (const take::TakeDamage& d : verdict.damages)
-        fmt::print("differs: {} holds {} {}, the run wrote {}\n", d.file, d.holds, d.unit, d.written);
+        fmt::print("differs: {} has {} {}, the run wrote {}\n", d.file, d.holds, d.unit, d.written);
     if (const auto& first = verdict.first)
         fmt::print("differs: {} at tick {} ({:.6f} s): expected {}, got {}\n", first->port, first->tick, first->time,
                    fmt::join(first->expected, " "), fmt::join(first->got, " "));
-    // Less of a run has other hashes.
+    // An incomplete run has other hashes.
     else if (verdict.damages.empty() && !verdict.hashes.empty())
         fmt::print("differs: the hashes of {}\n", fmt::join(verdict.hashes, ", "));
     if (verdict.differs()) return;
     if (verdict.compared == 0)
-        fmt::print("{}0 values compared: the take holds none\n", verdict.is_complete ? "" : "cut off; ");
+        fmt::print("{}0 values compared: the take has none\n", verdict.is_complete ? "" : "cut off; ");
     else if (!verdict.is_complete)
         fmt::print("cut off; {} values compared, equal so far; {:.3g} s can be repeated\n", verdict.compared, seconds);
     else fmt::print("identical: {} values of {} outputs, {:.3g} s\n", verdict.compared, outputs, seconds);
@@ -87,7 +87,7 @@ int replay(const ReplayChoice& choice) {
         fmt::print(stderr, "tactus: {}; the bits may differ\n", difference);
     for (const std::string& difference : changed) fmt::print(stderr, "tactus: {}\n", difference);
     if (!changed.empty() && !choice.anyway)
-        throw Error("the take cannot be repeated with other assets; --anyway tries");
+        throw Error("the take cannot be repeated with changed assets; use --anyway to try");
 
     const std::vector<take::TakeDamage> damages = take.damages();
     take.drop_unreadable_streams();
@@ -154,10 +154,10 @@ namespace {
 
 Action add_replay(VerbOptions& verb) {
     const auto choice = std::make_shared<ReplayChoice>();
-    verb.add("take", choice->take, "folder that --record made").required();
+    verb.add("take", choice->take, "folder of a take, made with --record").required();
     verb.add("-o,--out", choice->out, "folder for the results: sounds, traces, bones, summary.json");
     verb.flag("--overwrite", choice->overwrite, "replace results that the folder already holds");
-    verb.flag("--anyway", choice->anyway, "replay although assets have changed since");
+    verb.flag("--anyway", choice->anyway, "replay even if assets have changed");
     verb.flag("--json", choice->json, "as JSON");
     return [choice] { return replay(*choice); };
 }

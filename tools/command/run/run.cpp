@@ -47,7 +47,7 @@ int run(const view::ViewedRunChoice& choice) {
     };
     if (!choice.json)
         say(stderr, fmt::format("running {} for {}; Ctrl-C ends it\n", session.engine().plan().patch.title,
-                                choice.seconds ? fmt::format("{} s", *choice.seconds) : "as long as you like"));
+                                choice.seconds ? fmt::format("{} s", *choice.seconds) : "an unlimited time"));
     session.run({tend, tell}, interrupted);
     line.clear();
     session.finish();
@@ -71,7 +71,7 @@ Action add_run(VerbOptions& verb) {
     verb.add("--dilate", choice->dilate, "real seconds per logical second").range(0.01, 1000.0);
     verb.add("--audio", choice->audio,
              "sound output: part of a card's name, default, file or none (default: a card if there is one)");
-    verb.add("--audio-margin", choice->audio_margin, "sound kept ready for the card when a thread is late, ms")
+    verb.add("--audio-margin", choice->audio_margin, "sound buffered for the card in case a thread is late, ms")
         .unit("ms")
         .shows_default()
         .range(1.0, 2000.0);
@@ -83,7 +83,7 @@ Action add_run(VerbOptions& verb) {
     const Option window =
         verb.flag("--view", choice->view.wanted,
                   "open a window with the patch, its values and the scene; edits take effect at once");
-    verb.flag("--keep-running", choice->view.keep_running, "the run goes on when the window is closed").needs(window);
+    verb.flag("--keep-running", choice->view.keep_running, "continue the run when the window is closed").needs(window);
     add_view_options(verb, choice->view);
     verb.flag("!--no-edits", choice->edits, "do not watch the patch file, and refuse 'set' and 'trigger'");
     return [choice] { return run(*choice); };

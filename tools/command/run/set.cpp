@@ -14,12 +14,12 @@ namespace {
 
 struct SetChoice {
     std::vector<std::string> settings;  // "node.param=value"
-    int process = 0;                    // 0: the only run there is
+    int process = 0;                    // 0: the only run
 };
 
 int set(const SetChoice& choice) {
     for (const std::string& setting : choice.settings) {
-        if (setting.find('\n') != std::string::npos) throw Error("a setting is one line: NODE.PARAM=VALUE");
+        if (setting.find('\n') != std::string::npos) throw Error("a setting must be one line: NODE.PARAM=VALUE");
         const std::string answer = session::ask_run(choice.process, "set " + setting);
         if (answer.starts_with("error ")) throw Error(answer.substr(6));
         fmt::print("{}\n", answer);
@@ -30,12 +30,12 @@ int set(const SetChoice& choice) {
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<SetChoice>();
     verb.add("setting", choice->settings, "NODE.PARAM=VALUE, as in blade.stiffness=\"0.8 N/mm\"").required();
-    verb.add("--process", choice->process, "number of the run's process, when there are several");
+    verb.add("--process", choice->process, "process number of the run, when there are several");
     return [choice] { return set(*choice); };
 }
 
 }  // namespace
 
-Verb set_verb() { return {"set", "change a parameter of a patch that runs", add}; }
+Verb set_verb() { return {"set", "change a parameter of a running patch", add}; }
 
 }  // namespace tactus::command

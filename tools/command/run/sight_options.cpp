@@ -9,15 +9,16 @@ void add_sight_options(VerbOptions& verb, picture::SightChoice& choice, const Op
         if (what) option.needs(*what);
         return option;
     };
-    add("--stereo", choice.stereo, "mono, side-by-side, anaglyph; windows: quad-buffer as well").shows_default();
+    add("--stereo", choice.stereo, "mono, side-by-side, anaglyph; in windows also quad-buffer").shows_default();
     add("--head", choice.head,
-        "NODE.PORT, a pose output: the viewer's head; without --display it is in front of a screen 0.3 m high");
-    add("--display", choice.rig,
+        "NODE.PORT, a pose output: the viewer's head; without --display in front of a screen 0.3 m high");
+    add("--display", choice.display,
         "file of 'calibrate', or a name in the library: where screens, mirror and device stand; shows objects where "
         "they "
         "are felt");
     verb.old("--rig", "--display");
-    add("--offset", choice.offset, "shift of the picture against the touch: none, study (0.3 m), \"X mm, Y mm, Z mm\"");
+    add("--offset", choice.offset,
+        "shift of the picture against the haptic position: none, study (0.3 m), \"X mm, Y mm, Z mm\"");
 }
 
 void add_view_options(VerbOptions& verb, view::ViewChoice& choice) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How scenes are looked at, in pictures and in the window.
+// Options of the view of a scene, for pictures and the window.
 #pragma once
 
 #include "tools/command/options.hpp"
@@ -7,9 +7,9 @@
 
 namespace tactus::command {
 
-/// They need `what`, unless that is null.
+/// The options require `what`, unless it is null.
 void add_sight_options(VerbOptions& verb, picture::SightChoice& choice, const Option* what);
-/// Of the window.
+/// Options of the window.
 void add_view_options(VerbOptions& verb, view::ViewChoice& choice);
 
 }  // namespace tactus::command

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Presses buttons of a patch that runs.
+// tactus trigger: presses buttons of a running patch.
 #include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
@@ -17,15 +17,15 @@ namespace {
 
 struct TriggerChoice {
     std::vector<std::string> nodes;
-    int process = 0;  // 0: the only run there is
+    int process = 0;  // 0: the only run
 };
 
 int trigger(const TriggerChoice& choice) {
     for (std::size_t i = 0; i < choice.nodes.size(); ++i) {
         const std::string& node = choice.nodes[i];
-        // A button is down for 20 ms: without a pause the second press of one would only make the first longer.
+        // A button is down for 20 ms. Without a pause a second press of the same button would only prolong the first.
         if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(60));
-        if (node.find('\n') != std::string::npos) throw Error("the name of a button is one line");
+        if (node.find('\n') != std::string::npos) throw Error("the name of a button must be one line");
         const std::string answer = session::ask_run(choice.process, "trigger " + node);
         if (answer.starts_with("error ")) throw Error(answer.substr(6));
         fmt::print("{}\n", answer);
@@ -42,6 +42,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb trigger_verb() { return {"trigger", "press a button of a patch that runs", add}; }
+Verb trigger_verb() { return {"trigger", "press a button of a running patch", add}; }
 
 }  // namespace tactus::command

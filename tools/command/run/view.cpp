@@ -13,13 +13,13 @@ int view_take(const view::TakeViewChoice& choice) { return view::view_take(choic
 
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<view::TakeViewChoice>();
-    verb.add("take", choice->take, "folder that --record made").required();
+    verb.add("take", choice->take, "folder of a take, made with --record").required();
     add_view_options(verb, choice->view);
     return [choice] { return view_take(*choice); };
 }
 
 }  // namespace
 
-Verb view_verb() { return {"view", "open a window on a take: its values and bones at any instant", add}; }
+Verb view_verb() { return {"view", "open a take in a window: its values and bones at any instant", add}; }
 
 }  // namespace tactus::command

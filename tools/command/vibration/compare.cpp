@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether what the actuator plays is what the saw did: for two files, or for folders of them.
+// tactus compare: judges whether two vibration records are equivalent, for two files or for folders.
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/batch.hpp"
@@ -32,13 +32,13 @@ struct CompareChoice {
     std::string plot;                                // .svg or .png
     fs::path report, table;                          // .html, .csv
     std::string touch = "displacement";
-    std::vector<std::string> time_columns, columns;  // of CSV logs: of both files, or of each
+    std::vector<std::string> time_columns, columns;  // columns of CSV logs, for both files or for each
     std::string time_unit;
     int jobs = 0;                                    // pairs at a time, 0: one per core
     bool json = false;
 };
 
-/// Column names are for both files, or the first for the reference and the second for the output.
+/// One column name is for both files; of two, the first is for the reference and the second for the output.
 table::LogSelection selection_for(const CompareChoice& choice, std::size_t file) {
     const auto pick = [file](const std::vector<std::string>& names) {
         return names.empty() ? std::string() : names[std::min(file, names.size() - 1)];
@@ -54,7 +54,7 @@ struct Count {
     std::size_t passed = 0, failed = 0, bad = 0;
 };
 
-/// `failures`: what was wrong with each, empty where nothing was.
+/// `failures`: the error of each pair, empty for success.
 Count count_of(std::span<const ComparedPair> pairs, std::span<const std::string> failures) {
     Count count;
     for (std::size_t i = 0; i < pairs.size(); ++i)
@@ -116,10 +116,10 @@ int compare_many(const CompareChoice& choice, const study::CompareSettings& sett
             pairs[i].reference = names[i].reference;
             pairs[i].output = names[i].output;
             if (names[i].reference.empty())
-                throw Error(fmt::format("{}: there is no reference of that name in {}", names[i].output.string(),
+                throw Error(fmt::format("{}: there is no reference with this name in {}", names[i].output.string(),
                                         settings.reference.string()));
             if (names[i].output.empty())
-                throw Error(fmt::format("{}: there is no output of that name in {}", names[i].reference.string(),
+                throw Error(fmt::format("{}: there is no output with this name in {}", names[i].reference.string(),
                                         settings.output.string()));
             study::CompareSettings one = settings;
             one.reference = names[i].reference;
@@ -153,33 +153,39 @@ int compare(const CompareChoice& choice) {
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<CompareChoice>();
     study::CompareSettings& settings = choice->settings;
-    verb.add("reference", settings.reference, "sound file or CSV log of what was wanted, or a folder").required();
-    verb.add("output", settings.output, "sound file or CSV log of what came out, or a folder: files are paired by name")
+    verb.add("reference", settings.reference, "sound file or CSV log of the reference vibration, or a folder")
+        .required();
+    verb.add("output", settings.output,
+             "sound file or CSV log of the output vibration, or a folder: files are paired by name")
         .required();
     verb.add("--thresholds", choice->thresholds,
-             "TOML file of what must be reached; keys and defaults: docs/reference/tables.md");
-    verb.add("--plot", choice->plot, "a figure, .svg or .png; of folders a folder, of SVG");
-    verb.add("--report", choice->report, "figure, tables and how they were computed in one HTML file");
+             "TOML file with the thresholds; keys and defaults: docs/reference/tables.md");
+    verb.add("--plot", choice->plot, "a figure, .svg or .png; for folders: a folder of SVG files");
+    verb.add("--report", choice->report, "HTML file with figure, tables and methods");
     verb.add("--table", choice->table, "a row per pair, CSV");
     verb.add("--jobs", choice->jobs, "pairs at a time, 0: one per core").range(0, 256);
     verb.add("--reference-scale", settings.reference_scale, "units per full scale, such as m/s^2").shows_default();
-    verb.add("--output-scale", settings.output_scale, "of the output, in the same unit").shows_default();
-    verb.add("--channel", settings.channel, "of both files, from 1; 0: the mean of all").shows_default().range(0, 1024);
-    verb.add("--time-column", choice->time_columns, "of CSV logs: name or number, of both files or of each")
+    verb.add("--output-scale", settings.output_scale, "scale of the output, in the same unit").shows_default();
+    verb.add("--channel", settings.channel, "channel of both files, from 1; 0: the mean of all")
+        .shows_default()
+        .range(0, 1024);
+    verb.add("--time-column", choice->time_columns,
+             "time column of CSV logs: name or number, for both files or for each")
         .separated_by(',')
         .count(1, 2)
         .one_each();
-    verb.add("--column", choice->columns, "of CSV logs: name or number of what is compared, of both or of each")
+    verb.add("--column", choice->columns, "compared column of CSV logs: name or number, for both files or for each")
         .separated_by(',')
         .count(1, 2)
         .one_each();
-    verb.add("--time-unit", choice->time_unit, "of CSV logs: s, ms, us or ns").one_of({"s", "ms", "us", "ns"});
-    verb.add("--actuator", settings.actuator, "state the level gap of this actuator at its limits, of m/s^2");
-    verb.add("--mass", settings.mass, "mass that the actuator shakes, kg").unit("kg").shows_default();
-    verb.add("--touch", choice->touch, "what the threshold of touch is a threshold of")
+    verb.add("--time-unit", choice->time_unit, "unit of time in CSV logs: s, ms, us or ns")
+        .one_of({"s", "ms", "us", "ns"});
+    verb.add("--actuator", settings.actuator, "report the level gap of this actuator at its limits; needs m/s^2");
+    verb.add("--mass", settings.mass, "moving mass of the actuator, kg").unit("kg").shows_default();
+    verb.add("--touch", choice->touch, "quantity of the threshold of touch")
         .shows_default()
         .one_of({"displacement", "acceleration", "none"});
-    verb.add("--max-delay", settings.longest_delay, "greatest delay looked for, s")
+    verb.add("--max-delay", settings.longest_delay, "greatest delay searched, s")
         .unit("s")
         .shows_default()
         .range(0.001, 100.0);
@@ -189,6 +195,6 @@ Action add(VerbOptions& verb) {
 
 }  // namespace
 
-Verb compare_verb() { return {"compare", "is what the actuator plays what the saw did? Exit code 0: yes, 1: no", add}; }
+Verb compare_verb() { return {"compare", "judge whether two vibrations are equivalent; exit code 0: yes, 1: no", add}; }
 
 }  // namespace tactus::command

@@ -40,7 +40,7 @@ std::string comparison_rows(std::span<const ComparedPair> pairs, const std::vect
             continue;
         }
         const signal::Comparison& c = pair.comparison;
-        // A dash takes three bytes and one place.
+        // A dash takes three bytes but one column.
         const std::string orders = c.harmonic_error_db ? fmt::format("{:>6.2f}", *c.harmonic_error_db) : "     –";
         out += fmt::format("{:<{}}  {:<7}  {:>6.2f}  {:>7.4f}  {}  {:>7.2f}  {:>+7.1f}  {:>5}  {:>5}  {}\n",
                            pair_name(pair, pairs), width, pair.verdict.passed() ? "pass" : "FAIL", c.lsd_db,

@@ -11,18 +11,18 @@
 namespace tactus::command {
 
 std::string comparison_json(const study::ComparedPair& pair);
-/// On standard output.
+/// Prints on standard output.
 void print(const study::ComparedPair& pair);
 
-/// What the threshold of touch is a threshold of, by its name.
+/// The quantity of the threshold of touch, by name.
 signal::ThresholdUnit touch_of(const std::string& name);
 
-// A row for each of many. `failures`: what went wrong with each pair, empty where nothing did; none at all when nothing
-// did anywhere. A pair that failed has its two names only.
+// One row per pair. `failures`: the error of each pair, empty for success; may be empty altogether. A failed pair has
+// its two names only.
 
-/// For people, with a heading.
+/// A text table with a heading.
 std::string comparison_rows(std::span<const study::ComparedPair> pairs, const std::vector<std::string>& failures);
-/// CSV.
+/// A CSV table.
 std::string comparison_table(std::span<const study::ComparedPair> pairs, const std::vector<std::string>& failures);
 
 }  // namespace tactus::command

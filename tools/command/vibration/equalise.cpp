@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a measured response to a filter that undoes it, and what the actuator's limits say to it.
+// tactus equalise: designs an inverse filter from a measured response and checks the actuator's limits.
 #include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
@@ -105,23 +105,25 @@ Action add(VerbOptions& verb) {
     vibration::EqualiserDesign& design = settings.design;
     verb.add("response", settings.response, "file of 'tactus measure', or a table of Hz, dB and degrees").required();
     verb.add("-o,--out", choice->out, "TOML file for the filter").required();
-    verb.add("--kind", choice->kind, "minimum: adds at most 2 ms; linear: undoes the phase, adds half its length")
+    verb.add("--kind", choice->kind,
+             "minimum: minimum phase, adds at most 2 ms; linear: also corrects the phase, adds half its length")
         .shows_default()
         .one_of({"minimum", "linear"});
     verb.add("--rate", design.rate, "sample rate of the node that will use the filter, Hz").unit("Hz").shows_default();
     verb.band("--band", design.lowest, design.highest, "band to be made flat, Hz");
-    verb.add("--from", design.lowest, "lower end of the band, Hz").hidden();
-    verb.add("--to", design.highest, "upper end of the band, Hz").hidden();
+    verb.add("--from", design.lowest, "lower limit of the band, Hz").hidden();
+    verb.add("--to", design.highest, "upper limit of the band, Hz").hidden();
     verb.add("--length", design.length, "length of the impulse response, s").unit("s").shows_default();
     verb.add("--max-boost", choice->greatest_boost_db, "greatest gain of the filter, dB")
         .shows_default()
         .range(0.0, 60.0);
-    verb.add("--regularisation", design.regularisation, "share of the mean power gain below which nothing is boosted")
+    verb.add("--regularisation", design.regularisation,
+             "fraction of the mean power gain below which the filter does not boost")
         .shows_default()
         .range(0.0, 1.0);
-    verb.add("--actuator", settings.actuator, "whose voltage and current limits count").shows_default();
+    verb.add("--actuator", settings.actuator, "actuator with the voltage and current limits").shows_default();
     verb.add("--volts", settings.volts, "drive voltage per unit of the response's input").shows_default();
-    verb.add("--signal", settings.signal, "a recording to be played: how much of it the limits would cut");
+    verb.add("--signal", settings.signal, "a recording to check against the limits");
     verb.add("--scale", settings.scale, "units of the response's input per full scale of the recording")
         .shows_default();
     verb.flag("--json", choice->json, "as JSON");

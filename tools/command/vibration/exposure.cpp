@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vibration exposure of the hand.
+// tactus exposure: hand-arm vibration exposure (ISO 5349-1).
 #include "tools/study/vibration/exposure.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
@@ -39,7 +39,7 @@ double parse_duration(const std::string& text) {
     const double seconds =
         failure == std::errc{} && end == text.data() + text.size() ? 3600.0 * hours : parse_as(text, "s");
     if (!(seconds > 0.0) || !(seconds <= 24.0 * 3600.0))
-        throw Error(fmt::format("--duration takes a time up to 24 h, such as \"90 min\", not '{}'", text));
+        throw Error(fmt::format("--duration must be a time up to 24 h, such as \"90 min\", not '{}'", text));
     return seconds;
 }
 
@@ -107,7 +107,7 @@ void print_operation(const Operation& one) {
     for (const std::string& note : one.notes) fmt::print("  {}\n", note);
 }
 
-/// A line per file, for more of them than one cares to read about one by one.
+/// One line per file, for many files.
 void print_table(const std::vector<Operation>& operations) {
     std::size_t width = 4;
     for (const Operation& one : operations) width = std::max(width, one.file.size());
@@ -140,7 +140,7 @@ int exposure(const ExposureChoice& choice) {
     const bool bad = tell_failures(failures) > 0;
     if (!choice.table.empty()) write_table(choice, operations, files, failures);
     if (bad && files.size() == 1 && !choice.json) return bad_input;
-    // A day with a file missing has none.
+    // Without all files there is no A(8) of the day.
     std::optional<double> a8;
     if (!bad) a8 = study::exposure_of_day(operations);
     const double day = a8.value_or(0.0);
@@ -172,11 +172,11 @@ int exposure(const ExposureChoice& choice) {
 
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<ExposureChoice>();
-    add_record_options(verb, *choice, "a record per tool, its channels the axes; or folders of them");
+    add_record_options(verb, *choice, "one record per tool, with the axes as channels; or folders of records");
     verb.add("--duration", choice->durations,
-             "of contact per day, such as \"90 min\" (default 8 h); one, or one per file")
+             "contact time per day, such as \"90 min\" (default 8 h); one for all, or one per file")
         .one_each();
-    verb.flag("--uncalibrated", choice->uncalibrated, "take an uncalibrated record's values as m/s^2");
+    verb.flag("--uncalibrated", choice->uncalibrated, "interpret the values of an uncalibrated record as m/s^2");
     verb.add("--table", choice->table, "a row per file, CSV");
     verb.add("--jobs", choice->jobs, "files at a time, 0: one per core").range(0, 256);
     return [choice] { return exposure(*choice); };

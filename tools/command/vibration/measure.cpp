@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sweep through a patch or a sound card, and what it tells of what it went through.
+// tactus measure: identifies a system in a patch or behind a sound card with a sine sweep.
 #include "tools/command/patch_options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/study/vibration/measurement.hpp"
@@ -79,7 +79,7 @@ int measure(const MeasureChoice& choice) {
     return done;
 }
 
-/// `--out` was the port and `--csv` the file: so it is where a port is fed and none is probed.
+/// Old spelling: `--out` was the port and `--csv` the file. It applies when --in is given without --probe.
 void port_was_out(std::vector<std::string>& words) {
     const auto is = [](const char* option) {
         return
@@ -98,8 +98,8 @@ Action add(VerbOptions& verb) {
     verb.add("--in", settings.in, "NODE.PORT that the sweep feeds (an input) or replaces (an output)");
     verb.add("--probe", settings.out_port, "NODE.PORT, the output that is recorded");
     verb.add("--device", settings.device, "a sound card instead: part of its name, or 'default'");
-    verb.add("--output-channel", settings.output_channel, "of the card, from 1").shows_default();
-    verb.add("--input-channel", settings.input_channel, "of the card, from 1").shows_default();
+    verb.add("--output-channel", settings.output_channel, "output channel of the card, from 1").shows_default();
+    verb.add("--input-channel", settings.input_channel, "input channel of the card, from 1").shows_default();
     verb.add("--rate", settings.rate, "sample rate of the card, Hz").unit("Hz").shows_default().range(1e3, 1e6);
     verb.add("-o,--out", choice->csv, "CSV file for the response").shows_default();
     verb.band("--band", settings.first, settings.last, "first and last frequency of the sweep, Hz");
@@ -109,13 +109,13 @@ Action add(VerbOptions& verb) {
     verb.add("--amplitude", settings.amplitude,
              "amplitude of the sweep, in the unit of the port it feeds; card: of full scale")
         .shows_default();
-    verb.band("--fit-band", settings.fit_lowest, settings.fit_highest, "where the resonance is looked for, Hz");
+    verb.band("--fit-band", settings.fit_lowest, settings.fit_highest, "search range of the resonance, Hz");
     add_override_options(verb, settings.patch);
     verb.flag("--json", choice->json, "as JSON");
     verb.add("--first", settings.first, "first frequency, Hz").range(0.1, 1e5).hidden();
     verb.add("--last", settings.last, "last frequency, Hz").range(0.1, 1e5).hidden();
-    verb.add("--fit-from", settings.fit_lowest, "where the resonance is looked for, Hz").hidden();
-    verb.add("--fit-to", settings.fit_highest, "and up to where, Hz").hidden();
+    verb.add("--fit-from", settings.fit_lowest, "search range of the resonance, Hz").hidden();
+    verb.add("--fit-to", settings.fit_highest, "upper limit of the search range, Hz").hidden();
     verb.old(port_was_out);
     verb.check([&settings] {
         if (settings.first < 0.1 || settings.last > 1e5) throw Error("--band takes frequencies from 0.1 Hz to 100 kHz");

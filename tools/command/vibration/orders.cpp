@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Levels of the orders of a machine whose rate changes.
+// tactus orders: order analysis of a machine with a changing rate.
 #include "tools/study/vibration/orders.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
@@ -61,7 +61,7 @@ std::string text_of(const std::string& file, const study::Orders& found) {
     return text;
 }
 
-/// Amplitude over orders.
+/// CSV of amplitude over order.
 std::string csv_of(const study::Orders& found) {
     std::string csv = "order";
     for (const study::OrdersOfChannel& one : found.channels) csv += "," + one.name;
@@ -75,7 +75,7 @@ std::string csv_of(const study::Orders& found) {
     return csv;
 }
 
-/// Names the record in what is wrong.
+/// Adds the record's name to errors.
 template <class Function>
 void about_file(const std::filesystem::path& file, const Function& function) {
     try {
@@ -101,20 +101,17 @@ Action add(VerbOptions& verb) {
     study::OrdersSettings& settings = choice->settings;
     add_record_options(verb, *choice, "a sound file or CSV log");
     const Option tacho = verb.add("--tacho", settings.tacho, "channel of the tachometer, from 1").range(1, 1024);
-    verb.add("--pulses", settings.pulses, "of the tachometer, per revolution").shows_default().range(0.01, 1e5);
-    verb.add("--rate", settings.fixed, "the rate, when it is known and constant, Hz")
-        .unit("Hz")
-        .range(0.01, 1e6)
-        .excludes(tacho);
-    verb.band("--band", settings.range.first, settings.range.second, "where a rate to be tracked may lie, Hz");
+    verb.add("--pulses", settings.pulses, "tachometer pulses per revolution").shows_default().range(0.01, 1e5);
+    verb.add("--rate", settings.fixed, "known constant rate, Hz").unit("Hz").range(0.01, 1e6).excludes(tacho);
+    verb.band("--band", settings.range.first, settings.range.second, "search range of a tracked rate, Hz");
     verb.old("--range", "--band");
     verb.add("--orders", settings.highest, "highest order").shows_default().range(1, 200);
-    verb.add("--csv", choice->csv, "amplitude over orders");
+    verb.add("--csv", choice->csv, "CSV file for amplitude over order");
     return [choice] { return orders(*choice); };
 }
 
 }  // namespace
 
-Verb orders_verb() { return {"orders", "levels of the orders of a machine whose rate changes", add}; }
+Verb orders_verb() { return {"orders", "measure the orders of a machine with a changing rate", add}; }
 
 }  // namespace tactus::command

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the verbs that analyse records are given.
+// Options of the verbs that analyse records.
 #pragma once
 
 #include "tools/command/options.hpp"
@@ -17,7 +17,7 @@ struct RecordChoice {
     bool json = false;
 };
 
-/// `files`: what the help text says of them.
+/// `files`: help text of the files argument.
 void add_record_options(VerbOptions& verb, RecordChoice& choice, const char* files);
 
 }  // namespace tactus::command

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What vibrates in a record, or in each of many.
+// tactus spectrum: spectral analysis of records.
 #include "assets/file/whole_file.hpp"
 #include "tools/command/batch.hpp"
 #include "tools/command/vibration/record_options.hpp"
@@ -34,8 +34,8 @@ struct SpectrumChoice : RecordChoice {
 };
 
 struct Outcome {
-    std::string text, table;  // what is printed; rows
-    std::string section;      // of a page
+    std::string text, table;  // printed text; CSV rows
+    std::string section;      // section of the HTML page
 };
 
 study::SpectrumSettings settings_of(const SpectrumChoice& choice) {
@@ -132,12 +132,12 @@ Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<SpectrumChoice>();
     SpectrumWords& words = choice->words;
     add_record_options(verb, *choice, "sound files, CSV logs, or folders of them");
-    verb.add("--window", words.window, "of the spectrum")
+    verb.add("--window", words.window, "window function")
         .shows_default()
         .one_of({"hann", "hamming", "blackman", "blackmanharris", "flattop", "boxcar"});
     verb.add("--segment", choice->segment, "samples (default: about 0.75 s)").range(2, 1 << 26);
-    verb.add("--overlap", choice->overlap, "share of a segment (default 0.5)").range(0.0, 0.99);
-    verb.add("--detrend", words.detrend, "what is taken out of each segment")
+    verb.add("--overlap", choice->overlap, "overlap as a fraction of a segment (default 0.5)").range(0.0, 0.99);
+    verb.add("--detrend", words.detrend, "trend removed from each segment")
         .shows_default()
         .one_of({"none", "constant", "linear"});
     verb.add("--average", words.average, "over segments").shows_default().one_of({"mean", "median", "max", "min"});
@@ -145,12 +145,12 @@ Action add(VerbOptions& verb) {
         .shows_default()
         .one_of({"density", "spectrum"});
     verb.add("--envelope", choice->envelope, "LOW:HIGH in Hz: spectrum of the envelope of this band");
-    verb.add("--fundamental", choice->fundamental, "LOW:HIGH in Hz: where the fundamental may lie").shows_default();
+    verb.add("--fundamental", choice->fundamental, "LOW:HIGH in Hz: search range of the fundamental").shows_default();
     verb.add("--orders", choice->orders, "rows of the harmonic table").shows_default().range(1, 200);
-    verb.add("--csv", choice->csv, "frequency and spectrum per channel; for several files a folder");
-    verb.add("--plot", choice->plot, "figure, .svg or .png; for several files a folder, of SVG");
-    verb.add("--table", choice->table, "a row per file and channel, CSV");
-    verb.add("--report", choice->report, "figures, tables and how they were computed in one HTML file");
+    verb.add("--csv", choice->csv, "CSV file with frequency and spectrum per channel; for several files: a folder");
+    verb.add("--plot", choice->plot, "figure, .svg or .png; for several files: a folder of SVG files");
+    verb.add("--table", choice->table, "CSV file with one row per file and channel");
+    verb.add("--report", choice->report, "HTML file with figures, tables and methods");
     verb.add("--jobs", choice->jobs, "files at a time, 0: one per core").range(0, 256);
     return [choice] { return spectrum(*choice); };
 }
@@ -158,7 +158,7 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb spectrum_verb() {
-    return {"spectrum", "what vibrates in a record: spectrum, fundamental, harmonics, hum, bands, envelope", add};
+    return {"spectrum", "analyse a vibration record: spectrum, fundamental, harmonics, hum, bands, envelope", add};
 }
 
 }  // namespace tactus::command

@@ -113,8 +113,8 @@ std::string analysis_text(const AnalysedFile& file) {
     auto out = std::back_inserter(text);
     if (file.log)
         fmt::format_to(out,
-                       "  uneven log, {} rows, steps {:.3g} to {:.3g} ms: resampled; nothing above {:.4g} Hz is there, "
-                       "faithful to about {:.3g} Hz; faster vibration appears folded\n",
+                       "  uneven log, {} rows, steps {:.3g} to {:.3g} ms: resampled; limited to {:.4g} Hz, reliable to "
+                       "about {:.3g} Hz; faster vibration is aliased\n",
                        file.log->rows, 1e3 * file.log->shortest_step, 1e3 * file.log->longest_step, 0.5 * file.rate,
                        file.log->usable);
     for (const AnalysedChannel& channel : file.channels) {

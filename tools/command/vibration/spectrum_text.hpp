@@ -8,7 +8,7 @@
 
 namespace tactus::command {
 
-/// How the spectrum was asked for.
+/// The settings as text.
 struct SpectrumWords {
     std::string window = "hann", detrend = "constant", average = "mean", scaling = "density";
 };
@@ -17,9 +17,9 @@ std::string analysis_json(const study::AnalysedFile& file, const SpectrumWords& 
 std::string analysis_text(const study::AnalysedFile& file);
 /// Frequency and density per channel.
 std::string analysis_csv(const study::AnalysedFile& file);
-/// A row per channel.
+/// One row per channel.
 std::string analysis_rows(const study::AnalysedFile& file);
-/// The names of the columns of these rows.
+/// Header of these rows.
 inline constexpr const char* analysis_heading =
     "file,channel,sample_rate_hz,duration_s,rms,unit,crest,fundamental_hz,confidence,hum_hz,warnings,error\n";
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a patch makes of recordings what they are: the handle's vibration beside each of them, in free air and cutting.
+// tactus validate: compares the handle's vibration in a patch with each recording that its saw plays.
 #include "assets/file/whole_file.hpp"
 #include "tools/command/batch.hpp"
 #include "tools/command/patch_options.hpp"
@@ -80,7 +80,8 @@ int validate(const ValidateChoice& choice) {
     if (!choice.plot.empty()) std::filesystem::create_directories(choice.plot);
     const std::vector<std::string> failures = run_batch(
         validation.runs.size(), choice.jobs, "runs",
-        [&](std::size_t i, const std::function<void(double)>&) {  // Spectrograms are large; one level shows them.
+        [&](std::size_t i,
+            const std::function<void(double)>&) {  // Spectrograms are large, so they are computed for one level only.
             study::validate(validation, i, settings,
                             pictures && validation.runs[i].level_db == settings.levels.front());
         });
@@ -107,25 +108,22 @@ Action add(VerbOptions& verb) {
     study::ValidateSettings& settings = choice->settings;
     add_patch_options(verb, settings.patch);
     verb.add("--reference", settings.set, "recording set, TOML, or one sound; the patch's saw plays it").required();
-    verb.add("--level", settings.levels, "dB on top of the patch's, one or more")
+    verb.add("--level", settings.levels, "gains in dB relative to the patch, one or more")
         .shows_default()
         .separated_by(',')
         .one_each()
         .range(-80.0, 40.0);
-    verb.add("--saw", settings.saw, "the node that plays (default: the only one of type saw)");
+    verb.add("--saw", settings.saw, "the saw node (default: the only node of type saw)");
     verb.add("--probe", settings.out_port,
-             "NODE.PORT, the handle's vibration (default: what is recorded as handle.wav, or the actuator's)");
-    verb.add("--seconds", settings.seconds, "time that is compared of each run, s")
-        .unit("s")
-        .shows_default()
-        .range(0.5, 600.0);
-    verb.add("--thresholds", choice->thresholds, "TOML file of what must be reached, as of compare");
-    verb.add("--touch", choice->touch, "what the threshold of touch is a threshold of")
+             "NODE.PORT, the handle's vibration (default: the port recorded as handle.wav, or the actuator's)");
+    verb.add("--seconds", settings.seconds, "compared time of each run, s").unit("s").shows_default().range(0.5, 600.0);
+    verb.add("--thresholds", choice->thresholds, "TOML file with the thresholds, as for compare");
+    verb.add("--touch", choice->touch, "quantity of the threshold of touch")
         .shows_default()
         .one_of({"displacement", "acceleration", "none"});
-    verb.add("--report", choice->report, "figures, tables and how they were computed in one HTML file");
-    verb.add("--plot", choice->plot, "folder for a figure of each run, SVG");
-    verb.add("--table", choice->table, "a row per run, CSV");
+    verb.add("--report", choice->report, "HTML file with figures, tables and methods");
+    verb.add("--plot", choice->plot, "folder for SVG figures of the runs");
+    verb.add("--table", choice->table, "CSV file with one row per run");
     verb.add("--jobs", choice->jobs, "runs at a time, 0: one per core").range(0, 256);
     verb.flag("--json", choice->json, "as JSON");
     verb.old("--out", "--probe");
@@ -136,7 +134,8 @@ Action add(VerbOptions& verb) {
 
 Verb validate_verb() {
     return {"validate",
-            "does the handle vibrate as the saw did, at every rate and load recorded? Exit code 0: yes, 1: no", add};
+            "judge whether the handle vibrates like the saw at every recorded rate and load; exit code 0: yes, 1: no",
+            add};
 }
 
 }  // namespace tactus::command

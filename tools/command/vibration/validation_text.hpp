@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Validations as text and CSV, a row per run.
+// Validations as text and CSV, one row per run.
 #pragma once
 
 #include "tools/study/vibration/validation.hpp"
@@ -8,7 +8,7 @@
 
 namespace tactus::command {
 
-/// For people.
+/// A text table.
 std::string validation_rows(const study::Validation& validation);
 std::string validation_csv(const study::Validation& validation);
 

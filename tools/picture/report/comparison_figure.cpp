@@ -16,7 +16,7 @@ namespace tactus::picture {
 
 namespace {
 
-// Told apart in grey and by eyes that mix red and green.
+// Distinguishable in grey and with red-green colour blindness.
 constexpr display::Colour reference_colour{0x1F, 0x4E, 0x9E}, output_colour{0xE0, 0x7B, 0x10},
     added_colour{0xB8, 0x1D, 0x24}, pass_colour{0x1B, 0x7A, 0x3D}, ink{0x22, 0x26, 0x2E}, soft{0x6B, 0x72, 0x80},
     limit_colour{0x8A, 0x8F, 0x99}, band_colour{0x9A, 0xA3, 0xB2};
@@ -72,7 +72,7 @@ void draw_spectra(display::Figure& figure, const signal::Comparison& c, double y
         panel.upright(500.0, limit_colour, 4.0);
         figure.text({panel.x_of(500.0) + 4.0, y + height - 6.0}, "limit of touch", 10.0, soft);
     }
-    // The reference is wider, so that it shows where both are one.
+    // The reference line is wider, so that it stays visible where both coincide.
     panel.curve(r, c.step, reference_colour, 3.2);
     panel.curve(d, c.step, output_colour, 1.3);
     double taken = -1e9;
@@ -166,7 +166,7 @@ void draw_table(display::Figure& figure, const signal::Comparison& c, const stud
     if (c.alignment.significant) extra("delay", 1e3 * c.alignment.delay, " ms");
 }
 
-/// Both takes over time, each from its own beginning and to 60 dB below its strongest.
+/// Both spectrograms, each from its own start and down to 60 dB below its maximum.
 void draw_pictures(display::Figure& figure, const study::ComparedPair& pair, double y) {
     const std::string names[] = {pair.reference.filename().string(), pair.output.filename().string()};
     for (std::size_t i = 0; i < 2; ++i) {

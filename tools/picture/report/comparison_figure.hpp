@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A comparison as a figure for print.
+// Draws a comparison of two vibrations.
 #pragma once
 
 #include "devices/display/figure.hpp"
@@ -9,11 +9,11 @@
 
 namespace tactus::picture {
 
-/// Both spectra with their lines marked and named and the limit of touch, errors of the third-octave bands against the
-/// threshold, coherence when there is one, both spectrograms when the pair has them, and a table of scores.
+/// Both spectra with named lines and the limit of touch, errors of the third-octave bands against the threshold,
+/// coherence and both spectrograms if available, and a table of scores.
 display::Figure draw_comparison(const study::ComparedPair& pair);
 
-/// Writes a figure as the name's ending says: .svg or .png. Throws Error.
+/// Writes a figure as .svg or .png, by extension. Throws Error.
 void write_figure(const display::Figure& figure, const std::string& path);
 
 }  // namespace tactus::picture

@@ -33,17 +33,18 @@ std::string scores_table(const study::ComparedPair& pair) {
             if (s.name == name) return;
         out += score_row(name, value ? fmt::format("{:.4g}{}", *value, unit) : "–", "", "<td>not judged</td>", about);
     };
-    unjudged("gain_db", c.gain_db, " dB", "gives the output the reference's power in the band");
-    unjudged("level_gap_db", pair.level_gap_db, " dB",
-             pair.actuator_known ? "that the actuator at its limit lacks" : "that the output lacked as it was played");
+    unjudged("gain_db", c.gain_db, " dB", "gain that equalises the power in the band");
+    unjudged(
+        "level_gap_db", pair.level_gap_db, " dB",
+        pair.actuator_known ? "missing level with the actuator at its limit" : "missing level of the output as played");
     unjudged("third_octave_rms_db", c.third_octave_rms_db, " dB", "all third-octave bands");
-    unjudged("spectrogram_similarity", c.spectrogram_similarity, "", "course over time");
-    const char* aligned = c.alignment.significant ? "takes of one recording, aligned" : "only of aligned takes";
+    unjudged("spectrogram_similarity", c.spectrogram_similarity, "", "correlation of the spectrograms");
+    const char* aligned = c.alignment.significant ? "aligned takes of one recording" : "only of aligned takes";
     unjudged("st_sim", c.st_sim, "", aligned);
     unjudged("spqi", c.spqi, "", aligned);
     unjudged("coherence_mean", c.coherence_mean, "", aligned);
-    unjudged("touch cosine", c.touch_cosine, "", "shape as it is felt, 40 to 1000 Hz");
-    unjudged("touch gap", c.touch_gap_db, " dB", "how much stronger the output feels at equal power");
+    unjudged("touch cosine", c.touch_cosine, "", "perceived shape, 40 to 1000 Hz");
+    unjudged("touch gap", c.touch_gap_db, " dB", "perceived strength of the output at equal power");
     return out + "</table>\n";
 }
 
@@ -92,7 +93,7 @@ std::string comparison_section(const study::ComparedPair& pair, const std::strin
             "apply.</p>\n";
     out += "<h2>Scores</h2>\n" + scores_table(pair);
     out += "<h2>Lines</h2>\n" + lines_table(c);
-    out += "<h2>Third-octave bands, output less reference</h2>\n" + bands_table(c);
+    out += "<h2>Third-octave bands, output minus reference</h2>\n" + bands_table(c);
     if (!pair.notes.empty()) {
         out += "<h2>Notes</h2><ul>";
         for (const std::string& note : pair.notes) out += "<li>" + html::escaped(note) + "</li>";
@@ -104,22 +105,23 @@ std::string comparison_section(const study::ComparedPair& pair, const std::strin
 std::string comparison_method(const study::ComparedPair& pair) {
     const signal::Comparison& c = pair.comparison;
     return fmt::format(
-        "<h2>How it was computed</h2><ul>"
-        "<li>Band {:g} to {:g} Hz; both takes brought to 8 kHz. The output is scaled to the reference's power in the "
-        "band before anything but the level is scored.</li>"
-        "<li>Takes count as one recording when the peak of their whitened cross-correlation stands out of chance at "
-        "odds of 1 to 1000; otherwise only spectra are compared, at equal orders of the saw when both rates are known "
+        "<h2>Methods</h2><ul>"
+        "<li>Band {:g} to {:g} Hz; both takes are resampled to 8 kHz. For all scores but the level, the output is "
+        "scaled to the reference's power in the band.</li>"
+        "<li>Takes count as one recording when the peak of their whitened cross-correlation is significant (chance "
+        "below 1 in 1000); otherwise only spectra are compared, at equal orders of the saw when both rates are known "
         "and within 3 %.</li>"
         "<li>Spectra: Welch, Hann, half overlapping, mean of each segment removed. Segments of 1024 samples for "
         "lsd_db and the cosines, 2048 for coherence, 4096 for the third-octave bands and the curves, 8192 for lines "
         "and orders; shorter when a take does not hold four. The curves have a resolution of {:.3g} Hz.</li>"
-        "<li>lsd_db: rms of the level differences from 40 to 500 Hz, levels cut 40 dB below the reference's strongest. "
+        "<li>lsd_db: rms of the level differences from 40 to 500 Hz, levels limited to 40 dB below the reference's "
+        "maximum. "
         "Cosines are of amplitude spectra. Third octaves have centres 10^(n/10) Hz; bands within 40 dB of the "
         "strongest count. harmonic_error_db: the worst order's difference from the mean difference.</li>"
         "<li>Lines: Hann interpolation between bins; they stand 10 dB or more above their neighbourhood and within 60 "
         "dB of the strongest. Levels are dB re 1 of the record's unit, amplitude.</li>"
-        "<li>Spectrograms: Hann windows of 60 ms, each picture down to 60 dB below its own strongest point.</li>"
-        "<li>Touch: threshold curve as one of {}. Above 500 Hz next to nothing is felt.</li></ul>\n",
+        "<li>Spectrograms: Hann windows of 60 ms, each shown down to 60 dB below its own maximum.</li>"
+        "<li>Touch: threshold curve of {}. Above 500 Hz vibration is hardly perceptible.</li></ul>\n",
         c.lowest, c.highest, c.step, study::touch_unit(pair.touch));
 }
 

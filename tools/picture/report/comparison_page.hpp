@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A comparison as a page: verdict, figure, tables, and how it was computed.
+// A comparison as an HTML page: verdict, figure, tables and methods.
 #pragma once
 
 #include "tools/study/vibration/comparison.hpp"
@@ -11,7 +11,7 @@ namespace tactus::picture {
 /// A complete page.
 std::string comparison_page(const study::ComparedPair& pair);
 
-/// Its parts, for pages of several comparisons: figure and tables; how every comparison is computed.
+/// Its parts, for pages with several comparisons: figure and tables; methods.
 std::string comparison_section(const study::ComparedPair& pair, const std::string& mark);
 std::string comparison_method(const study::ComparedPair& pair);
 

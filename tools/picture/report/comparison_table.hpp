@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many comparisons as an HTML table, a row each.
+// Many comparisons as an HTML table, one row each.
 #pragma once
 
 #include "tools/study/vibration/comparison.hpp"
@@ -10,12 +10,12 @@
 
 namespace tactus::picture {
 
-/// `failures`: what went wrong with each pair, empty where nothing did; none at all when nothing did anywhere. A pair that
-/// failed has its two names only.
+/// `failures`: the error of each pair, empty for success; may be empty altogether. A failed pair has its two names
+/// only.
 std::string comparison_summary(std::span<const study::ComparedPair> pairs, const std::vector<std::string>& failures);
 
-/// The heading of, and the cells of one pair in an HTML table: verdict, spectral distance, cosine, worst order, worst
-/// band, level, what it fails by. `failure`: why there is nothing to compare, or empty.
+/// Heading and cells of one pair in an HTML table: verdict, spectral distance, cosine, worst order, worst band, level,
+/// failed scores. `failure`: why the pair could not be compared, or empty.
 extern const std::string score_heading;
 std::string score_cells(const study::ComparedPair& pair, const std::string& failure);
 

@@ -37,7 +37,7 @@ std::string escaped(std::string_view text) {
 std::string drawing(const display::Figure& figure, std::string_view mark) {
     std::string svg = figure.svg();
     svg.erase(0, svg.find("<svg"));
-    // Clips are named c0, c1, … in every drawing.
+    // Every drawing names its clip paths c0, c1, …
     replace_all(svg, "id=\"c", fmt::format("id=\"{}c", mark));
     replace_all(svg, "url(#c", fmt::format("url(#{}c", mark));
     return svg;

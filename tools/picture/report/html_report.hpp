@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages that carry everything in one file, to be read without a net.
+// Self-contained HTML pages, readable offline.
 #pragma once
 
 #include "devices/display/figure.hpp"
@@ -9,10 +9,10 @@
 
 namespace tactus::picture::html {
 
-/// Text as it may stand between tags and in attributes.
+/// Escapes text for HTML content and attributes.
 std::string escaped(std::string_view text);
 
-/// A drawing within a page. `mark` keeps apart the names inside of several drawings of one page: letters.
+/// An inline drawing. `mark` (letters) makes the names in the drawing unique within the page.
 std::string drawing(const display::Figure& figure, std::string_view mark);
 
 /// A complete page with a heading. `title` is text, `body` is HTML.

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int panel = 560, gap = 4, margin = 26;
 
-// Letters of 5 x 7 dots for the sides of the patient; a row's bits from left to right.
+// A 5 x 7 bitmap font for the sides of the patient; bits of a row from left to right.
 std::array<int, 7> dots_of(char letter) {
     switch (letter) {
         case 'A': return {4, 10, 17, 17, 31, 17, 17};
@@ -58,7 +58,8 @@ struct Canvas {
     }
 };
 
-// A slice square to `axis`; across and down are the axes of the panel, letters stand left, right, above and below.
+// A slice orthogonal to `axis`; `across` and `down` are the axes of the panel; the letters label left, right, top and
+// bottom.
 struct Slice {
     int axis, across, down;
     bool upwards;
@@ -156,7 +157,7 @@ void write_picture(const study::Inspection& found, const std::filesystem::path& 
     const auto view = [&](const Vec3& direction, const Vec3& up, int left, int top) {
         if (meshes.empty()) return;
         display::View from = display::fit_view(low - middle, high - middle, direction, up);
-        // The sphere around the box is larger than what is in it.
+        // The bounding sphere of the box is larger than its content.
         from.eye = from.target + (from.eye - from.target) * 0.85;
         canvas.paste(display::render_picture(meshes, from, panel, panel), left, top);
     };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture of what is in a file.
+// A picture of the content of a file.
 #pragma once
 
 #include "tools/study/bones/inspection.hpp"
@@ -8,7 +8,8 @@
 
 namespace tactus::picture {
 
-/// Three slices through the largest part and a view of the surface, PNG; a mesh: three sides and a view. Throws Error.
+/// Writes a PNG: three slices through the largest part and a view of the surface; for a mesh three sides and a view.
+/// Throws Error.
 void write_picture(const study::Inspection& inspection, const std::filesystem::path& path);
 
 }  // namespace tactus::picture

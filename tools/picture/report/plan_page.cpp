@@ -69,7 +69,7 @@ std::string picture_of(const std::vector<display::PictureMesh>& meshes, const Ve
                        const std::string& caption) {
     Box box;
     for (const display::PictureMesh& mesh : meshes) box.take(mesh);
-    if (!(box.low.x <= box.high.x)) return "<p>Nothing is shown.</p>\n";
+    if (!(box.low.x <= box.high.x)) return "<p>All fragments are hidden.</p>\n";
     display::View view =
         display::fit_view(box.low, box.high, direction, Vec3(0.0, 0.0, 1.0), static_cast<double>(width) / height);
     view.eye = view.target + (view.eye - view.target) * 0.85;
@@ -80,8 +80,7 @@ std::string picture_of(const std::vector<display::PictureMesh>& meshes, const Ve
         base64(display::png_bytes(display::render_picture(meshes, view, width, height))));
 }
 
-/// Blue where bones lie in each other, white where they touch, red where a millimetre gapes, grey where nothing is
-/// near.
+/// Colour map of the gap: blue for overlap, white for contact, red for a gap of 1 mm, grey for no neighbour.
 Vec3 gap_colour(double distance) {
     if (!std::isfinite(distance)) return Vec3(0.62);
     const double t = std::clamp(distance / 1e-3, -0.5, 1.0);
@@ -119,7 +118,7 @@ std::string pictures(const Case& c) {
            picture_of(planned, Vec3(0.1, 0.3, -1.0), "As planned, from above") + "</div>\n";
 }
 
-/// What the colours of the maps say.
+/// Legend of the colour maps.
 std::string gap_legend() {
     std::string stops;
     for (int n = -2; n <= 4; ++n) {
@@ -127,16 +126,16 @@ std::string gap_legend() {
         stops += fmt::format(",rgb({:.0f},{:.0f},{:.0f})", c.x, c.y, c.z);
     }
     return fmt::format(
-        "<p class=\"small\">0.5 mm in each other or more <span style=\"display:inline-block;width:12rem;height:.8rem;"
-        "background:linear-gradient(90deg{})\"></span> 1 mm apart or more; white: they touch; grey: nothing faces it"
+        "<p class=\"small\">overlap of 0.5 mm or more <span style=\"display:inline-block;width:12rem;height:.8rem;"
+        "background:linear-gradient(90deg{})\"></span> gap of 1 mm or more; white: contact; grey: no neighbour"
         "</p>\n",
         stops);
 }
 
-/// Where each fragment goes, as other programs are told it too.
+/// Pose of each fragment, as in the exported files.
 std::string places(const Case& c) {
     std::string out =
-        "<h2>Places</h2>\n<p>p_plan = R p_scan + t, LPS, mm; R as a unit quaternion w x y z.</p>\n<table><tr><th>"
+        "<h2>Poses</h2>\n<p>p_plan = R p_scan + t, LPS, mm; R as a unit quaternion w x y z.</p>\n<table><tr><th>"
         "fragment</th><th>t, mm</th><th>R</th></tr>\n";
     for (std::size_t n = 0; n < c.fragments.size(); ++n) {
         const auto [t, q] = study::numbers_of(c.pose(n));
@@ -167,7 +166,7 @@ std::string fragments_table(const Case& c) {
                 "class=\"n\">{:.3f}</td><td class=\"n\">{}</td>",
                 html::escaped(fit->partner), fit->verdict == "fit" ? "pass" : "fail", html::escaped(fit->verdict),
                 fit->score, fit->margin, fit->rms * 1e3,
-                // Runs of earlier versions did not tell it.
+                // Plans of earlier versions do not contain it.
                 fit->overlap > 0.0 ? fmt::format("{:.0f}", fit->overlap * 1e6) : "–");
         else out += "<td>–</td><td>–</td><td></td><td></td><td></td><td></td>";
         const int number = static_cast<int>(n);
@@ -182,7 +181,7 @@ std::string fragments_table(const Case& c) {
     return out + "</table>\n";
 }
 
-/// A fragment that shows how far the other one is from every point of it, seen from the other.
+/// A fragment coloured by the distance to the other one, seen from the other one.
 std::string gap_map(const Case& c, std::size_t i, std::size_t j, const fit::SurfaceGap& gap) {
     const auto& points = c.fragments[i].bone.points;
     const fit::RegistrationTarget nearest(points);
@@ -198,7 +197,7 @@ std::string gap_map(const Case& c, std::size_t i, std::size_t j, const fit::Surf
     if (!(glm::length(towards) > 0.0)) return "";
     const Vec3 direction = -glm::normalize(towards);
     const Vec3 tilted = std::abs(direction.z) > 0.95 ? glm::normalize(direction + Vec3(0.3, 0.0, 0.0)) : direction;
-    return picture_of({mesh}, tilted, fmt::format("{} as {} faces it", c.name(i), c.name(j)));
+    return picture_of({mesh}, tilted, fmt::format("{}, seen from {}", c.name(i), c.name(j)));
 }
 
 std::string gaps(const Case& c) {
@@ -235,14 +234,14 @@ std::string steps(const Case& c) {
         for (const int f : step.fragments) what += " " + c.name(static_cast<std::size_t>(f));
         if (!step.group.empty()) what += fmt::format(" as '{}'", step.group);
         if (step.fit)
-            what += fmt::format(", {} to {}, {:.0f} mm² on each other, {:.3f} mm rms, gap {:.2f} mm, {:.2f} mm deep",
+            what += fmt::format(", {} to {}, {:.0f} mm² in contact, {:.3f} mm rms, gap {:.2f} mm, {:.2f} mm deep",
                                 step.fit->verdict, step.fit->partner, step.fit->overlap * 1e6, step.fit->rms * 1e3,
                                 study::shown_mm(step.fit->gap * 1e3), step.fit->penetration * 1e3);
         const std::string time = step.run_second ? fmt::format("{:.3f} s", *step.run_second) : step.time;
         out += fmt::format("<tr><td class=\"n\">{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", ++count,
                            html::escaped(time), html::escaped(step.by), html::escaped(what));
     }
-    return count == 0 ? "<h2>Order of steps</h2>\n<p>Nothing was done yet.</p>\n" : out + "</table>\n";
+    return count == 0 ? "<h2>Order of steps</h2>\n<p>There are no steps.</p>\n" : out + "</table>\n";
 }
 
 std::string alternatives(const cases::CasePlan& plan) {
@@ -256,8 +255,8 @@ std::string alternatives(const cases::CasePlan& plan) {
 std::string mirror(const Case& c) {
     if (!c.state.mirror) return "";
     return fmt::format(
-        "<h2>Mirror of the healthy side</h2>\n<p>{}: median distance {:.2f} mm. What is not symmetric in the body is "
-        "part of it; no truth is claimed.</p>\n",
+        "<h2>Mirror of the healthy side</h2>\n<p>{}: median distance {:.2f} mm. This residual includes the asymmetry "
+        "of the body; there is no ground truth to compare with.</p>\n",
         html::escaped(c.state.mirror->file), c.state.mirror->residual * 1e3);
 }
 
@@ -274,7 +273,7 @@ std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragme
     try {
         pages = pictures(c) + gaps(c);
     } catch (const Error& error) {
-        throw Error(fmt::format("no pictures can be made: {}", error.what()));
+        throw Error(fmt::format("the pictures cannot be made: {}", error.what()));
     }
     const std::string body =
         fmt::format("<p>Alternative '{}', {} fragments. Research use; not a medical device.</p>\n",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One pair of axes in a figure.
+// A plot area with axes in a figure.
 #pragma once
 
 #include "devices/display/figure.hpp"
@@ -9,7 +9,7 @@
 
 namespace tactus::picture {
 
-/// Frequency from left to right, logarithmic; a linear quantity upwards.
+/// Logarithmic frequency axis and linear vertical axis.
 class PlotPanel {
 public:
     struct Range {
@@ -21,9 +21,9 @@ public:
         : figure_(figure), x_(x), y_(y), width_(width), height_(height), hz_(hz), value_(value) {}
 
     double x_of(double hz) const;
-    double y_of(double value) const;  ///< clamped to a little outside of the panel
+    double y_of(double value) const;  ///< clamped slightly outside the panel
 
-    /// Grid, ticks and their numbers; `unit` beside the axis.
+    /// Draws grid, ticks and numbers; `unit` labels the axis.
     void axes(double value_step, const std::string& unit, bool name_frequencies) const;
     void curve(const std::vector<double>& values, double step, display::Colour colour, double width) const;
     void upright(double hz, display::Colour colour, double dash) const;

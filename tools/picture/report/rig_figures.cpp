@@ -119,7 +119,7 @@ display::Colour colour_of(const std::vector<std::string>& motors, const std::str
     return colours[at % colours.size()];
 }
 
-/// Motors by colour and amplitudes by dash, along the top.
+/// Legend along the top: colours for motors, dashes for amplitudes.
 void legend(display::Figure& figure, const study::RigReport& report, bool with_amplitudes) {
     const std::vector<std::string> motors = motors_of(report);
     double x = 60.0;

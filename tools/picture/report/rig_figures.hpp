@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pictures of a rig's report.
+// Figures of the gripper report.
 #pragma once
 
 #include "devices/display/figure.hpp"
@@ -7,15 +7,15 @@
 
 namespace tactus::picture {
 
-/// NRMSE over rate, one panel per object, a colour per motor, dashes per amplitude.
+/// NRMSE over rate; one panel per object, one colour per motor, one dash pattern per amplitude.
 display::Figure draw_rig_errors(const study::RigReport& report);
 /// Gain and phase error over rate for springs.
 display::Figure draw_rig_response(const study::RigReport& report);
-/// Both motors over all that is assumed of them, as bands, and where they cross.
+/// NRMSE bands of both motors over all assumptions, and the crossover rates.
 display::Figure draw_rig_crossover(const study::RigReport& report);
-/// Error of the loop of the thesis over that with feed-forward.
+/// Error of the loop of the thesis relative to the error with feed-forward.
 display::Figure draw_rig_leads(const study::RigReport& report);
-/// Position over force of single cells.
+/// Position over force of selected cells.
 display::Figure draw_rig_examples(const study::RigReport& report);
 
 }  // namespace tactus::picture

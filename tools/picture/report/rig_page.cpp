@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of a rig's report: everything in one file, to be read without a net.
+// The gripper report as a self-contained HTML page.
 #include "tools/picture/report/rig_page.hpp"
 
 #include "tools/picture/report/html_report.hpp"
@@ -29,7 +29,7 @@ constexpr Fact facts[] = {
     {"walking motor: drive", "at most 3 kHz; so 5.19 µm of the rod per cycle", "thesis 2.5.2.2; the step follows"},
     {"walking motor: encoder", "16 000 pulses per mm of the rod: 0.28 µm at the finger", "thesis 6.3.1"},
     {"traveling-wave motor: encoder", "4000 pulses per turn, direct drive", "thesis 6.3.2"},
-    {"traveling-wave motor: speed", "falls off resonance and off 90°; the phase's sign is the direction",
+    {"traveling-wave motor: speed", "decreases off resonance and off 90°; the sign of the phase is the direction",
      "thesis 2.5.2.1"},
 };
 
@@ -42,8 +42,8 @@ constexpr Fact models[] = {
     {"slip", "beyond the holding force the finger yields with 20 N s/m", "assumed"},
     {"strain gauge", "5 mN per count, 10 mN of noise", "assumed"},
     {"delay", "one tick from sample to motion", "assumed"},
-    {"gain of the loop", "half of what is stable, by the eigenvalues of loop, motor and rig",
-     "the thesis: as high as is stable"},
+    {"gain of the loop", "half of the stability limit, from the eigenvalues of loop, motor and rig",
+     "thesis: as high as is stable"},
 };
 
 std::string table(std::span<const Fact> rows) {
@@ -85,21 +85,21 @@ std::string rows_table(const study::RigReport& report) {
 
 std::string rig_html(const study::RigReport& report) {
     std::string out = fmt::format("<p>{}</p>\n", html::escaped(report.source));
-    out += "<h2>In short</h2><ul>";
-    out += fmt::format("<li>The cord runs at up to {:.2f} mm/s at 1 Hz.</li>", report.peak_cord_speed * 1e3);
+    out += "<h2>Summary</h2><ul>";
+    out += fmt::format("<li>Peak speed of the cord at 1 Hz: {:.2f} mm/s.</li>", report.peak_cord_speed * 1e3);
     if (report.saturation_rate)
         out += fmt::format(
             "<li>In free motion the slower motor saturates from {:.3f} Hz on; {:.3f} Hz in closed form.</li>",
             *report.saturation_rate, report.saturation_closed_form.value_or(NAN));
     for (const study::RigFinding& f : report.findings)
-        out += fmt::format("<li>{}: in {} of {} combinations of what is assumed.</li>", html::escaped(f.claim), f.holds,
+        out += fmt::format("<li>{}: in {} of {} combinations of the assumptions.</li>", html::escaped(f.claim), f.holds,
                            f.of);
     for (const study::RigCrossover& c : report.crossover)
         out +=
             c.low ? fmt::format(
                         "<li>With {:g} N/mm and ±{:.3g} mm the second motor becomes the better one between {:.2f} and "
                         "{:.2f} Hz, "
-                        "depending on what is assumed ({} of {} combinations cross).</li>",
+                        "depending on the assumptions ({} of {} combinations cross).</li>",
                         c.stiffness * 1e-3, c.amplitude * 1e3, *c.low, c.high.value_or(*c.low), c.crossed, c.of)
                   : fmt::format("<li>With {:g} N/mm and ±{:.3g} mm the second motor never becomes the better one.</li>",
                                 c.stiffness * 1e-3, c.amplitude * 1e3);
@@ -107,9 +107,8 @@ std::string rig_html(const study::RigReport& report) {
     out += "</ul>\n";
     if (!report.rows.empty()) {
         out +=
-            "<h2>Error over rate</h2><p>Position beside what the object would have done under the force that was "
-            "measured, as a share "
-            "of its motion, over the samples without slip. For a wall: how far it was pushed away.</p>\n";
+            "<h2>Error over rate</h2><p>Error of the position against the ideal object under the measured force, "
+            "relative to its motion, over the samples without slip. For a wall: the penetration.</p>\n";
         out += html::drawing(draw_rig_errors(report), "a");
         out +=
             "<h2>Gain and phase</h2><p>Measured admittance over the object's, 1/(k + jωb), at the rate of the "
@@ -122,7 +121,7 @@ std::string rig_html(const study::RigReport& report) {
     }
     if (!report.crossover.empty()) {
         out +=
-            "<h2>Which motor is better</h2><p>Bands: all combinations of both ends of what is assumed of a "
+            "<h2>Which motor is better</h2><p>Bands: all combinations of the limits of the assumptions about a "
             "motor.</p>\n";
         out += html::drawing(draw_rig_crossover(report), "d");
     }
@@ -134,9 +133,9 @@ std::string rig_html(const study::RigReport& report) {
         out += html::drawing(draw_rig_leads(report), "e");
     }
     if (!report.assumptions.empty()) {
-        out += "<h2>What is known and what is assumed</h2><p>Facts of the thesis (Olsson 2015):</p>" + table(facts);
+        out += "<h2>Facts and assumptions</h2><p>Facts from the thesis (Olsson 2015):</p>" + table(facts);
         out += "<p>Assumptions of the simulated grippers, unless the patch says otherwise:</p>" + table(models);
-        out += "<p>Ranges over which the findings above were tried:</p><table>";
+        out += "<p>Ranges of the assumptions in the findings above:</p><table>";
         for (const study::RigAssumption& a : report.assumptions)
             out += fmt::format("<tr><td>{}</td><td>{}</td><td>{} to {}</td></tr>", html::escaped(a.motor),
                                html::escaped(a.option), html::escaped(a.low), html::escaped(a.high));

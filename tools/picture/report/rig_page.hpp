@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a rig found, as one page with its pictures inside.
+// The results of a rig study as one HTML page with figures.
 #pragma once
 
 #include "tools/study/grippers/rig_report.hpp"

@@ -16,7 +16,7 @@ constexpr display::Colour ink{0x22, 0x26, 0x2E};
 
 double decibels(double power) { return 10.0 * std::log10(std::max(power, 1e-30)); }
 
-/// From dark violet over green to yellow, lightness rising evenly: also right in grey.
+/// Colour map from dark violet over green to yellow with uniformly increasing lightness; also correct in grey.
 display::Colour heat(double share) {
     constexpr std::array<std::array<double, 3>, 6> stops{
         {{68, 1, 84}, {65, 68, 135}, {42, 120, 142}, {34, 168, 132}, {122, 209, 81}, {253, 231, 37}}};
@@ -38,7 +38,7 @@ void draw_spectrogram(display::Figure& figure, const signal::Spectrogram& s, con
     const int rows = style.rows, most_columns = style.columns;
     const int columns = std::min(static_cast<int>(s.columns()), most_columns);
     if (columns == 0) return;
-    // The strongest in each row's band and each column's time.
+    // The maximum in each cell of the picture.
     std::vector<double> level(static_cast<std::size_t>(columns * rows), -300.0);
     double top = -300.0;
     for (int c = 0; c < columns; ++c) {
@@ -65,7 +65,7 @@ void draw_spectrogram(display::Figure& figure, const signal::Spectrogram& s, con
         const double share = (level[static_cast<std::size_t>(c * rows + row)] - top + span) / span;
         return static_cast<int>(std::clamp(share, 0.0, 1.0) * (shades - 1) + 0.5);
     };
-    // One rectangle for neighbours in time of one shade; a little overlap hides the seams.
+    // Neighbours in time with the same shade become one rectangle; a small overlap hides seams.
     for (int row = 0; row < rows; ++row)
         for (int c = 0; c < columns;) {
             int end = c + 1;

@@ -7,7 +7,7 @@
 
 namespace tactus::picture {
 
-/// The inner rectangle, in units of the figure; axes and legend lie outside of it.
+/// The plot area, in units of the figure; axes and legend lie outside.
 struct SpectrogramPlace {
     double x, y, width, height;
 };
@@ -16,10 +16,10 @@ struct SpectrogramStyle {
     double lowest, highest;        ///< Hz, logarithmic upwards
     int rows = 110, columns = 320; ///< cells at most
     bool legend = true;
-    bool relative = false;         ///< the legend tells dB re the strongest, not re 1 of the record's unit
+    bool relative = false;         ///< the legend is in dB re the maximum, not re 1 of the record's unit
 };
 
-/// From the strongest cell to 60 dB below it, time from left to right.
+/// Draws levels from the maximum to 60 dB below it; time from left to right.
 void draw_spectrogram(display::Figure& figure, const signal::Spectrogram& spectrogram, const SpectrogramPlace& place,
                       const SpectrogramStyle& style);
 

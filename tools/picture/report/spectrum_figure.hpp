@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A channel's spectrum and spectrogram as a figure for print.
+// Figure of spectrum and spectrogram per channel.
 #pragma once
 
 #include "devices/display/figure.hpp"
@@ -7,8 +7,8 @@
 
 namespace tactus::picture {
 
-/// Per channel (at most four): the spectrum with its lines named and the limit of touch, and the spectrogram below it
-/// when it was made.
+/// Per channel (at most four): the spectrum with named lines and the limit of touch, and the spectrogram below it if
+/// available.
 display::Figure draw_spectrum(const study::AnalysedFile& file);
 
 }  // namespace tactus::picture

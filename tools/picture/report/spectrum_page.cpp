@@ -79,7 +79,7 @@ std::string channel_section(const study::AnalysedChannel& channel, const study::
 std::string analysis_section(const study::AnalysedFile& file, const SpectrumMethod& method) {
     std::string out = fmt::format("<h2>{}</h2>\n", html::escaped(file.file.filename().string()));
     std::string mark = "s";
-    // Letters, different for every file of a page.
+    // A unique text of letters for every file of a page.
     for (const char c : file.file.string()) {
         mark += static_cast<char>('a' + static_cast<unsigned char>(c) / 16);
         mark += static_cast<char>('a' + static_cast<unsigned char>(c) % 16);
@@ -90,8 +90,8 @@ std::string analysis_section(const study::AnalysedFile& file, const SpectrumMeth
                        file.channels.empty() ? 0 : file.channels.front().report.psd.segments, file.psd.segment);
     if (file.log)
         out += fmt::format(
-            "<p>An uneven log of {} rows, steps {:.3g} to {:.3g} ms, resampled: nothing above {:.4g} Hz is there, "
-            "faithful to about {:.3g} Hz.</p>\n",
+            "<p>An uneven log of {} rows, steps {:.3g} to {:.3g} ms, resampled: limited to {:.4g} Hz, reliable to "
+            "about {:.3g} Hz.</p>\n",
             file.log->rows, 1e3 * file.log->shortest_step, 1e3 * file.log->longest_step, 0.5 * file.rate,
             file.log->usable);
     if (!method.envelope.empty()) out += fmt::format("<p>Envelope of the band {} Hz.</p>\n", method.envelope);
@@ -101,12 +101,12 @@ std::string analysis_section(const study::AnalysedFile& file, const SpectrumMeth
 
 std::string analysis_method(const SpectrumMethod& method) {
     return fmt::format(
-        "<h2>How it was computed</h2><ul>"
+        "<h2>Methods</h2><ul>"
         "<li>Curves: Welch, window {}, overlap {:g} %, detrend {}, average {}, scaling {}.</li>"
         "<li>Lines and bands: Welch, Hann, half overlapping, mean of each segment removed. Between bins by the ratio "
         "of "
         "the two strongest (Hann); SNR over the median of the bins 4 to 16 away. Levels are dB re 1 of the unit, mean "
-        "square. A line passes at the SNR that a bin of noise reaches once in a million.</li>"
+        "square. A line needs an SNR that a noise bin exceeds once in a million.</li>"
         "<li>Fundamental from {} Hz: the comb that explains most of the lines' amplitude with fewest low teeth "
         "missing.</li>"
         "<li>Third octaves have centres 10^(n/10) Hz; ± is one standard deviation of noise in the band.</li></ul>\n",

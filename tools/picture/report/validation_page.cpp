@@ -54,17 +54,17 @@ std::string validation_page(const study::Validation& validation) {
         body += fmt::format("<h2>{}</h2>\n", html::escaped(run.name())) +
                 comparison_section(run.pair, fmt::format("v{}x", i));
     }
-    body += "<h2>How it was made</h2><ul>";
+    body += "<h2>How the runs were made</h2><ul>";
     body +=
         "<li>Each run is one offline rendering of the patch in which the saw plays the set at the recording's rate "
-        "and load, without the hand, the bone and whatever else does not lead to the handle. The first second is "
-        "not compared.</li>";
+        "and load, without the hand, the bone and other nodes that do not lead to the handle. The first second is not "
+        "compared.</li>";
     body +=
-        "<li>The equaliser, if there is one, was made from sweeps. No recording was used to make it, and the drive "
-        "of each run is stated in the table, so that it can be held against the level of those sweeps.</li>";
+        "<li>The equaliser, if any, was designed from sweeps and not from recordings. The table states the drive of "
+        "each run, for comparison with the level of those sweeps.</li>";
     body +=
-        "<li>\"Softer by\" is what the handle lacks in power from 40 to 1000 Hz. An equaliser restores shape, not "
-        "level.</li></ul>\n";
+        "<li>\"Softer by\" is the missing power of the handle from 40 to 1000 Hz. An equaliser corrects the shape, not "
+        "the level.</li></ul>\n";
     if (last) body += comparison_method(*last);
     return html::page(passed ? "The handle vibrates as the saw did" : "The handle does not vibrate as the saw did",
                       body);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The runs of a patch beside the recordings that it plays, as a page.
+// The runs of a patch compared with its recordings, as an HTML page.
 #pragma once
 
 #include "tools/study/vibration/validation.hpp"
@@ -8,7 +8,7 @@
 
 namespace tactus::picture {
 
-/// A complete page of runs that are done.
+/// A complete page of finished runs.
 std::string validation_page(const study::Validation& validation);
 
 }  // namespace tactus::picture

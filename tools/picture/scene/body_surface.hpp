@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a body of a scene looks like: the zero surface of its distance field, painted where its points are.
+// The drawn surface of a scene's body: the zero surface of its distance field, coloured at its painted points.
 #pragma once
 
 #include "dsp/contact/voxmap.hpp"
@@ -12,10 +12,11 @@ namespace tactus::picture {
 struct BodySurface {
     geometry::SurfacePatch patch;  ///< in the frame of the body, m
     display::Bounds bounds;
-    bool has_paint = false;  ///< some of its points are labelled as fracture
+    bool has_paint = false;  ///< some points are labelled as fracture
 };
 
-/// Two triangles for each crossing edge of the grid, its vertices drawn onto the surface. `field` is the body's own.
+/// A surface net: two triangles for each crossing grid edge, with vertices moved onto the surface. `field`: the
+/// distance field of the body.
 BodySurface make_body_surface(const observe::SeenBody& body, const contact::Voxmap& field, const Vec3& colour,
                               const Vec3& paint_colour);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which pictures `render` makes.
+// Settings of the pictures of `render`.
 #pragma once
 
 #include "tools/picture/scene/sight_choice.hpp"
@@ -8,12 +8,12 @@
 
 namespace tactus::picture {
 
-/// As the command line gives it.
+/// The options of the command line.
 struct FrameChoice {
-    int frames = 0;                ///< how many, 0: none
+    int frames = 0;                ///< number of pictures, 0: none
     std::string view_from = "iso";  ///< a name or number of dsp/display/camera.hpp
     std::string size = "1280x800";
-    std::string clip;              ///< "x", "-y", "z=12 mm": what is above along that axis is taken away
+    std::string clip;              ///< "x", "-y", "z=12 mm": clip plane; the part above it along the axis is removed
     SightChoice sight;
 };
 

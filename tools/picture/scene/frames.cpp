@@ -27,7 +27,7 @@ std::pair<int, int> parse_size(const std::string& text) {
     const bool has_cross = bad == std::errc{} && cross != end && *cross == 'x';
     const auto [last, worse] = std::from_chars(has_cross ? cross + 1 : end, end, height);
     if (!has_cross || worse != std::errc{} || last != end)
-        throw Error(fmt::format("--size takes WIDTHxHEIGHT in pixels, as 1280x800, not '{}'", text));
+        throw Error(fmt::format("--size must be WIDTHxHEIGHT in pixels, such as 1280x800, not '{}'", text));
     return {width, height};
 }
 
@@ -35,11 +35,11 @@ display::NamedView parse_view(const std::string& text) {
     if (const auto named = display::view_of_name(text)) return *named;
     if (text.size() == 1 && text[0] >= '1' && text[0] <= '7') return *display::view_of_number(text[0] - '0');
     const std::vector<std::string> names(display::view_names.begin(), display::view_names.end());
-    throw Error(fmt::format("--view-from takes front, back, left, right, top, bottom, iso or 1 to 7, not '{}'{}", text,
-                            did_you_mean(text, names)));
+    throw Error(fmt::format("--view-from must be front, back, left, right, top, bottom, iso or 1 to 7, not '{}'{}",
+                            text, did_you_mean(text, names)));
 }
 
-/// "x", "-y" or "z=12 mm": the axis, and where along it; nowhere: through the middle.
+/// Parses "x", "-y" or "z=12 mm": the axis and a position along it; without one: the middle.
 struct Clip {
     Vec3 normal{0.0};
     std::optional<double> at;
@@ -50,8 +50,9 @@ struct Clip {
         const bool is_turned = axis.starts_with('-');
         const std::string letter = axis.substr(is_turned ? 1 : 0);
         if (letter != "x" && letter != "y" && letter != "z")
-            throw Error(
-                fmt::format("--clip takes an axis, as x or -z, and a place on it, as \"y=12 mm\", not '{}'", text));
+            throw Error(fmt::format(
+                "--clip must be an axis, such as x or -z, or an axis with a position, such as \"y=12 mm\", not '{}'",
+                text));
         normal[letter[0] - 'x'] = is_turned ? -1.0 : 1.0;
         if (equals != std::string::npos) at = parse_as(text.substr(equals + 1), "m") * (is_turned ? -1.0 : 1.0);
     }
@@ -93,7 +94,7 @@ struct FrameWriter::State {
         if (!wanted.clip.empty()) clip.emplace(wanted.clip);
         for (std::size_t i = 0; i < sight.screens(); ++i)
             if (sight.mode_of(i) == display::StereoMode::quad_buffer)
-                throw Error("a picture file has no buffer for each eye: --stereo side-by-side or anaglyph");
+                throw Error("a picture file cannot be quad-buffered; use --stereo side-by-side or anaglyph");
         sight.follow(model.outline());
         for (const std::string& port : sight.ports()) observer.watch(port, observe::Watch::latest);
     }
@@ -105,7 +106,7 @@ struct FrameWriter::State {
         return static_cast<double>(width) / maker.height();
     }
 
-    /// Where the head is must be seen from the first picture on.
+    /// The pose of the head must be observed from the first picture on.
     void check_head() const {
         if (sight.head.empty() || observer.latest<Pose>(sight.head)) return;
         std::vector<std::string> poses;
@@ -138,7 +139,7 @@ struct FrameWriter::State {
             if (!sight.is_off_axis() && sight.mode_of(0) == display::StereoMode::mono)
                 display::add_scale_bar(image, camera.metres_per_pixel(image.height));
             std::string name = fmt::format("frame_{:04}", frame);
-            if (sight.screens() > 1) name += "_" + file_part(sight.rig()->screens[screen].name);
+            if (sight.screens() > 1) name += "_" + file_part(sight.display_file()->screens[screen].name);
             name += ".png";
             try {
                 display::write_png(image, (folder / name).string());
@@ -152,8 +153,7 @@ struct FrameWriter::State {
 
 FrameWriter::FrameWriter(const FrameChoice& choice, SceneOutline outline, double seconds,
                          std::filesystem::path folder) {
-    if (outline.empty())
-        throw Error("there is nothing to see in this patch: no bone, scene, blade, proxy, gripper or pose");
+    if (outline.empty()) throw Error("this patch has nothing to draw: no bone, scene, blade, proxy, gripper or pose");
     state_ = std::make_unique<State>(choice, std::move(outline), seconds, std::move(folder));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of a scene at even steps of time while a patch is rendered: frame_0001.png, frame_0002.png, …
+// Writes pictures of a scene at equal time steps during a rendering: frame_0001.png, frame_0002.png, …
 #pragma once
 
 #include "engine/observe/observer.hpp"
@@ -15,20 +15,19 @@ namespace tactus::picture {
 
 class FrameWriter {
 public:
-    /// Before the run. Throws Error for a choice that makes no sense, a patch with nothing to see, and when there is no
-    /// OpenGL.
+    /// Called before the run. Throws Error for invalid settings, for a patch with nothing to draw, and without OpenGL.
     FrameWriter(const FrameChoice& choice, SceneOutline outline, double seconds, std::filesystem::path folder);
     ~FrameWriter();
     FrameWriter(const FrameWriter&) = delete;
     FrameWriter& operator=(const FrameWriter&) = delete;
 
-    /// For EngineOptions: sees everything.
+    /// Observer for EngineOptions.
     observe::Observer& observer();
-    /// Draws the frames up to this logical time, s: all groups have come so far. Always on one thread.
+    /// Draws the frames up to this logical time, s, which all groups have reached. Always on one thread.
     void advance(double seconds);
-    /// Names of what was written.
+    /// Names of the written files.
     const std::vector<std::string>& files() const;
-    /// Why a picture could not be written, which it names.
+    /// Reasons why pictures could not be written, with their names.
     const std::vector<std::string>& losses() const;
 
 private:

@@ -24,12 +24,12 @@ void fill(int x, int y, int width, int height, float grey) {
 
 }  // namespace
 
-void draw_mark(const display::RigTouch& touch, int width, int height) {
+void draw_mark(const display::Touch& touch, int width, int height) {
     glViewport(0, 0, width, height);
     glEnable(GL_SCISSOR_TEST);
     fill(0, 0, width, height, 0.06f);
-    if (touch.of == display::RigTouch::Of::screen || touch.of == display::RigTouch::Of::image) {
-        // Thin where they cross, so that the place is exact.
+    if (touch.of == display::Touch::Of::screen || touch.of == display::Touch::Of::image) {
+        // Thin at the crossing, so that the position is exact.
         const int x = static_cast<int>(std::lround(touch.shown.x * width)),
                   y = static_cast<int>(std::lround(touch.shown.y * height)), reach = height / 20;
         fill(x - reach, y - 1, 2 * reach, 2, 1.0f);
@@ -42,7 +42,7 @@ void draw_mark(const display::RigTouch& touch, int width, int height) {
 
 struct MarkWindow::State {
     GLFWwindow* window = nullptr;
-    display::RigTouch touch;
+    display::Touch touch;
 
     ~State() {
         if (window) glfwDestroyWindow(window);
@@ -70,7 +70,7 @@ MarkWindow::MarkWindow(int number) {
 
 MarkWindow::~MarkWindow() = default;
 
-void MarkWindow::show(const display::RigTouch& touch, const std::string& words) {
+void MarkWindow::show(const display::Touch& touch, const std::string& words) {
     state_->touch = touch;
     glfwSetWindowTitle(state_->window, words.c_str());
 }

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// A full screen that shows a mark to be touched.
+// A full-screen window that shows a calibration mark.
 #pragma once
 
-#include "dsp/display/rig_touches.hpp"
+#include "dsp/display/display_fit.hpp"
 
 #include <memory>
 #include <string>
 
 namespace tactus::picture {
 
-/// A cross at the mark of a screen on black, into what is bound; for other touches nothing but black. Needs a current
-/// context.
-void draw_mark(const display::RigTouch& touch, int width, int height);
+/// Draws a cross at the mark of a screen on black into the bound framebuffer; only black for other touches. Needs a
+/// current context.
+void draw_mark(const display::Touch& touch, int width, int height);
 
 class MarkWindow {
 public:
-    /// On a monitor, from 1. Throws Error when there is no display, no such monitor or no OpenGL.
+    /// `monitor` counts from 1. Throws Error without a display, the monitor or OpenGL.
     explicit MarkWindow(int monitor);
     ~MarkWindow();
     MarkWindow(const MarkWindow&) = delete;
     MarkWindow& operator=(const MarkWindow&) = delete;
 
-    /// A cross at the mark of a screen; for other touches the words alone.
-    void show(const display::RigTouch& touch, const std::string& words);
-    /// Some times a second. False: it was closed, or Escape was pressed.
+    /// Shows a cross at the mark of a screen; for other touches only the text.
+    void show(const display::Touch& touch, const std::string& words);
+    /// Call it several times a second. False when the window was closed or Escape was pressed.
     bool draw();
 
 private:

@@ -44,7 +44,7 @@ SceneModel::~SceneModel() {
 void SceneModel::follow(SceneOutline outline) {
     const std::vector<std::string> before = outline_.ports(), now = outline.ports();
     outline_ = std::move(outline);
-    // What goes on is watched all the time: a bone that was not would have to be sent as a whole.
+    // Existing outputs stay observed: a bone that is observed anew would be sent as a whole.
     for (const std::string& port : before)
         if (!std::ranges::binary_search(now, port)) observer_.watch(port, observe::Watch::nothing);
     for (const std::string& port : now) observer_.watch(port, observe::Watch::latest);
@@ -67,7 +67,7 @@ void SceneModel::follow(SceneOutline outline) {
         return gone;
     });
     for (const auto& [name, mesh] : shapes_) meshes.remove(mesh);
-    shapes_.clear();  // a blade may have another length now
+    shapes_.clear();  // the length of a blade may have changed
     is_fitting_ = true;
 }
 
@@ -77,7 +77,7 @@ std::size_t SceneModel::triangles() const {
     return count;
 }
 
-/// A mesh that never changes, made when it is first asked for.
+/// A constant mesh, made on first use.
 display::MeshPool::Mesh SceneModel::shape_mesh(const std::string& name, const geometry::SurfacePatch& patch) {
     const auto known = shapes_.find(name);
     if (known != shapes_.end()) return known->second;
@@ -91,7 +91,7 @@ std::optional<Pose> SceneModel::pose_of(const std::string& port) {
     const auto seen = observer_.latest<Pose>(port);
     if (!seen) return std::nullopt;
     if (is_valid(seen->value)) return seen->value;
-    legend_.warnings.push_back(fmt::format("{} is no valid pose: not drawn", port));
+    legend_.warnings.push_back(fmt::format("{} is not a valid pose: not drawn", port));
     return std::nullopt;
 }
 
@@ -129,7 +129,7 @@ display::Picture& SceneModel::update() {
     show_gripper();
     for (const auto& handle : outline_.handles)
         if (const auto pose = pose_of(handle.pose)) display::add_axes(notes_, *pose, 0.02);
-    // Most of the time they are as they were.
+    // They rarely change.
     if (notes_ != shown_notes_) renderer_.meshes().set_part(notes_mesh_, 0, shown_notes_ = notes_);
     show(notes_mesh_, {}, display::bounds_of(notes_), 1.0, false, !outline_.handles.empty());
     picture_.meshes.back().shines_through = true;
@@ -211,7 +211,7 @@ SceneModel::BodyMesh* SceneModel::mesh_of(std::uint64_t content, std::size_t pla
 void SceneModel::show_bodies() {
     shown_.clear();
     bool has_paint = false;
-    // The fullest scene first: others that hold the same bodies show them once more, elsewhere or not at all.
+    // The scene with the most bodies first: bodies that other scenes share with it are not drawn twice.
     std::vector<const SceneOutline::Bodies*> scenes;
     for (const auto& scene : outline_.scenes) scenes.push_back(&scene);
     std::ranges::stable_sort(scenes, std::greater{}, [](const auto* scene) { return scene->bodies.size(); });
@@ -229,7 +229,7 @@ void SceneModel::show_bodies() {
                 if (candidate.scene == scene->port &&
                     std::lround(number_of(candidate.place, candidate.held)) == static_cast<long>(i))
                     held = &candidate;
-            // Whoever holds it knows best where it is.
+            // The pose from the node that holds a body takes precedence.
             const auto hand = held ? pose_of(held->hand) : std::nullopt;
             if (held)
                 if (const auto now = pose_of(held->pose)) pose = *now;
@@ -243,7 +243,7 @@ void SceneModel::show_bodies() {
             has_paint = has_paint || mesh->has_paint;
             if (!held) continue;
             if (hand) {
-                // Where the hand would have it, as far as that is somewhere else.
+                // The pose commanded by the hand, if it differs.
                 const Pose grip = held->grip.empty() ? held->grip_at : pose_of(held->grip).value_or(held->grip_at);
                 const Pose wanted = *hand * grip;
                 const double apart = glm::length(wanted.position - pose.position) +
@@ -261,7 +261,7 @@ void SceneModel::show_bodies() {
     if (has_paint) legend_.entries.push_back({"painted fracture", paint_colour});
 }
 
-/// Points of the held body that lie within another.
+/// Points of the held body that penetrate another body.
 void SceneModel::show_penetration(const BodyMesh& held, const Pose& pose, std::size_t place,
                                   const observe::SeenScene& scene) {
     constexpr double worst = 0.5e-3;
@@ -292,7 +292,7 @@ void SceneModel::show_force(const std::string& port, const Vec3& at) {
     }
     const double size = glm::length(force), reach = std::max(bounds_.radius(), 5e-3);
     legend_.entries.push_back({fmt::format("{}: {:.1f} N", port, size), force_colour});
-    // 10 N are half as long as the scene.
+    // A force of 10 N is drawn half as long as the scene.
     if (size > 0.02) display::add_arrow(notes_, at, at + force * (0.1 * reach), 0.014 * reach, force_colour);
 }
 

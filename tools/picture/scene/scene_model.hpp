@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene of a run: from what an observer sees to meshes on the graphics card and where they stand.
+// Converts the values of an observer into meshes on the graphics card and their poses.
 #pragma once
 
 #include "devices/display/legend.hpp"
@@ -16,31 +16,31 @@
 
 namespace tactus::picture {
 
-/// Belongs to one renderer, whose context must be current in `update` and the destructor.
+/// Belongs to one renderer. Its context must be current in `update` and in the destructor.
 class SceneModel {
 public:
-    /// Begins to watch what the outline names. Both must outlive the model.
+    /// Observes the outputs of the outline. Both arguments must outlive the model.
     SceneModel(SceneOutline outline, observe::Observer& observer, display::SceneRenderer& renderer);
     ~SceneModel();
     SceneModel(const SceneModel&) = delete;
     SceneModel& operator=(const SceneModel&) = delete;
 
-    /// After an edit: draws what the new plan has. Meshes of what goes on stay.
+    /// Changes to the plan after an edit. Meshes of unchanged nodes are kept.
     void follow(SceneOutline outline);
 
-    /// Takes over what the observer saw up to its last `advance`: remeshes the bricks that changed and moves everything
-    /// to where it is. What it returns stays valid until the next call; a clip plane set in it stays.
+    /// Takes the values up to the observer's last `advance`: remeshes changed bricks and updates poses. The result is
+    /// valid until the next call; a clip plane set in it is kept.
     display::Picture& update();
 
     const SceneOutline& outline() const { return outline_; }
 
-    /// The colours of the picture, the forces and depths of this moment, and what could not be drawn.
+    /// The colours, the current forces and depths, and what could not be drawn.
     const display::Legend& legend() const { return legend_; }
-    /// Of what stands still and of where tools began: what a camera is fitted to.
+    /// Bounds of static bodies and of the initial tool poses, for fitting the camera.
     const display::Bounds& bounds() const { return bounds_; }
-    /// From where a blade came in the last picture.
+    /// Position of a blade in the last picture.
     const std::optional<Vec3>& tool() const { return tool_; }
-    /// Bricks that the last `update` made anew, and triangles of everything.
+    /// Bricks remeshed by the last `update`, and triangles in all.
     std::size_t remeshed_bricks() const { return remeshed_; }
     std::size_t triangles() const;
 
@@ -83,12 +83,12 @@ private:
     struct StillMesh {
         display::MeshPool::Mesh mesh = -1;
         display::Bounds bounds;
-        std::string problem;  ///< why it is not there
+        std::string problem;  ///< why it is missing
     };
     std::map<std::string, StillMesh> still_bones_;  // by path
     std::map<std::uint64_t, BodyMesh> bodies_;
     std::map<std::string, display::MeshPool::Mesh> shapes_;
-    std::unordered_set<std::uint64_t> shown_;  // content of the bodies in the last picture
+    std::unordered_set<std::uint64_t> shown_;  // content hashes of the bodies in the last picture
     display::MeshPool::Mesh notes_mesh_;
     display::Picture picture_;
     display::Legend legend_;

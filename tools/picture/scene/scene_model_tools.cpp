@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tools of a scene: blades, balls that stand for a hand, grippers.
+// Tools of a scene: blades, spheres for hands, grippers.
 #include "devices/display/shapes.hpp"
 #include "tools/picture/scene/scene_colours.hpp"
 #include "tools/picture/scene/scene_model.hpp"
@@ -18,9 +18,9 @@ void SceneModel::show_blades() {
         if (!pose) continue;
         geometry::SurfacePatch patch;
         display::add_blade(patch, blade.shape, steel);
-        // Room for the way that it will go.
+        // Margin for its motion.
         show(shape_mesh("blade " + blade.node, patch), *pose, display::bounds_of(patch), 1.0, false, false);
-        tool_ = pose->apply({0.0, -0.2, 0.0});  // on the hand's side, however deep the teeth are
+        tool_ = pose->apply({0.0, -0.2, 0.0});  // on the hand's side, at any depth of the teeth
         show_force(blade.wrench, pose->position);
     }
 }
@@ -66,7 +66,7 @@ void SceneModel::show_gripper() {
         const double force = number_of(fingers.force, 0.0);
         legend_.entries.push_back({fmt::format("{}: {:.1f} mm closed", fingers.finger, finger * 1e3), steel});
         legend_.entries.push_back({fmt::format("{}: {:.1f} N", fingers.force, force), force_colour});
-        // From outside, towards the way that the hand presses.
+        // Drawn from outside, along the direction of the hand's force.
         const Vec3 at = hand.apply(right + Vec3(4e-3, 0.0, -10e-3)), along = hand.rotate(Vec3(1.0, 0.0, 0.0));
         if (std::abs(force) > 0.02) display::add_arrow(notes_, at + along * (force * 5e-3), at, 1.2e-3, force_colour);
     }

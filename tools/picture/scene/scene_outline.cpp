@@ -18,7 +18,7 @@ struct VectorList : MemberVisitor {
     void vector(std::string_view name, Vector& value) override { vectors[std::string(name)] = value.value; }
 };
 
-/// One node of the plan as its patch has it.
+/// A node of the plan as written in the patch.
 struct NodeView {
     const compile::Plan& plan;
     int index;
@@ -33,13 +33,13 @@ struct NodeView {
         return std::ranges::any_of(
             node.inputs, [&](const compile::PlanInput& in) { return in.name == name && in.port->type == &type; });
     }
-    /// The name of an output, when there is one of that type.
+    /// The name of the output of that type, if any.
     std::string output(std::string_view name, const ValueType& type) const {
         for (const compile::PlanOutput& out : node.outputs)
             if (out.name == name && out.port->type == &type) return node.name + "." + out.name;
         return {};
     }
-    /// The output that an input or a parameter is wired to.
+    /// The output wired to an input or a parameter.
     std::string source(std::string_view name) const {
         for (const compile::PlanWire& wire : plan.wires) {
             if (wire.to_node != index || wire.from_node < 0) continue;
@@ -122,7 +122,7 @@ void look_at(const NodeView& view, SceneOutline& outline) {
         outline.weights.push_back({view.source("hand"), height});
 }
 
-/// Bones that come straight from a file: wired to a node, or named by one that makes nothing to see of them.
+/// Bones directly from a file: wired to a node, or an asset of a node that does not draw them otherwise.
 void add_still_bones(const compile::Plan& plan, SceneOutline& outline) {
     const auto path_of = [&](const std::string& asset) -> std::string {
         const auto found = std::ranges::find(plan.patch.assets, asset, &patch::PatchAsset::name);
@@ -176,7 +176,7 @@ SceneOutline outline_of(const compile::Plan& plan) {
     outline.title = plan.patch.title;
     for (std::size_t i = 0; i < plan.nodes.size(); ++i) look_at(NodeView(plan, static_cast<int>(i)), outline);
     add_still_bones(plan, outline);
-    // A gripper on an arm goes where the arm goes.
+    // A gripper on an arm moves with the arm.
     for (auto& fingers : outline.fingers)
         if (!outline.weights.empty()) fingers.hand = outline.weights.front().hand;
     if (outline.empty())

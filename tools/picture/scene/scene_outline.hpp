@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of a patch can be seen in space, told by the types of its ports and the names of its parameters: any node that has
-// them is drawn, also one that did not exist when this was written.
+// Finds the parts of a patch that can be drawn, by port types and parameter names, so that new node types are drawn
+// without changes here.
 #pragma once
 
 #include "dsp/contact/blade.hpp"
@@ -13,29 +13,29 @@
 
 namespace tactus::picture {
 
-/// Names are those of outputs, "node.port"; empty: there is none.
+/// Names are outputs, "node.port"; empty: none.
 struct SceneOutline {
-    /// An output that is a bone.
+    /// A bone output.
     struct Bone {
         std::string port;
     };
-    /// A bone that stays as it is: a file that nodes are given, and none of them carves or moves.
+    /// A constant bone: a file of nodes that neither carve nor move it.
     struct StillBone {
         std::string name, path;
     };
-    /// An output that is a scene; `bodies` are the outputs that give its places.
+    /// A scene output; `bodies`: the outputs wired to its slots.
     struct Bodies {
         std::string port;
         std::vector<std::string> bodies;
     };
-    /// A body of a scene in the hand: a node with a scene and a parameter `held`.
+    /// A held body: a node with a scene and a parameter `held`.
     struct Held {
         std::string scene;
-        std::string pose;  ///< where the body is: the proxy
-        std::string hand;  ///< where the hand is
-        std::string grip;  ///< of the body in the hand, or:
+        std::string pose;  ///< pose of the body (the proxy)
+        std::string hand;  ///< pose of the hand
+        std::string grip;  ///< pose of the body in the hand, or:
         Pose grip_at;
-        std::string place;  ///< which body, or:
+        std::string place;  ///< slot of the body, or:
         double held = 0.0;
         std::string wrench;
     };
@@ -44,28 +44,28 @@ struct SceneOutline {
         std::string node, pose, wrench;
         contact::BladeShape shape;
     };
-    /// A ball that stands for the hand: on top, where it really is, and where it would be within.
+    /// A sphere for the hand: the proxy on the surface and the real position inside.
     struct Ball {
-        std::string pose, hand, wrench;  ///< pose: the proxy, or the hand itself when there is none
+        std::string pose, hand, wrench;  ///< pose: the proxy, or the hand without a proxy
         double radius = 0.5e-3;
     };
     struct FixedBall {
         Vec3 centre{0.0};
         double radius = 0.0;
     };
-    /// Fingers of a gripper, and the hand that carries it.
+    /// The fingers of a gripper and the hand that carries it.
     struct Fingers {
         std::string node, finger, thumb, force, hand;
     };
     struct Weight {
         std::string hand, height;
     };
-    /// A handle of which nothing else is known: drawn as axes.
+    /// A handle without a known shape, drawn as axes.
     struct Handle {
         std::string pose;
     };
 
-    /// How a device stands in the scene: its handle, the same place with the device's axes in the scene, and the scale.
+    /// The workspace mapping of a device: its handle, the same pose in the scene, and the scale.
     struct Place {
         std::string device, frame, scale;
     };
@@ -81,14 +81,14 @@ struct SceneOutline {
     std::vector<Fingers> fingers;
     std::vector<Weight> weights;
     std::vector<Handle> handles;
-    std::vector<Place> places;  ///< nothing to see by themselves
+    std::vector<Place> places;  ///< not drawn
 
     bool empty() const;
-    /// Every output that it speaks of, each once.
+    /// All outputs of the outline, each once.
     std::vector<std::string> ports() const;
 };
 
-/// Of a plan that was just compiled; it need not have its assets.
+/// The outline of a compiled plan; assets are not needed.
 SceneOutline outline_of(const compile::Plan& plan);
 
 }  // namespace tactus::picture

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Through which eyes a scene is seen on which screen: a camera's, or those of a head before the screens of a rig.
+// The views of a scene: from a camera, or from the eyes of a tracked head in front of the screens of a display.
 #pragma once
 
-#include "assets/display/rig_file.hpp"
+#include "assets/display/display_file.hpp"
 #include "devices/display/legend.hpp"
 #include "devices/display/scene_renderer.hpp"
 #include "engine/observe/observer.hpp"
@@ -15,67 +15,67 @@
 
 namespace tactus::picture {
 
-/// Throws Error listing the names there are.
+/// Throws Error listing the valid names.
 display::StereoMode parse_stereo(const std::string& text);
-/// "none", "study": the thesis's 0.3 m, here to the viewer's right, or three lengths. Throws Error.
+/// "none", "study" (0.3 m to the viewer's right, as in the study of Olsson 2015), or three lengths. Throws Error.
 Vec3 parse_offset(const std::string& text);
 
 class Sight {
 public:
-    /// Reads the rig. Throws Error.
+    /// Reads the display file. Throws Error.
     explicit Sight(const SightChoice& choice);
 
     display::StereoMode stereo = display::StereoMode::mono;
-    std::string head;  ///< output that is the head; empty: none
+    std::string head;  ///< output with the head's pose; empty: none
 
-    /// Reads another rig, or none for an empty path. Throws Error, and all stays as it was.
-    void use_rig(const std::filesystem::path& path);
-    const std::optional<display::RigFile>& rig() const { return rig_; }
-    /// Moves what is seen against what is felt, m, viewer's axes; of a rig only.
+    /// Reads another display file; an empty path: none. Throws Error and then changes nothing.
+    void use_display(const std::filesystem::path& path);
+    const std::optional<display::DisplayFile>& display_file() const { return file_; }
+    /// Shifts the picture against the haptic position, m, viewer's axes; only with a display file.
     void set_offset(const Vec3& offset);
 
-    /// Learns from the outline which outputs say how the device stands in the scene.
+    /// Takes the outputs of the device's workspace from the outline.
     void follow(const SceneOutline& outline);
-    /// Outputs that it needs to see.
+    /// Outputs that must be observed.
     std::vector<std::string> ports() const;
-    /// Where head and device are now. What does not come as a whole, or is no pose, stays as it was.
+    /// Updates head and device. Incomplete or invalid poses are ignored.
     void update(const observe::Observer& observer);
 
-    /// Without a rig: one.
-    std::size_t screens() const { return rig_ ? rig_->screens.size() : 1; }
+    /// 1 without a display file.
+    std::size_t screens() const { return file_ ? file_->screens.size() : 1; }
     display::StereoMode mode_of(std::size_t screen) const;
-    /// Width over height of what one eye sees on it; none without a rig.
+    /// Width over height of one eye's picture; none without a display file.
     std::optional<double> aspect_of(std::size_t screen) const;
-    /// A head or a rig decides what is seen, not the camera alone.
-    bool is_off_axis() const { return rig_ || !head.empty(); }
+    /// A head or a display file sets the projection, not the camera alone.
+    bool is_off_axis() const { return file_ || !head.empty(); }
 
-    /// What is to be drawn into a picture that fills the screen. While the head is where it cannot see a screen, the
-    /// picture before stays, and `warnings` says so.
+    /// The views for a picture that fills the screen. While the head cannot see a screen, the last views are kept and
+    /// `warnings` says so.
     std::vector<display::DrawnView> views(std::size_t screen, const display::OrbitCamera& camera,
                                           const display::Bounds& scene, int width, int height);
     const std::vector<std::string>& warnings() const { return warnings_; }
-    /// The head of the last `update`, in the world of the viewer; none: nothing tells where it is.
+    /// The head of the last `update`, in the world of the viewer; none: unknown.
     const std::optional<Pose>& head_pose() const { return head_pose_; }
 
-    /// How a picture's text has to lie for who sees it in a mirror.
+    /// The flip of text for a picture seen in a mirror.
     display::Flip text_of(std::size_t screen) const;
 
 private:
-    /// With the device where it is now.
-    display::DisplayRig rig_now() const;
-    std::vector<Vec3> eyes_for(std::size_t screen, const display::DisplayRig& rig) const;
+    /// The display geometry with the current pose of the device.
+    display::DisplayGeometry geometry_now() const;
+    std::vector<Vec3> eyes_for(std::size_t screen, const display::DisplayGeometry& geometry) const;
 
-    std::optional<display::RigFile> rig_;
+    std::optional<display::DisplayFile> file_;
     std::optional<Vec3> offset_;
     std::optional<SceneOutline::Place> place_;
     std::optional<Pose> head_pose_;
     Mat3 to_device_{1.0};  // from the scene to the device's frame
     Vec3 shift_to_device_{0.0};
-    std::vector<std::vector<display::RigView>> last_;
+    std::vector<std::vector<display::ScreenView>> last_;
     std::vector<std::string> warnings_;
 };
 
-/// The legend in every view of a picture, at one place for both eyes: on the screen itself.
+/// Draws the legend into every view, at the same screen position for both eyes.
 void add_legend(display::Image& image, const display::Legend& legend, std::span<const display::DrawnView> views,
                 display::Flip flip);
 

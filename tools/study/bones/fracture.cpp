@@ -25,8 +25,8 @@ Vec3 middle_of(const volume::Grid& solid) {
     return solid.origin + 0.5 * Vec3(solid.size[0] - 1, solid.size[1] - 1, solid.size[2] - 1) * solid.spacing;
 }
 
-/// Where a fragment lies in its file, as a motion of the unbroken bone: away from `centre` and a little to the side, and
-/// turned about its own middle.
+/// Displacement of a fragment in its file: away from `centre` with a small sideways part, and a rotation about its own
+/// centre.
 Pose displaced(const volume::Grid& solid, const Vec3& centre, const FractureSettings& settings, std::uint64_t seed) {
     const Random random{seed};
     const auto direction = [&](std::uint64_t n) {
@@ -39,7 +39,7 @@ Pose displaced(const volume::Grid& solid, const Vec3& centre, const FractureSett
     return {to - turn * middle, turn};
 }
 
-/// The density of the unbroken bone where the fragment has bone.
+/// The density of the unbroken bone, sampled inside the fragment.
 volume::Grid density_of(const bone::Bone& bone, const volume::Grid& distance, const Pose& into_bone) {
     const contact::Voxmap map = contact::make_voxmap(bone.density);
     volume::Grid density = distance;
@@ -86,7 +86,7 @@ void break_and_scan(const bone::Bone& bone, const FractureSettings& settings,
     const Vec3 centre = middle_of(bone.distance);
     const std::size_t left = solids.size() - static_cast<std::size_t>(settings.missing);
     for (std::size_t n = 0; n < left; ++n) {
-        // The largest one stays: it is what the others are brought to.
+        // The largest fragment is not moved: it is the reference for the others.
         const Pose placement = n == 0 ? Pose{} : displaced(solids[n], centre, settings, settings.seed * 1009 + n);
         take({scan_fragment(bone, map, solids[n], placement, settings, settings.seed * 2003 + n), placement.inverse(),
               volume_of_solid(solids[n])});

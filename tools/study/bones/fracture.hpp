@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Breaks a bone: fragments as a scan shows them, displaced, and where they belong.
+// Breaks a bone: simulated, displaced fragments with ground truth.
 #pragma once
 
 #include "assets/bone/bone.hpp"
@@ -10,24 +10,24 @@
 namespace tactus::study {
 
 struct FractureSettings {
-    int pieces = 2, missing = 0;             ///< so many of the smallest are lost
+    int pieces = 2, missing = 0;             ///< missing: number of the smallest pieces that are lost
     std::uint64_t seed = 1;
-    double chips = 0.0;                      ///< share of the area
+    double chips = 0.0;                      ///< fraction of the area
     double kerf = 0.0, roughness = 0.8e-3;   ///< m
-    double voxel = 0.35e-3, blur = 0.25e-3;  ///< m, of the scan
-    double noise = 0.03;                     ///< share of the contrast
-    double spread = 10e-3;                   ///< m, how far the fragments lie from their places
-    double turn = 0.35;                      ///< rad, how far they are turned
-    double spacing = 0.42e-3;                ///< m, of the surface points
+    double voxel = 0.35e-3, blur = 0.25e-3;  ///< m, voxel size and blur of the scan
+    double noise = 0.03;                     ///< fraction of the contrast
+    double spread = 10e-3;                   ///< m, displacement of the fragments
+    double turn = 0.35;                      ///< rad, rotation of the fragments
+    double spacing = 0.42e-3;                ///< m, spacing of the surface points
 };
 
 struct ScannedFragment {
     bone::Bone bone;            ///< without a name
     Pose place;           ///< p_bone = R p_fragment + t
-    double volume = 0.0;  ///< m³, before it was scanned
+    double volume = 0.0;  ///< m³, before the scan
 };
 
-/// Hands over the fragments one by one, the largest first, which has not moved. Throws Error.
+/// Calls back with the fragments one by one; the first is the largest and is not moved. Throws Error.
 void break_and_scan(const bone::Bone& bone, const FractureSettings& settings,
                     const std::function<void(ScannedFragment fragment)>& take);
 

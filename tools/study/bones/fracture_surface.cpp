@@ -21,7 +21,7 @@ std::vector<contact::SurfacePoint> points_of_fragment(const std::filesystem::pat
     return bone.points.empty() ? contact::sample_surface(bone.distance, {}) : bone.points;
 }
 
-/// What lies inside of the unbroken bone; returns how well that could be laid on the fragments.
+/// Labels the points inside the unbroken bone; returns its registration to the fragments.
 LaidIntact propose_by_intact(std::vector<contact::SurfacePoint>& points, const FractureSurfaceSettings& settings) {
     const std::vector<contact::SurfacePoint> main = settings.main.empty() ? points : points_of_fragment(settings.main);
     const IntactSide intact = lay_intact_side(settings.intact, settings.mirror, main);
@@ -40,7 +40,7 @@ LaidIntact propose_by_intact(std::vector<contact::SurfacePoint>& points, const F
     return laid;
 }
 
-/// Labels what is proposed by the ways that are chosen.
+/// Labels the points proposed by the selected methods.
 std::optional<LaidIntact> propose(std::vector<contact::SurfacePoint>& points, const FractureSurfaceSettings& settings) {
     if (!settings.intact.empty()) {
         const LaidIntact laid = propose_by_intact(points, settings);
@@ -72,8 +72,8 @@ FractureSurface propose_fracture_surface(const FractureSurfaceSettings& settings
         points, [](const contact::SurfacePoint& p) { return p.label == contact::surface_label::fracture; });
     if (settings.keep && has_paint && !(settings.facing.empty() && settings.intact.empty()))
         throw Error(
-            fmt::format("{}: has paint already, which --keep starts from, so --facing and --intact would change "
-                        "nothing; leave --keep out to propose anew",
+            fmt::format("{}: with --keep the existing paint is used, so --facing and --intact have no effect; leave "
+                        "out --keep for a new proposal",
                         settings.bone.string()));
     if (!settings.keep || !has_paint) out.intact = propose(points, settings);
     if (!settings.paint.empty()) cases::paint_from_file(points, settings.paint, settings.correct);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Proposes where a fragment is broken, and takes corrections by hand.
+// Proposes the fracture surface of a fragment and applies manual corrections.
 #pragma once
 
 #include "assets/bone/bone.hpp"
@@ -12,22 +12,23 @@ namespace tactus::study {
 
 struct FractureSurfaceSettings {
     std::filesystem::path bone;        ///< bone file or closed mesh
-    std::filesystem::path paint;       ///< strokes by hand, instead of the proposal; empty: none
-    std::filesystem::path facing;      ///< another fragment of the same scan: what faces it is proposed; empty: none
-    std::filesystem::path intact;      ///< the unbroken bone: what lies inside of it is proposed; empty: none
-    std::filesystem::path main;        ///< fragment that the unbroken bone is laid on first; empty: `bone`
-    double roughness = 0.06;           ///< from which on a place is broken: mean of 1 − cos between normals
-    double reach = 10e-3;              ///< m, how far what is faced may be
-    std::optional<double> least_area;  ///< m²; each proposal has its own otherwise
-    bool mirror = false;               ///< `intact` is the other side of the body
-    bool correct = false;              ///< `paint` is used on top of the proposal
-    bool keep = false;                 ///< start from the paint that the bone file has
+    std::filesystem::path paint;       ///< file of strokes in place of the proposal; empty: none
+    std::filesystem::path
+        facing;      ///< another fragment of the same scan: proposes the surface that faces it; empty: none
+    std::filesystem::path intact;      ///< the unbroken bone: proposes the surface inside of it; empty: none
+    std::filesystem::path main;        ///< fragment to which the unbroken bone is registered first; empty: `bone`
+    double roughness = 0.06;           ///< threshold of roughness: mean of 1 − cos between normals
+    double reach = 10e-3;              ///< m, greatest distance to `facing` or `intact`
+    std::optional<double> least_area;  ///< m²; none: the default of each method
+    bool mirror = false;               ///< `intact` is from the other side of the body
+    bool correct = false;              ///< apply `paint` on top of the proposal
+    bool keep = false;                 ///< start from the paint in the bone file
 };
 
-/// How the unbroken bone could be laid.
+/// Registration of the unbroken bone.
 struct LaidIntact {
     fit::Registration on_main;
-    std::optional<fit::Registration> on_bone;  ///< by itself, when that is another fragment
+    std::optional<fit::Registration> on_bone;  ///< to the fragment itself, if it is not the main one
 };
 
 struct FractureSurface {

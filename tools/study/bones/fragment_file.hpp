@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fragments from files: bones as they are, everything else through import.
+// Loads fragments: bone files directly, other files through the import.
 #pragma once
 
 #include "assets/bone/bone.hpp"
@@ -9,10 +9,10 @@
 
 namespace tactus::study {
 
-/// A bone file ("FILE.vdb#NAME" for one of several), or what import makes of a mesh or a CT.
+/// Loads a bone file ("FILE.vdb#NAME" for one of several), or imports a mesh or a CT.
 bone::Bone bone_of_file(const std::filesystem::path& path);
 
-/// A pose as files and programs are told it; w not negative.
+/// A pose in output convention: w is not negative.
 struct PoseNumbers {
     std::array<double, 3> position_mm;
     std::array<double, 4> quaternion_wxyz;

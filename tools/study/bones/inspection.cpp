@@ -22,7 +22,7 @@ namespace tactus::study {
 namespace {
 
 constexpr std::size_t most_parts = 20;
-constexpr int finest_view = 220;  // samples along the longest side of what is drawn
+constexpr int finest_view = 220;  // samples along the longest side of the drawn surface
 
 std::array<double, 3> in_mm(const Vec3& v) { return {v.x * 1e3, v.y * 1e3, v.z * 1e3}; }
 
@@ -33,7 +33,7 @@ std::array<std::array<double, 2>, 3> bounds_of(const geometry::TriangleSurface& 
     return {{{low.x, high.x}, {low.y, high.y}, {low.z, high.z}}};
 }
 
-// To the outer sides of the voxels at the ends.
+// Up to the outer faces of the first and last voxels.
 std::array<std::array<double, 2>, 3> bounds_of(const volume::Components::Box& box, const volume::Grid& grid) {
     std::array<std::array<double, 2>, 3> bounds{};
     for (std::size_t a = 0; a < 3; ++a) {
@@ -46,7 +46,7 @@ std::array<std::array<double, 2>, 3> bounds_of(const volume::Components::Box& bo
 
 double voxel_mm3(const volume::Grid& grid) { return grid.spacing.x * grid.spacing.y * grid.spacing.z * 1e9; }
 
-// A frame of `outside` around the samples closes the surface of what reaches the border.
+// A border of `outside` samples closes surfaces at the border of the volume.
 geometry::TriangleSurface view_surface(const volume::Grid& grid, float iso, float outside) {
     volume::Grid layout = grid;
     double step = 1.0;
@@ -79,7 +79,7 @@ void inspect_ct(Inspection& found) {
     }
     const auto low = static_cast<float>(found.range[0]);
     found.surfaces.push_back({view_surface(grid, iso, low), Vec3(0.90, 0.86, 0.76)});
-    // Black well below the threshold, white where only the densest is.
+    // Grey window: black well below the threshold, white at the densest values.
     found.window = {found.hu == "calibrated" ? std::max(found.range[0], -200.0) : found.range[0],
                     std::max(*found.threshold * 3.0, *found.threshold + 200.0)};
 }
@@ -154,7 +154,7 @@ Inspection inspect_mesh(const std::filesystem::path& path) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
         parts[static_cast<std::size_t>(topology.component_of[t])].triangles.push_back(mesh.triangles[t]);
     for (geometry::TriangleSurface& part : parts) {
-        // Only its own points, in mm as they are in the file.
+        // Only the points of the part, in mm as in the file.
         std::map<int, int> renamed;
         for (auto& t : part.triangles)
             for (int& corner : t) {

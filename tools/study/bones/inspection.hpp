@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is in a volume, mesh or bone file.
+// Summarises a volume, mesh or bone file.
 #pragma once
 
 #include "assets/mesh/write_mesh.hpp"
@@ -17,31 +17,31 @@ namespace tactus::study {
 struct InspectedPart {
     std::string name;
     double volume_mm3 = 0.0;
-    std::array<std::array<double, 2>, 3> bounds_mm{};  ///< least and greatest along x, y, z; LPS
+    std::array<std::array<double, 2>, 3> bounds_mm{};  ///< minimum and maximum along x, y, z; LPS
 };
 
 struct Inspection {
     std::string kind;   ///< "ct", "labels", "mesh" or "bone"
-    std::string frame;  ///< of the file: "LPS" or "RAS"
+    std::string frame;  ///< frame of the file: "LPS" or "RAS"
     std::array<int, 3> size{};
     std::array<double, 3> spacing_mm{};
     bool uniform = true;
     double tilt_deg = 0.0;
     std::string hu;                    ///< "calibrated", "masked", "scanner" or "none"
-    std::array<double, 2> range{};     ///< of the values: HU or scanner numbers, labels, kg/m³ of a bone
+    std::array<double, 2> range{};     ///< range of the values: HU or scanner values, labels, or kg/m³ for a bone
     std::optional<double> threshold;   ///< for a CT
-    std::vector<InspectedPart> parts;  ///< largest first; labels and bones in their own order
-    std::size_t parts_in_all = 0;      ///< small parts of a CT are counted, not listed
-    volume::Histogram histogram;               ///< 24 bins, for people
-    std::vector<std::string> notes;    ///< what was set right while reading, or is wrong with it
+    std::vector<InspectedPart> parts;  ///< largest first; labels and bones in file order
+    std::size_t parts_in_all = 0;      ///< includes small parts of a CT that are not listed
+    volume::Histogram histogram;               ///< 24 bins
+    std::vector<std::string> notes;    ///< corrections while reading, and problems
 
-    volume::Grid grey;                              ///< for slices: values on LPS axes; empty for a mesh
-    std::array<double, 2> window{};         ///< black and white of the slices
+    volume::Grid grey;                              ///< for the slices: values on LPS axes; empty for a mesh
+    std::array<double, 2> window{};         ///< black and white level of the slices
     bool is_labels = false;                 ///< slices are coloured by label
-    std::vector<mesh::ColouredSurface> surfaces;  ///< for the view
+    std::vector<mesh::ColouredSurface> surfaces;  ///< surfaces for the view
 };
 
-/// Reads a volume, mesh or bone file and measures it. Throws Error for what cannot be read.
+/// Reads and measures a volume, mesh or bone file. Throws Error when it cannot be read.
 Inspection inspect(const std::filesystem::path& path, const std::string& series = "");
 
 }  // namespace tactus::study

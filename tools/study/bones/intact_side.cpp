@@ -17,7 +17,7 @@ std::vector<contact::SurfacePoint> laid_target(const cases::MirrorTarget& target
 
 IntactSide lay_intact_side(const std::filesystem::path& file, bool mirror,
                            std::span<const contact::SurfacePoint> main) {
-    // Half as wide as openings through which marrow is joined to the outside, at a threshold for cortex.
+    // Half the width of the openings that connect marrow to the outside at a threshold for cortex.
     constexpr double closing = 3e-3;
     std::vector<contact::SurfacePoint> points =
         is_mesh(file)

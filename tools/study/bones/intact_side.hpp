@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The unbroken bone laid where fragments belong: the healthy side mirrored, or the bone before it broke.
+// Registers the unbroken bone (the mirrored healthy side, or an earlier scan) to fragments.
 #pragma once
 
 #include "assets/cases/case_plan.hpp"
@@ -12,15 +12,16 @@
 namespace tactus::study {
 
 struct IntactSide {
-    std::vector<contact::SurfacePoint> points;  ///< in the frame of the fragment that it was laid on
-    fit::Registration registration;  ///< of that fragment's points to it
+    std::vector<contact::SurfacePoint> points;  ///< in the frame of the fragment it is registered to
+    fit::Registration registration;  ///< registration of that fragment's points to it
 };
 
-/// The healthy side of a plan as it lies in the frame of the case; `folder` is the plan's. Throws Error. Whether
-/// the file is the one that the plan was made with is for check_files to say.
+/// The healthy side of a plan in the frame of the case; `folder` is the plan's folder. Throws Error. Does not check
+/// whether the file has changed; see check_files.
 std::vector<contact::SurfacePoint> laid_target(const cases::MirrorTarget& target, const std::filesystem::path& folder);
 
-/// From a bone file, a CT or a mesh, laid on `main`, from anywhere. Throws Error for a file that has no surface.
+/// Loads a bone file, a CT or a mesh and registers it to `main` from any position. Throws Error for a file without
+/// surface.
 IntactSide lay_intact_side(const std::filesystem::path& file, bool mirror, std::span<const contact::SurfacePoint> main);
 
 }  // namespace tactus::study

@@ -36,7 +36,8 @@ std::optional<RegisteredRegion> register_region(const std::vector<contact::Surfa
     found.plain_to_points = plain.to_points;
     found.plain_median = plain.to_surface;
     found.registration = fit::register_surface(part.points, target, bulk.pose, {.widest = 8e-3, .finest = 0.8e-3});
-    // What slid along the surface is not far from it: now that the part's motion is known, all that moved with it counts.
+    // Points that slid along the surface have a small distance to it. With the known motion of the part, all points
+    // that move with it are added.
     for (int round = 0; round < 2; ++round) {
         auto all = fit::region_nearer(moving, bulk.pose, found.registration.pose, target, 0.2 * settings.away,
                                       settings.away, settings.gap);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lays one surface on another of the same shape, whole or the part of it that is elsewhere.
+// Registers a surface to another one of the same shape, as a whole and, on request, a displaced part separately.
 #pragma once
 
 #include "dsp/fit/mirror.hpp"
@@ -13,20 +13,20 @@ namespace tactus::study {
 
 struct RegisterSettings {
     std::filesystem::path moving, fixed;              ///< bone files or meshes, which need not be closed
-    double away = 1.5e-3, gap = 3e-3, margin = 2e-3;  ///< m, of a region that lies elsewhere
-    bool mirror = false;                              ///< the moving one is of the other side of the body
-    bool anywhere = false;                            ///< from any position; otherwise from where they lie
-    bool region = false;                              ///< also find the part that lies elsewhere
+    double away = 1.5e-3, gap = 3e-3, margin = 2e-3;  ///< m, for a displaced region
+    bool mirror = false;                              ///< the moving surface is from the other side of the body
+    bool anywhere = false;  ///< start from any position; false: from the position in the files
+    bool region = false;  ///< also find a displaced part
 };
 
-/// The part that is not where the rest has it, laid on its place by itself, and what plain ICP of points says about it.
+/// A displaced part with its own registration, and the result of plain point-to-point ICP for comparison.
 struct RegisteredRegion {
     fit::Registration registration;
     std::size_t points = 0;
     double area = 0.0;  ///< m²
-    Motion away;  ///< of its middle, from where the rest has it
-    Motion plain_away;  ///< the same by ICP of points
-    double plain_to_points = 0.0, plain_median = 0.0;  ///< m, median distances of that
+    Motion away;  ///< motion of its centre relative to the rest
+    Motion plain_away;  ///< the same by point-to-point ICP
+    double plain_to_points = 0.0, plain_median = 0.0;  ///< m, median distances of that ICP
 };
 
 struct RegisteredSurface {

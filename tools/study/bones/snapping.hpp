@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One fit of two fragments, with its verdict.
+// Fits two fragments and reports a verdict.
 #pragma once
 
 #include "dsp/fit/fit.hpp"
@@ -12,32 +12,32 @@
 
 namespace tactus::study {
 
-/// Where a fragment is broken.
+/// Source of a fragment's paint.
 struct FragmentPaint {
     std::optional<std::filesystem::path> file;  ///< strokes of 'fracture-surface'
-    std::vector<Vec3> strokes;                  ///< with `radius`: middles of a brush, m
-    std::optional<double> radius;  ///< m; none, and no file: what the bone file has painted, or else a proposal
-    std::string name;  ///< of the strokes, in the answer
+    std::vector<Vec3> strokes;                  ///< with `radius`: centres of brush strokes, m
+    std::optional<double> radius;  ///< m; none, and no file: the paint in the bone file, otherwise a proposal
+    std::string name;  ///< name of the strokes in the result
 };
 
 struct SnapSettings {
     std::filesystem::path moving, fixed;  ///< bone files or closed meshes
     FragmentPaint moving_paint, fixed_paint;
-    Pose start;  ///< of the moving one
+    Pose start;  ///< start pose of the moving fragment
     fit::FitMode mode = fit::FitMode::extended;
 };
 
 /// The painted faces of a fragment.
 struct SnappedSide {
-    std::string paint;  ///< where the paint comes from: "file", "proposed" or the name of strokes
-    std::vector<double> areas;  ///< m², of each face
+    std::string paint;  ///< source of the paint: "file", "proposed" or the name of strokes
+    std::vector<double> areas;  ///< area of each face, m²
 };
 
 struct Snapped {
     fit::Fit fit;
-    bool as_scanned = false;  ///< the fit only repeats the scan; its verdict is ambiguous
-    Motion moved;  ///< of the moving one's middle, from the start
-    double seconds = 0.0;  ///< that the fit took
+    bool as_scanned = false;  ///< the fit only reproduces the scanned position; the verdict is then ambiguous
+    Motion moved;  ///< motion of the moving fragment's centre from the start
+    double seconds = 0.0;  ///< duration of the fit, s
     SnappedSide moving, fixed;
 };
 

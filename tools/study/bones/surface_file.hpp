@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces of bone files and meshes as points, and how far they move.
+// Surface points of bone files and meshes, and measures of motion.
 #pragma once
 
 #include "assets/bone/bone.hpp"
@@ -12,19 +12,19 @@
 
 namespace tactus::study {
 
-/// Whether a file is read as triangles.
+/// True when a file is read as a mesh.
 bool is_mesh(const std::filesystem::path& path);
-/// The surface in the frame of its file, m: a mesh's own triangles, or that of a bone's distance.
+/// The surface in the frame of the file, m: triangles of a mesh, or the zero surface of a bone.
 geometry::TriangleSurface surface_of_file(const std::filesystem::path& path, const bone::Bone& bone);
-/// The points of a mesh's corners, or of a bone. Meshes need not be closed. Throws Error.
+/// The vertices of a mesh, or the surface points of a bone. Meshes need not be closed. Throws Error.
 std::vector<contact::SurfacePoint> points_of_file(const std::filesystem::path& path);
 
-/// Angle of a pose from none, degrees.
+/// Rotation angle of a pose, degrees.
 double angle_deg(const Pose& pose);
-/// Middle of the points, m.
+/// Centroid of the points, m.
 Vec3 middle_of(std::span<const contact::SurfacePoint> points);
 
-/// How far a point moves, m, and how far its body turns, degrees.
+/// Translation of a point, m, and rotation of its body, degrees.
 struct Motion {
     double distance = 0.0, angle_deg = 0.0;
 };

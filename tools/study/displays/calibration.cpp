@@ -14,13 +14,14 @@ namespace tactus::study {
 
 namespace {
 
-constexpr auto no_screen = "no screen is touched, and none is known from a rig before: a rig needs one";
+constexpr auto no_screen =
+    "a display needs a screen: touch one (--screen, --image), or name a display file that has one (--base)";
 
 }  // namespace
 
-std::vector<display::RigTouch> calibration_steps(const CalibrationSettings& settings) {
-    std::vector<display::RigTouch> steps;
-    using Of = display::RigTouch::Of;
+std::vector<display::Touch> calibration_steps(const CalibrationSettings& settings) {
+    std::vector<display::Touch> steps;
+    using Of = display::Touch::Of;
     if (!settings.places.empty())
         for (const Vec3& place : display::load_places(settings.places))
             steps.push_back({Of::workspace, {}, {}, {}, place});
@@ -38,45 +39,45 @@ std::vector<display::RigTouch> calibration_steps(const CalibrationSettings& sett
     for (const std::string& screen : settings.screens) marks(Of::screen, screen);
     for (const std::string& screen : settings.images) marks(Of::image, screen);
     if (steps.empty())
-        throw Error("there is nothing to touch: a screen, the image of one, the mirror, known places or a tracker");
+        throw Error("there is nothing to touch; name a screen, an image of one, the mirror, known places or a tracker");
     return steps;
 }
 
-void check_screens(const CalibrationSettings& settings, const display::RigFile& base) {
+void check_screens(const CalibrationSettings& settings, const display::DisplayFile& base) {
     if (settings.screens.empty() && settings.images.empty() && base.screens.empty()) throw Error(no_screen);
 }
 
-std::string prompt_of(const display::RigTouch& step) {
+std::string prompt_of(const display::Touch& step) {
     const int u = static_cast<int>(step.shown.x * 100.0 + 0.5), v = static_cast<int>(step.shown.y * 100.0 + 0.5);
     switch (step.of) {
-        case display::RigTouch::Of::workspace:
+        case display::Touch::Of::workspace:
             if (step.place == Vec3(0.0)) return "hold the tracked marker to the tip, somewhere new in the workspace";
             return "touch the " + step.name();
-        case display::RigTouch::Of::mirror:
+        case display::Touch::Of::mirror:
             return "touch the mirror with the tip, somewhere new, far from the touches before";
-        case display::RigTouch::Of::image:
+        case display::Touch::Of::image:
             return fmt::format(
                 "bring the tip to where the mirror shows the mark of screen '{}' at {} % of its width and "
                 "{} % of its height",
                 step.screen, u, v);
-        case display::RigTouch::Of::screen: break;
+        case display::Touch::Of::screen: break;
     }
     return fmt::format("touch screen '{}' at {} % of its width from the left and {} % of its height from below",
                        step.screen, u, v);
 }
 
-display::RigFitOptions fit_options(const CalibrationSettings& settings, const display::RigFile& base) {
-    display::RigFitOptions options;
+display::DisplayFitOptions fit_options(const CalibrationSettings& settings, const display::DisplayFile& base) {
+    display::DisplayFitOptions options;
     options.is_affine = settings.affine;
     options.tolerance = parse_as(settings.tolerance, "mm");
     if (!(options.tolerance > 0.0)) throw Error("the tolerance must be above 0 mm");
-    options.mirror = base.rig.mirror;
-    options.device = base.rig.haptic_world;
-    options.stretch = base.rig.haptic_stretch;
+    options.mirror = base.geometry.mirror;
+    options.device = base.geometry.haptic_world;
+    options.stretch = base.geometry.haptic_stretch;
     return options;
 }
 
-TouchesOff touches_off(const display::RigFit& fit) {
+TouchesOff touches_off(const display::DisplayFit& fit) {
     TouchesOff all;
     double sum = 0.0;
     for (const display::TouchedPart& part : fit.parts)
@@ -96,31 +97,32 @@ std::string part_text(const display::TouchedPart& part) {
                        part.residual.worst * 1e3);
 }
 
-display::RigFile calibrated_rig(display::RigFile file, const display::RigFit& fit) {
-    file.rig.haptic_world = fit.device;
-    file.rig.haptic_stretch = fit.stretch;
-    file.rig.mirror = fit.mirror;
+display::DisplayFile calibrated_display(display::DisplayFile file, const display::DisplayFit& fit) {
+    file.geometry.haptic_world = fit.device;
+    file.geometry.haptic_stretch = fit.stretch;
+    file.geometry.mirror = fit.mirror;
     for (const auto& [name, screen] : fit.screens) {
-        const auto known = std::ranges::find(file.screens, name, &display::RigScreen::name);
+        const auto known = std::ranges::find(file.screens, name, &display::ScreenSettings::name);
         if (known != file.screens.end()) {
-            file.rig.screens[static_cast<std::size_t>(known - file.screens.begin())] = screen;
+            file.geometry.screens[static_cast<std::size_t>(known - file.screens.begin())] = screen;
             continue;
         }
-        file.rig.screens.push_back(screen);
+        file.geometry.screens.push_back(screen);
         file.screens.push_back({name, display::ScreenEyes::both, {}, {}, 0, {}});
     }
     if (file.screens.empty()) throw Error(no_screen);
     return file;
 }
 
-void write_calibrated(const std::filesystem::path& file, const display::RigFile& rig, const display::RigFit& fit) {
-    std::vector<std::string> about{"Calibrated: how far the touches are off, root mean square and worst"};
+void write_calibrated(const std::filesystem::path& file, const display::DisplayFile& display,
+                      const display::DisplayFit& fit) {
+    std::vector<std::string> about{"Calibrated. Residuals of the touches, root mean square and greatest:"};
     for (const display::TouchedPart& part : fit.parts)
         about.push_back(fmt::format("  {}: {:.2f} mm, {:.2f} mm of {} touches", part.what, part.residual.rms * 1e3,
                                     part.residual.worst * 1e3, part.touches.size()));
-    file::write_whole_file(file, display::rig_text(rig, about));
-    // What is written can be read.
-    display::load_rig_file(file);
+    file::write_whole_file(file, display::display_text(display, about));
+    // Checks that the file can be read.
+    display::load_display_file(file);
 }
 
 }  // namespace tactus::study

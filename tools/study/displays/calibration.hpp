@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// From what is to be calibrated to the file of a rig, whoever leads through the touches: the terminal or the window.
+// The steps of a calibration, for the terminal and the window: what to touch, the fit, the display file.
 #pragma once
 
-#include "assets/display/rig_file.hpp"
-#include "dsp/display/rig_touches.hpp"
+#include "assets/display/display_file.hpp"
+#include "dsp/display/display_fit.hpp"
 #include "tools/study/displays/calibration_settings.hpp"
 
 #include <filesystem>
@@ -13,34 +13,35 @@
 
 namespace tactus::study {
 
-/// What is to be touched, in order: the device's place first, since the rest counts from it. Throws Error when that is
-/// nothing.
-std::vector<display::RigTouch> calibration_steps(const CalibrationSettings& settings);
+/// The touches to make, in order: first those for the pose of the device, which the others depend on. Throws Error when
+/// there are none.
+std::vector<display::Touch> calibration_steps(const CalibrationSettings& settings);
 
-/// Throws Error when no screen is to be touched and none is known: a rig needs one. Better said before the touches.
-void check_screens(const CalibrationSettings& settings, const display::RigFile& base);
+/// Throws Error when neither the settings nor the base file name a screen. Called before the first touch.
+void check_screens(const CalibrationSettings& settings, const display::DisplayFile& base);
 
 /// "touch screen 'left' at 10 % of its width from the left and 90 % of its height from below"
-std::string prompt_of(const display::RigTouch& step);
+std::string prompt_of(const display::Touch& step);
 
-/// How touches are fitted, with what is known of the rig before. Throws Error.
-display::RigFitOptions fit_options(const CalibrationSettings& settings, const display::RigFile& base);
+/// Options of the fit; what is not touched comes from the base file. Throws Error.
+display::DisplayFitOptions fit_options(const CalibrationSettings& settings, const display::DisplayFile& base);
 
-/// How far touches are off what was fitted, m.
+/// Residuals of all touches, m.
 struct TouchesOff {
     double rms = 0.0, worst = 0.0;
     std::size_t count = 0;
-    std::size_t worst_touch = 0;  ///< index among all touches, from 0, of the one that is farthest off
+    std::size_t worst_touch = 0;  ///< index of the touch with the greatest residual
 };
-TouchesOff touches_off(const display::RigFit& fit);
+TouchesOff touches_off(const display::DisplayFit& fit);
 
 /// "mirror: 0.41 mm rms, 0.82 mm worst"
 std::string part_text(const display::TouchedPart& part);
 
-/// The rig with what was fitted in place of what was known, its screens by name. Throws Error when it has no screen.
-display::RigFile calibrated_rig(display::RigFile base, const display::RigFit& fit);
+/// The base file with the fitted values; screens are matched by name. Throws Error when it has no screen.
+display::DisplayFile calibrated_display(display::DisplayFile base, const display::DisplayFit& fit);
 
-/// Writes the rig with the residuals of its fit as a comment, and reads it again. Throws Error.
-void write_calibrated(const std::filesystem::path& file, const display::RigFile& rig, const display::RigFit& fit);
+/// Writes the display file with the residuals of the fit as a comment, and reads it back as a check. Throws Error.
+void write_calibrated(const std::filesystem::path& file, const display::DisplayFile& display,
+                      const display::DisplayFit& fit);
 
 }  // namespace tactus::study

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is calibrated of a display rig.
+// Which parts of a display to calibrate, and how.
 #pragma once
 
 #include <filesystem>
@@ -9,15 +9,15 @@
 namespace tactus::study {
 
 struct CalibrationSettings {
-    std::filesystem::path places;              ///< CSV of places known in the viewer's world; empty: none
-    std::string tracker;                       ///< driver that tells where the tip is there; empty: none
-    std::vector<std::string> screens, images;  ///< whose marks are touched, themselves or in the mirror
-    std::string tip = "0 mm, 0 mm, 0 mm";      ///< of the device, in the frame of its handle
-    int grid = 3;                              ///< marks per side of a screen
-    int points = 8;                            ///< of workspace and mirror
-    bool mirror = false;                       ///< it is touched as well
-    bool affine = false;                       ///< scales and skews of the device are taken up
-    std::string tolerance = "3 mm";            ///< a touch farther off what the others say is refused
+    std::filesystem::path places;              ///< CSV of positions known in the viewer's world; empty: none
+    std::string tracker;                       ///< driver of a tracker that measures the tip there; empty: none
+    std::vector<std::string> screens, images;  ///< screens whose marks are touched directly, or at their mirror image
+    std::string tip = "0 mm, 0 mm, 0 mm";  ///< position of the tip in the frame of the handle
+    int grid = 3;  ///< marks per side of a screen
+    int points = 8;  ///< touches of the workspace and of the mirror
+    bool mirror = false;  ///< touch the mirror as well
+    bool affine = false;  ///< also estimate scale and skew of the device
+    std::string tolerance = "3 mm";  ///< greatest residual of a touch
 };
 
 }  // namespace tactus::study

@@ -11,7 +11,7 @@ namespace tactus::study {
 
 namespace {
 
-constexpr double most_moved = 1e-3;  // m, while it is read
+constexpr double most_moved = 1e-3;  // m, greatest motion of the tip during a touch
 constexpr int most_tries = 3;
 constexpr std::size_t least_samples = 10;
 
@@ -29,29 +29,29 @@ Touched touch_of(std::span<const Vec3> tips, std::span<const Vec3> tracked) {
     return touched;
 }
 
-TouchLead::TouchLead(std::vector<display::RigTouch> steps, bool has_tracker, Check check)
+TouchLead::TouchLead(std::vector<display::Touch> steps, bool has_tracker, Check check)
     : steps_(std::move(steps)), tries_(steps_.size(), 0), has_tracker_(has_tracker), check_(std::move(check)) {
     if (steps_.empty()) throw Error("there is nothing to touch");
 }
 
 bool TouchLead::is_part_done() const {
     if (reached_ == steps_.size()) return true;
-    const display::RigTouch &last = steps_[reached_ - 1], &next = steps_[reached_];
+    const display::Touch &last = steps_[reached_ - 1], &next = steps_[reached_];
     return last.of != next.of || last.screen != next.screen;
 }
 
 std::string TouchLead::fault_of(const Touched& touched) const {
     if (touched.samples < least_samples)
         return fmt::format(
-            "the device gave {} valid samples while it touched, and a touch takes {}; is it plugged in and sampled at "
-            "{:.0f} Hz or more? Press again",
+            "the device gave {} valid samples during the touch, but {} are needed; check that it is plugged in and "
+            "sampled at {:.0f} Hz or more, and press again",
             touched.samples == 0 ? "no" : std::to_string(touched.samples), least_samples,
             static_cast<double>(least_samples) / touch_lasts);
     if (is_tracked(steps_[due_]) && touched.tracked_samples == 0)
-        return "the tracker did not see the marker while the tip touched; bring it into view and press again";
+        return "the tracker did not see the marker during the touch; bring it into view and press again";
     if (touched.moved > most_moved)
         return fmt::format(
-            "the tip moved by {:.1f} mm while it touched; hold it still for a fifth of a second and press again",
+            "the tip moved by {:.1f} mm during the touch; hold it still for a fifth of a second and press again",
             touched.moved * 1e3);
     return {};
 }
@@ -61,7 +61,7 @@ std::string TouchLead::take(const Touched& touched) {
         if (++tries_[due_] >= most_tries) throw Error(fault);
         return fault;
     }
-    display::RigTouch& step = steps_[due_];
+    display::Touch& step = steps_[due_];
     step.reading = touched.tip;
     if (is_tracked(step)) step.place = touched.tracked;
     if (due_ == reached_) ++reached_;

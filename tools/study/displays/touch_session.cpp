@@ -11,8 +11,8 @@ namespace tactus::study {
 namespace {
 
 constexpr double period = 1e-3;        // s
-constexpr int held = static_cast<int>(touch_lasts / period);  // periods that a touch is read
-constexpr int patience = 60'000;       // periods that a simulated hand may take
+constexpr int held = static_cast<int>(touch_lasts / period);  // periods per touch
+constexpr int patience = 60'000;       // greatest number of periods to wait for a simulated hand
 
 }  // namespace
 
@@ -39,7 +39,8 @@ DeviceSample TipReader::read() {
 Touched TipReader::touch(const std::function<bool()>& is_asked, const std::function<void()>& tend) {
     for (int waited = 0;; ++waited) {
         if (!is_real_ && waited > patience)
-            throw Error("the simulated hand pressed no button for a minute; its script needs a press for every touch");
+            throw Error(
+                "the simulated hand did not press a button for a minute; its script needs a press for every touch");
         const DeviceSample sample = read();
         const bool pressed = sample.valid && (sample.buttons & button_trigger) != 0;
         const bool begins = pressed && !was_pressed_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Leads a person through touching places with the tip of a device, one after another.
+// Guides a person through the touches of a calibration.
 #pragma once
 
 #include "graph/node/device.hpp"
@@ -12,16 +12,16 @@
 
 namespace tactus::study {
 
-/// Reads one device by its tip.
+/// Reads the tip of a device.
 class TipReader {
 public:
-    /// `tip` in the frame of the handle, m; `is_real`: hardware, which is read on the clock of the wall. `tracker` is read
-    /// at the same moments, or null. Prepares both. Throws Error.
+    /// `tip`: position in the frame of the handle, m; `is_real`: hardware, read in real time. `tracker` is read at the
+    /// same instants; may be null. Prepares both. Throws Error.
     TipReader(std::unique_ptr<HapticDevice> device, bool is_real, const Vec3& tip,
               std::unique_ptr<HapticDevice> tracker);
 
-    /// Waits for the button, or for `is_asked` to say yes, then reads 0.2 s. `tend` is called now and then meanwhile.
-    /// Throws Error when a simulated hand has not pressed within a minute, or when the device fails.
+    /// Waits for the button, or until `is_asked` returns true, then reads for 0.2 s. Calls `tend` regularly. Throws
+    /// Error when a simulated hand does not press within a minute, or when the device fails.
     Touched touch(const std::function<bool()>& is_asked, const std::function<void()>& tend);
 
 private:
@@ -30,15 +30,15 @@ private:
     std::unique_ptr<HapticDevice> device_, tracker_;
     bool is_real_;
     Vec3 tip_;
-    std::optional<Vec3> tracked_;  // of the last read
-    bool was_pressed_ = true;  // a button that is held from the beginning says nothing
+    std::optional<Vec3> tracked_;  // from the last read
+    bool was_pressed_ = true;  // a button held from the beginning does not count as pressed
     bool has_begun_ = false;
     std::int64_t last_counter_ = -1;
 };
 
-/// Leads through all steps, see TouchLead: `show` tells what is to be touched now, and `say` what was wrong with a touch.
+/// Runs all steps, see TouchLead: `show` displays the next touch, `say` reports why a touch is repeated.
 struct TouchSession {
-    std::function<void(const display::RigTouch& step, std::size_t number, std::size_t of)> show;
+    std::function<void(const display::Touch& step, std::size_t number, std::size_t of)> show;
     std::function<void(const std::string& said)> say;
     std::function<bool()> is_asked;
     std::function<void()> tend;

@@ -15,7 +15,7 @@ namespace tactus::study {
 
 namespace {
 
-/// Keeps the values of some outputs as numbers.
+/// Records the values of some outputs as numbers.
 class KeptValues : public io::Sink {
 public:
     explicit KeptValues(std::size_t frame_bytes) : frame_bytes_(frame_bytes) {}
@@ -41,7 +41,7 @@ std::vector<std::uint8_t> flags(const std::vector<double>& numbers) {
     return all;
 }
 
-/// A controller of the thumb part, which a rig does not pull at.
+/// True for a controller of the thumb, which the rig does not load.
 bool moves_another_part(const patch::Patch& patch, const patch::PatchNode& node) {
     for (const patch::PatchWire& wire : patch.wires)
         if (wire.from_node == node.name && wire.to_port == "thumb_speed") return true;

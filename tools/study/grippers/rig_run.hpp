@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One cell of a rig's matrix: a patch with a gripper, an object and a rig, run on a virtual clock and judged.
+// Runs and evaluates one cell of the test matrix: a patch with a gripper, an object and the test rig, on a virtual
+// clock.
 #pragma once
 
 #include "dsp/control/fidelity.hpp"
@@ -17,18 +18,18 @@ struct RigCell {
     std::string motor;
     RigObject object;
     double rate = 1.0;        ///< Hz
-    double amplitude = 0.025; ///< m of the cord to each side
-    std::optional<double> feed_forward;  ///< none: as the patch has it
-    std::vector<std::string> settings;   ///< more of them, "devices.wqsm.lag=1 ms"
+    double amplitude = 0.025; ///< m, amplitude of the cord
+    std::optional<double> feed_forward;  ///< none: as in the patch
+    std::vector<std::string> settings;   ///< further overrides, "devices.wqsm.lag=1 ms"
 };
 
 struct RigRow {
     RigCell cell;
     control::Fidelity fidelity;
-    std::string failure;  ///< why there is no result; empty when there is one
+    std::string failure;  ///< why there is no result; empty: success
 };
 
-/// Names of the nodes in a patch that a rig needs.
+/// Names of the nodes that a rig study needs.
 struct RigNodes {
     std::string input, controller, output, rig;
 };
@@ -36,12 +37,12 @@ struct RigNodes {
 /// Throws Error unless the patch has exactly one node of each type.
 RigNodes find_rig_nodes(const session::PatchChoice& choice);
 
-/// Seconds before the cycles that count.
+/// Settling time before the evaluated cycles, s.
 inline constexpr double rig_settle_s = 2.0;
 
 struct RigRun {
     control::RigSeries series;
-    double max_speed = 0.0;  ///< m/s, of the motor
+    double max_speed = 0.0;  ///< m/s, greatest speed of the motor
 };
 
 /// Throws Error.

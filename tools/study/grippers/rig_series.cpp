@@ -14,14 +14,14 @@ namespace tactus::study {
 
 namespace {
 
-/// Onto a grid of the mean period, by straight lines; flags by the nearest sample before.
+/// Resamples to the mean period by linear interpolation; flags come from the previous sample.
 control::RigSeries evened(const std::vector<double>& times, control::RigSeries s, const SourceLocation& where) {
     const std::size_t count = times.size();
-    if (count < 16) throw Error(where, "a record of less than 16 samples says nothing");
+    if (count < 16) throw Error(where, "a record needs at least 16 samples");
     s.period = (times.back() - times.front()) / static_cast<double>(count - 1);
     double worst = 0.0;
     for (std::size_t i = 1; i < count; ++i) {
-        if (!(times[i] > times[i - 1])) throw Error(where, "times must rise within a record");
+        if (!(times[i] > times[i - 1])) throw Error(where, "times must increase within a record");
         worst = std::max(worst, std::abs(times[i] - times[0] - static_cast<double>(i) * s.period));
     }
     if (worst < 0.01 * s.period) return s;
@@ -47,7 +47,7 @@ double number_or(const std::string& text, double standard, const SourceLocation&
         if (used == text.size() && std::isfinite(value) && value >= 0.0) return value;
     } catch (const std::exception&) {
     }
-    throw Error(where, fmt::format("column '{}' holds '{}', which is no number from 0 on", name, text));
+    throw Error(where, fmt::format("column '{}' holds '{}', which is not a number of at least 0", name, text));
 }
 
 }  // namespace
@@ -63,8 +63,8 @@ std::vector<std::pair<RigCell, control::RigSeries>> load_rig_series(const std::f
     const bool has_slip = table.has("slip"), has_saturated = table.has("saturated");
     const std::vector<double> slips = has_slip ? table.numbers("slip") : std::vector<double>{},
                               saturated = has_saturated ? table.numbers("saturated") : std::vector<double>{};
-    if (table.rows() == 0) throw Error({path.string(), 1, 1}, "there are no samples");
-    if (!has_slip) notes.push_back("the record does not say where the motor slipped: all samples count");
+    if (table.rows() == 0) throw Error({path.string(), 1, 1}, "the record has no samples");
+    if (!has_slip) notes.push_back("the record has no slip column: all samples are evaluated");
     std::vector<std::pair<RigCell, control::RigSeries>> all;
     for (std::size_t begin = 0, end = 0; begin < table.rows(); begin = end) {
         const auto same = [&](std::size_t i) {

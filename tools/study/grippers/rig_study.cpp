@@ -3,6 +3,7 @@
 
 #include "dsp/simulate/gripper/rig.hpp"
 #include "tools/session/load_plan.hpp"
+#include "tools/study/grippers/rig_findings.hpp"
 
 #include <fmt/format.h>
 
@@ -17,7 +18,7 @@ namespace tactus::study {
 
 namespace {
 
-/// Settings of a motor: both ends of everything that is assumed of it, in all combinations.
+/// Settings of a motor: all combinations of the limits of its assumptions.
 std::vector<std::vector<std::string>> corners(const RigMatrix& matrix, const std::string& motor) {
     std::vector<std::vector<std::string>> all{{}};
     for (const RigAssumption& a : matrix.assumptions) {
@@ -46,29 +47,13 @@ double nearest(const std::vector<double>& all, double to) {
     return *std::ranges::min_element(all, {}, [to](double v) { return std::abs(std::log(v / to)); });
 }
 
-/// Rate from which on `fast` errs less than `slow`, and still does at the next rate.
-std::optional<double> crossing(const std::vector<double>& rates, const std::vector<double>& slow,
-                               const std::vector<double>& fast) {
-    double before = 0.0;
-    for (std::size_t n = 0; n < rates.size(); ++n) {
-        const double lead = std::log(slow[n] / fast[n]);  // above 0: the fast one is better
-        if (!std::isfinite(lead)) continue;
-        if (lead > 0.0 && (n + 1 == rates.size() || slow[n + 1] > fast[n + 1])) {
-            if (n == 0 || !(before < 0.0)) return rates[n];
-            return rates[n - 1] * std::pow(rates[n] / rates[n - 1], before / (before - lead));
-        }
-        before = lead;
-    }
-    return std::nullopt;
-}
-
-/// How far the cord may swing to each side so that a spring of `stiffness` bears at most `force`.
+/// Amplitude of the cord for which a spring of `stiffness` bears at most `force`.
 double swing_for(double force, double stiffness, double widest) {
     const double rig = simulate::RigSprings{}.at_finger();
     return std::min(widest, force * (rig + stiffness) / (rig * stiffness));
 }
 
-/// The object that resists the least at `rate`.
+/// The object with the smallest impedance at `rate`.
 std::optional<RigObject> freest(const RigMatrix& matrix, double rate) {
     std::optional<RigObject> found;
     for (const RigObject& o : matrix.objects)
@@ -79,7 +64,7 @@ std::optional<RigObject> freest(const RigMatrix& matrix, double rate) {
     return found;
 }
 
-/// Cells to run, in order; every part of the study adds its own and remembers where they begin.
+/// The cells to run, in order; each part of the study adds its cells and stores the index of the first.
 class Cells {
 public:
     std::size_t add(RigCell cell) {
@@ -92,9 +77,9 @@ private:
     std::vector<RigCell> cells_;
 };
 
-/// The NRMSE of one motor at every corner, over rates.
+/// The cells of one motor, per combination of assumptions and rate.
 struct Sweep {
-    std::vector<std::vector<std::size_t>> cells;  ///< per corner and rate
+    std::vector<std::vector<std::size_t>> cells;  ///< per combination and rate
 };
 
 Sweep add_sweep(Cells& cells, const RigMatrix& matrix, const std::string& motor, const RigObject& object,
@@ -116,41 +101,6 @@ std::vector<std::vector<double>> errors_of(const Sweep& sweep, const std::vector
             all.back().push_back(rows[cell].fidelity.nrmse.value_or(std::numeric_limits<double>::quiet_NaN()));
     }
     return all;
-}
-
-std::vector<std::pair<double, double>> band_of(const std::vector<std::vector<double>>& errors) {
-    std::vector<std::pair<double, double>> band(errors.front().size(), {1e9, 0.0});
-    for (const auto& corner : errors)
-        for (std::size_t n = 0; n < corner.size(); ++n)
-            if (std::isfinite(corner[n]))
-                band[n] = {std::min(band[n].first, corner[n]), std::max(band[n].second, corner[n])};
-    return band;
-}
-
-RigCrossover cross(const std::vector<double>& rates, double stiffness, double amplitude,
-                   const std::vector<std::vector<double>>& slow, const std::vector<std::vector<double>>& fast) {
-    RigCrossover c{stiffness, amplitude, {}, {}, 0, 0, rates, band_of(slow), band_of(fast)};
-    for (const auto& a : slow)
-        for (const auto& b : fast) {
-            ++c.of;
-            const std::optional<double> rate = crossing(rates, a, b);
-            if (!rate) continue;
-            ++c.crossed;
-            c.low = std::min(c.low.value_or(*rate), *rate);
-            c.high = std::max(c.high.value_or(*rate), *rate);
-        }
-    return c;
-}
-
-RigFinding count(std::string claim, const std::vector<std::vector<double>>& better,
-                 const std::vector<std::vector<double>>& worse) {
-    RigFinding finding{std::move(claim), 0, 0};
-    for (const auto& a : better)
-        for (const auto& b : worse) {
-            ++finding.of;
-            finding.holds += a.front() < b.front();
-        }
-    return finding;
 }
 
 double largest_amplitude(const std::vector<RigRow>& rows) {
@@ -230,17 +180,18 @@ RigReport study_rig(const session::PatchChoice& choice, const RigMatrix& matrix,
     report.assumptions = matrix.assumptions;
     for (std::size_t i = 0; i < main_cells; ++i) keep(rows[i].cell, series[i]);
     for (std::size_t i = 0; i < sweeps.size(); ++i)
-        report.crossover.push_back(cross(matrix.crossover_rates, matrix.crossover_stiffness[i],
-                                         swing_for(matrix.crossover_force, matrix.crossover_stiffness[i], wide),
-                                         errors_of(sweeps[i].first, rows), errors_of(sweeps[i].second, rows)));
+        report.crossover.push_back(
+            find_crossover(matrix.crossover_rates, matrix.crossover_stiffness[i],
+                           swing_for(matrix.crossover_force, matrix.crossover_stiffness[i], wide),
+                           errors_of(sweeps[i].first, rows), errors_of(sweeps[i].second, rows)));
     if (points.size() == 2) {
         const RigObject free = *freest(matrix, fast);
-        report.findings.push_back(count(
-            fmt::format("{} is the better one slow and stiff ({}, {:g} Hz)", matrix.motors[0], stiff->name, slowest),
-            errors_of(points[0].first, rows), errors_of(points[0].second, rows)));
-        report.findings.push_back(count(fmt::format("{} is the better one fast ({}, {:g} Hz, ±{:g} mm)",
-                                                    matrix.motors[1], free.name, fast, 700.0 * wide),
-                                        errors_of(points[1].second, rows), errors_of(points[1].first, rows)));
+        report.findings.push_back(count_cases(fmt::format("{} is better at low rate and high stiffness ({}, {:g} Hz)",
+                                                          matrix.motors[0], stiff->name, slowest),
+                                              errors_of(points[0].first, rows), errors_of(points[0].second, rows)));
+        report.findings.push_back(count_cases(fmt::format("{} is better at high rate ({}, {:g} Hz, ±{:g} mm)",
+                                                          matrix.motors[1], free.name, fast, 700.0 * wide),
+                                              errors_of(points[1].second, rows), errors_of(points[1].first, rows)));
     }
     for (const Lead& lead : leads)
         if (rows[lead.plain].fidelity.nrmse && rows[lead.led].fidelity.nrmse)
@@ -258,7 +209,7 @@ RigReport study_rig(const session::PatchChoice& choice, const RigMatrix& matrix,
                  c});
     }
 
-    // Free motion: as weak a damper as keeps the loop well stable.
+    // Free motion: the weakest damper that keeps the loop well stable.
     const auto slow_cell = static_cast<std::size_t>(std::ranges::min_element(max_speeds) - max_speeds.begin());
     if (const double speed = max_speeds[slow_cell]; speed > 0.0) {
         const double expected = simulate::saturation_rate(speed, wide, simulate::RigSprings{}.at_finger(), 0.0);
@@ -291,7 +242,7 @@ RigReport study_rig_series(const std::vector<std::pair<RigCell, control::RigSeri
                                        series, cell});
     }
     report.peak_cord_speed = simulate::peak_cord_speed(2.0 * largest_amplitude(report.rows), 1.0);
-    // With two motors on the same springs it can be said where they cross.
+    // With two motors on the same springs the crossover can be determined.
     std::vector<std::string> motors;
     for (const RigRow& row : report.rows)
         if (std::ranges::find(motors, row.cell.motor) == motors.end()) motors.push_back(row.cell.motor);
@@ -303,7 +254,7 @@ RigReport study_rig_series(const std::vector<std::pair<RigCell, control::RigSeri
         if (spring && std::ranges::find(tried, key) == tried.end()) tried.push_back(key);
     }
     for (const auto& [stiffness, amplitude] : tried) {
-        std::vector<std::array<double, 3>> both;  // rate and the error of each
+        std::vector<std::array<double, 3>> both;  // rate, error of each motor
         for (const RigRow& a : report.rows)
             for (const RigRow& b : report.rows)
                 if (a.cell.motor == motors[0] && b.cell.motor == motors[1] && a.cell.rate == b.cell.rate &&
@@ -320,7 +271,7 @@ RigReport study_rig_series(const std::vector<std::pair<RigCell, control::RigSeri
             slow[0].push_back(first);
             quick[0].push_back(second);
         }
-        report.crossover.push_back(cross(rates_tried, stiffness, amplitude, slow, quick));
+        report.crossover.push_back(find_crossover(rates_tried, stiffness, amplitude, slow, quick));
     }
     return report;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rig's whole matrix, and what follows from it.
+// Runs a test matrix on the gripper's test rig and evaluates it.
 #pragma once
 
 #include "dsp/core/jobs.hpp"
@@ -9,14 +9,14 @@
 
 namespace tactus::study {
 
-/// Runs every cell of the matrix on a patch, the crossovers and findings over all that is assumed, and the comparison
-/// with feed-forward. `progress` is told how many of how many cells are done, from any thread, one at a time. `keep` is
-/// given the series of each row, in order. Throws Error.
+/// Runs every cell of the matrix on a patch, evaluates crossovers and findings over all assumptions, and compares with
+/// feed-forward. Calls `progress` with the numbers of finished and of all cells, from any thread, one call at a time.
+/// Calls `keep` with the series of each row, in order. Throws Error.
 RigReport study_rig(const session::PatchChoice& choice, const RigMatrix& matrix, const RunJobs& run,
                     const std::function<void(int done, int of)>& progress,
                     const std::function<void(const RigCell&, const control::RigSeries&)>& keep);
 
-/// The same from what was recorded.
+/// The same from recorded series.
 RigReport study_rig_series(const std::vector<std::pair<RigCell, control::RigSeries>>& records);
 
 }  // namespace tactus::study

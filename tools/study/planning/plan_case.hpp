@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the studies of a plan share: its fragments from their files, and its steps.
+// Shared by the studies of a plan: fragments from their files, and steps.
 #pragma once
 
 #include "assets/cases/case_bones.hpp"
@@ -12,22 +12,22 @@
 
 namespace tactus::study {
 
-/// A fragment ready to be looked at. Its points are never empty.
+/// A loaded fragment. It always has points.
 struct CaseFragment : cases::FragmentBone {
     contact::Voxmap map;
 };
 
-/// From its file. Throws Error naming the fragment.
+/// Loads a fragment. Throws Error naming the fragment.
 CaseFragment load_fragment(const cases::PlanFragment& fragment, const std::filesystem::path& folder,
                            cases::Paint paint = cases::Paint::as_filed);
-/// All of a plan. Throws Error for the first file that is missing or has changed.
+/// Loads all fragments of a plan. Throws Error for the first file that is missing or has changed.
 std::vector<CaseFragment> load_fragments(const cases::CasePlan& plan, const std::filesystem::path& folder,
                                          cases::Paint paint = cases::Paint::as_filed);
 
-/// Millimetres to two decimals, without the sign of a zero.
+/// Millimetres with two decimals; never "-0.00".
 double shown_mm(double millimetres);
 
-/// A plan that is being changed: nobody else changes it meanwhile.
+/// A plan that is locked for changes.
 struct OpenPlan {
     cases::PlanLock lock;
     cases::CasePlan plan;

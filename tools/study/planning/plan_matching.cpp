@@ -20,7 +20,7 @@ std::vector<Pose> poses_of(const fit::Arrangement& a) {
     return poses;
 }
 
-/// All that is shown and does not move along; or one of them alone.
+/// Possible partners: all visible fragments that do not move along, or only the given one.
 std::vector<char> partners_of(const fit::Arrangement& a, int moving, int only) {
     std::vector<char> stands;
     for (int n = 0; n < static_cast<int>(a.size()); ++n)
@@ -41,7 +41,7 @@ PlanMatching::PlanMatching(const cases::CasePlan& plan, const std::filesystem::p
 PlanMatch PlanMatching::judged(const fit::FragmentMatch& made, const fit::Arrangement& arrangement) const {
     PlanMatch found{made, false, arrangement.pose(made.moving), {}, fragment(made.moving).was_painted};
     const std::vector<contact::SurfacePoint>& points = fragment(made.moving).bone.points;
-    // A fit that only repeats the scan says nothing of where the fragment belongs.
+    // A fit that only reproduces the scanned position gives no information about the correct pose.
     found.as_scanned =
         made.verdict == fit::FitVerdict::fit &&
         fit::is_as_scanned(points, arrangement.pose(made.partner).inverse() * made.pose, fragment(made.partner).map);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where fragments of a plan belong by their own fractures.
+// Matches the fractures of a plan's fragments.
 #pragma once
 
 #include "dsp/fit/fragment_matcher.hpp"
@@ -15,28 +15,29 @@
 
 namespace tactus::study {
 
-/// What was found for a fragment, and what is held against it.
+/// The match of a fragment, with doubts.
 struct PlanMatch {
-    fit::FragmentMatch match;      ///< its verdict is `ambiguous` when it only repeats the scan
-    bool as_scanned = false;  ///< it repeats the scan
-    Pose from;                ///< where the fragment was
-    Motion moved;             ///< of its middle from there
-    bool was_painted = false; ///< in its file; otherwise its paint was proposed
+    fit::FragmentMatch match;      ///< the verdict is `ambiguous` when the fit only reproduces the scanned position
+    bool as_scanned = false;  ///< the fit only reproduces the scanned position
+    Pose from;                ///< pose of the fragment before
+    Motion moved;             ///< motion of its centre from there
+    bool was_painted = false; ///< the paint comes from the file; false: it was proposed
 };
 
-/// The fragments of a plan, and the matcher that looks at them. Changes nothing of the plan.
+/// The fragments of a plan and a matcher for them. Does not change the plan.
 class PlanMatching {
 public:
     /// Throws Error for a file that is missing or has changed.
     PlanMatching(const cases::CasePlan& plan, const std::filesystem::path& folder);
 
-    /// Of the paint of a fragment.
+    /// Number of painted faces of a fragment.
     std::size_t faces_of(int fragment) const { return matcher_->faces_of(fragment); }
     const CaseFragment& fragment(int n) const { return loaded_[static_cast<std::size_t>(n)]; }
 
-    /// From where it is. Partners are all that are shown and do not move along, or `only` one of them.
+    /// Fits a fragment from its current pose. Partners: all visible fragments that do not move along, or `only` one of
+    /// them.
     PlanMatch near(const fit::Arrangement& arrangement, int moving, int only = fit::Arrangement::none);
-    /// From anywhere.
+    /// Fits a fragment from any pose.
     PlanMatch anywhere(const fit::Arrangement& arrangement, int moving, int only = fit::Arrangement::none);
 
 private:
@@ -47,23 +48,23 @@ private:
     std::unique_ptr<fit::FragmentMatcher> matcher_;
 };
 
-/// The step that places a fragment where it fits. `by`: who did it.
+/// The step that places a fragment at its fit. `by`: origin of the step.
 cases::PlanStep step_of(const cases::CasePlan& plan, const fit::FragmentMatch& match, const char* by);
 
-/// Median distances of a whole fragment from the healthy side, m, at two places; none when the plan has no healthy side.
+/// Median distances of a whole fragment to the healthy side, m, at two poses; none when the plan has no healthy side.
 struct TargetDistances {
     double before = 0.0, there = 0.0;
 };
 std::optional<TargetDistances> target_distances(const cases::PlanState& state, const std::filesystem::path& folder,
                                                 const CaseFragment& fragment, const Pose& from, const Pose& there);
 
-/// Two fragments as they are placed.
+/// Gap between two placed fragments.
 struct PlanGap {
     int first = 0, second = 0;
     fit::SurfaceGap gap;
     double overlap = 0.0;  ///< m³
 };
-/// Of one pair, or of all that are shown and face each other. Throws Error.
+/// Gaps of one pair, or of all visible pairs that face each other. Throws Error.
 std::vector<PlanGap> plan_gaps(const cases::CasePlan& plan, const std::filesystem::path& folder,
                                const std::optional<std::pair<int, int>>& pair);
 

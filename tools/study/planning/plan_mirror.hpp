@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The healthy side of a plan's case: mirrored, laid on the main fragment, and the others compared with it.
+// Mirrors the healthy side of a case, registers it to the main fragment, and compares the other fragments with it.
 #pragma once
 
 #include "dsp/fit/gap.hpp"
@@ -14,25 +14,25 @@ namespace tactus::study {
 
 struct LaidMirror {
     fit::MirrorFit fit;
-    cases::MirrorTarget target;                 ///< as the plan keeps it
-    std::vector<contact::SurfacePoint> surface;   ///< the mirrored side where it lies in the case
-    Pose stands;                         ///< of the main fragment
+    cases::MirrorTarget target;                 ///< as stored in the plan
+    std::vector<contact::SurfacePoint> surface;   ///< the mirrored side in the frame of the case
+    Pose stands;                         ///< pose of the main fragment
 };
 
-/// Lays `healthy`, a bone file or mesh, mirrored on fragment `main` of a plan in `folder`. Throws Error.
+/// Mirrors `healthy` (a bone file or mesh) and registers it to fragment `main` of a plan in `folder`. Throws Error.
 LaidMirror lay_mirror(const cases::CasePlan& plan, const std::filesystem::path& folder,
                       const std::vector<CaseFragment>& fragments, int main, const std::filesystem::path& healthy);
 
-/// What a place means for the fracture between a fragment and the main one.
+/// Contact between a fragment and the main one at a pose.
 struct FacesThere {
     fit::SurfaceGap gap;
     double overlap = 0.0;  ///< m³
 };
 
-/// A fragment beside the mirrored side. `main` stands at `stands`.
+/// Compares a fragment with the mirrored side. `stands`: pose of `main`.
 struct MirrorComparison {
     fit::Registration registration;
-    Motion away;                ///< of its middle, from where it lies to where it lies best
+    Motion away;                ///< motion of its centre from the current to the best pose
     FacesThere before, after;
 };
 MirrorComparison compare_with_mirror(const fit::RegistrationTarget& mirror, const CaseFragment& main,

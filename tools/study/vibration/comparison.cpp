@@ -15,8 +15,8 @@ namespace tactus::study {
 
 namespace {
 
-/// How much of the level stays missing, dB: of the reference's spectrum, what the actuator at its limit cannot reach;
-/// without an actuator, what was missing as it was played.
+/// Level gap, dB: the part of the reference's level that the actuator cannot reach at its limits; without an actuator,
+/// the missing level of the output as played.
 double level_gap(const CompareSettings& settings, const signal::Comparison& c, double peak) {
     if (settings.actuator.empty()) return c.gain_db;
     const vibration::ActuatorModel& model = vibration::find_actuator(settings.actuator);
@@ -27,13 +27,13 @@ double level_gap(const CompareSettings& settings, const signal::Comparison& c, d
         if (f < c.lowest || f > c.highest) continue;
         square += c.reference_density[k] * c.step / std::pow(actuator.gain(f), 2);
     }
-    // As peaked as the reference itself.
+    // Assumes the crest factor of the reference.
     const double needed = std::sqrt(square) * peak / c.reference_rms;
     const double limit = vibration::voltage_within(model.voltage_limit, model.current_limit, model.resistance);
     return std::max(0.0, 20.0 * std::log10(needed / limit));
 }
 
-/// Hann segments of about 60 ms: lines 25 Hz apart are told apart, and so are strokes of a hand.
+/// Hann segments of about 60 ms: resolves lines 25 Hz apart, and strokes of a hand.
 signal::Spectrogram spectrogram_of(const signal::Take& take) {
     const auto segment = static_cast<std::size_t>(std::llround(0.06 * take.rate / 2.0)) * 2;
     signal::Spectrogram spectrogram(std::max<std::size_t>(segment, 16), take.rate);
@@ -81,7 +81,8 @@ ComparedPair compare_files(const CompareSettings& settings) {
     if (std::abs(reference.rate() / output.rate() - 1.0) > 1e-3)
         o.notes.push_back(fmt::format("sampled at {:.6g} and {:.6g} Hz", reference.rate(), output.rate()));
     if (o.comparison.highest < 1000.0)
-        o.notes.push_back(fmt::format("the slower recording carries no more than {:.0f} Hz", o.comparison.highest));
+        o.notes.push_back(
+            fmt::format("the recording with the lower rate is limited to {:.0f} Hz", o.comparison.highest));
     o.level_gap_db = level_gap(settings, o.comparison, reference.peak());
     o.verdict = judge(o.comparison, o.level_gap_db, settings.thresholds);
     return o;

@@ -32,7 +32,7 @@ Flatness flatness(const vibration::FrequencyResponse& response, const vibration:
     return result;
 }
 
-/// The recording at the drive, without and with the equaliser.
+/// The drive signal of the recording, without and with the equaliser.
 Programme play(const EqualiseSettings& settings, const vibration::Equaliser& equaliser, double limit) {
     const sound::Sound sound = sound::load_sound(settings.signal);
     const std::vector<double> samples = signal::resample(sound::mix_to_mono(sound), sound.rate, equaliser.rate);
@@ -53,7 +53,7 @@ Equalisation equalise(const EqualiseSettings& settings) {
     made.actuator = &vibration::find_actuator(settings.actuator);
     if (!(settings.volts != 0.0 && std::isfinite(settings.volts) && settings.scale > 0.0 &&
           std::isfinite(settings.scale)))
-        throw Error("--volts and --scale are numbers other than 0");
+        throw Error("--volts and --scale must be numbers other than 0");
     const sound::ResponseFile file = sound::load_response(settings.response);
     const vibration::FrequencyResponse& response = file.identified.response;
     made.title = file.title;

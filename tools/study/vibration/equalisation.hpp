@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a measured response to a filter that undoes it, and what the actuator's limits say to it.
+// Designs an inverse filter from a measured response and checks it against the actuator's limits.
 #pragma once
 
 #include "assets/sound/equaliser_file.hpp"
@@ -17,33 +17,33 @@ struct EqualiseSettings {
     std::filesystem::path response;              ///< a measured response
     std::filesystem::path signal;                ///< a recording that will be played; empty: none
     vibration::EqualiserDesign design;
-    std::string actuator = "haptuator_large";    ///< whose limits count
-    double volts = 1.0;                          ///< per unit of the response's input
+    std::string actuator = "haptuator_large";    ///< actuator with the limits
+    double volts = 1.0;                          ///< V per unit of the response's input
     double scale = 1.0;                          ///< units of the response's input per unit of the signal file
 };
 
-/// The chain of actuator and equaliser within the band, by third octaves.
+/// Flatness of actuator and equaliser within the band, by third octaves.
 struct Flatness {
-    double before_db = 0.0, after_db = 0.0;  ///< greatest deviation from the mean gain
+    double before_db = 0.0, after_db = 0.0;  ///< greatest deviation from the mean gain, dB
     double boost_db = -400.0, boost_hz = 0.0;
     struct Band {
-        double hz, filter_db, loudest;  ///< `loudest`: peak of what the actuator can make of a sine there
+        double hz, filter_db, loudest;  ///< `loudest`: greatest peak output of a sine there
     };
     std::vector<Band> bands;
 };
 
-/// What the limits do to a recording, without and with the equaliser.
+/// Effect of the limits on a recording, without and with the equaliser.
 struct Programme {
     vibration::Headroom plain, equalised;
 };
 
 struct Equalisation {
     vibration::Equaliser equaliser;
-    std::string title, unit;               ///< of the response
+    std::string title, unit;               ///< title and unit of the response
     const vibration::ActuatorModel* actuator = nullptr;
-    double limit = 0.0;                    ///< V, of the drive
+    double limit = 0.0;                    ///< drive limit, V
     Flatness flat;
-    std::optional<Programme> programme;    ///< when there is a signal
+    std::optional<Programme> programme;    ///< with a signal only
 };
 
 /// Throws Error.

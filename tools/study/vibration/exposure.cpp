@@ -17,10 +17,10 @@ ExposureOperation analyse_exposure(const std::filesystem::path& file, const Expo
     sound::RecordReader reader = open_record(file, settings.record);
     const sound::Calibration& calibration = reader.calibration();
     if (!calibration.known && !settings.uncalibrated)
-        throw Error(fmt::format(
-            "{}: the record is not calibrated; say what full scale is worth with --full-scale \"49 m/s^2\", "
-            "or take its values as m/s^2 with --uncalibrated",
-            file.string()));
+        throw Error(
+            fmt::format("{}: the record is not calibrated; give the value of full scale with --full-scale \"49 "
+                        "m/s^2\", or interpret its values as m/s^2 with --uncalibrated",
+                        file.string()));
     if (calibration.known && !calibration.is_acceleration)
         throw Error(fmt::format("{}: exposure needs an acceleration, not {}", file.string(), calibration.unit));
     const std::vector<std::size_t> chosen = chosen_channels(reader, file, settings.record);
@@ -52,7 +52,7 @@ ExposureOperation analyse_exposure(const std::filesystem::path& file, const Expo
             levels[i].push(scaled);
             if (block.after_gap) spectra[i].forget_waiting();
             spectra[i].push(scaled);
-            // A constant is no vibration: the filter must not hear it begin.
+            // The constant part is removed: it is not vibration, and its onset would excite the filter.
             if (count == 0) offsets[i] = scaled.front();
             for (const double x : scaled) {
                 const double y = filters[i](x - offsets[i]);
@@ -70,19 +70,20 @@ ExposureOperation analyse_exposure(const std::filesystem::path& file, const Expo
             out.notes.push_back(fmt::format("axis {} is clipped in {} samples: the value is too low", out.axes.back(),
                                             levels[i].clipped()));
     }
-    if (!out.calibrated) out.notes.push_back("uncalibrated: values in the file were taken as m/s^2");
+    if (!out.calibrated) out.notes.push_back("uncalibrated: the values are interpreted as m/s^2");
     if (out.band_high < 1250.0)
         out.notes.push_back(
             fmt::format("the record ends at {:.0f} Hz, below 1250 Hz: the values are lower bounds", out.band_high));
     if (!out.three_axes)
         out.notes.push_back(
-            fmt::format("{} of three axes: no total value a_hv; A(8) and minutes come from these axes alone "
-                        "and are bounds",
+            fmt::format("{} of three axes: there is no total value a_hv; A(8) and minutes are computed from these axes "
+                        "only and are bounds",
                         out.axes.size()));
     if (out.rate < 20000.0)
-        out.notes.push_back("below 20 kHz the filter strays from the norm; the spectrum's values count");
+        out.notes.push_back(
+            "below 20 kHz sample rate the filter deviates from the standard; use the values from the spectrum");
     const double minutes = static_cast<double>(count) / out.rate / 60.0;
-    if (minutes < 1.0) out.notes.push_back("the norm asks for at least one minute of measurement in all");
+    if (minutes < 1.0) out.notes.push_back("the standard requires at least one minute of measurement in total");
     return out;
 }
 

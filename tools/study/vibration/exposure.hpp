@@ -16,10 +16,10 @@ namespace tactus::study {
 
 struct ExposureSettings {
     RecordSettings record;
-    bool uncalibrated = false;  ///< take values of a record without calibration as m/s²
+    bool uncalibrated = false;  ///< interpret the values of an uncalibrated record as m/s²
 };
 
-/// Work with one tool on a day.
+/// Work with one tool during a day.
 struct ExposureOperation {
     std::string file;
     std::vector<std::string> axes;
@@ -30,16 +30,16 @@ struct ExposureOperation {
     std::vector<std::string> notes;
 
     double total() const { return signal::vibration_total(weighted); }
-    /// Values are lower bounds: axes or a part of the band are missing.
+    /// True when axes or a part of the band are missing: values are then lower bounds.
     bool is_lower_bound() const { return band_high < 1250.0 || !three_axes; }
 };
 
-/// Reads a record, whose channels are the axes. `duration`: of contact per day, s. `progress` is told the share that is
-/// done. Throws Error.
+/// Evaluates a record with the axes as channels. `duration`: contact time per day, s. Calls `progress` with the
+/// fraction done. Throws Error.
 ExposureOperation analyse_exposure(const std::filesystem::path& file, const ExposureSettings& settings, double duration,
                                    const std::function<void(double)>& progress);
 
-/// A(8) of a day with all of these, m/s²; none when they take longer than a day.
+/// A(8) of a day with all tools, m/s²; none when the durations exceed a day.
 std::optional<double> exposure_of_day(std::span<const ExposureOperation> operations);
 
 }  // namespace tactus::study

@@ -19,7 +19,7 @@ namespace tactus::study {
 
 namespace {
 
-/// What came back of the sweep, and from where.
+/// The recorded response to the sweep, and its source.
 struct Answer {
     std::vector<float> samples;
     double rate = 48000.0;
@@ -39,8 +39,7 @@ vibration::SweepRun sweep_of(const MeasureSettings& settings) {
 Answer through_patch(const MeasureSettings& settings, const Progress& progress) {
     if (settings.in.empty() || settings.out_port.empty())
         throw Error(
-            "say what to measure: --in NODE.PORT --out NODE.PORT, as in --in actuator.drive "
-            "--out actuator.signal");
+            "name the ports: --in NODE.PORT --probe NODE.PORT, as in --in actuator.drive --probe actuator.signal");
     patch::Problems problems;
     patch::Patch patch = patch::load_patch(session::find_patch(settings.patch.patch), problems);
     patch::apply_overrides(patch, settings.patch.overrides, problems);
@@ -82,7 +81,7 @@ Answer through_card(const MeasureSettings& settings, const vibration::SweepRun& 
     if (!(std::abs(run.amplitude) <= 1.0))
         throw Error("the amplitude of a sweep through a sound card must lie within full scale, 1");
     const auto period = static_cast<std::size_t>(std::llround((run.sweep.duration + run.pause) * settings.rate));
-    // A card may connect a moment after it has started: silence first, taken off again from what came back.
+    // Some cards connect shortly after the start: play silence first, and remove it from the recording.
     const auto lead = static_cast<std::size_t>(std::llround(0.25 * settings.rate));
     std::vector<float> samples(lead + period * static_cast<std::size_t>(run.repeats));
     for (std::size_t i = lead; i < samples.size(); ++i)

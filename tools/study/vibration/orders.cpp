@@ -11,7 +11,7 @@ namespace tactus::study {
 
 namespace {
 
-constexpr double least_prominence_db = 6.0;  // noise alone comes to 5
+constexpr double least_prominence_db = 6.0;  // noise alone reaches 5
 
 RateRange rates_of(const signal::Rotation& rotation) {
     const double turns = rotation.last() - rotation.first();
@@ -24,7 +24,7 @@ RateRange rates_of(const signal::Rotation& rotation) {
     return rates;
 }
 
-/// All channels that are asked for, but the tachometer.
+/// The selected channels without the tachometer.
 std::vector<std::size_t> wanted_channels(const WholeRecord& record, const OrdersSettings& settings) {
     std::vector<std::size_t> wanted;
     const std::vector<int>& asked_for = settings.record.channels;
@@ -37,7 +37,7 @@ std::vector<std::size_t> wanted_channels(const WholeRecord& record, const Orders
     return wanted;
 }
 
-/// The rotation, and into `out` where it comes from.
+/// The rotation; sets its source in `out`.
 signal::Rotation rotation_of(const WholeRecord& record, const OrdersSettings& settings, Orders& out) {
     if (settings.tacho > 0) {
         out.source = "tachometer";
@@ -56,7 +56,7 @@ signal::Rotation rotation_of(const WholeRecord& record, const OrdersSettings& se
     const signal::Ridge ridge = signal::track_ridge(record.channels.front(), record.rate, ridge_settings);
     out.prominence_db = ridge.prominence_db;
     if (ridge.prominence_db < least_prominence_db)
-        throw Error("no rate can be followed in the record; state it with --rate, or give a --tacho channel");
+        throw Error("no rate can be tracked in the record; state it with --rate, or give a --tacho channel");
     return ridge.rotation(out.duration);
 }
 

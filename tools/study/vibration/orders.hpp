@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Levels of the orders of a machine whose rate changes.
+// Order analysis of a machine with a changing rate.
 #pragma once
 
 #include "dsp/signal/order/order_spectrum.hpp"
@@ -13,13 +13,13 @@
 
 namespace tactus::study {
 
-/// Where the rate comes from: a tachometer, else a known rate, else the strongest ridge of the spectrogram.
+/// Source of the rate: a tachometer, otherwise a fixed rate, otherwise the strongest ridge of the spectrogram.
 struct OrdersSettings {
     RecordSettings record;
     int tacho = 0;                                ///< channel from 1; 0: none
-    double pulses = 1.0;                          ///< of the tachometer, per revolution
+    double pulses = 1.0;                          ///< tachometer pulses per revolution
     std::optional<double> fixed;                  ///< Hz
-    std::pair<double, double> range{20.0, 400.0}; ///< Hz, where a rate to be followed may lie
+    std::pair<double, double> range{20.0, 400.0}; ///< Hz, search range of a tracked rate
     int highest = 10;                             ///< order
 };
 
@@ -36,7 +36,7 @@ struct Orders {
     double sample_rate = 0.0, duration = 0.0;  ///< Hz, s
     sound::Calibration calibration;
     std::string source;                        ///< "tachometer", "fixed" or "ridge"
-    double prominence_db = 0.0;                ///< of the ridge
+    double prominence_db = 0.0;                ///< prominence of the ridge
     RateRange rate;
     std::vector<OrdersOfChannel> channels;
 };

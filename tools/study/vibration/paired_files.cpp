@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which file is compared with which.
+// Pairs files for comparison.
 #include "tools/study/vibration/comparison.hpp"
 #include "tools/study/vibration/record.hpp"
 

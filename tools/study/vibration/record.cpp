@@ -63,8 +63,7 @@ WholeRecord read_whole(const std::filesystem::path& file, const RecordSettings& 
     sound::RecordBlock block;
     while (reader.next(block)) {
         if (block.after_gap)
-            throw Error(
-                fmt::format("{}: the record has gaps; cut out the piece that is to be analysed", file.string()));
+            throw Error(fmt::format("{}: the record has gaps; cut out the part to analyse", file.string()));
         for (std::size_t i = 0; i < chosen.size(); ++i) {
             const std::vector<double>& from = block.channels[chosen[i]];
             whole.channels[i].insert(whole.channels[i].end(), from.begin(), from.end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records as they are analysed.
+// Records for analysis.
 #pragma once
 
 #include "assets/sound/record_reader.hpp"
@@ -11,24 +11,24 @@
 
 namespace tactus::study {
 
-/// How a record is read, and what its values are worth.
+/// Settings for reading a record, with its calibration.
 struct RecordSettings {
     table::LogSelection log;
-    std::string calibration;  ///< "9.81 m/s^2": worth of a value of 1, for sound of full scale; empty: as the file says
+    std::string calibration;  ///< "9.81 m/s^2": quantity of a value of 1 (sound: full scale); empty: from the file
     std::vector<int> channels;  ///< from 1; empty: all
 };
 
 /// Opens a record. Throws Error.
 sound::RecordReader open_record(const std::filesystem::path& file, const RecordSettings& settings);
 
-/// Indices of the wanted channels. Throws Error naming the file when one is missing.
+/// Indices of the selected channels. Throws Error naming the file when one is missing.
 std::vector<std::size_t> chosen_channels(const sound::RecordReader& reader, const std::filesystem::path& file,
                                          const RecordSettings& settings);
 
-/// Folders give the records that lie in them, in order of name; files give themselves.
+/// Expands folders to their records in order of name.
 std::vector<std::filesystem::path> expand_folders(const std::vector<std::filesystem::path>& files);
 
-/// All of the chosen channels of a record in memory: records of at most 2^28 values. Pieces between gaps must be one.
+/// The selected channels of a record in memory, at most 2^28 values and without gaps.
 struct WholeRecord {
     double rate = 0.0;  ///< Hz
     std::vector<std::string> names;

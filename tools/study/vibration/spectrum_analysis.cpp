@@ -29,17 +29,18 @@ std::vector<std::string> warnings_of(const signal::VibrationReport& report, cons
     std::vector<std::string> warnings;
     const signal::Level& level = report.level;
     if (level.largest() == 0.0) warnings.push_back("the channel is silent");
-    else if (level.rms() <= 1e-12 * level.largest()) warnings.push_back("the channel is constant: nothing vibrates");
+    else if (level.rms() <= 1e-12 * level.largest())
+        warnings.push_back("the channel is constant: there is no vibration");
     if (level.clipped() > 0)
         warnings.push_back(fmt::format(
             "clipped: {} samples in runs at the limit ({:.3g} %); peaks and high orders are wrong", level.clipped(),
             100.0 * static_cast<double>(level.clipped()) / static_cast<double>(level.count())));
     if (report.lines.effective_segments < 4.0)
-        warnings.push_back(fmt::format("short: {} segments only, levels of noise are uncertain by {:.1f} dB",
+        warnings.push_back(fmt::format("short: only {} segments; noise levels are uncertain by {:.1f} dB",
                                        report.lines.segments, 4.34 * report.lines.relative_deviation()));
     if (report.fundamental.frequency > 0.0 && !report.fundamental.steady)
         warnings.push_back(
-            fmt::format("the rate wavers between {:.1f} and {:.1f} Hz: lines are smeared, see 'tactus orders'",
+            fmt::format("the rate varies from {:.1f} to {:.1f} Hz: lines are smeared; use 'tactus orders'",
                         report.fundamental.low, report.fundamental.high));
     if (file.log && file.log->lost_seconds > 0.0)
         warnings.push_back(fmt::format("{} gaps, {:.3g} s lost", file.log->gaps, file.log->lost_seconds));

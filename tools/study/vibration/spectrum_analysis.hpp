@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What vibrates in one record.
+// Spectral analysis of one record.
 #pragma once
 
 #include "dsp/signal/spectrum/vibration_analysis.hpp"
@@ -21,9 +21,9 @@ struct SpectrumSettings {
     signal::Averaging averaging = signal::Averaging::mean;
     bool is_density = true;                            ///< unit²/Hz; otherwise unit²
     std::optional<std::size_t> segment;                ///< samples; none: about 0.75 s
-    double overlap = 0.5;                              ///< share of a segment
-    std::pair<double, double> fundamental{20.0, 500.0};  ///< Hz, where it may lie
-    std::optional<std::pair<double, double>> envelope;   ///< Hz, the band whose envelope is analysed
+    double overlap = 0.5;                              ///< fraction of a segment
+    std::pair<double, double> fundamental{20.0, 500.0};  ///< Hz, search range
+    std::optional<std::pair<double, double>> envelope;   ///< Hz, band for envelope analysis
     int orders = 10;
     bool spectrogram = false;
 };
@@ -43,13 +43,13 @@ struct AnalysedFile {
     std::vector<AnalysedChannel> channels;
 };
 
-/// Reads and analyses a file; `progress` is told the share that is done. Throws Error.
+/// Reads and analyses a file; calls `progress` with the fraction done. Throws Error.
 AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSettings& settings,
                           const std::function<void(double)>& progress);
 
-/// 10 log10, not below −300 dB.
+/// 10 log10, at least −300 dB.
 double decibels(double power);
-/// How far a band's level scatters, dB: its bins are averaged over too.
+/// Standard deviation of a band's level, dB, given the averaging over its bins.
 double band_deviation(const signal::Band& band, const signal::Spectrum& spectrum);
 
 }  // namespace tactus::study

@@ -17,7 +17,7 @@ namespace tactus::study {
 
 namespace {
 
-constexpr double settling = 1.0;  // s: the saw's run-up and the delay of an equaliser
+constexpr double settling = 1.0;  // s: for the saw's run-up and the delay of an equaliser
 
 /// Samples of a sound from `from` seconds on.
 std::vector<float> after(const std::filesystem::path& file, double from, double& rate) {
@@ -27,7 +27,7 @@ std::vector<float> after(const std::filesystem::path& file, double from, double&
     return {sound.samples.begin() + static_cast<std::ptrdiff_t>(first), sound.samples.end()};
 }
 
-/// The part of a recording that is played, in m/s² when that is known.
+/// The played part of a recording, in m/s² if calibrated.
 std::vector<float> reference_of(const sound::Recording& recording) {
     const vibration::SawRecording part = sound::saw_recordings({{}, {}, {}, {}, false, {recording}}).front();
     const std::size_t end = part.loop_end == 0 ? recording.samples.size() : part.loop_end;
@@ -109,7 +109,7 @@ void validate(Validation& validation, std::size_t index, const ValidateSettings&
     pair.reference = recording.file;
     pair.output = run.name();
     pair.thresholds = validation.thresholds;
-    if (!recording.full_scale) pair.notes.push_back("the recording is not calibrated: its level says nothing");
+    if (!recording.full_scale) pair.notes.push_back("the recording is not calibrated: its level cannot be compared");
     if (recording.rate_estimated) pair.notes.push_back("the rate of the saw was estimated from the recording");
     try {
         compare_takes(pair, signal::Take(std::span<const float>(reference), recording.sample_rate),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs of a patch beside the recordings that its saw plays.
+// Compares runs of a patch with the recordings that its saw plays.
 #pragma once
 
 #include "assets/sound/recording_set.hpp"
@@ -14,24 +14,24 @@
 
 namespace tactus::study {
 
-/// One recording at one level, and what the handle made of it.
+/// One run: a recording at one level, and the vibration of the handle.
 struct ValidationRun {
     const sound::Recording* recording = nullptr;  ///< of the set
-    double level_db = 0.0;                 ///< of the saw, on top of the patch's
+    double level_db = 0.0;                 ///< level of the saw relative to the patch
     ComparedPair pair;                     ///< the recording and the handle
-    std::optional<double> drive_rms, drive_peak;  ///< of the actuator's voltage, V
-    std::string failure;                   ///< why it could not be compared
+    std::optional<double> drive_rms, drive_peak;  ///< actuator voltage, V
+    std::string failure;                   ///< why the comparison failed; empty: success
 
     std::string name() const;       ///< "cutting, 233 Hz, 7 N, -6 dB"
     std::string file_name() const;  ///< "cutting_233Hz_7N_-6dB"
 };
 
 struct ValidateSettings {
-    session::PatchChoice patch;            ///< beside the recordings that it plays
-    std::filesystem::path set;             ///< of recordings
+    session::PatchChoice patch;            ///< the patch to validate
+    std::filesystem::path set;             ///< the recording set
     std::string saw, out_port;             ///< node, NODE.PORT; empty: found in the patch
-    std::vector<double> levels{0.0, -6.0}; ///< dB on top of the patch's
-    double seconds = 4.0;                  ///< that are compared of each run
+    std::vector<double> levels{0.0, -6.0}; ///< dB relative to the patch
+    double seconds = 4.0;                  ///< compared time of each run
     table::Thresholds thresholds;
     signal::ThresholdUnit touch = signal::ThresholdUnit::displacement;
 };
@@ -48,8 +48,8 @@ struct Validation {
 /// Reads the patch and the set and lists the runs: every recording at every level. Throws Error.
 Validation plan_validation(const ValidateSettings& settings);
 
-/// Renders and compares one of them; with spectrograms when pictures are wanted. Different runs may go on at the same
-/// time. Throws Error.
+/// Renders and compares one run, with spectrograms if requested. Different runs may be computed concurrently. Throws
+/// Error.
 void validate(Validation& validation, std::size_t run, const ValidateSettings& settings, bool pictures);
 
 }  // namespace tactus::study

@@ -40,12 +40,13 @@ Verdict judge(const signal::Comparison& c, double level_gap_db, const table::Thr
         verdict.scores.push_back(
             {name, *value, *limit, at_least, at_least ? *value >= *limit : *value <= *limit, about});
     };
-    add("lsd_db", c.lsd_db, limits.lsd_db, false, "level differs over 40 to 500 Hz, rms, dB");
+    add("lsd_db", c.lsd_db, limits.lsd_db, false, "rms of the level difference, 40 to 500 Hz, dB");
     add("cosine_40_500", c.cosine_500, limits.cosine_40_500, true, "shape of the spectrum, 40 to 500 Hz");
     add("cosine_40_1000", c.cosine_1000, limits.cosine_40_1000, true, "shape of the spectrum, 40 to 1000 Hz");
     add("harmonic_error_db", c.harmonic_error_db, limits.harmonic_error_db, false, "worst order of the saw, dB");
     add("third_octave_max_db", c.third_octave_max_db, limits.third_octave_max_db, false, "worst third-octave band, dB");
-    add("spectrogram_similarity", c.spectrogram_similarity, limits.spectrogram_similarity, true, "course over time");
+    add("spectrogram_similarity", c.spectrogram_similarity, limits.spectrogram_similarity, true,
+        "correlation of the spectrograms");
     add("st_sim", c.st_sim, limits.st_sim, true, "ST-SIM");
     add("spqi", c.spqi, limits.spqi, true, "SPQI");
     add("coherence_mean", c.coherence_mean, limits.coherence_mean, true, "coherence");
@@ -54,7 +55,7 @@ Verdict judge(const signal::Comparison& c, double level_gap_db, const table::Thr
     double strongest = -1e9;
     for (const auto* lines : {&c.lines.in_both, &c.lines.only_in_reference})
         for (const signal::SpectralLine& line : *lines) strongest = std::max(strongest, signal::level_db(line));
-    // Without a line in the reference, its whole power stands for the strongest.
+    // Without a line in the reference, its total power is the reference level.
     if (strongest < -1e8) strongest = 20.0 * std::log10(std::sqrt(2.0) * c.reference_rms);
     if (limits.added_line_db) {
         verdict.added = stronger_than(c.lines.only_in_output, strongest + *limits.added_line_db - c.gain_db);
@@ -63,7 +64,7 @@ Verdict judge(const signal::Comparison& c, double level_gap_db, const table::Thr
     if (limits.missing_line_db) {
         verdict.missing = stronger_than(c.lines.only_in_reference, strongest + *limits.missing_line_db);
         add("only_in_reference", static_cast<double>(verdict.missing.size()), 0.0, false,
-            "lines that the output lacks");
+            "lines missing in the output");
     }
     return verdict;
 }

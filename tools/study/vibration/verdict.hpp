@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the scores of a comparison reach the thresholds, and what they say to a person.
+// Judges the scores of a comparison against thresholds, with an explanation.
 #pragma once
 
 #include "assets/table/thresholds.hpp"
@@ -11,16 +11,16 @@
 namespace tactus::study {
 
 struct Judged {
-    std::string name;   ///< of the score, as in the JSON
+    std::string name;   ///< name of the score, as in the JSON
     double value = 0.0, limit = 0.0;
     bool at_least = false, passed = true;
-    std::string about;  ///< what it says, in words
+    std::string about;  ///< explanation of the score
 };
 
 struct Verdict {
-    std::vector<Judged> scores;                 ///< those that have a threshold and a value
-    std::vector<std::string> not_judged;        ///< those with a threshold but no value
-    std::vector<signal::SpectralLine> added, missing;           ///< lines that count against it
+    std::vector<Judged> scores;                 ///< scores with a threshold and a value
+    std::vector<std::string> not_judged;        ///< scores with a threshold but without a value
+    std::vector<signal::SpectralLine> added, missing;           ///< lines that cause a failure
 
     bool passed() const;
     std::vector<std::string> failed() const;
@@ -28,7 +28,7 @@ struct Verdict {
 
 Verdict judge(const signal::Comparison& comparison, double level_gap_db, const table::Thresholds& thresholds);
 
-/// "hum of the mains (50 Hz × 3)", "order 2" of that fundamental, or nothing.
+/// "mains hum, 3 × 50 Hz", "order 2" of the fundamental, or "".
 std::string name_of_line(double hz, double fundamental_hz);
 
 }  // namespace tactus::study

@@ -32,7 +32,7 @@ void dim(const std::string& text) {
     ImGui::PopStyleColor();
 }
 
-/// What is as wide as numbers go has no range to speak of.
+/// A range as wide as the number type is not shown.
 std::string range_text(const ParameterField& field) {
     constexpr double endless = 1e12;
     if (field.least <= -endless && field.most >= endless) return "any number";
@@ -46,22 +46,22 @@ std::string explanation(const ParameterField& field) {
                             field.standard);
     else if (!field.standard.empty()) text += fmt::format("\ndefault {}", field.standard);
     if (field.is_driven) text += "\ndriven by a wire";
-    else if (!field.is_live) text += "\nstructural: the node begins anew";
+    else if (!field.is_live) text += "\nstructural: a change restarts the node";
     return text;
 }
 
-/// Whether a slider of equal steps would leave no room for what is common.
+/// True when a linear slider would be too coarse for typical values.
 bool is_logarithmic(const ParameterField& field) {
     if (field.least > 0.0) return field.most / field.least > 1e3;
     return field.least == 0.0 && field.normal > 0.0 && field.most / field.normal > 100.0;
 }
 
-/// Where the default lies, under the slider that was drawn last.
+/// Marks the default below the last slider.
 void mark_default(const ParameterField& field) {
     if (!(field.most > field.least)) return;
     const auto share = [&](double x) {
         if (!is_logarithmic(field)) return (x - field.least) / (field.most - field.least);
-        // Beside zero, the slider begins at the last digit that it shows.
+        // Near zero a logarithmic slider starts at the last displayed digit.
         const double least = field.least > 0.0 ? field.least : 1e-5;
         return std::log(std::max(x, least) / least) / std::log(field.most / least);
     };
@@ -164,7 +164,7 @@ void NodePanel::field(const ParameterField& field, const std::string& node) {
 void NodePanel::draw_parameters(std::string& selected, const Fonts& fonts) {
     const compile::Plan* plan = bench_.plan();
     const int index = bench_.picture().find(selected);
-    if (!plan || index < 0) return dim("Click a node of the patch: its parameters stand here.");
+    if (!plan || index < 0) return dim("Click a node of the patch to show its parameters here.");
     if (version_ != bench_.plan_version() || shown_ != selected) {
         fields_ = parameters_of(*plan, index);
         version_ = bench_.plan_version();
@@ -219,7 +219,7 @@ void NodePanel::draw_draft(const Fonts& fonts, std::string& selected) {
     ImGui::Text("%s", draft.node.type.c_str());
     ImGui::PopFont();
     ImGui::SameLine();
-    ImGui::TextDisabled("needs these wires before it can join");
+    ImGui::TextDisabled("needs these wires before it can be added");
     ImGui::InputText("name", &draft.node.name);
     const std::string name = draft.node.name;
     std::string from, to;
@@ -244,7 +244,7 @@ void NodePanel::draw_draft(const Fonts& fonts, std::string& selected) {
 }
 
 void NodePanel::draw_catalogue(std::string& selected, const Fonts& fonts) {
-    if (is_read_only) return dim("A take is looked at; run the patch to change it.");
+    if (is_read_only) return dim("A take is read-only; run the patch to change it.");
     if (bench_.draft()) return draw_draft(fonts, selected);
     const auto& lanes = bench_.picture().lanes;
     group_ = std::clamp(group_, 0, std::max(0, static_cast<int>(lanes.size()) - 1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The chosen node's parameters, and the catalogue of what can be added.
+// The parameters of the selected node, and the catalogue of node types.
 #pragma once
 
 #include "tools/view/painter.hpp"
@@ -20,7 +20,7 @@ public:
 
     bool is_read_only = false;
     std::string search;      ///< of the catalogue
-    bool wants_catalogue = false;  ///< bring it to the front
+    bool wants_catalogue = false;  ///< show the catalogue
 
 private:
     void field(const ParameterField& field, const std::string& node);
@@ -32,7 +32,7 @@ private:
     std::string shown_, typed_, renaming_;
     std::int64_t version_ = -1;
     int group_ = 0;
-    std::string turning_;  ///< the slider that is held
+    std::string turning_;  ///< the slider being dragged
     double turned_to_ = 0.0;
 };
 

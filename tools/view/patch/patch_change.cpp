@@ -20,7 +20,7 @@ bool same_wire(const patch::PatchWire& a, const patch::PatchWire& b) {
            a.to_port == b.to_port && a.mode == b.mode && a.mode_given == b.mode_given && a.delay == b.delay;
 }
 
-/// All that is said outside of the nodes.
+/// All content outside of the nodes.
 bool same_around(const patch::Patch& a, const patch::Patch& b) {
     return a.quantum == b.quantum && a.seed == b.seed && a.title == b.title &&
            std::ranges::equal(a.wires, b.wires, same_wire) &&
@@ -36,7 +36,7 @@ bool same_around(const patch::Patch& a, const patch::Patch& b) {
            });
 }
 
-/// The settings of a node that are no quantities to be turned while it runs.
+/// The settings of a node that cannot be changed live.
 std::vector<OptionText> fixed_settings(const patch::PatchNode& patched, const compile::PlanNode& node) {
     std::vector<OptionText> fixed;
     for (const OptionText& setting : patched.settings) {

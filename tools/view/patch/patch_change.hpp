@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a run gets from one text of its patch to another: by single parameters where that is enough.
+// The change between two texts of a patch: live parameter changes where possible, otherwise an edit.
 #pragma once
 
 #include "graph/compile/plan.hpp"
@@ -14,8 +14,8 @@ struct PatchChange {
         std::string node, param, value;
         bool operator==(const Setting&) const = default;
     };
-    std::vector<Setting> settings;  ///< live quantities of nodes that both texts have
-    bool needs_edit = false;        ///< something else differs, too
+    std::vector<Setting> settings;  ///< changed live quantities of nodes in both texts
+    bool needs_edit = false;        ///< true when anything else differs
 };
 
 PatchChange change_between(const compile::Plan& before, const compile::Plan& after);

@@ -17,7 +17,7 @@ namespace {
 constexpr double rounding = 6.0;
 constexpr double red_for_s = 1.5;
 constexpr ImU32 lane_ground = colour(0x171d26);
-constexpr double smallest_box = 9.0;  ///< pixels: from here on its form is left out
+constexpr double smallest_box = 9.0;  ///< pixels: smaller boxes are drawn without details
 
 }  // namespace
 
@@ -65,17 +65,17 @@ std::optional<Point> PatchPanel::place_of(const std::string& name) const {
 
 void PatchPanel::notice_new_plan() {
     if (plan_version_ == bench_.plan_version()) return;
-    // Indices are of the picture before.
+    // Indices refer to the previous picture.
     wiring_ = {};
     hovered_ = menu_ = {};
-    // A picture that was fitted stays so.
+    // A fitted view stays fitted.
     if (follows_size_) fits_ = false;
     plan_version_ = bench_.plan_version();
     times_.clear();
     if (!selected.empty() && bench_.picture().find(selected) < 0) selected.clear();
 }
 
-/// Some times a second there is another, and a patch can have ten thousand nodes.
+/// The status changes several times a second, and a patch can have ten thousand nodes.
 void PatchPanel::notice_status() {
     auto status = bench_.status();
     const auto& nodes = bench_.picture().nodes;
@@ -98,7 +98,7 @@ void PatchPanel::draw(const Feed* feed, const Fonts& fonts, std::set<std::string
     unit_ = fonts.scale;
     corner_ = point(ImGui::GetCursorScreenPos());
     const Point size = point(ImGui::GetContentRegionAvail());
-    // A picture that was fitted is fitted again when its place becomes another.
+    // A fitted view is fitted again when the panel is resized.
     if (follows_size_ && (width_ != size.x || height_ != size.y)) fits_ = false;
     width_ = size.x;
     height_ = size.y;
@@ -146,7 +146,7 @@ void PatchPanel::draw_lanes(const Painter& paint) {
     }
 }
 
-/// Above the wires that pass between lanes.
+/// Drawn above the wires between lanes.
 void PatchPanel::draw_heads(const Painter& paint, const RunStatus& status) {
     const PatchPicture& picture = bench_.picture();
     const double z = canvas_.zoom;
@@ -181,7 +181,7 @@ void PatchPanel::draw_heads(const Painter& paint, const RunStatus& status) {
     }
 }
 
-/// Instead of boxes whose gaps nobody sees.
+/// Drawn in place of boxes with invisible gaps.
 void PatchPanel::draw_stacks(const Painter& paint, const Box& visible) {
     for (const Box& stack : bench_.picture().stacks)
         if (stack.meets(visible)) paint.box(screen(stack), tone::node_edge);
@@ -196,7 +196,7 @@ void PatchPanel::draw_node(const Painter& paint, const PictureNode& node, const 
     const bool is_chosen = node.name == selected;
     if (box.height() < smallest_box) return paint.box(box, is_chosen ? tone::chosen : tone::node_edge);
     if (text_size * z < readable) {
-        // Many at once, and too small for round corners to be seen.
+        // Many boxes, too small for visible round corners.
         paint.box(box, is_chosen ? tone::chosen : tone::node_edge);
         return paint.box({box.left + 1.0, box.top + title_height * z, box.right - 1.0, box.bottom - 1.0}, tone::node);
     }
@@ -211,7 +211,7 @@ void PatchPanel::draw_node(const Painter& paint, const PictureNode& node, const 
         const std::string time = fmt::format("{:.{}f} µs", status->mean_us, status->mean_us < 10.0 ? 1 : 0);
         paint.text_left_of({box.right - 8.0 * z, box.top + 5.0 * z}, small_size * z, tone::dim, time);
         room -= paint.width_of(time, small_size * z) + 6.0 * z;
-        // How much of its period it takes, as a bar under the title.
+        // Load of the node as a bar below the title.
         const double share = std::clamp(status->share, 0.0, 1.0);
         Box bar{box.left, head.bottom - 2.0 * z, box.left + share * box.width(), head.bottom};
         paint.box(bar, share > 0.7 ? tone::bad : share > 0.4 ? tone::warm : tone::good);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture of the patch in the window: looked at, and edited by pointing.
+// The panel with the picture of the patch, edited with the mouse.
 #pragma once
 
 #include "tools/view/canvas.hpp"
@@ -20,16 +20,16 @@ class PatchPanel {
 public:
     explicit PatchPanel(Workbench& bench) : bench_(bench) {}
 
-    /// Into the current child window. Ports whose values are shown are put into `looked_at`.
+    /// Draws into the current child window. Adds ports with visible values to `looked_at`.
     void draw(const Feed* feed, const Fonts& fonts, std::set<std::string>& looked_at);
 
     std::string selected;     ///< name of a node, empty: none
-    std::string wants_scope;  ///< a port that was asked to be shown, for the scopes to take
+    std::string wants_scope;  ///< a port to show in a scope
     bool is_read_only = false;
     void fit() { fits_ = false; }
-    /// Brings a node into the middle.
+    /// Centres the view on a node.
     void look_at(const std::string& node);
-    /// Where "node", "node.output" or "node.input" is seen, none: not in sight.
+    /// Position of "node", "node.output" or "node.input"; none: not visible.
     std::optional<Point> place_of(const std::string& name) const;
 
 private:
@@ -37,12 +37,12 @@ private:
     static constexpr double readable = 5.5;  ///< pixels: smaller text is left out
 
     struct Wiring {
-        int node = -1, port = -1;  ///< the output that a wire is being drawn from
+        int node = -1, port = -1;  ///< the output from which a wire is being dragged
         std::string checked, objection;
     };
     struct Health {
         std::int64_t missed = 0;
-        double since = -1e9;  ///< when the last miss was noticed
+        double since = -1e9;  ///< time of the last missed deadline
     };
 
     void notice_new_plan();
@@ -64,7 +64,7 @@ private:
     std::string port_name(const Hit& hit) const;
     Point screen(Point world) const { return canvas_.to_pixel(world) + corner_; }
     Box screen(const Box& world) const;
-    /// So far off that boxes above each other run together, and wires are but a fog.
+    /// Zoomed out so far that stacked boxes merge and single wires are not visible.
     bool is_afar() const { return canvas_.zoom < 0.12; }
     bool is_late(const std::string& group) const;
 
@@ -77,13 +77,13 @@ private:
     Wiring wiring_;
     Hit hovered_, menu_;
     std::shared_ptr<const RunStatus> status_;
-    std::vector<const NodeStatus*> times_;  ///< of `status_`, by the picture's nodes
+    std::vector<const NodeStatus*> times_;  ///< entries of `status_`, by node of the picture
     std::map<std::string, Health> health_;
-    std::map<std::string, double> meters_;  ///< of signals: the largest of late
+    std::map<std::string, double> meters_;  ///< peak meters of signals
     std::string new_name_;
 };
 
-/// "12.3 mm" for people: one number that says most about a value.
+/// The most informative number of a value as text, such as "12.3 mm".
 std::string short_value(const ValueType& type, const Feed::Latest& latest, const std::string& unit);
 
 }  // namespace tactus::view

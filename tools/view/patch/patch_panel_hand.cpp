@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the mouse does on the picture of the patch.
+// Mouse interaction with the picture of the patch.
 #include "tools/view/patch/patch_panel.hpp"
 
 #include <fmt/format.h>
@@ -54,7 +54,7 @@ void PatchPanel::finish_wire(const Hit& over) {
     const Hit from{Hit::What::output, wiring_.node, wiring_.port};
     if (over.what == Hit::What::input) bench_.connect(port_name(from), port_name(over));
     else if (over.what == Hit::What::node) {
-        // Dropped on a node: onto one of its parameters.
+        // A wire dropped on a node drives one of its parameters.
         menu_ = over;
         new_name_ = port_name(from);
         ImGui::OpenPopup("drive");

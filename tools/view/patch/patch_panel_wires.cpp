@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wires in the picture of the patch.
+// Drawing of the wires.
 #include "tools/view/patch/patch_panel.hpp"
 #include "tools/view/theme.hpp"
 
@@ -12,7 +12,7 @@ namespace tactus::view {
 
 namespace {
 
-/// Pixels of a curve, from its three straight sides, which are longer.
+/// Upper bound of a curve's length in pixels: the length of its control polygon.
 double length_of(const BezierCurve& c) {
     double sum = 0.0;
     for (std::size_t i = 0; i < 3; ++i) sum += std::hypot(c[i + 1].x - c[i].x, c[i + 1].y - c[i].y);
@@ -33,14 +33,14 @@ void PatchPanel::draw_wires(const Painter& paint, const Box& visible) {
         ImU32 ink = colour_of(from.outputs[static_cast<std::size_t>(wire.output)].type);
         const bool is_hovered = hovered_ == Hit{Hit::What::wire, static_cast<int>(w), -1};
         if (!is_hovered && !is_near) ink = faded(ink, 0.62);
-        // Whole pixels: others are drawn with three times as many triangles.
+        // Whole pixels: fractional widths need three times as many triangles.
         const double width = std::max(1.0, std::round((is_hovered ? 3.2 : is_near ? 2.4 : 1.7) * std::max(z, 0.35)));
         for (const BezierCurve& piece : wire.way)
             if (bounds_of(piece).meets(visible)) draw_piece(paint, piece, wire.crosses && z >= 0.4, ink, width);
     }
 }
 
-/// Dashed: between groups.
+/// Wires between groups are dashed.
 void PatchPanel::draw_piece(const Painter& paint, const BezierCurve& piece, bool dashed, ImU32 ink, double width) {
     BezierCurve c;
     for (std::size_t i = 0; i < c.size(); ++i) c[i] = screen(piece[i]);
@@ -53,7 +53,7 @@ void PatchPanel::draw_piece(const Painter& paint, const BezierCurve& piece, bool
         paint.line(on_curve(c, (d + 0.0) / dashes), on_curve(c, (d + 0.62) / dashes), ink, width);
 }
 
-/// What the wires of the chosen node carry, and how late.
+/// Labels of the selected node's wires: type and delay.
 void PatchPanel::draw_deliveries(const Painter& paint, const Box& visible) {
     const PatchPicture& picture = bench_.picture();
     const double z = canvas_.zoom, size = small_size * z;
@@ -64,7 +64,7 @@ void PatchPanel::draw_deliveries(const Painter& paint, const Box& visible) {
         if ((wire.from != chosen && wire.to != chosen) || !wire.bounds.meets(visible)) continue;
         const PictureNode& from = picture.nodes[static_cast<std::size_t>(wire.from)];
         const ValueType* type = from.outputs[static_cast<std::size_t>(wire.output)].type;
-        // Within a tick there is no delay to tell, and the colour tells the type.
+        // Wires within a tick have no delay, and the colour shows the type.
         if (!wire.crosses && wire.latency == 0) continue;
         const std::string text = fmt::format("{}, {}", type ? type->name : "any", describe(wire));
         const double wide = paint.width_of(text, size);

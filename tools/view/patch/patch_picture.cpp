@@ -39,7 +39,7 @@ void fill_node(const compile::PlanNode& node, PictureNode& made) {
                                 {}});
 }
 
-/// The input that a wire leads to; a parameter that is driven becomes one.
+/// The target input of a wire; a driven parameter becomes an input.
 int input_of(const compile::PlanWire& wire, const compile::PlanNode& node, PictureNode& made) {
     if (wire.to_input >= 0) return wire.to_input;
     for (const auto& [name, param] : node.params) {
@@ -53,7 +53,7 @@ int input_of(const compile::PlanWire& wire, const compile::PlanNode& node, Pictu
     return 0;
 }
 
-/// Longest way from a source over wires within a lane; a delay leads back.
+/// Longest path from a source within a lane; delay wires are ignored.
 std::vector<int> columns_of(const compile::Plan& plan) {
     std::vector<int> columns(plan.nodes.size(), 0);
     std::vector<std::vector<int>> next(plan.nodes.size());
@@ -76,9 +76,9 @@ double height_of(const PictureNode& node) {
     return title_height + static_cast<double>(rows) * port_height + 7.0;
 }
 
-/// A column that is longer than that goes on beside itself: a lane of many nodes fills a screen rather than a strip.
+/// Longer columns are split side by side, so that a lane of many nodes has the shape of a screen.
 int most_rows(std::size_t nodes_of_lane) {
-    constexpr double wide = 1.4;  // of a screen, in boxes of about this shape
+    constexpr double wide = 1.4;  // aspect ratio of a screen, in boxes
     return std::max(24, static_cast<int>(std::ceil(std::sqrt(wide * static_cast<double>(nodes_of_lane)))));
 }
 
@@ -134,7 +134,7 @@ private:
         return bottom;
     }
 
-    /// Nodes below each other in the order of what feeds them, so that fewer wires cross.
+    /// Sorts the nodes of a column by their sources, so that fewer wires cross.
     void sort_by_sources(std::vector<int>& nodes) const {
         std::map<int, double> height;
         for (const int node : nodes) {
@@ -165,7 +165,7 @@ private:
     const compile::Plan& plan_;
     PatchPicture& picture_;
     std::vector<int> columns_;
-    std::vector<double> depth_;  ///< how far down each node were if no column went on beside itself
+    std::vector<double> depth_;  ///< vertical position of each node without split columns
     mutable std::vector<std::vector<std::size_t>> feeding_;
     double right_ = left_edge + node_width;
 };
@@ -179,7 +179,7 @@ void place_ports(PictureNode& node) {
     place(node.outputs, node.box.right);
 }
 
-/// In a patch of more nodes nobody follows a wire by eye, and looking for ways would take long.
+/// Above this number of nodes wires are drawn directly, because routing would take long.
 constexpr std::size_t most_routed = 300;
 
 void route_wires(PatchPicture& picture) {
@@ -188,7 +188,7 @@ void route_wires(PatchPicture& picture) {
     if (picture.nodes.size() <= most_routed) {
         for (const PictureNode& node : picture.nodes) boxes.push_back(node.box);
         for (const PictureLane& lane : picture.lanes) levels.push_back(lane.bottom + 0.5 * lane_gap);
-        // Nothing runs below the picture.
+        // No wires run below the picture.
         if (!levels.empty()) levels.back() = picture.lanes.back().bottom - 0.5 * lane_padding;
     }
     WireRouter router(std::move(boxes), levels);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where everything of a patch stands in its picture: groups as lanes, nodes as boxes, ports on their edges, wires as
-// curves between them. Plain geometry; units are pixels at a zoom of one.
+// The layout of a patch: groups as lanes, nodes as boxes, ports on their edges, wires as curves. Geometry only; units
+// are pixels at zoom 1.
 #pragma once
 
 #include "graph/compile/plan.hpp"
@@ -17,7 +17,7 @@ struct PicturePort {
     std::string name, about, unit;
     const ValueType* type = nullptr;  ///< null: any
     bool is_optional = false, is_connected = false;
-    bool is_param = false;  ///< a parameter that a wire drives
+    bool is_param = false;  ///< a driven parameter
     Point at;
 };
 
@@ -32,8 +32,8 @@ struct PictureWire {
     int from = 0, output = 0, to = 0, input = 0;
     patch::WireMode mode = patch::WireMode::hold;
     Flicks latency = 0;
-    bool crosses = false;  ///< from one group to another
-    std::vector<BezierCurve> way;  ///< pieces that follow each other
+    bool crosses = false;  ///< leads from one group to another
+    std::vector<BezierCurve> way;  ///< consecutive pieces
     Box bounds;
 };
 
@@ -43,10 +43,10 @@ struct PictureLane {
 };
 
 struct PatchPicture {
-    std::vector<PictureLane> lanes;  ///< as the plan's groups
-    std::vector<PictureNode> nodes;  ///< as the plan's
-    std::vector<PictureWire> wires;  ///< those between nodes
-    std::vector<Box> stacks;  ///< around the boxes that stand above each other, for a look from afar
+    std::vector<PictureLane> lanes;  ///< in the order of the plan's groups
+    std::vector<PictureNode> nodes;  ///< in the order of the plan's nodes
+    std::vector<PictureWire> wires;  ///< wires between nodes
+    std::vector<Box> stacks;  ///< bounds of stacked boxes, for small zoom
     Box bounds;
 
     int find(std::string_view node) const;  ///< −1: none
@@ -56,19 +56,19 @@ inline constexpr double title_height = 38.0, port_height = 17.0, node_width = 15
 
 PatchPicture picture_of(const compile::Plan& plan);
 
-/// What is under a point of the picture. Ports lie above nodes, nodes above wires.
+/// The item at a point. Ports take precedence over nodes, nodes over wires.
 struct Hit {
     enum class What { nothing, node, input, output, wire } what = What::nothing;
-    int index = -1;  ///< of the node, or of the wire
+    int index = -1;  ///< index of the node or wire
     int port = -1;
     bool operator==(const Hit&) const = default;
 };
 Hit hit(const PatchPicture& picture, Point at, double reach);
 
-/// In the middle piece of its way, where there is room to say something.
+/// Position for a label, on the middle piece of the wire.
 Point middle_of(const PictureWire& wire);
 
-/// "hold, 1 ms": how a wire delivers.
+/// "hold, 1 ms": delivery mode and delay of a wire.
 std::string describe(const PictureWire& wire);
 
 }  // namespace tactus::view

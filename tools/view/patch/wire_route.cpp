@@ -9,12 +9,11 @@ namespace tactus::view {
 
 namespace {
 
-// Units of the picture: how far a wire keeps from boxes, how wide its turns are, also those that lead back, and how
-// far apart wires run.
+// In units of the picture: clearance to boxes, width of turns, width of backward turns, and distance of parallel wires.
 constexpr double clear = 4.0, turn = 58.0, back_turn = 44.0, apart = 4.0;
-constexpr double per_box = 1e4;  // what passing behind one costs, in units of length
+constexpr double per_box = 1e4;  // cost of passing behind a box, in units of length
 
-/// Leaves or arrives along the wire's own direction and turns to a level.
+/// A curve from the wire's end to a horizontal level.
 BezierCurve bend(Point from, Point to, double out_of, double into) {
     return {from, Point{from.x + out_of, from.y}, Point{to.x - into, to.y}, to};
 }
@@ -54,7 +53,7 @@ double distance_to(const BezierCurve& curve, Point at) {
 
 WireRouter::WireRouter(std::vector<Box> boxes, std::span<const double> levels)
     : boxes_(std::move(boxes)), levels_(levels.begin(), levels.end()) {
-    // Below each box, in the middle of the gap to the next one.
+    // Levels: below each box, in the middle of the gap to the next one.
     for (const Box& box : boxes_) {
         double below = 1e300;
         for (const Box& other : boxes_)
@@ -78,7 +77,7 @@ bool WireRouter::is_hidden(const BezierCurve& curve) const {
     });
 }
 
-/// Length of the way along that level, and what it passes behind.
+/// Cost of a route along that level: length, and boxes it passes behind.
 double WireRouter::cost(Point from, Point to, double level) const {
     const double first = from.x < to.x ? from.x + turn : from.x, last = from.x < to.x ? to.x - turn : to.x;
     const Box along{std::min(first, last), level - clear, std::max(first, last), level + clear};
@@ -91,12 +90,12 @@ double WireRouter::cost(Point from, Point to, double level) const {
     return sum;
 }
 
-/// Beside the wires of other outputs that run there already: 0, 1, −1, 2, −2, … times their distance.
+/// Offset beside wires of other outputs on this level: 0, 1, −1, 2, −2, … times the distance.
 double WireRouter::lane_of(std::size_t level, int source) {
     auto& sources = taken_[level];
     auto known = std::ranges::find(sources, source);
     if (known == sources.end()) known = sources.insert(sources.end(), source);
-    constexpr int most = 5;  // as many as the least gap holds
+    constexpr int most = 5;  // capacity of the smallest gap
     const int place = static_cast<int>(known - sources.begin()) % most;
     return apart * ((place + 1) / 2) * (place % 2 ? 1.0 : -1.0);
 }
@@ -114,7 +113,7 @@ std::vector<BezierCurve> WireRouter::way(Point from, Point to, int source) {
     const double level = levels_[best] + lane_of(best, source);
     const bool forward = to.x - from.x > 2.0 * turn;
     if (!forward) {
-        // Around: out to the right, back along the level, in from the left.
+        // Backward: leave to the right, run back along the level, arrive from the left.
         const Point turned{from.x, level}, back{to.x, level};
         return {{from, Point{from.x + back_turn, from.y}, Point{from.x + back_turn, level}, turned},
                 {turned, turned + (back - turned) * (1.0 / 3.0), turned + (back - turned) * (2.0 / 3.0), back},

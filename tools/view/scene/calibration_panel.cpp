@@ -12,7 +12,7 @@
 
 namespace tactus::view {
 
-using study::calibrated_rig;
+using study::calibrated_display;
 using study::calibration_steps;
 using study::check_screens;
 using study::fit_options;
@@ -58,10 +58,10 @@ void CalibrationPanel::draw(const Feed* feed) {
     if (ImGui::Begin("Calibration", &is_open, ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoCollapse)) {
         if (lead_) {
             if (feed) lead_on(*feed);
-            else words(tone::warm, "The run is over; run it again to go on.");
+            else words(tone::warm, "The run is over; run it again to continue.");
         } else if (is_unwritten_) write_elsewhere();
         else if (feed) choose(*feed);
-        else words(tone::dim, "Run a patch with a device in it: its tip touches screens, mirror and known places.");
+        else words(tone::dim, "Run a patch with a device. Its tip touches screens, mirror and known places.");
         if (!problem_.empty()) words(tone::bad, problem_);
         if (fit_) show_fit();
     }
@@ -90,13 +90,13 @@ void CalibrationPanel::choose_source(const Feed& feed) {
     list("tracker", source_.tracker, "none: the device is the world",
          [&](const TouchSource& one) { source_.tracker = one.pose; });
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("a marker that is held to the tip: where the device stands before the viewer");
+        ImGui::SetTooltip("a tracked marker held to the tip: measures the device's pose in the viewer's world");
 }
 
 void CalibrationPanel::choose(const Feed& feed) {
     words(tone::dim,
-          "Touch what there is with the tip of the device: the screen is then seen where it is felt. Leave empty what "
-          "is known already.");
+          "Touch the parts of the display with the tip of the device, so that objects appear where they are felt. "
+          "Leave known parts empty.");
     choose_source(feed);
     field("tip in the handle", "0 mm, 0 mm, 0 mm", choice_.tip);
     field("known places", "file with x_mm, y_mm, z_mm", places_);
@@ -116,7 +116,7 @@ void CalibrationPanel::choose(const Feed& feed) {
     ImGui::SetNextItemWidth(17.0f * ImGui::GetFontSize());
     ImGui::SliderInt("marks are on", &marks_on_, -1, 4, on.c_str());
     choose_file();
-    if (scene_.rig()) words(tone::dim, "What is not touched stays as in the rig that is used now.");
+    if (scene_.display_file()) words(tone::dim, "Parts without touches keep the values of the display file in use.");
     const bool has_steps =
         !places_.empty() || !source_.tracker.empty() || choice_.mirror || !screen_.empty() || !image_.empty();
     ImGui::BeginDisabled(!has_steps || source_.pose.empty() || file_.empty());
@@ -125,10 +125,10 @@ void CalibrationPanel::choose(const Feed& feed) {
 }
 
 void CalibrationPanel::choose_file() {
-    field("file", "rig.toml", file_);
+    field("file", "display.toml", file_);
     std::error_code unknown;
     if (!file_.empty() && std::filesystem::exists(file_, unknown))
-        words(tone::warm, fmt::format("{} is there already: it will be replaced.", file_));
+        words(tone::warm, fmt::format("{} exists and will be replaced.", file_));
 }
 
 void CalibrationPanel::begin() {
@@ -142,14 +142,14 @@ void CalibrationPanel::begin() {
         choice_.images.clear();
         if (!screen_.empty()) choice_.screens.push_back(screen_);
         if (!image_.empty()) choice_.images.push_back(image_);
-        base_ = scene_.rig().value_or(display::RigFile{});
+        base_ = scene_.display_file().value_or(display::DisplayFile{});
         check_screens(choice_, base_);
         options_ = fit_options(choice_, base_);
         TouchSource source = source_;
         source.tip = display::parse_vector(choice_.tip, "mm");
         source.tracker = choice_.tracker;
         lead_.emplace(calibration_steps(choice_), !choice_.tracker.empty(),
-                      [this](std::span<const display::RigTouch> done) { fit_ = display::fit_rig(done, options_); });
+                      [this](std::span<const display::Touch> done) { fit_ = display::fit_display(done, options_); });
         watch_.emplace(std::move(source));
         if (marks_on_ >= 0) marks_ = std::make_unique<MarkScreen>(marks_on_);
     } catch (const Error& error) {
@@ -173,7 +173,7 @@ void CalibrationPanel::lead_on(const Feed& feed) {
         marks_.reset();
         return;
     }
-    const display::RigTouch& step = lead_->steps()[lead_->due()];
+    const display::Touch& step = lead_->steps()[lead_->due()];
     words(tone::text, fmt::format("{} of {}: {}", lead_->due() + 1, lead_->steps().size(), prompt_of(step)));
     ImGui::ProgressBar(static_cast<float>(lead_->due()) / static_cast<float>(lead_->steps().size()),
                        ImVec2(-1.0f, 0.4f * ImGui::GetFontSize()), "");
@@ -193,11 +193,11 @@ void CalibrationPanel::lead_on(const Feed& feed) {
 }
 
 void CalibrationPanel::finish() {
-    const std::vector<display::RigTouch> touches = lead_->steps();
+    const std::vector<display::Touch> touches = lead_->steps();
     lead_.reset();
     watch_.reset();
     marks_.reset();
-    fit_ = display::fit_rig(touches, options_);
+    fit_ = display::fit_display(touches, options_);
     write();
 }
 
@@ -205,8 +205,8 @@ void CalibrationPanel::write() {
     problem_.clear();
     is_unwritten_ = true;
     try {
-        write_calibrated(file_, calibrated_rig(base_, *fit_), *fit_);
-        scene_.use_rig(file_);
+        write_calibrated(file_, calibrated_display(base_, *fit_), *fit_);
+        scene_.use_display(file_);
     } catch (const Error& error) {
         problem_ = error.what();
         return;
@@ -217,9 +217,9 @@ void CalibrationPanel::write() {
                             off.rms * 1e3, off.worst * 1e3));
 }
 
-/// The touches are worth more than the name of a file.
+/// Keeps the touches when the file cannot be written.
 void CalibrationPanel::write_elsewhere() {
-    words(tone::text, "All is touched, but the rig is not written yet: choose another file.");
+    words(tone::text, "All touches are made, but the display file is not written. Choose another file.");
     choose_file();
     ImGui::BeginDisabled(file_.empty());
     if (button("write")) write();
@@ -238,7 +238,7 @@ void CalibrationPanel::show_mark() {
     else marks_->show(lead_->steps()[lead_->due()]);
 }
 
-/// Of the parts that are complete.
+/// Residuals of the complete parts.
 void CalibrationPanel::show_fit() const {
     ImGui::Separator();
     for (const display::TouchedPart& part : fit_->parts) words(tone::text, part_text(part));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Leads through the calibration of a rig within a run: with the device that the patch has open, into the rig that its scene
-// is seen through.
+// Calibrates a display during a run: with the device that the patch has open. The scene is then drawn with the new display
+// file.
 #pragma once
 
 #include "tools/study/displays/calibration.hpp"
@@ -26,9 +26,9 @@ public:
 
     bool is_open = false;
 
-    /// A window of its own while it is open. `feed`: of the run; null: none.
+    /// Draws the panel as a floating window while open. `feed`: of the run; null: none.
     void draw(const Feed* feed);
-    /// Outputs whose every value it needs.
+    /// Outputs to trace with every value.
     void add_traced(std::set<std::string>& ports) const;
 
 private:
@@ -46,17 +46,17 @@ private:
     Workbench& bench_;
     ScenePanel& scene_;
     CalibrationSettings choice_;
-    std::string file_ = "rig.toml", screen_, image_, places_;
+    std::string file_ = "display.toml", screen_, image_, places_;
     TouchSource source_;
     int marks_on_ = -1;  ///< monitor from 1, 0: a window, −1: nowhere
-    display::RigFile base_;
-    display::RigFitOptions options_;
+    display::DisplayFile base_;
+    display::DisplayFitOptions options_;
     std::optional<TouchLead> lead_;
     std::optional<TouchWatch> watch_;
-    std::optional<display::RigFit> fit_;  ///< of the parts so far
-    bool is_unwritten_ = false;  ///< all is touched, and the file could not be written
+    std::optional<display::DisplayFit> fit_;  ///< fit of the parts so far
+    bool is_unwritten_ = false;  ///< all touches are made, but the file could not be written
     std::unique_ptr<MarkScreen> marks_;
-    std::string said_, problem_;  ///< of the last touch; why it ended
+    std::string said_, problem_;  ///< result of the last touch; why the calibration ended
 };
 
 }  // namespace tactus::view

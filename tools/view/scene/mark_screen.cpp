@@ -9,8 +9,8 @@ namespace tactus::view {
 
 using picture::draw_mark;
 
-void MarkScreen::show(const display::RigTouch& touch) {
-    // The window knows its size once it showed something.
+void MarkScreen::show(const display::Touch& touch) {
+    // The size of the window is known after the first frame.
     const int width = std::max(window_.width(), 64), height = std::max(window_.height(), 64);
     target_.begin(width, height, 1);
     draw_mark(touch, width, height);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A window beside the viewer's own that shows the mark to be touched.
+// A second window that shows the mark to touch.
 #pragma once
 
-#include "dsp/display/rig_touches.hpp"
+#include "dsp/display/display_fit.hpp"
 #include "tools/view/scene/screen_window.hpp"
 #include "tools/view/scene/texture_target.hpp"
 
@@ -10,10 +10,10 @@ namespace tactus::view {
 
 class MarkScreen {
 public:
-    /// On a monitor, from 1, all of it; 0: a window somewhere. Throws Error.
+    /// Full screen on a monitor, from 1; 0: an ordinary window. Throws Error.
     explicit MarkScreen(int monitor) : window_("mark", {monitor, {}, false}) {}
 
-    void show(const display::RigTouch& touch);
+    void show(const display::Touch& touch);
     bool wants_to_close() const { return window_.wants_to_close(); }
 
 private:

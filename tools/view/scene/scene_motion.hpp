@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the scene needs another picture: a coarse one while something moves, a fine one when all stands still.
+// Decides when to redraw the scene: coarsely while it moves, finely when it is still.
 #pragma once
 
 #include "devices/display/legend.hpp"
@@ -10,8 +10,8 @@
 
 namespace tactus::view {
 
-/// The same number for what looks the same: every mesh where it stands, seen from the same place. `mesh_changes`: of the
-/// pool that the meshes are in. `legend`: drawn into the picture.
+/// A hash of everything that affects the picture: meshes, poses, views and legend. `mesh_changes`: counter of the mesh
+/// pool.
 std::uint64_t looks_of(const display::Picture& picture, std::uint64_t mesh_changes,
                        std::span<const display::DrawnView> views, const display::Legend& legend);
 
@@ -19,10 +19,10 @@ class SceneMotion {
 public:
     enum class Next { nothing, coarse, fine };
 
-    /// What to draw now, for a scene that looks like that. `has_coarse`: a coarse picture is worth having; without it all
-    /// are fine. `is_held`: somebody is about to move it. `now`: s.
+    /// What to draw now for a scene with this hash. `has_coarse`: coarse pictures are useful; otherwise all are fine.
+    /// `is_held`: the user holds the view. `now`: s.
     Next next(std::uint64_t looks, bool has_coarse, bool is_held, double now);
-    /// The next picture is drawn whatever was before.
+    /// Forces a redraw.
     void forget() { is_known_ = false; }
 
 private:

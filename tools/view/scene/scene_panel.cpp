@@ -20,11 +20,11 @@ using picture::SceneOutline;
 
 namespace {
 
-// A picture of the scene costs far more than one of the panels: so many a second are enough while nobody moves it, and
-// fewer where it takes more than a third of the time. A head that moves wants all there are.
+// The scene is much slower to draw than the panels, so its rate is limited while the user does not move it, and reduced
+// when it takes more than a third of the time. A tracked head gets the full rate.
 constexpr double picture_every_s = 1.0 / 30.0, most_wait_s = 1.0;
-// Where the processor draws them, what moves is drawn coarser from here on; and a picture of very many small ones is
-// smooth enough with one sample per pixel.
+// Triangle counts for software rendering: above the first, moving scenes are drawn coarsely; above the second, one
+// sample per pixel is smooth enough.
 constexpr std::size_t many_triangles = 60'000, very_many_triangles = 300'000;
 
 }  // namespace
@@ -59,18 +59,18 @@ void ScenePanel::use(const SightChoice& choice) {
     Sight sight(choice);
     if (model_) sight.follow(model_->outline());
     sight_ = std::move(sight);
-    rig_file_ = choice.rig.string();
+    display_file_ = choice.display.string();
     if (!choice.offset.empty()) offset_ = choice.offset;
-    windows_ = Windows::where_rig_says;
+    windows_ = Windows::as_display_file;
     needs_picture_ = true;
 }
 
 void ScenePanel::use_stereo(const std::string& mode) {
     const bool is_number = mode.size() == 1 && mode[0] >= '0' && mode[0] <= '3';
     sight_.stereo = is_number ? static_cast<display::StereoMode>(mode[0] - '0') : parse_stereo(mode);
-    // Which windows have a buffer for each eye is decided when they are opened.
+    // Quad-buffering is chosen when a window is opened.
     if (screens_.are_open() || sight_.stereo == display::StereoMode::quad_buffer)
-        windows_ = screens_.are_open() ? Windows::all : Windows::where_rig_says;
+        windows_ = screens_.are_open() ? Windows::all : Windows::as_display_file;
     needs_picture_ = true;
 }
 
@@ -79,12 +79,12 @@ void ScenePanel::use_head(const std::string& port) {
     needs_picture_ = true;
 }
 
-void ScenePanel::use_rig(const std::string& file) {
-    sight_.use_rig(file);
+void ScenePanel::use_display(const std::string& file) {
+    sight_.use_display(file);
     if (model_) sight_.follow(model_->outline());
-    rig_file_ = file;
-    offset_ = "as the rig says";
-    windows_ = file.empty() ? Windows::none : Windows::where_rig_says;
+    display_file_ = file;
+    offset_ = "as the display file says";
+    windows_ = file.empty() ? Windows::none : Windows::as_display_file;
     needs_picture_ = true;
 }
 
@@ -96,7 +96,7 @@ void ScenePanel::use_offset(const std::string& offset) {
 
 void ScenePanel::show_screens(bool wanted) { windows_ = wanted ? Windows::all : Windows::none; }
 
-/// Opens and closes windows between two pictures of the scene.
+/// Opens and closes windows between two frames of the scene.
 void ScenePanel::tend_screens() {
     screens_.tend();
     const Windows wanted = std::exchange(windows_, Windows::as_they_are);
@@ -163,20 +163,20 @@ void ScenePanel::render(int width, int height) {
     }
     const auto views = screens_.aim(sight_, camera, picture.bounds);
     const bool has_coarse = renderer_->is_software() && model_->triangles() > many_triangles;
-    // In the panel it lies on top of the picture, in windows of their own it is a part of it.
+    // In the panel it is an overlay, in separate windows a part of the picture.
     const display::Legend drawn_legend = screens_.are_open() ? legend() : display::Legend{};
     const auto next = motion_.next(looks_of(picture, renderer_->meshes().changes(), views, drawn_legend), has_coarse,
                                    ImGui::IsItemActive(), now);
     if (next == SceneMotion::Next::nothing) return screens_.show();
     picture.grain = next == SceneMotion::Next::coarse ? display::grain_of_motion : 0.0;
-    // One fine picture of what stands still does not make those of what moves rarer.
+    // A single fine picture of a still scene does not reduce the rate of moving ones.
     was_drawn_ = next == SceneMotion::Next::coarse || !has_coarse;
     screens_.samples = renderer_->is_software() && model_->triangles() > very_many_triangles ? 1 : 4;
     screens_.draw(*renderer_, picture, sight_, drawn_legend);
     screens_.show();
 }
 
-/// Head and device of the sight; what the scene is made of, the model watches itself.
+/// Ports for head and device; the model observes the scene's own ports.
 void ScenePanel::watch_sight() {
     const std::vector<std::string> wanted = sight_.ports();
     if (wanted == watched_) return;
@@ -227,7 +227,7 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
         watch_sight();
         tools();
         const Point corner = point(ImGui::GetCursorScreenPos()), size = point(ImGui::GetContentRegionAvail());
-        // Where the screen counts several pixels as one, the picture still has them all.
+        // On high-density screens the picture has full resolution.
         const double dense = std::max(1.0, static_cast<double>(ImGui::GetIO().DisplayFramebufferScale.x));
         const int width = static_cast<int>(size.x * dense), height = static_cast<int>(size.y * dense);
         if (width < 8 || height < 8) return;
@@ -241,7 +241,8 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
             ImGui::GetIO().MouseDragMaxDistanceSqr[0] < 9.0f)
             measure((point(ImGui::GetIO().MousePos) - corner) * dense);
         const Painter paint(ImGui::GetWindowDrawList(), fonts);
-        if (sight_.rig()) paint.box({corner.x, corner.y, corner.x + size.x, corner.y + size.y}, colour(0x0b0e13), 6.0);
+        if (sight_.display_file())
+            paint.box({corner.x, corner.y, corner.x + size.x, corner.y + size.y}, colour(0x0b0e13), 6.0);
         for (std::size_t i = 0; i < screens_.tiles().size(); ++i) {
             const SceneScreens::Tile& tile = screens_.tiles()[i];
             const Point at = corner + Point{tile.x / dense, tile.y / dense};
@@ -249,8 +250,9 @@ void ScenePanel::draw(const std::shared_ptr<observe::Observer>& observer, const 
             paint.list()->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(tile.texture)),
                                           vec(at), vec(far), ImVec2(0, 1), ImVec2(1, 0), 0xFFFFFFFF,
                                           static_cast<float>(6.0 * fonts.scale));
-            if (sight_.rig())
-                paint.text(at + Point{8.0, 6.0}, 11.0 * fonts.scale, colour(0x1e293b), sight_.rig()->screens[i].name);
+            if (sight_.display_file())
+                paint.text(at + Point{8.0, 6.0}, 11.0 * fonts.scale, colour(0x1e293b),
+                           sight_.display_file()->screens[i].name);
         }
         draw_marks(paint, corner, 1.0 / dense);
         if (!screens_.are_open()) draw_legend(paint, corner, static_cast<int>(size.y), fonts.scale);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene in space: bones, bodies, tools and forces, looked at from any side or through the screens of a rig, cut open
-// and measured.
+// The scene in space: bones, bodies, tools and forces, viewed from any side or through the screens of a display, with
+// clipping and measuring.
 #pragma once
 
 #include "devices/display/scene_renderer.hpp"
@@ -26,34 +26,34 @@ class ScenePanel {
 public:
     explicit ScenePanel(Workbench& bench) : bench_(bench) {}
 
-    /// `observer` may be null; another one is another run.
+    /// `observer` may be null; a different one means a new run.
     void draw(const std::shared_ptr<observe::Observer>& observer, const Fonts& fonts);
 
-    /// In place of `draw` while the patch is empty: windows close until something is there again, and the run is let go.
+    /// Replaces `draw` while the patch has no scene: closes the windows and releases the run.
     void rest();
 
-    /// The patch has nothing in space: no bone, body, tool or pose.
+    /// True when the patch has nothing to draw: no bone, body, tool or pose.
     bool is_empty();
 
     display::OrbitCamera camera;
     void look_from(display::NamedView view);
     void fit() { is_aimed_ = false; }
-    /// As it was in the beginning: from iso, all of it, nothing cut away, nothing measured.
+    /// Resets the view: iso, all visible, no clipping, no measurement.
     void reset();
-    /// Cuts away what lies above a share of the scene's extent along an axis; axis −1: nothing.
+    /// Clips the scene above a fraction of its extent along an axis; axis −1: no clipping.
     void clip(int axis, double share);
     bool is_measuring = false;
-    bool wants_calibration = false;  ///< asked for, for whoever leads through it
+    bool wants_calibration = false;  ///< requests the calibration panel
 
-    // How it is looked at. All throw Error, and nothing has changed then.
+    // View settings. All throw Error and then change nothing.
     void use(const SightChoice& choice);
-    /// "side-by-side" and so on, or its number from 0.
+    /// A stereo mode by name or number.
     void use_stereo(const std::string& mode);
     void use_head(const std::string& port);
-    void use_rig(const std::string& file);
-    const std::optional<display::RigFile>& rig() const { return sight_.rig(); }
+    void use_display(const std::string& file);
+    const std::optional<display::DisplayFile>& display_file() const { return sight_.display_file(); }
     void use_offset(const std::string& offset);
-    /// Windows of their own for the screens.
+    /// Opens or closes separate windows for the screens.
     void show_screens(bool wanted);
 
 private:
@@ -76,19 +76,19 @@ private:
     Sight sight_{SightChoice{}};
     SceneScreens screens_;
     SceneMotion motion_;
-    enum class Windows { as_they_are, where_rig_says, all, none } windows_ = Windows::as_they_are;
+    enum class Windows { as_they_are, as_display_file, all, none } windows_ = Windows::as_they_are;
     std::vector<std::string> watched_;  ///< ports
     std::int64_t plan_version_ = -1, judged_version_ = -1;
     bool is_empty_ = false;
     bool is_aimed_ = false, needs_picture_ = true;
     bool was_drawn_ = false;
-    double looked_at_ = -1.0, cost_s_ = 0.0;  ///< cost: of a picture, with the window around it
-    int width_ = 0, height_ = 0;  ///< of the last picture, pixels
+    double looked_at_ = -1.0, cost_s_ = 0.0;  ///< cost: time per picture, including the window
+    int width_ = 0, height_ = 0;  ///< size of the last picture, pixels
     int clip_axis_ = -1;
     double clip_share_ = 0.5;
-    std::string rig_file_, offset_ = "as the rig says";
+    std::string display_file_, offset_ = "as the display file says";
     std::vector<Vec3> marks_;
-    std::string problem_, note_;  ///< note: why a screen is not shown as it was wanted
+    std::string problem_, note_;  ///< note: why a screen is not shown as requested
 };
 
 }  // namespace tactus::view

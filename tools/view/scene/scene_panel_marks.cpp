@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lies on top of the scene's picture: measured points, and what the colours mean.
+// Overlays of the scene: measured points and the legend.
 #include "dsp/display/ruler.hpp"
 #include "tools/view/scene/scene_panel.hpp"
 #include "tools/view/theme.hpp"
@@ -49,7 +49,7 @@ void ScenePanel::draw_marks(const Painter& paint, Point corner, double pixel) {
     const double size = static_cast<double>(ImGui::GetFontSize());
     for (const SceneScreens::Tile& tile : screens_.tiles())
         for (const display::DrawnView& view : tile.views) {
-            // Every eye sees them where they are.
+            // Drawn for each eye at their 3-D position.
             const double across = pixel * tile.width / std::max(tile.picture_width, 1),
                          down = pixel * tile.height / std::max(tile.picture_height, 1);
             std::vector<Point> seen;

@@ -7,7 +7,7 @@
 
 namespace tactus::view {
 
-/// In the row where it fits, or else in the next one.
+/// Stays on the line if it fits, otherwise starts a new one.
 static bool next_button(const char* label) {
     const ImGuiStyle& style = ImGui::GetStyle();
     const float end =
@@ -26,7 +26,7 @@ void ScenePanel::tools() {
     if (next_button("fit")) fit();
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("key F");
     if (next_button("reset")) reset();
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("key R: from iso, all of it, nothing cut away");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("key R: iso view, all visible, no clipping");
     if (next_button(is_measuring ? "measuring" : "measure")) {
         is_measuring = !is_measuring;
         marks_.clear();
@@ -47,7 +47,7 @@ void ScenePanel::tools() {
     if (ImGui::SliderFloat("##clip", &share, 0.0f, 1.0f, "%.2f")) clip(clip_axis_, static_cast<double>(share));
 }
 
-/// Stereo, head, rig, offset, windows.
+/// Stereo, head, display file, offset, windows.
 void ScenePanel::sight_tools() {
     const float unit = ImGui::GetFontSize();
     const auto chosen = static_cast<std::size_t>(sight_.stereo);
@@ -68,27 +68,27 @@ void ScenePanel::sight_tools() {
                     use_head(port.name);
         ImGui::EndCombo();
     }
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("the pose that is the viewer's head: the picture follows it");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("pose output of the viewer's head; the picture follows it");
     ImGui::SameLine();
     if (ImGui::SmallButton("screens...")) ImGui::OpenPopup("screens");
     mark_spot("screens...");
     if (!ImGui::BeginPopup("screens")) return;
     static char file[512] = "";
-    if (ImGui::IsWindowAppearing()) std::snprintf(file, sizeof file, "%s", rig_file_.c_str());
+    if (ImGui::IsWindowAppearing()) std::snprintf(file, sizeof file, "%s", display_file_.c_str());
     ImGui::SetNextItemWidth(24.0f * unit);
-    ImGui::InputTextWithHint("rig", "file of 'tactus calibrate'", file, sizeof file);
-    if (ImGui::Button("use")) attempt([&] { use_rig(file); });
+    ImGui::InputTextWithHint("display", "file of 'tactus calibrate'", file, sizeof file);
+    if (ImGui::Button("use")) attempt([&] { use_display(file); });
     ImGui::SameLine();
-    if (ImGui::Button("none")) use_rig("");
+    if (ImGui::Button("none")) use_display("");
     ImGui::SameLine();
     if (ImGui::Button("calibrate...")) {
         wants_calibration = true;
         ImGui::CloseCurrentPopup();
     }
     mark_spot("calibrate...");
-    if (sight_.rig()) {
+    if (sight_.display_file()) {
         ImGui::SetNextItemWidth(12.0f * unit);
-        if (ImGui::BeginCombo("seen against felt", offset_.c_str())) {
+        if (ImGui::BeginCombo("shift of the picture", offset_.c_str())) {
             for (const char* name : {"none", "study"})
                 if (ImGui::Selectable(name, offset_ == name)) use_offset(name);
             ImGui::EndCombo();
@@ -96,7 +96,7 @@ void ScenePanel::sight_tools() {
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("study: 0.3 m to the right");
     }
     bool open = screens_.are_open();
-    if (ImGui::Checkbox("windows of their own", &open)) show_screens(open);
+    if (ImGui::Checkbox("separate windows", &open)) show_screens(open);
     ImGui::EndPopup();
 }
 

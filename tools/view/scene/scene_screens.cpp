@@ -12,7 +12,7 @@ namespace tactus::view {
 
 namespace {
 
-/// What a legend says, to tell whether it has to be drawn anew.
+/// The content of a legend as text, to detect changes.
 std::string words_of(const display::Legend& legend) {
     std::string all = legend.title;
     for (const auto& s : legend.scales) all += s.title + s.low_text + s.high_text;
@@ -35,7 +35,7 @@ void SceneScreens::lay_out(const Sight& sight, int width, int height) {
     const auto aspect_of = [&](std::size_t screen) {
         return *sight.aspect_of(screen) * (sight.mode_of(screen) == display::StereoMode::side_by_side ? 2.0 : 1.0);
     };
-    // So many columns that the smallest tile is largest.
+    // The number of columns that maximises the smallest tile.
     int columns = 1;
     double best = 0.0;
     for (int tried = 1; tried <= count; ++tried) {
@@ -69,8 +69,8 @@ void SceneScreens::open(const Sight& sight, bool all) {
             const bool two = sight.mode_of(i) == display::StereoMode::quad_buffer;
             ScreenWindow::Place place{0, {}, two};
             std::string title = "Tactus: scene";
-            if (sight.rig()) {
-                const display::RigScreen& screen = sight.rig()->screens[i];
+            if (sight.display_file()) {
+                const display::ScreenSettings& screen = sight.display_file()->screens[i];
                 place = {screen.monitor, screen.window, two};
                 title = fmt::format("screen '{}'", screen.name);
             }
@@ -93,7 +93,7 @@ ScreenWindow* SceneScreens::window_of(std::size_t screen) const {
     return nullptr;
 }
 
-/// At the same place for both eyes, and so that it can be read in a mirror.
+/// At the same position for both eyes, and readable in a mirror.
 void SceneScreens::draw_legend(std::size_t screen, TextureTarget& target, const Sight& sight,
                                const display::Legend& legend, std::span<const display::DrawnView> views) {
     const double scale = std::clamp(std::min(views[0].width, views[0].height) / 600.0, 0.55, 4.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pictures of a scene, one for each screen of a rig, in tiles of a panel and in windows of their own.
+// The pictures of a scene, one for each screen of a display, in tiles of a panel and in windows of their own.
 #pragma once
 
 #include "devices/display/legend.hpp"
@@ -18,33 +18,33 @@ using picture::Sight;
 
 class SceneScreens {
 public:
-    /// Where the picture of a screen lies in the panel, pixels from its upper left.
+    /// The tile of a screen in the panel, pixels from the upper left.
     struct Tile {
         int x = 0, y = 0, width = 0, height = 0;
         std::uint32_t texture = 0;
-        std::vector<display::DrawnView> views;  ///< in pixels of the picture
+        std::vector<display::DrawnView> views;  ///< viewports in pixels of the picture
         int picture_width = 0, picture_height = 0;
     };
 
-    /// Lays the screens out in a panel of so many pixels: each as large as it can be in its own shape.
+    /// Lays out the screens in a panel of the given size, as large as their aspect ratios allow.
     void lay_out(const Sight& sight, int width, int height);
     const std::vector<Tile>& tiles() const { return tiles_; }
 
-    /// A window of its own for every screen that names a place, or for all. Throws Error; none is open then.
+    /// Opens a window for every screen with a monitor or window setting, or for all. Throws Error and then opens none.
     void open(const Sight& sight, bool all);
     void close() { windows_.clear(); }
     bool are_open() const { return !windows_.empty(); }
-    /// Closes those whose close button was pressed.
+    /// Closes windows whose close button was pressed.
     void tend();
 
-    /// Where each is seen from. Returns all views, of all screens.
+    /// Computes and returns the views of all screens.
     std::vector<display::DrawnView> aim(Sight& sight, const display::OrbitCamera& camera, const display::Bounds& scene);
-    /// Per pixel. Many small triangles are costly to sample more than once where there is no graphics card.
+    /// Samples per pixel. Without a graphics card, multisampling of many small triangles is slow.
     int samples = 4;
-    /// Draws the scene as it was aimed at, for all screens.
+    /// Draws the scene for all screens with the computed views.
     void draw(display::SceneRenderer& renderer, const display::Picture& picture, const Sight& sight,
               const display::Legend& legend);
-    /// What was drawn last, in their windows: what uncovers or resizes one of those has wiped it.
+    /// Shows the last picture again in the windows, after they were uncovered or resized.
     void show();
 
 private:

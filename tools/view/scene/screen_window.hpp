@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A window with nothing but the picture of one screen in it: a projector, a stereo monitor, a tablet under a mirror.
+// A window with the picture of one screen: a projector, a stereo monitor, a tablet under a mirror.
 #pragma once
 
 #include <array>
@@ -10,15 +10,15 @@ struct GLFWwindow;
 
 namespace tactus::view {
 
-/// Shows textures of the context that was current when it was made, and which is so again after every call.
+/// Shows textures of the OpenGL context that was current at its creation. Every call restores that context.
 class ScreenWindow {
 public:
     struct Place {
-        int monitor = 0;              ///< from 1: all of it; 0: none
-        std::array<int, 4> window{};  ///< x, y, width, height in pixels of the desktop; width 0: somewhere
-        bool has_two_buffers = false;  ///< one for each eye
+        int monitor = 0;              ///< full screen on this monitor, from 1; 0: none
+        std::array<int, 4> window{};  ///< x, y, width, height in pixels of the desktop; width 0: default position
+        bool has_two_buffers = false;  ///< quad-buffered: one buffer per eye
     };
-    /// Throws Error when there is no such monitor, or no driver with a buffer for each eye where two are wanted.
+    /// Throws Error when the monitor does not exist, or when the driver does not support quad-buffering.
     ScreenWindow(const std::string& title, const Place& place);
     ~ScreenWindow();
     ScreenWindow(const ScreenWindow&) = delete;
@@ -26,9 +26,9 @@ public:
 
     int width() const { return width_; }  ///< pixels, as of the last `show`
     int height() const { return height_; }
-    /// Fills it with a texture of that size; `right` is the other eye's, or 0. `is_first`: waits for the screen.
+    /// Shows a texture of that size; `right`: texture of the right eye, or 0. `is_first`: waits for vertical sync.
     void show(std::uint32_t left, std::uint32_t right, int width, int height, bool is_first);
-    /// Its close button or Escape was pressed.
+    /// True when its close button or Escape was pressed.
     bool wants_to_close() const;
 
 private:

@@ -75,7 +75,7 @@ void TextureTarget::lay(const display::Image& image, int x, int y, display::Flip
     const int left = std::max(x, 0), low = std::max(y, 0);
     const int wide = std::min(x + image.width, width_) - left, high = std::min(y + image.height, height_) - low;
     if (wide < 1 || high < 1) return;
-    // OpenGL's first row is the lowest, an image's the highest.
+    // OpenGL's first row is the bottom row, an image's the top row.
     std::vector<std::uint8_t> part;
     part.reserve(3 * static_cast<std::size_t>(wide) * static_cast<std::size_t>(high));
     for (int v = low; v < low + high; ++v)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture on the graphics card that a panel shows: drawn into with smooth edges, then a texture.
+// An anti-aliased render target that becomes a texture for a panel.
 #pragma once
 
 #include "devices/display/offscreen.hpp"
@@ -9,7 +9,7 @@
 
 namespace tactus::view {
 
-/// Of one OpenGL context, which must be current in every call.
+/// Belongs to one OpenGL context, which must be current in every call.
 class TextureTarget {
 public:
     TextureTarget() = default;
@@ -17,15 +17,15 @@ public:
     TextureTarget(const TextureTarget&) = delete;
     TextureTarget& operator=(const TextureTarget&) = delete;
 
-    /// From here on everything is drawn into it, with up to `samples` per pixel. A new size makes it anew. Throws Error.
+    /// Redirects drawing into it, with up to `samples` per pixel. A new size reallocates it. Throws Error.
     void begin(int width, int height, int samples = 4);
-    /// Gives the window back and resolves what was drawn.
+    /// Restores the window's framebuffer and resolves the samples.
     void end();
 
-    /// After `end`: puts an image on top, its lower left corner at (x, y) from the lower left.
+    /// After `end`: draws an image on top, with its lower left corner at (x, y).
     void lay(const display::Image& image, int x, int y, display::Flip flip);
 
-    std::uint32_t texture() const { return texture_; }  ///< its first row is the lowest
+    std::uint32_t texture() const { return texture_; }  ///< first row at the bottom
     int width() const { return width_; }
     int height() const { return height_; }
 

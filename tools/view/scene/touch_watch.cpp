@@ -18,7 +18,7 @@ Pose pose_at(const Trace& trace, std::size_t row) {
     return {{c(0), c(1), c(2)}, Quat(c(3), c(4), c(5), c(6))};
 }
 
-/// Valid poses of [begin, end).
+/// The valid poses in [begin, end).
 std::vector<Pose> poses_within(const Trace& trace, double begin, double end) {
     std::vector<Pose> poses;
     const auto first = std::ranges::lower_bound(trace.times, begin) - trace.times.begin();
@@ -73,10 +73,10 @@ void TouchWatch::look_for_press(const Feed& feed, const Trace& poses) {
 
 std::optional<Touched> TouchWatch::next(const Feed& feed) {
     const Trace* const poses = feed.trace(source_.pose);
-    // What was traced before it was begun, for a scope perhaps, holds no touches.
+    // Values traced before the start, for example for a scope, contain no touches.
     if (!std::exchange(has_looked_, true)) seen_ = free_from_ = std::max(newest_of(poses), newest_of(button_of(feed)));
     if (!poses || poses->times.empty()) return std::nullopt;
-    // A run that began anew counts from zero.
+    // A new run starts at time zero.
     if (poses->times.back() < newest_) {
         seen_ = free_from_ = -1.0;
         was_pressed_ = true;

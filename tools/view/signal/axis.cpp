@@ -21,7 +21,7 @@ std::vector<double> linear_ticks(Range range, int most) {
             break;
         }
     const double first = std::ceil(range.low / step - 1e-9), last = std::floor(range.high / step + 1e-9);
-    // Far from zero the steps may be finer than the numbers are.
+    // Far from zero the steps may be smaller than the resolution of double.
     if (!(last - first <= 2.0 * most)) return ticks;
     for (double k = first; k <= last; ++k) ticks.push_back(k * step);
     if (static_cast<int>(ticks.size()) > most) ticks.resize(static_cast<std::size_t>(most));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Axes of a plot: where their ticks stand, how far they reach.
+// Ticks and ranges of plot axes.
 #pragma once
 
 #include <span>
@@ -15,17 +15,17 @@ struct Range {
     bool operator==(const Range&) const = default;
 };
 
-/// Round numbers 1, 2 or 5 · 10ⁿ apart within the range, at most `most` of them. Empty for a range that is none.
+/// Round numbers with steps of 1, 2 or 5 · 10ⁿ within the range, at most `most`. Empty for an invalid range.
 std::vector<double> linear_ticks(Range range, int most);
-/// 1, 2 and 5 of each decade, or the decades alone when those are more than `most`. For ranges above zero.
+/// 1, 2 and 5 of each decade, or only the decades when there would be more than `most`. For positive ranges.
 std::vector<double> decade_ticks(Range range, int most);
-/// "0.25", "-1.5e-07": as many digits as tell neighbours `step` apart from each other.
+/// "0.25", "-1.5e-07": enough digits to distinguish values `step` apart.
 std::string tick_label(double value, double step);
 
-/// A range that shows all values with some air, and that stays what it was while it still fits well.
+/// A range with a margin around all values; keeps the old range while it still fits well.
 Range fitted(Range shown, Range values);
 
-/// Least and greatest value in each of `columns` equal parts of the time range; NaN where there is none. Times rise.
+/// Minimum and maximum in each of `columns` equal parts of the time range; NaN for empty parts. Times must increase.
 struct Envelope {
     std::vector<double> low, high;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the window gets values from: a run that goes on, or a take at some instant.
+// Sources of values for the window: a live run, or a take at an instant.
 #pragma once
 
 #include "engine/observe/observer.hpp"
@@ -17,14 +17,14 @@
 
 namespace tactus::view {
 
-/// What one output gave: a row of numbers for each time, times rising.
+/// The trace of an output: one row of numbers per time; times increase.
 struct Trace {
     std::vector<double> times;                 ///< logical, s
     std::vector<std::vector<double>> columns;  ///< by column, as long as `times`
     std::vector<std::string> names;            ///< of the columns
 };
 
-/// Drops what is older than `before`, now and then rather than always: it moves all that stays.
+/// Drops values older than `before`; only occasionally, because it moves the remaining values.
 void forget(Trace& trace, double before);
 
 class Feed {
@@ -42,18 +42,18 @@ public:
 
     virtual ~Feed() = default;
     virtual std::vector<Port> ports() const = 0;
-    /// Rises when there are others.
+    /// Increases when the list changes.
     virtual std::int64_t ports_version() const { return 0; }
     virtual double now() const = 0;  ///< s
-    /// Once per picture: which outputs are wanted at all, and which with every value.
+    /// Called once per frame: the outputs to show, and those to trace with every value.
     virtual void follow(const std::set<std::string>& looked_at, const std::set<std::string>& traced) = 0;
-    /// The newest value of an output that is looked at; none: count 0.
+    /// The latest value of a requested output; none: count 0.
     virtual Latest latest(const std::string& port) const = 0;
-    /// Null for an output that is not traced.
+    /// The trace of an output; null if it is not traced.
     virtual const Trace* trace(const std::string& port) const = 0;
 };
 
-/// Of a live run.
+/// Values of a live run.
 class LiveFeed : public Feed {
 public:
     explicit LiveFeed(std::shared_ptr<observe::Observer> observer) : observer_(std::move(observer)) {}
@@ -66,7 +66,7 @@ public:
     Latest latest(const std::string& port) const override;
     const Trace* trace(const std::string& port) const override;
 
-    static constexpr double kept_s = 20.0;  ///< of every trace
+    static constexpr double kept_s = 20.0;  ///< length of every trace
 
 private:
     std::shared_ptr<observe::Observer> observer_;
@@ -77,7 +77,7 @@ private:
     std::int64_t listed_ = -1;  ///< version of the ports in `types_`
 };
 
-/// Of a take at a time that is set: `latest` is what held then, traces end then.
+/// Values of a take at a settable time: `latest` is the value at that time, and traces end there.
 class TakeFeed : public Feed {
 public:
     /// `take` must outlive it. Throws Error.
@@ -86,9 +86,9 @@ public:
     std::vector<Port> ports() const override;
     double now() const override { return now_; }
     void set_now(double seconds) { now_ = seconds; }
-    /// To the end of the last recorded stretch, s.
+    /// End of the last recorded stretch, s.
     double length() const { return length_; }
-    /// When values were recorded, in order, s.
+    /// Recorded stretches in order, s.
     const std::vector<Range>& recorded() const { return recorded_; }
     void follow(const std::set<std::string>& looked_at, const std::set<std::string>& traced) override;
     Latest latest(const std::string& port) const override;
@@ -108,7 +108,7 @@ private:
     double now_ = 0.0, length_ = 0.0;
     std::vector<Range> recorded_;
     std::map<std::string, std::vector<const take::TakeStreamInfo*>>
-        streams_;  // an edit or a pause in recording begins another
+        streams_;  // an edit or a pause in recording starts another
     std::map<std::string, Latest> latest_;
     std::map<std::string, Cut> cuts_;
     double latest_at_ = -1.0;

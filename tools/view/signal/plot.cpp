@@ -27,7 +27,7 @@ std::size_t index_at(const Trace& trace, double time) {
 Curve curve_of(const signal::Spectrum& spectrum, const std::string& name, std::uint32_t ink, Range hz,
                double shift_db) {
     Curve curve{name, ink, {}, false};
-    // Where bins lie closer than a pixel, the largest of each of 600 equal steps of frequency.
+    // When bins are closer than a pixel, the maximum in each of 600 equal frequency steps.
     constexpr double steps = 600.0;
     double last = -1.0;
     for (std::size_t k = 1; k < spectrum.power.size(); ++k) {
@@ -50,7 +50,7 @@ double power_between(const signal::Spectrum& spectrum, Range hz) {
 }
 
 display::Colour figure_colour(std::uint32_t ink) {
-    // The window's colours are made for a dark ground.
+    // The window's colours are designed for a dark background.
     const auto part = [&](int shift) { return static_cast<std::uint8_t>((ink >> shift & 0xFF) * 7 / 10); };
     return {part(0), part(8), part(16), 1.0};
 }

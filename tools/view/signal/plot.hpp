@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scope shows, as lines in the quantities of its axes: for the window, and for a file.
+// The curves of a scope in axis units, for the window and for export.
 #pragma once
 
 #include "devices/display/figure.hpp"
@@ -28,17 +28,17 @@ struct Plot {
     bool is_logarithmic = false;  ///< across
     std::vector<Curve> curves;
 
-    /// Share of the width, or of the height from the bottom.
+    /// Position as a fraction of the width, or of the height from the bottom.
     double across(double value) const;
     double up(double value) const;
-    /// The opposite of `across`.
+    /// The inverse of `across`.
     double value_at(double across) const;
     std::vector<double> x_ticks(int most) const {
         return is_logarithmic ? decade_ticks(x, most) : linear_ticks(x, most);
     }
 };
 
-/// How the numbers of a type are shown: which of its columns at first, and in what unit.
+/// Display of a value type: its default columns and unit.
 struct Display {
     double factor = 1.0;
     std::string unit;
@@ -46,7 +46,7 @@ struct Display {
 };
 Display display_of(const ValueType& type, const std::string& unit);
 
-/// The last `span` seconds before `now`, at most about two points for each of `pixels`.
+/// The last `span` seconds before `now`, with about two points per pixel.
 Plot time_plot(const Trace& trace, const Display& display, double now, double span, int pixels);
 
 /// Power density of one column of the last `span` seconds, dB re (unit)²/Hz. `reference` (may be empty) is shifted to
@@ -57,9 +57,9 @@ Plot spectrum_plot(const Trace& trace, const Display& display, double rate, doub
 /// Spectrum of a sound file. Throws Error.
 signal::Spectrum spectrum_of_file(const std::filesystem::path& path);
 
-/// As a picture on white, with axes and names.
+/// A figure with white background, axes and names.
 display::Figure figure_of(const Plot& plot, double width = 720, double height = 320);
-/// The rows of a trace within a range of time, "time s,px,…". Throws Error when the file cannot be written.
+/// Writes the rows of a trace in a time range as CSV, "time s,px,…". Throws Error when the file cannot be written.
 void write_csv(const Trace& trace, Range time, const std::filesystem::path& path);
 
 }  // namespace tactus::view

@@ -66,7 +66,7 @@ void Scopes::refresh(Scope& scope, const Feed& feed, int pixels) {
     const double now = scope.held ? scope.held_at : trace->times.empty() ? feed.now() : trace->times.back();
     const Display shown = display(scope.port);
     if (scope.is_spectrum) {
-        // A tenth of a second is as good as at once, and leaves time for the rest.
+        // Spectra are updated every 0.1 s, which looks immediate and saves time.
         if (std::abs(now - scope.computed_at) < 0.1) return;
         scope.computed_at = now;
         scope.plot = spectrum_plot(*trace, shown, rate(scope.port), now, scope.span, reference_);
@@ -84,7 +84,7 @@ void Scopes::write(std::size_t index, const Feed& feed, const std::filesystem::p
     refresh(scope, feed, 700);
     if (path.extension() == ".csv") {
         const Trace* trace = scope.held ? &*scope.held : feed.trace(scope.port);
-        if (!trace || trace->times.empty()) throw Error(fmt::format("nothing was seen of {} yet", scope.port));
+        if (!trace || trace->times.empty()) throw Error(fmt::format("there are no values of {} yet", scope.port));
         const double now = trace->times.back();
         write_csv(*trace, {now - scope.span, now}, path);
     } else display::write_png(figure_of(scope.plot).image(), path.string());
@@ -226,7 +226,7 @@ void Scopes::body(Scope& scope, std::size_t index, const Fonts& fonts, double he
 }
 
 void Scopes::draw(const Feed* feed, const Fonts& fonts) {
-    // There may be tens of thousands.
+    // Lists may have tens of thousands of entries.
     if (feed && (feed != listed_of_ || listed_ != feed->ports_version())) {
         listed_of_ = feed;
         listed_ = feed->ports_version();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any outputs over time, or as spectra, below each other.
+// Scopes: outputs over time or as spectra.
 #pragma once
 
 #include "tools/view/painter.hpp"
@@ -23,22 +23,22 @@ public:
         std::string port;
         bool is_spectrum = false, is_frozen = false;
         double span = 2.0;  ///< s
-        std::optional<Trace> held;  ///< while it is frozen
+        std::optional<Trace> held;  ///< the frozen trace
         double held_at = 0.0;
         Range y{0.0, 0.0};
-        std::vector<double> cursors;  ///< at most two, in the quantity across
-        double computed_at = -1.0;    ///< spectra: when
+        std::vector<double> cursors;  ///< at most two, in units of the horizontal axis
+        double computed_at = -1.0;    ///< time of the last computed spectrum
         Plot plot;
     };
 
     void add(const std::string& port, bool is_spectrum = false);
     void freeze(bool wanted);
-    /// Beneath the spectra; an empty path takes it away. Throws Error.
+    /// Sets the reference spectrum; an empty path removes it. Throws Error.
     void set_reference(const std::filesystem::path& path);
-    /// Writes what a scope shows; ".csv" or ".png" by the name's end. Throws Error.
+    /// Exports a scope as .csv or .png, by extension. Throws Error.
     void write(std::size_t index, const Feed& feed, const std::filesystem::path& path);
 
-    /// Outputs that need every value.
+    /// Outputs to trace with every value.
     std::set<std::string> traced() const;
     void draw(const Feed* feed, const Fonts& fonts);
     std::vector<Scope>& list() { return scopes_; }
@@ -54,7 +54,7 @@ private:
     std::vector<Scope> scopes_;
     signal::Spectrum reference_;
     std::vector<Feed::Port> ports_;
-    const Feed* listed_of_ = nullptr;  ///< whose `ports_` are, and which version of them
+    const Feed* listed_of_ = nullptr;  ///< source and version of `ports_`
     std::int64_t listed_ = -1;
     std::string search_, wanted_reference_;
 };

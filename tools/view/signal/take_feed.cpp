@@ -17,7 +17,7 @@ const ValueType* type_named(std::string_view name) {
     return nullptr;
 }
 
-/// Stretches that meet as one.
+/// Merges adjacent stretches.
 std::vector<Range> joined(std::vector<Range> stretches) {
     std::ranges::sort(stretches, {}, &Range::low);
     std::vector<Range> whole;
@@ -34,7 +34,7 @@ TakeFeed::TakeFeed(const take::Take& take) : take_(take) {
     std::set<std::string> files;
     for (const take::TakeStreamInfo& info : take.streams) {
         const ValueType* const type = type_named(info.type);
-        if (!type) continue;  // of what is large only a hash is kept
+        if (!type) continue;  // large values are stored as hashes only
         if (take::channels_of(*type).size() != static_cast<std::size_t>(info.channels)) continue;
         streams_[info.port].push_back(&info);
         if (!files.insert(info.file).second) continue;
@@ -105,7 +105,7 @@ void TakeFeed::follow(const std::set<std::string>& looked_at, const std::set<std
     }
 }
 
-/// Reads on where time goes on, and anew where it jumps.
+/// Continues reading while time advances, and reopens after a jump.
 void TakeFeed::extend(const std::string& port, Cut& cut, double begin) const {
     const bool goes_on = now_ > cut.end && begin >= cut.begin && begin < cut.end && !cut.trace.times.empty();
     if (!goes_on) cut.trace = {};

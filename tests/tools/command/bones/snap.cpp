@@ -80,7 +80,7 @@ TEST_CASE("halves that touch in one scan are not called a fit where the scan has
     CHECK(fit["verdict"] == "ambiguous");
     CHECK(fit["as_scanned"] == true);
     CHECK(fit["moved"]["distance_mm"].get<double>() == Approx(std::sqrt(5.0)).margin(0.1));
-    CHECK(folder.tactus("snap " + halves).out.find("touch like that in the scan already") != std::string::npos);
+    CHECK(folder.tactus("snap " + halves).out.find("only reproduces the scanned position") != std::string::npos);
     const std::string plan = file("case.plan.json");
     REQUIRE(
         folder.tactus("plan new " + plan + " " + file("a/fragment_01.vdb") + " " + file("a/fragment_02.vdb")).code ==

@@ -128,7 +128,7 @@ TEST_CASE("rig: what it measured is judged the same when it is read back, and so
     REQUIRE(mine["rows"].size() == 1);
     CHECK(mine["rows"][0]["rendered_stiffness_N_per_mm"].get<double>() == Approx(2.0).epsilon(1e-3));
     CHECK(mine["rows"][0]["nrmse"] < 5e-3);
-    CHECK(mine["notes"].dump().find("does not say where the motor slipped") != std::string::npos);
+    CHECK(mine["notes"].dump().find("has no slip column") != std::string::npos);
 }
 
 TEST_CASE("rig: what cannot be judged is refused with a reason") {

@@ -109,5 +109,5 @@ TEST_CASE("the option --memory bounds what one file may take: exit code 3, and t
     CHECK_THAT(small.err, ContainsSubstring("allow more with --memory"));
     const Outcome wrong = folder.tactus("--memory much spectrum " + sound.string());
     CHECK(wrong.code == 2);
-    CHECK_THAT(wrong.err, ContainsSubstring("'much' is no size of memory"));
+    CHECK_THAT(wrong.err, ContainsSubstring("'much' is not a size of memory"));
 }

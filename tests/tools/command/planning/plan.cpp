@@ -213,7 +213,7 @@ TEST_CASE("broken bone is put together by a plan, measured, and written up on on
     for (const std::string verb : {"snap", "report"}) {
         const Outcome refused = folder.tactus("plan " + verb + " " + plan + (verb == "snap" ? " fragment_02" : ""));
         CHECK(refused.code == 2);
-        CHECK_THAT(refused.err, Catch::Matchers::ContainsSubstring("not the one that the plan was made with"));
+        CHECK_THAT(refused.err, Catch::Matchers::ContainsSubstring("has changed since the plan was made"));
     }
     CHECK(json::parse(folder.tactus("plan show " + plan + " --json").out)["problems"].size() == 1);
 }
@@ -286,18 +286,18 @@ TEST_CASE("what cannot be planned is refused in one line, and nothing is lost", 
     boxes.folder.write("later.plan.json", later);
     const std::string fresh = boxes.file("fresh.plan.json");
     const std::pair<std::string, std::string> refused[] = {
-        {"new " + boxes.plan + " " + boxes.file("a.stl"), "never written over"},
-        {"new " + fresh + " " + boxes.file("a.stl") + " a=" + boxes.file("b.stl"), "there is a fragment 'a' already"},
+        {"new " + boxes.plan + " " + boxes.file("a.stl"), "never overwritten"},
+        {"new " + fresh + " " + boxes.file("a.stl") + " a=" + boxes.file("b.stl"), "the plan has a fragment 'a' already"},
         {"new " + fresh + " " + boxes.file("metres.stl"), "--unit"},
         {"new " + fresh + " " + boxes.file("open.stl"), "fragment 'open'"},
         {"new " + fresh + " " + boxes.file("fin.stl"), "fragment 'fin'"},
         {"new " + fresh + " " + boxes.file("none.stl"), "no such file"},
-        {"show " + boxes.file("cut.plan.json"), "ends in the middle"},
+        {"show " + boxes.file("cut.plan.json"), "is cut short"},
         {"undo " + boxes.file("later.plan.json"), "version 9"},
         {"move " + boxes.plan + " b --pose 1,2,3", "--pose"},
         {"move " + boxes.plan + " c --pose 0,0,0,1,0,0,0", "no fragment 'c'"},
         {"ungroup " + boxes.plan + " x", "no group 'x'"},
-        {"alternative " + boxes.plan + " main --remove", "where the plan stands"}};
+        {"alternative " + boxes.plan + " main --remove", "it is the current alternative"}};
     for (const auto& [arguments, message] : refused) {
         const Outcome done = boxes.folder.tactus("plan " + arguments);
         INFO(arguments << "\n" << done.err);

@@ -118,7 +118,8 @@ TEST_CASE("programs that change a plan at the same time do it one after the othe
     const cases::PlanLock lock(bare.plan);
     const Outcome refused = bare.run("undo");
     CHECK(refused.code == 2);
-    CHECK_THAT(refused.err, Catch::Matchers::ContainsSubstring("another program is changing this plan"));
+    CHECK_THAT(refused.err, Catch::Matchers::ContainsSubstring(
+                                "another program (a run or another 'tactus plan') is changing this plan"));
     CHECK(is_one_line(refused.err));
     CHECK(bare.run("show", "--json").code == 0);
     CHECK(bare.run("alternative").code == 0);

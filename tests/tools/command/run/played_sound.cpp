@@ -316,7 +316,7 @@ TEST_CASE("an output that an edit makes anew plays on through the card that is o
     REQUIRE(outcome.code == 0);
     const json summary = json::parse(slurp(folder.path / "live/summary.json"));
     INFO(summary.dump());
-    CHECK(outcome.err.find("edit 1 takes over") != std::string::npos);
+    CHECK(outcome.err.find("edit 1 takes effect") != std::string::npos);
     REQUIRE(summary["sound"].size() == 1);
     CHECK(summary["sound"][0]["frames_written"] > 90'000);
 }

@@ -173,11 +173,11 @@ TEST_CASE("a patch is edited and its parameters are set while it runs, and the t
     std::string more = touch;
     more.replace(more.find("wires = [\n"), 10, "wires = [\n  \"tone.signal -> ear.in\",\n");
     fs::rename(folder.write("touch.new", more + "[nodes.ear]\ntype = \"probe\"\nrate = \"48 kHz\"\n"), patch);
-    REQUIRE(wait_for([&] { return err().find("edit 1 takes over") != std::string::npos; }));
+    REQUIRE(wait_for([&] { return err().find("edit 1 takes effect") != std::string::npos; }));
     folder.write("touch.toml", touch + "oops");
     REQUIRE(wait_for([&] { return err().find("the edit was not made") != std::string::npos; }));
     folder.write("touch.toml", touch);
-    REQUIRE(wait_for([&] { return err().find("edit 2 takes over") != std::string::npos; }));
+    REQUIRE(wait_for([&] { return err().find("edit 2 takes effect") != std::string::npos; }));
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     INFO(err());
     CHECK(run.stop(SIGINT) == 0);
@@ -220,7 +220,7 @@ rate = "48 kHz"
     CHECK(set.code == 0);
     folder.write("voice.toml", within + "amplitude = 0.25\n");
     const auto err = [&] { return slurp(folder.path / "run.err"); };
-    REQUIRE(wait_for([&] { return err().find("edit 1 takes over") != std::string::npos; }));
+    REQUIRE(wait_for([&] { return err().find("edit 1 takes effect") != std::string::npos; }));
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     INFO(err());
     CHECK(run.stop(SIGINT) == 0);

@@ -108,7 +108,7 @@ TEST_CASE("validate: with its equaliser the bundled handle has the vibration of 
     CHECK(lines_of(slurp(table)) == 5);
     const std::string html = slurp(page);
     for (const char* needed :
-         {"<svg", "limit of touch", "cutting, 150 Hz, 12 N", "How it was made", "How it was computed"}) {
+         {"<svg", "limit of touch", "cutting, 150 Hz, 12 N", "How the runs were made", "Methods"}) {
         INFO(needed);
         CHECK(html.find(needed) != std::string::npos);
     }
@@ -180,7 +180,7 @@ TEST_CASE("compare takes folders: files are paired by name, and one that is bad 
     CHECK(outcome.code == 2);
     CHECK(lines_of(outcome.err) == 2);
     CHECK(outcome.err.find("c.wav") != std::string::npos);
-    CHECK(outcome.err.find("no reference of that name") != std::string::npos);
+    CHECK(outcome.err.find("no reference with this name") != std::string::npos);
     const json answer = json::parse(outcome.out);
     CHECK(answer["passed"] == 1);
     CHECK(answer["failed"] == 1);
@@ -242,7 +242,7 @@ TEST_CASE("spectrum --report is one page of figures, lines and bands for all fil
     REQUIRE(folder.tactus("spectrum " + (folder.path / "in").string() + " --report " + page.string()).code == 0);
     const std::string html = slurp(page);
     for (const char* needed : {"<!doctype html>", "a&amp;b.wav", "c.wav", "order 2", "Fundamental 233.0",
-                               "Fundamental 150.0", "third octave", "How it was computed"}) {
+                               "Fundamental 150.0", "third octave", "Methods"}) {
         INFO(needed);
         CHECK(html.find(needed) != std::string::npos);
     }

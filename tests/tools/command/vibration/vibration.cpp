@@ -208,7 +208,7 @@ TEST_CASE("a report is one page that needs nothing else and names what it found"
     CHECK(folder.tactus("compare " + a + " '" + b + "' --report " + page.string()).code == 1);
     const std::string html = slurp(page);
     for (const char* needed : {"<!doctype html>", "<svg", "limit of touch", "Not the same vibration", "b&amp;c.wav",
-                               "mains hum, 50 Hz", "order 2", "only in the output", "lsd_db", "How it was computed"}) {
+                               "mains hum, 50 Hz", "order 2", "only in the output", "lsd_db", "Methods"}) {
         INFO(needed);
         CHECK(html.find(needed) != std::string::npos);
     }
@@ -306,7 +306,7 @@ TEST_CASE("compare reads logs as it reads sounds, each with its own columns, and
     CHECK(same["fundamental_hz"]["reference"].get<double>() == Approx(120.0).margin(0.1));
     const json both = compared(
         folder, whole + " " + parted + " --time-column time_ms,when_ms --column accel,value --time-unit ms", 0);
-    CHECK(both["notes"].dump().find("the longest of its 2 pieces is compared") != std::string::npos);
+    CHECK(both["notes"].dump().find("only the longest of its 2 parts is compared") != std::string::npos);
     const Outcome none = folder.tactus("compare " + whole + " " + wave + " --column nothing");
     CHECK(none.code == 2);
     CHECK(none.err.find("nothing") != std::string::npos);

@@ -10,10 +10,10 @@ using namespace tactus::study;
 
 namespace {
 
-std::vector<display::RigTouch> steps() {
-    std::vector<display::RigTouch> all(5);
-    for (std::size_t i = 0; i < 3; ++i) all[i].of = display::RigTouch::Of::mirror;
-    for (std::size_t i = 3; i < 5; ++i) all[i] = {display::RigTouch::Of::screen, "left", {}, {}, {}};
+std::vector<display::Touch> steps() {
+    std::vector<display::Touch> all(5);
+    for (std::size_t i = 0; i < 3; ++i) all[i].of = display::Touch::Of::mirror;
+    for (std::size_t i = 3; i < 5; ++i) all[i] = {display::Touch::Of::screen, "left", {}, {}, {}};
     return all;
 }
 
@@ -23,7 +23,7 @@ Touched at(double x) { return {Vec3(x, 0.0, 0.0), Vec3(0.0), 0.0, 200, 0}; }
 
 TEST_CASE("a lead goes from step to step, and checks each part when it is complete") {
     std::vector<std::size_t> checked;
-    TouchLead lead(steps(), false, [&](std::span<const display::RigTouch> done) { checked.push_back(done.size()); });
+    TouchLead lead(steps(), false, [&](std::span<const display::Touch> done) { checked.push_back(done.size()); });
     for (std::size_t i = 0; i < 5; ++i) {
         CHECK(lead.due() == i);
         CHECK_FALSE(lead.is_done());
@@ -36,7 +36,7 @@ TEST_CASE("a lead goes from step to step, and checks each part when it is comple
 }
 
 TEST_CASE("a touch that moved, or that the others contradict, is asked for again, and a third time ends it") {
-    const auto check = [](std::span<const display::RigTouch> done) {
+    const auto check = [](std::span<const display::Touch> done) {
         for (std::size_t i = 0; i < done.size(); ++i)
             if (done[i].reading.x < 0.0) throw display::BadTouch(i, "that one is off");
     };
@@ -67,7 +67,7 @@ TEST_CASE("a touch is the mean of where the tip was, and few samples are asked f
     CHECK(touched.tip.y == Approx(1e-3));
     CHECK(touched.moved == Approx(19e-3));
     tips.resize(5);
-    TouchLead lead(steps(), false, [](std::span<const display::RigTouch>) {});
+    TouchLead lead(steps(), false, [](std::span<const display::Touch>) {});
     CHECK(lead.take(touch_of(tips, {})).find("5 valid samples") != std::string::npos);
     CHECK(lead.take(touch_of({}, {})).find("no valid samples") != std::string::npos);
     CHECK(lead.due() == 0);
@@ -75,9 +75,9 @@ TEST_CASE("a touch is the mean of where the tip was, and few samples are asked f
 }
 
 TEST_CASE("where the tracker says the place, a touch that it did not see is asked for again") {
-    std::vector<display::RigTouch> all = steps();
-    all[0].of = display::RigTouch::Of::workspace;
-    TouchLead lead(all, true, [](std::span<const display::RigTouch>) {});
+    std::vector<display::Touch> all = steps();
+    all[0].of = display::Touch::Of::workspace;
+    TouchLead lead(all, true, [](std::span<const display::Touch>) {});
     const std::vector<Vec3> tips(20, Vec3(1e-3, 0.0, 0.0)), tracked(3, Vec3(0.0, 0.2, 0.0));
     CHECK(lead.take(touch_of(tips, {})).find("tracker") != std::string::npos);
     CHECK(lead.due() == 0);

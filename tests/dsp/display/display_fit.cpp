@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/display/rig_touches.hpp"
+#include "dsp/display/display_fit.hpp"
 
 #include "dsp/coupling/placement.hpp"
 #include "tests/support/catch.hpp"
@@ -22,32 +22,32 @@ Vec3 on_screen(const display::Screen& screen, double u, double v) {
     return screen.low_left + u * screen.right() + v * screen.up();
 }
 
-/// A whole rig without noise: 8 places, 8 touches of the mirror, 9 marks as the mirror shows them.
-std::vector<display::RigTouch> whole_rig() {
-    std::vector<display::RigTouch> touches;
-    const auto add = [&](display::RigTouch touch, const Vec3& at) {
+/// A whole display without noise: 8 places, 8 touches of the mirror, 9 marks as the mirror shows them.
+std::vector<display::Touch> whole_display() {
+    std::vector<display::Touch> touches;
+    const auto add = [&](display::Touch touch, const Vec3& at) {
         touch.reading = device.inverse().apply(at);
         touches.push_back(touch);
     };
     for (int n = 0; n < 8; ++n) {
         const Vec3 at(n & 1 ? 0.1 : -0.1, n & 2 ? 0.1 : -0.1, n & 4 ? -0.05 : -0.25);
-        add({display::RigTouch::Of::workspace, {}, {}, {}, at}, at);
+        add({display::Touch::Of::workspace, {}, {}, {}, at}, at);
     }
     const Vec3 along(1.0, 0.0, 0.0), across = glm::cross(mirror.normal, along);
     for (int n = 0; n < 8; ++n)
-        add({display::RigTouch::Of::mirror, {}, {}, {}, {}},
+        add({display::Touch::Of::mirror, {}, {}, {}, {}},
             mirror.point + (0.04 * n - 0.15) * along + (n % 3 - 1) * 0.1 * across);
     for (int n = 0; n < 9; ++n) {
         const glm::dvec2 mark(0.1 + 0.4 * (n % 3), 0.1 + 0.4 * (n / 3));
-        add({display::RigTouch::Of::image, "monitor", mark, {}, {}}, on_screen(image, mark.x, mark.y));
+        add({display::Touch::Of::image, "monitor", mark, {}, {}}, on_screen(image, mark.x, mark.y));
     }
     return touches;
 }
 
 }  // namespace
 
-TEST_CASE("dsp: a rig comes out of exact touches as it is, the screen where it really stands above its mirror") {
-    const display::RigFit fit = display::fit_rig(whole_rig());
+TEST_CASE("dsp: a display comes out of exact touches as it is, the screen where it really stands above its mirror") {
+    const display::DisplayFit fit = display::fit_display(whole_display());
     CHECK(glm::length(fit.device.position - device.position) < 1e-9);
     REQUIRE(fit.mirror);
     CHECK(std::abs(fit.mirror->height(mirror.point)) < 1e-9);
@@ -62,10 +62,10 @@ TEST_CASE("dsp: a rig comes out of exact touches as it is, the screen where it r
 
 TEST_CASE("dsp: a touch that went wrong is named, with how far it is off the others, which agree") {
     for (const std::size_t wrong : {3u, 11u, 18u}) {
-        std::vector<display::RigTouch> touches = whole_rig();
+        std::vector<display::Touch> touches = whole_display();
         touches[wrong].reading += device.inverse().rotate(0.02 * mirror.normal);
         try {
-            display::fit_rig(touches);
+            display::fit_display(touches);
             FAIL("the touch was taken");
         } catch (const display::BadTouch& bad) {
             CHECK(bad.touch == wrong);
@@ -78,43 +78,43 @@ TEST_CASE("dsp: a touch that went wrong is named, with how far it is off the oth
 }
 
 TEST_CASE("dsp: touches that decide nothing, or contradict each other altogether, are refused with what to do") {
-    std::vector<display::RigTouch> touches = whole_rig();
-    CHECK_THROWS_WITH(display::fit_rig(std::span(touches).first(3)),
+    std::vector<display::Touch> touches = whole_display();
+    CHECK_THROWS_WITH(display::fit_display(std::span(touches).first(3)),
                       Catch::Matchers::ContainsSubstring("touch 4 places at least"));
-    CHECK_THROWS_WITH(display::fit_rig(std::span(touches).subspan(16)),
+    CHECK_THROWS_WITH(display::fit_display(std::span(touches).subspan(16)),
                       Catch::Matchers::ContainsSubstring("touch the mirror as well"));
     auto mixed = touches;
-    mixed[20].of = display::RigTouch::Of::screen;
-    CHECK_THROWS_WITH(display::fit_rig(mixed), Catch::Matchers::ContainsSubstring("not both"));
+    mixed[20].of = display::Touch::Of::screen;
+    CHECK_THROWS_WITH(display::fit_display(mixed), Catch::Matchers::ContainsSubstring("not both"));
     auto swapped = touches;
     for (std::size_t i = 16; i < 25; ++i) swapped[i].shown.x = 1.0 - swapped[i].shown.x;
-    CHECK_THROWS_WITH(display::fit_rig(swapped), Catch::Matchers::ContainsSubstring("look away from the mirror"));
+    CHECK_THROWS_WITH(display::fit_display(swapped), Catch::Matchers::ContainsSubstring("look away from the mirror"));
     auto shaken = touches;
     for (std::size_t i = 16; i < 25; ++i) shaken[i].reading.x += 0.02 * static_cast<double>((i * 7) % 5);
-    CHECK_THROWS_WITH(display::fit_rig(shaken), Catch::Matchers::ContainsSubstring("no single one is to blame"));
+    CHECK_THROWS_WITH(display::fit_display(shaken), Catch::Matchers::ContainsSubstring("no single one is to blame"));
     auto line = touches;
     for (std::size_t i = 8; i < 16; ++i)
         line[i].reading = touches[8].reading + Vec3(0.01 * static_cast<double>(i), 0.0, 0.0);
-    CHECK_THROWS_WITH(display::fit_rig(line), Catch::Matchers::ContainsSubstring("on a line"));
+    CHECK_THROWS_WITH(display::fit_display(line), Catch::Matchers::ContainsSubstring("on a line"));
     auto tiny = touches;
     for (std::size_t i = 17; i < 25; ++i)
         tiny[i].reading = touches[16].reading + 0.01 * (touches[i].reading - touches[16].reading);
-    CHECK_THROWS_WITH(display::fit_rig(tiny), Catch::Matchers::ContainsSubstring("no size of a screen"));
+    CHECK_THROWS_WITH(display::fit_display(tiny), Catch::Matchers::ContainsSubstring("no size of a screen"));
     auto lost = touches;
     lost[5].reading.y = std::nan("");
-    CHECK_THROWS_WITH(display::fit_rig(lost), Catch::Matchers::ContainsSubstring("touch 6"));
+    CHECK_THROWS_WITH(display::fit_display(lost), Catch::Matchers::ContainsSubstring("touch 6"));
 }
 
 TEST_CASE("dsp: a device that is not true is taken as it is when its scales and skews may be fitted") {
-    std::vector<display::RigTouch> touches = whole_rig();
+    std::vector<display::Touch> touches = whole_display();
     const Mat3 untrue(Vec3(1.03, 0.0, 0.0), Vec3(0.01, 0.98, 0.0), Vec3(0.0, 0.02, 1.01));
-    for (display::RigTouch& touch : touches) touch.reading = untrue * touch.reading;
-    display::RigFitOptions options;
+    for (display::Touch& touch : touches) touch.reading = untrue * touch.reading;
+    display::DisplayFitOptions options;
     options.is_affine = true;
-    const display::RigFit fit = display::fit_rig(touches, options);
+    const display::DisplayFit fit = display::fit_display(touches, options);
     CHECK(fit.parts[0].residual.worst < 1e-9);
     const Vec3 at(0.05, 0.02, -0.1);
     const Vec3 reading = untrue * device.inverse().apply(at);
     CHECK(glm::length(fit.device.apply(fit.stretch * reading) - at) < 1e-9);
-    CHECK_THROWS_WITH(display::fit_rig(touches), Catch::Matchers::ContainsSubstring("device"));
+    CHECK_THROWS_WITH(display::fit_display(touches), Catch::Matchers::ContainsSubstring("device"));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calibrates a display rig from positions touched with a device's tip: poses of the device, the mirror and the screens
+// Calibrates a display from positions touched with a device's tip: poses of the device, the mirror and the screens
 // in the viewer's world.
 #pragma once
 
@@ -16,7 +16,7 @@
 namespace tactus::display {
 
 /// One touched position.
-struct RigTouch {
+struct Touch {
     enum class Of : std::uint8_t {
         workspace,  ///< a position that is also known in the viewer's world
         screen,  ///< a mark of a screen
@@ -47,7 +47,7 @@ struct TouchedPart {
     TouchResidual residual;
 };
 
-struct RigFit {
+struct DisplayFit {
     Pose device;  ///< its frame in the viewer's world; unchanged without workspace touches
     Mat3 stretch{1.0};  ///< linear map applied in the device's frame first
     std::optional<Plane> mirror;
@@ -55,7 +55,7 @@ struct RigFit {
     std::vector<TouchedPart> parts;
 };
 
-struct RigFitOptions {
+struct DisplayFitOptions {
     bool is_affine = false;  ///< also estimates scale and skew of the device
     double tolerance = 3e-3;  ///< m: touches with a greater residual are rejected
     std::optional<Plane> mirror;  ///< if already known, in the viewer's world
@@ -65,6 +65,6 @@ struct RigFitOptions {
 
 /// Least squares for every part; each needs one touch more than its minimum, so that a faulty one can be detected.
 /// Throws BadTouch with the touch, its residual and what to do; throws Error for touches that do not determine a part.
-RigFit fit_rig(std::span<const RigTouch> touches, const RigFitOptions& options = {});
+DisplayFit fit_display(std::span<const Touch> touches, const DisplayFitOptions& options = {});
 
 }  // namespace tactus::display

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dsp/display/rig_touches.hpp"
+#include "dsp/display/display_fit.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -16,7 +16,7 @@ using Numbers = std::vector<std::size_t>;
 /// Fits a part by `fit`, which takes indices of touches and returns a function from a touch to its residual.
 /// Finds the faulty touch when a residual exceeds the tolerance.
 template <class Fit>
-TouchedPart fitted(const std::string& what, const Numbers& touches, std::span<const RigTouch> all, std::size_t least,
+TouchedPart fitted(const std::string& what, const Numbers& touches, std::span<const Touch> all, std::size_t least,
                    double tolerance, const Fit& fit) {
     if (touches.size() < least)
         throw Error(
@@ -70,26 +70,27 @@ TouchedPart fitted(const std::string& what, const Numbers& touches, std::span<co
 }
 
 /// The touches of one kind, of one screen.
-Numbers numbers_of(std::span<const RigTouch> touches, const auto& is_one) {
+Numbers numbers_of(std::span<const Touch> touches, const auto& is_one) {
     Numbers numbers;
     for (std::size_t i = 0; i < touches.size(); ++i)
         if (is_one(touches[i])) numbers.push_back(i);
     return numbers;
 }
 
-class RigFitter {
+class DisplayFitter {
 public:
-    RigFitter(std::span<const RigTouch> touches, const RigFitOptions& options) : touches_(touches), options_(options) {
+    DisplayFitter(std::span<const Touch> touches, const DisplayFitOptions& options)
+        : touches_(touches), options_(options) {
         for (std::size_t i = 0; i < touches.size(); ++i)
             if (!is_finite(touches[i].reading) || !is_finite(touches[i].place))
                 throw BadTouch(i,
                                fmt::format("touch {}, {}, is not a number; touch it again", i + 1, touches[i].name()));
     }
 
-    RigFit fit() {
+    DisplayFit fit() {
         fit_device();
         fit_mirror();
-        for (const RigTouch& touch : touches_)
+        for (const Touch& touch : touches_)
             if (is_of_screen(touch) && std::ranges::find(fit_.screens, touch.screen,
                                                          [](const auto& s) { return s.first; }) == fit_.screens.end())
                 fit_one_screen(touch.screen);
@@ -97,15 +98,15 @@ public:
     }
 
 private:
-    static bool is_of_screen(const RigTouch& touch) {
-        return touch.of == RigTouch::Of::screen || touch.of == RigTouch::Of::image;
+    static bool is_of_screen(const Touch& touch) {
+        return touch.of == Touch::Of::screen || touch.of == Touch::Of::image;
     }
-    Vec3 placed(const RigTouch& touch) const { return fit_.device.apply(fit_.stretch * touch.reading); }
+    Vec3 placed(const Touch& touch) const { return fit_.device.apply(fit_.stretch * touch.reading); }
 
     void fit_device() {
         fit_.device = options_.device;
         fit_.stretch = options_.stretch;
-        const Numbers numbers = numbers_of(touches_, [](const RigTouch& t) { return t.of == RigTouch::Of::workspace; });
+        const Numbers numbers = numbers_of(touches_, [](const Touch& t) { return t.of == Touch::Of::workspace; });
         if (numbers.empty()) return;
         const auto pairs_of = [this](const Numbers& of) {
             std::vector<TouchPair> pairs;
@@ -117,7 +118,7 @@ private:
             fitted("device", numbers, touches_, options_.is_affine ? 6 : 4, options_.tolerance, [&](const Numbers& of) {
                 const AffineFit affine = options_.is_affine ? fit_affine(pairs_of(of)) : rigid(pairs_of(of));
                 if (of.size() == numbers.size()) found = affine;
-                return [affine](const RigTouch& t) { return glm::length(affine.apply(t.reading) - t.place); };
+                return [affine](const Touch& t) { return glm::length(affine.apply(t.reading) - t.place); };
             }));
         if (options_.is_affine) {
             fit_.device = {found.shift, {1.0, 0.0, 0.0, 0.0}};
@@ -135,27 +136,27 @@ private:
 
     void fit_mirror() {
         fit_.mirror = options_.mirror;
-        const Numbers numbers = numbers_of(touches_, [](const RigTouch& t) { return t.of == RigTouch::Of::mirror; });
+        const Numbers numbers = numbers_of(touches_, [](const Touch& t) { return t.of == Touch::Of::mirror; });
         if (numbers.empty()) return;
         fit_.parts.push_back(fitted("mirror", numbers, touches_, 4, options_.tolerance, [&](const Numbers& of) {
             std::vector<Vec3> points;
             for (const std::size_t i : of) points.push_back(placed(touches_[i]));
             const Plane plane = fit_plane(points, points.front() + Vec3(0.0, 0.0, 1.0)).plane;
             if (of.size() == numbers.size()) fit_.mirror = plane;
-            return [this, plane](const RigTouch& t) { return std::abs(plane.height(placed(t))); };
+            return [this, plane](const Touch& t) { return std::abs(plane.height(placed(t))); };
         }));
     }
 
     void fit_one_screen(const std::string& name) {
         const std::string what = fmt::format("screen '{}'", name);
         const Numbers numbers =
-            numbers_of(touches_, [&](const RigTouch& t) { return is_of_screen(t) && t.screen == name; });
-        const bool is_image = touches_[numbers.front()].of == RigTouch::Of::image;
+            numbers_of(touches_, [&](const Touch& t) { return is_of_screen(t) && t.screen == name; });
+        const bool is_image = touches_[numbers.front()].of == Touch::Of::image;
         if (is_image && !fit_.mirror)
             throw Error(fmt::format(
                 "{}: its image was touched, but where the mirror is was not; touch the mirror as well", what));
         for (const std::size_t i : numbers)
-            if ((touches_[i].of == RigTouch::Of::image) != is_image)
+            if ((touches_[i].of == Touch::Of::image) != is_image)
                 throw Error(fmt::format("{}: touch either its own marks or those seen in the mirror, not both", what));
         Screen found;
         fit_.parts.push_back(fitted(what, numbers, touches_, 4, options_.tolerance, [&](const Numbers& of) {
@@ -163,7 +164,7 @@ private:
             for (const std::size_t i : of) marks.push_back({touches_[i].shown, placed(touches_[i])});
             const Screen screen = fit_screen(marks).screen;
             if (of.size() == numbers.size()) found = screen;
-            return [this, screen](const RigTouch& t) {
+            return [this, screen](const Touch& t) {
                 return glm::length(screen.low_left + screen.right() * t.shown.x + screen.up() * t.shown.y - placed(t));
             };
         }));
@@ -195,14 +196,14 @@ private:
                             what, width * 1e3, height * 1e3));
     }
 
-    std::span<const RigTouch> touches_;
-    const RigFitOptions& options_;
-    RigFit fit_;
+    std::span<const Touch> touches_;
+    const DisplayFitOptions& options_;
+    DisplayFit fit_;
 };
 
 }  // namespace
 
-std::string RigTouch::name() const {
+std::string Touch::name() const {
     switch (of) {
         case Of::workspace:
             return fmt::format("place {:.0f}, {:.0f}, {:.0f} mm of the workspace", place.x * 1e3, place.y * 1e3,
@@ -214,8 +215,8 @@ std::string RigTouch::name() const {
     return fmt::format("mark ({:g}, {:g}) of screen '{}'", shown.x, shown.y, screen);
 }
 
-RigFit fit_rig(std::span<const RigTouch> touches, const RigFitOptions& options) {
-    return RigFitter(touches, options).fit();
+DisplayFit fit_display(std::span<const Touch> touches, const DisplayFitOptions& options) {
+    return DisplayFitter(touches, options).fit();
 }
 
 }  // namespace tactus::display

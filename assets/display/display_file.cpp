@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "assets/display/rig_file.hpp"
+#include "assets/display/display_file.hpp"
 
 #include "assets/file/toml_file.hpp"
 #include "dsp/core/error.hpp"
@@ -19,40 +19,40 @@ namespace {
 
 constexpr std::size_t most_screens = 64;
 
-class RigReader : file::TomlFile {
+class DisplayReader : file::TomlFile {
 public:
-    explicit RigReader(const std::filesystem::path& path) : file::TomlFile(path, "a display rig") {}
+    explicit DisplayReader(const std::filesystem::path& path) : file::TomlFile(path, "a display file") {}
 
-    RigFile read() {
+    DisplayFile read() {
         const toml::table& root = this->root();
         know(root, {"title", "between_eyes", "offset", "head", "device", "mirror", "screens"});
-        RigFile file;
+        DisplayFile file;
         if (const auto* node = root.get("title")) file.title = word(*node);
-        if (const auto* node = root.get("between_eyes")) file.rig.between_eyes = length(*node, 0.0, 0.2);
-        if (const auto* node = root.get("offset")) file.rig.visuo_haptic_offset = vector(*node, "mm");
+        if (const auto* node = root.get("between_eyes")) file.geometry.between_eyes = length(*node, 0.0, 0.2);
+        if (const auto* node = root.get("offset")) file.geometry.visuo_haptic_offset = vector(*node, "mm");
         if (const auto* node = root.get("head")) read_head(as_table(*node), file);
-        if (const auto* node = root.get("device")) read_device(as_table(*node), file.rig);
-        if (const auto* node = root.get("mirror")) read_mirror(as_table(*node), file.rig);
+        if (const auto* node = root.get("device")) read_device(as_table(*node), file.geometry);
+        if (const auto* node = root.get("mirror")) read_mirror(as_table(*node), file.geometry);
         const auto* screens = root.get("screens");
         if (!screens || !screens->is_array() || screens->as_array()->empty())
             throw Error({this->file(), 0, 0},
-                        "a rig needs at least one [[screens]] with low_left, low_right, high_left");
+                        "a display needs at least one [[screens]] with low_left, low_right, high_left");
         if (screens->as_array()->size() > most_screens)
-            fail(*screens, fmt::format("a rig has {} screens at most", most_screens));
+            fail(*screens, fmt::format("a display has {} screens at most", most_screens));
         for (const toml::node& node : *screens->as_array()) read_screen(node, file);
         return file;
     }
 
 private:
-    void read_head(const toml::table& table, RigFile& file) const {
+    void read_head(const toml::table& table, DisplayFile& file) const {
         know(table, {"position", "rotation", "orientation", "away"});
         file.eyes_in_head = pose(table);
         if (const auto* node = table.get("away")) file.head_away = length(*node, 0.05, 20.0);
     }
 
-    void read_device(const toml::table& table, DisplayRig& rig) const {
+    void read_device(const toml::table& table, DisplayGeometry& geometry) const {
         know(table, {"position", "rotation", "orientation", "stretch"});
-        rig.haptic_world = pose(table);
+        geometry.haptic_world = pose(table);
         const auto* node = table.get("stretch");
         if (!node) return;
         const auto* rows = node->as_array();
@@ -60,32 +60,32 @@ private:
         for (std::size_t row = 0; row < 3; ++row) {
             const std::vector<double> numbers = list(*rows->get(row), 3, "a stretch has three rows of three numbers");
             for (int column = 0; column < 3; ++column)
-                rig.haptic_stretch[column][static_cast<int>(row)] = numbers[static_cast<std::size_t>(column)];
+                geometry.haptic_stretch[column][static_cast<int>(row)] = numbers[static_cast<std::size_t>(column)];
         }
-        const double volume = glm::determinant(rig.haptic_stretch);
+        const double volume = glm::determinant(geometry.haptic_stretch);
         if (!(volume > 0.1 && volume < 10.0))
-            fail(*node, "this stretch turns space inside out or squeezes it flat; calibrate the device again");
+            fail(*node, "this stretch turns space inside out or is singular; calibrate the device again");
     }
 
-    void read_mirror(const toml::table& table, DisplayRig& rig) const {
+    void read_mirror(const toml::table& table, DisplayGeometry& geometry) const {
         know(table, {"point", "normal"});
         const auto *point = table.get("point"), *normal = table.get("normal");
         if (!point || !normal) fail(table, "a mirror needs a point and a normal");
         const std::vector<double> n = list(*normal, 3, "a normal has three numbers");
         const Vec3 direction(n[0], n[1], n[2]);
         if (!(glm::length(direction) > 1e-6)) fail(*normal, "a normal must have a length");
-        rig.mirror = Plane{vector(*point, "mm"), glm::normalize(direction)};
+        geometry.mirror = Plane{vector(*point, "mm"), glm::normalize(direction)};
     }
 
-    void read_screen(const toml::node& node, RigFile& file) const {
+    void read_screen(const toml::node& node, DisplayFile& file) const {
         const toml::table& table = as_table(node);
         know(table,
              {"name", "low_left", "low_right", "high_left", "in_mirror", "eyes", "eye", "stereo", "monitor", "window"});
-        RigScreen way;
+        ScreenSettings way;
         way.name = table.get("name") ? word(*table.get("name")) : fmt::format("screen {}", file.screens.size() + 1);
         if (way.name.empty() || way.name.find_first_of("/\\\n") != std::string::npos)
             fail(node, "the name of a screen becomes part of file names: no slashes, no line ends, not empty");
-        if (std::ranges::find(file.screens, way.name, &RigScreen::name) != file.screens.end())
+        if (std::ranges::find(file.screens, way.name, &ScreenSettings::name) != file.screens.end())
             fail(node, fmt::format("two screens are called '{}'", way.name));
         Screen screen;
         for (const auto& [key, corner] :
@@ -107,18 +107,18 @@ private:
         if (const auto* window = table.get("window")) {
             const std::vector<double> numbers = list(*window, 4, "a window has x, y, width and height in pixels");
             for (std::size_t i = 0; i < 4; ++i) {
-                if (!(std::abs(numbers[i]) <= 1e5)) fail(*window, "this window lies on no desktop");
+                if (!(std::abs(numbers[i]) <= 1e5)) fail(*window, "this window lies outside every desktop");
                 way.window[i] = static_cast<int>(numbers[i]);
             }
             if (way.window[2] < 1 || way.window[3] < 1) fail(*window, "a window needs a width and a height, pixels");
         }
-        file.rig.screens.push_back(screen);
+        file.geometry.screens.push_back(screen);
         file.screens.push_back(std::move(way));
         const std::size_t last = file.screens.size() - 1;
         try {
-            // What cannot be looked through is said here, with its line.
-            const Pose head = file.rig.place_before(last, 0.6);
-            file.rig.view(last, file.screens.back().eye.value_or(head.position), {});
+            // Reports a screen that the eye cannot see, with its line.
+            const Pose head = file.geometry.place_before(last, 0.6);
+            file.geometry.view(last, file.screens.back().eye.value_or(head.position), {});
         } catch (const Error& error) {
             fail(node, fmt::format("screen '{}': {}", file.screens.back().name, error.message()));
         }
@@ -188,7 +188,7 @@ std::string text_of(const Vec3& v) {
     return fmt::format("\"{:.6f} mm, {:.6f} mm, {:.6f} mm\"", v.x * 1e3, v.y * 1e3, v.z * 1e3);
 }
 std::string text_of(const Quat& q) { return fmt::format("[{:.15f}, {:.15f}, {:.15f}, {:.15f}]", q.w, q.x, q.y, q.z); }
-/// As a basic string of TOML.
+/// Quotes a text as a TOML basic string.
 std::string quoted(const std::string& text) {
     std::string out = "\"";
     for (const char c : text) {
@@ -214,40 +214,40 @@ Vec3 parse_vector(std::string_view text, std::string_view unit) {
     return v;
 }
 
-RigFile load_rig_file(const std::filesystem::path& path) { return RigReader(path).read(); }
+DisplayFile load_display_file(const std::filesystem::path& path) { return DisplayReader(path).read(); }
 
-std::string rig_text(const RigFile& file, const std::vector<std::string>& about) {
+std::string display_text(const DisplayFile& file, const std::vector<std::string>& about) {
     std::string text;
     for (const std::string& line : about) text += line.empty() ? "#\n" : fmt::format("# {}\n", line);
     if (!file.title.empty()) text += fmt::format("title = {}\n", quoted(file.title));
-    const DisplayRig& rig = file.rig;
-    text +=
-        fmt::format("between_eyes = \"{:.3f} mm\"\noffset = {}     # what is seen is moved so against what is felt\n",
-                    rig.between_eyes * 1e3, text_of(rig.visuo_haptic_offset));
+    const DisplayGeometry& geometry = file.geometry;
     text += fmt::format(
-        "\n[head]     # the place between the eyes, in the frame of what is tracked\n"
+        "between_eyes = \"{:.3f} mm\"\noffset = {}     # shift of the picture against the haptic position\n",
+        geometry.between_eyes * 1e3, text_of(geometry.visuo_haptic_offset));
+    text += fmt::format(
+        "\n[head]     # the point between the eyes, in the frame of the tracked body\n"
         "position    = {}\norientation = {}\naway        = \"{:.3f} mm\"\n",
         text_of(file.eyes_in_head.position), text_of(file.eyes_in_head.orientation), file.head_away * 1e3);
     text += fmt::format("\n[device]     # its frame, in the world of the viewer\nposition    = {}\norientation = {}\n",
-                        text_of(rig.haptic_world.position), text_of(rig.haptic_world.orientation));
-    if (rig.haptic_stretch != Mat3(1.0)) {
-        const Mat3& m = rig.haptic_stretch;
+                        text_of(geometry.haptic_world.position), text_of(geometry.haptic_world.orientation));
+    if (geometry.haptic_stretch != Mat3(1.0)) {
+        const Mat3& m = geometry.haptic_stretch;
         text += "stretch     = [";
         for (int row = 0; row < 3; ++row)
             text += fmt::format("{}[{:.15f}, {:.15f}, {:.15f}]", row > 0 ? ", " : "", m[0][row], m[1][row], m[2][row]);
         text += "]\n";
     }
-    if (rig.mirror)
-        text +=
-            fmt::format("\n[mirror]\npoint  = {}\nnormal = [{:.15f}, {:.15f}, {:.15f}]\n", text_of(rig.mirror->point),
-                        rig.mirror->normal.x, rig.mirror->normal.y, rig.mirror->normal.z);
-    for (std::size_t i = 0; i < rig.screens.size(); ++i) {
-        const Screen& screen = rig.screens[i];
-        const RigScreen& way = file.screens[i];
+    if (geometry.mirror)
+        text += fmt::format("\n[mirror]\npoint  = {}\nnormal = [{:.15f}, {:.15f}, {:.15f}]\n",
+                            text_of(geometry.mirror->point), geometry.mirror->normal.x, geometry.mirror->normal.y,
+                            geometry.mirror->normal.z);
+    for (std::size_t i = 0; i < geometry.screens.size(); ++i) {
+        const Screen& screen = geometry.screens[i];
+        const ScreenSettings& way = file.screens[i];
         text += fmt::format("\n[[screens]]\nname      = {}\nlow_left  = {}\nlow_right = {}\nhigh_left = {}\n",
                             quoted(way.name), text_of(screen.low_left), text_of(screen.low_right),
                             text_of(screen.high_left));
-        if (rig.mirror) text += fmt::format("in_mirror = {}\n", screen.in_mirror);
+        if (geometry.mirror) text += fmt::format("in_mirror = {}\n", screen.in_mirror);
         if (way.eyes != ScreenEyes::both)
             text += fmt::format("eyes      = \"{}\"\n", screen_eye_names[static_cast<std::size_t>(way.eyes)]);
         if (way.eye) text += fmt::format("eye       = {}\n", text_of(*way.eye));
