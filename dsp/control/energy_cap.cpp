@@ -34,8 +34,7 @@ void EnergyCap::prepare(const EnergyCapSettings& settings) noexcept {
     *this = EnergyCap{};
     settings_ = settings;
     hold_s_ = settings.period_s;
-    place_.window.prepare(radius_of(settings.resolution));
-    turn_.window.prepare(radius_of(settings.angular_resolution));
+    start_over();
 }
 
 EnergyCap::Motion EnergyCap::follow(const Vec3& away, double step, double slow, Tracked& tracked,
@@ -77,6 +76,14 @@ double EnergyCap::pending(const Motion& moved, const Motion& turned) const noexc
 /// the least anyway.
 double EnergyCap::reserve() const noexcept { return 2.0 * std::sqrt(doubt_) * std::max(place_.fast, turn_.fast); }
 
+void EnergyCap::start_over() noexcept {
+    place_ = turn_ = {};
+    place_.window.prepare(radius_of(settings_.resolution));
+    turn_.window.prepare(radius_of(settings_.angular_resolution));
+    stored_ = doubt_ = damped_ = 0.0;
+    started_ = false;
+}
+
 void EnergyCap::account(double work, double elapsed_s, double granted_W, bool was_taken) noexcept {
     grant_ = std::min(grant_ + granted_W * elapsed_s, granted_W * grant_window_s);
     const double speed = glm::length(place_.velocity), near_rest = std::clamp(2.0 - speed / calm_m_s, 0.0, 1.0);
@@ -89,7 +96,7 @@ void EnergyCap::account(double work, double elapsed_s, double granted_W, bool wa
     damped_ -= damped;
     grant_ -= refund;
     statistics_.granted += refund;
-    stored_ += work + damped + refund;
+    stored_ = std::clamp(stored_ + work + damped + refund, -most_J, most_J);
     statistics_.most_stored = std::max(statistics_.most_stored, stored_);
     statistics_.most_returned = std::max(statistics_.most_returned, -stored_);
 }
@@ -107,6 +114,8 @@ Wrench EnergyCap::tick(const Wrench& wanted, const Wrench& committed, const Pose
         return wanted;
     }
     was_taken = was_taken || std::exchange(was_blind_, false);
+    // No hand moves so far in a tick: the frame has changed, or a sample is broken.
+    if (started_ && !(glm::length(hand.position - counted_.position) < farthest_m)) start_over();
     if (!started_) counted_ = hand;
     started_ = true;
     const double elapsed = elapsed_s > 0.0 ? elapsed_s : settings_.period_s;
@@ -161,6 +170,10 @@ Wrench EnergyCap::bound(const Wrench& felt, const Motion& moved, const Motion& t
             both.along > 0.0 ? available / both.all() : std::min(1.0, (root - both.along) / (2.0 * both.own));
         if (by_force.all() > 0.0) out.force *= share, force_level_ *= share;
         if (by_torque.all() > 0.0) out.torque *= share, torque_level_ *= share;
+        if (!std::isfinite(share)) {
+            out = {};
+            force_level_ = torque_level_ = 0.0;
+        }
     }
     const double force = glm::length(wanted.force - out.force), torque = glm::length(wanted.torque - out.torque);
     statistics_.capped += force > 0.0 || torque > 0.0;

@@ -68,6 +68,7 @@ public:
 
 private:
     static constexpr std::size_t most_delay = 8;
+    static constexpr double farthest_m = 10.0, most_J = 1e6;
 
     /// Translation or rotation since the last call, and what is to be expected.
     struct Motion {
@@ -87,6 +88,7 @@ private:
     };
 
     Motion follow(const Vec3& away, double step, double slow, Tracked& tracked, double elapsed_s) noexcept;
+    void start_over() noexcept;
     Wrench acting() const noexcept;
     void account(double work, double elapsed_s, double granted_W, bool was_taken) noexcept;
     double pending(const Motion& moved, const Motion& turned) const noexcept;

@@ -44,6 +44,7 @@ public:
             now.wrench.force -= now.damping / h * force_.motion;
             now.wrench.torque -= now.angular_damping / h * torque_.motion;
         }
+        if (!is_finite(now.wrench) && is_finite(wrench)) now.wrench = {};
         held_ = is_finite(now.wrench) ? now.wrench : Wrench{};
         return now;
     }
@@ -61,7 +62,8 @@ private:
             before = motion;
             motion = moved;
             const double sum = energy - glm::dot(held, moved);
-            if (std::isfinite(sum)) energy = sum;
+            // Beyond any hand: a broken pose must not drown what follows.
+            if (std::isfinite(sum)) energy = std::clamp(sum, -1e6, 1e6);
         }
         /// What `held` will give in the next tick, J.
         double gives(const Vec3& held) const noexcept {

@@ -210,3 +210,23 @@ TEST_CASE("what faded in another thread puts nothing in") {
     cap.tick(along_x(-2.0), committed, at(x -= 1e-3), 0.01, 0.0, true);
     CHECK(cap.stored() < before);
 }
+
+TEST_CASE("a pose beyond all measure neither breaks the force nor blinds the cap to what follows") {
+    for (const double far : {50.0, 1e200, -1e300}) {
+        control::EnergyCap cap = made();
+        Wrench committed;
+        for (int n = 0; n < 100; ++n) {
+            committed = cap.tick(along_x(5.0), committed, at(n % 10 == 5 ? far : 0.0), period, 0.0, false);
+            CHECK(is_finite(committed));
+        }
+        // A force that pushes a hand that flies: nothing was put in.
+        double x = 0.0, given = 0.0;
+        for (int n = 0; n < 200; ++n) {
+            const double before = x;
+            x += 2e-4;
+            given += committed.force.x * (x - before);
+            committed = cap.tick(along_x(5.0), committed, at(x), period, 0.0, false);
+        }
+        CHECK(given < 5e-3);
+    }
+}
