@@ -251,7 +251,8 @@ void Round::run() {
         };
         engine.run_live(live);
         ::setrlimit(RLIMIT_FSIZE, &before);
-        CHECK(steady_now() - stopped < 3000 * ms);
+        // It ends; how soon is a matter of the machine, which may be busy.
+        CHECK(steady_now() - stopped < 30'000 * ms);
         engine.complete();
         is_lost = take.is_lost();
         live_hashes = engine.port_hashes();
