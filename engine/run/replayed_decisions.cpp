@@ -30,8 +30,10 @@ std::int64_t ReplayedDecisions::skip_from(std::int64_t tick) const noexcept {
 }
 
 void ReplayedDecisions::apply_parameters(std::int64_t tick, std::int64_t plan, ParamRamps& ramps) noexcept {
-    for (std::size_t i = first_; i < records_.size() && records_[i].tick <= tick; ++i) {
-        const TimingRecord& record = records_[i];
+    // Each once, and those that came after a switch in the same activation after it.
+    for (; applied_ < records_.size() && records_[applied_].tick <= tick; ++applied_) {
+        const TimingRecord& record = records_[applied_];
+        if (record.kind == TimingKind::plan && record.tick == tick && record.value > plan) return;
         if (record.kind != TimingKind::parameter || record.tick != tick) continue;
         const ParameterChange& change = changes_[static_cast<std::size_t>(record.value)];
         ramps.set(*change.param, change.ramp, change.value, tick, record.source, plan);

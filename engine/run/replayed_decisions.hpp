@@ -39,6 +39,7 @@ private:
     const std::vector<take::TimingRecord>& records_;
     const std::vector<ParameterChange>& changes_;
     std::size_t first_ = 0;  ///< records before this one are past
+    std::size_t applied_ = 0;  ///< changes of parameters before this one are made
 };
 
 }  // namespace tactus::run

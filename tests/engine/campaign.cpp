@@ -251,7 +251,8 @@ void Round::run() {
         };
         engine.run_live(live);
         ::setrlimit(RLIMIT_FSIZE, &before);
-        CHECK(steady_now() - stopped < 3000 * ms);
+        // It ends; how soon is a matter of the machine, which may be busy.
+        CHECK(steady_now() - stopped < 30'000 * ms);
         engine.complete();
         is_lost = take.is_lost();
         live_hashes = engine.port_hashes();
@@ -261,9 +262,12 @@ void Round::run() {
     check_steps(left_);
     check_steps(right_);
     const Repetition again = repeat(folder, 2);
-    if (again.difference)
+    if (again.difference) {
+        WARN("the take is kept in " << folder.string());
         FAIL_CHECK(again.difference->port << " differs at tick " << again.difference->tick << ", "
                                           << again.difference->time << " s");
+        return;
+    }
     if (!is_lost) CHECK(again.hashes == live_hashes);
     std::filesystem::remove_all(folder);
 }
