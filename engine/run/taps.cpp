@@ -12,8 +12,8 @@ namespace tactus::run {
 
 namespace {
 
-// What a disk may keep waiting, of the largest groups and of small ones.
-constexpr double waits_s = 0.25;
+// How long a disk may make values wait, and the least and most memory for that.
+constexpr double waits_s = 2.0;
 constexpr std::size_t least_bytes = std::size_t{1} << 20, most_bytes = std::size_t{1} << 26;
 
 io::Stream::Room room_for(const io::FrameLayout& layout, const GroupRuntime& group) {
