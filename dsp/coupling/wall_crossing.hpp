@@ -11,7 +11,7 @@
 namespace tactus::coupling {
 
 /// In the middle of a wall the nearest surface changes sides and the force turns over. The guard remembers the force with
-/// which a contact began, follows it while it turns steadily, and refuses motions that go on against it to a place where
+/// which a contact began, follows it while the points agree on a direction, and refuses motions that go on against it to a place where
 /// the force points the other way. The way back is always free. Only the points' own forces count. It sees the sum over
 /// all points: a larger contact elsewhere can hide a small one that turns over.
 class WallGuard {
@@ -22,7 +22,7 @@ public:
     void see(const contact::ContactSum& now, double depth) noexcept {
         const Forces& g = now.contact_gradient;
         if (now.in_contact == 0) forget();
-        else if (!in_contact_ || now.penetration <= depth || (dot3(began_, g) > 0.0 && is_steady(now, 0.5))) {
+        else if (!in_contact_ || now.penetration <= depth || is_steady(now, 0.5)) {
             began_ = g;
             in_contact_ = true;
         }

@@ -75,11 +75,18 @@ struct AdmittanceController {
             setup.fail("an object without stiffness, damping and mass has no force law; give a damping");
         if (!control_.set(wanted_settings)) {
             const double limit = tactus::control::gain_limit(wanted_settings.loop, wanted_settings.object);
+            const double hand = hand_stiffness * 1e-3;
+            if (!(limit > 0.0))
+                setup.fail(
+                    fmt::format("no gain is stable with this object in a hand of {:.3g} N/mm; raise its damping or "
+                                "free_damping, give the hand_stiffness of what presses, or set allow_unstable and "
+                                "a gain",
+                                hand));
             setup.fail(
                 fmt::format("with gain {:.4g} s^-1 this object is unstable in a hand of {:.3g} N/mm: the limit is "
                             "{:.4g} s^-1; lower the gain, leave it 0, give the hand_stiffness of what presses, or set "
                             "allow_unstable",
-                            gain.value, hand_stiffness * 1e-3, limit));
+                            gain.value, hand, limit));
         }
         name_ = setup.name;
         seen_ = wanted_settings;

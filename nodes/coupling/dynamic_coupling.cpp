@@ -6,6 +6,8 @@
 #include "nodes/contact/contact_parameters.hpp"
 #include "nodes/coupling/held_body.hpp"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <optional>
 
@@ -90,8 +92,12 @@ private:
         if (!is_valid(device.get())) return {};
         last_hand_ = device;
         if (!is_valid(before) || !(elapsed > 0.0)) return {};
-        return {(device->position - before.position) / elapsed,
-                rotation_between(before.orientation, device->orientation) / elapsed};
+        const Twist velocity{(device->position - before.position) / elapsed,
+                             rotation_between(before.orientation, device->orientation) / elapsed};
+        // No hand is as fast: the device has jumped, and a damper would answer with a blow.
+        constexpr double fastest = 5.0, fastest_turn = 100.0;  // m/s, rad/s
+        const bool jumped = !(glm::length(velocity.linear) < fastest && glm::length(velocity.angular) < fastest_turn);
+        return jumped ? Twist{} : velocity;
     }
 
     std::optional<coupling::HeldContact> contact_;

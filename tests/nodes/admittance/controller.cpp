@@ -57,6 +57,10 @@ TEST_CASE("an unstable gain is refused when the patch is read, with the limit, u
     held.node.prepare();
     held.tick();
     CHECK(held.node.last<double>("used_gain") == 120.0);
+    Held soft;
+    soft.node.set("sides", "one").set("free_damping", "20 N s/m");
+    CHECK_THROWS_WITH(soft.node.prepare(), Catch::Matchers::ContainsSubstring("no gain is stable") &&
+                                               Catch::Matchers::ContainsSubstring("free_damping"));
     Held nothing;
     nothing.node.set("stiffness", "0 N/mm");
     CHECK_THROWS_WITH(nothing.node.prepare(), Catch::Matchers::ContainsSubstring("give a damping"));

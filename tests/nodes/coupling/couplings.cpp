@@ -188,6 +188,21 @@ TEST_CASE("a body with mass comes to rest on the table under the hand's springs"
     CHECK(node.last<Wrench>("wrench").force.z == Approx(2.0).epsilon(0.02));
 }
 
+TEST_CASE("a device that jumps gives no blow by the damper of a body with mass") {
+    NodeHarness node("dynamic_coupling", servo);
+    node.set("held", "1").set("stiffness", "0.1 N/mm");
+    node.feed("scene", table_and_box());
+    node.feed<Pose>("device",
+                    [](std::int64_t k) { return Pose{{0.0, 0.0, k < 50 ? 30.0 * mm : 60.0 * mm}, {1, 0, 0, 0}}; });
+    node.disconnect_optional();
+    node.prepare();
+    node.run(200);
+    double most = 0.0;
+    for (const Wrench& w : node.values<Wrench>("wrench")) most = std::max(most, glm::length(w.force));
+    CHECK(most > 1.0);
+    CHECK(most < 4.0);  // 30 mm of 0.1 N/mm, not 30 m/s of 10 N s/m
+}
+
 TEST_CASE("a shaped wrench stays below its limits and keeps its direction") {
     NodeHarness node("force_shaping", servo);
     node.feed("in", Wrench{{30.0, 40.0, 0.0}, {0.0, 0.0, 3.0}});
