@@ -191,7 +191,7 @@ TEST_CASE("turned and sheared axes are resampled to LPS") {
 TEST_CASE("geometry that is missing is refused with what to write") {
     Ct ct;
     ct.geometry = "";
-    CHECK_THROWS_WITH(import_of(ct), ContainsSubstring("spacing") && ContainsSubstring("space directions"));
+    CHECK_THROWS_WITH(import_of(ct), ContainsSubstring("space directions") && ContainsSubstring("space origin"));
 }
 
 TEST_CASE("numbers that are not HU are refused, rescaled ones and masked ones accepted") {

@@ -271,7 +271,7 @@ TEST_CASE("a label map's file becomes one file of bones in its frame, and labels
     options.label = "5";
     CHECK(bone::import_labels(options).front().bone.distance.values == both[1].bone.distance.values);
     options.label = "2";
-    CHECK_THROWS_WITH(bone::import_labels(options), ContainsSubstring("no label '2' but 1, 5"));
+    CHECK_THROWS_WITH(bone::import_labels(options), ContainsSubstring("there is no label '2'; there are 1, 5"));
     for (int k = 0; k < 24; ++k)
         for (int j = 0; j < 24; ++j)
             for (int i = 9; i < 15; ++i) labels.at(i, j, k) = 0.0f;

@@ -117,7 +117,7 @@ TEST_CASE("counts of a bone file that are more than it can hold are refused befo
         CHECK_THAT(refusal(folder, with_number(bytes, tree, 2u)), ContainsSubstring("several buffers"));
         CHECK_THAT(refusal(folder, with_number(bytes, tree + 8, 0xffffffffu)), ContainsSubstring("tiles"));
         CHECK_THAT(refusal(folder, with_number(bytes, tree + 12, 0xffffffffu)), ContainsSubstring("damaged"));
-        CHECK_THAT(refusal(folder, with_number(bytes, tree + 16, 1)), ContainsSubstring("place"));
+        CHECK_THAT(refusal(folder, with_number(bytes, tree + 16, 1)), ContainsSubstring("position"));
         CHECK_THAT(refusal(folder, bytes.substr(0, bytes.size() - 1)), ContainsSubstring("damaged"));
         CHECK_THAT(refusal(folder, bytes + "x"), ContainsSubstring("after its last grid"));
     }
@@ -138,7 +138,7 @@ TEST_CASE("bone files of another tree, format or compression are refused") {
     // One more entry of metadata, by which OpenVDB would read two bytes per value.
     std::string half = with_number(bytes, packing + 4, number_at<std::uint32_t>(bytes, packing + 4) + 1);
     half.insert(packing + 8, std::string("\x16\0\0\0is_saved_as_half_float\4\0\0\0bool\1\0\0\0\1", 39));
-    CHECK_THAT(refusal(folder, half), ContainsSubstring("16 bits"));
+    CHECK_THAT(refusal(folder, half), ContainsSubstring("16-bit numbers"));
 }
 
 TEST_CASE("a bone that needs more memory than one file may take is told apart from a damaged one") {

@@ -103,9 +103,9 @@ TEST_CASE("a plan whose folder is gone at the end is put aside with all of its s
     } catch (const Error& error) {
         message = error.message();
     }
-    const auto at = message.find("is in ");
+    const auto at = message.find("saved to ");
     REQUIRE(at != std::string::npos);
-    const std::filesystem::path spare = message.substr(at + 6);
+    const std::filesystem::path spare = message.substr(at + 9);
     CHECK(cases::load_case_plan(spare).steps.size() == 1);
     std::filesystem::remove(spare);
     std::filesystem::create_directories(file.parent_path());

@@ -141,7 +141,7 @@ TEST_CASE("a bad set is refused in one line that says where") {
                ContainsSubstring(":1:1: unknown key 'titel'") && ContainsSubstring("'title'"));
     CHECK_THAT(said(cutting + "laod = \"7 N\"\n"),
                ContainsSubstring(":6:1: unknown key 'laod'") && ContainsSubstring("'load'"));
-    CHECK_THAT(said("title = 5\n" + cutting), ContainsSubstring(":1:9: 'title' is a text"));
+    CHECK_THAT(said("title = 5\n" + cutting), ContainsSubstring(":1:9: 'title' must be a text"));
     CHECK_THAT(said("synthesised = \"yes\"\n" + cutting),
                ContainsSubstring(":1:15:") && ContainsSubstring("true or false"));
     CHECK_THAT(said("recording = 5\n"), ContainsSubstring("[[recording]]"));

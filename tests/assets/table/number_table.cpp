@@ -27,7 +27,7 @@ TEST_CASE("a table that cannot be used says where and why") {
                       Catch::Matchers::ContainsSubstring("'two'") && Catch::Matchers::ContainsSubstring("t.csv:2"));
     CHECK_THROWS_WITH(table.numbers("forse"), Catch::Matchers::ContainsSubstring("did you mean 'force'"));
     CHECK_THROWS_WITH(table::read_number_table("a\nnan\n", "t").numbers("a"),
-                      Catch::Matchers::ContainsSubstring("no number"));
+                      Catch::Matchers::ContainsSubstring("not a number"));
 }
 
 TEST_CASE("deflections come in millimetres, and a calibration is a regression that must be a line") {

@@ -153,7 +153,7 @@ TEST_CASE("a folder of several series asks which, and takes the one that is name
                       ContainsSubstring("2 series") && ContainsSubstring("--series") &&
                           ContainsSubstring("9.8.7  5 images") && ContainsSubstring("1.2.3.4"));
     check_same(volume::read_volume(place.folder.path, {"9.8.7"}), v);
-    CHECK_THROWS_WITH(volume::read_volume(place.folder.path, {"5.5"}), ContainsSubstring("names 0"));
+    CHECK_THROWS_WITH(volume::read_volume(place.folder.path, {"5.5"}), ContainsSubstring("matches 0"));
     other.image_type = "ORIGINAL\\PRIMARY\\LOCALIZER";
     std::filesystem::remove_all(place.folder / "b");
     write_dicom_folder(v, place.folder / "b", other);
@@ -171,7 +171,7 @@ TEST_CASE("duplicate slices count once, and a slice that is missing, strange or 
     put("copy.dcm", v, 2);
     const volume::ScanVolume read = volume::read_volume(folder);
     check_same(read, v);
-    CHECK_THAT(read.notes.at(0), ContainsSubstring("twice"));
+    CHECK_THAT(read.notes.at(0), ContainsSubstring("duplicate"));
     WrittenVolume changed = v;
     for (auto& value : changed.hu) value = static_cast<std::int16_t>(value + 10);
     put("copy.dcm", changed, 2);
@@ -187,7 +187,7 @@ TEST_CASE("duplicate slices count once, and a slice that is missing, strange or 
     SliceStyle beside;
     beside.shift = {0.7, 0.0, 0.0};
     put("740.dcm", v, 2, beside);
-    CHECK_THROWS_WITH(volume::read_volume(folder), ContainsSubstring("0.70 mm beside"));
+    CHECK_THROWS_WITH(volume::read_volume(folder), ContainsSubstring("0.70 mm off the line"));
 }
 
 TEST_CASE("unevenly spaced slices are interpolated to even ones") {

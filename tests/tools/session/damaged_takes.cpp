@@ -53,7 +53,7 @@ TEST_CASE("a take that lost a part of any file differs, and replay names the fil
         INFO(file << ": " << told.out << told.err);
         CHECK(told.code == 1);
         CHECK(told.out.find("identical") == std::string::npos);
-        CHECK(told.out.find("differs: " + file + " holds ") != std::string::npos);
+        CHECK(told.out.find("differs: " + file + " has ") != std::string::npos);
         const Outcome outcome = folder.tactus("replay " + take.string() + " --json");
         CHECK(outcome.code == 1);
         const json report = json::parse(outcome.out);

@@ -56,7 +56,7 @@ TEST_CASE("a matrix that cannot be tried says where") {
     CHECK_THROWS_WITH(read("[[objects]]\nname = \"nothing\""),
                       Catch::Matchers::ContainsSubstring("needs a stiffness or a damping"));
     CHECK_THROWS_WITH(read("cycles = 1"), Catch::Matchers::ContainsSubstring("from 2"));
-    CHECK_THROWS_WITH(read("[assumed.a]\nlag = [\"1 ms\"]"), Catch::Matchers::ContainsSubstring("two ends"));
+    CHECK_THROWS_WITH(read("[assumed.a]\nlag = [\"1 ms\"]"), Catch::Matchers::ContainsSubstring("two limits"));
     CHECK_THROWS_WITH(read("rates = "), Catch::Matchers::ContainsSubstring("not valid TOML"));
     std::string deep = "a";
     for (int i = 0; i < 100'000; ++i) deep += ".a";

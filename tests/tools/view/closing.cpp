@@ -49,7 +49,7 @@ TEST_CASE("a window that a script closes keeps the edits, and the next window re
     const Folder folder;
     const fs::path patch = folder.write("voice.toml", voice), kept = folder.path / "voice.unsaved.toml";
     const Outcome left = edit_and(display, folder, "close\n");
-    CHECK(left.err.find("edits of voice.toml are not saved; they are kept in " + kept.string()) != std::string::npos);
+    CHECK(left.err.find("unsaved edits of voice.toml are kept in " + kept.string()) != std::string::npos);
     CHECK(is_edited(kept));
     CHECK(slurp(patch) == voice);
 

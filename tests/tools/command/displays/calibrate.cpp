@@ -269,11 +269,10 @@ TEST_CASE("a calibration that cannot be trusted writes nothing and says which to
     CHECK(folder.tactus("calibrate -o " + out).err.find("--device") != std::string::npos);
     CHECK(folder.tactus("calibrate --device scripted -o " + out).err.find("nothing to touch") != std::string::npos);
     // Before the first touch, not after the last.
-    CHECK(folder.tactus("calibrate --device scripted --mirror -o " + out + " </dev/null").err.find("no screen") !=
+    CHECK(folder.tactus("calibrate --device scripted --mirror -o " + out + " </dev/null").err.find("needs a screen") !=
           std::string::npos);
-    CHECK(
-        folder.tactus("calibrate --device scripted --screen monitor -o " + out + " </dev/null").err.find("no button") !=
-        std::string::npos);
+    CHECK(folder.tactus("calibrate --device scripted --screen monitor -o " + out + " </dev/null")
+              .err.find("did not press a button") != std::string::npos);
 }
 
 TEST_CASE("what a display has no place for is said before the run") {

@@ -106,7 +106,7 @@ TEST_CASE("the option --memory bounds what one file may take: exit code 3, and t
     CHECK(large.code == 0);
     const Outcome small = folder.tactus("--memory '1 MB' spectrum " + sound.string());
     CHECK(small.code == 3);
-    CHECK_THAT(small.err, ContainsSubstring("allow more with --memory"));
+    CHECK_THAT(small.err, ContainsSubstring("raise it with --memory"));
     const Outcome wrong = folder.tactus("--memory much spectrum " + sound.string());
     CHECK(wrong.code == 2);
     CHECK_THAT(wrong.err, ContainsSubstring("'much' is not a size of memory"));
