@@ -63,6 +63,9 @@ public:
     void keep();
     /// Closes what was opened since `begin`.
     void discard();
+    /// Looks after devices that have a process of their own. True when one is lost: then no force reaches its hand, and
+    /// the run may end. Control thread of a live run, many times a second.
+    bool service_devices();
 
     /// Instead of opening devices, stand-ins for those of a run that is over: what they reported is in its log.
     void imitate(std::vector<RecordedDevice> recorded) { recorded_ = std::move(recorded); }

@@ -71,12 +71,13 @@ void LiveRun::service() {
     parts_.edits.service({[this](GroupRuntime& group) { start_thread(group); },
                           [this](const GroupRuntime& group) { end_thread(group); }});
     watch_devices();
+    if (parts_.host.service_devices()) must_end_ = true;
     service_cards();
     if (options_.watch) options_.watch();
 }
 
 void LiveRun::service_stop() {
-    if (!options_.stop || !options_.stop->load()) return;
+    if (!must_end_ && (!options_.stop || !options_.stop->load())) return;
     parts_.pause.want(false);
     if (is_stopping_ || parts_.pause.state() != Pausing::runs) return;
     is_stopping_ = true;

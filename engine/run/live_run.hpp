@@ -60,6 +60,7 @@ private:
     std::atomic<bool> is_refused_{false};   // real-time priority
     bool is_still_ = false;                 // time stands still, or has just begun to go on
     bool is_stopping_ = false;
+    bool must_end_ = false;  // a device is lost
     std::vector<std::pair<const GroupRuntime*, std::jthread>> threads_;
 };
 
