@@ -58,13 +58,13 @@ void send(int socket, const Words& words) {
 Received receive(int socket, std::optional<std::chrono::milliseconds> longest) {
     using Clock = std::chrono::steady_clock;
     const auto until = Clock::now() + longest.value_or(std::chrono::milliseconds(0));
-    std::vector<char> bytes(longest_message);
     for (;;) {
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now()).count();
         pollfd one{socket, POLLIN, 0};
         const int ready = ::poll(&one, 1, longest ? static_cast<int>(std::max<std::int64_t>(left, 0)) : -1);
         if (ready < 0 && errno == EINTR) continue;
         if (ready <= 0) return {ready == 0 ? Received::nothing : Received::closed, {}};
+        std::vector<char> bytes(longest_message);  // only now: a driver's thread asks each round
         const ssize_t count = ::recv(socket, bytes.data(), bytes.size(), MSG_DONTWAIT);
         if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
         if (count <= 0) return {Received::closed, {}};

@@ -25,5 +25,6 @@ Verb contact_verb();
 Verb view_verb();
 Verb scrub_verb();
 Verb snap_verb();
+Verb device_verb();
 
 }  // namespace tactus::bench

@@ -2,6 +2,7 @@
 #include "graph/analyse/latency.hpp"
 #include "graph/analyse/stiffness.hpp"
 #include "tools/command/patch_options.hpp"
+#include "tools/command/run/check_process.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/session/load_plan.hpp"
 
@@ -66,6 +67,7 @@ Json check_json(const std::optional<compile::Plan>& plan, const patch::Problems&
                                   {"nodes", nodes}});
     }
     json["paths"] = paths_json(*plan, {});
+    json["processes"] = processes_json(device_processes(*plan));
     return json;
 }
 
@@ -107,6 +109,7 @@ void print_check(const Json& json) {
     for (const Json& group : json["groups"])
         fmt::print("{:>10}  latency {:.4g} ms  {} nodes\n", group["name"].get<std::string>(),
                    group["latency_ms"].get<double>(), group["nodes"].size());
+    if (json.contains("processes")) print_processes(json["processes"]);
     if (json["paths"].empty()) return;
     fmt::print("\n{:<32} {:>10} {:>12} {:>12}\n", "path", "latency", "may feel", "declared");
     for (const Json& path : json["paths"]) {
@@ -146,15 +149,17 @@ int check(const CheckChoice& choice) {
         // What only `prepare` can find: devices, file names, sizes.
         if (problems.empty()) {
             const run::Engine engine(std::move(*plan), run::EngineOptions{});
-            json["paths"] = paths_json(engine.plan(), analyse::force_loops(engine.plan(), damping_of(engine.host())));
+            auto loops = analyse::force_loops(engine.plan(), damping_of(engine.host()));
+            add_process_delay(loops, engine.plan());
+            json["paths"] = paths_json(engine.plan(), loops);
             json["admittance_loops"] = loops_json(engine.nodes());
             json["warnings"] = engine.host().notices;
         }
     } catch (const Error& error) {
         problems.list.push_back(error);
-        const Json groups = json.is_null() ? Json::array() : json["groups"];
-        json = check_json(std::nullopt, problems);
-        json["groups"] = groups;
+        const Json before = std::exchange(json, check_json(std::nullopt, problems));
+        for (const char* key : {"groups", "processes"})
+            if (before.contains(key)) json[key] = before[key];
     }
     if (choice.json) fmt::print("{}\n", json.dump(2));
     else {

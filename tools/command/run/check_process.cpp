@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/command/run/check_process.hpp"
+
+#include "devices/hosted/placement.hpp"
+#include "graph/node/options.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string_view>
+
+namespace tactus::command {
+
+namespace {
+
+/// The device that a node uses, or "" when it uses none.
+std::string device_of(const compile::Plan& plan, std::size_t node) {
+    constexpr std::array<std::string_view, 4> users{"device_input", "device_output", "gripper_input", "gripper_output"};
+    if (std::ranges::find(users, plan.nodes[node].type->name) == users.end()) return {};
+    for (const OptionText& given : plan.patch.nodes[node].settings)
+        if (given.name == "device" && !given.text.empty()) return given.text;
+    return plan.patch.devices.size() == 1 ? plan.patch.devices.front().name : std::string();
+}
+
+std::optional<DeviceProcess> process_of(const compile::Plan& plan, std::size_t node) {
+    const std::string name = device_of(plan, node);
+    const auto declared = std::ranges::find(plan.patch.devices, name, &patch::PatchDevice::name);
+    if (declared == plan.patch.devices.end()) return std::nullopt;
+    Options options(fmt::format("device '{}'", name), declared->settings, declared->where);
+    const hosted::Placement placement = hosted::read_placement(options, declared->driver);
+    if (!placement.own_process) return std::nullopt;
+    const double period = seconds(plan.groups[static_cast<std::size_t>(plan.nodes[node].group)].period);
+    return DeviceProcess{name, 1.0 / placement.round_s(period), placement.added_latency_s(period)};
+}
+
+}  // namespace
+
+std::vector<DeviceProcess> device_processes(const compile::Plan& plan) {
+    std::vector<DeviceProcess> all;
+    for (std::size_t node = 0; node < plan.nodes.size(); ++node)
+        if (auto process = process_of(plan, node);
+            process && std::ranges::find(all, process->device, &DeviceProcess::device) == all.end())
+            all.push_back(std::move(*process));
+    return all;
+}
+
+void add_process_delay(std::vector<analyse::ForceLoop>& loops, const compile::Plan& plan) {
+    for (analyse::ForceLoop& loop : loops) {
+        double added = 0.0;
+        for (std::size_t node = 0; node < plan.nodes.size(); ++node)
+            for (const std::string* end : {&loop.from, &loop.to})
+                if (plan.nodes[node].name == *end)
+                    if (const auto process = process_of(plan, node)) added += 0.5 * process->added_s;
+        if (added == 0.0) continue;
+        loop.latency_s += added;
+        // limit = damping / (period / 2 + latency)
+        if (loop.limit > 0.0) loop.limit = loop.damping / (loop.damping / loop.limit + added);
+    }
+}
+
+nlohmann::ordered_json processes_json(const std::vector<DeviceProcess>& processes) {
+    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    for (const DeviceProcess& process : processes)
+        rows.push_back(
+            {{"device", process.device}, {"rate_hz", process.rate_hz}, {"added_latency_ms", process.added_s * 1e3}});
+    return rows;
+}
+
+void print_processes(const nlohmann::ordered_json& processes) {
+    for (const auto& process : processes)
+        fmt::print("device '{}' has a process of its own at {:.4g} Hz, which makes its force up to {:.4g} ms later\n",
+                   process["device"].get<std::string>(), process["rate_hz"].get<double>(),
+                   process["added_latency_ms"].get<double>());
+}
+
+}  // namespace tactus::command
