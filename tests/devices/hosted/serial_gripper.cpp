@@ -28,14 +28,14 @@ TEST_CASE("a gripper at a serial line has a process of its own, and holds when i
         device->prepare(1.0 / 150.0);
         CHECK(device->info().fingers == 1);
         CHECK(drives(*device, close, [&](const DeviceSample& sample) {
-            return sample.valid && sample.fingers[0].position > 5e-3 && controller.told_speed == 0.05;
+            return sample.valid && sample.fingers[0].position > 5e-3 && controller.told_speed > 0.04;
         }));
         const std::uint64_t before = controller.drives;
         CHECK(wait_until([&] { return controller.told_speed == 0.0; }));  // the engine is silent
         CHECK(controller.drives > before);
         CHECK_FALSE(controller.holds);  // told to stand, by a process that goes on
         CHECK(drives(*device, close,
-                     [&](const DeviceSample& sample) { return sample.valid && controller.told_speed == 0.05; }));
+                     [&](const DeviceSample& sample) { return sample.valid && controller.told_speed > 0.04; }));
     }
     CHECK(wait_until([&] { return controller.holds.load(); }));
     CHECK(controller.told_speed == 0.0);
