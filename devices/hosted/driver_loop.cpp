@@ -45,22 +45,23 @@ void DriverLoop::run() noexcept {
     try {
         open();
         serve();
-        fade();
-        device_.reset();
     } catch (const Error& error) {
-        has_failed_ = true;
-        try {
-            send(socket_, error_words(error));
-        } catch (...) {
-        }
+        fail(error);
     } catch (const std::exception& error) {
-        has_failed_ = true;
-        try {
-            send(socket_, error_words(Error(error.what())));
-        } catch (...) {
-        }
+        fail(Error(error.what()));
     }
+    if (device_) fade();
+    device_.reset();
     is_over_.store(true, std::memory_order_release);
+}
+
+void DriverLoop::fail(const Error& error) noexcept {
+    has_failed_ = true;
+    try {
+        send(socket_, error_words(error));
+    } catch (...) {
+        // The engine sees that the socket is closed.
+    }
 }
 
 void DriverLoop::open() {

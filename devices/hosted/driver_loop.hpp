@@ -30,6 +30,7 @@ public:
 
 private:
     void open();
+    void fail(const Error& error) noexcept;
     void serve();
     void prepare(const Words& said);
     void round() noexcept;
