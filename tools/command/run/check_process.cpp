@@ -16,13 +16,27 @@ namespace tactus::command {
 
 namespace {
 
-/// The device that a node uses, or "" when it uses none.
-std::string device_of(const compile::Plan& plan, std::size_t node) {
+bool uses_device(const compile::PlanNode& node) {
     constexpr std::array<std::string_view, 4> users{"device_input", "device_output", "gripper_input", "gripper_output"};
-    if (std::ranges::find(users, plan.nodes[node].type->name) == users.end()) return {};
+    return std::ranges::find(users, node.type->name) != users.end();
+}
+
+std::string named_by(const compile::Plan& plan, std::size_t node) {
     for (const OptionText& given : plan.patch.nodes[node].settings)
-        if (given.name == "device" && !given.text.empty()) return given.text;
-    return plan.patch.devices.size() == 1 ? plan.patch.devices.front().name : std::string();
+        if (given.name == "device") return given.text;
+    return {};
+}
+
+/// The device that a node uses, or "" when it uses none. One that names none means the only one of the patch, or the only
+/// one that others name.
+std::string device_of(const compile::Plan& plan, std::size_t node) {
+    if (!uses_device(plan.nodes[node])) return {};
+    if (std::string named = named_by(plan, node); !named.empty()) return named;
+    if (plan.patch.devices.size() == 1) return plan.patch.devices.front().name;
+    for (std::size_t other = 0; other < plan.nodes.size(); ++other)
+        if (uses_device(plan.nodes[other]))
+            if (std::string named = named_by(plan, other); !named.empty()) return named;
+    return {};
 }
 
 std::optional<DeviceProcess> process_of(const compile::Plan& plan, std::size_t node) {
