@@ -50,6 +50,21 @@ Json paths_json(const compile::Plan& plan, const std::vector<analyse::ForceLoop>
     return paths;
 }
 
+Json processes_json(const std::vector<DeviceProcess>& processes) {
+    Json rows = Json::array();
+    for (const DeviceProcess& process : processes)
+        rows.push_back(
+            {{"device", process.device}, {"rate_hz", process.rate_hz}, {"added_latency_ms", process.added_s * 1e3}});
+    return rows;
+}
+
+void print_processes(const Json& processes) {
+    for (const Json& process : processes)
+        fmt::print("device '{}' has a process of its own at {:.4g} Hz, which makes its force up to {:.4g} ms later\n",
+                   process["device"].get<std::string>(), process["rate_hz"].get<double>(),
+                   process["added_latency_ms"].get<double>());
+}
+
 Json check_json(const std::optional<compile::Plan>& plan, const patch::Problems& problems) {
     Json json{{"ok", problems.empty()}, {"errors", Json::array()}, {"groups", Json::array()}, {"paths", Json::array()}};
     for (const Error& error : problems.list)

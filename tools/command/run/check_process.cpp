@@ -5,7 +5,6 @@
 #include "graph/node/options.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -73,21 +72,6 @@ void add_process_delay(std::vector<analyse::ForceLoop>& loops, const compile::Pl
         // limit = damping / (period / 2 + latency)
         if (loop.limit > 0.0) loop.limit = loop.damping / (loop.damping / loop.limit + added);
     }
-}
-
-nlohmann::ordered_json processes_json(const std::vector<DeviceProcess>& processes) {
-    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-    for (const DeviceProcess& process : processes)
-        rows.push_back(
-            {{"device", process.device}, {"rate_hz", process.rate_hz}, {"added_latency_ms", process.added_s * 1e3}});
-    return rows;
-}
-
-void print_processes(const nlohmann::ordered_json& processes) {
-    for (const auto& process : processes)
-        fmt::print("device '{}' has a process of its own at {:.4g} Hz, which makes its force up to {:.4g} ms later\n",
-                   process["device"].get<std::string>(), process["rate_hz"].get<double>(),
-                   process["added_latency_ms"].get<double>());
 }
 
 }  // namespace tactus::command

@@ -5,8 +5,6 @@
 #include "graph/analyse/stiffness.hpp"
 #include "graph/compile/plan.hpp"
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <string>
 #include <vector>
 
@@ -25,8 +23,5 @@ std::vector<DeviceProcess> device_processes(const compile::Plan& plan);
 /// Adds the delay to the loops through such devices, live runs have it: half of it where a loop begins, half where it
 /// ends.
 void add_process_delay(std::vector<analyse::ForceLoop>& loops, const compile::Plan& plan);
-
-nlohmann::ordered_json processes_json(const std::vector<DeviceProcess>& processes);
-void print_processes(const nlohmann::ordered_json& processes);
 
 }  // namespace tactus::command
