@@ -3,7 +3,9 @@
 
 #include "devices/audio/portaudio.hpp"
 #include "devices/haptic/catalogue.hpp"
+#include "devices/hosted/hosted_device.hpp"
 #include "engine/io/async_sink.hpp"
+#include "engine/io/lost_device.hpp"
 
 #include <fmt/format.h>
 
@@ -116,8 +118,9 @@ DevicePort& EngineHost::device(const std::string& wanted, DeviceUse use, const S
     if (build::DeviceSlot* slot = find_device(name)) return use_device(*slot, use, where);
     const auto declared = std::ranges::find(patch_.devices, name, &patch::PatchDevice::name);
     const bool is_declared = declared != patch_.devices.end();
-    Options options(fmt::format("device '{}'", name), is_declared ? declared->settings : std::vector<OptionText>{},
-                    is_declared ? declared->where : where);
+    const hosted::DeviceRequest request{is_declared ? declared->driver : name, fmt::format("device '{}'", name),
+                                        is_declared ? declared->settings : std::vector<OptionText>{},
+                                        is_declared ? declared->where : where};
     const haptic::PathResolver resolve = [this, &where](const std::string& asset) {
         const auto found = std::ranges::find(patch_.assets, asset, &patch::PatchAsset::name);
         if (found != patch_.assets.end()) return found->path;
@@ -139,12 +142,10 @@ DevicePort& EngineHost::device(const std::string& wanted, DeviceUse use, const S
         if (recorded == recorded_->end()) throw Error(where, fmt::format("the take knows no device '{}'", name));
         slot->device = std::make_unique<StandIn>(*recorded);
     } else {
-        if (!live_ && haptic::is_real_driver(is_declared ? declared->driver : name))
-            throw Error(is_declared ? declared->where : where,
+        if (!live_ && haptic::is_real_driver(request.driver))
+            throw Error(request.where,
                         fmt::format("device '{}' is hardware and keeps its own time; use 'tactus run'", name));
-        slot->device = haptic::open_haptic_device(is_declared ? declared->driver : name,
-                                                  is_declared ? declared->where : where, options, resolve);
-        options.finish();
+        slot->device = live_ ? hosted::open_placed(request, resolve) : hosted::open_here(request, resolve);
     }
     slot->device->prepare(seconds(period_));
     slot->port.info = slot->device->info();
@@ -188,6 +189,17 @@ RecordStream& EngineHost::record(const StreamFormat& wanted, const SourceLocatio
     opened_.streams.push_back(std::make_unique<Stream>(format, std::move(sink)));
     uses_->streams.push_back(opened_.streams.back().get());
     return *opened_.streams.back();
+}
+
+bool EngineHost::service_devices() {
+    bool lost = false;
+    for (const auto& slot : devices) {
+        const bool was_lost = !loss_of(*slot).empty();
+        const std::string loss = service_device(*slot);
+        if (!was_lost && !loss.empty()) notices.push_back(fmt::format("device '{}' was lost: {}", slot->name, loss));
+        lost = lost || !loss.empty();
+    }
+    return lost;
 }
 
 /// One whose node an edit took away: it plays on, and only one thread ever writes to it.

@@ -68,6 +68,9 @@ public:
     const std::vector<std::unique_ptr<build::DeviceSlot>>& opened_devices() const { return opened_.devices; }
     /// Any thread: if a driver is being opened, whoever does it is left behind, and gets an error when it comes back.
     bool forsake_driver() noexcept { return driver_.forsake(); }
+    /// Looks after devices that have a process of their own. True when one is lost: then no force reaches its hand, and
+    /// the run may end. Control thread of a live run, many times a second.
+    bool service_devices();
 
     /// Instead of opening devices, stand-ins for those of a run that is over: what they reported is in its log.
     void imitate(std::vector<RecordedDevice> recorded) { recorded_ = std::move(recorded); }

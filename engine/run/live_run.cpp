@@ -75,6 +75,7 @@ void LiveRun::service() {
                           .release = [this] { release_threads(); },
                           .cancel = [this] { cancel_threads(); },
                           .end = [this](const GroupRuntime& group) { end_thread(group); }});
+    if (parts_.host.service_devices()) must_end_ = true;
     service_cards();
     if (options_.watch) options_.watch();
 }

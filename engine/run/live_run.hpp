@@ -88,7 +88,7 @@ private:
     std::size_t devices_in_use_ = 0;  // of those that the watchdog looks after
     std::atomic<std::size_t> ready_{0};  // threads that wait for the start
     std::atomic<bool> is_refused_{false};  // real-time priority
-    std::atomic<bool> must_end_{false};  // an error ended the run
+    std::atomic<bool> must_end_{false};  // an error, or a lost device, ended the run
     bool is_still_ = false;  // time stands still, or has just begun to go on
     bool has_left_threads_ = false;
     std::vector<std::unique_ptr<GroupThread>> threads_;

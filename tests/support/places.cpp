@@ -10,6 +10,8 @@ std::string command() { return TACTUS_COMMAND; }
 
 std::string failing_disk() { return TACTUS_FAILING_DISK; }
 
+std::string fake_device_host() { return TACTUS_FAKE_DEVICE_HOST; }
+
 std::filesystem::path library_folder() { return std::filesystem::path(command()).parent_path() / "library"; }
 
 }  // namespace tactus::test

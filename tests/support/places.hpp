@@ -15,6 +15,9 @@ std::string command();
 /// Library for LD_PRELOAD that lets a disk fail, see tests/preload/failing_disk.cpp; absolute.
 std::string failing_disk();
 
+/// In place of `tactus-device-host`, see tests/support/fake_device_host.cpp; absolute.
+std::string fake_device_host();
+
 /// The bundled library beside it; absolute.
 std::filesystem::path library_folder();
 

@@ -29,6 +29,7 @@ public:
     }
     Run(const Run&) = delete;
     Run& operator=(const Run&) = delete;
+    void signal(int number) const { ::kill(process_, number); }
     int stop(int signal) {
         int status = 0;
         ::kill(process_, signal);

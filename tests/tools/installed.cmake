@@ -20,7 +20,7 @@ if(NOT installed STREQUAL built)
   message(FATAL_ERROR "the installed command renders ${installed}, the built one ${built}")
 endif()
 
-foreach(part bin/tactus-bench share/doc/tactus/README.md share/doc/tactus/docs/reference/nodes.md
+foreach(part bin/tactus-bench libexec/tactus/tactus-device-host share/doc/tactus/README.md share/doc/tactus/docs/reference/nodes.md
              share/tactus/library/cases/mandible-twelve/case.plan.json share/tactus/library/equalisers/saw-vibration.toml
              share/tactus/library/displays/mirror.toml share/tactus/library/patches/parts/handle.toml)
   if(NOT EXISTS ${SCRATCH}/moved/${part})

@@ -26,5 +26,6 @@ Verb view_verb();
 Verb scrub_verb();
 Verb snap_verb();
 Verb passivity_verb();
+Verb device_verb();
 
 }  // namespace tactus::bench

@@ -2,6 +2,7 @@
 #include "tools/session/summary.hpp"
 
 #include "dsp/core/error.hpp"
+#include "engine/io/lost_device.hpp"
 #include "tools/session/live_table.hpp"
 
 #include <fmt/format.h>
@@ -79,6 +80,9 @@ std::vector<std::string> unrecovered(const run::Engine& engine) {
         if (const control::Fault fault = slot->port.fault;
             fault != control::Fault::none && fault != control::Fault::late_commit)
             lines.push_back(fmt::format("fault of {} at the end of the run: {}", slot->name, control::describe(fault)));
+    for (const auto& slot : engine.host().devices)
+        if (const std::string loss = io::loss_of(*slot); !loss.empty())
+            lines.push_back(fmt::format("device '{}' was lost: {}", slot->name, loss));
     for (const auto& card : engine.host().cards)
         if (card->is_lost()) lines.push_back(fmt::format("{} was lost", card->name()));
     return lines;

@@ -3,6 +3,7 @@
 #include "assets/display/touch_file.hpp"
 #include "assets/file/whole_file.hpp"
 #include "devices/haptic/catalogue.hpp"
+#include "devices/hosted/hosted_device.hpp"
 #include "dsp/core/units.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
@@ -41,11 +42,8 @@ std::unique_ptr<HapticDevice> open(const std::string& driver, const std::vector<
             throw Error(fmt::format("a device option must be NAME=VALUE, not '{}'", one));
         options.push_back({one.substr(0, equals), one.substr(equals + 1), {}});
     }
-    tactus::Options all(fmt::format("device '{}'", driver), std::move(options));
-    auto device = haptic::open_haptic_device(driver, {}, all,
-                                             [](const std::string& name) { return std::filesystem::path(name); });
-    all.finish();
-    return device;
+    return hosted::open_placed({driver, fmt::format("device '{}'", driver), std::move(options), {}},
+                               [](const std::string& name) { return std::filesystem::path(name); });
 }
 
 /// Touches from the device, or from a file.

@@ -2,6 +2,7 @@
 #include "graph/analyse/latency.hpp"
 #include "graph/analyse/stiffness.hpp"
 #include "tools/command/patch_options.hpp"
+#include "tools/command/run/check_process.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/picture/report/comparison_figure.hpp"
 #include "tools/picture/report/z_width_figure.hpp"
@@ -64,6 +65,21 @@ Json paths_json(const compile::Plan& plan, const std::vector<analyse::ForceLoop>
     return paths;
 }
 
+Json processes_json(const std::vector<DeviceProcess>& processes) {
+    Json rows = Json::array();
+    for (const DeviceProcess& process : processes)
+        rows.push_back(
+            {{"device", process.device}, {"rate_hz", process.rate_hz}, {"added_latency_ms", process.added_s * 1e3}});
+    return rows;
+}
+
+void print_processes(const Json& processes) {
+    for (const Json& process : processes)
+        fmt::print("device '{}' has a process of its own at {:.4g} Hz, which makes its force up to {:.4g} ms later\n",
+                   process["device"].get<std::string>(), process["rate_hz"].get<double>(),
+                   process["added_latency_ms"].get<double>());
+}
+
 Json check_json(const std::optional<compile::Plan>& plan, const patch::Problems& problems) {
     Json json{{"ok", problems.empty()}, {"errors", Json::array()}, {"groups", Json::array()}, {"paths", Json::array()}};
     for (const Error& error : problems.list)
@@ -81,6 +97,7 @@ Json check_json(const std::optional<compile::Plan>& plan, const patch::Problems&
                                   {"nodes", nodes}});
     }
     json["paths"] = paths_json(*plan, {});
+    json["processes"] = processes_json(device_processes(*plan));
     return json;
 }
 
@@ -254,6 +271,7 @@ void print_check(const Json& json) {
     for (const Json& group : json["groups"])
         fmt::print("{:>10}  latency {:.4g} ms  {} nodes\n", group["name"].get<std::string>(),
                    group["latency_ms"].get<double>(), group["nodes"].size());
+    if (json.contains("processes")) print_processes(json["processes"]);
     if (json["paths"].empty()) return;
     fmt::print("\n{:<32} {:>10} {:>12} {:>12}\n", "path", "latency", "may feel", "declared");
     for (const Json& path : json["paths"]) {
@@ -302,8 +320,9 @@ int check(const CheckChoice& choice) {
         // Finds errors that only `prepare` can find: devices, file names, sizes.
         if (problems.empty()) {
             const run::Engine engine(std::move(*plan), run::EngineOptions{});
-            const auto loops = analyse::force_loops(engine.plan(), stated_by(engine.host(), &DeviceInfo::damping),
-                                                    stated_by(engine.host(), &DeviceInfo::max_stiffness));
+            auto loops = analyse::force_loops(engine.plan(), stated_by(engine.host(), &DeviceInfo::damping),
+                                              stated_by(engine.host(), &DeviceInfo::max_stiffness));
+            add_process_delay(loops, engine.plan());
             json["paths"] = paths_json(engine.plan(), loops);
             json["contact"] = contact_json(study::contact_laws(engine.nodes()));
             json["device_classes"] = classes_json(study::class_verdicts(loops));
@@ -319,9 +338,9 @@ int check(const CheckChoice& choice) {
         }
     } catch (const Error& error) {
         problems.list.push_back(error);
-        const Json groups = json.is_null() ? Json::array() : json["groups"];
-        json = check_json(std::nullopt, problems);
-        json["groups"] = groups;
+        const Json before = std::exchange(json, check_json(std::nullopt, problems));
+        for (const char* key : {"groups", "processes"})
+            if (before.contains(key)) json[key] = before[key];
     }
     if (choice.json) fmt::print("{}\n", json.dump(2));
     else {

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// The memory that an engine and a device's process share: samples one way, forces and motor speeds the other. Each side
+// checks what it reads: the other may be broken.
+#pragma once
+
+#include "devices/hosted/seqlock.hpp"
+#include "graph/node/device.hpp"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace tactus::hosted {
+
+/// What the device reported last. Published at the rate of the device's process.
+struct SampleRecord {
+    double position[3] = {}, orientation[4] = {1.0, 0.0, 0.0, 0.0};  ///< m; w, x, y, z
+    double linear[3] = {}, angular[3] = {};  ///< m/s, rad/s
+    double finger_position[most_fingers] = {}, finger_force[most_fingers] = {};  ///< m, N
+    std::uint64_t finger_state[most_fingers] = {};
+    std::int64_t counter = 0;
+    std::uint64_t buttons = 0;
+    std::uint64_t is_valid = 0;
+    std::uint64_t holds_force = 0;  ///< the device's process gives no force until it is asked for a small one
+    std::int64_t answers_ns = 0;  ///< `committed_ns` of the force that the device had at this sample
+    std::int64_t published_ns = 0;  ///< boot_ns: the heartbeat of the device's process
+};
+
+/// What the engine committed last.
+struct ForceRecord {
+    double force[3] = {}, torque[3] = {};  ///< N, N·m on the hand
+    std::int64_t committed_ns = 0;  ///< boot_ns: the heartbeat of the engine; 0: none yet
+};
+
+struct DriveRecord {
+    double speed[most_fingers] = {};  ///< m/s
+    double cord = 0.0;  ///< m
+    std::uint64_t is_free = 0;
+    std::int64_t committed_ns = 0;
+};
+
+struct InfoRecord {
+    char name[128] = {};
+    double max_force = 0.0, max_torque = 0.0, damping = 0.0, max_stiffness = 0.0, max_speed = 0.0, least_speed = 0.0;
+    std::uint64_t actuates_torque = 0, senses_rotation = 0;
+    std::int64_t fingers = 0;
+};
+
+SampleRecord pack(const DeviceSample& sample) noexcept;
+ForceRecord pack(const Wrench& wrench, std::int64_t now_ns) noexcept;
+DriveRecord pack(const MotorDrive& drive, std::int64_t now_ns) noexcept;
+InfoRecord pack(const DeviceInfo& info) noexcept;
+/// Not valid when the pose is no pose or the velocity is not finite.
+DeviceSample unpack(const SampleRecord& record) noexcept;
+Wrench unpack(const ForceRecord& record) noexcept;
+MotorDrive unpack(const DriveRecord& record) noexcept;
+/// Throws Error when a number cannot be that of a device.
+DeviceInfo unpack(const InfoRecord& record);
+
+enum class HostState : std::uint32_t { opens, runs, ended };
+
+struct Block {
+    static constexpr std::uint64_t right_magic = 0x3153554843544154;  // "TATCHUS1"
+    static constexpr std::uint32_t right_version = 1;
+
+    std::uint64_t magic = right_magic;
+    std::uint32_t version = right_version, size = sizeof(Block);
+    std::int64_t engine = 0;  ///< process id
+    std::atomic<HostState> state{HostState::opens};
+    std::atomic<std::uint32_t> must_end{0};  ///< set by the engine
+    std::atomic<std::int64_t> engine_lives_ns{0};  ///< steady_ns of the engine's control thread; 0: it says nothing
+    char reason[256] = {};  ///< why the process ended, for people; complete when `state` is ended
+    InfoRecord info;  ///< complete when the process has said that it is ready
+    alignas(64) Seqlock<SampleRecord> sample;
+    alignas(64) Seqlock<ForceRecord> force;
+    alignas(64) Seqlock<DriveRecord> drive;
+};
+
+/// Text from memory that another process writes: ends at its size, and holds only what can be printed.
+std::string text_of(const char* text, std::size_t size);
+
+/// The block, mapped into this process.
+class SharedBlock {
+public:
+    /// A new one, in memory without a name. Throws Error.
+    static SharedBlock create();
+    /// That behind a descriptor that was inherited; closes it. Throws Error when it is no such block.
+    static SharedBlock open(int descriptor);
+
+    SharedBlock(SharedBlock&& other) noexcept;
+    SharedBlock& operator=(SharedBlock&&) = delete;
+    ~SharedBlock();
+
+    Block* operator->() const noexcept { return block_; }
+    Block& operator*() const noexcept { return *block_; }
+    int descriptor() const noexcept { return descriptor_; }
+    /// Closes the descriptor; the memory stays.
+    void close_descriptor() noexcept;
+
+private:
+    SharedBlock(Block* block, int descriptor) : block_(block), descriptor_(descriptor) {}
+
+    Block* block_ = nullptr;
+    int descriptor_ = -1;
+};
+
+}  // namespace tactus::hosted
