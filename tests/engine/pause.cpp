@@ -16,7 +16,8 @@ using namespace tactus::test;
 
 namespace {
 
-/// The hand rests at the middle of a soft spring, beside sound and a slow node that are wired to it.
+/// The hand rests at the middle of a soft spring, beside sound and a slow node that are wired to it. The other end of
+/// the spring moves by itself: the energy cap would take part of the force away at any time.
 const std::string held = R"(wires = [
   "hand.pose -> spring.device",
   "place.pose -> spring.object",
@@ -39,6 +40,7 @@ stiffness = "0.001 N/mm"
 type = "device_output"
 rate = "1 kHz"
 device = "simulated"
+energy_cap = false
 [nodes.voice]
 type = "chaos_signal"
 rate = "48 kHz"
