@@ -15,8 +15,12 @@ struct GrantedPower {
     Out<double> power{"granted now, for device_output.granted", "W"};
     Param limit{"0.1 W", "0 W", "50 W", "of the power: the largest force times the speed that it may lead the hand at"};
 
+    Param after{"0 s", "0 s", "1 min", "grant it so long after 'active' has ended, while what it moves comes to rest"};
+
     void process(const Tick& tick) noexcept {
-        power = !active.connected || active.get() ? limit.value : 0.0;
+        const bool is_active = !active.connected || active.get();
+        left_s_ = is_active ? after.value : left_s_ - tick.elapsed_seconds();
+        power = is_active || left_s_ > 0.0 ? limit.value : 0.0;
         largest_ = std::max(largest_, power.get());
         granted_s_ += power.get() > 0.0 ? tick.elapsed_seconds() : 0.0;
     }
@@ -27,9 +31,9 @@ struct GrantedPower {
     }
 
 private:
-    double largest_ = 0.0, granted_s_ = 0.0;
+    double left_s_ = 0.0, largest_ = 0.0, granted_s_ = 0.0;
 };
 
-TACTUS_NODE(GrantedPower, active, power, limit)
+TACTUS_NODE(GrantedPower, active, power, limit, after)
 
 }  // namespace tactus::nodes
