@@ -16,7 +16,7 @@ struct TrimmedClock {
 
     Flicks logical = 0;  ///< start of the present line
     std::int64_t steady_ns = 0;  ///< its steady time
-    double slope = 1.0;          ///< steady ns per logical ns
+    double slope = 1.0;  ///< steady ns per logical ns
 
     /// Steady time of a logical time, ns.
     std::int64_t when(Flicks time) const noexcept;

@@ -20,7 +20,8 @@ struct GripperOutput {
     Out<bool> holds{"the motors hold because of a fault"};
     Text device{"", "name of an entry of [devices]; empty: the only one"};
     Param recover{discrete, "0", "0", "1e9", "change the number to go on after a fault"};
-    Param low_friction{discrete, "0", "0", "1", "from 0.5 on the hand moves the finger freely, if the motor supports it"};
+    Param low_friction{discrete, "0", "0", "1",
+                       "from 0.5 on the hand moves the finger freely, if the motor supports it"};
     Param drive_limit{"3 kHz", "1 Hz", "1 MHz", "drive cycles per second at full speed"};
 
     void prepare(const Setup& setup) {

@@ -84,7 +84,8 @@ TEST_CASE("assets: a display comes back from its file to the nanometre") {
 TEST_CASE("assets: a display that cannot be is refused with its line") {
     CHECK(refusal(screen) == "taken");
     CHECK(refusal("title = \"x\"\n").find("at least one [[screens]]") != std::string::npos);
-    CHECK(refusal(screen + "lowleft = \"0 mm, 0 mm, 0 mm\"\n").find(":5:11: unknown key 'lowleft'") != std::string::npos);
+    CHECK(refusal(screen + "lowleft = \"0 mm, 0 mm, 0 mm\"\n").find(":5:11: unknown key 'lowleft'") !=
+          std::string::npos);
     CHECK(refusal(screen + "stereo = \"side by side\"\n").find("did you mean 'side-by-side'") != std::string::npos);
     CHECK(refusal(screen + screen + "name = \"screen 1\"\n").find("two screens") != std::string::npos);
     CHECK(refusal("[mirror]\npoint = \"0 mm, 0 mm, 0 mm\"\nnormal = [0, 0, 0]\n" + screen).find(":3:") !=

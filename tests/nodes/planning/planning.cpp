@@ -252,7 +252,8 @@ TEST_CASE("a row of a run that is no step of its plan is refused, and the steps 
         return row;
     };
     steps.add(lock(2.0, 1.0, 1.0), 0.0);
-    CHECK_THROWS_WITH(steps.add(lock(3.0, 2.0, 7.0), 0.1), Catch::Matchers::ContainsSubstring("7 is not a valid fragment"));
+    CHECK_THROWS_WITH(steps.add(lock(3.0, 2.0, 7.0), 0.1),
+                      Catch::Matchers::ContainsSubstring("7 is not a valid fragment"));
     CHECK_THROWS_AS(steps.add(lock(4.0, 9.0, 2.0), 0.2), Error);
     CHECK_THROWS_AS(steps.add(lock(4.0, 3.0, 2.0), 0.2), Error);
     CHECK_THROWS_AS(steps.add(lock(1e300, 3.0, 2.0), 0.2), Error);

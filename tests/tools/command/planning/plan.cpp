@@ -287,7 +287,8 @@ TEST_CASE("what cannot be planned is refused in one line, and nothing is lost", 
     const std::string fresh = boxes.file("fresh.plan.json");
     const std::pair<std::string, std::string> refused[] = {
         {"new " + boxes.plan + " " + boxes.file("a.stl"), "never overwritten"},
-        {"new " + fresh + " " + boxes.file("a.stl") + " a=" + boxes.file("b.stl"), "the plan has a fragment 'a' already"},
+        {"new " + fresh + " " + boxes.file("a.stl") + " a=" + boxes.file("b.stl"),
+         "the plan has a fragment 'a' already"},
         {"new " + fresh + " " + boxes.file("metres.stl"), "--unit"},
         {"new " + fresh + " " + boxes.file("open.stl"), "fragment 'open'"},
         {"new " + fresh + " " + boxes.file("fin.stl"), "fragment 'fin'"},
