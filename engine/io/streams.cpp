@@ -39,6 +39,15 @@ private:
     std::int64_t next_ = 0;
 };
 
+/// "N, N m" is the unit of three columns, then that of the others. A name of a column holds no comma and no blank.
+std::string unit_of_column(const std::string& units, std::size_t column) {
+    const std::size_t comma = units.find(',');
+    std::string unit = column < 3 || comma == std::string::npos ? units.substr(0, comma) : units.substr(comma + 1);
+    unit.erase(0, unit.find_first_not_of(' '));
+    std::ranges::replace_if(unit, [](char letter) { return letter == ' ' || letter == ','; }, '_');
+    return unit;
+}
+
 class CsvSink : public Sink {
 public:
     CsvSink(std::filesystem::path path, const StreamFormat& format)
@@ -48,8 +57,10 @@ public:
           type_(*format.type),
           period_(format.period) {
         std::string header = "t_s";
-        for (const std::string_view column : type_.columns)
-            header += fmt::format(",{}{}{}", column, format.unit.empty() ? "" : "_", format.unit);
+        for (std::size_t i = 0; i < type_.columns.size(); ++i) {
+            const std::string unit = unit_of_column(format.unit, i);
+            header += fmt::format(",{}{}{}", type_.columns[i], unit.empty() ? "" : "_", unit);
+        }
         file_->append(header + "\n");
         row_.resize(type_.columns.size());
     }
