@@ -100,6 +100,9 @@ InfoRecord pack(const DeviceInfo& info) noexcept {
     record.max_stiffness = info.max_stiffness;
     record.max_speed = info.max_speed;
     record.least_speed = info.least_speed;
+    record.resolution = info.resolution;
+    record.angular_resolution = info.angular_resolution;
+    record.delay = info.delay;
     record.actuates_torque = info.actuates_torque ? 1 : 0;
     record.senses_rotation = info.senses_rotation ? 1 : 0;
     record.fingers = info.fingers;
@@ -107,8 +110,9 @@ InfoRecord pack(const DeviceInfo& info) noexcept {
 }
 
 DeviceInfo unpack(const InfoRecord& record) {
-    for (const double number : {record.max_force, record.max_torque, record.damping, record.max_stiffness,
-                                record.max_speed, record.least_speed})
+    for (const double number :
+         {record.max_force, record.max_torque, record.damping, record.max_stiffness, record.max_speed,
+          record.least_speed, record.resolution, record.angular_resolution, record.delay})
         if (!(std::isfinite(number) && number >= 0.0))
             throw Error(fmt::format("the driver states {} as a limit of its device", number));
     if (record.fingers < 0 || record.fingers > static_cast<std::int64_t>(most_fingers))
@@ -121,6 +125,9 @@ DeviceInfo unpack(const InfoRecord& record) {
     info.max_stiffness = record.max_stiffness;
     info.max_speed = record.max_speed;
     info.least_speed = record.least_speed;
+    info.resolution = record.resolution;
+    info.angular_resolution = record.angular_resolution;
+    info.delay = record.delay;
     info.actuates_torque = record.actuates_torque == 1;
     info.senses_rotation = record.senses_rotation == 1;
     info.fingers = static_cast<int>(record.fingers);

@@ -56,8 +56,10 @@ void GroupRuntime::move_back(std::size_t step, int frames) noexcept {
 void GroupRuntime::run_part(std::size_t at, const Tick& part, int from, int frames) noexcept {
     const build::Step& step = program_->steps[at];
     if (!step.driven && !(step.one_at_a_time && part.frames > 1)) {
+        const Flicks start = std::exchange(now, part.index * part.period);
         step.process(step.node, part);
         move_ports(at, part.frames, from + part.frames, frames);
+        now = start;
         return;
     }
     const Flicks start = now;

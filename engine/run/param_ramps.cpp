@@ -19,8 +19,11 @@ ParamRamps::ParamRamps(Flicks period) noexcept : step_(std::max<Flicks>(step_tim
 void ParamRamps::set(Param& param, ParamRamp* ramp, double value, std::int64_t tick, std::int64_t length,
                      std::int64_t plan) noexcept {
     const bool is_gradual = ramp && length > 0 && ramp->newest_plan.load(std::memory_order_relaxed) >= plan;
+    // The plan before may know another ramp of it, or the plan to come none.
+    ParamRamp* running = first_;
+    while (running && running->param != &param) running = running->next;
+    if (running && !(is_gradual && running == ramp)) remove(*running);
     if (!is_gradual) {
-        if (ramp && ramp->is_running) remove(*ramp);
         param.value = value;
         return;
     }

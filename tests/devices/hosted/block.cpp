@@ -133,6 +133,40 @@ TEST_CASE("what cannot be a device or a pose is refused") {
     CHECK_FALSE(unpack(garbage).valid);
 }
 
+TEST_CASE("what a driver states of its device is the same on both sides") {
+    const DeviceInfo info{.name = "arm",
+                          .max_force = 1.0,
+                          .max_torque = 2.0,
+                          .damping = 3.0,
+                          .max_stiffness = 4.0,
+                          .resolution = 5.0,
+                          .angular_resolution = 6.0,
+                          .delay = 7.0,
+                          .actuates_torque = true,
+                          .senses_rotation = true,
+                          .fingers = 1,
+                          .max_speed = 8.0,
+                          .least_speed = 9.0};
+    const DeviceInfo seen = unpack(pack(info));
+    CHECK(seen.name == info.name);
+    CHECK(seen.max_force == info.max_force);
+    CHECK(seen.max_torque == info.max_torque);
+    CHECK(seen.damping == info.damping);
+    CHECK(seen.max_stiffness == info.max_stiffness);
+    CHECK(seen.resolution == info.resolution);
+    CHECK(seen.angular_resolution == info.angular_resolution);
+    CHECK(seen.delay == info.delay);
+    CHECK(seen.actuates_torque);
+    CHECK(seen.senses_rotation);
+    CHECK(seen.fingers == info.fingers);
+    CHECK(seen.max_speed == info.max_speed);
+    CHECK(seen.least_speed == info.least_speed);
+
+    InfoRecord record = pack(info);
+    record.delay = -1.0;
+    CHECK_THROWS_AS(unpack(record), Error);
+}
+
 TEST_CASE("a sample is the same on both sides") {
     DeviceSample sample;
     sample.pose = {{1.0, 2.0, 3.0}, {0.5, 0.5, -0.5, 0.5}};

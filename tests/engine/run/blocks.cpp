@@ -53,6 +53,17 @@ struct Loop {
 };
 TACTUS_NODE(Loop, in, back, nudge, out, level, gain)
 
+/// Tells when the value was taken that it reads.
+struct Dated {
+    static constexpr auto about = "Gives the time of the last value of a batch.";
+    Batch<double> in{"number"};
+    Out<double> out{"number"};
+    void process(const Tick&) noexcept {
+        if (in.count > 0) out = seconds(in.times[in.count - 1]) + 0.001 * in.values().back();
+    }
+};
+TACTUS_NODE(Dated, in, out)
+
 namespace {
 
 compile::Plan plan_of(const PatchText& text) {
@@ -61,6 +72,7 @@ compile::Plan plan_of(const PatchText& text) {
         std::vector<const NodeType*> with(all.begin(), all.end());
         with.push_back(&node_type_Counted());
         with.push_back(&node_type_Loop());
+        with.push_back(&node_type_Dated());
         return with;
     }();
     std::string toml = text.toml();
@@ -129,6 +141,15 @@ TEST_CASE("feedback gives the same bits whatever the blocks, for signals, number
     for (const char* delay : {"1", "5", "48", "100"}) {
         INFO("delay " << delay);
         check_blocks(feedback(delay));
+    }
+}
+
+TEST_CASE("a value that a node of a cycle reads with its time has the time of its activation, whatever the blocks") {
+    for (const char* delay : {"1", "5", "7"}) {
+        INFO("delay " << delay);
+        check_blocks({{{"a", "loop", "48 kHz", {}}, {"dated", "dated", "48 kHz", {}}},
+                      {"a.level -> dated.in as batch", std::string("dated.out -> a.nudge as delay ") + delay},
+                      "seed = 7"});
     }
 }
 
