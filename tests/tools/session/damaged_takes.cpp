@@ -154,9 +154,14 @@ TEST_CASE("the take of a run that was killed writes the results that the run did
     CHECK(covered > 0.1);
     // A float each, and a row each.
     CHECK(static_cast<double>(fs::file_size(out / "ear.wav")) >= 4.0 * 48000.0 * covered);
-    const std::string trace = slurp(out / "trace.csv");
-    CHECK(static_cast<double>(std::count(trace.begin(), trace.end(), '\n')) >= 1000.0 * covered);
     const json summary = json::parse(slurp(out / "summary.json"));
+    const json& groups = summary["groups"];
+    const auto hand = std::ranges::find_if(groups, [](const json& group) { return group["rate_hz"] == 1000.0; });
+    REQUIRE(hand != groups.end());
+    // A busy machine makes ticks of a hand late, and they are left out.
+    const double ran = 1000.0 * covered - (*hand)["skipped"].get<double>();
+    const std::string trace = slurp(out / "trace.csv");
+    CHECK(static_cast<double>(std::count(trace.begin(), trace.end(), '\n')) >= ran);
     CHECK(summary["seconds"] == covered);
     CHECK(std::ranges::count(summary["files"], "ear.wav") == 1);
 }
