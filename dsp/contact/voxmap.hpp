@@ -12,20 +12,20 @@ namespace tactus::contact {
 
 /// Signed distances to a body (m, negative inside) at the samples of a grid in the body's frame. Immutable. Values are
 /// interpolated between samples and gradients are exact derivatives of the interpolant, so that forces made of them
-/// have an energy. Outside of the grid the value is `far` with gradient 0: leave a margin of some voxels around the
+/// have an energy. Outside the grid the value is `far` with gradient 0: leave a margin of some voxels around the
 /// surface, or let the field end where the body does not.
 struct Voxmap {
     static constexpr std::string_view wire_name = "voxmap";
 
     volume::Grid grid;             ///< at least 2 samples per axis
-    double far = 1.0;  ///< m, value outside of the grid
+    double far = 1.0;  ///< m, value outside the grid
     double steepness = 1.0;  ///< greatest |difference| of neighbouring samples (26) per distance, at least 1
 
     /// Trilinear value and its exact gradient. `position` in the body's frame, m.
     volume::Sample sample(const Vec3& position) const noexcept;
     /// The same of a quadratic B-spline over 27 samples (border repeated): continuous gradient.
     volume::Sample smooth_sample(const Vec3& position) const noexcept;
-    /// Lower bound of either interpolant within `radius` of `position`; culls whole groups of points. Outside of the
+    /// Lower bound of either interpolant within `radius` of `position`; culls whole groups of points. Outside the
     /// grid, the distance to the grid counts.
     double least_within(const Vec3& position, double radius) const noexcept;
 };

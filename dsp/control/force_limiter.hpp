@@ -69,7 +69,7 @@ public:
     /// What the hand was given instead of the last output: the slew limit and a fade go on from there. Before `tick`.
     void start_from(const Wrench& committed) noexcept;
 
-    /// Starts the fade for an external reason. The first reason stays until `recover`; only `late_commit` gives way to
+    /// Starts the fade for a fault that the caller found. The first reason stays until `recover`; only `late_commit` gives way to
     /// another one, for it names no cause.
     void fail(Fault reason) noexcept;
 
