@@ -100,7 +100,16 @@ TakeWriter::TakeWriter(fs::path folder, TakeAbout about) : folder_(std::move(fol
     events_ = std::make_unique<file::GrowingFile>(folder_ / "events.jsonl");
 }
 
-TakeWriter::~TakeWriter() = default;
+TakeWriter::~TakeWriter() {
+    if (holds_a_run_) return;
+    // The folder may hold files of the user: only what was made here is removed.
+    events_.reset();
+    log_.reset();
+    std::error_code ignored;
+    for (const char* file : {"take.json", "patch-0.toml", "timing.log", "events.jsonl", "streams"})
+        fs::remove(folder_ / file, ignored);
+    fs::remove(folder_, ignored);
+}
 
 std::string TakeWriter::loss() const {
     const std::lock_guard lock(writing_);
@@ -109,6 +118,7 @@ std::string TakeWriter::loss() const {
 
 void TakeWriter::lose(const std::string& why) {
     const std::lock_guard lock(writing_);
+    holds_a_run_ = true;
     if (is_lost_.exchange(true)) return;
     loss_ = fmt::format("{}; the take repeats the run up to there", why);
 }
@@ -146,6 +156,7 @@ void TakeWriter::line(const std::string& json) {
 }
 
 void TakeWriter::record(const TimingRecord& record) {
+    holds_a_run_ = true;
     if (is_lost_) return;
     try {
         log_->write(record);
@@ -211,6 +222,7 @@ std::unique_ptr<io::Sink> TakeWriter::sink(const io::FrameLayout& layout, const 
 }
 
 void TakeWriter::opened(const TakeFile& file, std::int64_t start, const run::GroupRuntime& group) {
+    holds_a_run_ = true;
     if (is_lost_) throw Error(loss());
     Json outputs = Json::array();
     for (const io::FrameColumn& column : file.columns)
@@ -279,6 +291,7 @@ void TakeWriter::move_to(const fs::path& folder) {
 }
 
 void TakeWriter::finish(const std::vector<std::pair<std::string, std::uint64_t>>& port_hashes) {
+    holds_a_run_ = true;
     // A log without its last record says itself that it was cut off.
     if (is_lost_) return log_.reset();
     try {

@@ -55,6 +55,7 @@ class TakeWriter {
 public:
     /// Makes the folder; one that holds something else is refused. Throws Error.
     TakeWriter(std::filesystem::path folder, TakeAbout about);
+    /// Removes what was made for a run that never began: the folder is free for the next try.
     ~TakeWriter();
     TakeWriter(const TakeWriter&) = delete;
     TakeWriter& operator=(const TakeWriter&) = delete;
@@ -104,6 +105,7 @@ private:
     std::int64_t lines_ = 0;  // of events.jsonl
     std::map<std::string, std::int64_t> frames_;  // of each stream that is complete
     std::atomic<bool> is_lost_{false};
+    std::atomic<bool> holds_a_run_{false};  // something of a run was written
     std::atomic<bool> has_cut_stream_{false};  // one of the streams ends before the run
     std::string loss_;
     std::unordered_set<std::string> files_;

@@ -88,6 +88,29 @@ TEST_CASE("a rendered take is repeated to the bit, and one whose values were cha
     CHECK(told.out.find("differs: hand.pose at tick 400") != std::string::npos);
 }
 
+TEST_CASE("a run that is refused leaves no take behind, and the next try may use its folder") {
+    Folder folder;
+    const std::string patch = folder.write("touch.toml", touch).string(), take = (folder.path / "take").string();
+    const std::string rest = " --seconds 0.1 --record " + take + " --out " + (folder.path / "out").string();
+    for (const std::string verb : {"render ", "run --audio file "}) {
+        INFO(verb);
+        // Found when the nodes are prepared, after the take was begun.
+        const Outcome refused = folder.tactus(verb + patch + rest + " --set out.device=nobody");
+        REQUIRE(refused.code == 2);
+        CHECK_FALSE(fs::exists(take));
+        // What the user keeps there stays.
+        fs::create_directory(take);
+        folder.write("take/notes.txt", "mine");
+        CHECK(folder.tactus(verb + patch + rest + " --set out.device=nobody").code == 2);
+        CHECK(std::distance(fs::directory_iterator(take), fs::directory_iterator()) == 1);
+        const Outcome next = folder.tactus(verb + patch + rest + " --overwrite");
+        INFO(next.err);
+        CHECK(next.code == 0);
+        CHECK(folder.tactus("replay " + take).code == 0);
+        fs::remove_all(take);
+    }
+}
+
 TEST_CASE("what cannot be replayed says so before it runs", "[slow]") {
     Folder folder;
     folder.write("touch.toml", touch + "[assets]\nsound = \"sound.bin\"\n");
