@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -91,18 +92,29 @@ MotorDrive unpack(const DriveRecord& record) noexcept {
     return drive;
 }
 
+namespace {
+
+/// A number that a driver states of its device, and its place in shared memory.
+struct Number {
+    double DeviceInfo::* stated;
+    double InfoRecord::* shared;
+};
+constexpr std::array numbers{Number{&DeviceInfo::max_force, &InfoRecord::max_force},
+                             Number{&DeviceInfo::max_torque, &InfoRecord::max_torque},
+                             Number{&DeviceInfo::damping, &InfoRecord::damping},
+                             Number{&DeviceInfo::max_stiffness, &InfoRecord::max_stiffness},
+                             Number{&DeviceInfo::max_speed, &InfoRecord::max_speed},
+                             Number{&DeviceInfo::least_speed, &InfoRecord::least_speed},
+                             Number{&DeviceInfo::resolution, &InfoRecord::resolution},
+                             Number{&DeviceInfo::angular_resolution, &InfoRecord::angular_resolution},
+                             Number{&DeviceInfo::delay, &InfoRecord::delay}};
+
+}  // namespace
+
 InfoRecord pack(const DeviceInfo& info) noexcept {
     InfoRecord record;
     std::memcpy(record.name, info.name.data(), std::min(info.name.size(), sizeof record.name - 1));
-    record.max_force = info.max_force;
-    record.max_torque = info.max_torque;
-    record.damping = info.damping;
-    record.max_stiffness = info.max_stiffness;
-    record.max_speed = info.max_speed;
-    record.least_speed = info.least_speed;
-    record.resolution = info.resolution;
-    record.angular_resolution = info.angular_resolution;
-    record.delay = info.delay;
+    for (const Number& number : numbers) record.*number.shared = info.*number.stated;
     record.actuates_torque = info.actuates_torque ? 1 : 0;
     record.senses_rotation = info.senses_rotation ? 1 : 0;
     record.fingers = info.fingers;
@@ -110,24 +122,14 @@ InfoRecord pack(const DeviceInfo& info) noexcept {
 }
 
 DeviceInfo unpack(const InfoRecord& record) {
-    for (const double number :
-         {record.max_force, record.max_torque, record.damping, record.max_stiffness, record.max_speed,
-          record.least_speed, record.resolution, record.angular_resolution, record.delay})
-        if (!(std::isfinite(number) && number >= 0.0))
-            throw Error(fmt::format("the driver states {} as a limit of its device", number));
+    for (const Number& number : numbers)
+        if (const double stated = record.*number.shared; !(std::isfinite(stated) && stated >= 0.0))
+            throw Error(fmt::format("the driver states {} as a limit of its device", stated));
     if (record.fingers < 0 || record.fingers > static_cast<std::int64_t>(most_fingers))
         throw Error(fmt::format("the driver states {} fingers", record.fingers));
     DeviceInfo info;
     info.name = text_of(record.name, sizeof record.name);
-    info.max_force = record.max_force;
-    info.max_torque = record.max_torque;
-    info.damping = record.damping;
-    info.max_stiffness = record.max_stiffness;
-    info.max_speed = record.max_speed;
-    info.least_speed = record.least_speed;
-    info.resolution = record.resolution;
-    info.angular_resolution = record.angular_resolution;
-    info.delay = record.delay;
+    for (const Number& number : numbers) info.*number.stated = record.*number.shared;
     info.actuates_torque = record.actuates_torque == 1;
     info.senses_rotation = record.senses_rotation == 1;
     info.fingers = static_cast<int>(record.fingers);

@@ -4,6 +4,7 @@
 #include "assets/file/whole_file.hpp"
 #include "tests/campaign/limited_run.hpp"
 #include "tests/fuzz/seeds.hpp"
+#include "tests/support/recording_patch.hpp"
 
 #include <fmt/format.h>
 
@@ -14,26 +15,6 @@ namespace tactus::campaign {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* patch = R"(title = "recording"
-wires = [
-  "tone.signal -> sound.in",
-  "half.value -> table.in",
-]
-[nodes.tone]
-type = "sine"
-rate = "48 kHz"
-[nodes.sound]
-type = "record"
-rate = "48 kHz"
-[nodes.half]
-type = "constant"
-rate = "1 kHz"
-number = 0.5
-[nodes.table]
-type = "record"
-rate = "1 kHz"
-)";
 
 void make(std::vector<std::string> words, const fs::path& folder) {
     words.insert(words.begin(), tried_command());
@@ -62,7 +43,7 @@ void make_ct(const fs::path& file) {
 }  // namespace
 
 void make_earlier_work(const fs::path& folder) {
-    file::write_whole_file(folder / "p.toml", patch);
+    file::write_whole_file(folder / "p.toml", test::recording_patch);
     file::write_whole_file(
         folder / "window.script",
         "until 0.1\nset half.number 0.25\nframes 3\nrecord\nuntil 0.4\nset tone.frequency \"200 Hz\"\n"

@@ -128,20 +128,7 @@ TEST_CASE("a live run in which groups stand still for longer than rings hold is 
     std::int64_t skipped = 0;
     for (const auto& group : live.groups()) skipped += group->telemetry.skipped;
     CHECK(skipped > 100);
-    const take::TimingLog recorded = take::TimingLog::load(log);
-    for (const int threads : {1, 3})
-        for (const bool random : {false, true})
-            for (const int block : {0, 1, 480}) {
-                INFO(threads << " threads, blocks of " << block << (random ? " at random" : ""));
-                run::EngineOptions again;
-                again.seconds = options.seconds;
-                again.replay = &recorded;
-                again.block = block;
-                again.random_blocks = random;
-                run::Engine replay(compile_text(patch), again);
-                replay.render(threads);
-                CHECK(replay.port_hashes() == live.port_hashes());
-            }
+    check_replays([&] { return compile_text(patch); }, options.seconds, log, live.port_hashes());
     std::filesystem::remove(log);
 }
 

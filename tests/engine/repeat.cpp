@@ -3,6 +3,7 @@
 
 #include "dsp/core/random.hpp"
 #include "tests/engine/chaos.hpp"
+#include "tests/support/catch.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -11,6 +12,24 @@
 #include <atomic>
 
 namespace tactus::test {
+
+void check_replays(const std::function<compile::Plan()>& plan, double seconds, const std::filesystem::path& log,
+                   const run::Engine::PortHashes& live) {
+    const take::TimingLog recorded = take::TimingLog::load(log);
+    for (const int threads : {1, 3})
+        for (const bool random : {false, true})
+            for (const int block : {0, 1, 480}) {
+                INFO(threads << " threads, blocks of " << block << (random ? " at random" : ""));
+                run::EngineOptions options;
+                options.seconds = seconds;
+                options.replay = &recorded;
+                options.block = block;
+                options.random_blocks = random;
+                run::Engine replay(plan(), options);
+                replay.render(threads);
+                CHECK(replay.port_hashes() == live);
+            }
+}
 
 Repetition repeat(const std::filesystem::path& folder, int threads) {
     const take::Take take = take::Take::load(folder);

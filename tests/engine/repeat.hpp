@@ -6,6 +6,7 @@
 #include "engine/take/take_compare.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 namespace tactus::test {
@@ -18,6 +19,10 @@ struct Repetition {
 };
 
 Repetition repeat(const std::filesystem::path& take, int threads);
+
+/// Replays a log of a live run of `seconds` with threads and blocks of several numbers; checks every output.
+void check_replays(const std::function<compile::Plan()>& plan, double seconds, const std::filesystem::path& log,
+                   const run::Engine::PortHashes& live);
 
 /// A name in the temporary folder that nobody has used.
 std::filesystem::path scratch(const std::string& name);

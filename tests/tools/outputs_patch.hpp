@@ -1,32 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small patch that records a sound and a table, and the command as a shell calls it.
+// The command as a shell calls it, and a patch for it.
 #pragma once
 
+#include "tests/support/recording_patch.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <string>
 
 namespace tactus::test {
-
-inline const std::string recording_patch = R"(title = "recording"
-wires = [
-  "tone.signal -> sound.in",
-  "half.value -> table.in",
-]
-[nodes.tone]
-type = "sine"
-rate = "48 kHz"
-[nodes.sound]
-type = "record"
-rate = "48 kHz"
-[nodes.half]
-type = "constant"
-rate = "1 kHz"
-number = 0.5
-[nodes.table]
-type = "record"
-rate = "1 kHz"
-)";
 
 /// In `folder`; $T is the command. Standard output and error are apart.
 inline Outcome shell(const Folder& folder, const std::string& script) {

@@ -245,20 +245,7 @@ TEST_CASE("what came too late between two audio groups is repeated from the log,
     std::int64_t late = 0;
     for (const auto& group : live.groups()) late += group->telemetry.misses + group->telemetry.skipped;
     CHECK(late > 0);
-    const take::TimingLog recorded = take::TimingLog::load(log);
-    for (const int threads : {1, 3})
-        for (const bool random : {false, true})
-            for (const int block : {0, 1, 480}) {
-                INFO(threads << " threads, blocks of " << block << (random ? " at random" : ""));
-                run::EngineOptions again;
-                again.seconds = options.seconds;
-                again.replay = &recorded;
-                again.block = block;
-                again.random_blocks = random;
-                run::Engine replay(plan_of(text), again);
-                replay.render(threads);
-                CHECK(replay.port_hashes() == live.port_hashes());
-            }
+    check_replays([&] { return plan_of(text); }, options.seconds, log, live.port_hashes());
     std::filesystem::remove(log);
 }
 
