@@ -3,6 +3,7 @@
 
 #include "assets/file/toml_file.hpp"
 #include "assets/file/whole_file.hpp"
+#include "assets/sound/saw_model_file.hpp"
 #include "assets/sound/sound.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
@@ -23,9 +24,9 @@ constexpr double lowest_rate = 5.0, highest_rate = 1000.0;  // Hz
 constexpr double lowest_heard = 60.0, highest_heard = 400.0; // Hz: search range for an unstated rate
 constexpr double usual_load = 7.0;                          // N: typical thrust on a bone saw
 
-const std::array<std::string, 7> set_keys{"title",  "note",       "licence",  "synthesised",
-                                          "sensor", "full_scale", "recording"};
-const std::array<std::string, 8> recording_keys{"file", "state", "rate",   "load",
+const std::array<std::string, 8> set_keys{"title",  "note",       "licence",   "synthesised",
+                                          "sensor", "full_scale", "recording", "model"};
+const std::array<std::string, 9> recording_keys{"file", "state", "rate",   "load",      "density",
                                                 "loop", "note",  "sensor", "full_scale"};
 const std::array<std::string, 2> states{"cutting", "free_air"};
 
@@ -83,6 +84,14 @@ public:
         sensor_ = text_of(root, "sensor");
         if (const toml::node* value = root.get("full_scale")) full_scale_ = full_scale(*value);
         const toml::node* list = root.get("recording");
+        if (const toml::node* model = root.get("model")) {
+            if (list) throw Error(location(list->source()), "a file holds recordings or a model, not both");
+            if (!model->is_table()) throw Error(location(model->source()), "'model' must be a table: [model]");
+            SawModelTable table = read_saw_model(*model->as_table(), path_.string());
+            set.model = std::move(table.model);
+            set.model_calibrated = table.calibrated;
+            return set;
+        }
         if (!list) throw Error({path_.string(), 1, 1}, "the set has no recording; start each with [[recording]]");
         const toml::array* items = list->as_array();
         if (!items) throw Error(location(list->source()), "a recording begins with [[recording]], in two brackets");
@@ -162,6 +171,12 @@ private:
         if (rate && !(r.rate >= lowest_rate && r.rate <= highest_rate))
             throw Error(location(rate->source()), "'rate' must be 5 Hz to 1 kHz");
         load(*table, item, r);
+        if (const toml::node* density = table->get("density")) {
+            if (!r.cutting) throw Error(location(density->source()), "in free air there is no bone; remove 'density'");
+            r.density = quantity(*density, "density", "kg/m^3");
+            if (!(r.density >= 1.0 && r.density <= 1e4))
+                throw Error(location(density->source()), "'density' must be 1 to 10000 kg/m^3");
+        }
         try {
             load_samples(r);
         } catch (const Error& error) {
@@ -232,13 +247,16 @@ RecordingSet load_recording_set(const std::filesystem::path& path, std::optional
     return set;
 }
 
+vibration::SawRecording saw_recording(const Recording& r) {
+    const Part part = part_of(r);
+    return {r.samples, static_cast<double>(r.sample_rate), r.rate,     r.load,
+            r.cutting, r.full_scale.value_or(1.0),         part.begin, part.end,
+            r.density};
+}
+
 std::vector<vibration::SawRecording> saw_recordings(const RecordingSet& set) {
     std::vector<vibration::SawRecording> out;
-    for (const Recording& r : set.recordings) {
-        const Part part = part_of(r);
-        out.push_back({r.samples, static_cast<double>(r.sample_rate), r.rate, r.load, r.cutting,
-                       r.full_scale.value_or(1.0), part.begin, part.end});
-    }
+    for (const Recording& r : set.recordings) out.push_back(saw_recording(r));
     return out;
 }
 

@@ -2,7 +2,8 @@
 // Recordings of a saw, each with its conditions: state, rate and load.
 #pragma once
 
-#include "dsp/vibration/saw_voice.hpp"
+#include "dsp/vibration/saw_model.hpp"
+#include "dsp/vibration/saw_recording.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -17,6 +18,7 @@ struct Recording {
     double rate = 0.0;                 ///< reciprocation rate (strokes back and forth per second), Hz
     bool rate_estimated = false;       ///< estimated from the sound, because the set does not state it
     double load = 0.0;                 ///< thrust, N; 0 in free air
+    double density = 0.0;              ///< of the bone, kg/m³; 0: not stated
     std::string sensor;                ///< description of the sensor
     std::string note;
     std::optional<double> full_scale;  ///< m/s² at sample value 1; empty when uncalibrated
@@ -31,8 +33,12 @@ struct RecordingSet {
     std::string title, note, licence;
     bool synthesised = false;  ///< computed, not recorded
     std::vector<Recording> recordings;
+    std::optional<vibration::SawModel> model;  ///< instead of recordings
+    bool model_calibrated = false;
 
-    bool calibrated() const { return !recordings.empty() && recordings.front().full_scale.has_value(); }
+    bool calibrated() const {
+        return model ? model_calibrated : !recordings.empty() && recordings.front().full_scale.has_value();
+    }
 };
 
 /// Reads a set (TOML) and all its sounds:
@@ -45,15 +51,19 @@ struct RecordingSet {
 ///     state = "cutting"                  # or "free_air"
 ///     rate  = "233 Hz"                   # of reciprocation, 5 Hz to 1 kHz
 ///     load  = "7 N"                      # cutting only, required there
+///     density = "1200 kg/m^3"            # cutting only: the apparent density of the bone, optional
 ///     loop  = ["0.1 s", "2.4 s"]         # optional: the part to use
 ///     note  = "…"
 ///
 /// A plain sound file becomes a set of one uncalibrated cutting recording at 7 N; its rate is estimated unless `rate`
 /// (Hz) is given; SawVoice plays it 12 dB lower in free air. A set cannot mix calibrated and uncalibrated recordings.
+/// A file with a table [model] (saw_model_file.hpp) becomes a set without recordings, with that model.
 /// Throws Error with file, line and column.
 RecordingSet load_recording_set(const std::filesystem::path& path, std::optional<double> rate = std::nullopt);
 
-/// The input of SawVoice::prepare; refers to `set`.
+/// Refers to the samples of `recording`.
+vibration::SawRecording saw_recording(const Recording& recording);
+/// The input of SawVoice::prepare and fit_saw_model; refers to `set`.
 std::vector<vibration::SawRecording> saw_recordings(const RecordingSet& set);
 
 }  // namespace tactus::sound

@@ -2,6 +2,7 @@
 #include "dsp/vibration/cycle_loop.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/vibration/sinc_reading.hpp"
 
 #include <fmt/format.h>
 
@@ -16,64 +17,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Windowed sinc with `half` zero crossings on each side (Blackman window), finely tabulated with linear interpolation.
-struct Kernel {
-    static constexpr int steps = 512;
-    int half;
-    std::vector<double> table;
-
-    explicit Kernel(int crossings) : half(crossings), table(static_cast<std::size_t>(crossings * steps + 2)) {
-        for (std::size_t i = 0; i + 2 < table.size(); ++i) {
-            const double x = static_cast<double>(i) / steps, w = pi * x / half;
-            const double window = 0.42 + 0.5 * std::cos(w) + 0.08 * std::cos(2.0 * w);
-            table[i] = (i == 0 ? 1.0 : std::sin(pi * x) / (pi * x)) * window;
-        }
-    }
-    double operator()(double x) const noexcept {
-        const double position = std::abs(x) * steps;
-        const auto i = static_cast<std::size_t>(position);
-        if (i + 1 >= table.size()) return 0.0;
-        const double part = position - static_cast<double>(i);
-        return table[i] + part * (table[i + 1] - table[i]);
-    }
-};
-
-constexpr int reading_half = 8, taps = 2 * reading_half;
-
-/// Interpolation kernel with one row of taps per fraction of a sample, so that a row is contiguous.
-struct ReadingTable {
-    static constexpr int steps = 512;
-    std::vector<float> rows = std::vector<float>((steps + 1) * taps);
-
-    ReadingTable() {
-        const Kernel kernel{reading_half};
-        for (int row = 0; row <= steps; ++row)
-            for (int tap = 0; tap < taps; ++tap)
-                rows[static_cast<std::size_t>(row * taps + tap)] =
-                    static_cast<float>(kernel(static_cast<double>(row) / steps - (tap + 1 - reading_half)));
-    }
-    /// `samples`: 16 of them; x in [0, 1] lies between the eighth and the ninth.
-    double operator()(const float* samples, double x) const noexcept {
-        const double position = x * steps;
-        const int row = std::min(static_cast<int>(position), steps - 1);
-        const auto part = static_cast<float>(position - row);
-        const float* const here = rows.data() + row * taps;
-        const float* const next = here + taps;
-        // Four parallel sums, for vector units.
-        float lanes[4] = {0.0f, 0.0f, 0.0f, 0.0f};
-        for (int tap = 0; tap < taps; tap += 4)
-            for (int lane = 0; lane < 4; ++lane) {
-                const int i = tap + lane;
-                lanes[lane] += samples[i] * (here[i] + part * (next[i] - here[i]));
-            }
-        return static_cast<double>((lanes[0] + lanes[1]) + (lanes[2] + lanes[3]));
-    }
-};
-
-const ReadingTable reading;
-
 /// The low-passed sound at a position (in samples); `cutoff` 1 is half the sample rate.
-double read_filtered(std::span<const float> samples, const Kernel& kernel, double position, double cutoff) {
+double read_filtered(std::span<const float> samples, const SincKernel& kernel, double position, double cutoff) {
     const double reach = kernel.half / cutoff;
     const auto count = static_cast<std::ptrdiff_t>(samples.size());
     const auto first = std::max<std::ptrdiff_t>(0, static_cast<std::ptrdiff_t>(std::ceil(position - reach)));
@@ -128,7 +73,7 @@ CycleLoop::CycleLoop(std::span<const float> samples, double sample_rate, double 
     samples_per_cycle_ = static_cast<double>(count_) / static_cast<double>(cycles_);
     const double step = length / static_cast<double>(count_), lead = static_cast<double>(fade_cycles) * period;
     const double cutoff = std::min(0.96, 0.84 * output_rate / sample_rate);
-    const Kernel kernel{24};
+    const SincKernel kernel{24};
     const auto fade = static_cast<std::size_t>(lead / step);
     std::vector<double> loop(count_), before(fade);
     for (std::size_t i = 0; i < count_; ++i)
@@ -166,7 +111,7 @@ double CycleLoop::operator()(double cycles) const noexcept {
     const auto whole = std::min(static_cast<std::size_t>(position), count_ - 1);
     const double x = position - static_cast<double>(whole);
     // The guard shifts the samples by reading_half: these are the 16 around the position.
-    return reading(samples_.data() + whole + 1, x);
+    return read_between(samples_.data() + whole + 1, x);
 }
 
 void CycleLoop::align(const CycleLoop& reference) {

@@ -2,7 +2,6 @@
 #include "dsp/vibration/saw_voice.hpp"
 
 #include "dsp/core/error.hpp"
-#include "dsp/signal/filter/one_pole.hpp"
 #include "dsp/vibration/refine_rate.hpp"
 
 #include <fmt/format.h>
@@ -29,19 +28,12 @@ void SawVoice::prepare(double rate, std::span<const SawRecording> recordings, co
     if (recordings.size() > most_recordings)
         throw Error(fmt::format("a saw takes at most {} recordings, not {}", most_recordings, recordings.size()));
     *this = SawVoice{};
-    rate_ = rate;
     behaviour_ = behaviour;
-    up_share_ = signal::lag_share(behaviour.spin_up_time, 1.0 / rate);
-    down_share_ = signal::lag_share(behaviour.spin_down_time, 1.0 / rate);
+    blade_ = BladeMotion(rate, behaviour);
     fade_step_ = behaviour.fade_time * rate > 1.0 ? 1.0 / (behaviour.fade_time * rate) : 1.0;
     bool any[2] = {false, false};
     for (const SawRecording& recording : recordings) {
-        const std::size_t end = recording.loop_end == 0 ? recording.samples.size() : recording.loop_end;
-        if (!positive(recording.sample_rate) || !positive(recording.reciprocation_rate) ||
-            !std::isfinite(recording.gain) || !std::isfinite(recording.load) || end > recording.samples.size() ||
-            recording.loop_begin >= end)
-            throw Error("a recording of a saw needs samples, a sample rate and a rate of reciprocation above 0");
-        const auto part = recording.samples.subspan(recording.loop_begin, end - recording.loop_begin);
+        const auto part = recording.part();
         const double exact = refine_rate(part, recording.sample_rate, recording.reciprocation_rate, 0.02);
         loops_.emplace_back(part, recording.sample_rate, exact, rate);
         loops_.back().align(loops_.front());
@@ -86,35 +78,18 @@ void SawVoice::make_groups() {
     }
 }
 
-void SawVoice::move_blade(bool trigger, double commanded_rate) noexcept {
-    const double wanted = trigger && commanded_rate > 0.0 ? std::min(commanded_rate, greatest_rate) : 0.0;
-    blade_rate_ += (wanted > 0.0 ? up_share_ : down_share_) * (wanted - blade_rate_);
-    if (wanted == 0.0 && blade_rate_ < 1.0) {
-        blade_rate_ = 0.0;
-        state_ = SawState::off;
-        return;
-    }
-    if (wanted == 0.0) {
-        state_ = SawState::spin_down;
-    } else if (state_ == SawState::off || state_ == SawState::spin_down) {
-        state_ = SawState::spin_up;
-    }
-    const bool reached = std::abs(blade_rate_ - wanted) < 0.02 * wanted;
-    if (wanted > 0.0 && (state_ != SawState::spin_up || reached)) state_ = loaded_ ? SawState::cutting : SawState::idle;
-}
-
 const SawVoice::Group& SawVoice::choose_group() noexcept {
-    const auto& groups = groups_[loaded_];
-    std::ptrdiff_t& playing = playing_[loaded_];
+    const auto& groups = groups_[blade_.loaded()];
+    std::ptrdiff_t& playing = playing_[blade_.loaded()];
     std::size_t nearest = 0;
-    while (nearest + 1 < groups.size() && blade_rate_ * blade_rate_ > groups[nearest].border) ++nearest;
+    while (nearest + 1 < groups.size() && blade_.rate() * blade_.rate() > groups[nearest].border) ++nearest;
     if (playing < 0) playing = static_cast<std::ptrdiff_t>(nearest);
     const Group &kept = groups[static_cast<std::size_t>(playing)], &near = groups[nearest];
     if (&kept == &near) return kept;
     const auto too_far = [&](const Group& group) {
-        return std::abs(blade_rate_ / group.rate - 1.0) > greatest_pitch_change;
+        return std::abs(blade_.rate() / group.rate - 1.0) > greatest_pitch_change;
     };
-    const bool nearer = ratio(blade_rate_, kept.rate) > 1.02 * ratio(blade_rate_, near.rate);
+    const bool nearer = ratio(blade_.rate(), kept.rate) > 1.02 * ratio(blade_.rate(), near.rate);
     if (!nearer && !(too_far(kept) && !too_far(near))) return kept;
     playing = static_cast<std::ptrdiff_t>(nearest);
     return near;
@@ -159,14 +134,14 @@ double SawVoice::mix() noexcept {
     if (active_count_ == 1) {
         // A single layer plays at its own level, whatever its weight.
         const Layer& alone = layers_[active_.front()];
-        return alone.weight > 0.0 ? alone.amplitude * loops_[alone.loop](cycles_) : 0.0;
+        return alone.weight > 0.0 ? alone.amplitude * loops_[alone.loop](blade_.cycles()) : 0.0;
     }
     double sum = 0.0, weights = 0.0, wanted = 0.0, got = 0.0;
     const std::size_t count = loops_.size();
     for (std::size_t i = 0; i < active_count_; ++i) {
         const Layer& a = layers_[active_[i]];
         if (a.weight <= 0.0) continue;
-        sum += a.weight * a.amplitude * loops_[a.loop](cycles_);
+        sum += a.weight * a.amplitude * loops_[a.loop](blade_.cycles());
         weights += a.weight;
         const double share = a.weight * a.level;
         wanted += share * a.level;
@@ -182,18 +157,17 @@ double SawVoice::mix() noexcept {
 
 float SawVoice::tick(double load, bool trigger, double commanded_rate) noexcept {
     const double thrust = std::isfinite(load) ? load : 0.0;
-    loaded_ = thrust > (loaded_ ? behaviour_.load_off : behaviour_.load_on);
-    move_blade(trigger, commanded_rate);
-    if (state_ == SawState::off) return 0.0f;
+    blade_.command(thrust, trigger, commanded_rate);
+    if (!running()) return 0.0f;
     choose_layers(thrust);
-    const double slow = std::min(1.0, blade_rate_ / lowest_recorded_);
+    const double slow = std::min(1.0, blade_.rate() / lowest_recorded_);
     const double y = behaviour_.gain * slow * slow * mix();
-    cycles_ += blade_rate_ / rate_;
+    blade_.advance();
     return static_cast<float>(y);
 }
 
 int SawVoice::loudest_recording() const {
-    if (state_ == SawState::off) return -1;
+    if (!running()) return -1;
     const auto loudest = std::max_element(layers_.begin(), layers_.end(),
                                           [](const Layer& a, const Layer& b) { return a.weight < b.weight; });
     return loudest == layers_.end() ? -1 : static_cast<int>(loudest->loop);

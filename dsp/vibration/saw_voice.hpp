@@ -2,7 +2,9 @@
 // Vibration of a powered saw at audio rate, synthesised from recordings that share one phase of the blade.
 #pragma once
 
+#include "dsp/vibration/blade_motion.hpp"
 #include "dsp/vibration/cycle_loop.hpp"
+#include "dsp/vibration/saw_recording.hpp"
 
 #include <array>
 #include <cstddef>
@@ -10,30 +12,6 @@
 #include <vector>
 
 namespace tactus::vibration {
-
-/// One mono recording of a saw at a steady rate. The samples are needed during `prepare` only.
-struct SawRecording {
-    std::span<const float> samples;
-    double sample_rate = 48000.0;         ///< Hz
-    double reciprocation_rate = 0.0;  ///< strokes per second, Hz; refined within ±2 % from the sound
-    double load = 0.0;  ///< thrust on the blade, N; ignored in free air
-    bool cutting = false;  ///< in bone, else in free air
-    double gain = 1.0;  ///< output per unit of sample: m/s² per full scale when calibrated
-    std::size_t loop_begin = 0;  ///< samples to use: [begin, end); end 0 means all
-    std::size_t loop_end = 0;
-};
-
-enum class SawState { off, spin_up, idle, cutting, spin_down };
-
-/// Behaviour of the saw; times in s.
-struct SawBehaviour {
-    double spin_up_time = 0.08;  ///< time constant of the rate after the trigger is pulled
-    double spin_down_time = 0.15;  ///< and after it is released
-    double load_on = 0.5;  ///< N: cutting starts above ...
-    double load_off = 0.3;  ///< ... and ends below
-    double fade_time = 0.02;  ///< cross-fade between recordings
-    double gain = 1.0;  ///< in addition to each recording's
-};
 
 /// Plays the recordings at the blade's rate. Output in m/s² when the recordings' gains are calibrated, else full scale.
 ///
@@ -47,7 +25,6 @@ struct SawBehaviour {
 /// `tick` is wait-free, does not allocate, and depends on its arguments and the state only.
 class SawVoice {
 public:
-    static constexpr double greatest_rate = 1000.0;  ///< Hz, of the blade
     static constexpr double greatest_pitch_change = 0.15;
     static constexpr std::size_t most_recordings = 32;
 
@@ -55,13 +32,13 @@ public:
     /// or a recording is shorter than 8 cycles. Resamples and loops each recording, which allocates.
     void prepare(double rate, std::span<const SawRecording> recordings, const SawBehaviour& behaviour = {});
 
-    /// One sample. `load` in N (non-finite: none), `commanded_rate` in Hz, clamped to [0, greatest_rate].
+    /// One sample. `load` in N (non-finite: none), `commanded_rate` in Hz, clamped to [0, BladeMotion::greatest_rate].
     float tick(double load, bool trigger, double commanded_rate) noexcept;
 
-    SawState state() const { return state_; }
-    double reciprocation_rate() const { return blade_rate_; }  ///< Hz, at this instant
-    bool running() const { return state_ != SawState::off; }  ///< the blade moves
-    double phase() const { return cycles_; }  ///< cycles of the blade since the start
+    SawState state() const { return blade_.state(); }
+    double reciprocation_rate() const { return blade_.rate(); }  ///< Hz, at this instant
+    bool running() const { return blade_.state() != SawState::off; }  ///< the blade moves
+    double phase() const { return blade_.cycles(); }  ///< cycles of the blade since the start
     /// Index in `prepare`'s list of the loudest recording now; -1 when off.
     int loudest_recording() const;
 
@@ -81,7 +58,6 @@ private:
     };
 
     void make_groups();
-    void move_blade(bool trigger, double commanded_rate) noexcept;
     void choose_layers(double load) noexcept;
     const Group& choose_group() noexcept;
     void aim(Layer& layer, double share) noexcept;
@@ -95,11 +71,9 @@ private:
     std::array<std::size_t, 2 * most_recordings> active_{};  // layers that play or are about to, in order
     std::size_t active_count_ = 0;
     SawBehaviour behaviour_;
-    double rate_ = 48000.0, up_share_ = 1.0, down_share_ = 1.0, fade_step_ = 1.0, lowest_recorded_ = 1.0;
-    double blade_rate_ = 0.0, cycles_ = 0.0;
+    BladeMotion blade_;
+    double fade_step_ = 1.0, lowest_recorded_ = 1.0;
     std::ptrdiff_t playing_[2] = {-1, -1};  // group in use: free air, cutting
-    bool loaded_ = false;
-    SawState state_ = SawState::off;
 };
 
 }  // namespace tactus::vibration

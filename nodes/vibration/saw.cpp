@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dsp/vibration/modelled_saw.hpp"
 #include "dsp/vibration/saw_voice.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
@@ -6,14 +7,19 @@
 namespace tactus::nodes {
 
 struct Saw {
-    static constexpr auto about = "Vibration of a powered saw, synthesised from recordings by blade rate and load.";
+    static constexpr auto about =
+        "Vibration of a powered saw by blade rate, load and density, from recordings or from a model of them.";
 
     In<Ramp> load{optional, "thrust on the blade; unconnected: 0", "N"};
     In<bool> trigger{optional, "the saw runs while true; unconnected: it always runs"};
+    In<Ramp> density{optional, "apparent density of the bone; only a model follows it; unconnected: unknown", "kg/m^3"};
     Out<Signal> signal{"the vibration; relative to full scale if the recordings are not calibrated", "m/s^2"};
     Out<double> rate{"strokes of the blade per second", "Hz"};
     Out<bool> running{"the blade moves"};
-    Asset<sound::RecordingSet> saw{"the recordings"};
+    Asset<sound::RecordingSet> saw{"the recordings, or a model made of them by 'tactus model'"};
+    Choice voice{{"recordings", "model"},
+                 "recordings: the nearest recording at the blade's pitch; model: orders and residual noise, "
+                 "interpolated between the recordings; a model file is always played as a model"};
     Param blade_rate{"233 Hz", "0 Hz", "1 kHz", "strokes per second that the operator has set"};
     Param gain{structural, "1", "0", "1000", "factor of the vibration"};
     Param spin_up{structural, "80 ms", "0 ms", "10 s", "time constant of the rate after the trigger is pulled"};
@@ -23,9 +29,12 @@ struct Saw {
     Param fade{structural, "20 ms", "1 ms", "1 s", "duration of the cross-fade between recordings"};
 
     void prepare(const Setup& setup) {
+        const vibration::SawBehaviour behaviour{spin_up, spin_down, load_on, load_off, fade, gain};
         try {
-            voice_.prepare(setup.rate(), sound::saw_recordings(*saw),
-                           {spin_up, spin_down, load_on, load_off, fade, gain});
+            modelled_ = saw->model.has_value() || voice.is("model");
+            if (!modelled_) voice_.prepare(setup.rate(), sound::saw_recordings(*saw), behaviour);
+            else if (saw->model) model_.prepare(setup.rate(), *saw->model, behaviour);
+            else model_.prepare(setup.rate(), vibration::fit_saw_model(sound::saw_recordings(*saw)), behaviour);
         } catch (const Error& error) {
             setup.fail(error.message());
         }
@@ -34,6 +43,14 @@ struct Saw {
     void process(const Tick& tick) noexcept {
         const bool pulled = !trigger.connected || trigger;
         const double commanded = blade_rate;
+        if (modelled_) {
+            for (int i = 0; i < tick.frames; ++i) {
+                signal[i] = model_.tick(load[i], density[i], pulled, commanded);
+                rate[i] = model_.blade().rate();
+                running[i] = model_.blade().state() != vibration::SawState::off;
+            }
+            return;
+        }
         for (int i = 0; i < tick.frames; ++i) {
             signal[i] = voice_.tick(load[i], pulled, commanded);
             rate[i] = voice_.reciprocation_rate();
@@ -43,9 +60,11 @@ struct Saw {
 
 private:
     vibration::SawVoice voice_;
+    vibration::ModelledSaw model_;
+    bool modelled_ = false;
 };
 
-TACTUS_NODE(Saw, load, trigger, signal, rate, running, saw, blade_rate, gain, spin_up, spin_down, load_on, load_off,
-            fade)
+TACTUS_NODE(Saw, load, trigger, density, signal, rate, running, saw, voice, blade_rate, gain, spin_up, spin_down,
+            load_on, load_off, fade)
 
 }  // namespace tactus::nodes

@@ -19,6 +19,7 @@
     X(validate, vibration, vibrations)    \
     X(measure, vibration, vibrations)     \
     X(equalise, vibration, vibrations)    \
+    X(model, vibration, vibrations)       \
     X(exposure, vibration, vibrations)    \
     X(import, bones, bones)               \
     X(info, bones, bones)                 \

@@ -209,8 +209,8 @@ TEST_CASE("a saw that is off is silent, and no command makes it faster than its 
     CHECK_FALSE(voice.running());
     for (const double command : {1e9, HUGE_VAL})
         for (int i = 0; i < 48000; ++i) REQUIRE(std::isfinite(voice.tick(0.0, true, command)));
-    CHECK(voice.reciprocation_rate() <= vibration::SawVoice::greatest_rate);
-    CHECK(voice.reciprocation_rate() > 0.99 * vibration::SawVoice::greatest_rate);
+    CHECK(voice.reciprocation_rate() <= vibration::BladeMotion::greatest_rate);
+    CHECK(voice.reciprocation_rate() > 0.99 * vibration::BladeMotion::greatest_rate);
     for (int i = 0; i < 3 * 48000; ++i) REQUIRE(std::isfinite(voice.tick(0.0, true, std::nan(""))));
     CHECK_FALSE(voice.running());
 }

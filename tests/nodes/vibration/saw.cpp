@@ -45,3 +45,17 @@ TEST_CASE("a saw with no trigger wire always runs, and cuts louder than it idles
     CHECK(level(signal, 36000) == Approx(20.0 * shape).epsilon(0.05));
     CHECK(level(signal, 84000) == Approx(50.0 * shape).epsilon(0.05));
 }
+
+TEST_CASE("a saw played as a model has the levels and the rate of its recordings") {
+    NodeHarness node("saw");
+    node.set("blade_rate", "200 Hz").set("voice", "model").disconnect("trigger").disconnect("density");
+    node.feed<double>("load", [](std::int64_t k) { return k < 48000 ? 0.0 : 7.0; });
+    node.prepare();
+    node.run(2 * 48000);
+    const auto signal = node.values<float>("signal");
+    const double shape = std::sqrt((1.0 + 0.09) / 2.0);
+    CHECK(level(signal, 36000) == Approx(20.0 * shape).epsilon(0.05));
+    CHECK(level(signal, 84000) == Approx(50.0 * shape).epsilon(0.05));
+    CHECK(node.last<double>("rate") == Approx(200.0).epsilon(0.01));
+    CHECK(node.last<bool>("running"));
+}

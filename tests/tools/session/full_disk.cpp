@@ -2,6 +2,7 @@
 // A disk that gets full or goes away during a run: what was written stays, the rest of the run is kept.
 #include "assets/sound/sound.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/sanitized.hpp"
 #include "tests/support/skip.hpp"
 #include "tests/tools/outputs_patch.hpp"
 
@@ -14,7 +15,9 @@ using nlohmann::json;
 using tactus::test::Folder;
 using tactus::test::Outcome;
 using tactus::test::recording_patch;
+using tactus::test::sanitized;
 using tactus::test::shell;
+using tactus::test::skip;
 using tactus::test::slurp;
 
 namespace {
@@ -52,12 +55,8 @@ void no_parts(const fs::path& folder) {
 }
 
 bool is_sanitized() {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    tactus::test::skip("a sanitizer must be loaded first, so no disk can be made to fail here");
-    return true;
-#else
-    return false;
-#endif
+    if (sanitized) skip("a sanitizer must be loaded first, so no disk can be made to fail here");
+    return sanitized;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "tools/study/vibration/validation.hpp"
 
 #include "assets/sound/sound.hpp"
+#include "dsp/core/error.hpp"
 #include "engine/run/engine.hpp"
 #include "graph/patch/sub_patch.hpp"
 #include "nodes/catalogue.hpp"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace tactus::study {
 
@@ -29,11 +31,10 @@ std::vector<float> after(const std::filesystem::path& file, double from, double&
 
 /// The played part of a recording, in m/s² if calibrated.
 std::vector<float> reference_of(const sound::Recording& recording) {
-    const vibration::SawRecording part = sound::saw_recordings({{}, {}, {}, {}, false, {recording}}).front();
-    const std::size_t end = part.loop_end == 0 ? recording.samples.size() : part.loop_end;
-    std::vector<float> samples(recording.samples.begin() + static_cast<std::ptrdiff_t>(part.loop_begin),
-                               recording.samples.begin() + static_cast<std::ptrdiff_t>(end));
-    for (float& x : samples) x *= static_cast<float>(part.gain);
+    const vibration::SawRecording played = sound::saw_recording(recording);
+    const std::span<const float> part = played.part();
+    std::vector<float> samples(part.begin(), part.end());
+    for (float& x : samples) x *= static_cast<float>(played.gain);
     return samples;
 }
 
@@ -62,6 +63,8 @@ Validation plan_validation(const ValidateSettings& settings) {
     if (choice.seed) validation.source.seed = *choice.seed;
     validation.path = find_saw_path(validation.source, settings.saw, settings.out_port, nodes::catalogue());
     validation.set = std::make_shared<const sound::RecordingSet>(sound::load_recording_set(settings.set));
+    if (validation.set->model)
+        throw Error(settings.set.string() + " holds a model of a saw; give the recording set that it was made from");
     for (const sound::Recording& recording : validation.set->recordings)
         for (const double level : settings.levels) {
             ValidationRun& run = validation.runs.emplace_back();
