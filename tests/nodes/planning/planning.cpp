@@ -282,19 +282,25 @@ std::shared_ptr<const cases::CaseBones> scanned(const Vec3& far) {
     return c;
 }
 
-coupling::Scene scene_of(const std::shared_ptr<const cases::CaseBones>& plan) {
-    NodeHarness scene("case_scene", servo);
-    scene.asset("plan", plan);
-    scene.disconnect_optional();
-    scene.prepare();
-    scene.run(1);
-    return scene.last<coupling::Scene>("scene");
-}
+/// A scene and the node that holds its bodies.
+struct ShownCase {
+    NodeHarness node{"case_scene", servo};
+    coupling::Scene now;
+
+    explicit ShownCase(const std::shared_ptr<const cases::CaseBones>& plan) {
+        node.asset("plan", plan);
+        node.disconnect_optional();
+        node.prepare();
+        node.run(1);
+        now = node.last<coupling::Scene>("scene");
+    }
+};
 
 TEST_CASE("the matcher finds where a fragment fits from beside it, and says that a copy of its partner does not") {
     const Vec3 far = Vec3(6.0, 2.0, -3.0) * mm;
     const auto displaced = scanned(far);
-    coupling::Scene now = scene_of(displaced);
+    const ShownCase shown(displaced);
+    coupling::Scene now = shown.now;
     const Pose there{-far, {1.0, 0.0, 0.0, 0.0}};
     now.objects[1].pose = beside * there * now.objects[1].body.home;
     NodeHarness matcher("fragment_matcher", {.period = flicks_per_second / 4});
@@ -328,7 +334,8 @@ TEST_CASE("the matcher does not lead to a fit that only repeats the scan, wherev
           "[slow]") {
     for (const char* reach : {"near", "anywhere"}) {
         CAPTURE(reach);
-        coupling::Scene now = scene_of(broken());
+        const ShownCase shown(broken());
+        coupling::Scene now = shown.now;
         const Pose brought{Vec3(20.0, -30.0, 10.0) * mm, rotation_by({0.4, 0.2, -0.3})};
         now.objects[0].pose = brought * now.objects[0].body.home;
         now.objects[1].pose = brought * beside * now.objects[1].body.home;
