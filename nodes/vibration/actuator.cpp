@@ -13,12 +13,14 @@ struct Actuator {
     In<Signal> drive{"signal to play"};
     Out<Signal> voltage{"output of the amplifier", "V"};
     Out<Signal> signal{"acceleration of the handle", "m/s^2"};
+    Out<Signal> current{"in the coil", "A"};
     Choice preset{{"haptuator_small", "haptuator_large", "markII_D"},
                   "data of the actuator; used for parameters that are 0"};
     Param gain{"1 V", "-100 V", "100 V", "drive voltage per unit of the signal"};
-    Param mass{structural, "100 g", "1 g", "10 kg", "total vibrating mass"};
-    Param resonance{structural, "0 Hz", "0 Hz", "2 kHz", "of the moving mass on its spring"};
-    Param damping{structural, "0", "0", "10", "damping ratio"};
+    Param mass{structural, "100 g", "1 g", "10 kg", "total vibrating mass: handle, housing and moving mass"};
+    Param moving_mass{structural, "0 g", "0 g", "10 kg", "in the housing; the resonance depends on both masses"};
+    Param resonance{structural, "0 Hz", "0 Hz", "2 kHz", "on this handle at a constant voltage, back-EMF included"};
+    Param damping{structural, "0", "0", "10", "damping ratio on this handle, back-EMF included"};
     Param resistance{structural, "0 ohm", "0 ohm", "1 kohm", "of the coil"};
     Param inductance{structural, "0 mH", "0 mH", "1 H", "of the coil"};
     Param voltage_limit{structural, "0 V", "0 V", "100 V", "of the amplifier"};
@@ -28,13 +30,18 @@ struct Actuator {
         try {
             vibration::ActuatorModel data =
                 vibration::find_actuator(preset.options[static_cast<std::size_t>(preset.index)]);
-            override_with(data.resonance, resonance);
-            override_with(data.damping, damping);
+            override_with(data.moving_mass, moving_mass);
             override_with(data.resistance, resistance);
             override_with(data.inductance, inductance);
             override_with(data.voltage_limit, voltage_limit);
             override_with(data.current_limit, current_limit);
-            actuator_ = tactus::vibration::Actuator(data, mass, setup.rate());
+            vibration::ActuatorMechanics mechanics = vibration::mechanics_of(data);
+            if (resonance > 0.0 || damping > 0.0) {
+                double frequency = vibration::resonance_on(data, mass).frequency;
+                override_with(frequency, resonance);
+                mechanics = vibration::tuned(data, mechanics, mass, frequency, damping);
+            }
+            actuator_ = tactus::vibration::Actuator(data, mechanics, mass, setup.rate());
         } catch (const Error& error) {
             setup.fail(error.message());
         }
@@ -47,6 +54,7 @@ struct Actuator {
             const vibration::ActuatorOutput out = actuator_(volts * signal::finite_or_zero(drive[i]));
             voltage[i] = signal::to_sample(out.voltage);
             signal[i] = signal::to_sample(out.acceleration);
+            current[i] = signal::to_sample(out.current);
             limited_ += out.limited;
         }
     }
@@ -63,7 +71,7 @@ private:
     std::string name_;
 };
 
-TACTUS_NODE(Actuator, drive, voltage, signal, preset, gain, mass, resonance, damping, resistance, inductance,
-            voltage_limit, current_limit)
+TACTUS_NODE(Actuator, drive, voltage, signal, current, preset, gain, mass, moving_mass, resonance, damping, resistance,
+            inductance, voltage_limit, current_limit)
 
 }  // namespace tactus::nodes

@@ -229,15 +229,3 @@ TEST_CASE("a saw without usable recordings is refused") {
     const vibration::SawRecording fine[] = {{good, 48000.0, 233.0}};
     CHECK_THROWS_AS(voice.prepare(0.0, fine), Error);
 }
-
-TEST_CASE("an actuator shows its data sheet's acceleration and bounds voltage and current") {
-    const vibration::ActuatorModel& model = vibration::find_actuator("haptuator_small");
-    CHECK(vibration::Actuator(model, 0.020, 48000.0).gain(150.0) == Approx(24.5).epsilon(0.01));
-    CHECK(3.0 * vibration::Actuator(model, 0.300, 48000.0).gain(150.0) == Approx(4.9).epsilon(0.01));
-    vibration::Actuator actuator(model, 0.3, 48000.0);
-    for (int i = 0; i < 1000; ++i) {
-        const vibration::ActuatorOutput out = actuator(i % 2 ? 1e6 : -1e6);
-        CHECK(std::abs(out.voltage) <= model.voltage_limit);
-        CHECK(std::abs(out.current) <= model.current_limit);
-    }
-}
