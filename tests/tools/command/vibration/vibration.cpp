@@ -2,6 +2,8 @@
 // measure, equalise and compare as scripts call them: the loop from a sweep to a vibration that is the saw's.
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
+#include "tests/support/sanitized.hpp"
+#include "tests/support/skip.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <sndfile.h>
@@ -314,6 +316,7 @@ TEST_CASE("compare reads logs as it reads sounds, each with its own columns, and
 }
 
 TEST_CASE("compare needs no more memory for a longer recording", "[slow]") {
+    if (tactus::test::sanitized) return tactus::test::skip("sanitizers hold memory of their own");
     const Folder folder;
     const auto kilobytes = [&](double seconds) {
         const fs::path file = sound_of(folder, "long.wav", saw(233.0), {.rate = 8000, .seconds = seconds});
