@@ -34,6 +34,7 @@
     X(GripperOutput, admittance)        \
     X(HeldWeight, admittance)           \
     X(Insertion, contact)               \
+    X(KerfHeat, contact)                \
     X(Magnitude, math)                  \
     X(Mix, vibration)                   \
     X(PassivityObserver, coupling)      \

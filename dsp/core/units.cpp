@@ -17,7 +17,7 @@ namespace {
 struct Named {
     std::string_view symbol;
     double factor;
-    std::array<std::int8_t, Dimension::base_count> exponent;  // m, kg, s, A, rad, HU
+    std::array<std::int8_t, Dimension::base_count> exponent;  // m, kg, s, A, rad, HU, K
     bool prefixed;                                            // takes SI prefixes
 };
 
@@ -41,6 +41,7 @@ constexpr Named named_units[] = {
     {"H", 1.0, {2, 1, -2, -2, 0, 0}, true},
     {"Pa", 1.0, {-1, 1, -2, 0, 0, 0}, true},
     {"L", 1e-3, {3, 0, 0, 0, 0, 0}, true},
+    {"K", 1.0, {0, 0, 0, 0, 0, 0, 1}, true},
     {"min", 60.0, {0, 0, 1, 0, 0, 0}, false},
     {"h", 3600.0, {0, 0, 1, 0, 0, 0}, false},
     {"%", 0.01, {}, false},

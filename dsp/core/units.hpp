@@ -11,7 +11,7 @@ namespace tactus {
 
 /// Exponents of the base units. Angle and CT number count as base units so that Hz is not rad/s and HU is not a number.
 struct Dimension {
-    enum Base { metre, kilogram, second, ampere, radian, hounsfield, base_count };
+    enum Base { metre, kilogram, second, ampere, radian, hounsfield, kelvin, base_count };
     std::array<std::int8_t, base_count> exponent{};
 
     bool operator==(const Dimension&) const = default;

@@ -21,6 +21,8 @@ TEST_CASE("a quantity is stored in SI whatever unit it was written in") {
     CHECK(parse_as("128 µH", "H") == Approx(128e-6));
     CHECK(parse_as("25 %", "") == Approx(0.25));
     CHECK(parse_as("700 HU", "HU") == Approx(700.0));
+    CHECK(parse_as("2 kW/m^2/K", "W/m^2/K") == Approx(2000.0));
+    CHECK(parse_as("-17 K", "K") == Approx(-17.0));
 }
 
 TEST_CASE("dimensions do not mix") {

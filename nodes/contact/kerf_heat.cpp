@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/saw/kerf_heat.hpp"
+
+#include "graph/node/node.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace tactus::nodes {
+
+struct KerfHeat {
+    static constexpr auto about =
+        "Temperature of the bone along the cut: the teeth's work becomes heat at a line that moves with them (Jaeger "
+        "1942). Bone above 47 °C, 10 K above the body, for a minute is damaged (Eriksson and Albrektsson 1983).";
+
+    In<Pose> pose{"of the blade: x along the teeth, y into the bone, origin in the middle of the tooth line", "m"};
+    Batch<double> load{"thrust against the cutting direction", "N"};
+    In<bool> running{optional, "the saw runs; unconnected: always"};
+    In<double> strokes{optional, "cycles of the stroke per second; unconnected: 'stroke_rate'", "Hz"};
+    In<bool> irrigated{optional, "water flows into the kerf; unconnected: 'irrigation'"};
+    Out<double> rise{"of the hottest place now, above the body", "K"};
+    Out<double> peak{"of the hottest place since the start, above the body", "K"};
+    Out<double> hot_time{"longest time that one place was hotter than 'limit'", "s"};
+    Out<double> hot_reach{"greatest distance from the middle of the cut at which bone was hotter than 'limit'", "m"};
+    Param stroke_rate{"228 Hz", "1 Hz", "1000 Hz", "cycles of the stroke per second, unless 'strokes' is connected"};
+    Param stroke{"3 mm", "0.5 mm", "20 mm", "of the teeth, peak to peak"};
+    Param thrust_ratio{"1.6", "0.2", "10", "thrust over cutting force; 1.4 to 1.8 were measured on bone"};
+    Param contact{"15 mm", "1 mm", "80 mm", "length of the tooth line that cuts"};
+    Flag irrigation{false, "water flows into the kerf, unless 'irrigated' is connected"};
+    Param limit{"10 K", "1 K", "60 K", "rise above the body that counts as hot"};
+    Param share{structural, "0.5", "0", "1", "of the heat that enters the bone; an assumption"};
+    Param coolant{structural, "-17 K", "-37 K", "0 K", "the water's temperature above the body's"};
+    Param transfer{structural, "2 kW/m^2/K", "0 W/m^2/K", "100 kW/m^2/K", "heat transfer of the water; an assumption"};
+
+    void prepare(const Setup&) {
+        saw::KerfMaterial material;
+        material.share = share;
+        material.coolant = coolant;
+        material.transfer = transfer;
+        heat_.emplace(material);
+        cut_.reset();
+    }
+
+    void process(const Tick& tick) noexcept {
+        const Pose now = pose.get();
+        double thrust = 0.0, count = 0.0;
+        for (const double value : load.values()) {
+            if (!std::isfinite(value)) continue;
+            thrust += std::max(value, 0.0);
+            ++count;
+        }
+        if (count > 0.0) thrust /= count;
+        const bool runs = !running.connected || running.get();
+        const bool cuts = runs && thrust > 0.0 && is_valid(now);
+        if (cuts && !is_in_cut(now)) {
+            heat_->begin_cut();
+            cut_ = Cut{now.position, axis(now, {0.0, 1.0, 0.0}), axis(now, {0.0, 0.0, 1.0})};
+        }
+        heat_->limit = limit;
+        const double speed =
+            2.0 * stroke * (strokes.connected ? std::max(strokes.get(), 0.0) : static_cast<double>(stroke_rate));
+        const double power = cuts ? thrust / thrust_ratio * speed : 0.0;
+        if (cut_ && is_valid(now)) depth_ = glm::dot(now.position - cut_->origin, cut_->into);
+        heat_->advance(tick.elapsed_seconds(), cut_ ? depth_ : 0.0, power / contact,
+                       irrigated.connected ? irrigated.get() : static_cast<bool>(irrigation));
+        rise = heat_->hottest();
+        peak = heat_->peak();
+        hot_time = heat_->longest_above();
+        hot_reach = heat_->reach();
+    }
+
+    void report(Report& report) const {
+        report.set("heat", "peak_above_body_K", heat_->peak());
+        report.set("heat", "longest_above_limit_s", heat_->longest_above());
+        report.set("heat", "hot_reach_mm", heat_->reach() * 1e3);
+    }
+
+private:
+    struct Cut {
+        Vec3 origin, into, across;
+    };
+
+    static Vec3 axis(const Pose& at, const Vec3& of) noexcept { return glm::normalize(at.orientation) * of; }
+
+    /// Bone further away than heat reaches while one cuts is at rest.
+    bool is_in_cut(const Pose& now) const noexcept {
+        if (!cut_) return false;
+        const Vec3 offset = now.position - cut_->origin;
+        const double depth = glm::dot(offset, cut_->into), aside = glm::dot(offset, cut_->across);
+        return std::abs(aside) < 3e-3 && depth > -saw::KerfHeat::ahead &&
+               glm::length(offset - depth * cut_->into) < 40e-3 &&
+               glm::dot(axis(now, {0.0, 1.0, 0.0}), cut_->into) > 0.9;
+    }
+
+    std::optional<saw::KerfHeat> heat_;
+    std::optional<Cut> cut_;
+    double depth_ = 0.0;
+};
+
+TACTUS_NODE(KerfHeat, pose, load, running, strokes, irrigated, rise, peak, hot_time, hot_reach, stroke_rate, stroke,
+            thrust_ratio, contact, irrigation, limit, share, coolant, transfer)
+
+}  // namespace tactus::nodes
