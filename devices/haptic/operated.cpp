@@ -10,13 +10,18 @@
 namespace tactus::haptic {
 
 simulate::HandDynamics read_hand(Options& options) {
+    // What is not given follows from the grip.
+    const simulate::HandDynamics grip = simulate::gripping(options.quantity("grip", "5 N", "0 N", "100 N"));
+    const auto standard = [](double value, const char* unit) { return fmt::format("{} {}", value, unit); };
     simulate::HandDynamics hand;
     hand.mass = options.quantity("mass", "0.2 kg", "0.01 kg", "5 kg");
     hand.inertia = options.quantity("inertia", "4e-4 kg m^2", "1e-6 kg m^2", "1 kg m^2");
-    hand.stiffness = options.quantity("stiffness", "800 N/m", "0 N/m", "20000 N/m");
-    hand.damping = options.quantity("damping", "15 N s/m", "0 N s/m", "500 N s/m");
-    hand.angular_stiffness = options.quantity("angular_stiffness", "2 N m/rad", "0 N m/rad", "100 N m/rad");
-    hand.angular_damping = options.quantity("angular_damping", "0.04 N m s/rad", "0 N m s/rad", "5 N m s/rad");
+    hand.stiffness = options.quantity("stiffness", standard(grip.stiffness, "N/m"), "0 N/m", "20000 N/m");
+    hand.damping = options.quantity("damping", standard(grip.damping, "N s/m"), "0 N s/m", "500 N s/m");
+    hand.angular_stiffness =
+        options.quantity("angular_stiffness", standard(grip.angular_stiffness, "N m/rad"), "0 N m/rad", "100 N m/rad");
+    hand.angular_damping =
+        options.quantity("angular_damping", standard(grip.angular_damping, "N m s/rad"), "0 N m s/rad", "5 N m s/rad");
     return hand;
 }
 

@@ -13,7 +13,7 @@
 
 namespace tactus::haptic {
 
-/// Reads the options of the hand and the device: mass, inertia, stiffness, damping, angular_stiffness, angular_damping,
+/// Reads the options of the hand and the device: grip, mass, inertia, stiffness, damping, angular_stiffness, angular_damping,
 /// max_force, max_torque, max_stiffness, torque (false: a device without torque, with three degrees of freedom), and
 /// model, a simulated commercial device; with one, mass and inertia are those of the hand alone.
 simulate::HandDynamics read_hand(Options& options);

@@ -63,6 +63,7 @@ simulate::StrokePlan read_plan(Options& options) {
     plan.retract_at = options.quantity("retract_at", "60 s", "0 s");
     plan.trigger_on = options.quantity("trigger_on", "0.3 s", "0 s");
     plan.trigger_off = options.quantity("trigger_off", "1e9 s", "0 s");
+    plan.reaction_time = options.quantity("reaction_time", "0 ms", "0 ms", "500 ms");
     plan.tremor.rms = options.quantity("tremor", "0.05 mm", "0 mm", "5 mm");
     plan.tremor.random.seed = static_cast<std::uint64_t>(options.quantity("seed", "1", "0", "4294967295"));
     return plan;
@@ -71,8 +72,9 @@ simulate::StrokePlan read_plan(Options& options) {
 }  // namespace
 
 std::unique_ptr<HapticDevice> open_simulated(Options& options) {
-    const simulate::StrokePlan plan = read_plan(options);
+    simulate::StrokePlan plan = read_plan(options);
     const simulate::HandDynamics hand = read_hand(options);
+    plan.grip_stiffness = hand.stiffness;
     const simulate::DeviceModel* const model = read_model(options);
     DeviceInfo info = read_device_info(options, hand, "simulated hand");
     options.finish();

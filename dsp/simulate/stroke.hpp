@@ -5,6 +5,10 @@
 #include "dsp/simulate/hand.hpp"
 #include "dsp/simulate/tremor.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <numbers>
 
 namespace tactus::simulate {
@@ -25,7 +29,37 @@ struct StrokePlan {
     double retract_at = 60.0;              ///< s: retracts even if not through
     double trigger_on = 0.3;  ///< s
     double trigger_off = 1e9;  ///< s: trigger released then, or when back at the start pose
+    /// s from a felt force to the operator's answer, up to `longest_reaction`: 0.1 to 0.2 s by touch. Until then only the
+    /// grip answers, so after a sudden break-through the hand plunges for that long. 0: at once.
+    double reaction_time = 0.0;
+    /// Stiffness of the grip, N/m, by which an operator who reacts late feeds gently enough not to oscillate.
+    double grip_stiffness = 800.0;
     Tremor tremor{};
+
+    static constexpr double longest_reaction = 0.5;  ///< s
+};
+
+/// A force as it was `delay` s ago, to half a millisecond.
+class ReactionDelay {
+public:
+    explicit ReactionDelay(double delay) noexcept
+        : behind_(static_cast<std::size_t>(
+              std::lround(std::clamp(delay, 0.0, StrokePlan::longest_reaction) / resolution))) {}
+
+    double operator()(double h, double value) noexcept {
+        if (behind_ == 0) return value;
+        for (until_next_ -= h; until_next_ <= 0.0; until_next_ += resolution) {
+            held_[at_] = value;
+            at_ = (at_ + 1) % held_.size();
+        }
+        return held_[(at_ + held_.size() - 1 - behind_) % held_.size()];
+    }
+
+private:
+    static constexpr double resolution = 0.5e-3;  // s
+    std::array<double, static_cast<std::size_t>(StrokePlan::longest_reaction / resolution) + 2> held_{};
+    std::size_t behind_, at_ = 0;
+    double until_next_ = 0.0;
 };
 
 /// Model of the operator during a cut. The intended depth advances at feed_speed · (1 − felt / thrust): a muscle that
@@ -33,7 +67,7 @@ struct StrokePlan {
 /// thrust · (1 − v / feed_speed), for any stiffness of the contact.
 class StrokeOperator {
 public:
-    explicit StrokeOperator(const StrokePlan& plan = {}) : plan_(plan) {}
+    explicit StrokeOperator(const StrokePlan& plan = {}) : plan_(plan), noticed_(plan.reaction_time) {}
 
     /// See `advance` in hand.hpp.
     Intention operator()(double h, const Wrench& force, const Pose& hand) noexcept {
@@ -59,14 +93,14 @@ public:
     bool is_retracting() const noexcept { return retracting_; }
     double felt_thrust() const noexcept { return felt_; }  ///< N, as sensed
     double intended_depth() const noexcept { return depth_; }  ///< m
-    double time() const noexcept { return time_; }             ///< s
+    double time() const noexcept { return time_; }  ///< s
 
 private:
     static constexpr double sense_s = 0.03;  // proprioceptive delay as a low-pass; ten times faster than the feed loop
     static constexpr double ease_s = 1.0;
 
     double feed(double h, const Wrench& force, const Pose& hand) noexcept {
-        felt_ += (-glm::dot(force.force, plan_.feed_axis) - felt_) * h / (sense_s + h);
+        felt_ += (noticed_(h, -glm::dot(force.force, plan_.feed_axis)) - felt_) * h / (sense_s + h);
         if (time_ < plan_.feed_at) return 0.0;
         const double reached = glm::dot(hand.position - plan_.start.position, plan_.feed_axis);
         if (!retracting_ && (time_ >= plan_.retract_at || reached >= plan_.depth)) {
@@ -76,7 +110,14 @@ private:
             depth_ = std::min(depth_, std::max(reached, 0.0));
         }
         if (retracting_) return std::max(-plan_.retract_speed, -depth_ / h);
-        return plan_.feed_speed * std::clamp(1.0 - felt_ / plan_.thrust, -1.0, 1.0);
+        return plan_.feed_speed * std::clamp((1.0 - felt_ / plan_.thrust) * calm(), -1.0, 1.0);
+    }
+
+    /// An integrator that acts late on a spring oscillates when its gain times the delay comes near π/2; this keeps 1/2.
+    double calm() const noexcept {
+        if (plan_.reaction_time <= 0.0) return 1.0;
+        const double gain = plan_.feed_speed / plan_.thrust * plan_.grip_stiffness;
+        return std::min(1.0, 0.5 / (gain * (plan_.reaction_time + sense_s)));
     }
 
     void stroke(double t, double& along, double& speed) const noexcept {
@@ -104,6 +145,7 @@ private:
     }
 
     StrokePlan plan_;
+    ReactionDelay noticed_;
     double time_ = 0.0, depth_ = 0.0, felt_ = 0.0, retract_from_ = 0.0;
     bool retracting_ = false;
 };

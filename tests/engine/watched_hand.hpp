@@ -51,7 +51,7 @@ private:
 
     mutable std::mutex lock_;
     std::vector<Given> given_;
-    std::thread::id tick_;
+    std::atomic<std::thread::id> tick_;
     std::int64_t count_ = 0, counter_ = 0;
 };
 

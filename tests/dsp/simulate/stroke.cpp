@@ -120,6 +120,74 @@ TEST_CASE("an operator whose time is up pulls back too") {
     CHECK(glm::length(cut.hand.pose.position) < 0.5e-3);
 }
 
+TEST_CASE("an operator notices a force as long after as the reaction time says") {
+    for (const double delay : {0.0, 0.05, 0.2, 0.5}) {
+        simulate::ReactionDelay noticed(delay);
+        const double h = 0.25e-3;
+        double at = -1.0;
+        for (int i = 0; i < 8000 && at < 0.0; ++i)
+            if (noticed(h, i >= 4000 ? 1.0 : 0.0) > 0.5) at = (i - 4000) * h;
+        CHECK(at == Approx(delay).margin(1.1e-3));
+    }
+}
+
+TEST_CASE("when bone gives way, an operator with a reaction time plunges further than one without") {
+    const auto plunge = [](double reaction) {
+        simulate::StrokePlan plan;
+        plan.tremor.rms = 0.0;
+        plan.stroke_amplitude = 0.0;
+        plan.depth = 1.0;
+        plan.reaction_time = reaction;
+        simulate::StrokeOperator intend(plan);
+        simulate::Hand hand;
+        double wall = 0.0;
+        for (int i = 0; i < 4000; ++i) {
+            // A wall of 5 N/mm at 10 mm, which is gone after 3.9 s.
+            wall = std::max(0.0, -hand.pose.position.z - 10e-3);
+            simulate::advance(hand, intend, {{0.0, 0.0, i < 3900 ? 5000.0 * wall : 0.0}, {}}, period);
+        }
+        return -hand.pose.position.z;
+    };
+    const double at_once = plunge(0.0), late = plunge(0.15);
+    CHECK(late > 10e-3);
+    // For 0.1 s the late one still believes to press: the spring of the grip carries it 7 N / 0.8 N/mm further, and the
+    // other feeds on as soon as it feels nothing.
+    CHECK(at_once > late);
+    CHECK(late == Approx(10e-3 + 7.0 / 800.0 + 7.0 / 5000.0).margin(2e-3));
+}
+
+TEST_CASE("an operator who reacts late still presses steadily, with any grip") {
+    for (const double grip : {800.0, 2000.0, 6000.0}) {
+        simulate::StrokePlan plan;
+        plan.tremor.rms = 0.0;
+        plan.stroke_amplitude = 0.0;
+        plan.reaction_time = 0.2;
+        plan.grip_stiffness = grip;
+        simulate::StrokeOperator intend(plan);
+        simulate::Hand hand;
+        hand.dynamics.stiffness = grip;
+        double least = 1e9, most = 0.0;
+        for (int i = 0; i < 20000; ++i) {
+            const double force = 20000.0 * std::max(0.0, -hand.pose.position.z - 10e-3);
+            simulate::advance(hand, intend, {{0.0, 0.0, force}, {}}, period);
+            if (i < 15000) continue;
+            least = std::min(least, force);
+            most = std::max(most, force);
+        }
+        CHECK(most - least < 0.1);
+        CHECK(most == Approx(plan.thrust).epsilon(0.05));
+    }
+}
+
+TEST_CASE("a firmer grip is stiffer at the same damping ratio, and 5 N is the usual hand") {
+    const simulate::HandDynamics usual{}, soft = simulate::gripping(5.0), firm = simulate::gripping(50.0);
+    CHECK(soft.stiffness == usual.stiffness);
+    CHECK(soft.damping == usual.damping);
+    CHECK(firm.stiffness == Approx(2.62 * usual.stiffness));
+    CHECK(firm.damping / std::sqrt(firm.stiffness) == Approx(usual.damping / std::sqrt(usual.stiffness)));
+    CHECK(simulate::gripping(0.0).stiffness > 0.0);
+}
+
 TEST_CASE("the trigger follows its times") {
     simulate::StrokePlan plan;
     plan.trigger_on = 0.2;
