@@ -46,6 +46,7 @@ std::unique_ptr<Generation> GenerationBuilder::build() {
     find_survivors();
     allocate();
     prepare();
+    if (context_.limits_stiffness) limit_stiffness();
     drives_.resize(plan().nodes.size());
     for (const compile::PlanWire& wire : plan().wires) connect(wire);
     finish_links();

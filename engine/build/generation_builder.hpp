@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a plan is made runnable, step by step. Only generation*.cpp include it.
+// How a plan is made runnable, step by step. Only generation*.cpp and stiffness_limits.cpp include it.
 #pragma once
 
 #include "engine/build/generation.hpp"
@@ -43,6 +43,9 @@ private:
     void form_groups();
     void find_survivors();
     void prepare();
+
+    // stiffness_limits.cpp
+    void limit_stiffness();
 
     // generation_wires.cpp
     void allocate();

@@ -248,11 +248,14 @@ void GenerationBuilder::rewire(std::size_t index) {
     const std::size_t old = nodes_before_.at(node.name);
     const compile::PlanNode& old_node = before_->plan.nodes[old];
     for (const auto& [name, param] : node.params) {
+        Param* const runs = running.params.at(name);
+        if (param->max != old_node.params.at(name)->max)
+            program.limits.push_back({runs, param->max, made_->ramp_of(runs)});
         if (driven_.contains(param)) continue;
         const double now = made_->patch_values[index].at(name);
         // A value set from outside stays until the patch's text says another.
         if (now != before_->patch_values[old].at(name) || driven_before_.contains(old_node.params.at(name)))
-            program.params.push_back({running.params.at(name), now, made_->ramp_of(running.params.at(name))});
+            program.params.push_back({runs, now, made_->ramp_of(runs)});
     }
 }
 

@@ -113,6 +113,13 @@ struct NewValue {
     run::ParamRamp* ramp = nullptr;  ///< how it gets there, or null: at once
 };
 
+/// The largest value of a parameter of a node that goes on, from now on.
+struct NewLimit {
+    Param* param = nullptr;
+    double most = 0.0;
+    run::ParamRamp* ramp = nullptr;  ///< how a larger value gets there, or null: at once
+};
+
 /// Live: closed until every hand that a plan reaches is without force. Shared by the programs of the plan.
 struct SwitchGate {
     std::atomic<int> closed_by{0};  ///< groups whose hands still feel a force
@@ -146,6 +153,7 @@ struct GroupProgram {
     std::vector<SnapshotOutput*> snapshots;
     // What to do when taking over:
     std::vector<std::pair<Input*, const Input*>> wiring;  ///< inputs of nodes that go on, and how they are wired now
+    std::vector<NewLimit> limits;
     std::vector<NewValue> params;
     std::vector<MovedOutput> moved;
 };

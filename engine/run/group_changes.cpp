@@ -44,6 +44,8 @@ void GroupRuntime::take_over(build::GroupProgram& next) noexcept {
     }
     for (const auto& [input, wired] : next.wiring) *input = *wired;
     ramps_.keep(next.plan_number);
+    for (const build::NewLimit& limit : next.limits)
+        ramps_.limit(*limit.param, limit.ramp, limit.most, next_, ramp_length, next.plan_number);
     for (const build::NewValue& changed : next.params)
         ramps_.set(*changed.param, changed.ramp, changed.value, next_, ramp_length, next.plan_number);
     for (const auto& delay : next.delays)

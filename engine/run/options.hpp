@@ -39,6 +39,7 @@ struct EngineOptions {
     bool record_values = true;  ///< the take has them from the beginning; else from `Engine::record` on
     std::uint64_t longest_journal = std::uint64_t{4} << 30;  ///< bytes of decisions kept while no values are recorded
     observe::Observer* observer = nullptr;  ///< reads copies; changes nothing
+    bool limits_stiffness = true;  ///< refuse what is stiffer than a device states; false: `check`, which judges it
     bool live = false;
     io::AudioChoice audio;  ///< live only
     bool hash = true;  ///< keep `output_hash`; costs about as much per sample of a signal as a trivial node

@@ -120,7 +120,7 @@ std::vector<FeltSpring> felt_springs(const compile::Plan& plan) {
                     SourceLocation where = plan.nodes[n].where;
                     for (const OptionText& given : plan.patch.nodes[n].settings)
                         if (given.name == name) where = given.where;
-                    felt.push_back({plan.nodes[n].name + "." + name, where, param, setting_of(plan, sink, "device"),
+                    felt.push_back({plan.nodes[n].name + "." + name, where, param, static_cast<int>(sink),
                                     scale * scale, driven.contains(param)});
                 }
             }

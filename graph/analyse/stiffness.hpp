@@ -46,7 +46,7 @@ struct FeltSpring {
     std::string name;  ///< "blade.stiffness"
     SourceLocation where;  ///< of its value, or of its node
     Param* param = nullptr;
-    std::string device;  ///< that is pushed, by its name in the patch; "": the only one
+    int sink = -1;  ///< index of the node that gives the force to the device
     double scale = 1.0;  ///< of the parameter's N/m, at the device
     bool is_driven = false;  ///< by a wire
 };
@@ -65,7 +65,7 @@ constexpr double stiffness_limit(double damping, double period_s, double delay_s
 /// Every way from a device_input to a device_output, one line for each pair, in order of names. `damping` is asked for
 /// that of a device by its name in the patch ("": the only one). A workspace on the way enlarges what is felt by the
 /// square of its scale. `max_stiffness` is asked for in the same way; a stiffness that a wire drives stays below it,
-/// since the run limits it (tools/session/limit_stiffness.hpp).
+/// since the run limits it (engine/build/stiffness_limits.cpp).
 std::vector<ForceLoop> force_loops(const compile::Plan& plan, const std::function<double(const std::string&)>& damping,
                                    const std::function<double(const std::string&)>& max_stiffness = {});
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/session/live_control.hpp"
 
-#include "tools/session/limit_stiffness.hpp"
-
 #include "dsp/core/error.hpp"
 #include "graph/patch/sub_patch.hpp"
 
@@ -66,10 +64,7 @@ void LiveControl::edit(std::string text) {
         patch::Problems problems;
         std::optional<compile::Plan> plan =
             plan_of(patch::read_patch(text, file_, problems), choice_.overrides, choice_.seed, &assets_, problems);
-        if (problems.empty()) {
-            limit_stiffness(*plan, engine_.host());
-            return std::move(*plan);
-        }
+        if (problems.empty()) return std::move(*plan);
         std::string all;
         for (const std::string& line : problem_lines(problems)) all += (all.empty() ? "" : "\n") + line;
         throw Error(all);

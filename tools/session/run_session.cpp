@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/session/run_session.hpp"
 
-#include "tools/session/limit_stiffness.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/session/results.hpp"
 #include "tools/session/summary.hpp"
@@ -58,7 +57,6 @@ RunSession::RunSession(const RunChoice& choice, compile::AssetCache& assets, obs
         options.take = take_.get();
     } else if (choice.keeps_journal) begin_journal(options);
     engine_ = std::make_unique<run::Engine>(std::move(plan), options);
-    limit_stiffness(engine_->plan(), engine_->host());
     check_log(*engine_, choice.log, folder());
 }
 

@@ -319,7 +319,9 @@ int check(const CheckChoice& choice) {
         json = check_json(plan, problems);
         // Finds errors that only `prepare` can find: devices, file names, sizes.
         if (problems.empty()) {
-            const run::Engine engine(std::move(*plan), run::EngineOptions{});
+            run::EngineOptions options;
+            options.limits_stiffness = false;
+            const run::Engine engine(std::move(*plan), options);
             auto loops = analyse::force_loops(engine.plan(), stated_by(engine.host(), &DeviceInfo::damping),
                                               stated_by(engine.host(), &DeviceInfo::max_stiffness));
             add_process_delay(loops, engine.plan());
