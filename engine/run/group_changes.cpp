@@ -60,9 +60,10 @@ void GroupRuntime::take_over(build::GroupProgram& next) noexcept {
 
 bool GroupRuntime::take_changes() noexcept {
     const RealtimeScope scope;
+    rests_.fetch_add(1, std::memory_order_release);
     bool took_over = false;
     for (;;) {
-        if (finished()) return took_over;
+        if (finished() && !decisions_->is_replayed()) return took_over;
         if (!upcoming_ && taken_ < scheduled.size()) upcoming_ = scheduled[taken_++];
         if (!upcoming_) programs_.pop(upcoming_);
         if (program_) {
@@ -72,6 +73,18 @@ bool GroupRuntime::take_changes() noexcept {
         if (!upcoming_ || !switch_if_due()) return took_over;
         took_over = true;
     }
+}
+
+void GroupRuntime::take_program_ahead() noexcept {
+    const RealtimeScope scope;
+    rests_.fetch_add(1, std::memory_order_release);
+    if (!program_) return;
+    do {
+        if (!upcoming_) programs_.pop(upcoming_);
+        // Changes that were made before the plan are applied before it.
+        if (!upcoming_ || decisions_->has_changes()) return;
+        if (!program_->devices.empty() || !upcoming_->devices.empty()) return;
+    } while (switch_if_due());
 }
 
 bool GroupRuntime::is_let_go() noexcept {

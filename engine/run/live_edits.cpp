@@ -131,11 +131,11 @@ bool LiveEdits::is_before_left() {
         if (group->changes_applied() < given && !group->is_over()) return false;
     if (!now.settled()) return false;
     if (settled_at_.empty()) {
-        for (const auto& group : groups) settled_at_.push_back(group->done());
+        for (const auto& group : groups) settled_at_.push_back(group->rests());
         return false;
     }
     for (std::size_t g = 0; g < groups.size(); ++g)
-        if (groups[g]->done() <= settled_at_[g] && !groups[g]->is_over()) return false;
+        if (groups[g]->rests() <= settled_at_[g] && !groups[g]->is_over()) return false;
     return true;
 }
 
