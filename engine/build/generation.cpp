@@ -132,7 +132,7 @@ void GenerationBuilder::prepare() {
         if (made_->survived[i]) continue;
         const compile::PlanNode& node = plan().nodes[i];
         const run::GroupRuntime& group = group_of(node);
-        context_.host.prepare_for(group.index, group.plan->period, made_->nodes[i]->uses);
+        context_.host.prepare_for(group.index, group.plan->period, node.where, made_->nodes[i]->uses);
         Hash seed;
         seed.add_word(plan().patch.seed);
         seed.add_text(node.name);

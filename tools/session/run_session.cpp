@@ -10,7 +10,6 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <utility>
 
@@ -107,9 +106,7 @@ void RunSession::run(const Hooks& hooks, const std::atomic<bool>& stop) {
         if (control_) control_->tend();
         if (hooks.tend) hooks.tend();
     };
-    const auto begin = std::chrono::steady_clock::now();
     engine_->run_live(live);
-    wall_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     control_.reset();
 }
 
@@ -122,7 +119,7 @@ void RunSession::finish() {
     written.names.emplace_back("summary.json");
     const double ran = engine_->progress_seconds();
     json_ = session::summary_json(*engine_, report, ran, true, written.names, losses());
-    text_ = session::summary_text(*engine_, report, ran, wall_s_);
+    text_ = session::summary_text(*engine_, report, ran, std::nullopt);
     try {
         folder_->write_summary(json_);
     } catch (const Error& error) {

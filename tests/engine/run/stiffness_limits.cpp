@@ -42,7 +42,7 @@ TEST_CASE("an engine takes no plan that is stiffer than its device states, at th
     run::Engine engine(compile_text(scaled("2 N/mm", "1")), {});
     CHECK_THROWS_WITH(engine.schedule(compile_text(scaled("2 N/mm", "2")), 1), is_refused);
     run::EngineOptions judging;
-    judging.limits_stiffness = false;
+    judging.only_checked = true;
     CHECK_NOTHROW(run::Engine(compile_text(scaled("2 N/mm", "2")), judging));
 }
 
