@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 namespace tactus::gripper {
@@ -22,11 +23,17 @@ std::int32_t micro(double si) noexcept {
 
 }  // namespace
 
-SerialGripper::SerialGripper(SerialGripperSettings settings) : settings_(std::move(settings)) {
-    info_.name = fmt::format("gripper at {}", settings_.port);
-    info_.fingers = settings_.fingers;
-    info_.max_speed = settings_.max_speed;
-    info_.least_speed = settings_.least_speed;
+DeviceInfo info_of(const SerialGripperSettings& settings) {
+    DeviceInfo info;
+    info.name = fmt::format("gripper at {}", settings.port);
+    info.fingers = settings.fingers;
+    info.max_speed = settings.max_speed;
+    info.least_speed = settings.least_speed;
+    return info;
+}
+
+SerialGripper::SerialGripper(SerialGripperSettings settings)
+    : settings_(std::move(settings)), info_(info_of(settings_)) {
     if (const std::string why = port_.open(settings_.port, settings_.baud); !why.empty()) throw Error(why);
 }
 
@@ -103,7 +110,9 @@ void SerialGripper::send(const DriveFrame& drive) noexcept {
     if (!port_.write({bytes.bytes.data(), bytes.size})) ++counts_.unsent;
 }
 
-std::unique_ptr<HapticDevice> open_serial_gripper(Options& options, const haptic::PathResolver& resolve) {
+namespace {
+
+SerialGripperSettings read_settings(Options& options, const haptic::PathResolver& resolve) {
     SerialGripperSettings s;
     s.port = options.text("port", "/dev/ttyUSB0");
     const double baud = options.quantity("baud", "115200", "9600", "1000000");
@@ -122,8 +131,22 @@ std::unique_ptr<HapticDevice> open_serial_gripper(Options& options, const haptic
     options.finish();
     for (std::size_t i = 0; i < calibrations.size(); ++i)
         if (!calibrations[i].empty()) s.gauge[i] = table::load_force_calibration(resolve(calibrations[i]));
+    return s;
+}
+
+}  // namespace
+
+haptic::HardwareOutline describe_serial_gripper(Options& options, const haptic::PathResolver& resolve) {
+    const SerialGripperSettings settings = read_settings(options, resolve);
+    std::error_code ignored;
+    const bool is_here = std::filesystem::exists(settings.port, ignored);
+    return {info_of(settings), is_here ? "" : fmt::format("there is no {}", settings.port)};
+}
+
+std::unique_ptr<HapticDevice> open_serial_gripper(Options& options, const haptic::PathResolver& resolve) {
+    SerialGripperSettings settings = read_settings(options, resolve);
     try {
-        return std::make_unique<SerialGripper>(std::move(s));
+        return std::make_unique<SerialGripper>(std::move(settings));
     } catch (const Error& error) {
         throw Error(options.where("port"), fmt::format("{}: {}", options.owner(), error.message()));
     }

@@ -4,7 +4,7 @@
 
 #include "devices/gripper/frame.hpp"
 #include "devices/gripper/serial_port.hpp"
-#include "devices/haptic/replay.hpp"
+#include "devices/haptic/catalogue.hpp"
 #include "dsp/simulate/gripper/sensors.hpp"
 #include "graph/node/device.hpp"
 #include "graph/node/options.hpp"
@@ -27,6 +27,9 @@ struct SerialGripperSettings {
     double timeout = 0.02;         ///< s without a valid sample until the device is invalid
     double reopen_every = 0.25;    ///< s between attempts to reopen a lost line
 };
+
+/// What the device states: known from its settings.
+DeviceInfo info_of(const SerialGripperSettings& settings);
 
 class SerialGripper final : public HapticDevice {
 public:
@@ -67,5 +70,7 @@ private:
 /// Options: port, baud, fingers, encoder (pulses per m of the finger), newton_per_count, or calibration and
 /// thumb_calibration (assets; see load_force_calibration), max_speed, least_speed, timeout. Throws Error.
 std::unique_ptr<HapticDevice> open_serial_gripper(Options& options, const haptic::PathResolver& resolve);
+/// The same without opening the line.
+haptic::HardwareOutline describe_serial_gripper(Options& options, const haptic::PathResolver& resolve);
 
 }  // namespace tactus::gripper

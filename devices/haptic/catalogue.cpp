@@ -26,7 +26,8 @@ std::vector<HapticDriver>& drivers() {
          gripper::open_walking_gripper},
         {"twum_gripper", "a simulated gripper with two traveling-wave ultrasonic motors, on a rig or in a hand",
          gripper::open_wave_gripper},
-        {"serial_gripper", "a gripper with a controller on a serial port", gripper::open_serial_gripper, true},
+        {"serial_gripper", "a gripper with a controller on a serial port", gripper::open_serial_gripper, true,
+         gripper::describe_serial_gripper},
     };
     return all;
 }
@@ -40,6 +41,20 @@ void add_haptic_driver(HapticDriver driver) {
     drivers().push_back(std::move(driver));
 }
 
+namespace {
+
+const HapticDriver& find_driver(std::string_view driver, const SourceLocation& where) {
+    std::vector<std::string> names;
+    for (const HapticDriver& one : haptic_drivers()) {
+        if (one.name == driver) return one;
+        names.push_back(one.name);
+    }
+    throw Error(where, fmt::format("there is no haptic driver '{}'{}; there are: {}", driver,
+                                   did_you_mean(driver, names), fmt::join(names, ", ")));
+}
+
+}  // namespace
+
 bool is_real_driver(std::string_view driver) {
     for (const HapticDriver& one : haptic_drivers())
         if (one.name == driver) return one.is_real;
@@ -48,13 +63,16 @@ bool is_real_driver(std::string_view driver) {
 
 std::unique_ptr<HapticDevice> open_haptic_device(std::string_view driver, const SourceLocation& where, Options& options,
                                                  const PathResolver& resolve) {
-    std::vector<std::string> names;
-    for (const HapticDriver& one : haptic_drivers()) {
-        if (one.name == driver) return one.open(options, resolve);
-        names.push_back(one.name);
-    }
-    throw Error(where, fmt::format("there is no haptic driver '{}'{}; there are: {}", driver,
-                                   did_you_mean(driver, names), fmt::join(names, ", ")));
+    return find_driver(driver, where).open(options, resolve);
+}
+
+HardwareOutline describe_haptic_device(std::string_view driver, const SourceLocation& where, Options& options,
+                                       const PathResolver& resolve) {
+    const HapticDriver& found = find_driver(driver, where);
+    if (found.describe) return found.describe(options, resolve);
+    HardwareOutline outline;
+    outline.info.name = found.name;
+    return outline;
 }
 
 }  // namespace tactus::haptic

@@ -13,11 +13,19 @@
 
 namespace tactus::haptic {
 
+/// What is known of hardware without opening it.
+struct HardwareOutline {
+    DeviceInfo info;
+    std::string absence;  ///< why it cannot be here, "there is no /dev/ttyUSB0"; empty: it may be
+};
+
 struct HapticDriver {
     std::string name;
     std::string summary;  ///< one line, shown to users
     std::unique_ptr<HapticDevice> (*open)(Options& options, const PathResolver& resolve);
     bool is_real = false;  ///< hardware; runs in real time only
+    /// Of hardware: reads the options as `open` does and opens nothing. Null: the driver cannot say.
+    HardwareOutline (*describe)(Options& options, const PathResolver& resolve) = nullptr;
 };
 
 /// All drivers, in the order of listings.
@@ -34,5 +42,9 @@ bool is_real_driver(std::string_view driver);
 /// unknown driver, listing all, and for invalid options.
 std::unique_ptr<HapticDevice> open_haptic_device(std::string_view driver, const SourceLocation& where, Options& options,
                                                  const PathResolver& resolve);
+
+/// What a driver of hardware says of a device without opening it. Throws Error as open_haptic_device does.
+HardwareOutline describe_haptic_device(std::string_view driver, const SourceLocation& where, Options& options,
+                                       const PathResolver& resolve);
 
 }  // namespace tactus::haptic

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices/hosted/hosted_device.hpp"
 
-#include "devices/haptic/catalogue.hpp"
 #include "devices/hosted/clocks.hpp"
 #include "devices/hosted/force_gate.hpp"
 #include "devices/hosted/message.hpp"
@@ -174,6 +173,12 @@ std::unique_ptr<HapticDevice> open_here(const DeviceRequest& request, const hapt
     std::unique_ptr<HapticDevice> device = haptic::open_haptic_device(request.driver, request.where, options, resolve);
     options.finish();
     return device;
+}
+
+haptic::HardwareOutline describe_here(const DeviceRequest& request, const haptic::PathResolver& resolve) {
+    Options options(request.owner, request.settings, request.where);
+    read_placement(options, request.driver);
+    return haptic::describe_haptic_device(request.driver, request.where, options, resolve);
 }
 
 }  // namespace tactus::hosted

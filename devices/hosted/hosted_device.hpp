@@ -2,7 +2,7 @@
 // A device whose driver runs in a process of its own: what the engine has of it.
 #pragma once
 
-#include "devices/haptic/replay.hpp"
+#include "devices/haptic/catalogue.hpp"
 #include "devices/hosted/block.hpp"
 #include "devices/hosted/host_process.hpp"
 #include "devices/hosted/placement.hpp"
@@ -88,5 +88,8 @@ std::unique_ptr<HapticDevice> open_placed(const DeviceRequest& request, const ha
 
 /// Opens it in this process whatever its options say, for runs that are not live. Throws Error.
 std::unique_ptr<HapticDevice> open_here(const DeviceRequest& request, const haptic::PathResolver& resolve);
+
+/// What the driver of hardware says of it without opening it. Throws Error on options that cannot be read.
+haptic::HardwareOutline describe_here(const DeviceRequest& request, const haptic::PathResolver& resolve);
 
 }  // namespace tactus::hosted

@@ -3,8 +3,6 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/core/rotation.hpp"
-#include "dsp/fit/adjoint.hpp"
-#include "dsp/fit/constraint_analysis.hpp"
 #include "dsp/fit/faces.hpp"
 #include "dsp/fit/fit_steps.hpp"
 
@@ -21,7 +19,6 @@ namespace tactus::fit {
 namespace {
 
 constexpr int spins = 16;
-constexpr std::size_t coarse_points = 160;
 
 /// One face as a surface of its own, with at most this many points.
 FitSurface surface_of(const FragmentSurface& fragment, std::span<const std::size_t> face, std::size_t most) {
@@ -46,44 +43,6 @@ FitSurface surface_of(const FragmentSurface& fragment, std::span<const std::size
 }
 
 }  // namespace
-
-/// The contact of several face pairs of one moving fragment, as a single contact for the solver; pair n uses energy n.
-/// The handle is at `centre` of the fragment, for any origin of its file.
-class FragmentMatcher::Together {
-public:
-    Together(FragmentMatcher& matcher, std::span<const Pair> pairs, std::span<const Pose> poses, const Vec3& centre)
-        : matcher_(matcher), pairs_(pairs), poses_(poses), centre_(centre) {}
-
-    Pose handle(const Pose& body) const noexcept { return {body.apply(centre_), body.orientation}; }
-    Pose body(const Pose& handle) const noexcept { return {handle.apply(-centre_), handle.orientation}; }
-
-    void look(const Pose& at) noexcept {
-        for (std::size_t n = 0; n < pairs_.size(); ++n)
-            matcher_.energies_[n].look(matcher_.centres(pairs_[n], body(at), poses_));
-    }
-    contact::ContactSum operator()(const Pose& at, contact::ContactParts parts) noexcept {
-        contact::ContactSum all;
-        for (std::size_t k = 0; k < pairs_.size(); ++k) {
-            const Pair& pair = pairs_[k];
-            const Face &m = matcher_.faces_[pair.moving], &f = matcher_.faces_[pair.fixed];
-            const contact::ContactSum one = adjoint_transform(
-                matcher_.energies_[k](matcher_.centres(pair, body(at), poses_), parts),
-                glm::mat3_cast(poses_[static_cast<std::size_t>(f.fragment)].orientation),
-                at.rotate(m.surface.centre - centre_), std::min(m.surface.area, f.surface.area) * 1e4);
-            all.energy += one.energy;
-            for (std::size_t n = 0; n < 6; ++n) all.gradient[n] += one.gradient[n];
-            for (std::size_t n = 0; n < 36; ++n) all.stiffness[n] += one.stiffness[n];
-        }
-        return all;
-    }
-    double clearance(const Pose&) const noexcept { return 0.0; }
-
-private:
-    FragmentMatcher& matcher_;
-    std::span<const Pair> pairs_;
-    std::span<const Pose> poses_;
-    Vec3 centre_;
-};
 
 FragmentMatcher::FragmentMatcher(std::span<const FragmentSurface> fragments, const MatcherSettings& wanted)
     : settings(wanted) {
@@ -292,73 +251,6 @@ const FragmentMatch& FragmentMatcher::search(int moving, std::span<const Pose> p
 
 bool FragmentMatcher::same_search(int moving, std::span<const char> stands) noexcept {
     return left_ > 0 && found_.moving == moving && std::ranges::equal(stood_, stands);
-}
-
-void FragmentMatcher::join(const Solved& best, const Pose& at, std::span<const Pose> poses,
-                           std::span<const char> stands) noexcept {
-    joined_.clear();
-    joined_.push_back(best.pair);
-    for (std::size_t m = 0; m < faces_.size(); ++m)
-        for (std::size_t f = 0; f < faces_.size() && joined_.size() < energies_.size(); ++f) {
-            if (faces_[m].fragment != match_.moving || faces_[f].fragment == match_.moving ||
-                !stands[static_cast<std::size_t>(faces_[f].fragment)] ||
-                (m == best.pair.moving && f == best.pair.fixed))
-                continue;
-            const Pair pair{m, f, 0.0};
-            const Pose there = centres(pair, at, poses);
-            const double reach = faces_[m].surface.gyration + faces_[f].surface.gyration;
-            if (glm::length(there.position) > reach) continue;
-            FitEnergy& e = energy(0, pair);
-            set_law(e, 0.0, coarse_points);
-            if (e.quality(there, 1.5 * settings.fit.sigma).score > settings.least_share * best.best.score)
-                joined_.push_back(pair);
-        }
-    match_.faces = static_cast<int>(joined_.size());
-}
-
-void FragmentMatcher::lead(const Solved& best, std::span<const Pose> poses, std::span<const char> stands) noexcept {
-    if (!(best.best.score > 0.0)) return;
-    const FitSettings& fit = settings.fit;
-    Pose at = world(best.pair, best.best.pose, poses);
-    match_.partner = faces_[best.pair.fixed].fragment;
-    // All faces that fit there take part.
-    join(best, at, poses, stands);
-    for (std::size_t n = 0; n < joined_.size(); ++n) set_law(energy(n, joined_[n]), 0.0, settings.most_points);
-    const auto at_scale = [&](double scale) {
-        for (std::size_t n = 0; n < joined_.size(); ++n) {
-            energies_[n].law.scale = scale;
-            energies_[n].law.power = fit.power;
-        }
-    };
-    Together together(*this, joined_, poses, faces_[best.pair.moving].surface.centre);
-    coupling::QuasiStaticCoupling solver;
-    solver.settings = free_solver(faces_[best.pair.moving].surface.gyration);
-    solver.settings.reach = 0.02;
-    solver.settings.step = 0.3e-3;
-    solver.reset(together.handle(at));
-    const auto step = [&] {
-        const Pose before = solver.state().proxy;
-        together.look(before);
-        return solver.update(before, together).iterations;
-    };
-    for (int stage = 0; stage < 18; ++stage) {
-        at_scale(fit.finest * (stage < 8 ? 3.0 - 0.25 * stage : 1.0));
-        if (step() == 0 && stage > 8) break;
-    }
-    for (int n = 1; n <= polish_steps; ++n) {
-        for (std::size_t k = 0; k < joined_.size(); ++k) set_polish(energies_[k], fit, n);
-        step();
-    }
-    at = together.body(solver.state().proxy);
-    match_.pose = at;
-    at_scale(fit.finest);
-    match_.quality = energies_[0].quality(centres(best.pair, at, poses), fit.sigma);
-    match_.margin = match_.quality.score > 0.0 ? std::clamp(1.0 - best.second / match_.quality.score, 0.0, 1.0) : 0.0;
-    free_.free.clear();
-    together.look(solver.state().proxy);
-    find_free(free_, together(solver.state().proxy, contact::ContactParts::all).stiffness,
-              faces_[best.pair.moving].surface.gyration, fit.least_hold);
-    match_.verdict = judge(match_.quality, !free_.free.empty(), match_.margin, fit);
 }
 
 }  // namespace tactus::fit

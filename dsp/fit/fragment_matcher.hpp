@@ -78,6 +78,8 @@ public:
     std::size_t left() const noexcept { return left_; }
 
 private:
+    static constexpr std::size_t coarse_points = 160;  ///< of a face, while starts are compared
+
     struct Face {
         int fragment;
         FitSurface surface;

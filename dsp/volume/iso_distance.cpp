@@ -2,119 +2,22 @@
 #include "dsp/volume/iso_distance.hpp"
 
 #include "dsp/geometry/nearest_points.hpp"
-#include "dsp/volume/cubic_interpolant.hpp"
+#include "dsp/volume/iso_surface.hpp"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace tactus::volume {
 
 namespace {
 
-// Points on the surface, about one per cell that it crosses, with normals.
-struct Points {
-    std::vector<glm::vec3> at;      // samples from the origin
-    std::vector<glm::vec3> normal;  // unit length in m, towards lower values
-};
-
-// A Newton step along the gradient onto the surface, m, at most `reach` long to bound it where the gradient is small.
-Vec3 onto_surface(const CubicInterpolant::Sample& f, double iso, double reach) {
-    const double steep = glm::dot(f.gradient, f.gradient);
-    if (!(steep > 0.0)) return Vec3(0.0);
-    const Vec3 step = f.gradient * ((iso - f.value) / steep);
-    const double length = glm::length(step);
-    return length > reach ? step * (reach / length) : step;
-}
-
-// `grey` holds layers of the volume from `first` on; all positions count from the volume's first layer.
-struct Finder {
-    const Grid& grey;
-    int first, layers;  // held from here on; number of layers in the whole volume
-    float iso;
-    CubicInterpolant f{grey, first, layers};
-    double cell = std::min({grey.spacing.x, grey.spacing.y, grey.spacing.z});
-    double widest = std::max({grey.spacing.x, grey.spacing.y, grey.spacing.z});
-    glm::vec3 h{grey.spacing};
-
-    // The mean of the cell's edge crossings, moved onto the surface.
-    std::optional<Vec3> point_in_cell(int i, int j, int k, const std::array<float, 8>& value) const {
-        Vec3 sum(0.0);
-        int count = 0;
-        for (int from = 0; from < 8; ++from)
-            for (int bit = 1; bit < 8; bit <<= 1) {
-                if (from & bit) continue;
-                const float a = value[static_cast<std::size_t>(from)], b = value[static_cast<std::size_t>(from | bit)];
-                if ((a >= iso) == (b >= iso)) continue;
-                const double t = (double(iso) - double(a)) / (double(b) - double(a));
-                Vec3 at(from & 1, from >> 1 & 1, from >> 2);
-                at[bit >> 1] += t;
-                sum += at;
-                ++count;
-            }
-        if (count == 0) return {};
-        const Vec3 corner(i, j, k);
-        Vec3 at = corner + sum / double(count);
-        for (int step = 0; step < 2; ++step) at += onto_surface(f(at), iso, 0.5 * cell) / grey.spacing;
-        return glm::clamp(at, corner, corner + 1.0);
-    }
-
-    void points_of_layer(int k, Points& points) const {
-        const auto width = static_cast<std::size_t>(grey.size[0]), layer = grey.index(0, 0, 1);
-        for (int j = 0; j + 1 < grey.size[1]; ++j) {
-            const float* row = &grey.values[grey.index(0, j, k - first)];
-            for (int i = 0; i + 1 < grey.size[0]; ++i, ++row) {
-                const std::array<float, 8> value{
-                    row[0],     row[1],         row[width],         row[width + 1],
-                    row[layer], row[layer + 1], row[layer + width], row[layer + width + 1]};
-                int above = 0;
-                for (const float v : value) above += v >= iso;
-                if (above == 0 || above == 8) continue;
-                const auto at = point_in_cell(i, j, k, value);
-                const Vec3 slope = f(*at).gradient;
-                const double length = glm::length(slope);
-                points.at.push_back(glm::vec3(*at));
-                points.normal.push_back(glm::vec3(length > 0.0 ? -slope / length : Vec3(0.0)));
-            }
-        }
-    }
-
-    // Distance to the surface point nearest to `at`, from an initial guess: steps onto the surface, and along it
-    // towards `at`, as long as the estimated curvature requires. Infinite when no surface point was found.
-    double refined(const Vec3& at, const Vec3& guess) const {
-        Vec3 x = guess, moved(0.0), before(0.0);
-        double best = std::numeric_limits<double>::infinity(), stretch = 1.0;
-        for (int step = 0; step < 10; ++step) {
-            const auto here = f(x);
-            const double steep = glm::dot(here.gradient, here.gradient);
-            if (!(steep > 0.0)) break;
-            const Vec3 towards = (at - x) * grey.spacing;
-            const Vec3 along = towards - here.gradient * (glm::dot(towards, here.gradient) / steep);
-            const double off = std::abs(here.value - double(iso)) / std::sqrt(steep), aside = glm::length(along);
-            const double far = glm::length(towards);
-            if (off < 2e-3 * cell) {
-                best = std::min(best, far);
-                // Directly below `at`, a sideways error changes the distance in second order only.
-                if (aside < 0.04 * far || aside < 2e-3 * cell) break;
-            }
-            // On a convex surface a full step overshoots, on a concave one it falls short.
-            if (const double length2 = glm::dot(moved, moved); length2 > 0.0)
-                stretch = std::clamp(length2 / std::max(glm::dot(before - along, moved), 1e-9 * length2), 0.2, 2.0);
-            moved = along * std::min(stretch, 0.6 * cell / std::max(aside, 1e-30));
-            before = along;
-            x += (onto_surface(here, iso, 0.5 * cell) + moved) / grey.spacing;
-        }
-        return best;
-    }
-};
-
 // Data for the samples of some layers: grey values, and the index of the nearest surface point.
 struct Field {
-    const Finder& finder;
-    const Points& points;
+    const SurfaceFinder& finder;
+    const SurfacePoints& points;
     const std::vector<std::int32_t>& nearest;
     int first, end;  // layers that `nearest` covers
     double reach;
@@ -244,13 +147,13 @@ struct Slabs {
     const RunJobs& run;
     Grid held{};  // from layer `first` on
     int first = 0;
-    std::vector<Points> cells{};  // between each layer and the next
+    std::vector<SurfacePoints> cells{};  // between each layer and the next
     double widest = std::max({layout.spacing.x, layout.spacing.y, layout.spacing.z});
     double cell = std::min({layout.spacing.x, layout.spacing.y, layout.spacing.z});
 
     int layers() const { return layout.size[2]; }
     int held_end() const { return first + held.size[2]; }
-    Finder finder() const { return {held, first, layers(), iso}; }
+    SurfaceFinder finder() const { return {held, first, layers(), iso}; }
 
     // Margin for a sample in the band: range of the Newton steps from a nearby point, plus the cubic's support.
     int around() const { return static_cast<int>(std::ceil((10.0 * widest + 11.0 * cell) / layout.spacing.z)) + 3; }
@@ -282,9 +185,9 @@ struct Slabs {
         const int begin = static_cast<int>(cells.size());
         if (end <= begin) return;
         cells.resize(static_cast<std::size_t>(end));
-        const Finder finder = this->finder();
+        const SurfaceFinder finder = this->finder();
         run(end - begin, [&](int n) {
-            Points& points = cells[static_cast<std::size_t>(begin + n)];
+            SurfacePoints& points = cells[static_cast<std::size_t>(begin + n)];
             finder.points_of_layer(begin + n, points);
             points.at.shrink_to_fit();
             points.normal.shrink_to_fit();
@@ -292,14 +195,14 @@ struct Slabs {
     }
 
     // The points in the cells between the layers from `from` up to `end`.
-    Points points_between(int from, int end) const {
-        Points all;
+    SurfacePoints points_between(int from, int end) const {
+        SurfacePoints all;
         std::size_t count = 0;
         for (int k = from; k + 1 < end; ++k) count += cells[static_cast<std::size_t>(k)].at.size();
         all.at.reserve(count);
         all.normal.reserve(count);
         for (int k = from; k + 1 < end; ++k) {
-            const Points& points = cells[static_cast<std::size_t>(k)];
+            const SurfacePoints& points = cells[static_cast<std::size_t>(k)];
             all.at.insert(all.at.end(), points.at.begin(), points.at.end());
             all.normal.insert(all.normal.end(), points.normal.begin(), points.normal.end());
         }
@@ -311,10 +214,10 @@ struct Slabs {
     bool distances(int k0, int k1, int beside, Grid& out) {
         const int from = std::max(0, k0 - beside), end = std::min(layers(), k1 + beside);
         hold(k0 - around(), std::max(end + 3, k1 + around()));
-        const Points points = points_between(from, end);
+        const SurfacePoints points = points_between(from, end);
         Grid window{{layout.size[0], layout.size[1], end - from}, layout.origin, layout.spacing, {}};
         const std::vector<std::int32_t> nearest = geometry::nearest_points(window, points.at, run, from);
-        const Finder finder = this->finder();
+        const SurfaceFinder finder = this->finder();
         const Field field{finder, points, nearest, from, end, how.reach};
         std::vector<char> sure(static_cast<std::size_t>(k1 - k0));
         run(k1 - k0,
@@ -323,49 +226,7 @@ struct Slabs {
     }
 };
 
-// Applies the weights over three rows in place; `before` is the original previous row, and receives the original row.
-void smooth_row(float* row, const float* after, std::vector<float>& before) {
-    for (std::size_t i = 0; i < before.size(); ++i) {
-        const float here = row[i];
-        row[i] = (before[i] + 4.0f * here + (after ? after[i] : here)) / 6.0f;
-        before[i] = here;
-    }
-}
-
-// Along x and y.
-void smooth_layer(Grid& grid, int k) {
-    const int width = grid.size[0], rows = grid.size[1];
-    for (int j = 0; j < rows; ++j) {
-        float* row = &grid.values[grid.index(0, j, k)];
-        float before = row[0];
-        for (int i = 0; i < width; ++i) {
-            const float here = row[i];
-            row[i] = (before + 4.0f * here + row[std::min(i + 1, width - 1)]) / 6.0f;
-            before = here;
-        }
-    }
-    float* row = &grid.values[grid.index(0, 0, k)];
-    std::vector<float> before(row, row + width);
-    for (int j = 0; j < rows; ++j, row += width) smooth_row(row, j + 1 < rows ? row + width : nullptr, before);
-}
-
-// Along z.
-void smooth_wall(Grid& grid, int j) {
-    const float* first = &grid.values[grid.index(0, j, 0)];
-    std::vector<float> before(first, first + grid.size[0]);
-    for (int k = 0; k < grid.size[2]; ++k)
-        smooth_row(&grid.values[grid.index(0, j, k)],
-                   k + 1 < grid.size[2] ? &grid.values[grid.index(0, j, k + 1)] : nullptr, before);
-}
-
 }  // namespace
-
-Grid smoothed(Grid grid, const RunJobs& run) {
-    if (grid.values.empty()) return grid;
-    run(grid.size[2], [&](int k) { smooth_layer(grid, k); });
-    run(grid.size[1], [&](int j) { smooth_wall(grid, j); });
-    return grid;
-}
 
 void distance_to_iso(const Grid& layout, float iso, const DistanceInLayers& how, const LayersOfGrey& grey,
                      const TakeLayers& take, const RunJobs& run) {

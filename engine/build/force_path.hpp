@@ -8,11 +8,12 @@
 
 namespace tactus::build {
 
-/// Nodes from which values reach a force on a hand, in any group, as generation.nodes. The motors of grippers are not
-/// meant: their controllers limit how fast an object changes.
+/// Nodes from which values reach a force on a hand, in any group, in the order of generation.nodes. Motors of grippers do
+/// not count: their controllers limit how fast an object changes.
 std::vector<bool> nodes_of_forces(const Generation& generation);
 
-/// Nodes or wires from which values reach a driven device come, go or are made anew. `now.survived` must be known.
+/// True when the edit adds, removes or prepares anew nodes or wires from which values reach a driven device. `now.survived`
+/// must be known.
 bool changes_force_path(const Generation& before, const Generation& now);
 
 }  // namespace tactus::build

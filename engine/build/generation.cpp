@@ -46,6 +46,7 @@ std::unique_ptr<Generation> GenerationBuilder::build() {
     find_survivors();
     allocate();
     prepare();
+    if (context_.limits_stiffness) limit_stiffness();
     drives_.resize(plan().nodes.size());
     for (const compile::PlanWire& wire : plan().wires) connect(wire);
     finish_links();
@@ -131,7 +132,7 @@ void GenerationBuilder::prepare() {
         if (made_->survived[i]) continue;
         const compile::PlanNode& node = plan().nodes[i];
         const run::GroupRuntime& group = group_of(node);
-        context_.host.prepare_for(group.index, group.plan->period, made_->nodes[i]->uses);
+        context_.host.prepare_for(group.index, group.plan->period, node.where, made_->nodes[i]->uses);
         Hash seed;
         seed.add_word(plan().patch.seed);
         seed.add_text(node.name);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A plan made runnable: its nodes prepared, its wires laid out, one program for each rate group. When it follows on
-// another, nodes and channels that the edit did not touch go on as they are.
+// A plan that can run: prepared nodes, connected wires, one program per rate group. When it follows another plan, nodes
+// and links that the edit did not touch are kept.
 #pragma once
 
 #include "engine/build/group_program.hpp"
@@ -21,7 +21,7 @@
 
 namespace tactus::build {
 
-/// A node while it runs. Lives as long as the youngest plan that keeps it.
+/// A running node. It lives until the last plan that keeps it is gone.
 struct LiveNode {
     std::string name;
     const NodeType* type = nullptr;
@@ -43,22 +43,23 @@ struct BuildContext {
     bool hash = true;  ///< keep hashes of all outputs
     std::map<std::pair<const ValueType*, std::string>, std::pair<std::shared_ptr<const void>, std::vector<std::byte>>>
         constants;
-    /// Where the outputs of a group are recorded, as frames of that layout, or null. Empty: there is no take.
+    /// Returns where the outputs of a group are recorded, as frames of that layout, or null. Empty: there is no take.
     std::function<RecordStream*(const io::FrameLayout&, const run::GroupRuntime&)> take;
     int next_group = 0, next_link = 0;
     int group_before = 0, link_before = 0;  ///< the same before the plan that is being built
     observe::Observer* observer = nullptr;  ///< who looks on, or null
+    bool limits_stiffness = true;  ///< a plan feels no stiffer than its devices state; false: it is built as it is
 };
 
 struct Generation {
     std::int64_t number = 0;
     compile::Plan plan;
     std::vector<std::map<std::string, double>> patch_values;  ///< of each node's parameters, SI
-    std::vector<std::shared_ptr<LiveNode>> nodes;             ///< as plan.nodes
-    std::vector<bool> survived;                               ///< as plan.nodes
-    std::vector<std::shared_ptr<run::GroupRuntime>> groups;        ///< as plan.groups
-    std::vector<bool> group_is_new;                           ///< as plan.groups
-    std::vector<std::unique_ptr<GroupProgram>> programs;      ///< as plan.groups
+    std::vector<std::shared_ptr<LiveNode>> nodes;  ///< as plan.nodes
+    std::vector<bool> survived;  ///< as plan.nodes
+    std::vector<std::shared_ptr<run::GroupRuntime>> groups;  ///< as plan.groups
+    std::vector<bool> group_is_new;  ///< as plan.groups
+    std::vector<std::unique_ptr<GroupProgram>> programs;  ///< as plan.groups
     std::vector<std::shared_ptr<run::Link>> links;
     std::vector<std::unique_ptr<std::vector<std::byte>>> memory;  ///< values of outputs and unconnected inputs
     /// Of each live parameter on which a force depends.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a plan is made runnable, step by step. Only generation*.cpp include it.
+// How a plan is made runnable, step by step. Only generation*.cpp and stiffness_limits.cpp include it.
 #pragma once
 
 #include "engine/build/generation.hpp"
@@ -17,8 +17,8 @@
 
 namespace tactus::build {
 
-/// Builds on the freshly compiled nodes, then points everything at the nodes that live. A compiled node whose older
-/// self goes on is never prepared: it only shows how the inputs of that one are to be wired.
+/// Builds on the compiled nodes, then points everything at the nodes that run. When a node of the plan before survives,
+/// its compiled copy is never prepared: it only shows how the inputs of the running node are to be wired.
 class GenerationBuilder {
 public:
     GenerationBuilder(compile::Plan plan, const Generation* before, BuildContext& context);
@@ -44,6 +44,9 @@ private:
     void find_survivors();
     void prepare();
 
+    // stiffness_limits.cpp
+    void limit_stiffness();
+
     // generation_wires.cpp
     void allocate();
     std::byte* memory(std::size_t bytes);
@@ -51,7 +54,7 @@ private:
     void connect_constant(const compile::PlanWire& wire);
     void connect_delay(const compile::PlanWire& wire, const Output& source, Input* target, int group_index);
     run::Link& link_for(const compile::PlanWire& wire);
-    /// Values of one group come so often that calls of the other, an audio group, would be cut short at each.
+    /// Values of the producer come so often that each of them would cut a call of the consumer, an audio group.
     bool changes_within_calls(int producer, int consumer) const;
     bool is_same_wire(const run::LinkWire& old, const run::LinkWire& wire) const;
     /// Notes for each wire of `link` the same one of `old`; returns how many there are.
@@ -65,10 +68,11 @@ private:
     void add_step(GroupProgram& program, std::size_t index, bool varies);
     void make_stretches(std::size_t group);
     void record(std::size_t group);
-    /// Where the output of a node is seen from outside. One that goes on is looked at as before.
+    /// Where an observer finds the output of a node. A node that survives keeps its place.
     observe::ObservedPort& observed(LiveNode& node, std::size_t output, const std::string& name);
     void make_programs();
     void finish_program(std::size_t g);
+    static void find_readers(GroupProgram& program);
     void find_delays_before(GroupProgram& program, const GroupProgram& old) const;
     void find_outputs_before(GroupProgram& program, const GroupProgram& old) const;
     void assign_devices(std::size_t index);
@@ -84,14 +88,14 @@ private:
     const Generation* before_;
     BuildContext& context_;
     std::unique_ptr<Generation> made_;
-    // What is looked up by node, wire or group, so that a plan of n nodes takes n steps.
-    std::unordered_map<std::string_view, std::size_t> nodes_before_;         // by name, in `before_`
-    std::unordered_map<const run::GroupRuntime*, std::size_t> groups_before_;     // in `before_`
-    std::unordered_set<const Param*> driven_before_, driven_;                // parameters at the end of a wire
-    std::unordered_map<const run::GroupRuntime*, int> group_index_;               // in `made_`
+    // Indices by node, wire and group, so that a plan of n nodes is built in O(n).
+    std::unordered_map<std::string_view, std::size_t> nodes_before_;  // by name, in `before_`
+    std::unordered_map<const run::GroupRuntime*, std::size_t> groups_before_;  // in `before_`
+    std::unordered_set<const Param*> driven_before_, driven_;  // parameters at the end of a wire
+    std::unordered_map<const run::GroupRuntime*, int> group_index_;  // in `made_`
     std::unordered_map<std::string_view, const patch::PatchAsset*> assets_;
     std::map<LinkEnds, std::shared_ptr<run::Link>> links_before_, links_made_;
-    std::unordered_set<const run::Link*> links_going_on_;                         // of `before_`
+    std::unordered_set<const run::Link*> links_going_on_;  // of `before_`
     std::unordered_map<const void*, void*> moved_;  // ports and parameters of compiled nodes to those that live
     std::vector<std::vector<Drive>> drives_;
     std::unordered_map<const Input*, const run::LinkWire*> batches_;  // those that change within calls

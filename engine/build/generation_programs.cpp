@@ -84,7 +84,7 @@ void GenerationBuilder::make_stretches(std::size_t g) {
             const bool is_inner = sources.at(line->source) >= within->first;
             (is_inner ? within->second.inner : within->second.before).push_back(line.get());
         } else if (group.has_audio) stretches[at].before.push_back(line.get());
-        // Of one activation the source may run later: what is read is from an earlier call.
+        // The source may run later in this activation: the value is from an earlier call.
         else stretches[0].before.push_back(line.get());
     }
     stretches.erase(program.steps.size());
@@ -122,7 +122,7 @@ void GenerationBuilder::add_step(GroupProgram& program, std::size_t index, bool 
         output.name = node.name + "." + node.outputs[k].name;
         if (context_.take) output.offset = program.layout.add(output.name, type);
         if (context_.observer) output.seen = &observed(running, k, output.name);
-        if (type.version) program.snapshots.push_back(static_cast<SnapshotOutput*>(running.outputs[k]));
+        if (type.version) program.snapshots.push_back({static_cast<SnapshotOutput*>(running.outputs[k]), {}, {}});
     }
     program.hashes_outputs = context_.hash;
     program.records_outputs = context_.take || context_.observer;
@@ -203,6 +203,7 @@ void GenerationBuilder::finish_program(std::size_t g) {
         line->target = live(line->target);
         line->param = live(line->param);
     }
+    find_readers(program);
     const auto found = groups_before_.find(made_->groups[g].get());
     if (found == groups_before_.end()) return;
     const GroupProgram& old = *before_->programs[found->second];
@@ -210,6 +211,15 @@ void GenerationBuilder::finish_program(std::size_t g) {
     find_outputs_before(program, old);
     for (run::Link* link : old.inputs)
         if (!links_going_on_.contains(link)) program.ended.push_back(link);
+}
+
+void GenerationBuilder::find_readers(GroupProgram& program) {
+    for (PublishedSnapshot& snapshot : program.snapshots) {
+        for (const run::Link* link : program.outputs)
+            if (link->may_hold(snapshot.port)) snapshot.links.push_back(link);
+        for (const auto& delay : program.delays)
+            if (delay->source == snapshot.port) snapshot.delays.push_back(delay.get());
+    }
 }
 
 void GenerationBuilder::find_delays_before(GroupProgram& program, const GroupProgram& old) const {
@@ -248,11 +258,14 @@ void GenerationBuilder::rewire(std::size_t index) {
     const std::size_t old = nodes_before_.at(node.name);
     const compile::PlanNode& old_node = before_->plan.nodes[old];
     for (const auto& [name, param] : node.params) {
+        Param* const runs = running.params.at(name);
+        if (param->max != old_node.params.at(name)->max)
+            program.limits.push_back({runs, param->max, made_->ramp_of(runs)});
         if (driven_.contains(param)) continue;
         const double now = made_->patch_values[index].at(name);
-        // A value set from outside stays until the patch's text says another.
+        // A value that was set live stays until the patch's text states another one.
         if (now != before_->patch_values[old].at(name) || driven_before_.contains(old_node.params.at(name)))
-            program.params.push_back({running.params.at(name), now, made_->ramp_of(running.params.at(name))});
+            program.params.push_back({runs, now, made_->ramp_of(runs)});
     }
 }
 

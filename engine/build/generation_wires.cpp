@@ -11,7 +11,7 @@ namespace tactus::build {
 
 namespace {
 
-// How late a group may run, live, before values meant for it are dropped.
+// How late a group may run live before values for it are dropped.
 constexpr Flicks link_slack = flicks_per_second * 64 / 1000;
 
 }  // namespace
@@ -41,7 +41,7 @@ void GenerationBuilder::allocate() {
             port.data = block + layout.offsets[n][k];
             port.stride = group.plan->has_audio ? static_cast<std::ptrdiff_t>(size) : 0;
             for (std::size_t f = 0; f < count; ++f) port.type->make_default(port.data + f * size);
-            // The place of a signal is shared: its values do not outlive a call.
+            // The memory of a signal is shared with others: its values are valid during one call.
             const bool keeps_value = port.type != &value::signal;
             if (made_->survived[n])
                 program_of(node.group)
@@ -115,7 +115,7 @@ void GenerationBuilder::connect_delay(const compile::PlanWire& wire, const Outpu
     line.count = wire.delay;
     const std::size_t size = source.type->size;
     line.history.resize(static_cast<std::size_t>(wire.delay) * size);
-    // The values of a node that runs are not looked at from here.
+    // The group's thread may be writing the values of a running node.
     const bool is_running = made_->survived[static_cast<std::size_t>(wire.from_node)];
     for (int i = 0; i < wire.delay; ++i) {
         std::byte* place = line.history.data() + static_cast<std::size_t>(i) * size;
@@ -186,7 +186,7 @@ std::size_t GenerationBuilder::match_wires(run::Link& link, run::Link* old) cons
     return same;
 }
 
-/// Activations per call that a ring is made for: a repetition in smaller blocks must keep what the live run kept.
+/// Activations per call that a ring has room for: a repetition in smaller blocks must keep as many values as the live run.
 int GenerationBuilder::ring_frames(const run::GroupRuntime& group) {
     if (!group.plan->has_audio) return group.max_frames;
     return std::max(group.max_frames, static_cast<int>(plan().patch.quantum / group.plan->period));
@@ -194,12 +194,12 @@ int GenerationBuilder::ring_frames(const run::GroupRuntime& group) {
 
 void GenerationBuilder::finish_links() {
     for (auto& link : made_->links) {
-        // The link of the generation before between the same groups with the same latency.
+        // The link of the plan before, between the same groups and of the same latency.
         const auto found = links_before_.find(ends_of(*link));
         run::Link* old = found == links_before_.end() ? nullptr : found->second.get();
         const std::size_t same = match_wires(*link, old);
         if (old && same == link->wires.size() && same == old->wires.size()) {
-            // Nothing changed: the channel itself goes on, and inputs stay pointed at it.
+            // Nothing changed: the old link is kept, and inputs stay pointed at it.
             for (run::LinkWire& wire : link->wires)
                 if (wire.target) wire.before->point(*wire.target, old->producer_period);
             link = found->second;

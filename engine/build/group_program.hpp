@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one plan makes of one rate group: steps, links and what has to be set when the group takes it over. Built by the
+// The program of one rate group in one plan: steps, links, and what is set when the group takes it over. Built by the
 // control thread; from then on only the group's thread touches it.
 #pragma once
 
@@ -43,7 +43,7 @@ struct Drive {
     }
 };
 
-/// What every call touches of a node; 32 bytes, so that a long chain runs through few cache lines.
+/// The part of a node that every call reads; 32 bytes, so that a long chain needs few cache lines.
 struct Step {
     void (*process)(void*, const Tick&) noexcept = nullptr;
     void* node = nullptr;
@@ -52,7 +52,7 @@ struct Step {
     bool one_at_a_time = false;  ///< in an audio group: called once per activation
 };
 
-/// The rest of it, at the same index.
+/// The other data of a step, at the same index.
 struct StepWires {
     std::vector<Drive> drives;
     std::vector<Input*> inputs;  ///< but for those of `batches`
@@ -61,7 +61,7 @@ struct StepWires {
     std::int64_t spent_ns = 0;  ///< in this call, in a cycle
 };
 
-/// Steps that follow each other. Those of a cycle run a few activations at a time, all others a whole call at once.
+/// Consecutive steps. Steps of a cycle run a few activations at a time, all others a whole call at once.
 struct Stretch {
     std::size_t first = 0, count = 0;
     int longest = 0;  ///< activations at a time, in a cycle; 0: it is none
@@ -85,6 +85,13 @@ struct PublishedOutput {
     std::uint64_t value(std::int64_t ran) const {
         return is_signal ? samples.value(static_cast<std::uint64_t>(ran)) : hash.value();
     }
+};
+
+/// An output of snapshots, and where the versions that it gave may still be looked at.
+struct PublishedSnapshot {
+    SnapshotOutput* port = nullptr;
+    std::vector<const run::Link*> links;
+    std::vector<const DelayLine*> delays;
 };
 
 /// An output of a node that goes on, and where its values lie from now on.
@@ -113,6 +120,13 @@ struct NewValue {
     run::ParamRamp* ramp = nullptr;  ///< how it gets there, or null: at once
 };
 
+/// The largest value of a parameter of a node that goes on, from now on.
+struct NewLimit {
+    Param* param = nullptr;
+    double most = 0.0;
+    run::ParamRamp* ramp = nullptr;  ///< how a larger value gets there, or null: at once
+};
+
 /// Live: closed until every hand that a plan reaches is without force. Shared by the programs of the plan.
 struct SwitchGate {
     std::atomic<int> closed_by{0};  ///< groups whose hands still feel a force
@@ -122,9 +136,9 @@ struct GroupProgram {
     std::int64_t plan_number = 0;
     Flicks switch_time = 0;  ///< logical time from which on it runs
     int backlog = 0;  ///< activations that may run late
-    bool changes_force = false;  ///< forces on a hand may jump when this takes over
-    Flicks fade_time = 0;  ///< forces are faded from here to the switch; equal to it: they are not
-    SwitchGate* gate = nullptr;  ///< it takes over only when that is open; null: nothing is asked
+    bool changes_force = false;  ///< forces on a hand may jump when this program takes over
+    Flicks fade_time = 0;  ///< forces fade from here to `switch_time`; equal to it: no fade
+    SwitchGate* gate = nullptr;  ///< the program takes over only when the gate is open; null: at once
     std::vector<Step> steps;
     std::vector<StepWires> wires;
     std::vector<Stretch> stretches;  ///< of the steps, in order
@@ -132,7 +146,7 @@ struct GroupProgram {
     bool hashes_outputs = true, records_outputs = false;
     io::FrameLayout layout;  ///< of all outputs, when they are or may be recorded
     std::vector<std::byte> frames;  ///< of a call
-    /// Where the frames go, or null: the control thread may set another while the group runs.
+    /// Where the frames go, or null. The control thread may change it while the group runs.
     std::atomic<RecordStream*> recorded{nullptr};
     static_assert(std::atomic<RecordStream*>::is_always_lock_free);
     std::int64_t ran = 0;  ///< activations of the group when the next program took over
@@ -143,9 +157,10 @@ struct GroupProgram {
     std::vector<std::unique_ptr<DelayLine>> delays;
     std::vector<DeviceSlot*> devices;
     std::vector<DeviceSlot*> driven;  ///< those that a node gives a force
-    std::vector<SnapshotOutput*> snapshots;
+    std::vector<PublishedSnapshot> snapshots;
     // What to do when taking over:
     std::vector<std::pair<Input*, const Input*>> wiring;  ///< inputs of nodes that go on, and how they are wired now
+    std::vector<NewLimit> limits;
     std::vector<NewValue> params;
     std::vector<MovedOutput> moved;
 };

@@ -29,11 +29,11 @@ private:
     std::string& description_;
 };
 
-/// What a wire into an input says of the node behind it.
+/// What the wire into an input means for its node.
 void describe_wire(const compile::Plan& plan, const compile::PlanWire& wire, std::string& text) {
     const compile::PlanInput& input =
         plan.nodes[static_cast<std::size_t>(wire.to_node)].inputs[static_cast<std::size_t>(wire.to_input)];
-    // What comes in batches was prepared for at its rate.
+    // A batch input was prepared for the rate of its source.
     if (input.port->kind == InputKind::batch) text += fmt::format("{} every {}\n", input.name, input.port->period);
     if (input.port->kind != InputKind::any) return;
     std::string source = wire.asset;

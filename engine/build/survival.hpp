@@ -9,7 +9,7 @@
 
 namespace tactus::build {
 
-/// Of each node all that its `prepare` may depend on, as text: type, structural parameters, choices, texts, flags,
+/// For each node everything that its `prepare` may depend on, as text: type, structural parameters, choices, texts, flags,
 /// vectors, assets, where inputs of any type come from, seed. Equal text means that the node need not be prepared again.
 std::vector<std::string> structures_of(const compile::Plan& plan);
 

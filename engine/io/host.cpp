@@ -113,7 +113,9 @@ DevicePort& EngineHost::use_device(build::DeviceSlot& slot, DeviceUse use, const
     return slot.port;
 }
 
-DevicePort& EngineHost::device(const std::string& wanted, DeviceUse use, const SourceLocation& where) {
+DevicePort& EngineHost::device(const std::string& wanted, DeviceUse use, const SourceLocation& given) {
+    // A node that names no device means the only one.
+    const SourceLocation& where = given.file.empty() ? node_where_ : given;
     const std::string name = device_name(wanted, where);
     if (build::DeviceSlot* slot = find_device(name)) return use_device(*slot, use, where);
     const auto declared = std::ranges::find(patch_.devices, name, &patch::PatchDevice::name);
@@ -141,6 +143,13 @@ DevicePort& EngineHost::device(const std::string& wanted, DeviceUse use, const S
         const auto recorded = std::ranges::find(*recorded_, name, &RecordedDevice::name);
         if (recorded == recorded_->end()) throw Error(where, fmt::format("the take knows no device '{}'", name));
         slot->device = std::make_unique<StandIn>(*recorded);
+    } else if (describes_hardware_ && haptic::is_real_driver(request.driver)) {
+        const haptic::HardwareOutline outline = hosted::describe_here(request, resolve);
+        opened_.notices.push_back(
+            outline.absence.empty()
+                ? fmt::format("device '{}' is hardware, which is not opened here: only its settings are known", name)
+                : fmt::format("device '{}' is not here ({}): only its settings are known", name, outline.absence));
+        slot->device = std::make_unique<StandIn>(RecordedDevice{name, outline.info, {}});
     } else {
         if (!live_ && haptic::is_real_driver(request.driver))
             throw Error(request.where,

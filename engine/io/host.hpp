@@ -54,10 +54,11 @@ public:
     void begin(const patch::Patch& patch);
     /// Cards of nodes that go on; the others are given to nodes that are prepared anew.
     void keep_cards(std::vector<SoundCard*> in_use) { cards_in_use_ = std::move(in_use); }
-    /// Which group the node being prepared belongs to, and where to note what it asks for.
-    void prepare_for(int group, Flicks period, HostUses& uses) {
+    /// Which group the node being prepared belongs to, where it is in the patch, and where to note what it asks for.
+    void prepare_for(int group, Flicks period, const SourceLocation& where, HostUses& uses) {
         group_ = group;
         period_ = period;
+        node_where_ = where;
         uses_ = &uses;
     }
     /// Puts what was opened since `begin` to use; control thread.
@@ -74,6 +75,8 @@ public:
 
     /// Instead of opening devices, stand-ins for those of a run that is over: what they reported is in its log.
     void imitate(std::vector<RecordedDevice> recorded) { recorded_ = std::move(recorded); }
+    /// Instead of opening hardware, stand-ins that state what the patch says of it; a notice says so.
+    void describe_hardware() { describes_hardware_ = true; }
 
     // Of the run; control thread.
     std::vector<std::unique_ptr<build::DeviceSlot>> devices;
@@ -97,6 +100,7 @@ private:
     patch::Patch patch_;
     DriverGate driver_;
     std::optional<std::vector<RecordedDevice>> recorded_;
+    bool describes_hardware_ = false;
     Opened opened_;
     std::unordered_set<std::string> files_opened_, files_before_;  ///< recordings since `begin`, and those of the run
     HostUses* uses_ = nullptr;
@@ -107,6 +111,7 @@ private:
     AudioChoice audio_;
     int group_ = -1;
     Flicks period_ = 0;
+    SourceLocation node_where_;
 };
 
 }  // namespace tactus::io

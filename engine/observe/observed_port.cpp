@@ -93,7 +93,7 @@ bool BoneFeed::see(std::int64_t index, const volume::BoneSnapshot& now, bool was
     if (now.version == version_ && first_waiting_ == waiting_.size() && is_complete_) return true;
     std::size_t budget = catching_up;
     if (now.version != version_) {
-        // Memory of bricks is used again: without having seen every version, equal addresses say nothing.
+        // Brick memory is reused: unless every version was seen, equal addresses do not mean equal content.
         const std::size_t before = waiting_.size();
         for (std::size_t b = 0; b < bricks.size(); ++b)
             if (bricks[b] != sent_[b] || (!was_watched && bricks[b])) {
@@ -172,7 +172,7 @@ void ObservedPort::watch(Watch how) {
     watch_.store(static_cast<std::uint8_t>(how), std::memory_order_release);
 }
 
-/// Once made it stays as long as the port: the group's thread may be using it.
+/// It is kept as long as the port, because the group's thread may be using it.
 void ObservedPort::make_ring() {
     std::size_t bytes = bone_ring_bytes;
     if (!feed_) {

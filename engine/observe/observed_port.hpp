@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The run's side of an observer: where the group's thread leaves copies of what one output gives. It never waits, never
-// allocates and never keeps hold of anything; whoever reads too slowly loses values.
+// allocates and keeps no references; a reader that is too slow loses values.
 #pragma once
 
 #include "dsp/core/ring.hpp"
@@ -24,7 +24,7 @@ enum class Watch : std::uint8_t {
     every,  ///< every value as well, as long as somebody fetches them in time
 };
 
-/// The newest value of an output: one writer, any readers, none of whom ever waits for the other. Wait-free for the
+/// The newest value of an output: one writer, any number of readers; nobody waits. Wait-free for the
 /// writer, lock-free for readers.
 class LatestValue {
     static_assert(std::atomic<std::uint64_t>::is_always_lock_free);

@@ -9,7 +9,7 @@ namespace tactus::observe {
 
 namespace {
 
-// Of one port, for somebody who watches every value and then does not fetch them.
+// Limit for one port that is watched without being read.
 constexpr std::size_t most_gathered = std::size_t{1} << 20;
 
 }  // namespace
@@ -75,7 +75,7 @@ void Observer::drain_locked() {
     pressing_.store(false, std::memory_order_relaxed);
     for (const auto& named : order_)
         for (Reading& reading : named->second.readings)
-            // What nobody looks at, nor ever did, has nothing to give.
+            // A port that was never watched has no values.
             if (named->second.watch != Watch::nothing || !reading.waiting.empty() || reading.was_watched)
                 if (const auto port = reading.port.lock()) {
                     reading.was_watched = true;

@@ -74,19 +74,19 @@ public:
     /// The bone of an output as of the last `advance`, or null. The object stays the same until an edit makes another
     /// bone; its content changes in `advance` only.
     std::shared_ptr<const SeenBone> bone(const std::string& port) const;
-    /// What the bodies of all nodes are made of: new ones when an edit brings them.
+    /// The shapes of the bodies of all nodes, also of nodes that an edit adds.
     std::vector<std::shared_ptr<const SeenBody>> bodies() const;
 
-    /// Memory that is kept of what went by, bytes.
+    /// Memory of the kept history, bytes.
     std::size_t kept_bytes() const;
-    /// Values of an output that went by unseen.
+    /// Values of an output that were lost.
     std::uint64_t lost(const std::string& port) const;
 
     // The engine's:
     /// Begins to look at an output of a node that was just prepared.
     std::shared_ptr<ObservedPort> open(ObservedPort::Identity identity, const ValueType& type,
                                        const std::byte* initial);
-    /// Lossless: rings are filling up, whoever is outside of a tick is to call `drain`.
+    /// Lossless: the rings are filling up; a thread outside of a tick should call `drain`.
     bool wants_drain() const noexcept { return pace_ != Pace::live && pressing_.load(std::memory_order_relaxed); }
     void drain();
 
@@ -99,7 +99,7 @@ private:
         std::size_t used_of_first = 0;  // values of the first piece that are done
         std::vector<std::byte> value;  // lossless: as of `advance`
         Flicks when = 0;
-        bool was_watched = false;  // something may wait, or have waited
+        bool was_watched = false;  // values may wait in the ring
         bool has_begun = false;  // something was applied
         SeenValues gathered;
         std::shared_ptr<SeenBone> bone;

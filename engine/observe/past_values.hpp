@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that an output gave in a run, by logical time: for an observer that looks at any instant, in any order.
+// All values of an output in a run, by logical time. An observer can look at any instant, in any order.
 #pragma once
 
 #include "dsp/core/time.hpp"
@@ -14,7 +14,7 @@
 
 namespace tactus::observe {
 
-/// Values of one size. Only changes are stored; of a port that changes for hours, so many that they fit.
+/// Values of one size. Only changes are stored. When they would take too much memory, every second one is dropped.
 class PastValues {
 public:
     explicit PastValues(std::size_t value_size) : size_(value_size) {}
@@ -36,10 +36,10 @@ private:
     std::vector<std::byte> values_;
 };
 
-/// The versions of a bone's bricks. Samples are shared with nobody; a bone that shows them borrows.
+/// The versions of a bone's bricks. They own their samples; a bone that shows them refers to these.
 class PastBone {
 public:
-    /// What came up to a publication: its bricks, and at the end that it is whole.
+    /// Adds the bricks of a publication, and at its end marks it as complete.
     void add(Flicks when, ObservedPort::Piece& piece);
     /// Makes `bone` what it was at a time; what changes by that counts as one update. Its own bricks are the first.
     void show(Flicks until, SeenBone& bone) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an observer gets of a run: copies, its own to keep. Nothing here is shared with the run.
+// What an observer gets from a run: copies that belong to the observer. Nothing is shared with the run.
 #pragma once
 
 #include "dsp/contact/pointshell.hpp"
@@ -31,7 +31,7 @@ struct SeenValues {
     std::size_t per_value = 1;    ///< numbers of one value
 };
 
-/// A scene without what its bodies are made of: those are told apart by the hash of their content.
+/// A scene without the shapes of its bodies, which are identified by the hash of their content.
 struct SeenScene {
     struct Object {
         std::uint64_t body = 0;  ///< content_hash of the Body
@@ -41,7 +41,7 @@ struct SeenScene {
     std::array<Object, coupling::Scene::most_objects> objects;
 };
 
-/// What a body is made of, in its own frame, m.
+/// The shape of a body, in its own frame, m.
 struct SeenBody {
     std::string port;  ///< "node.port" that gives it
     std::uint64_t content_hash = 0;
@@ -51,7 +51,7 @@ struct SeenBody {
     std::vector<std::uint8_t> labels;  ///< per point, see surface_label
 };
 
-/// A copy of one version of a bone. Bricks that came with the same publication always appear together.
+/// A copy of one version of a bone. Bricks of one publication always appear together.
 struct SeenBone {
     volume::BrickLayout layout;
     volume::BoneRoot root;  ///< its bricks, and `layout`

@@ -10,7 +10,7 @@
 namespace tactus::run {
 
 void ClockDecisions::apply_parameters(std::int64_t tick, std::int64_t plan, ParamRamps& ramps) noexcept {
-    while (has_change_ || (has_change_ = changes_.ring.pop(change_))) {
+    while (has_changes()) {
         if (change_.when > tick * period_) return;
         const std::int64_t length = change_.ramp ? ParamRamps::length(period_) : 0;
         ramps.set(*change_.param, change_.ramp, change_.value, tick, length, plan);
@@ -19,6 +19,8 @@ void ClockDecisions::apply_parameters(std::int64_t tick, std::int64_t plan, Para
         changes_.applied.fetch_add(1, std::memory_order_release);
     }
 }
+
+bool ClockDecisions::has_changes() noexcept { return has_change_ || (has_change_ = changes_.ring.pop(change_)); }
 
 std::int64_t ClockDecisions::ramp_length(std::int64_t) const noexcept { return ParamRamps::length(period_); }
 

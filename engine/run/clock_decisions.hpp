@@ -15,6 +15,7 @@ public:
         : Decisions(log), period_(period), changes_(changes) {}
 
     void apply_parameters(std::int64_t tick, std::int64_t plan, ParamRamps& ramps) noexcept override;
+    bool has_changes() noexcept override;
     std::int64_t ramp_length(std::int64_t tick) const noexcept override;
     bool switches_to(const build::GroupProgram& next, std::int64_t tick) noexcept override;
     bool fades_for(const build::GroupProgram& next, std::int64_t tick) noexcept override;

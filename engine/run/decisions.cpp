@@ -24,6 +24,10 @@ void DecisionLog::note(take::TimingKind kind, std::int64_t tick, const Entry& en
 
 std::int64_t Decisions::skip_from(std::int64_t tick) const noexcept { return tick; }
 
+bool Decisions::has_changes() noexcept { return false; }
+
+bool Decisions::is_replayed() const noexcept { return false; }
+
 bool Decisions::holds_off(std::int64_t, bool before) noexcept { return before; }
 
 std::int64_t Decisions::awaited(const Link& link, std::int64_t tick) const noexcept { return link.wanted(tick); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The decisions of a rate group that depend on timing: which value a link gives, what is skipped or dropped, when a
-// change takes effect. The clock makes them, or a log of an earlier run does; the tick does not know which.
+// change takes effect. They come from the clock or from the log of an earlier run; the tick does not know which.
 #pragma once
 
 #include "dsp/core/ring.hpp"
@@ -79,6 +79,10 @@ public:
     virtual std::int64_t ramp_length(std::int64_t tick) const noexcept = 0;
     /// Forces are held off because the run pauses. `before`: what the last call said.
     virtual bool holds_off(std::int64_t tick, bool before) noexcept;
+    /// A change of a parameter waits to be applied.
+    virtual bool has_changes() noexcept;
+    /// A log says what happens, also what happened after the last activation.
+    virtual bool is_replayed() const noexcept;
     /// `next` takes over now from the program that runs.
     virtual bool switches_to(const build::GroupProgram& next, std::int64_t tick) noexcept = 0;
     /// Forces fade from now on, because `next` will take over. Asked until it says yes.

@@ -34,7 +34,7 @@ std::uint64_t hash_of(const patch::Patch& patch) {
     return hash.value();
 }
 
-/// Gives `thing` up: threads that were left behind in drivers may still refer to it.
+/// Never destroys `thing`: threads that were left behind in drivers may still refer to it.
 void keep_for_ever(std::shared_ptr<const void> thing) {
     static std::mutex lock;
     // Not destroyed at the end of the program either.
@@ -55,12 +55,14 @@ Engine::Parts::Parts(const EngineOptions& options_)
               .hash = options.hash,
               .constants = {},
               .take = {},
-              .observer = options.observer},
+              .observer = options.observer,
+              .limits_stiffness = !options.only_checked},
       timeline(options, context, recorder),
       edits(options, context, timeline, recorder, time),
       pause(timeline, time),
       offline(options, timeline, recorder) {
     if (options.devices) host.imitate(*options.devices);
+    if (options.only_checked) host.describe_hardware();
     if (options.take || options.tap)
         context.take = [this](const io::FrameLayout& layout, const GroupRuntime& group) {
             return recorder.stream_for(layout, group);

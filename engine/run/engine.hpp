@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a plan: on a virtual clock as fast as it goes, or in real time. Both give the same output bits. A plan that runs
-// can be changed: another takes over at one logical time, and what the edit does not touch goes on.
+// Runs a plan: on a virtual clock as fast as possible, or in real time. Both give the same output bits. A running plan
+// can be edited: the new plan takes over at one logical time, and nodes that the edit does not touch go on.
 #pragma once
 
 #include "engine/run/live_edits.hpp"
@@ -58,10 +58,10 @@ public:
     /// Some values are in the take.
     bool was_recorded() const { return parts_->recorder.was_recorded(); }
     Pausing pausing() const { return parts_->pause.state(); }
-    /// No edit is on its way.
+    /// No edit is in progress.
     bool is_settled() const { return parts_->edits.is_settled(); }
 
-    /// During a render, any thread: it ends soon, as if it had been asked for no more.
+    /// During a render, any thread: ends it soon, as if less time had been asked for.
     void stop();
 
     /// Completes recordings; what could not be written to its end is among the `losses`.
@@ -91,7 +91,7 @@ public:
     double progress_seconds() const;
 
 private:
-    /// All that threads of the run refer to. One that a driver keeps for ever keeps this for ever.
+    /// Everything that threads of the run refer to. It is kept for ever when a driver never returns a thread.
     struct Parts {
         explicit Parts(const EngineOptions& options_);
 

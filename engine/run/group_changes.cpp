@@ -44,6 +44,8 @@ void GroupRuntime::take_over(build::GroupProgram& next) noexcept {
     }
     for (const auto& [input, wired] : next.wiring) *input = *wired;
     ramps_.keep(next.plan_number);
+    for (const build::NewLimit& limit : next.limits)
+        ramps_.limit(*limit.param, limit.ramp, limit.most, next_, ramp_length, next.plan_number);
     for (const build::NewValue& changed : next.params)
         ramps_.set(*changed.param, changed.ramp, changed.value, next_, ramp_length, next.plan_number);
     for (const auto& delay : next.delays)
@@ -58,9 +60,10 @@ void GroupRuntime::take_over(build::GroupProgram& next) noexcept {
 
 bool GroupRuntime::take_changes() noexcept {
     const RealtimeScope scope;
+    rests_.fetch_add(1, std::memory_order_release);
     bool took_over = false;
     for (;;) {
-        if (finished()) return took_over;
+        if (finished() && !decisions_->is_replayed()) return took_over;
         if (!upcoming_ && taken_ < scheduled.size()) upcoming_ = scheduled[taken_++];
         if (!upcoming_) programs_.pop(upcoming_);
         if (program_) {
@@ -70,6 +73,18 @@ bool GroupRuntime::take_changes() noexcept {
         if (!upcoming_ || !switch_if_due()) return took_over;
         took_over = true;
     }
+}
+
+void GroupRuntime::take_program_ahead() noexcept {
+    const RealtimeScope scope;
+    rests_.fetch_add(1, std::memory_order_release);
+    if (!program_) return;
+    do {
+        if (!upcoming_) programs_.pop(upcoming_);
+        // Changes that were made before the plan are applied before it.
+        if (!upcoming_ || decisions_->has_changes()) return;
+        if (!program_->devices.empty() || !upcoming_->devices.empty()) return;
+    } while (switch_if_due());
 }
 
 bool GroupRuntime::is_let_go() noexcept {

@@ -97,15 +97,14 @@ void GroupRuntime::read_links(int frames) noexcept {
 }
 
 void GroupRuntime::note_readers(int frames) noexcept {
-    for (SnapshotOutput* output : program_->snapshots) {
+    for (const build::PublishedSnapshot& snapshot : program_->snapshots) {
+        SnapshotOutput& port = *snapshot.port;
         // Whoever runs later in this call reads all that it gives; its first version is not older than those before.
-        output->oldest_readable =
-            frames > 1 ? output->type->version(output->data) : std::numeric_limits<std::int64_t>::max();
-        for (const Link* link : program_->outputs)
-            output->oldest_readable = std::min(output->oldest_readable, link->oldest_version(output));
-        for (const auto& delay : program_->delays)
-            if (delay->source == output)
-                output->oldest_readable = std::min(output->oldest_readable, delay->oldest_version());
+        port.oldest_readable = frames > 1 ? port.type->version(port.data) : std::numeric_limits<std::int64_t>::max();
+        for (const Link* link : snapshot.links)
+            port.oldest_readable = std::min(port.oldest_readable, link->oldest_version(&port));
+        for (const build::DelayLine* delay : snapshot.delays)
+            port.oldest_readable = std::min(port.oldest_readable, delay->oldest_version());
     }
 }
 
@@ -119,10 +118,8 @@ void GroupRuntime::publish(int frames) noexcept {
         link->publish(next_, frames);
         ++took;
     }
-    for (SnapshotOutput* output : program_->snapshots) {
-        const bool waits = std::ranges::any_of(program_->delays, [&](const auto& d) { return d->source == output; });
-        output->last_was_dropped = took == 0 && !waits && !program_->outputs.empty();
-    }
+    for (const build::PublishedSnapshot& snapshot : program_->snapshots)
+        snapshot.port->last_was_dropped = took == 0 && snapshot.delays.empty() && !program_->outputs.empty();
 }
 
 int GroupRuntime::call(int frames) noexcept {
@@ -134,7 +131,7 @@ void GroupRuntime::begin_call(int frames) noexcept {
     ramps_.advance(next_);
     // A hand is sampled at every activation: what it feels must not depend on how long a call is.
     int n = cut(plan->has_audio && program_->devices.empty() ? frames : 1);
-    // Who asked for room for more than one could wait for ever, for a reader that waits for the first of them.
+    // Waiting for room for several could last for ever: the reader may wait for the first of them.
     while (n > 1 && !decisions_->has_room(program_->outputs, next_, n)) n /= 2;
     begun_ = n;
     now = next_ * plan->period;
@@ -193,7 +190,7 @@ bool GroupRuntime::skip_as_decided() noexcept {
 
 bool GroupRuntime::forsake() noexcept {
     if (!decisions_->driver.forsake()) return false;
-    // From here on the thread touches nothing, so that this one may. What the hands were to feel is computed.
+    // From here on the group's thread touches nothing. The forces of the last activations are computed.
     next_ += committing_;
     done_.store(next_, std::memory_order_release);
     end_at(next_);

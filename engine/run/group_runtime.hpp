@@ -45,6 +45,8 @@ public:
     std::int64_t ran() const { return ran_; }
     /// Activations before this one are complete; their values may be read. Any thread.
     std::int64_t done() const noexcept { return done_.load(std::memory_order_acquire); }
+    /// How often it was between two calls. Any thread: what a call read that was begun before has been given up.
+    std::int64_t rests() const noexcept { return rests_.load(std::memory_order_acquire); }
     /// Of the program that runs; −1 before the first. Any thread.
     std::int64_t plan_number() const noexcept { return plan_number_.load(std::memory_order_acquire); }
     /// How many activations may run late. Own thread only.
@@ -84,6 +86,9 @@ public:
     /// Applies the parameters and takes over the program that are due at the next activation. True when it took one
     /// over: then other groups may have become ready. Wait-free.
     bool take_changes() noexcept;
+    /// Live, while the next activation is far ahead: takes over the program that is due then, so that the plan before
+    /// can be taken apart. A group with devices waits for its activation. Wait-free.
+    void take_program_ahead() noexcept;
     /// Offline: every value that the next call reads is there, and slots for one activation are free. Of a call that
     /// has begun: slots for what it gives.
     bool ready() const noexcept;
@@ -153,6 +158,7 @@ private:
     int committing_ = 0;  ///< activations whose forces are being committed
     std::uint64_t calls_ = 0;
     std::atomic<std::int64_t> plan_number_{-1};
+    std::atomic<std::int64_t> rests_{0};
     std::atomic<bool> over_{false};
     alignas(64) std::atomic<std::int64_t> done_{0};
 };

@@ -91,6 +91,7 @@ void LiveRun::work(GroupRuntime& group) {
         }
         const std::int64_t due = release_ns(group.next());
         if (due - steady_ns() > longest_sleep_ns) {
+            group.take_program_ahead();
             sleep_until(std::min(due - spin_ns, steady_ns() + longest_sleep_ns));
             continue;
         }

@@ -34,7 +34,7 @@ void Link::prepare(Flicks slack, int producer_frames, int consumer_frames, std::
             wire.glide.resize(size * frames);
         if (is_batch) {
             held_.resize(depth + (continued ? continued->stamp_.size() : 0));
-            // What the first part of a call leaves behind may be written anew before the last part reads.
+            // Values that the first part of a call released may be overwritten before the last part reads.
             const std::size_t most = changes_within_calls ? 2 * held_.size() : held_.size();
             wire.batch.resize(most * size);
             wire.batch_times.resize(most);
@@ -93,8 +93,13 @@ bool Link::holds(std::int64_t index) const noexcept {
 const std::byte* Link::value(const LinkWire& wire, std::int64_t index) const noexcept {
     if (index >= first_.load(std::memory_order_acquire))
         return wire.ring.data() + static_cast<std::size_t>(index % depth_) * wire.type->size;
-    // A wire that is new has brought nothing yet.
+    // A new wire has no values yet.
     return continues_ && wire.before ? continued->value(*wire.before, index) : wire.current.data();
+}
+
+bool Link::may_hold(const Output* output) const noexcept {
+    return std::ranges::any_of(wires, [output](const LinkWire& wire) { return wire.source == output; }) ||
+           (continued && continued->may_hold(output));
 }
 
 std::int64_t Link::oldest_version(const Output* output) const noexcept {
@@ -115,7 +120,7 @@ std::int64_t Link::oldest_version(const Output* output) const noexcept {
 
 std::int64_t Link::newest_held(std::int64_t newest) const noexcept {
     if (holds(newest)) return newest;
-    // After a standstill of either side the values that were kept may lie anywhere.
+    // When one side stood still, the kept values may be in any slot.
     std::int64_t found = -1;
     for (const auto& slot : stamp_)
         if (const std::int64_t index = slot.load(std::memory_order_relaxed); index <= newest)
@@ -135,7 +140,7 @@ void Link::list_held(std::int64_t newest) noexcept {
             if (holds(index)) add(index);
         return;
     }
-    // After a standstill of either side the values that were kept may lie anywhere.
+    // When one side stood still, the kept values may be in any slot.
     const std::int64_t first = first_.load(std::memory_order_acquire);
     const auto add_all = [&](const Link& link, std::int64_t from, std::int64_t to) {
         for (const auto& slot : link.stamp_)

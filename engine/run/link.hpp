@@ -17,7 +17,7 @@ namespace tactus::run {
 
 class GroupRuntime;
 
-/// One wire between two groups. Its ring belongs to both, all else to the consumer.
+/// One wire between two groups. Both groups use its ring; the rest belongs to the consumer.
 struct LinkWire {
     const ValueType* type = nullptr;
     const Output* source = nullptr;
@@ -42,7 +42,7 @@ struct LinkWire {
     }
 };
 
-/// All wires of one latency from one group to another; whether a value is there is decided for all of them at once.
+/// All wires of one latency from one group to another. They are published and read together.
 class Link {
 public:
     const GroupRuntime *producer = nullptr, *consumer = nullptr;
@@ -92,6 +92,9 @@ public:
     /// Smallest version of `output` that the consumer may still look at, or INT64_MAX when this link has none.
     std::int64_t oldest_version(const Output* output) const noexcept;
 
+    /// A wire of this link, or of one that it continues, brings values of `output`. Before the producer uses the link.
+    bool may_hold(const Output* output) const noexcept;
+
     // Consumer's side.
     /// The consumer reads here from now on. Wait-free.
     void take_over() noexcept;
@@ -115,10 +118,10 @@ public:
 
     std::int64_t used() const { return used_; }
     std::int64_t depth() const { return depth_; }
-    /// Nothing is read from `continued` any more. Any thread.
+    /// `continued` is read no more. Any thread.
     bool settled() const noexcept { return settled_.load(std::memory_order_acquire); }
 
-    /// The plan before is taken apart; only when settled. Control thread.
+    /// The plan before is being destroyed; only when settled. Control thread.
     void forget_continued() { continued = nullptr; }
 
     static constexpr std::int64_t unknown = std::numeric_limits<std::int64_t>::max();

@@ -131,11 +131,11 @@ bool LiveEdits::is_before_left() {
         if (group->changes_applied() < given && !group->is_over()) return false;
     if (!now.settled()) return false;
     if (settled_at_.empty()) {
-        for (const auto& group : groups) settled_at_.push_back(group->done());
+        for (const auto& group : groups) settled_at_.push_back(group->rests());
         return false;
     }
     for (std::size_t g = 0; g < groups.size(); ++g)
-        if (groups[g]->done() <= settled_at_[g] && !groups[g]->is_over()) return false;
+        if (groups[g]->rests() <= settled_at_[g] && !groups[g]->is_over()) return false;
     return true;
 }
 
@@ -187,7 +187,8 @@ Flicks LiveEdits::set(const std::string& given_node, const std::string& given_pa
     for (const compile::PlanWire& wire : now.plan.wires)
         if (wire.to_node == at && wire.to_input < 0 && wire.param == compiled)
             throw Error(fmt::format("'{}.{}' is driven by a wire", node, param));
-    const double value = found->second->parse(text);
+    // The group's thread may change the range of the live parameter when it takes the plan over.
+    const double value = compiled->parse(text);
     const Flicks when = present_.now() + set_lead;
     const ParameterChange change{changes_++, when, found->second, value, now.ramp_of(found->second)};
     if (take::TakeWriter* take = recorder_.take()) take->change(change.id, now.number, node, param, value);

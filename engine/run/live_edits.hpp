@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edits of a live run. A plan is built on a thread of its own and handed to every group; each takes it over at the same
-// logical time. The old plan is taken apart when no group can touch it any more.
+// Edits of a live run. A plan is built on a thread of its own and given to every group. All groups take it over at the same
+// logical time. The plan before is destroyed when no group uses it any more.
 #pragma once
 
 #include "engine/run/live_time.hpp"
@@ -65,7 +65,7 @@ private:
     void finish(const Threads& threads);
     EditOutcome hand_over(Building& built, const Threads& threads);
     void retire(const Threads& threads);
-    /// Every group has left the plan before and has completed a call since.
+    /// Every group has left the plan before and has been between two calls since.
     bool is_before_left();
     void close_ended(const Threads& threads);
     void tell(const EditOutcome& outcome) const;
@@ -77,7 +77,7 @@ private:
     Present present_;
     std::optional<Edit> waiting_, making_;
     std::unique_ptr<Building> building_;
-    std::vector<std::int64_t> settled_at_;  // what each group had done when nothing read the plan before any more
+    std::vector<std::int64_t> settled_at_;  // rests of each group when nothing read the plan before any more
     /// Changes of parameters, which may be of the plan before, that each group had been given by the switch.
     std::vector<std::pair<std::shared_ptr<GroupRuntime>, std::int64_t>> given_before_;
     std::int64_t changes_ = 0;

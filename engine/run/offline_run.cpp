@@ -18,16 +18,23 @@ void OfflineRun::wake_others() {
     steps_.notify_all();
 }
 
+/// Leaves out what a log leaves out, and takes over the programs that are due. True when there was one.
+static bool take_up(GroupRuntime& group) noexcept {
+    for (bool took_over = false;; took_over = true) {
+        while (!group.finished() && group.skip_as_decided()) {
+        }
+        if (!group.take_changes()) return took_over;
+    }
+}
+
 GroupRuntime* OfflineRun::earliest_ready(const std::vector<GroupRuntime*>& mine, bool& all_finished) {
     // Earliest first: then one thread alone never has to wait.
     GroupRuntime* earliest = nullptr;
     all_finished = true;
     for (GroupRuntime* group : mine) {
-        while (!group->has_begun() && !group->finished() && group->skip_as_decided()) {
-        }
-        if (group->finished()) continue;
         // Room in channels of the plan before may have become free.
-        if (!group->has_begun() && group->take_changes()) wake_others();
+        if (!group->has_begun() && take_up(*group)) wake_others();
+        if (group->finished()) continue;
         all_finished = false;
         const auto release = [](const GroupRuntime* g) { return g->next() * g->plan->period; };
         if (group->ready() && (!earliest || release(group) < release(earliest))) earliest = group;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run is asked for, and what is said about an edit of it.
+// Options of a run, and the outcome of an edit.
 #pragma once
 
 #include "engine/io/frames.hpp"
@@ -39,6 +39,8 @@ struct EngineOptions {
     bool record_values = true;  ///< the take has them from the beginning; else from `Engine::record` on
     std::uint64_t longest_journal = std::uint64_t{4} << 30;  ///< bytes of decisions kept while no values are recorded
     observe::Observer* observer = nullptr;  ///< reads copies; changes nothing
+    /// For `check`: the plan is built and never runs. Hardware is not opened, and a plan that is too stiff is not refused.
+    bool only_checked = false;
     bool live = false;
     io::AudioChoice audio;  ///< live only
     bool hash = true;  ///< keep `output_hash`; costs about as much per sample of a signal as a trivial node

@@ -19,9 +19,10 @@ ParamRamps::ParamRamps(Flicks period) noexcept : step_(std::max<Flicks>(step_tim
 void ParamRamps::set(Param& param, ParamRamp* ramp, double value, std::int64_t tick, std::int64_t length,
                      std::int64_t plan) noexcept {
     const bool is_gradual = ramp && length > 0 && ramp->newest_plan.load(std::memory_order_relaxed) >= plan;
+    // A plan that took over since the change was given may have lowered the limit.
+    value = std::min(value, param.max);
     // The plan before may know another ramp of it, or the plan to come none.
-    ParamRamp* running = first_;
-    while (running && running->param != &param) running = running->next;
+    ParamRamp* const running = find(param);
     if (running && !(is_gradual && running == ramp)) remove(*running);
     if (!is_gradual) {
         param.value = value;
@@ -36,6 +37,19 @@ void ParamRamps::set(Param& param, ParamRamp* ramp, double value, std::int64_t t
     ramp->to = value;
     ramp->begin = tick;
     ramp->length = length;
+}
+
+void ParamRamps::limit(Param& param, ParamRamp* ramp, double most, std::int64_t tick, std::int64_t length,
+                       std::int64_t plan) noexcept {
+    param.max = most;
+    const ParamRamp* const running = find(param);
+    if ((running ? running->to : param.value) > most) set(param, ramp, most, tick, length, plan);
+}
+
+ParamRamp* ParamRamps::find(const Param& param) const noexcept {
+    ParamRamp* ramp = first_;
+    while (ramp && ramp->param != &param) ramp = ramp->next;
+    return ramp;
 }
 
 void ParamRamps::remove(ParamRamp& ramp) noexcept {

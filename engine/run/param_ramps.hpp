@@ -34,9 +34,12 @@ public:
     explicit ParamRamps(Flicks period) noexcept;
 
     /// From activation `tick` on, `param` goes to `value` within `length` activations; at once when that is 0, or when
-    /// there is no `ramp` or the plan numbered `plan` does not need it.
+    /// there is no `ramp` or the plan numbered `plan` does not need it. A value above the parameter's largest is that.
     void set(Param& param, ParamRamp* ramp, double value, std::int64_t tick, std::int64_t length,
              std::int64_t plan) noexcept;
+    /// The largest value of `param` is `most`. A larger one, or one on its way there, goes to `most` as by `set`.
+    void limit(Param& param, ParamRamp* ramp, double most, std::int64_t tick, std::int64_t length,
+               std::int64_t plan) noexcept;
     /// Ends those that `plan` does not need any more.
     void keep(std::int64_t plan) noexcept;
     /// Gives all parameters the values of `tick`.
@@ -45,6 +48,7 @@ public:
     std::int64_t next_change(std::int64_t tick, std::int64_t until) const noexcept;
 
 private:
+    ParamRamp* find(const Param& param) const noexcept;
     void remove(ParamRamp& ramp) noexcept;
 
     std::int64_t step_;  // activations between two values

@@ -24,9 +24,22 @@ const TimingRecord* ReplayedDecisions::find(TimingKind kind, int source, std::in
     return nullptr;
 }
 
+const TimingRecord* ReplayedDecisions::find_switch(std::int64_t plan, std::int64_t tick) const noexcept {
+    // Several plans may take over between two activations.
+    for (std::size_t i = first_; i < records_.size() && records_[i].tick <= tick; ++i)
+        if (const TimingRecord& r = records_[i]; r.kind == TimingKind::plan && r.tick == tick && r.value == plan)
+            return &r;
+    return nullptr;
+}
+
 std::int64_t ReplayedDecisions::skip_from(std::int64_t tick) const noexcept {
     const TimingRecord* skip = find(TimingKind::skipped, 0, tick);
-    return skip ? skip->tick + skip->count : tick;
+    if (!skip) return tick;
+    // A plan may have taken over before it was known that the activation would be left out.
+    for (std::size_t i = first_; &records_[i] != skip; ++i)
+        if (records_[i].kind == TimingKind::plan && records_[i].tick == tick && records_[i].value > switched_to_)
+            return tick;
+    return skip->tick + skip->count;
 }
 
 void ReplayedDecisions::apply_parameters(std::int64_t tick, std::int64_t plan, ParamRamps& ramps) noexcept {
@@ -46,8 +59,9 @@ bool ReplayedDecisions::holds_off(std::int64_t tick, bool before) noexcept {
 }
 
 bool ReplayedDecisions::switches_to(const build::GroupProgram& next, std::int64_t tick) noexcept {
-    const TimingRecord* plan = find(TimingKind::plan, any_source, tick);
-    return plan && plan->value == next.plan_number;
+    if (!find_switch(next.plan_number, tick)) return false;
+    switched_to_ = next.plan_number;
+    return true;
 }
 
 std::int64_t ReplayedDecisions::ramp_length(std::int64_t tick) const noexcept {

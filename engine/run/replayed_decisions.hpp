@@ -17,6 +17,7 @@ public:
 
     std::int64_t skip_from(std::int64_t tick) const noexcept override;
     void apply_parameters(std::int64_t tick, std::int64_t plan, ParamRamps& ramps) noexcept override;
+    bool is_replayed() const noexcept override { return true; }
     std::int64_t ramp_length(std::int64_t tick) const noexcept override;
     bool holds_off(std::int64_t tick, bool before) noexcept override;
     bool switches_to(const build::GroupProgram& next, std::int64_t tick) noexcept override;
@@ -35,10 +36,13 @@ public:
 private:
     /// The record that covers an activation, or null. `source` −1: any.
     const take::TimingRecord* find(take::TimingKind kind, int source, std::int64_t tick) const noexcept;
+    /// The switch to a plan at an activation, or null.
+    const take::TimingRecord* find_switch(std::int64_t plan, std::int64_t tick) const noexcept;
 
     const std::vector<take::TimingRecord>& records_;
     const std::vector<ParameterChange>& changes_;
     std::size_t first_ = 0;  ///< records before this one are past
+    std::int64_t switched_to_ = 0;  ///< plan that took over last, by its number
     std::size_t applied_ = 0;  ///< changes of parameters before this one are made
 };
 

@@ -36,7 +36,7 @@ void Timeline::begin(compile::Plan plan) {
     for (std::size_t g = 0; g < now_->groups.size(); ++g) now_->groups[g]->scheduled.push_back(now_->programs[g].get());
 }
 
-/// Gives every group of a generation its program; groups that are new start at `when`, those that are gone end there.
+/// Gives every group of a generation its program. New groups start at `when`; groups that are gone end there.
 void Timeline::add(const build::Generation& next, Flicks when) {
     for (std::size_t g = 0; g < next.groups.size(); ++g) {
         GroupRuntime& group = *next.groups[g];
@@ -81,7 +81,7 @@ std::unique_ptr<build::Generation> Timeline::build_next(compile::Plan plan) {
 }
 
 Flicks Timeline::lead_of(const build::Generation& next) {
-    Flicks lead = fade_lead(0);
+    Flicks lead = 0;
     for (std::size_t g = 0; g < next.groups.size(); ++g)
         if (next.programs[g]->changes_force) lead = std::max(lead, fade_lead(next.groups[g]->plan->period));
     return notice_lead + lead;

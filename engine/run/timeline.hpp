@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What runs from when: the plans of a run, one after the other, and the groups that run them.
+// The plans of a run in order of time, and the groups that run them.
 #pragma once
 
 #include "engine/build/generation.hpp"
@@ -25,15 +25,15 @@ public:
     void schedule(compile::Plan plan, Flicks when);
     void schedule_change(std::int64_t id, const std::string& node, const std::string& param, double value);
 
-    /// Builds what follows the plan that runs; on any thread, while the run goes on. Throws Error.
+    /// Builds the next plan; on any thread, while the run goes on. Throws Error.
     std::unique_ptr<build::Generation> build_next(compile::Plan plan);
     /// Live: how far ahead the switch to a plan has to be, so that hands are without force by then.
     static Flicks lead_of(const build::Generation& next);
     /// Live: every group takes the plan over at `when`, but not before every hand that it reaches is without force.
     void hand_over(std::unique_ptr<build::Generation> next, Flicks when);
-    /// The plan before is taken apart; no group touches it any more.
+    /// Destroys the plan before; no group uses it any more.
     void retire();
-    /// A plan takes over, and the one before is still there.
+    /// A plan is taking over: the one before still exists.
     bool is_changing() const { return before_ != nullptr; }
 
     /// The plan that runs, or ran last.

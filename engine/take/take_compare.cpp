@@ -23,7 +23,7 @@ bool same_bits(const double* a, const double* b, std::size_t count) {
     });
 }
 
-/// What of a frame is in one file of the take.
+/// The part of a frame that one file of the take holds.
 struct ComparedFile {
     struct Output {
         TakeStreamInfo info;
@@ -52,7 +52,7 @@ public:
     void finish() override {}
 
 private:
-    /// Returns how many values it compared: none where nothing was recorded, before the file, between and after.
+    /// Returns how many values it compared: 0 where the file has no frame.
     std::uint64_t compare(ComparedFile& file, std::int64_t tick, const std::byte* frame) {
         if (file.is_over || tick < file.first().start) return 0;
         if (!file.reader) file.reader = std::make_unique<TakeStreamReader>(folder_ / file.first().file, file.first());

@@ -27,7 +27,7 @@ class TakeComparison {
 public:
     explicit TakeComparison(const Take& take) : take_(take) {}
 
-    /// Where the values of a group go: what EngineOptions::tap asks for. Null when the take has none of them.
+    /// The sink for the values of a group, for EngineOptions::tap. Null when the take has no values of the group.
     std::unique_ptr<io::Sink> tap(const io::FrameLayout& layout, const run::GroupRuntime& group);
 
     // After the run:

@@ -151,7 +151,7 @@ Take Take::load(const fs::path& folder) {
         std::istringstream events(file::read_whole_file(reading));
         for (std::string line; std::getline(events, line);) {
             ++line_number;
-            // The last line may have been cut off; what was promised is in result.json.
+            // The last line may have been cut off; result.json has the expected number of lines.
             if (events.eof() && !Json::accept(line)) break;
             read_event(Json::parse(line), take);
             ++take.lines;

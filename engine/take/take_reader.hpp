@@ -34,7 +34,7 @@ struct TakenChange {
     double value = 0.0;
 };
 
-/// A file of a take that does not hold what the run wrote.
+/// A file of a take whose length differs from what the run wrote.
 struct TakeDamage {
     std::string file;  ///< within the take
     std::int64_t holds = 0, written = 0;
@@ -51,20 +51,20 @@ struct Take {
     std::vector<TakeStreamInfo> streams;
     TimingLog log;
     std::int64_t lines = 0;  ///< of events.jsonl
-    bool is_complete = false;  ///< the run came to its end; false: it was cut off
+    bool is_complete = false;  ///< the run ended normally; false: the take was cut off
     std::map<std::string, std::uint64_t> result;  ///< hash of every output, empty when the run was cut off
     std::map<std::string, std::int64_t> written;  ///< frames, records or lines by file, empty when it was cut off
 
-    /// Throws Error when the folder is no take or is damaged. One that was cut off is read as far as it goes.
+    /// Throws Error when the folder is no take or is damaged. A take that was cut off is read up to its last whole record.
     static Take load(const std::filesystem::path& folder);
 
-    /// What about this machine, this program or the files may make a repetition differ; empty: nothing.
+    /// Why a repetition may differ: another machine, another build, changed files. Empty: no reason.
     std::vector<std::string> differences() const;
-    /// Assets that are gone or have changed since: a repetition must differ.
+    /// Assets that are missing or have changed: a repetition will differ.
     std::vector<std::string> changed_assets() const;
-    /// Files that hold less, or more, than the run wrote. Of a run that was cut off, only its log can tell.
+    /// Files whose length differs from what the run wrote. When the run was cut off, only its log can be checked.
     std::vector<TakeDamage> damages() const;
-    /// Forgets streams that cannot be read at all.
+    /// Removes streams that cannot be read at all.
     void drop_unreadable_streams();
 };
 

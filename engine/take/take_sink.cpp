@@ -38,7 +38,7 @@ void TakeSink::write(std::int64_t first, const std::byte* frames, std::size_t co
             writers_.push_back(std::make_unique<TakeStreamWriter>(folder_ / files_[i].name, period_, first,
                                                                   files_[i].columns, frame_bytes_));
         writers_[i]->write(first, frames, count);
-        // A file that found no room for anything is not told of.
+        // A file without any frame is not listed.
         if (is_first) told_.opened(files_[i], first);
     }
     const auto now = std::chrono::steady_clock::now();

@@ -20,7 +20,7 @@ struct TakeFile {
     std::vector<io::FrameColumn> columns;
 };
 
-/// Opens its files with the first frames: until then it is not known at which activation they begin.
+/// Opens its files with the first frames, which say at which activation the files begin.
 class TakeSink : public io::Sink {
 public:
     struct Told {

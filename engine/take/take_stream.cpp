@@ -33,7 +33,7 @@ void write_names(SNDFILE* file, const std::vector<std::string>& names) {
             "<NAME>{1}</NAME></TRACK>",
             i + 1, names[i]);
     xml += "</TRACK_LIST></BWFXML>";
-    // The library reads headers of up to 100 kB. What the channels are is in the take, too.
+    // libsndfile reads headers of up to 100 kB. The take lists the channels, too.
     constexpr std::size_t most_bytes = 80'000;
     if (xml.size() > most_bytes) return;
     if (xml.size() % 2 != 0) xml += ' ';

@@ -150,7 +150,7 @@ void TakeWriter::line(const std::string& json) {
         events_->flush();
         ++lines_;
     } catch (const Error& error) {
-        // What the log says from here on would be of things that are told nowhere.
+        // Later records of the log would refer to events that were not written.
         lose(error.message());
     }
 }
@@ -292,7 +292,7 @@ void TakeWriter::move_to(const fs::path& folder) {
 
 void TakeWriter::finish(const std::vector<std::pair<std::string, std::uint64_t>>& port_hashes) {
     holds_a_run_ = true;
-    // A log without its last record says itself that it was cut off.
+    // A log without its last record counts as cut off.
     if (is_lost_) return log_.reset();
     try {
         log_->finish();

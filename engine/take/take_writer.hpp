@@ -38,10 +38,10 @@ namespace tactus::take {
 
 struct TakeFile;
 
-/// Of take.json. Format 2, with a file for each output, is read, too; others are refused.
+/// Format number of take.json. Format 2, with one file per output, can be read as well; other formats are refused.
 constexpr int take_format = 3, oldest_take_format = 2;
 
-/// What a take says about the run it is of.
+/// What a take states about its run.
 struct TakeAbout {
     std::filesystem::path patch_file;  ///< absolute
     patch::PatchOverrides overrides;
@@ -50,12 +50,12 @@ struct TakeAbout {
     bool live = false;
 };
 
-/// When the disk is full during the run, what is in the take stays and repeats the run up to there; nothing more comes.
+/// When the disk is full during the run, the take keeps what it has, repeats the run up to there, and grows no more.
 class TakeWriter {
 public:
     /// Makes the folder; one that holds something else is refused. Throws Error.
     TakeWriter(std::filesystem::path folder, TakeAbout about);
-    /// Removes what was made for a run that never began: the folder is free for the next try.
+    /// Removes the files of a run that never began, so that the folder can be used again.
     ~TakeWriter();
     TakeWriter(const TakeWriter&) = delete;
     TakeWriter& operator=(const TakeWriter&) = delete;
@@ -65,7 +65,7 @@ public:
     void device(const build::DeviceSlot& slot);
     /// Where the frames of a group go: files of at most `most_channels` channels, opened with the first frame.
     std::unique_ptr<io::Sink> sink(const io::FrameLayout& layout, const run::GroupRuntime& group);
-    /// What an edit says of itself; reads all of its assets. Any thread. Throws Error.
+    /// Describes the assets of an edit; reads all of them. Any thread. Throws Error.
     static std::string describe_assets(const patch::Patch& patch);
     /// The plan that takes over at `when`; `assets` as described.
     void edit(std::int64_t number, Flicks when, const patch::Patch& patch, const std::string& assets);
@@ -79,10 +79,10 @@ public:
     };
     void checkpoint(const std::vector<Progress>& progress);
     void finish(const std::vector<std::pair<std::string, std::uint64_t>>& port_hashes);
-    /// Why it repeats only a part of the run; empty: it does not. Any thread.
+    /// Why the take repeats only a part of the run; empty: it repeats all of it. Any thread.
     std::string loss() const;
     bool is_lost() const { return is_lost_; }
-    /// It repeats the run only up to here.
+    /// The take repeats the run only up to here.
     void lose(const std::string& why);
 
     const std::filesystem::path& folder() const { return folder_; }
@@ -101,18 +101,18 @@ private:
     TakeAbout about_;
     std::unique_ptr<TimingLogWriter> log_;
     std::unique_ptr<file::GrowingFile> events_;
-    mutable std::mutex writing_;  // lines come from whoever drains a stream
+    mutable std::mutex writing_;  // every thread that drains a stream writes lines
     std::int64_t lines_ = 0;  // of events.jsonl
     std::map<std::string, std::int64_t> frames_;  // of each stream that is complete
     std::atomic<bool> is_lost_{false};
-    std::atomic<bool> holds_a_run_{false};  // something of a run was written
+    std::atomic<bool> holds_a_run_{false};  // a part of a run was written
     std::atomic<bool> has_cut_stream_{false};  // one of the streams ends before the run
     std::string loss_;
     std::unordered_set<std::string> files_;
     std::chrono::steady_clock::time_point flushed_;
 };
 
-/// Hash of a file's bytes; of a text that names other files beside it, theirs too. Throws Error.
+/// Hash of a file's bytes; for a text that names other files, their bytes too. Throws Error.
 std::uint64_t hash_of_asset(const std::filesystem::path& path);
 /// Of the running program.
 std::string build_identity();

@@ -29,7 +29,7 @@ struct Closer {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-// A byte of a damaged file may be neither false nor true, and must not be looked at as a bool.
+// A byte of a damaged file may be neither 0 nor 1, so it must not be read as a bool.
 bool is_flag(const bool& flag) {
     unsigned char byte = 0;
     std::memcpy(&byte, &flag, sizeof byte);
@@ -120,7 +120,7 @@ TimingLog TimingLog::load(const std::filesystem::path& path, bool may_be_cut) {
         fail(fmt::format("the timing log holds {} records, but {} were written; it cannot be replayed to the bit",
                          log.records, *log.written));
     if (!may_be_cut) fail("the timing log stops before the end of the run; it cannot be replayed to the bit");
-    // Every round of progress names all groups; the last one that is complete says where they all were.
+    // Each round of progress records names all groups; the last complete round says what they had reached.
     log.cut = std::numeric_limits<Flicks>::max();
     for (const auto& group : log.groups) {
         Flicks reached = 0;

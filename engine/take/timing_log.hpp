@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Everything that timing decided in a live run, as one kind of record. An offline run fed with the log computes the
-// bits of the live run, however bad it was.
+// bits of the live run, whatever was late in it.
 #pragma once
 
 #include "assets/file/growing_file.hpp"
@@ -49,10 +49,10 @@ struct TimingRecord {
 struct TimingLog {
     std::uint64_t plan_hash = 0;
     double seconds = 0.0;  ///< as asked for
-    /// False: the run was cut off, or records are missing, and the log ends where all groups were known to be.
+    /// False: the run was cut off, or records are missing. The log then ends at the last time that all groups had reached.
     bool is_whole = true;
     std::int64_t records = 0;  ///< in the file
-    std::optional<std::int64_t> written;  ///< how many its last record says there are
+    std::optional<std::int64_t> written;  ///< number of records, as the last record states it
     std::vector<std::vector<TimingRecord>> groups;
     Flicks cut = 0;  ///< of a run that was cut off: logical time up to which it can be repeated
 
@@ -79,9 +79,9 @@ public:
 
     /// Throws Error when there is no room, once; the log ends with the last whole record then.
     void write(const TimingRecord& record);
-    /// Hands what was written to the system: a crash of the program loses nothing of it.
+    /// Passes what was written to the operating system: a crash of the program does not lose it.
     void flush();
-    /// The last record. When that finds no room the log keeps its name and says that it was cut off. Throws Error.
+    /// Writes the last record. When the disk is full the log keeps its name and counts as cut off. Throws Error.
     void finish();
     std::uint64_t size() const { return bytes_; }
     std::int64_t records() const { return static_cast<std::int64_t>(bytes_ / sizeof(TimingRecord)); }

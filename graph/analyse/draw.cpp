@@ -80,7 +80,7 @@ private:
     const compile::PlanNode& node(int index) const { return plan_.nodes[static_cast<std::size_t>(index)]; }
     Place& place_of(int index) { return places_[static_cast<std::size_t>(index)]; }
 
-    /// Longest way from a source, over all wires that go forward. Nodes stand in that order in their groups.
+    /// Length of the longest path from a source, over forward wires. It orders the nodes of a group.
     void find_columns() {
         std::vector<std::vector<int>> after(plan_.nodes.size());
         for (const compile::PlanWire& wire : plan_.wires) {
@@ -160,7 +160,7 @@ private:
         return name.size() <= most_shown ? name : name.substr(0, most_shown - 1) + "…";
     }
 
-    /// Where among a node's ports a wire docks, so that wires do not lie on each other.
+    /// The place of a wire among a node's ports, so that wires do not overlap.
     static double docked(double y, std::size_t port, std::size_t ports) {
         return y + box_height * (static_cast<double>(port) + 1.0) / (static_cast<double>(ports) + 1.0);
     }

@@ -38,7 +38,7 @@ Ages ages_from(const compile::Plan& plan, int source) {
     std::vector<std::vector<std::size_t>> leaving(plan.nodes.size());
     for (std::size_t w = 0; w < plan.wires.size(); ++w)
         if (plan.wires[w].from_node >= 0) leaving[static_cast<std::size_t>(plan.wires[w].from_node)].push_back(w);
-    // Ages only fall, by Bellman and Ford. A round goes over all wires in their order, which decides between ways of
+    // Bellman and Ford: ages only fall. A round visits all wires in their order, which decides between paths of
     // one age; only those are visited behind which an age fell.
     using Visit = std::pair<std::size_t, std::size_t>;  // round, wire
     std::priority_queue<Visit, std::vector<Visit>, std::greater<>> due;

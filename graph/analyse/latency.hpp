@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How old, in logical time, what leaves a patch can be.
+// The largest age, in logical time, of values that leave a patch.
 #pragma once
 
 #include "graph/compile/plan.hpp"
@@ -21,7 +21,7 @@ Flicks worst_age(const compile::PlanGroup& producer, const compile::PlanGroup& c
 
 inline constexpr Flicks unreached = std::numeric_limits<Flicks>::max();
 
-/// By the quickest way from one node to each other: how old its value is there, or `unreached`, and the node before on
+/// For the quickest path from one node to each other node: how old its value is there, or `unreached`, and the node before on
 /// that way (−1: none).
 struct Ages {
     std::vector<Flicks> age;
@@ -29,7 +29,7 @@ struct Ages {
 };
 Ages ages_from(const compile::Plan& plan, int source);
 
-/// By the quickest way from each node to `sink`: how much older a value becomes, or `unreached`.
+/// For the quickest path from each node to `sink`: how much older a value becomes, or `unreached`.
 std::vector<Flicks> ages_to(const compile::Plan& plan, int sink);
 
 /// The quickest path from every device input to every output of the patch (device_output, audio_output, record), in

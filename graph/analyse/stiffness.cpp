@@ -43,7 +43,7 @@ std::optional<DeclaredStiffness> stiffest(const DrivenParams& driven, const comp
     return found;
 }
 
-/// What a metre of the device is in the scene, behind the quickest ways from a source: workspaces multiply.
+/// The scale from the device to the scene on the quickest path from a source: the product of its workspaces.
 class Scales {
 public:
     Scales(const compile::Plan& plan, const Ages& from_source)
@@ -120,7 +120,7 @@ std::vector<FeltSpring> felt_springs(const compile::Plan& plan) {
                     SourceLocation where = plan.nodes[n].where;
                     for (const OptionText& given : plan.patch.nodes[n].settings)
                         if (given.name == name) where = given.where;
-                    felt.push_back({plan.nodes[n].name + "." + name, where, param, setting_of(plan, sink, "device"),
+                    felt.push_back({plan.nodes[n].name + "." + name, where, param, static_cast<int>(sink),
                                     scale * scale, driven.contains(param)});
                 }
             }
@@ -169,7 +169,7 @@ std::vector<ForceLoop> force_loops(const compile::Plan& plan, const std::functio
                 DeclaredStiffness felt{declared.param, declared.newton_per_metre * scale * scale, declared.is_driven};
                 if (felt.is_driven && most > 0.0) felt.newton_per_metre = std::min(felt.newton_per_metre, most);
                 ForceLoop loop = loop_of(there + back, std::move(felt));
-                // Stiffness times lateness: what comes closest to the limit, also for a device of unknown damping.
+                // Stiffness times delay: the loop with the largest product is nearest to its limit, whatever the damping.
                 const auto strain = [period](const ForceLoop& l) {
                     return l.declared->newton_per_metre * (0.5 * period + l.latency_s);
                 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How stiff a patch may feel: what the delay between feeling and force leaves of it.
+// How stiff a patch may feel on a device, given the delay between a sample and its force.
 #pragma once
 
 #include "graph/compile/plan.hpp"
@@ -41,17 +41,17 @@ struct ForceLoop {
     bool ok() const { return verdict() == Verdict::stable; }
 };
 
-/// A parameter in N/m between a hand's device and its force, and what it is worth at the device.
+/// A parameter in N/m between a hand's device and its force, and its scale at the device.
 struct FeltSpring {
     std::string name;  ///< "blade.stiffness"
     SourceLocation where;  ///< of its value, or of its node
     Param* param = nullptr;
-    std::string device;  ///< that is pushed, by its name in the patch; "": the only one
+    int sink = -1;  ///< index of the node that gives the force to the device
     double scale = 1.0;  ///< of the parameter's N/m, at the device
     bool is_driven = false;  ///< by a wire
 };
 
-/// Every such parameter of every way from a device_input to a device_output, in the order of nodes and names.
+/// All such parameters on all paths from a device_input to a device_output, in the order of nodes and names.
 std::vector<FeltSpring> felt_springs(const compile::Plan& plan);
 
 /// Largest stiffness of a spring that a hand's device, of damping b in N·s/m, can feel without humming when its force is
@@ -62,14 +62,14 @@ constexpr double stiffness_limit(double damping, double period_s, double delay_s
     return damping / (0.5 * period_s + delay_s);
 }
 
-/// Every way from a device_input to a device_output, one line for each pair, in order of names. `damping` is asked for
-/// that of a device by its name in the patch ("": the only one). A workspace on the way enlarges what is felt by the
-/// square of its scale. `max_stiffness` is asked for in the same way; a stiffness that a wire drives stays below it,
-/// since the run limits it (tools/session/limit_stiffness.hpp).
+/// All paths from a device_input to a device_output, one line for each pair, in order of names. `damping` returns the
+/// damping of a device by its name in the patch ("": the only one). A workspace on the path multiplies the stiffness by the
+/// square of its scale. `max_stiffness` is called in the same way; a stiffness that a wire drives stays below it,
+/// since the run limits it (engine/build/stiffness_limits.cpp).
 std::vector<ForceLoop> force_loops(const compile::Plan& plan, const std::function<double(const std::string&)>& damping,
                                    const std::function<double(const std::string&)>& max_stiffness = {});
 
-/// A kind of device, to see what others would feel of a patch. Makers state no damping: these are assumptions for the
+/// A class of devices, to compare a patch on other devices. Makers state no damping: these are assumptions for the
 /// mechanism with a light grip. Stiffness as makers state it for the weakest axis, N/m.
 struct DeviceClass {
     const char* name;

@@ -3,11 +3,13 @@
 
 #include "graph/patch/sub_patch.hpp"
 
+#include <utility>
+
 namespace tactus::compile {
 
-std::optional<Plan> compile(const patch::Patch& patch, Catalogue catalogue, patch::Problems& problems) {
+std::optional<Plan> compile(patch::Patch patch, Catalogue catalogue, patch::Problems& problems) {
     Plan plan;
-    plan.patch = patch;
+    plan.patch = std::move(patch);
     const std::size_t earlier = problems.list.size();
     patch::flatten(plan.patch, problems);
     if (problems.list.size() > earlier) return std::nullopt;

@@ -79,7 +79,7 @@ using Catalogue = std::span<const NodeType* const>;
 
 /// Compiles a patch: names to nodes and ports, groups, order. Nodes are made and their parameters set, none is prepared.
 /// Returns nothing when there are problems.
-std::optional<Plan> compile(const patch::Patch& patch, Catalogue catalogue, patch::Problems& problems);
+std::optional<Plan> compile(patch::Patch patch, Catalogue catalogue, patch::Problems& problems);
 
 /// Index of the producer's value that consumer activation `j` reads: floor((j·Pc − L)/Pp); negative: the initial value.
 constexpr std::int64_t source_index(std::int64_t j, Flicks consumer_period, Flicks latency, Flicks producer_period) {

@@ -103,7 +103,7 @@ void add_element(Editing& editing, const WireText& wire) {
     if (!has_comma) editing.replace({end, end}, ",");
 }
 
-/// A wire's text with one node under another name.
+/// The text of a wire, with one node renamed.
 std::string renamed(const std::string& wire, const patch::PatchWire& read, std::string_view from, std::string_view to) {
     std::string text = wire;
     const auto rename_at = [&](std::size_t at) {
@@ -115,7 +115,7 @@ std::string renamed(const std::string& wire, const patch::PatchWire& read, std::
     return text;
 }
 
-/// What stands within a patch that is a node has no place in this text.
+/// Nodes within a sub-patch are not part of this text.
 void refuse_within(std::string_view name) {
     const std::size_t end = name.find(patch::within_node);
     if (end == std::string_view::npos) return;

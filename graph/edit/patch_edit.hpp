@@ -27,16 +27,16 @@ struct NewNode {
 
 /// Sets a parameter, "0.8 N/mm", where it stands or as a new line of the node's table.
 std::string with_setting(std::string_view text, std::string_view node, std::string_view name, std::string_view value);
-/// Takes the parameter's line away: its default holds.
+/// Removes the parameter's line: its default holds.
 std::string without_setting(std::string_view text, std::string_view node, std::string_view name);
 /// Adds a table behind the last node's, and its wires.
 std::string with_node(std::string_view text, const NewNode& node);
-/// Takes a node away, and every wire that begins or ends there.
+/// Removes a node and every wire that begins or ends there.
 std::string without_node(std::string_view text, std::string_view name);
 std::string with_node_named(std::string_view text, std::string_view from, std::string_view to);
-/// Adds a wire; one that feeds the same input gives way to it.
+/// Adds a wire; it replaces one that feeds the same input.
 std::string with_wire(std::string_view text, const WireText& wire);
-/// Takes away the wire to that input, "saw.load".
+/// Removes the wire to that input, "saw.load".
 std::string without_wire(std::string_view text, std::string_view to);
 
 }  // namespace tactus::edit

@@ -21,7 +21,7 @@ bool starts_with(const Path& path, const Path& with) {
     return path.size() >= with.size() && std::equal(with.begin(), with.end(), path.begin());
 }
 
-/// Numbers and truth values stand without quotes.
+/// Numbers, true and false are written without quotes.
 bool is_bare(std::string_view value) {
     if (value == "true" || value == "false") return true;
     const std::string_view digits = value.starts_with('-') ? value.substr(1) : value;
@@ -35,7 +35,7 @@ bool is_bare(std::string_view value) {
 
 std::string literal(std::string_view value) { return is_bare(value) ? std::string(value) : toml_quoted(value); }
 
-/// As what stood there before: in quotes, as a list of quantities, or bare.
+/// Writes a value in the form of the old one: in quotes, as a list of quantities, or bare.
 std::string literal_like(std::string_view before, std::string_view value) {
     if (before.starts_with('"') || before.starts_with('\'')) return toml_quoted(value);
     if (!before.starts_with('[')) return literal(value);
@@ -195,7 +195,7 @@ bool Editing::remove_one(const Path& path) {
     for (std::size_t h = 0; h < spans_.headers.size(); ++h) {
         if (!starts_with(spans_.headers[h].path, path)) continue;
         TextSpan block{patch::line_start(text_, spans_.headers[h].span.begin), patch::line_end(text_, last_of(h))};
-        // Of the empty lines around it one set is enough.
+        // Keeps one of the two blocks of empty lines around it.
         if (block.begin == 0 || patch::is_empty_line(text_, patch::line_start(text_, block.begin - 1)))
             while (block.end < text_.size() && patch::is_empty_line(text_, block.end))
                 block.end = patch::line_end(text_, block.end);

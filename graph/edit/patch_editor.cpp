@@ -13,7 +13,7 @@ namespace tactus::edit {
 PatchEditor::PatchEditor(std::string text, std::filesystem::path file, Check check)
     : text_(std::move(text)), saved_(text_), file_(std::move(file)), check_(std::move(check)) {}
 
-/// One step: what differs between the common beginning and the common end.
+/// One step of the history: the part of the text that differs.
 void PatchEditor::keep(std::string text) {
     if (text == text_) return;
     const auto begin = std::mismatch(text_.begin(), text_.end(), text.begin(), text.end());

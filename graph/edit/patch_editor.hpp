@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A patch while it is edited: every edit compiles or is refused, and any of them can be taken back.
+// A patch that is being edited: an edit that does not compile is refused, and each edit can be undone.
 #pragma once
 
 #include <cstdint>
@@ -24,10 +24,10 @@ public:
 
     const std::string& text() const { return text_; }
     const std::filesystem::path& file() const { return file_; }
-    /// Rises with every change of the text, taken back or not.
+    /// Rises with every change of the text, also when one is undone.
     std::int64_t version() const { return version_; }
 
-    /// Makes an edit. What it returns, when it is refused, is why; the text is as it was then.
+    /// Makes an edit. Returns why it was refused, or nothing; a refused edit does not change the text.
     std::optional<std::string> apply(const Edit& edit);
     bool can_undo() const { return done_ > 0; }
     bool can_redo() const { return done_ < steps_.size(); }
@@ -44,9 +44,9 @@ public:
     /// Another file, which is written durably, is the patch's from now on. `moved` makes every text of the history, the
     /// present one among them, one for that place. Throws Error; then all is as it was.
     void save_as(const std::filesystem::path& file, const Edit& moved);
-    /// Another text, which may not compile, as an edit.
+    /// Replaces the text as one edit; it need not compile.
     void replace(std::string text) { keep(std::move(text)); }
-    /// Takes over a file that was saved elsewhere, as an edit. False: the file holds nothing new.
+    /// Reads a file that another program saved, as one edit. False: the text is the same.
     bool reload();
 
 private:

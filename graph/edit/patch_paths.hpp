@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A patch's text that moves to another folder: the files that it names by relative paths are still those it named.
+// Moves a patch's text to another folder: its relative paths are changed so that they name the same files.
 #pragma once
 
 #include <filesystem>

@@ -35,7 +35,7 @@ public:
             const std::size_t before = at_;
             if (text_[at_] == '[') header();
             else entry(table_, -1);
-            // What is no TOML is left behind line by line.
+            // Lines that are no TOML are skipped.
             if (at_ == before) at_ = std::min(text_.find('\n', at_), text_.size());
         }
         return std::move(found_);
@@ -165,7 +165,7 @@ private:
         return {begin, at_};
     }
 
-    /// A value that is no inline table with entries to note; one within an array is passed over.
+    /// A value that is no inline table. Inline tables in arrays are skipped.
     TextSpan value() {
         const std::size_t begin = at_;
         if (at_ >= text_.size()) return {begin, begin};

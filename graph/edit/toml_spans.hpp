@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where in a TOML text its parts stand, byte by byte: what an edit needs that leaves all else as it was.
+// The byte ranges of the parts of a TOML text, for edits that leave the rest of the text as it is.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +32,7 @@ struct TomlEntry {
     int header = -1;                ///< the one above it, −1: none
     int parent = -1;                ///< the entry whose inline table it stands in, −1: none
 
-    /// Where part `i` of the path is written, or null when that is elsewhere.
+    /// Where part `i` of the path is written; null: not in this header.
     const TextSpan* key(std::size_t i) const {
         const std::size_t above = path.size() - keys.size();
         return i < above || i >= path.size() ? nullptr : &keys[i - above];
@@ -46,7 +46,7 @@ struct TomlSpans {
     const TomlEntry* find(const std::vector<std::string>& path) const;
 };
 
-/// Of a text that a parser accepts; of any other, whatever it can make out.
+/// For a text that a parser accepts; for any other text, the parts that can be recognised.
 TomlSpans toml_spans(std::string_view text);
 
 /// One element of an array: its value, and the comma behind it (empty: none).
@@ -55,9 +55,9 @@ struct TomlElement {
 };
 std::vector<TomlElement> toml_elements(std::string_view text, const TextSpan& array);
 
-/// What a string in quotes says, or the text itself when it has no quotes.
+/// The content of a string in quotes, or the text itself when it has no quotes.
 std::string toml_unquoted(std::string_view written);
-/// A one-line string in quotes that says `text`.
+/// `text` as a one-line string in quotes.
 std::string toml_quoted(std::string_view text);
 
 }  // namespace tactus::edit

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <unordered_set>
 
@@ -25,14 +26,14 @@ const std::array<std::string, 13> top_level{"title",   "about", "wires",  "quant
 class PatchReader {
 public:
     PatchReader(const std::filesystem::path& file, Problems& problems)
-        : file_(file), problems_(problems), earlier_(problems.list.size()) {}
+        : file_(file), name_(file.string()), problems_(problems), earlier_(problems.list.size()) {}
 
     Patch read(std::string_view text) {
         patch_.file = file_;
         patch_.text = text;
         file::TomlTable parsed;
         try {
-            parsed = file::parse_toml(text, file_.string());
+            parsed = file::parse_toml(text, name_);
         } catch (const Error& error) {
             problems_.list.push_back(error);
             return std::move(patch_);
@@ -51,7 +52,7 @@ public:
     }
 
 private:
-    SourceLocation at(const toml::source_region& region) const { return file::toml_place(file_.string(), region); }
+    SourceLocation at(const toml::source_region& region) const { return file::toml_place(name_, region); }
     SourceLocation at(const toml::node& node) const { return at(node.source()); }
 
     static bool comes_before(const SourceLocation& a, const SourceLocation& b) {
@@ -61,7 +62,15 @@ private:
     // TOML tables come sorted by key; the file's order is what people see.
     template <class Item>
     static void sort_by_place(std::vector<Item>& items) {
-        std::ranges::stable_sort(items, comes_before, &Item::where);
+        if (std::ranges::is_sorted(items, comes_before, &Item::where)) return;
+        // Items are large: each moves once.
+        std::vector<Item*> order;
+        for (Item& item : items) order.push_back(&item);
+        std::ranges::stable_sort(order, comes_before, [](const Item* item) { return std::cref(item->where); });
+        std::vector<Item> sorted;
+        sorted.reserve(items.size());
+        for (Item* item : order) sorted.push_back(std::move(*item));
+        items = std::move(sorted);
     }
 
     void entry(const toml::key& key, const toml::node& value) {
@@ -324,6 +333,7 @@ private:
     }
 
     std::filesystem::path file_;
+    std::string name_;  ///< of the file, in messages
     Problems& problems_;
     std::size_t earlier_;  ///< problems that were there before
     Patch patch_;

@@ -4,6 +4,7 @@
 #include "graph/node/node.hpp"
 
 #include <algorithm>
+#include <string>
 
 namespace tactus::nodes {
 
@@ -15,8 +16,7 @@ static double lower_limit(double wanted, double of_device) {
 struct DeviceOutput {
     static constexpr auto about =
         "Sends a force to the hand: checked, limited, ramped in, and faded to zero on any fault. A contact returns no "
-        "more "
-        "energy than the hand has put in, but for power that is granted. The limits of the device apply too.";
+        "more energy than the hand has put in, but for power that is granted. The limits of the device apply too.";
     static constexpr NodeRole role = NodeRole::hand_sink;
 
     In<Wrench> wrench{"on the hand, about the handle, device frame", "N, N m"};
@@ -40,6 +40,7 @@ struct DeviceOutput {
 
     void prepare(const Setup& setup) {
         port_ = &setup.host->device(device.value, DeviceUse::drive, device.where);
+        name_ = setup.name;
         control::ForceLimits limits;
         limits.max_force = lower_limit(max_force, port_->info.max_force);
         limits.max_torque = lower_limit(max_torque, port_->info.max_torque);
@@ -73,6 +74,7 @@ struct DeviceOutput {
         if (limiter_.fault() != control::Fault::none) recover(tick);
         counter_ = s.counter;
         engaged = limiter_.engaged();
+        engaged_ticks_ += limiter_.engaged();
         const double force = glm::length(out.force);
         largest_ = std::max(largest_, force);
         sum_ += force;
@@ -101,6 +103,10 @@ struct DeviceOutput {
         report.set("force", "energy_returned_max_J", e.most_returned);
         report.set("force", "granted_power_max_W", most_granted_);
         report.set("force", "granted_J", e.granted);
+        report.set("force", "engaged_ticks", static_cast<double>(engaged_ticks_));
+        // Forces come on only after the patch has asked for almost none.
+        if (engaged_ticks_ == 0 && faults_ == 0 && s.max_force >= control::ForceLimits{}.engage_force)
+            report.set("forces_never_engaged", name_, s.max_force);
         report.set("force", "fault", std::string(control::describe(last_fault_)));
         report.set("force", "faults", static_cast<double>(faults_));
     }
@@ -156,7 +162,8 @@ private:
     double most_granted_ = 0.0, most_capped_ = 0.0;
     std::int64_t capped_ticks_ = 0;
     double largest_ = 0.0, sum_ = 0.0, well_for_ = 0.0, most_dropped_ = 0.0;
-    std::int64_t counter_ = 0, faults_ = 0, ticks_dropped_ = 0;
+    std::int64_t counter_ = 0, faults_ = 0, ticks_dropped_ = 0, engaged_ticks_ = 0;
+    std::string name_;
     control::Fault last_fault_ = control::Fault::none;
     bool in_fault_ = false;
 };

@@ -6,16 +6,59 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <array>
+#include <cstdint>
 #include <string>
+#include <string_view>
 
 using namespace tactus;
 
+namespace tactus::test {
+
+/// A snapshot of nothing, as those of bones are published.
+struct Page {
+    static constexpr std::string_view wire_name = "page";
+    std::int64_t version = 0;
+    std::uint64_t content_hash = 0;
+};
+
+struct Printer {
+    static constexpr auto about = "Makes versions.";
+    Out<Page> page{"the newest"};
+
+    void process(const Tick&) noexcept {
+        const std::int64_t next = page.get().version + 1;
+        page = {next, static_cast<std::uint64_t>(next)};
+    }
+};
+TACTUS_NODE(Printer, page)
+
+struct Reader {
+    static constexpr auto about = "Reads versions.";
+    In<Page> page{"to read"};
+    Out<double> version{"read"};
+
+    void process(const Tick&) noexcept { version = static_cast<double>(page->version); }
+};
+TACTUS_NODE(Reader, page, version)
+
+struct Echo {
+    static constexpr auto about = "Hands a number on.";
+    In<double> in{"number"};
+    Out<double> out{"the same"};
+
+    void process(const Tick&) noexcept { out = in.get(); }
+};
+TACTUS_NODE(Echo, in, out)
+
+}  // namespace tactus::test
+
 namespace {
 
-compile::Plan plan_of(const std::string& text) {
+compile::Plan plan_of(const std::string& text, compile::Catalogue catalogue = nodes::catalogue()) {
     patch::Problems problems;
     const patch::Patch patch = patch::read_patch(text, "bench.toml", problems);
-    std::optional<compile::Plan> plan = compile::compile(patch, nodes::catalogue(), problems);
+    std::optional<compile::Plan> plan = compile::compile(patch, catalogue, problems);
     if (!problems.empty()) throw problems.list.front();
     return std::move(*plan);
 }
@@ -86,5 +129,36 @@ void wires_between_groups(benchmark::State& state) {
         100 * 2000 * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(wires_between_groups)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// Snapshots, each delayed by a tick, in a group that has other delayed wires: who still looks at them is asked per call.
+void snapshots_among_delays(benchmark::State& state) {
+    std::string wires, nodes;
+    const auto add = [&](const std::string& name, const char* type) {
+        nodes += fmt::format("[nodes.{}]\ntype = \"{}\"\nrate = \"1 kHz\"\n", name, type);
+    };
+    for (int i = 0; i < state.range(0); ++i) {
+        wires += fmt::format("\"p{0}.page -> r{0}.page as delay 1\",", i);
+        add(fmt::format("p{}", i), "printer");
+        add(fmt::format("r{}", i), "reader");
+    }
+    for (int i = 0; i < state.range(1); ++i) {
+        wires += fmt::format("\"e{0}.out -> e{0}.in as delay 1\",", i);
+        add(fmt::format("e{}", i), "echo");
+    }
+    static const std::array<const NodeType*, 3> types{&test::node_type_Printer(), &test::node_type_Reader(),
+                                                      &test::node_type_Echo()};
+    constexpr double seconds = 2.0;
+    for (auto _ : state) {
+        state.PauseTiming();
+        run::EngineOptions options;
+        options.seconds = seconds;
+        run::Engine engine(plan_of("wires = [" + wires + "]\n" + nodes, types), options);
+        state.ResumeTiming();
+        engine.render(1);
+    }
+    state.counters["us_per_call"] = benchmark::Counter(
+        1000 * seconds * 1e-6, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(snapshots_among_delays)->Args({1, 1000})->Args({20, 1000})->Unit(benchmark::kMillisecond);
 
 }  // namespace

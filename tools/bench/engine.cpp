@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cost per node: a chain of gains in this engine, in Pure Data and in scsynth.
 #include "engine/run/engine.hpp"
+#include "assets/file/whole_file.hpp"
 #include "graph/analyse/latency.hpp"
 #include "graph/analyse/stiffness.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/engine_peers.hpp"
+#include "tools/session/load_plan.hpp"
 #include "tools/session/summary.hpp"
 #include "tools/terminal.hpp"
 
@@ -176,6 +178,31 @@ void bench_scaling(int rounds, Json& rows) {
     add("render 2 ms", rendered);
 }
 
+/// Processor time of an edit of one node of many, from the saved file to a plan that can take over, by its steps.
+void bench_edit(int rounds, const std::filesystem::path& folder, Json& rows) {
+    constexpr int nodes = 10'000;
+    const std::filesystem::path file = folder / "edited.toml";
+    std::string text = patch_of(nodes);
+    file::write_whole_file(file, text);
+    patch::Problems problems;
+    text.replace(text.rfind("0.999"), 5, "0.998");
+    double read = 1e9, compiled = 1e9, built = 1e9;
+    for (int i = 0; i < 2 * rounds; ++i) {
+        file::write_whole_file(file, patch_of(nodes));
+        run::Engine engine(*session::plan_of(patch::load_patch(file, problems), {}, {}, nullptr, problems), {});
+        file::write_whole_file(file, text);
+        patch::Patch patch;
+        read = std::min(read, seconds_of([&] { patch = patch::load_patch(file, problems); }));
+        std::optional<compile::Plan> plan;
+        compiled = std::min(compiled,
+                            seconds_of([&] { plan = session::plan_of(std::move(patch), {}, {}, nullptr, problems); }));
+        built = std::min(built, seconds_of([&] { engine.schedule(std::move(*plan), flicks_per_second); }));
+    }
+    rows.push_back(row("edit: read", nodes, 0, read * 1e9 / nodes, nullptr));
+    rows.push_back(row("edit: compile", nodes, 0, compiled * 1e9 / nodes, nullptr));
+    rows.push_back(row("edit: build", nodes, 0, built * 1e9 / nodes, nullptr));
+}
+
 /// Cost of timing every node in one of 64 calls, relative to a tick of 1 ms.
 void bench_telemetry(int rounds, Json& rows) {
     constexpr int nodes = 1000, block = 48;
@@ -227,6 +254,7 @@ int bench_engine(const BenchChoice& choice) {
     bench_compile(choice.rounds, rows);
     line.show("large patches");
     bench_scaling(choice.rounds, rows);
+    bench_edit(choice.rounds, folder, rows);
     bench_telemetry(choice.rounds, rows);
     line.clear();
     std::error_code ignored;
@@ -237,7 +265,7 @@ int bench_engine(const BenchChoice& choice) {
 }
 
 Verb engine_verb() {
-    return {"engine", "time per node in a chain, compared with Pure Data and scsynth; compile time",
+    return {"engine", "time per node in a chain, compared with Pure Data and scsynth; time to compile and to edit",
             [](VerbOptions& verb) -> Action {
                 const auto choice = std::make_shared<BenchChoice>();
                 verb.add("--rounds", choice->rounds, "number of repetitions; the best one counts")

@@ -2,26 +2,22 @@
 // Success rate of snap-to-fit on simulated fractures, compared with common variants of ICP.
 #include "assets/library/mandible.hpp"
 #include "dsp/core/error.hpp"
-#include "dsp/core/rotation.hpp"
 #include "dsp/fit/fit.hpp"
 #include "engine/run/clock.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/snap_cases.hpp"
 #include "tools/bench/snap_live.hpp"
 #include "tools/bench/snap_peers.hpp"
+#include "tools/bench/snap_tally.hpp"
 #include "tools/bench/snap_whole_case.hpp"
 #include "tools/command/old_words.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <map>
-#include <numbers>
 #include <optional>
 
 namespace tactus::bench {
@@ -39,40 +35,6 @@ struct SnapBenchChoice {
 };
 
 constexpr const char* live_case = "live";
-constexpr double degree = std::numbers::pi / 180.0, success = 0.5e-3;
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-/// Results of a method over all trials of a case and start.
-struct Tally {
-    std::vector<double> error, angle, time;
-    int failures_flagged = 0, failures = 0, alarms = 0, judged = 0;
-
-    void add(const FracturePair& pair, const Pose& pose, double seconds) {
-        error.push_back(pair.error(pose));
-        angle.push_back(glm::length(rotation_between(pair.truth.orientation, pose.orientation)) / degree);
-        time.push_back(seconds);
-    }
-    void judge(fit::FitVerdict verdict) {
-        ++judged;
-        const bool failed = !(error.back() < success), flagged = verdict != fit::FitVerdict::fit;
-        failures += failed;
-        failures_flagged += failed && flagged;
-        alarms += !failed && flagged;
-    }
-    double share() const {
-        const auto good = std::ranges::count_if(error, [](double e) { return e < success; });
-        return error.empty() ? 0.0 : static_cast<double>(good) / static_cast<double>(error.size());
-    }
-};
-
-using Tallies = std::map<std::string, Tally>;
-
 constexpr std::pair<const char*, fit::FitMode> modes[] = {
     {"extended", fit::FitMode::extended}, {"global", fit::FitMode::global}, {"baseline", fit::FitMode::thesis}};
 constexpr IcpKind peers[] = {IcpKind::point, IcpKind::plane, IcpKind::generalised};
@@ -81,17 +43,6 @@ constexpr IcpSchedule schedules[] = {IcpSchedule::unlimited, IcpSchedule::trimme
 bool is_chosen(const SnapBenchChoice& choice, std::string_view method) {
     return choice.methods.empty() || std::ranges::count(choice.methods, method) > 0;
 }
-
-struct TimedFit {
-    fit::Fit fit;
-    double seconds = 0.0;
-
-    TimedFit(const FracturePair& pair, const Pose& start, fit::FitMode mode) {
-        const std::int64_t begin = run::thread_ns();
-        fit = fit::find_fit(pair.moving, pair.fixed, start, mode);
-        seconds = 1e-9 * static_cast<double>(run::thread_ns() - begin);
-    }
-};
 
 /// `anywhere`: the cached result of the global fit, which does not depend on the start.
 void try_all(const FracturePair& pair, const IcpTarget& target, const Pose& start, const SnapBenchChoice& choice,

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/session/live_control.hpp"
 
-#include "tools/session/limit_stiffness.hpp"
-
 #include "dsp/core/error.hpp"
 #include "graph/patch/sub_patch.hpp"
 
@@ -47,34 +45,41 @@ void LiveControl::tend() {
 }
 
 void LiveControl::take_over_file() {
-    // The text is read once, so that the take stores exactly the compiled text.
+    // The file is read once, so that the take stores exactly the compiled text.
     patch::Patch patch;
+    patch::Problems found;
     try {
-        patch::Problems unread;
-        patch = patch::load_patch(file_, unread);
+        patch = patch::load_patch(file_, found);
     } catch (const Error& error) {
         return say_(error.what());
     }
     watch_.follow(patch::part_files(patch));
     if (saved) return saved();
     const patch::Patch& runs = engine_.plan().patch;
-    if (patch.text != runs.text || patch.parts != runs.parts) edit(std::move(patch.text));
+    if (patch.text != runs.text || patch.parts != runs.parts)
+        edit_to([patch = std::move(patch), found = std::move(found)](patch::Problems& problems) mutable {
+            problems = std::move(found);
+            return std::move(patch);
+        });
 }
 
 void LiveControl::edit(std::string text) {
-    const auto make = [this, text] {
+    edit_to(
+        [this, text = std::move(text)](patch::Problems& problems) { return patch::read_patch(text, file_, problems); });
+}
+
+void LiveControl::edit_to(std::function<patch::Patch(patch::Problems&)> read) {
+    auto make = [this, read = std::move(read)] {
         patch::Problems problems;
+        patch::Patch patch = read(problems);
         std::optional<compile::Plan> plan =
-            plan_of(patch::read_patch(text, file_, problems), choice_.overrides, choice_.seed, &assets_, problems);
-        if (problems.empty()) {
-            limit_stiffness(*plan, engine_.host());
-            return std::move(*plan);
-        }
+            plan_of(std::move(patch), choice_.overrides, choice_.seed, &assets_, problems);
+        if (problems.empty()) return std::move(*plan);
         std::string all;
         for (const std::string& line : problem_lines(problems)) all += (all.empty() ? "" : "\n") + line;
         throw Error(all);
     };
-    engine_.edit(make, [this](const run::EditOutcome& outcome) {
+    engine_.edit(std::move(make), [this](const run::EditOutcome& outcome) {
         if (outcome.error) say_(fmt::format("{}\nthe edit was not made; the patch runs on as it was", *outcome.error));
         else {
             watch_.follow(patch::part_files(engine_.plan().patch));

@@ -31,6 +31,8 @@ public:
 
 private:
     void take_over_file();
+    /// `read` makes the patch, and is called on the thread that builds.
+    void edit_to(std::function<patch::Patch(patch::Problems&)> read);
     std::string answer(const std::string& line);
     /// Sets "NODE.PARAM=VALUE". Returns the answer for the caller. Throws Error.
     std::string set(const std::string& setting);

@@ -102,7 +102,7 @@ std::optional<compile::Plan> plan_of(patch::Patch patch, const patch::PatchOverr
     if (seed) patch.seed = *seed;
     // After syntax errors, errors of the compiler would mostly be consequences.
     if (!problems.empty()) return std::nullopt;
-    std::optional<compile::Plan> plan = compile::compile(patch, nodes::catalogue(), problems);
+    std::optional<compile::Plan> plan = compile::compile(std::move(patch), nodes::catalogue(), problems);
     if (plan && assets) assets->load(*plan, problems);
     return plan;
 }

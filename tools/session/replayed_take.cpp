@@ -2,7 +2,6 @@
 #include "tools/session/replayed_take.hpp"
 
 #include "dsp/core/error.hpp"
-#include "tools/session/limit_stiffness.hpp"
 #include "tools/session/load_plan.hpp"
 
 #include <optional>
@@ -27,13 +26,9 @@ ReplayedTake::ReplayedTake(const take::Take& take, run::EngineOptions options, c
     options.replay = &take.log;
     options.devices = &take.devices;
     engine_ = std::make_unique<run::Engine>(plan_in(take, take.text, assets), options);
-    limit_stiffness(engine_->plan(), engine_->host());
     for (const auto& event : take.events) {
-        if (const auto* edit = std::get_if<take::TakenEdit>(&event)) {
-            compile::Plan plan = plan_in(take, edit->text, assets);
-            limit_stiffness(plan, engine_->host());
-            engine_->schedule(std::move(plan), edit->when);
-        }
+        if (const auto* edit = std::get_if<take::TakenEdit>(&event))
+            engine_->schedule(plan_in(take, edit->text, assets), edit->when);
         if (const auto* change = std::get_if<take::TakenChange>(&event))
             engine_->schedule_change(change->id, change->node, change->param, change->value);
     }

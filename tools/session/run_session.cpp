@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/session/run_session.hpp"
 
-#include "tools/session/limit_stiffness.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/session/results.hpp"
 #include "tools/session/summary.hpp"
@@ -11,7 +10,6 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <utility>
 
@@ -58,7 +56,6 @@ RunSession::RunSession(const RunChoice& choice, compile::AssetCache& assets, obs
         options.take = take_.get();
     } else if (choice.keeps_journal) begin_journal(options);
     engine_ = std::make_unique<run::Engine>(std::move(plan), options);
-    limit_stiffness(engine_->plan(), engine_->host());
     check_log(*engine_, choice.log, folder());
 }
 
@@ -109,9 +106,7 @@ void RunSession::run(const Hooks& hooks, const std::atomic<bool>& stop) {
         if (control_) control_->tend();
         if (hooks.tend) hooks.tend();
     };
-    const auto begin = std::chrono::steady_clock::now();
     engine_->run_live(live);
-    wall_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     control_.reset();
 }
 
@@ -124,7 +119,7 @@ void RunSession::finish() {
     written.names.emplace_back("summary.json");
     const double ran = engine_->progress_seconds();
     json_ = session::summary_json(*engine_, report, ran, true, written.names, losses());
-    text_ = session::summary_text(*engine_, report, ran, wall_s_);
+    text_ = session::summary_text(*engine_, report, ran, std::nullopt);
     try {
         folder_->write_summary(json_);
     } catch (const Error& error) {

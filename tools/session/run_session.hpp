@@ -56,7 +56,6 @@ private:
     std::unique_ptr<take::TakeWriter> take_;
     std::unique_ptr<run::Engine> engine_;
     std::unique_ptr<LiveControl> control_;
-    double wall_s_ = 0.0;
     std::string json_, text_;
 };
 

@@ -131,9 +131,12 @@ std::string summary_json(const run::Engine& engine, const Report& report, double
     return json.dump(2) + "\n";
 }
 
-std::string summary_text(const run::Engine& engine, const Report& report, double seconds, double wall_seconds) {
-    std::string text = fmt::format("{:.3g} s in {:.3g} s ({:.1f} times real time), output {:016x}\n", seconds,
-                                   wall_seconds, seconds / wall_seconds, engine.output_hash());
+std::string summary_text(const run::Engine& engine, const Report& report, double seconds,
+                         std::optional<double> wall_seconds) {
+    std::string text = wall_seconds ? fmt::format("{:.3g} s in {:.3g} s ({:.1f} times real time)", seconds,
+                                                  *wall_seconds, seconds / *wall_seconds)
+                                    : fmt::format("{:.3g} s live", seconds);
+    text += fmt::format(", output {:016x}\n", engine.output_hash());
     for (const auto& group : engine.groups()) {
         const observe::GroupTelemetry& t = group->telemetry;
         text += fmt::format("  {:>8}: {} ticks, {} misses, {} skipped; a call takes {:.1f} µs (p99 {:.1f})\n",
@@ -142,6 +145,12 @@ std::string summary_text(const run::Engine& engine, const Report& report, double
         if (const std::string late = describe_lateness(*group); !late.empty())
             text += fmt::format("            {}\n", late);
     }
+    if (const auto never = report.sections.find("forces_never_engaged"); never != report.sections.end())
+        for (const auto& [node, newton] : never->second)
+            text += fmt::format(
+                "  {}: the hand never felt a force. It began in contact, where the patch asked for up to {:.2g} N; "
+                "begin with the hand away from what it touches\n",
+                node, std::get<double>(newton));
     if (number(report, "contact", "fraction", -1.0) >= 0.0)
         text += fmt::format("  contact {:.0f} % of the time, at most {:.2f} mm deep; thrust {:.2f} N mean\n",
                             100.0 * number(report, "contact", "fraction"),

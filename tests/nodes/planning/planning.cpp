@@ -1,48 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes of a planning session: scene of a case, matcher, brush, and the coupling that is led.
+// The case node of a planning session: settling, undoing, joining, hiding.
 #include "assets/cases/step_row.hpp"
-#include "assets/library/fragments.hpp"
-#include "dsp/core/rotation.hpp"
 #include "dsp/coupling/scene.hpp"
-#include "graph/node/assets.hpp"
+#include "tests/nodes/planning/broken_case.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/node_harness.hpp"
 
-#include <glm/geometric.hpp>
-
-#include <any>
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <memory>
 
 using namespace tactus;
-using test::NodeHarness;
+using namespace tactus::test;
 
 namespace {
-
-constexpr double mm = 1e-3;
-constexpr test::HarnessOptions servo{.period = flicks_per_second / 1000};
-
-/// The bundled fracture, coarse, its left half locked; a third one, a copy of the left, lies far away.
-std::shared_ptr<const cases::CaseBones> broken() {
-    static const std::shared_ptr<const cases::CaseBones> made = [] {
-        auto c = std::make_shared<cases::CaseBones>();
-        c->bones = library::make_fragments({.voxel = 0.6 * mm, .spacing = 0.8 * mm, .roughness = 0.8 * mm});
-        c->bones.push_back(c->bones[0]);
-        for (const char* name : {"left", "right", "copy"}) c->plan.fragments.push_back({name, name, 0, Vec3(1.0)});
-        cases::PlanStep lock;
-        lock.kind = cases::StepKind::lock;
-        lock.fragments = {0};
-        cases::add_step(c->plan, lock);
-        cases::PlanStep away;
-        away.fragments = {2};
-        away.poses = {{Vec3(0.0, 0.2, 0.0), {1.0, 0.0, 0.0, 0.0}}};
-        cases::add_step(c->plan, away);
-        return c;
-    }();
-    return made;
-}
 
 Pose home_of(int fragment) {
     Vec3 middle(0.0);
@@ -50,8 +20,6 @@ Pose home_of(int fragment) {
     for (const contact::SurfacePoint& p : points) middle += p.position / static_cast<double>(points.size());
     return {middle, {1.0, 0.0, 0.0, 0.0}};
 }
-
-const Pose beside{Vec3(2.5, -1.5, 2.0) * mm, rotation_by({0.08, -0.06, 0.07})};
 
 /// A scene of the case node, fragment 1 held at `at` (file frame).
 struct Session {
@@ -103,13 +71,6 @@ struct Session {
 bool same_bits(const Pose& a, const Pose& b) {
     return std::bit_cast<std::array<double, 3>>(a.position) == std::bit_cast<std::array<double, 3>>(b.position) &&
            std::bit_cast<std::array<double, 4>>(a.orientation) == std::bit_cast<std::array<double, 4>>(b.orientation);
-}
-
-double off(const Pose& pose, const Pose& wanted = {}) {
-    double most = 0.0;
-    for (const Vec3& c : {Vec3(0.0, 0.0, 12.0), Vec3(30.0, 0.0, 0.0), Vec3(0.0, 6.0, -12.0)})
-        most = std::max(most, glm::length(pose.apply(c * mm) - wanted.apply(c * mm)));
-    return most;
 }
 
 }  // namespace
@@ -271,150 +232,4 @@ TEST_CASE("a row of a run that is no step of its plan is refused, and the steps 
     CHECK(plan.steps[3].before == 2);
     CHECK(plan.steps[3].fragments == std::vector<int>{2});
     CHECK(plan.steps[4].before == 3);
-}
-
-/// The same fracture, its right half scanned `far` from its place.
-std::shared_ptr<const cases::CaseBones> scanned(const Vec3& far) {
-    auto c = std::make_shared<cases::CaseBones>(*broken());
-    c->bones[1].distance.origin += far;
-    c->bones[1].density.origin += far;
-    for (contact::SurfacePoint& p : c->bones[1].points) p.position += far;
-    return c;
-}
-
-/// A scene and the node that holds its bodies.
-struct ShownCase {
-    NodeHarness node{"case_scene", servo};
-    coupling::Scene now;
-
-    explicit ShownCase(const std::shared_ptr<const cases::CaseBones>& plan) {
-        node.asset("plan", plan);
-        node.disconnect_optional();
-        node.prepare();
-        node.run(1);
-        now = node.last<coupling::Scene>("scene");
-    }
-};
-
-TEST_CASE("the matcher finds where a fragment fits from beside it, and says that a copy of its partner does not") {
-    const Vec3 far = Vec3(6.0, 2.0, -3.0) * mm;
-    const auto displaced = scanned(far);
-    const ShownCase shown(displaced);
-    coupling::Scene now = shown.now;
-    const Pose there{-far, {1.0, 0.0, 0.0, 0.0}};
-    now.objects[1].pose = beside * there * now.objects[1].body.home;
-    NodeHarness matcher("fragment_matcher", {.period = flicks_per_second / 4});
-    matcher.asset("plan", displaced);
-    matcher.feed("scene", now);
-    matcher.feed<double>("held", 1.0);
-    matcher.feed<bool>("engaged", true);
-    matcher.prepare();
-    matcher.run(2);
-    REQUIRE(matcher.last<bool>("fits"));
-    CHECK(matcher.last<double>("partner") == 0.0);
-    // It says how the faces lie on each other there, for the step of the plan.
-    CHECK(matcher.last<double>("overlap") > 200e-6);
-    CHECK(std::abs(matcher.last<double>("gap")) < 0.05 * mm);
-    CHECK(matcher.last<double>("penetration") < 0.1 * mm);
-    CHECK(off(matcher.last<Pose>("target") * now.objects[1].body.home.inverse() * there.inverse()) < 0.3 * mm);
-    // Its own partner's copy in the hand: the same face does not fit itself.
-    now.objects[2].pose = beside * now.objects[2].body.home;
-    NodeHarness wrong("fragment_matcher", {.period = flicks_per_second / 4});
-    wrong.asset("plan", displaced);
-    wrong.feed("scene", now);
-    wrong.feed<double>("held", 2.0);
-    wrong.disconnect("engaged");
-    wrong.prepare();
-    wrong.run(2);
-    CHECK_FALSE(wrong.last<bool>("fits"));
-    CHECK(off(wrong.last<Pose>("target"), now.objects[2].pose) == 0.0);
-}
-
-TEST_CASE("the matcher does not lead to a fit that only repeats the scan, wherever both were brought, near or anywhere",
-          "[slow]") {
-    for (const char* reach : {"near", "anywhere"}) {
-        CAPTURE(reach);
-        const ShownCase shown(broken());
-        coupling::Scene now = shown.now;
-        const Pose brought{Vec3(20.0, -30.0, 10.0) * mm, rotation_by({0.4, 0.2, -0.3})};
-        now.objects[0].pose = brought * now.objects[0].body.home;
-        now.objects[1].pose = brought * beside * now.objects[1].body.home;
-        NodeHarness node("fragment_matcher", {.period = flicks_per_second / 4});
-        node.asset("plan", broken()).set("reach", reach);
-        node.feed("scene", now).feed<double>("held", 1.0).feed<bool>("engaged", true);
-        node.prepare();
-        node.run(4);
-        CHECK(node.last<double>("score") > 0.5);
-        CHECK(node.last<double>("verdict") == 2.0);
-        CHECK_FALSE(node.last<bool>("fits"));
-        CHECK(off(node.last<Pose>("target"), now.objects[1].pose) == 0.0);
-    }
-}
-
-TEST_CASE("a brush paints what it meets, erases it again, and nothing else") {
-    const auto bone = std::make_shared<const bone::Bone>(broken()->bones[0]);
-    NodeHarness node("brush", servo);
-    node.asset("bone", bone).set("start_clean", "true").set("radius", "2 mm");
-    const Vec3 at = bone->points[100].position;
-    node.feed<Pose>("tool", Pose{at + Vec3(0.1, 0.0, 0.0), {1.0, 0.0, 0.0, 0.0}});
-    node.feed<Pose>("body", Pose{Vec3(0.1, 0.0, 0.0), {1.0, 0.0, 0.0, 0.0}});
-    node.feed<bool>("paint", [](std::int64_t k) { return k >= 10; });
-    node.feed<bool>("erase", [](std::int64_t k) { return k >= 30; });
-    node.prepare();
-    node.run(20);
-    std::size_t within = 0;
-    for (const contact::SurfacePoint& p : bone->points) within += glm::length(p.position - at) <= 2.0 * mm;
-    REQUIRE(within > 5);
-    CHECK(node.values<double>("painted")[5] == 0.0);
-    CHECK(node.last<double>("painted") == static_cast<double>(within));
-    CHECK(node.last<double>("area") > 5e-6);
-    CHECK(node.last<double>("distance") < 1e-9);
-    const auto painted = *std::any_cast<std::shared_ptr<const bone::Bone>>(node.report().results.begin()->second);
-    CHECK(painted.points[100].label == contact::surface_label::fracture);
-    node.run(20);
-    CHECK(node.last<double>("painted") == 0.0);
-}
-
-TEST_CASE(
-    "a held fragment is led to its target with a force that has a limit, and follows the hand that pulls harder") {
-    NodeHarness scene("case_scene", servo);
-    scene.asset("plan", broken());
-    scene.disconnect_optional();
-    scene.prepare();
-    scene.run(1);
-    coupling::Scene now = scene.last<coupling::Scene>("scene");
-    // The right half alone in free space, 6 mm from its target.
-    now.count = 2;
-    now.objects[0].pose.position += Vec3(0.0, 0.0, 0.3);
-    const Pose home = now.objects[1].pose;
-    NodeHarness node("quasi_static_coupling", servo);
-    node.set("held", "1");
-    for (const char* open : {"grip", "holding", "strength", "has_target", "target_of"}) node.disconnect(open);
-    node.feed("scene", now);
-    node.feed<Pose>("device", [home](std::int64_t k) {
-        // From one second on the hand pulls away at 100 mm/s.
-        const double away = 6.0 * mm + (k > 1000 ? 0.1 * mm * static_cast<double>(k - 1000) : 0.0);
-        return Pose{home.position + Vec3(away, 0.0, 0.0), home.orientation};
-    });
-    node.feed<Pose>("target", home).feed<bool>("guided", [](std::int64_t k) { return k >= 100 && k < 2000; });
-    node.feed<bool>("settle", [](std::int64_t k) { return k >= 500 && k < 900; });
-    node.prepare();
-    node.run(1400);
-    const auto poses = node.values<Pose>("pose");
-    const auto felt = node.values<Wrench>("wrench");
-    CHECK(glm::length(poses[90].position - home.position) == Approx(6.0 * mm).margin(0.01 * mm));
-    // Both springs are alike: half way, 3 N.
-    CHECK(glm::length(poses[450].position - home.position) == Approx(3.0 * mm).margin(0.05 * mm));
-    CHECK(glm::length(felt[450].force) == Approx(3.0).margin(0.05));
-    CHECK(glm::length(poses[850].position - home.position) < 0.01 * mm);
-    CHECK(glm::length(felt[850].force) < 0.01);
-    double step = 0.0, most = 0.0;
-    for (std::size_t k = 1; k < felt.size(); ++k) {
-        step = std::max(step, glm::length(felt[k].force - felt[k - 1].force));
-        most = std::max(most, glm::length(felt[k].force));
-    }
-    CHECK(step < 0.5);
-    // The target pulls 8 N at most and the hand ten: within 50 ms of being pulled harder than that it goes along.
-    CHECK(most < 8.01);
-    CHECK(glm::length(poses.back().position - home.position) > 30.0 * mm);
 }

@@ -3,6 +3,7 @@
 #include "assets/bone/import_steps.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
+#include "tools/counted.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/study/workers.hpp"
 #include "tools/terminal.hpp"
@@ -39,11 +40,10 @@ nlohmann::ordered_json json_of(const bone::ImportSummary& s) {
 std::string text_of(const bone::ImportSummary& s) {
     std::string text = fmt::format(
         "{} x {} x {} voxels of {:.3g} x {:.3g} x {:.3g} mm\n  {:.0f} mm³ of bone, {:.0f} mm² of surface, {} "
-        "component{} "
         "found\n  density {:.0f} … {:.0f}, mean {:.0f} kg/m³ ({})\n{}",
         s.size[0], s.size[1], s.size[2], s.voxel_mm[0], s.voxel_mm[1], s.voxel_mm[2], s.bone_volume_mm3,
-        s.surface_area_mm2, s.components, s.components == 1 ? "" : "s", s.density.min, s.density.max, s.density.mean,
-        s.hu, s.points ? fmt::format("  {} points on the surface\n", s.points) : "");
+        s.surface_area_mm2, counted(s.components, "component"), s.density.min, s.density.max, s.density.mean, s.hu,
+        s.points ? fmt::format("  {} on the surface\n", counted(s.points, "point")) : "");
     for (const std::string& note : s.notes) text += fmt::format("  {}\n", note);
     return text;
 }

@@ -3,6 +3,7 @@
 #include "devices/haptic/catalogue.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
+#include "tools/counted.hpp"
 #include "tools/exit_code.hpp"
 
 #include <fmt/format.h>
@@ -39,9 +40,9 @@ int devices(bool json) {
         fmt::print("  {:<12} {}\n", driver["driver"].get<std::string>(), driver["about"].get<std::string>());
     fmt::print("sound outputs{}\n", list["audio"].empty() ? ": " + no_sound : "");
     for (const auto& output : list["audio"])
-        fmt::print("  {} ({} channels, {:.0f} Hz, {:.1f} ms{})\n", output["name"].get<std::string>(),
-                   output["channels"].get<int>(), output["rate_hz"].get<double>(), output["latency_ms"].get<double>(),
-                   output["default"].get<bool>() ? ", default" : "");
+        fmt::print("  {} ({}, {:.0f} Hz, {:.1f} ms{})\n", output["name"].get<std::string>(),
+                   counted(output["channels"].get<int>(), "channel"), output["rate_hz"].get<double>(),
+                   output["latency_ms"].get<double>(), output["default"].get<bool>() ? ", default" : "");
     return done;
 }
 

@@ -5,10 +5,13 @@
 #include "tools/exit_code.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace tactus::command {
 
@@ -55,7 +58,13 @@ public:
         parameters.push_back({{"name", name}, {"kind", "flag"}, {"default", f.value}, {"about", f.about}});
     }
     void vector(std::string_view name, Vector& v) override {
-        parameters.push_back({{"name", name}, {"kind", "vector"}, {"unit", v.unit}, {"about", v.about}});
+        parameters.push_back(
+            {{"name", name},
+             {"kind", "vector"},
+             {"default", fmt::format("[{}, {}, {}]", format_quantity(v.value.x, v.unit),
+                                     format_quantity(v.value.y, v.unit), format_quantity(v.value.z, v.unit))},
+             {"unit", v.unit},
+             {"about", v.about}});
     }
     void asset(std::string_view name, AssetParam& a) override {
         parameters.push_back({{"name", name},
@@ -81,6 +90,22 @@ std::string text_of(const Json& json, const char* key) {
     return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
 }
 
+/// What a parameter may be, and what it is when the patch does not say.
+std::string values_of(const Json& parameter) {
+    const std::string kind = text_of(parameter, "kind"), standard = text_of(parameter, "default");
+    if (kind == "quantity")
+        return fmt::format("{} [{} … {}]{}", standard, text_of(parameter, "min"), text_of(parameter, "max"),
+                           parameter["live"].get<bool>() ? "" : " structural");
+    if (kind == "flag") return parameter["default"].get<bool>() ? "true [true, false]" : "false [true, false]";
+    if (kind == "choice")
+        return fmt::format("{} [{}]", standard, fmt::join(parameter["options"].get<std::vector<std::string>>(), ", "));
+    if (kind == "text") return fmt::format("text \"{}\"", standard);
+    if (kind == "asset")
+        return fmt::format("{} of [assets]{}", text_of(parameter, "asset"),
+                           parameter["optional"].get<bool>() ? ", optional" : "");
+    return standard;
+}
+
 void print_whole(const Json& node) {
     fmt::print("{}\n  {}\n", text_of(node, "type"), text_of(node, "about"));
     for (const auto& [title, key] : {std::pair{"in", "inputs"}, {"out", "outputs"}})
@@ -88,14 +113,8 @@ void print_whole(const Json& node) {
             fmt::print("  {:>3}  {:<18} {:<16} {}{}{}\n", title, text_of(port, "name"), text_of(port, "type"),
                        text_of(port, "about"), text_of(port, "unit").empty() ? "" : ", " + text_of(port, "unit"),
                        port.value("optional", false) ? " (optional)" : "");
-    for (const Json& p : node["parameters"]) {
-        std::string range = text_of(p, "kind");
-        if (range == "quantity")
-            range = fmt::format("{} [{} … {}]{}", text_of(p, "default"), text_of(p, "min"), text_of(p, "max"),
-                                p["live"].get<bool>() ? "" : " structural");
-        else if (!text_of(p, "default").empty()) range += " " + text_of(p, "default");
-        fmt::print("  set  {:<18} {}  {}\n", text_of(p, "name"), range, text_of(p, "about"));
-    }
+    for (const Json& p : node["parameters"])
+        fmt::print("  set  {:<18} {}  {}\n", text_of(p, "name"), values_of(p), text_of(p, "about"));
 }
 
 int nodes(const std::string& wanted, bool json) {

@@ -2,6 +2,7 @@
 // tactus plan alternative: named branches of a plan's history.
 #include "dsp/core/error.hpp"
 #include "tools/command/planning/plan_options.hpp"
+#include "tools/counted.hpp"
 #include "tools/study/planning/plan_case.hpp"
 
 #include <fmt/format.h>
@@ -21,8 +22,8 @@ int list_alternatives(const PlanChoice& choice) {
     if (choice.json) return show_plan(choice);
     const cases::CasePlan plan = cases::load_case_plan(choice.plan);
     for (const cases::PlanAlternative& a : plan.alternatives)
-        fmt::print("{} {}: {} steps\n", &a == &plan.alternatives[static_cast<std::size_t>(plan.current)] ? '*' : ' ',
-                   a.name, fit::steps_to(plan.before(), a.place.head).size());
+        fmt::print("{} {}: {}\n", &a == &plan.alternatives[static_cast<std::size_t>(plan.current)] ? '*' : ' ', a.name,
+                   counted(fit::steps_to(plan.before(), a.place.head).size(), "step"));
     return done;
 }
 

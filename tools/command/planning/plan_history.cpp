@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactus plan undo and redo.
 #include "tools/command/planning/plan_options.hpp"
+#include "tools/counted.hpp"
 #include "tools/study/planning/plan_case.hpp"
 
 #include <fmt/format.h>
@@ -28,8 +29,8 @@ int go(const HistoryChoice& choice, fit::HistoryPlace (*way)(std::span<const int
     if (!choice.json) {
         if (moved == 0) fmt::print("{}\n", end);
         else
-            fmt::print("{} steps; {} of {} are done\n", moved, fit::steps_to(before, plan.place().head).size(),
-                       fit::steps_to(before, plan.place().tip).size());
+            fmt::print("{}; {} of {} are done\n", counted(moved, "step"),
+                       fit::steps_to(before, plan.place().head).size(), fit::steps_to(before, plan.place().tip).size());
     }
     show_change(choice);
     return moved > 0 ? done : answer_is_no;

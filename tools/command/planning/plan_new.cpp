@@ -3,6 +3,7 @@
 #include "assets/bone/labels.hpp"
 #include "dsp/core/error.hpp"
 #include "tools/command/planning/plan_options.hpp"
+#include "tools/counted.hpp"
 #include "tools/study/planning/plan_case.hpp"
 
 #include <fmt/format.h>
@@ -54,7 +55,7 @@ int make_plan(const NewChoice& choice) {
     plan.title = choice.title.empty() ? choice.plan.stem().stem().string() : choice.title;
     for (const std::string& text : choice.names) add_file_of(plan, text, choice.plan.parent_path());
     cases::save_case_plan(plan, choice.plan);
-    if (!choice.json) fmt::print("{}: {} fragments\n", choice.plan.string(), plan.fragments.size());
+    if (!choice.json) fmt::print("{}: {}\n", choice.plan.string(), counted(plan.fragments.size(), "fragment"));
     return show_change(choice);
 }
 

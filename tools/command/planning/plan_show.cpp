@@ -3,6 +3,7 @@
 #include "assets/cases/plan_file.hpp"
 #include "tools/command/planning/plan_options.hpp"
 #include "tools/command/pose_text.hpp"
+#include "tools/counted.hpp"
 #include "tools/study/planning/plan_case.hpp"
 
 #include <fmt/format.h>
@@ -90,9 +91,9 @@ int show_plan(const PlanChoice& choice) {
     }
     const cases::PlanState state = cases::state_of(plan);
     const auto before = plan.before();
-    fmt::print("{}: alternative '{}' of {}, {} steps done, {} to redo\n", plan.title,
+    fmt::print("{}: alternative '{}' of {}, {} done, {} to redo\n", plan.title,
                plan.alternatives[static_cast<std::size_t>(plan.current)].name, plan.alternatives.size(),
-               fit::steps_to(before, plan.place().head).size(),
+               counted(fit::steps_to(before, plan.place().head).size(), "step"),
                fit::steps_to(before, plan.place().tip).size() - fit::steps_to(before, plan.place().head).size());
     for (int n = 0; n < static_cast<int>(plan.fragments.size()); ++n) {
         const cases::PlanFragment& f = plan.fragments[static_cast<std::size_t>(n)];

@@ -3,7 +3,6 @@
 #include "tools/command/run/sight_options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/picture/scene/frames.hpp"
-#include "tools/session/limit_stiffness.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/session/output_folder.hpp"
 #include "tools/session/results.hpp"
@@ -71,7 +70,6 @@ int render(const RenderChoice& choice) {
         options.observer = &frames->observer();
     }
     run::Engine engine(std::move(plan), options);
-    limit_stiffness(engine.plan(), engine.host());
     const int threads =
         choice.threads > 0 ? choice.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 

@@ -3,6 +3,7 @@
 #include "engine/run/engine.hpp"
 #include "engine/take/take_compare.hpp"
 #include "tools/command/options.hpp"
+#include "tools/counted.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/session/output_folder.hpp"
@@ -76,8 +77,11 @@ void print(const Verdict& verdict, std::size_t outputs, double seconds) {
     if (verdict.compared == 0)
         fmt::print("{}0 values compared: the take has none\n", verdict.is_complete ? "" : "cut off; ");
     else if (!verdict.is_complete)
-        fmt::print("cut off; {} values compared, equal so far; {:.3g} s can be repeated\n", verdict.compared, seconds);
-    else fmt::print("identical: {} values of {} outputs, {:.3g} s\n", verdict.compared, outputs, seconds);
+        fmt::print("cut off; {} compared, equal so far; {:.3g} s can be repeated\n", counted(verdict.compared, "value"),
+                   seconds);
+    else
+        fmt::print("identical: {} of {}, {:.3g} s\n", counted(verdict.compared, "value"), counted(outputs, "output"),
+                   seconds);
 }
 
 int replay(const ReplayChoice& choice) {

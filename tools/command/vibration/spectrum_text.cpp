@@ -2,6 +2,7 @@
 #include "tools/command/vibration/spectrum_text.hpp"
 
 #include "tools/command/batch.hpp"
+#include "tools/counted.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -108,8 +109,8 @@ std::string analysis_json(const AnalysedFile& file, const SpectrumWords& words) 
 }
 
 std::string analysis_text(const AnalysedFile& file) {
-    std::string text = fmt::format("{}: {:.3f} s at {:.6g} Hz, {} channel(s)\n", file.file.string(), file.duration,
-                                   file.rate, file.channels.size());
+    std::string text = fmt::format("{}: {:.3f} s at {:.6g} Hz, {}\n", file.file.string(), file.duration, file.rate,
+                                   counted(file.channels.size(), "channel"));
     auto out = std::back_inserter(text);
     if (file.log)
         fmt::format_to(out,

@@ -7,6 +7,7 @@
 #include "dsp/fit/gap.hpp"
 #include "dsp/fit/registration.hpp"
 #include "dsp/geometry/iso_surface.hpp"
+#include "tools/counted.hpp"
 #include "tools/picture/report/html_report.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 #include "tools/study/bones/surface_file.hpp"
@@ -247,8 +248,8 @@ std::string steps(const Case& c) {
 std::string alternatives(const cases::CasePlan& plan) {
     std::string out = "<h2>Alternatives</h2>\n<ul>\n";
     for (const cases::PlanAlternative& a : plan.alternatives)
-        out += fmt::format("<li>{}: {} steps</li>\n", html::escaped(a.name),
-                           fit::steps_to(plan.before(), a.place.head).size());
+        out += fmt::format("<li>{}: {}</li>\n", html::escaped(a.name),
+                           counted(fit::steps_to(plan.before(), a.place.head).size(), "step"));
     return out + "</ul>\n";
 }
 
@@ -276,9 +277,9 @@ std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragme
         throw Error(fmt::format("the pictures cannot be made: {}", error.what()));
     }
     const std::string body =
-        fmt::format("<p>Alternative '{}', {} fragments. Research use; not a medical device.</p>\n",
+        fmt::format("<p>Alternative '{}', {}. Research use; not a medical device.</p>\n",
                     html::escaped(c.plan.alternatives[static_cast<std::size_t>(c.plan.current)].name),
-                    c.fragments.size()) +
+                    counted(c.fragments.size(), "fragment")) +
         fragments_table(c) + mirror(c) + pages + places(c) + steps(c) + alternatives(c.plan);
     return html::page(c.plan.title, body);
 }

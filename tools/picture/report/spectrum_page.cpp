@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/picture/report/spectrum_page.hpp"
 
+#include "tools/counted.hpp"
 #include "tools/picture/report/html_report.hpp"
 #include "tools/picture/report/spectrum_figure.hpp"
 
@@ -85,9 +86,10 @@ std::string analysis_section(const study::AnalysedFile& file, const SpectrumMeth
         mark += static_cast<char>('a' + static_cast<unsigned char>(c) % 16);
     }
     out += html::drawing(draw_spectrum(file), mark);
-    out += fmt::format("<p>{:.4g} s at {:.6g} Hz, {} channel(s); {} segments of {} samples.</p>\n", file.duration,
-                       file.rate, file.channels.size(),
-                       file.channels.empty() ? 0 : file.channels.front().report.psd.segments, file.psd.segment);
+    out += fmt::format("<p>{:.4g} s at {:.6g} Hz, {}; {} of {} samples.</p>\n", file.duration, file.rate,
+                       counted(file.channels.size(), "channel"),
+                       counted(file.channels.empty() ? 0 : file.channels.front().report.psd.segments, "segment"),
+                       file.psd.segment);
     if (file.log)
         out += fmt::format(
             "<p>An uneven log of {} rows, steps {:.3g} to {:.3g} ms, resampled: limited to {:.4g} Hz, reliable to "

@@ -5,6 +5,7 @@
 #include "tools/study/workers.hpp"
 
 #include <cstddef>
+#include <mutex>
 
 namespace tactus::study {
 
@@ -33,7 +34,8 @@ std::vector<ZWidthDevice> modelled_devices() {
     return all;
 }
 
-std::vector<ZWidthCurve> z_width(const std::vector<ZWidthDevice>& devices, const ZWidthGrid& grid) {
+std::vector<ZWidthCurve> z_width(const std::vector<ZWidthDevice>& devices, const ZWidthGrid& grid,
+                                 const std::function<void(std::size_t done, std::size_t all)>& tell) {
     std::vector<ZWidthCurve> curves;
     std::vector<control::SampledWall> walls;
     for (const ZWidthDevice& device : devices)
@@ -46,12 +48,17 @@ std::vector<ZWidthCurve> z_width(const std::vector<ZWidthDevice>& devices, const
                 walls.push_back(wall);
             }
     const std::size_t points = grid.dampings.size();
+    std::mutex telling;
+    std::size_t done = 0;
     on_threads()(curves.size() * points, [&](std::size_t job) {
         control::SampledWall wall = walls[job / points];
         wall.damping = grid.dampings[job % points];
         curves[job / points].points[job % points] = {
             wall.damping, control::colgate_stiffness(wall), control::passive_stiffness(wall),
             control::friction_stiffness(wall), control::simulated_stiffness(wall, grid.most)};
+        const std::lock_guard one(telling);
+        ++done;
+        if (tell) tell(done, curves.size() * points);
     });
     return curves;
 }

@@ -5,6 +5,8 @@
 #include "dsp/control/sampled_wall.hpp"
 #include "graph/node/device.hpp"
 
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -43,7 +45,9 @@ ZWidthDevice ideal_device(const std::string& name, const DeviceInfo& info);
 /// The simulated devices, each with a hand of 0.1 kg.
 std::vector<ZWidthDevice> modelled_devices();
 
-/// One curve per device, rate and delay, computed on all cores.
-std::vector<ZWidthCurve> z_width(const std::vector<ZWidthDevice>& devices, const ZWidthGrid& grid);
+/// One curve per device, rate and delay, computed on all cores. `tell` hears how many points are done, of how many, from
+/// one thread at a time.
+std::vector<ZWidthCurve> z_width(const std::vector<ZWidthDevice>& devices, const ZWidthGrid& grid,
+                                 const std::function<void(std::size_t done, std::size_t all)>& tell = {});
 
 }  // namespace tactus::study

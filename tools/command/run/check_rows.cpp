@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/command/run/check_rows.hpp"
+
+#include "graph/analyse/latency.hpp"
+#include "tools/command/run/check_process.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace tactus::command {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// What a loop through a hand says; "ok" is null when the device states no damping.
+void add_stiffness(Json& row, const analyse::ForceLoop& loop) {
+    const analyse::Verdict verdict = loop.verdict();
+    row["latency_ms"] = loop.latency_s * 1e3;
+    row["damping_N_s_per_m"] = loop.damping;
+    row["stiffness_limit_N_per_mm"] = loop.limit * 1e-3;
+    row["max_stiffness_N_per_mm"] = loop.max_stiffness > 0.0 ? Json(loop.max_stiffness * 1e-3) : Json();
+    row["declared_N_per_mm"] = loop.declared ? Json(loop.declared->newton_per_metre * 1e-3) : Json();
+    row["declared_by"] = loop.declared ? Json(loop.declared->param) : Json();
+    row["ok"] = verdict == analyse::Verdict::unknown ? Json() : Json(verdict == analyse::Verdict::stable);
+}
+
+Json processes_json(const std::vector<DeviceProcess>& processes) {
+    Json rows = Json::array();
+    for (const DeviceProcess& process : processes)
+        rows.push_back(
+            {{"device", process.device}, {"rate_hz", process.rate_hz}, {"added_latency_ms", process.added_s * 1e3}});
+    return rows;
+}
+
+}  // namespace
+
+Json paths_json(const compile::Plan& plan, const std::vector<analyse::ForceLoop>& loops) {
+    std::map<std::pair<std::string_view, std::string_view>, const analyse::ForceLoop*> by_ends;
+    for (const analyse::ForceLoop& loop : loops)
+        by_ends.emplace(std::pair<std::string_view, std::string_view>(loop.from, loop.to), &loop);
+    Json paths = Json::array();
+    for (const analyse::PathLatency& path : analyse::path_latencies(plan)) {
+        Json row{{"from", path.from}, {"to", path.to}, {"latency_ms", path.latency_ms}, {"via", path.via}};
+        if (const auto found = by_ends.find({path.from, path.to}); found != by_ends.end()) {
+            add_stiffness(row, *found->second);
+        }
+        paths.push_back(std::move(row));
+    }
+    return paths;
+}
+
+Json check_json(const std::optional<compile::Plan>& plan, const patch::Problems& problems) {
+    Json json{{"ok", problems.empty()}, {"errors", Json::array()}, {"groups", Json::array()}, {"paths", Json::array()}};
+    for (const Error& error : problems.list)
+        json["errors"].push_back({{"file", error.where().file},
+                                  {"line", error.where().line},
+                                  {"column", error.where().column},
+                                  {"message", error.message()}});
+    if (!plan) return json;
+    for (const compile::PlanGroup& group : plan->groups) {
+        Json nodes = Json::array();
+        for (const int node : group.order) nodes.push_back(plan->nodes[static_cast<std::size_t>(node)].name);
+        json["groups"].push_back({{"name", group.name},
+                                  {"rate_hz", rate_of(group.period)},
+                                  {"latency_ms", seconds(group.latency) * 1e3},
+                                  {"nodes", nodes}});
+    }
+    json["paths"] = paths_json(*plan, {});
+    json["processes"] = processes_json(device_processes(*plan));
+    return json;
+}
+
+Json loops_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes) {
+    Json loops = Json::array();
+    for (const auto& node : nodes) {
+        if (node->type->name != "admittance_controller") continue;
+        Report report;
+        node->type->report(node->instance.get(), report);
+        const auto number = [&](const char* key) { return std::get<double>(report.sections.at(node->name).at(key)); };
+        loops.push_back({{"node", node->name},
+                         {"gain_per_s", number("gain_per_s")},
+                         {"gain_limit_per_s", number("gain_limit_per_s")},
+                         {"hand_stiffness_N_per_mm", node->params.at("hand_stiffness")->value * 1e-3},
+                         {"ok", number("gain_per_s") < number("gain_limit_per_s")}});
+    }
+    return loops;
+}
+
+Json outputs_json(const std::vector<std::shared_ptr<build::LiveNode>>& nodes, Json& warnings) {
+    Json outputs = Json::array();
+    for (const auto& node : nodes) {
+        if (node->type->name != "device_output") continue;
+        Report report;
+        node->type->report(node->instance.get(), report);
+        const bool is_on = std::get<std::string>(report.sections.at("force").at("energy_cap")) == "on";
+        outputs.push_back({{"node", node->name}, {"energy_cap", is_on}});
+        if (!is_on)
+            warnings.push_back(fmt::format(
+                "{}: the energy cap is off; contacts may return more energy than the hand has put in", node->name));
+    }
+    return outputs;
+}
+
+Json z_width_json(const std::vector<study::ZWidthCurve>& curves) {
+    const auto n_mm = [](double value) { return std::isfinite(value) ? Json(value * 1e-3) : Json(); };
+    Json rows = Json::array();
+    for (const study::ZWidthCurve& curve : curves)
+        for (const study::ZWidthPoint& point : curve.points)
+            rows.push_back({{"device", curve.device},
+                            {"rate_hz", curve.rate},
+                            {"delay_ms", curve.delay * 1e3},
+                            {"damping_N_s_per_m", point.damping},
+                            {"bound_N_per_mm", n_mm(point.bound)},
+                            {"passive_N_per_mm", n_mm(point.passive)},
+                            {"friction_N_per_mm", n_mm(point.friction)},
+                            {"simulated_N_per_mm", n_mm(point.simulated)}});
+    return rows;
+}
+
+Json contact_json(const std::vector<study::NodeContactLaw>& laws) {
+    Json rows = Json::array();
+    for (const study::NodeContactLaw& law : laws) {
+        Json row{{"node", law.node}, {"law", law.by_point ? "point" : "area"}};
+        if (law.by_point) row["stiffness_N_per_mm_per_point"] = law.stiffness * 1e-3;
+        else row["stiffness_N_per_mm_per_mm2"] = law.stiffness * 1e-9;
+        row["felt_at_most_N_per_mm"] = law.felt ? Json(*law.felt * 1e-3) : Json();
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+Json classes_json(const std::vector<study::ClassVerdict>& verdicts) {
+    Json rows = Json::array();
+    for (const study::ClassVerdict& v : verdicts)
+        rows.push_back({{"from", v.from},
+                        {"to", v.to},
+                        {"class", v.device.name},
+                        {"assumed_damping_N_s_per_m", v.device.damping},
+                        {"may_feel_N_per_mm", v.may_feel * 1e-3},
+                        {"ok", v.ok}});
+    return rows;
+}
+
+bool is_stable(const Json& json) {
+    for (const char* key : {"paths", "admittance_loops"})
+        if (json.contains(key))
+            for (const Json& row : json[key])
+                if (row.contains("ok") && row["ok"] == false) return false;
+    return true;
+}
+
+bool is_unknown(const Json& json) {
+    return json.contains("paths") && std::ranges::any_of(json["paths"], [](const Json& row) {
+               return row.contains("ok") && row["ok"].is_null();
+           });
+}
+
+}  // namespace tactus::command
