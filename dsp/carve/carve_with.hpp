@@ -18,6 +18,7 @@ public:
     /// `spacing`: of the field, m.
     CarveCore(const CarveSettings& settings, const Vec3& spacing)
         : settings_(settings),
+          widest_(settings.kerf),
           voxel_(std::max({spacing.x, spacing.y, spacing.z})),
           edge_(settings, voxel_),
           swept_(edge_.nodes().size() - 1, edge_.pitch()),
@@ -38,16 +39,27 @@ public:
             if (cutting_ && !sample.running) cut_out(field, result);
             cutting_ = sample.running;
             edge_.follow(field, pose_, sample.dt, removal);
-            if (!cutting_) {
-                forget_path();
-            } else if (turned()) {
-                cut_out(field, result);
-            }
+            take_path(field, result);
         }
-        if (cutting_) {
-            if (moved_since(cut_) > least_cut * voxel_ || any_fresh()) cut_out(field, result);
-            deepen(field, result);
+        finish(field, result);
+        return result;
+    }
+
+    /// Removes what fronts have passed that something else moves; the law of advance has no say.
+    template <class Field>
+    CarveResult update(Field& field, std::span<const CutFront> fronts) noexcept {
+        CarveResult result;
+        for (const CutFront& front : fronts) {
+            if (front.count <= 0 || !is_valid(front.pose)) continue;
+            pose_ = front.pose;
+            settings_.kerf = std::min(front.kerf, widest_);
+            const bool running = front.running != 0;
+            if (cutting_ && !running) cut_out(field, result);
+            cutting_ = running;
+            edge_.adopt(front);
+            take_path(field, result);
         }
+        finish(field, result);
         return result;
     }
 
@@ -80,6 +92,22 @@ private:
         const double force = std::pow(std::max(sample.thrust, 0.0) / s.reference_force, s.force_exponent);
         const double speed = s.speed * force * std::max(sample.rate, 0.0) / s.reference_rate;
         return std::isfinite(speed) ? speed * s.reference_density : 0.0;
+    }
+
+    template <class Field>
+    void take_path(Field& field, CarveResult& result) noexcept {
+        if (!cutting_) {
+            forget_path();
+        } else if (turned()) {
+            cut_out(field, result);
+        }
+    }
+
+    template <class Field>
+    void finish(Field& field, CarveResult& result) noexcept {
+        if (!cutting_) return;
+        if (moved_since(cut_) > least_cut * voxel_ || any_fresh()) cut_out(field, result);
+        deepen(field, result);
     }
 
     void forget_path() noexcept {
@@ -237,6 +265,7 @@ private:
     }
 
     CarveSettings settings_;
+    double widest_ = 0.0;  // m: kerf for which the bone keeps a band
     double voxel_ = 0.0;
     CuttingEdge edge_;
     SweptEdge swept_;
