@@ -43,6 +43,7 @@
     X(Range, math)                      \
     X(Record, record)                   \
     X(Saw, vibration)                   \
+    X(SawBlade, contact)                \
     X(Scene, contact)                   \
     X(Shape, contact)                   \
     X(SimulatedHead, device)            \

@@ -115,8 +115,7 @@ void ToothRow::plunge(const Walk& walk, Tooth& tooth) const noexcept {
     // In contact the interpolated distance ripples: hysteresis between touching and free.
     const double slack = (tooth.touched ? 0.15 : 0.02) * walk.voxel;
     for (int move = 0; move < most_plunges && way > 1e-12; ++move) {
-        const carve::RoundFront::Contact contact =
-            walk.front.look(walk.bone, tooth.at, y, z, axes_[0] * pitch_, slack);
+        const carve::RoundFront::Contact contact = walk.front.look(walk.bone, tooth.at, y, z, axes_[0] * pitch_, slack);
         if (contact.density > 0.0) {
             tooth.density[1] = contact.density;
             return;
@@ -224,7 +223,8 @@ double ToothRow::cut(const CuttingLaw& law, const Drive& drive, double spring) n
             if (!(density > 0.0)) continue;
             const double force = k * (axis == 2 ? tooth.bending : 1.0) * std::abs(tooth.lag[axis]);
             const double depth = law.depth(force * law.reference_density / (density * bearing())).depth;
-            step[axis] = std::copysign(std::min(side_share * speed * depth, std::abs(tooth.lag[axis])), tooth.lag[axis]);
+            step[axis] =
+                std::copysign(std::min(side_share * speed * depth, std::abs(tooth.lag[axis])), tooth.lag[axis]);
         }
         tooth.at += axes_ * step;
         tooth.lag -= step;

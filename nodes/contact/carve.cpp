@@ -14,9 +14,13 @@ namespace tactus::nodes {
 
 struct Carve {
     static constexpr auto about =
-        "Carves a bone along the path of the saw's teeth, at a speed inversely proportional to density (thesis 6.2.2).";
+        "Removes bone: what the front of a saw has passed (saw_blade, burr), or what the teeth of a blade reach along "
+        "its "
+        "path at a speed inversely proportional to density (thesis 6.2.2).";
 
-    Batch<Pose> path{"all poses of the blade: x along the stroke, y into the bone"};
+    Batch<Pose> path{optional,
+                     "all poses of the blade: x along the stroke, y into the bone; speed and force law below"};
+    Batch<carve::CutFront> front{optional, "all fronts that a saw has cut; then only 'length' and 'kerf' below matter"};
     Batch<double> load{optional, "thrust at each pose; unconnected: the reference force", "N"};
     In<bool> running{optional, "the saw runs; unconnected: always"};
     In<double> strokes{optional, "reciprocation rate; unconnected: the reference rate", "Hz"};
@@ -30,7 +34,7 @@ struct Carve {
                             "density that 'speed' refers to: cortical bone"};
     Param force_exponent{"0", "0", "2", "speed is proportional to thrust to this power; 0: the law of the thesis"};
     Param length{structural, "40 mm", "5 mm", "200 mm", "of the tooth edge"};
-    Param kerf{structural, "1 mm", "0.1 mm", "5 mm", "width of the cut"};
+    Param kerf{structural, "1 mm", "0.1 mm", "8 mm", "width of the cut; of a front, the widest"};
     Param stroke{structural, "3 mm", "1 mm", "20 mm", "of the blade, peak to peak"};
     Param bricks_per_tick{structural, "512", "16", "4096",
                           "maximum number of bricks of 8 x 8 x 8 voxels that one tick may change"};
@@ -42,6 +46,8 @@ struct Carve {
         options.band =
             4.0 * std::max({bone_->distance.spacing.x, bone_->distance.spacing.y, bone_->distance.spacing.z}) + kerf;
         editor_ = std::make_unique<volume::BoneEditor>(bone_->distance, bone_->density, options);
+        if (path.connected == front.connected)
+            setup.fail("connect either 'front', of a saw_blade or burr, or 'path', to carve by the law of this node");
         carver_.prepare(*editor_, settings());
         if (carver_.kerf_voxels() < 3.0)
             setup.fail(fmt::format(
@@ -53,12 +59,15 @@ struct Carve {
     }
 
     void process(const Tick&) noexcept {
-        gather();
-        carver_.set_law(settings());
+        if (!front.connected) {
+            gather();
+            carver_.set_law(settings());
+        }
         // A version that was dropped has no reader, unless an earlier publication of the same version was taken.
         if (bone.last_was_dropped && last_was_new_) editor_->forget(last_);
         editor_->reclaim(bone.oldest_readable);
-        const carve::CarveResult now = carver_.update(*editor_, samples_);
+        const carve::CarveResult now =
+            front.connected ? carver_.update(*editor_, front.values()) : carver_.update(*editor_, samples_);
         total_ += now.removed_m3;
         for (std::size_t i = 0; i < by_density_.size(); ++i) by_density_[i] += now.removed_by_density[i];
         if (now.budget_hit) ++budget_hits_;
@@ -84,9 +93,10 @@ struct Carve {
 private:
     carve::CarveSettings settings() const {
         carve::CarveSettings s;
-        s.blade_length = length;
         s.kerf = kerf;
         s.stroke = stroke;
+        // A front brings its nodes; as many places as it can have.
+        s.blade_length = front.connected ? (carve::CutFront::most_nodes - 1) * s.tooth_pitch - s.stroke : length.value;
         s.speed = speed;
         s.reference_force = reference_force;
         s.reference_rate = reference_rate;
@@ -120,7 +130,7 @@ private:
     bool last_was_new_ = false;
 };
 
-TACTUS_NODE(Carve, path, load, running, strokes, bone, removed, source, speed, reference_force, reference_rate,
+TACTUS_NODE(Carve, path, front, load, running, strokes, bone, removed, source, speed, reference_force, reference_rate,
             reference_density, force_exponent, length, kerf, stroke, bricks_per_tick)
 
 }  // namespace tactus::nodes
