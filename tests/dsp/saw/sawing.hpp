@@ -26,7 +26,7 @@ struct BoneBox {
 /// A bone of the given distance, m, sampled around a box.
 inline std::unique_ptr<volume::BoneEditor> bone_where(const BoneBox& box,
                                                       const std::function<double(const Vec3&)>& distance,
-                                                      int versions = 24) {
+                                                      int versions = 3) {
     volume::Grid grid;
     grid.spacing = Vec3(box.voxel);
     grid.origin = box.low - Vec3(box.margin);
@@ -42,7 +42,7 @@ inline std::unique_ptr<volume::BoneEditor> bone_where(const BoneBox& box,
             }
     return std::make_unique<volume::BoneEditor>(
         grid, density,
-        volume::BoneEditorOptions{.band = 4.0 * box.voxel + 2e-3, .max_dirty = 4096, .max_versions = versions});
+        volume::BoneEditorOptions{.band = 4.0 * box.voxel + 2e-3, .max_dirty = 600, .max_versions = versions});
 }
 
 inline std::unique_ptr<volume::BoneEditor> bone_block(const BoneBox& box) {
