@@ -13,6 +13,7 @@
     X(BladeContact, contact)            \
     X(Body, contact)                    \
     X(Brush, planning)                  \
+    X(Burr, contact)                    \
     X(Button, device)                   \
     X(Carve, contact)                   \
     X(CaseScene, planning)              \

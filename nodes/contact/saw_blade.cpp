@@ -80,6 +80,7 @@ struct SawBlade {
         last_.content_hash = carve::hash_of(last_);
         front = last_;
         ++ticks_;
+        clearance_ = bone->value(last_.pose.position);
         if (now.count == 0) return;
         ++touching_;
         thrust_ += now.thrust;
@@ -94,6 +95,7 @@ struct SawBlade {
         if (touching_ == 0.0 && ticks_ > 0.0) {
             const Vec3 at = last_.pose.position * 1e3;
             report.set("contact", "blade_mm", std::vector<double>{at.x, at.y, at.z});
+            report.set("contact", "blade_clearance_mm", clearance_ * 1e3);
         }
     }
 
@@ -101,7 +103,7 @@ private:
     std::optional<saw::SawBlade> blade_;
     saw::CuttingLaw law_;
     carve::CutFront last_;
-    double ticks_ = 0.0, touching_ = 0.0, thrust_ = 0.0, deepest_ = 0.0;
+    double ticks_ = 0.0, touching_ = 0.0, thrust_ = 0.0, deepest_ = 0.0, clearance_ = 0.0;
 };
 
 TACTUS_NODE(SawBlade, pose, bone, running, strokes, wrench, load, stroke_force, feed, teeth, penetration, in_contact,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace tactus;
@@ -138,14 +139,14 @@ TEST_CASE("at break-through the force falls to zero and does not change its sign
             last = now.wrench.force.z;
         });
         CAPTURE(voxel, least, last, hand.position.z);
-        CHECK(least >= 0.0);
+        CHECK(least > -1e-9);
         CHECK(last == 0.0);
         CHECK(hand.position.z < -0.002);
     }
 }
 
-TEST_CASE("a blade that slides sideways at 140 mm/s removes no more than the law allows") {
-    for (const Vec3& way : {Vec3(0.014, 0.0, 0.0), Vec3(0.0, 0.014, 0.0)}) {
+TEST_CASE("a blade that slides sideways at 140 mm/s planes off little") {
+    for (const auto& [way, most] : {std::pair{Vec3(0.0, 0.014, 0.0), 2.0}, std::pair{Vec3(0.014, 0.0, 0.0), 2.0}}) {
         const auto bone = bone_block({.voxel = 0.33e-3});
         Sawing sawing(*bone);
         Pushing hand;
@@ -154,6 +155,6 @@ TEST_CASE("a blade that slides sideways at 140 mm/s removes no more than the law
         const Vec3 from = hand.position;
         for (int n = 0; n < 117; ++n) sawing.step({from + way * std::min(1.0, 0.01 * n), teeth_down});
         CAPTURE(way.x, way.y);
-        CHECK((sawing.removed - before) * 1e9 < 2.0);
+        CHECK((sawing.removed - before) * 1e9 < most);
     }
 }
