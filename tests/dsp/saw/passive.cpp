@@ -158,3 +158,32 @@ TEST_CASE("a blade that slides sideways at 140 mm/s planes off little") {
         CHECK((sawing.removed - before) * 1e9 < most);
     }
 }
+
+TEST_CASE("removal of bone at 60 Hz is not felt") {
+    const auto bone = bone_block({.voxel = 0.33e-3});
+    Sawing sawing(*bone);
+    std::vector<double> thrust;
+    for (int n = 0; n < 4000; ++n) {
+        const double z = 0.2e-3 - 0.0015e-3 * std::min(n, 1000) - 0.00025e-3 * std::max(n - 1000, 0);
+        const double force = sawing.step({Vec3(0.0, 0.0, z), teeth_down}).thrust;
+        if (n >= 2000) thrust.push_back(force);
+    }
+    double mean = 0.0;
+    for (const double force : thrust) mean += force / static_cast<double>(thrust.size());
+    const auto line = [&](double hz) {
+        double re = 0.0, im = 0.0;
+        for (std::size_t n = 0; n < thrust.size(); ++n) {
+            const double phase = 2.0 * std::numbers::pi * hz * static_cast<double>(n) / 1000.0;
+            const double hann =
+                1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(thrust.size()));
+            re += (thrust[n] - mean) * hann * std::cos(phase);
+            im += (thrust[n] - mean) * hann * std::sin(phase);
+        }
+        return 2.0 * std::hypot(re, im) / static_cast<double>(thrust.size());
+    };
+    const double floor = 0.25 * (line(52.0) + line(56.0) + line(64.0) + line(68.0));
+    CAPTURE(mean, floor, line(60.0), line(120.0));
+    CHECK(mean > 3.0);
+    CHECK(line(60.0) < floor + 0.01);
+    CHECK(line(120.0) < floor + 0.01);
+}

@@ -20,7 +20,7 @@ struct SawTrial {
     double width = 0.012, depth = 0.008, thickness = 0.008;  ///< m of the block: along the blade, into it, across it
     double settle = 1.5, seconds = 2.0;  ///< s before and during the measurement
     double stiffness = 40e3;  ///< N/m
-    saw::SawShape shape;
+    saw::SawShape shape{};
 };
 
 struct SawTrialResult {
