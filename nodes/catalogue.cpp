@@ -13,6 +13,7 @@
     X(BladeContact, contact)            \
     X(Body, contact)                    \
     X(Brush, planning)                  \
+    X(Burr, contact)                    \
     X(Button, device)                   \
     X(Carve, contact)                   \
     X(CaseScene, planning)              \
@@ -44,6 +45,7 @@
     X(Range, math)                      \
     X(Record, record)                   \
     X(Saw, vibration)                   \
+    X(SawBlade, contact)                \
     X(Scene, contact)                   \
     X(Shape, contact)                   \
     X(SimulatedHead, device)            \

@@ -18,6 +18,7 @@ public:
     /// `spacing`: of the field, m.
     CarveCore(const CarveSettings& settings, const Vec3& spacing)
         : settings_(settings),
+          widest_(settings.kerf),
           voxel_(std::max({spacing.x, spacing.y, spacing.z})),
           edge_(settings, voxel_),
           swept_(edge_.nodes().size() - 1, edge_.pitch()),
@@ -38,16 +39,28 @@ public:
             if (cutting_ && !sample.running) cut_out(field, result);
             cutting_ = sample.running;
             edge_.follow(field, pose_, sample.dt, removal);
-            if (!cutting_) {
-                forget_path();
-            } else if (turned()) {
-                cut_out(field, result);
-            }
+            take_path(field, result);
         }
-        if (cutting_) {
-            if (moved_since(cut_) > least_cut * voxel_ || any_fresh()) cut_out(field, result);
-            deepen(field, result);
+        finish(field, result);
+        return result;
+    }
+
+    /// Removes what fronts have passed that something else moves; the law of advance has no say.
+    template <class Field>
+    CarveResult update(Field& field, std::span<const CutFront> fronts) noexcept {
+        CarveResult result;
+        follows_fronts_ = true;
+        for (const CutFront& front : fronts) {
+            if (front.count <= 0 || !is_valid(front.pose)) continue;
+            pose_ = front.pose;
+            settings_.kerf = std::min(front.kerf, widest_);
+            const bool running = front.running != 0;
+            if (cutting_ && !running) cut_out(field, result);
+            cutting_ = running;
+            edge_.adopt(front);
+            take_path(field, result);
         }
+        finish(field, result);
         return result;
     }
 
@@ -80,6 +93,30 @@ private:
         const double force = std::pow(std::max(sample.thrust, 0.0) / s.reference_force, s.force_exponent);
         const double speed = s.speed * force * std::max(sample.rate, 0.0) / s.reference_rate;
         return std::isfinite(speed) ? speed * s.reference_density : 0.0;
+    }
+
+    /// Bone holds one end of a span while the other went aside: no tooth passes between them.
+    bool is_torn(std::size_t n) const noexcept {
+        const auto nodes = edge_.nodes();
+        const Vec3 span = nodes[n + 1].at - nodes[n].at, y = pose_.rotate({0, 1, 0});
+        const Vec3 aside = span - y * glm::dot(span, y);
+        return follows_fronts_ && glm::length(aside) > 1.15 * edge_.pitch();
+    }
+
+    template <class Field>
+    void take_path(Field& field, CarveResult& result) noexcept {
+        if (!cutting_) {
+            forget_path();
+        } else if (turned()) {
+            cut_out(field, result);
+        }
+    }
+
+    template <class Field>
+    void finish(Field& field, CarveResult& result) noexcept {
+        if (!cutting_) return;
+        if (moved_since(cut_) > least_cut * voxel_ || any_fresh()) cut_out(field, result);
+        deepen(field, result);
     }
 
     void forget_path() noexcept {
@@ -130,7 +167,7 @@ private:
             const double clear = radius + moved + edge_.pitch() + voxel_;
             const bool near = field.value(a.at) < clear || field.value(b.at) < clear;
             spans[n].fresh = a.fresh || b.fresh;
-            spans[n].moved = a.seated && b.seated && near && (moved > 1e-9 || spans[n].fresh);
+            spans[n].moved = a.seated && b.seated && near && (moved > 1e-9 || spans[n].fresh) && !is_torn(n);
         }
         const double reach = radius + near_voxels * voxel_;
         lay_out(cut_, reach);
@@ -168,7 +205,7 @@ private:
         const auto spans = swept_.spans();
         for (std::size_t n = 0; n < spans.size(); ++n) {
             spans[n].fresh = false;
-            spans[n].moved = nodes[n].seated && nodes[n + 1].seated && n + 2 >= begin && n < end + 2;
+            spans[n].moved = nodes[n].seated && nodes[n + 1].seated && n + 2 >= begin && n < end + 2 && !is_torn(n);
         }
         const double reach = 0.5 * settings_.kerf + settings_.depth;
         lay_out(deep_, reach);
@@ -237,6 +274,7 @@ private:
     }
 
     CarveSettings settings_;
+    double widest_ = 0.0;  // m: kerf for which the bone keeps a band
     double voxel_ = 0.0;
     CuttingEdge edge_;
     SweptEdge swept_;
@@ -244,6 +282,7 @@ private:
     Pose pose_, frame_;
     bool placed_ = false;
     bool cutting_ = false;
+    bool follows_fronts_ = false;
 };
 
 }  // namespace tactus::carve

@@ -74,13 +74,21 @@ void Carver::prepare(const volume::BoneEditor& bone, const CarveSettings& settin
     by_density_ = {};
 }
 
-CarveResult Carver::update(volume::BoneEditor& bone, std::span<const CarveSample> samples) noexcept {
-    EditedBone field{bone, bone.working()};
-    CarveResult result = core_.update(field, samples);
+CarveResult Carver::add(volume::BoneEditor& bone, CarveResult result) noexcept {
     result.dirty_bricks = bone.dirty();
     removed_m3_ += result.removed_m3;
     for (std::size_t n = 0; n < by_density_.size(); ++n) by_density_[n] += result.removed_by_density[n];
     return result;
+}
+
+CarveResult Carver::update(volume::BoneEditor& bone, std::span<const CarveSample> samples) noexcept {
+    EditedBone field{bone, bone.working()};
+    return add(bone, core_.update(field, samples));
+}
+
+CarveResult Carver::update(volume::BoneEditor& bone, std::span<const CutFront> fronts) noexcept {
+    EditedBone field{bone, bone.working()};
+    return add(bone, core_.update(field, fronts));
 }
 
 }  // namespace tactus::carve

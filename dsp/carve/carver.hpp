@@ -36,6 +36,9 @@ public:
     /// the budget of changed bricks is spent, the next update cuts the rest. Allocates nothing.
     CarveResult update(volume::BoneEditor& bone, std::span<const CarveSample> samples) noexcept;
 
+    /// The same for fronts that are advanced elsewhere. Give a carver either samples or fronts.
+    CarveResult update(volume::BoneEditor& bone, std::span<const CutFront> fronts) noexcept;
+
     /// Kerf over the largest voxel edge; below 3 the walls of the cut are not resolved.
     double kerf_voxels() const noexcept { return core_.settings().kerf / core_.voxel(); }
     double removed_m3() const noexcept { return removed_m3_; }  ///< since prepare
@@ -44,6 +47,8 @@ public:
     std::span<const EdgeNode> edge() const noexcept { return core_.edge().nodes(); }
 
 private:
+    CarveResult add(volume::BoneEditor& bone, CarveResult result) noexcept;
+
     CarveCore core_;
     double removed_m3_ = 0.0;
     std::array<double, 4> by_density_{};

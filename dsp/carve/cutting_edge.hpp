@@ -2,6 +2,8 @@
 // The effective cutting edge: the position that the saw has reached, as opposed to where the blade is held.
 #pragma once
 
+#include "dsp/carve/cut_front.hpp"
+#include "dsp/carve/round_front.hpp"
 #include "dsp/carve/settings.hpp"
 
 #include <algorithm>
@@ -57,6 +59,26 @@ public:
         }
     }
 
+    /// Takes the nodes from a front that something else moves. Nodes that the front lacks are not seated.
+    void adopt(const CutFront& front) noexcept {
+        for (std::size_t n = 0; n < nodes_.size(); ++n) {
+            EdgeNode& node = nodes_[n];
+            if (n >= static_cast<std::size_t>(front.count) || !front.is_seated(n)) {
+                node.seated = false;
+                continue;
+            }
+            const Vec3 at = front.at(n);
+            if (!node.seated || front.is_fresh(n)) {
+                node.fresh = true;
+                node.travel = 0.0;
+            } else {
+                node.travel += glm::length(at - node.at);
+            }
+            node.at = node.target = at;
+            node.seated = true;
+        }
+    }
+
     /// Moves the targets to `pose` and lets the nodes follow. `removal` is the speed times the reference density,
     /// kg/(m² s); 0 when the saw does not run. Steps are at most 1 ms long.
     template <class Field>
@@ -92,11 +114,6 @@ private:
     static constexpr double reach = 0.030;  // m of bone out of which a repositioned blade is moved back
     static constexpr double most_aside = 0.010;  // m: a node farther off its blade is detached
     static constexpr int most_moves = 32;
-
-    struct Front {
-        double density = 0.0;  // kg/m³ of the bone the front touches; 0: none
-        double clear = 0.0;  // m of free distance
-    };
 
     void frame(const Pose& pose) noexcept {
         x_ = pose.rotate({1, 0, 0});
@@ -160,7 +177,8 @@ private:
         // In contact the interpolated distance ripples: hysteresis between touching and free.
         const double slack = (node.cutting ? 0.15 : 0.02) * voxel_;
         for (int move = 0; move < most_moves && way > 1e-12; ++move) {
-            const Front front = look(field, node.at, direction, side, neighbour, slack);
+            const RoundFront::Contact front =
+                RoundFront{radius_, ahead_}.look(field, node.at, direction, side, neighbour, slack);
             if (front.density > 0.0) {
                 node.at += direction * std::min(way, removal / front.density * time);
                 return true;
@@ -170,42 +188,6 @@ private:
             way -= step;
         }
         return false;
-    }
-
-    /// Samples three points of the round front (Gauss–Legendre nodes across the kerf) and its middle one pitch to
-    /// either side, all a quarter voxel below the surface of the swept body.
-    template <class Field>
-    Front look(const Field& field, const Vec3& at, const Vec3& direction, const Vec3& side, const Vec3& neighbour,
-               double slack) const noexcept {
-        const double touching = -ahead_ + slack;
-        const Vec3 middle = at + direction * (radius_ + ahead_);
-        const Vec3 low = at + direction * (0.63246 * radius_ + ahead_);
-        const Vec3 own[3] = {low - side * (0.77460 * radius_), middle, low + side * (0.77460 * radius_)};
-        constexpr double weight[3] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
-        double mass = 0.0, share = 0.0, nearest = 1.0;
-        for (int n = 0; n < 3; ++n) {
-            const double d = field.value(own[n]);
-            if (d <= touching) {
-                mass += weight[n] * field.density(own[n]);
-                share += weight[n];
-            }
-            nearest = std::min(nearest, d);
-        }
-        Front front;
-        if (share > 0.0) {
-            front.density = mass / share;
-        } else if (neighbour != Vec3(0.0)) {
-            for (const double sign : {-1.0, 1.0}) {
-                const Vec3 there = middle + neighbour * sign;
-                const double d = field.value(there);
-                if (d <= touching) front.density = std::max(front.density, field.density(there));
-                nearest = std::min(nearest, d);
-            }
-        }
-        if (!(front.density >= 1.0)) front.density = 0.0;
-        // Bone without density does not resist, but the region may be thin: sample again after a quarter voxel.
-        front.clear = nearest > touching ? nearest + ahead_ : ahead_;
-        return front;
     }
 
     double radius_ = 0.0;

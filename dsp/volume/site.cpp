@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/volume/site.hpp"
 
+#include "dsp/core/error.hpp"
+#include "dsp/volume/resample.hpp"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -50,8 +55,37 @@ public:
     }
 
     std::optional<SawSite> run() {
-        for (const int index : candidates()) look_at(index);
+        const std::vector<int> found = candidates();
+        middle_ = middle_of_bone();
+        for (const int index : found) look_at(index);
+        if (!(best_score_ > 0.0)) {
+            border_counts_ = false;
+            for (const int index : found) look_at(index);
+        }
         if (!(best_score_ > 0.0)) return std::nullopt;
+        return best_;
+    }
+
+    std::optional<SawSite> at(const Vec3& point, const Vec3& approach) {
+        std::optional<Vec3> surface =
+            glm::length(approach) > 0.0 ? first_hit(point, glm::normalize(approach)) : std::nullopt;
+        if (!surface) surface = nearest_surface(point);
+        if (!surface) return std::nullopt;
+        const Vec3 g = slope(*surface);
+        const Vec3 feed = glm::length(approach) > 0.0 ? glm::normalize(approach)
+                          : glm::length(g) > 0.1      ? -glm::normalize(g)
+                                                      : Vec3(0.0, 0.0, -1.0);
+        const double deep = std::max(thickness(*surface, feed), least_thickness);
+        double best = HUGE_VAL;
+        for (int i = 0; i < directions; ++i) {
+            const Vec3 stroke = direction(feed, i);
+            const double wide = width(*surface, feed, stroke, 0.5 * deep);
+            // Narrow is good; other bone in the way is worse than any width.
+            const double cost = (wide < 0.0 ? 1.0 : wide) + (body_is_free(*surface, feed, stroke) ? 0.0 : 1.0);
+            if (cost >= best) continue;
+            best = cost;
+            best_ = {*surface, feed, stroke, deep, std::max(wide, 0.0)};
+        }
         return best_;
     }
 
@@ -87,7 +121,71 @@ private:
         return g;
     }
 
+    /// Mean position of samples in bone, every 4 mm or so.
+    Vec3 middle_of_bone() const {
+        Vec3 sum(0.0);
+        double count = 0.0;
+        int stride[3];
+        for (int a = 0; a < 3; ++a) stride[a] = std::max(1, static_cast<int>(4e-3 / distance_.spacing[a]));
+        for (int k = 0; k < distance_.size[2]; k += stride[2])
+            for (int j = 0; j < distance_.size[1]; j += stride[1])
+                for (int i = 0; i < distance_.size[0]; i += stride[0])
+                    if (distance_.at(i, j, k) < 0.0f) {
+                        sum += distance_.position(i, j, k);
+                        count += 1.0;
+                    }
+        return count > 0.0 ? sum / count : sum;
+    }
+
+    /// Where a line through `point` enters bone, from 150 mm before it to 150 mm behind it.
+    std::optional<Vec3> first_hit(const Vec3& point, const Vec3& along) const {
+        constexpr double reach = 0.15;
+        for (double t = -reach; t < reach;) {
+            const double clear = d(point + along * t);
+            if (clear < 0.0) return point + along * (t + clear);
+            t += std::clamp(clear, 0.25 * step_, 5e-3);
+        }
+        return std::nullopt;
+    }
+
+    std::optional<Vec3> nearest_surface(Vec3 p) const {
+        const Vec3 last = distance_.position(distance_.size[0] - 1, distance_.size[1] - 1, distance_.size[2] - 1);
+        p = glm::clamp(p, distance_.origin, last);
+        for (int n = 0; n < 200; ++n) {
+            const double now = d(p);
+            if (std::abs(now) < 0.05 * coarse_) return p;
+            const Vec3 g = slope(p);
+            const double length = glm::length(g);
+            if (length < 0.05) return std::nullopt;
+            p = glm::clamp(p - g * (std::clamp(now, -5e-3, 5e-3) / length), distance_.origin, last);
+        }
+        return std::nullopt;
+    }
+
+    /// One of eight directions orthogonal to the feed.
+    static Vec3 direction(const Vec3& feed, int i) {
+        // The reference axis is the one most nearly orthogonal to the feed, so that it is never parallel.
+        const Vec3 size = glm::abs(feed);
+        const Vec3 axis = size.x <= size.y && size.x <= size.z ? Vec3(1.0, 0.0, 0.0)
+                          : size.y <= size.z                   ? Vec3(0.0, 1.0, 0.0)
+                                                               : Vec3(0.0, 0.0, 1.0);
+        const Vec3 first = glm::normalize(axis - feed * glm::dot(axis, feed)), second = glm::cross(feed, first);
+        const double angle = std::numbers::pi * i / directions;
+        return first * std::cos(angle) + second * std::sin(angle);
+    }
+
+    /// 1 well inside of the scan and outside of the bone's own hollow, less otherwise.
+    double liking(const Vec3& p, const Vec3& feed) const {
+        const Vec3 last = distance_.position(distance_.size[0] - 1, distance_.size[1] - 1, distance_.size[2] - 1);
+        const Vec3 room = glm::min(p - distance_.origin, last - p);
+        const double border = border_counts_ ? std::min({room.x, room.y, room.z}) : 1.0;
+        const Vec3 inwards = middle_ - p;
+        const bool from_inside = glm::dot(inwards, feed) < -0.3 * glm::length(inwards);
+        return (border < 20e-3 ? 0.3 : 1.0) * (from_inside ? 0.2 : 1.0);
+    }
+
     bool near_border(const Vec3& p) const {
+        if (!border_counts_) return false;
         // Import pads a bone that the scan cuts with up to four layers of air; its flat cut face lies inside of them.
         const Vec3 margin = 5.0 * distance_.spacing + Vec3(2e-3);
         const Vec3 last = distance_.position(distance_.size[0] - 1, distance_.size[1] - 1, distance_.size[2] - 1);
@@ -183,19 +281,11 @@ private:
         const Vec3 feed = -glm::normalize(g);
         const double deep = thickness(p, feed);
         if (deep < least_thickness || !is_open(p - feed * 3e-3, -feed, 2e-3)) return;
-        const double depth_score = deep < request_.best_depth ? deep / request_.best_depth : request_.best_depth / deep;
+        const double depth_score =
+            liking(p, feed) * (deep < request_.best_depth ? deep / request_.best_depth : request_.best_depth / deep);
         if (depth_score <= best_score_) return;
 
-        // The reference axis is the one most nearly orthogonal to the feed, so that it is never parallel.
-        const Vec3 size = glm::abs(feed);
-        const Vec3 axis = size.x <= size.y && size.x <= size.z ? Vec3(1.0, 0.0, 0.0)
-                          : size.y <= size.z                   ? Vec3(0.0, 1.0, 0.0)
-                                                               : Vec3(0.0, 0.0, 1.0);
-        const Vec3 first = glm::normalize(axis - feed * glm::dot(axis, feed)), second = glm::cross(feed, first);
-        for (int i = 0; i < directions; ++i) {
-            const double angle = std::numbers::pi * i / directions;
-            look_along(p, feed, first * std::cos(angle) + second * std::sin(angle), deep, depth_score);
-        }
+        for (int i = 0; i < directions; ++i) look_along(p, feed, direction(feed, i), deep, depth_score);
     }
 
     void look_along(const Vec3& p, const Vec3& feed, const Vec3& stroke, double deep, double depth_score) {
@@ -219,10 +309,56 @@ private:
     const Grid &distance_, &density_;
     SiteRequest request_;
     double reach_, step_ = 0.0, coarse_ = 0.0, best_score_ = 0.0;
+    Vec3 middle_{0.0, 0.0, 0.0};
+    bool border_counts_ = true;
     SawSite best_;
 };
 
 }  // namespace
+
+std::optional<SawSite> saw_site_at(const Grid& distance, const Grid& density, const Vec3& point, const Vec3& approach,
+                                   const SiteRequest& request) {
+    for (const int n : distance.size)
+        if (n < 2) return std::nullopt;
+    return Search(distance, density, request).at(point, approach);
+}
+
+SiteVolume refine_at(const SawSite& site, const Grid& distance, const Grid& density, double spacing,
+                     const SiteRequest& request) {
+    const Vec3 across = glm::cross(site.stroke, site.feed);
+    const double along = 0.5 * request.blade_length + request.travel, beside = 10e-3;
+    const double above = request.blade_height + 5e-3, below = std::min(site.thickness + 8e-3, deepest);
+    Vec3 low(HUGE_VAL), high(-HUGE_VAL);
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 p = site.point + site.stroke * (corner & 1 ? along : -along) +
+                       site.feed * (corner & 2 ? below : -above) + across * (corner & 4 ? beside : -beside);
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    const Vec3 last = distance.position(distance.size[0] - 1, distance.size[1] - 1, distance.size[2] - 1);
+    low = glm::max(low, distance.origin);
+    high = glm::min(high, last);
+    SiteVolume made;
+    Grid& grid = made.distance;
+    grid.spacing = Vec3(spacing);
+    grid.origin = low;
+    double samples = 1.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const int axis = static_cast<int>(a);
+        grid.size[a] = std::max(2, static_cast<int>((high[axis] - low[axis]) / spacing) + 1);
+        samples *= grid.size[a];
+    }
+    if (samples > 40e6)
+        throw Error(
+            fmt::format("around the site {:.3g} million samples of {:.3g} mm would be needed; widen the kerf or "
+                        "import the bone with --crop and --spacing",
+                        samples * 1e-6, spacing * 1e3));
+    const Grid layout = grid;
+    made.distance = resampled(distance, layout);
+    made.density = resampled(density, layout);
+    for (float& value : made.density.values) value = std::max(value, 0.0f);
+    return made;
+}
 
 std::optional<SawSite> find_saw_site(const Grid& distance, const Grid& density, const SiteRequest& request) {
     for (const int n : distance.size)

@@ -32,7 +32,23 @@ struct SawSite {
 /// must touch no other bone on its way, and the site must not be on a face where the grid cuts the bone. Among these
 /// the best has about the preferred depth, is narrow along the blade, has bone on both sides, and lies under an even
 /// surface. `density` (kg/m³, same samples) distinguishes bone from filled hollows. Empty when there is no site.
-/// Deterministic.
+/// A site near the border of the grid counts less, as does one that is reached from the side of the bone's own middle,
+/// such as the inside of a rib cage. When every face lies at the border, as on a block with a tight grid, they count as
+/// any other. Deterministic.
 std::optional<SawSite> find_saw_site(const Grid& distance, const Grid& density, const SiteRequest& request = {});
+
+/// The site where a line through `point` along `approach` first meets the bone; without an approach (zero), or where the
+/// line misses, the surface nearest to `point`. The blade lies in the direction, of eight, in which the bone is
+/// narrowest and the blade is free of other bone, if there is one. Empty when no surface is near.
+std::optional<SawSite> saw_site_at(const Grid& distance, const Grid& density, const Vec3& point, const Vec3& approach,
+                                   const SiteRequest& request = {});
+
+/// Both grids around a site with samples `spacing` m apart, as far as a blade reaches there. Throws Error when that is
+/// more than 40 million samples.
+struct SiteVolume {
+    Grid distance, density;
+};
+SiteVolume refine_at(const SawSite& site, const Grid& distance, const Grid& density, double spacing,
+                     const SiteRequest& request = {});
 
 }  // namespace tactus::volume

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/coupling/placement.hpp"
-#include "dsp/volume/site.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
+#include "nodes/contact/site_parameters.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -34,6 +34,9 @@ struct Workspace {
         "-90 deg, 0 deg, 0 deg",
         "of the tool in the frame of the handle: about x first, then y, then z; the default makes a blade cut towards "
         "-z of the device"};
+    Flag find_site{true, find_site_about};
+    Vector site{"0 mm, 0 mm, 0 mm", site_about};
+    Vector approach{"0, 0, 0", approach_about};
     Param clearance{structural, "5 mm", "0 mm", "100 mm", "from the resting tool to the bone"};
 
     void prepare(const Setup& setup) {
@@ -89,10 +92,12 @@ private:
     /// Frame of the device for which a handle at its origin holds the tool in front of the site: the tool's x along the
     /// stroke, y into the bone.
     Pose in_front_of(const bone::Bone& target, const Setup& setup) {
-        site_ = volume::find_saw_site(target.distance, target.density);
+        site_ = site_of(target, find_site, site, approach);
         if (!site_)
-            setup.fail("found no site for a saw cut on bone '" + bone.name +
-                       "'; leave 'bone' out and set 'origin' and 'rotation'");
+            setup.fail(find_site ? "found no site for a saw cut on bone '" + bone.name +
+                                       "'; choose one by --site X,Y,Z (mm), or leave 'bone' out and set 'origin' and "
+                                       "'rotation'"
+                                 : "bone '" + bone.name + "' has no surface near 'site'; give a point on or above it");
         const Mat3 axes(site_->stroke, site_->feed, glm::cross(site_->stroke, site_->feed));
         const Pose tool{site_->point - site_->feed * clearance.value, glm::normalize(glm::quat_cast(axes))};
         return tool * placement_.grip.inverse();
@@ -107,6 +112,6 @@ private:
 };
 
 TACTUS_NODE(Workspace, device, clutch, turn, pose, frame, force_scale, bone, origin, rotation, scale, grip,
-            grip_rotation, clearance)
+            grip_rotation, find_site, site, approach, clearance)
 
 }  // namespace tactus::nodes

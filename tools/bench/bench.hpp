@@ -27,5 +27,6 @@ Verb scrub_verb();
 Verb snap_verb();
 Verb passivity_verb();
 Verb device_verb();
+Verb saw_verb();
 
 }  // namespace tactus::bench

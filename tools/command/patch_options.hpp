@@ -4,6 +4,7 @@
 
 #include "tools/command/options.hpp"
 #include "tools/session/patch_choice.hpp"
+#include "tools/session/site_choice.hpp"
 
 namespace tactus::command {
 
@@ -11,5 +12,7 @@ namespace tactus::command {
 void add_patch_options(VerbOptions& verb, session::PatchChoice& choice);
 /// The same without the patch.
 void add_override_options(VerbOptions& verb, session::PatchChoice& choice);
+/// --site and --approach, for session::choose_site.
+void add_site_options(VerbOptions& verb, session::SiteText& text);
 
 }  // namespace tactus::command

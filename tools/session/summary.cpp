@@ -63,6 +63,15 @@ Json value_json(const Report::Value& value) {
     return std::visit([](const auto& v) { return Json(v); }, value);
 }
 
+std::vector<double> list_of(const Report& report, const char* section, const char* key) {
+    const auto found = report.sections.find(section);
+    if (found == report.sections.end()) return {};
+    const auto value = found->second.find(key);
+    if (value == found->second.end()) return {};
+    const auto* list = std::get_if<std::vector<double>>(&value->second);
+    return list ? *list : std::vector<double>{};
+}
+
 double number(const Report& report, const char* section, const char* key, double otherwise = 0.0) {
     const auto s = report.sections.find(section);
     if (s == report.sections.end()) return otherwise;
@@ -161,7 +170,12 @@ std::string summary_text(const run::Engine& engine, const Report& report, double
                             number(report, "coupling", "penetration_max_mm"),
                             100.0 * number(report, "coupling", "balanced"));
     if (report.sections.contains("carve"))
-        text += fmt::format("  removed {:.1f} mm³\n", number(report, "carve", "removed_mm3"));
+        text += fmt::format("  removed {:.1f} mm³; the bone is {}\n", number(report, "carve", "removed_mm3"),
+                            number(report, "carve", "severed") > 0.0 ? "severed" : "not severed");
+    if (const std::vector<double> at = list_of(report, "contact", "blade_mm"); at.size() == 3)
+        text += fmt::format(
+            "  the blade touched no bone; it ends at {:.1f}, {:.1f}, {:.1f} mm, {:.1f} mm from the surface\n", at[0],
+            at[1], at[2], number(report, "contact", "blade_clearance_mm"));
     for (const auto& card : engine.host().cards)
         text += fmt::format("  sound on {}: {}\n", card->name(), describe_sound(*card));
     for (const auto& slot : engine.host().devices)

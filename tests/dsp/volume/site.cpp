@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/volume/site.hpp"
+#include "dsp/core/error.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -103,4 +104,62 @@ TEST_CASE("where there is no bone, or no way to it, there is no site") {
     const auto site = find(make(Vec3(45e-3), walled));
     REQUIRE(site);
     CHECK(glm::length(site->point) > 30e-3);
+}
+
+TEST_CASE("a plain block in a grid that ends close around it has a site") {
+    for (const Vec3& half : {Vec3(15e-3), Vec3(30e-3, 15e-3, 7.5e-3)}) {
+        const auto site = find(make(half + Vec3(4e-3), [half](const Vec3& p) { return box(p, half); }));
+        REQUIRE(site);
+        CHECK(std::abs(box(site->point, half)) < 0.5e-3);
+        CHECK(glm::dot(site->feed, site->point) < 0.0);
+    }
+}
+
+TEST_CASE("a rib cage is sawn from outside") {
+    // A ring of 8 mm thick bone, open at both ends: its inside faces are reached through the ends.
+    const auto ring = [](const Vec3& p) {
+        return std::max(std::abs(std::hypot(p.x, p.y) - 60e-3) - 4e-3, std::abs(p.z) - 20e-3);
+    };
+    const auto site = find(make(Vec3(90e-3, 90e-3, 70e-3), ring, 1.5e-3));
+    REQUIRE(site);
+    CHECK(glm::dot(site->feed, site->point) < 0.0);
+}
+
+TEST_CASE("a site is chosen by a point and a direction") {
+    const Vec3 half(30e-3, 6e-3, 9e-3);
+    const Made bar = make(Vec3(45e-3, 30e-3, 30e-3), [half](const Vec3& p) { return box(p, half); });
+    const auto at = [&](const Vec3& point, const Vec3& approach) {
+        return volume::saw_site_at(bar.distance, bar.density, point, approach);
+    };
+    const auto straight = at({10e-3, 0.0, 40e-3}, {0.0, 0.0, -2.0});
+    REQUIRE(straight);
+    CHECK(glm::length(straight->point - Vec3(10e-3, 0.0, 9e-3)) < 0.3e-3);
+    CHECK(straight->feed == Vec3(0.0, 0.0, -1.0));
+    CHECK(std::abs(straight->stroke.y) > 0.99);  // over the narrow side
+    CHECK(straight->thickness == Approx(18e-3).margin(1e-3));
+    // From inside the bone the line is followed back to where it enters.
+    CHECK(glm::length(at({10e-3, 0.0, 0.0}, {0.0, 0.0, -1.0})->point - straight->point) < 0.3e-3);
+    const auto nearest = at({-5e-3, 20e-3, 1e-3}, Vec3(0.0));
+    REQUIRE(nearest);
+    CHECK(glm::length(nearest->point - Vec3(-5e-3, 6e-3, 1e-3)) < 0.5e-3);
+    CHECK(nearest->feed.y < -0.99);
+}
+
+TEST_CASE("a coarse bone is resampled around a site") {
+    const Vec3 half(30e-3, 6e-3, 9e-3);
+    const Made bar = make(Vec3(45e-3, 30e-3, 30e-3), [half](const Vec3& p) { return box(p, half); });
+    const auto site = volume::saw_site_at(bar.distance, bar.density, {0.0, 0.0, 40e-3}, {0.0, 0.0, -1.0});
+    REQUIRE(site);
+    const volume::SiteVolume fine = volume::refine_at(*site, bar.distance, bar.density, 0.33e-3);
+    CHECK(fine.distance.size == fine.density.size);
+    double worst = 0.0;
+    for (int k = 0; k < fine.distance.size[2]; k += 3)
+        for (int j = 0; j < fine.distance.size[1]; j += 3)
+            for (int i = 0; i < fine.distance.size[0]; i += 3) {
+                const Vec3 p = fine.distance.position(i, j, k);
+                if (std::abs(p.x) > 15e-3) continue;
+                worst = std::max(worst, std::abs(static_cast<double>(fine.distance.at(i, j, k)) - box(p, half)));
+            }
+    CHECK(worst < 0.25e-3);  // at the edges; a cell of the coarse grid is 1 mm
+    CHECK_THROWS_AS(volume::refine_at(*site, bar.distance, bar.density, 0.05e-3), Error);
 }

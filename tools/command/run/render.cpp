@@ -134,6 +134,8 @@ void add_frame_options(VerbOptions& verb, FrameChoice& choice) {
 Action add_render(VerbOptions& verb) {
     const auto choice = std::make_shared<RenderChoice>();
     add_patch_options(verb, *choice);
+    const auto site = std::make_shared<session::SiteText>();
+    add_site_options(verb, *site);
     verb.add("--seconds", choice->seconds, "logical time to render, s").unit("s").shows_default().range(1e-3, 1e6);
     verb.add("-o,--out", choice->out, "folder for the results").required();
     verb.flag("--overwrite", choice->overwrite, "replace results that the folder already holds");
@@ -144,7 +146,10 @@ Action add_render(VerbOptions& verb) {
     verb.add("--record", choice->record, "record the run as a take, a folder that 'replay' repeats");
     add_frame_options(verb, choice->frames);
     verb.flag("--json", choice->json, "print the summary as JSON");
-    return [choice] { return render(*choice); };
+    return [choice, site] {
+        session::choose_site(*choice, *site);
+        return render(*choice);
+    };
 }
 
 }  // namespace

@@ -67,6 +67,8 @@ namespace {
 Action add_run(VerbOptions& verb) {
     const auto choice = std::make_shared<view::ViewedRunChoice>();
     add_patch_options(verb, *choice);
+    const auto site = std::make_shared<session::SiteText>();
+    add_site_options(verb, *site);
     verb.add("--seconds", choice->seconds, "stop after this logical time, s").unit("s").range(1e-3, 1e6);
     verb.add("--dilate", choice->dilate, "real seconds per logical second").range(0.01, 1000.0);
     verb.add("--audio", choice->audio,
@@ -86,7 +88,10 @@ Action add_run(VerbOptions& verb) {
     verb.flag("--keep-running", choice->view.keep_running, "continue the run when the window is closed").needs(window);
     add_view_options(verb, choice->view);
     verb.flag("!--no-edits", choice->edits, "do not watch the patch file, and refuse 'set' and 'trigger'");
-    return [choice] { return run(*choice); };
+    return [choice, site] {
+        session::choose_site(*choice, *site);
+        return run(*choice);
+    };
 }
 
 }  // namespace

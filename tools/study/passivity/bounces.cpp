@@ -133,6 +133,61 @@ type = "blade_contact"
 rate = "1 kHz"
 stiffness = "% N/mm"
 )"},
+    {"saw_blade", 3e-3,
+     R"("hand.pose -> place.device", "place.pose -> contact.pose", "carve.bone -> contact.bone",
+"contact.front -> carve.front as batch", "still.pressed -> contact.running",
+"contact.wrench -> felt.wrench", "place.pose -> felt.tool", "place.frame -> felt.frame", "felt.on_hand -> out.wrench")",
+     R"(
+[assets]
+bone = "bones/mandible.vdb"
+[nodes.place]
+type = "workspace"
+rate = "1 kHz"
+bone = "bone"
+clearance = "1 mm"
+[nodes.still]
+type = "button"
+rate = "1 kHz"
+[nodes.felt]
+type = "device_wrench"
+rate = "1 kHz"
+[nodes.carve]
+type = "carve"
+rate = "60 Hz"
+source = "bone"
+[nodes.contact]
+type = "saw_blade"
+rate = "1 kHz"
+stiffness = "% N/mm"
+)"},
+    {"burr", 3e-3,
+     R"("hand.pose -> place.device", "place.pose -> contact.pose", "carve.bone -> contact.bone",
+"contact.front -> carve.front as batch", "still.pressed -> contact.running",
+"contact.wrench -> felt.wrench", "place.pose -> felt.tool", "place.frame -> felt.frame", "felt.on_hand -> out.wrench")",
+     R"(
+[assets]
+bone = "bones/mandible.vdb"
+[nodes.place]
+type = "workspace"
+rate = "1 kHz"
+bone = "bone"
+clearance = "4 mm"
+[nodes.still]
+type = "button"
+rate = "1 kHz"
+[nodes.felt]
+type = "device_wrench"
+rate = "1 kHz"
+[nodes.carve]
+type = "carve"
+rate = "60 Hz"
+source = "bone"
+kerf = "4 mm"
+[nodes.contact]
+type = "burr"
+rate = "1 kHz"
+stiffness = "% N/mm"
+)"},
 };
 
 std::string patch_of(const Setting& setting, double stiffness, bool capped) {

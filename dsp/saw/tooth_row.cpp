@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/saw/tooth_row.hpp"
+
+#include "dsp/saw/lag_norm.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tactus::saw {
+
+namespace {
+
+constexpr double fastest_hand = 3.0;  // m/s: faster is a jump
+constexpr double most_lag = 0.020;  // m: a tooth farther from its blade lets go
+constexpr double dry_friction = 0.3;  // of a blade that stands still, steel on bone
+constexpr double side_share = 0.1;  // of the speed of advance: teeth cut little along the edge and across the blade
+constexpr double climb_out = 0.3;  // slope at which a tooth that slides across leaves its groove
+constexpr int most_plunges = 32, most_slides = 12;
+
+}  // namespace
+
+/// One bone and one tick.
+struct ToothRow::Walk {
+    const volume::BoneSnapshot& bone;
+    carve::RoundFront front;
+    double voxel;
+    Drive drive;
+};
+
+ToothRow::ToothRow(const SawShape& shape, double stiffness)
+    : shape_(shape), sharing_(ToothSharing::of(shape.stroke, shape.pitch)), radius_(0.5 * shape.kerf) {
+    const double length = shape.length + shape.stroke;
+    const int spans = std::clamp(static_cast<int>(std::ceil(length / shape.pitch - 1e-9)), 1,
+                                 static_cast<int>(carve::CutFront::most_nodes) - 1);
+    pitch_ = length / spans;
+    first_ = -0.5 * length;
+    teeth_.resize(static_cast<std::size_t>(spans) + 1);
+    for (std::size_t n = 0; n < teeth_.size(); ++n) {
+        const double blade = lateral_stiffness(shape, Vec3(first_ + pitch_ * static_cast<double>(n), 0.0, 0.0));
+        teeth_[n].bending = blade / (blade + stiffness);
+    }
+    squares_.resize(teeth_.size());
+    cuts_.resize(teeth_.size());
+}
+
+void ToothRow::forget() noexcept {
+    for (Tooth& tooth : teeth_) {
+        tooth.seated = tooth.fresh = false;
+        tooth.lag = Vec3(0.0);
+        tooth.density = {};
+    }
+}
+
+void ToothRow::follow(const volume::BoneSnapshot& bone, const Pose& pose, const Drive& drive) noexcept {
+    axes_ = Mat3(pose.rotate({1, 0, 0}), pose.rotate({0, 1, 0}), pose.rotate({0, 0, 1}));
+    const Vec3& spacing = bone.layout().spacing;
+    const double voxel = std::max({spacing.x, spacing.y, spacing.z, 1e-6});
+    const Walk walk{bone, {radius_, 0.25 * voxel}, voxel, drive};
+    const double jump = std::max(fastest_hand * drive.dt, 0.001);
+    for (std::size_t n = 0; n < teeth_.size(); ++n) {
+        Tooth& tooth = teeth_[n];
+        const Vec3 to = pose.position + axes_ * Vec3(first_ + pitch_ * static_cast<double>(n), -radius_, 0.0);
+        const bool jumped = glm::length(to - tooth.target) > jump;
+        tooth.target = to;
+        tooth.fresh = false;
+        tooth.touched = tooth.density[1] > 0.0;
+        tooth.density = {};
+        if (!tooth.seated || jumped) {
+            seat(bone, tooth);
+        } else {
+            pursue(walk, tooth);
+        }
+        tooth.lag = tooth.seated ? (tooth.target - tooth.at) * axes_ : Vec3(0.0);
+    }
+}
+
+void ToothRow::seat(const volume::BoneSnapshot& bone, Tooth& tooth) const noexcept {
+    tooth.at = tooth.target;
+    tooth.seated = tooth.fresh = bone.value(tooth.target) >= radius_;
+}
+
+void ToothRow::pursue(const Walk& walk, Tooth& tooth) const noexcept {
+    const double distance = glm::length(tooth.target - tooth.at);
+    if (distance < 1e-12) return;
+    // Far from bone, or drawn back to where there is none.
+    const bool far = walk.bone.value(tooth.at) > radius_ + distance + pitch_ + walk.front.ahead;
+    if (far || (glm::dot(tooth.target - tooth.at, axes_[1]) <= 0.0 && walk.bone.value(tooth.target) >= radius_)) {
+        tooth.at = tooth.target;
+        return;
+    }
+    if (distance > most_lag) return seat(walk.bone, tooth);
+    plunge(walk, tooth);
+    if (!tooth.seated) return;
+    slide(walk, tooth, 0);
+    slide(walk, tooth, 2);
+}
+
+void ToothRow::plunge(const Walk& walk, Tooth& tooth) const noexcept {
+    const Vec3 &y = axes_[1], &z = axes_[2];
+    double way = glm::dot(tooth.target - tooth.at, y);
+    const double level = -walk.front.ahead + 0.15 * walk.voxel;
+    if (way < 0.0) {
+        // Back out. Teeth do not hook in: what they would be drawn into, they let go.
+        const Vec3 to = tooth.at + y * way;
+        const double now = walk.front.floor(walk.bone, to, y, z);
+        if (now < std::min(level - walk.front.ahead, walk.front.floor(walk.bone, tooth.at, y, z))) {
+            tooth.seated = false;
+            return;
+        }
+        tooth.at = to;
+        return;
+    }
+    // In contact the interpolated distance ripples: hysteresis between touching and free.
+    const double slack = (tooth.touched ? 0.15 : 0.02) * walk.voxel;
+    for (int move = 0; move < most_plunges && way > 1e-12; ++move) {
+        const carve::RoundFront::Contact contact = walk.front.look(walk.bone, tooth.at, y, z, axes_[0] * pitch_, slack);
+        if (contact.density > 0.0) {
+            tooth.density[1] = contact.density;
+            return;
+        }
+        const double step = std::min(way, contact.clear);
+        tooth.at += y * step;
+        way -= step;
+    }
+}
+
+/// Slides along the blade (axis 0) or across it (2), up slopes where that shortens the lag.
+void ToothRow::slide(const Walk& walk, Tooth& tooth, int axis) const noexcept {
+    const Vec3 &y = axes_[1], &z = axes_[2];
+    const Vec3 lag = (tooth.target - tooth.at) * axes_;
+    const double sign = lag[axis] < 0.0 ? -1.0 : 1.0, weight = axis == 2 ? tooth.bending : 1.0;
+    double side = std::abs(lag[axis]), deep = std::max(lag.y, 0.0);
+    if (side < 1e-12) return;
+    double held = 0.0;
+    if (tooth.density[1] > 0.0 && deep > 0.0) {
+        if (!walk.drive.running) {
+            held = dry_friction * deep;  // Coulomb: the teeth stick until the force across is its share of the thrust
+        } else {
+            // A stroking tooth slips to and fro far faster than the hand: friction acts like a damper of
+            // (2/π)·force/speed of the stroke. Implicit relaxation of the lag against it.
+            const double speed = std::numbers::pi * walk.drive.rate * shape_.stroke;
+            const CuttingLaw law;
+            const double ratio = law.cutting / law.thrust_shallow;
+            held = side / (1.0 + walk.drive.dt * speed * 0.5 * std::numbers::pi / (ratio * deep));
+        }
+    }
+    const Vec3 direction = axes_[axis] * sign, across = axis == 0 ? z : y;
+    const double level = -walk.front.ahead - 0.02 * walk.voxel;  // deeper would plane bone off
+    for (int move = 0; move < most_slides && side - held > 1e-12; ++move) {
+        const carve::RoundFront::Contact contact =
+            walk.front.look(walk.bone, tooth.at, direction, across, Vec3(0.0), 0.1 * walk.voxel);
+        if (contact.density > 0.0) {
+            tooth.density[static_cast<std::size_t>(axis)] = contact.density;
+            return;
+        }
+        const double step = std::min({side - held, contact.clear, 0.5 * walk.voxel});
+        const double before = walk.front.floor(walk.bone, tooth.at, y, z);
+        Vec3 to = tooth.at + direction * step;
+        double climbed = 0.0;
+        for (int climb = 0;; ++climb) {
+            // Along the blade a tooth stays as deep as it has cut; across it climbs out, or it would plane.
+            const double limit = std::min(axis == 2 ? before + climb_out * step : before, level);
+            const double short_by = limit - walk.front.floor(walk.bone, to, y, z);
+            if (short_by <= 0.0) break;
+            climbed += short_by;
+            const double left = side - step, up = deep + climbed;
+            const bool shorter = up * up + weight * left * left < deep * deep + weight * side * side;
+            if (climb == 3 || !shorter) return;
+            to -= y * short_by;
+        }
+        tooth.at = to;
+        side -= step;
+        deep += climbed;
+    }
+}
+
+double ToothRow::squared_norm() noexcept {
+    for (std::size_t n = 0; n < teeth_.size(); ++n) squares_[n] = teeth_[n].square();
+    return squared_norm8(squares_);
+}
+
+/// How far a tooth advances along y in a tick: Δ = dt·speed(force after the step), solved by Newton's method; between 0
+/// and the lag whatever the iteration, so that the step cannot give energy. `speed`: m/s per m of depth of cut, times dt.
+double ToothRow::advance(const CuttingLaw& law, const Tooth& tooth, double spring, double norm,
+                         double speed) const noexcept {
+    const double rest = tooth.lag.x * tooth.lag.x + tooth.bending * tooth.lag.z * tooth.lag.z;
+    const double scale = law.reference_density / (tooth.density[1] * bearing());
+    double y = tooth.lag.y;
+    for (int n = 0; n < 5; ++n) {
+        const double square = y * y + rest, k = spring8(spring, square, norm);
+        const CuttingLaw::Depth cut = law.depth(k * y * scale);
+        const double miss = tooth.lag.y - y - speed * cut.depth;
+        const double slope = 1.0 + speed * cut.slope * scale * k * (1.0 + 6.0 * y * y / square);
+        const double next = std::clamp(y + miss / slope, 0.0, tooth.lag.y);
+        if (std::abs(next - y) < 1e-12) break;
+        y = next;
+    }
+    return tooth.lag.y - y;
+}
+
+double ToothRow::cut(const CuttingLaw& law, const Drive& drive, double spring) noexcept {
+    if (!drive.running || !(drive.rate > 0.0)) return 0.0;
+    double norm = squared_norm();
+    if (!(norm > 0.0)) return 0.0;
+    const double speed = sharing_.cuts_per_cycle * drive.rate * drive.dt;  // tick's passes over a place
+    // Two rounds: the forces share one norm, which falls as the teeth advance.
+    for (int round = 0; round < 2; ++round) {
+        for (std::size_t n = 0; n < teeth_.size(); ++n) {
+            const Tooth& tooth = teeth_[n];
+            cuts_[n] = tooth.density[1] > 0.0 && tooth.lag.y > 0.0 ? advance(law, tooth, spring, norm, speed) : 0.0;
+            const double y = tooth.lag.y - cuts_[n];
+            squares_[n] = y * y + tooth.lag.x * tooth.lag.x + tooth.bending * tooth.lag.z * tooth.lag.z;
+        }
+        if (round == 0) norm = std::max(squared_norm8(squares_), 1e-24);
+    }
+    double sum = 0.0, cutting = 0.0;
+    for (std::size_t n = 0; n < teeth_.size(); ++n) {
+        Tooth& tooth = teeth_[n];
+        const double k = spring8(spring, tooth.square(), norm);
+        Vec3 step(0.0, cuts_[n], 0.0);
+        for (const int axis : {0, 2}) {
+            const double density = tooth.density[static_cast<std::size_t>(axis)];
+            if (!(density > 0.0)) continue;
+            const double force = k * (axis == 2 ? tooth.bending : 1.0) * std::abs(tooth.lag[axis]);
+            const double depth = law.depth(force * law.reference_density / (density * bearing())).depth;
+            step[axis] =
+                std::copysign(std::min(side_share * speed * depth, std::abs(tooth.lag[axis])), tooth.lag[axis]);
+        }
+        tooth.at += axes_ * step;
+        tooth.lag -= step;
+        sum += cuts_[n];
+        cutting += cuts_[n] > 0.0;
+    }
+    return cutting > 0.0 ? sum / cutting : 0.0;
+}
+
+void ToothRow::fill(carve::CutFront& front, const Pose& pose, bool running) const noexcept {
+    front.pose = pose;
+    front.kerf = shape_.kerf;
+    front.pitch = pitch_;
+    front.count = static_cast<std::int32_t>(teeth_.size());
+    front.running = running ? 1 : 0;
+    front.seated = front.fresh = 0;
+    for (std::size_t n = 0; n < teeth_.size(); ++n) {
+        front.place(n, teeth_[n].at);
+        front.seated |= static_cast<std::uint64_t>(teeth_[n].seated) << n;
+        front.fresh |= static_cast<std::uint64_t>(teeth_[n].fresh) << n;
+    }
+}
+
+}  // namespace tactus::saw

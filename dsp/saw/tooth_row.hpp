@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The cutting front of a row of teeth.
+#pragma once
+
+#include "dsp/carve/cut_front.hpp"
+#include "dsp/carve/round_front.hpp"
+#include "dsp/saw/cutting_law.hpp"
+#include "dsp/saw/saw_shape.hpp"
+#include "dsp/volume/bricks.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tactus::saw {
+
+/// One node of the front: the centre of the round front of the kerf, half a kerf behind the teeth.
+struct Tooth {
+    Vec3 at{0.0, 0.0, 0.0};  ///< where the bone holds it, in the bone's frame, m
+    Vec3 target{0.0, 0.0, 0.0};  ///< where the blade is held
+    Vec3 lag{0.0, 0.0, 0.0};  ///< target − at along the blade's axes, m
+    std::array<double, 3> density{};  ///< kg/m³ of the bone that stops it along x, y, z; 0: free
+    double bending = 1.0;  ///< share of the contact stiffness across the blade that bending leaves
+    bool seated = false;  ///< false: it was placed inside bone; it feels nothing until it has been out
+    bool fresh = false;
+    bool touched = false;  ///< bone stopped its advance in the last tick
+
+    /// Squared length of the lag; across the blade it counts by the share of stiffness.
+    double square() const noexcept { return lag.x * lag.x + lag.y * lag.y + bending * lag.z * lag.z; }
+};
+
+/// What the teeth do in one tick.
+struct Drive {
+    bool running = false;
+    double rate = 0.0;  ///< Hz, cycles of the stroke
+    double dt = 0.001;  ///< s
+};
+
+/// The teeth rest on bone that they have not cut yet. Each node follows its target: in air at once, against bone not at
+/// all, except that a running blade advances it along its own force, by an implicit step of the cutting law. It never
+/// moves away from its target, so its spring only loses energy: whatever the bone does, the force is passive, and bone
+/// never pulls. A node that the blade draws back into bone lets go.
+class ToothRow {
+public:
+    ToothRow() = default;
+    /// `stiffness`: N/m of the contact, which bending of the blade softens across it.
+    ToothRow(const SawShape& shape, double stiffness);
+
+    /// Follows the blade as far as bone allows without cutting.
+    void follow(const volume::BoneSnapshot& bone, const Pose& pose, const Drive& drive) noexcept;
+
+    /// Cuts for one tick: `spring` N/m is k of lag_norm.hpp. Returns the mean advance of the cutting nodes, m.
+    double cut(const CuttingLaw& law, const Drive& drive, double spring) noexcept;
+
+    /// ‖lag‖₈², m².
+    double squared_norm() noexcept;
+
+    std::span<const Tooth> teeth() const noexcept { return teeth_; }
+    double pitch() const noexcept { return pitch_; }
+    /// Number of bearing teeth that a node stands for.
+    double bearing() const noexcept { return pitch_ * sharing_.teeth_per_m; }
+
+    void fill(carve::CutFront& front, const Pose& pose, bool running) const noexcept;
+    void forget() noexcept;  ///< lets go of every tooth
+
+private:
+    struct Walk;
+
+    void seat(const volume::BoneSnapshot& bone, Tooth& tooth) const noexcept;
+    void pursue(const Walk& walk, Tooth& tooth) const noexcept;
+    void plunge(const Walk& walk, Tooth& tooth) const noexcept;
+    void slide(const Walk& walk, Tooth& tooth, int axis) const noexcept;
+    double advance(const CuttingLaw& law, const Tooth& tooth, double spring, double norm, double speed) const noexcept;
+
+    SawShape shape_;
+    ToothSharing sharing_;
+    double pitch_ = 0.0, radius_ = 0.0, first_ = 0.0;
+    std::vector<Tooth> teeth_;
+    std::vector<double> squares_, cuts_;
+    Mat3 axes_{1.0};
+};
+
+}  // namespace tactus::saw

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/saw/saw_blade.hpp"
+#include "graph/node/node.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace tactus::nodes {
+
+struct SawBlade {
+    static constexpr auto about =
+        "A saw blade that rests on the bone it has not cut yet: forces on 88 points of its faces and a front of teeth, "
+        "which a running saw advances by a cutting law per tooth (James 2013). 'carve' removes what the front passes.";
+
+    In<Pose> pose{"of the blade: x along the teeth, y into the bone, origin in the middle of the tooth line"};
+    In<volume::BoneSnapshot> bone{"the carved bone"};
+    In<bool> running{optional, "the saw runs; unconnected: always"};
+    In<double> strokes{optional, "cycles of the stroke per second; unconnected: 'rate'", "Hz"};
+    Out<Wrench> wrench{"on the blade, about its origin", "N, N m"};
+    Out<double> load{"thrust against the cutting direction", "N"};
+    Out<double> stroke_force{"of the teeth along the stroke, to and fro at the stroke's rate", "N"};
+    Out<double> feed{"advance of the teeth that cut", "m/s"};
+    Out<double> teeth{"teeth that bear on bone", "1"};
+    Out<double> penetration{"greatest elastic distance of a point of the blade from where bone holds it", "m"};
+    Out<bool> in_contact{"bone holds at least one point"};
+    Out<carve::CutFront> front{"how far the teeth have cut; wire it to carve.front as batch"};
+    Param stiffness{structural, "0.8 N/mm", "0.01 N/mm", "50 N/mm",
+                    "upper bound of the stiffness that the hand feels, for any number of points in contact"};
+    Param rate{"228 Hz", "1 Hz", "1000 Hz", "cycles of the stroke per second, unless 'strokes' is connected"};
+    Flag sagittal{false,
+                  "the blade swings about an axis 'height' behind its teeth; otherwise it strokes along its length"};
+    Param length{structural, "40 mm", "5 mm", "80 mm", "of the tooth line"};
+    Param height{structural, "10 mm", "1 mm", "100 mm", "of the blade, from the teeth back"};
+    Param thickness{structural, "0.7 mm", "0.1 mm", "5 mm", "of the blade; the kerf is a little wider"};
+    Param kerf{structural, "1 mm", "0.1 mm", "5 mm", "width of the cut, that of the set teeth; as in carve"};
+    Param stroke{structural, "3 mm", "1.5 mm", "8 mm", "of the teeth, peak to peak"};
+    Param tooth_pitch{structural, "1.411 mm", "0.5 mm", "4 mm", "from tooth to tooth: 18 per inch"};
+
+    void prepare(const Setup& setup) {
+        saw::SawShape shape;
+        shape.kind = sagittal ? saw::SawKind::sagittal : saw::SawKind::reciprocating;
+        shape.length = length;
+        shape.height = height;
+        shape.thickness = thickness;
+        shape.kerf = kerf;
+        shape.stroke = stroke;
+        shape.pitch = tooth_pitch;
+        if (shape.stroke < shape.pitch)
+            setup.fail(
+                fmt::format("a stroke of {:.3g} mm is shorter than the tooth pitch of {:.3g} mm and would leave "
+                            "ridges; lengthen the stroke",
+                            stroke * 1e3, tooth_pitch * 1e3));
+        if ((shape.length + shape.stroke) / shape.pitch > carve::CutFront::most_nodes - 1)
+            setup.fail(fmt::format("{:.3g} mm of teeth {:.3g} mm apart are more than {}; shorten the blade",
+                                   (shape.length + shape.stroke) * 1e3, shape.pitch * 1e3,
+                                   carve::CutFront::most_nodes - 1));
+        if (shape.kerf <= shape.thickness)
+            setup.fail("the kerf is not wider than the blade, which would bind; widen 'kerf' or thin the blade");
+        blade_.emplace(shape, stiffness);
+        ticks_ = touching_ = thrust_ = deepest_ = 0.0;
+        last_ = {};
+    }
+
+    void process(const Tick& tick) noexcept {
+        const saw::Drive drive{!running.connected || running.get(),
+                               strokes.connected ? std::clamp(strokes.get(), 0.0, 2000.0) : static_cast<double>(rate),
+                               std::clamp(tick.elapsed_seconds(), seconds(tick.period), 0.05)};
+        const saw::SawContact now = blade_->step(bone.get(), pose.get(), drive, law_);
+        wrench = now.wrench;
+        load = now.thrust;
+        stroke_force = now.along;
+        feed = now.feed;
+        teeth = now.teeth;
+        penetration = now.lag;
+        in_contact = now.count > 0;
+        blade_->teeth().fill(last_, pose.get(), drive.running);
+        ++last_.version;
+        last_.content_hash = carve::hash_of(last_);
+        front = last_;
+        ++ticks_;
+        clearance_ = bone->value(last_.pose.position);
+        if (now.count == 0) return;
+        ++touching_;
+        thrust_ += now.thrust;
+        deepest_ = std::max(deepest_, now.lag);
+    }
+
+    void report(Report& report) const {
+        const auto share = [](double part, double whole) { return whole > 0.0 ? part / whole : 0.0; };
+        report.set("contact", "fraction", share(touching_, ticks_));
+        report.set("contact", "max_penetration_mm", deepest_ * 1e3);
+        report.set("force", "thrust_mean_N", share(thrust_, touching_));
+        if (touching_ == 0.0 && ticks_ > 0.0) {
+            const Vec3 at = last_.pose.position * 1e3;
+            report.set("contact", "blade_mm", std::vector<double>{at.x, at.y, at.z});
+            report.set("contact", "blade_clearance_mm", clearance_ * 1e3);
+        }
+    }
+
+private:
+    std::optional<saw::SawBlade> blade_;
+    saw::CuttingLaw law_;
+    carve::CutFront last_;
+    double ticks_ = 0.0, touching_ = 0.0, thrust_ = 0.0, deepest_ = 0.0, clearance_ = 0.0;
+};
+
+TACTUS_NODE(SawBlade, pose, bone, running, strokes, wrench, load, stroke_force, feed, teeth, penetration, in_contact,
+            front, stiffness, rate, sagittal, length, height, thickness, kerf, stroke, tooth_pitch)
+
+}  // namespace tactus::nodes

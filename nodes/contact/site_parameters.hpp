@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where on a bone a saw works: found, or chosen by a point and a direction.
+#pragma once
+
+#include "assets/bone/bone.hpp"
+#include "dsp/volume/site.hpp"
+#include "graph/node/node.hpp"
+
+#include <optional>
+
+namespace tactus::nodes {
+
+/// Flag find, Vector site, Vector approach of a node.
+inline std::optional<volume::SawSite> site_of(const bone::Bone& bone, bool find, const Vec3& site,
+                                              const Vec3& approach) {
+    return find ? volume::find_saw_site(bone.distance, bone.density)
+                : volume::saw_site_at(bone.distance, bone.density, site, approach);
+}
+
+inline constexpr auto find_site_about = "find a site for a saw cut; false: it is given by 'site' and 'approach'";
+inline constexpr auto site_about =
+    "point in the bone's frame: the cut starts where a line through it along 'approach' meets the bone";
+inline constexpr auto approach_about =
+    "direction of that line, into the bone; 0, 0, 0: along the surface's normal at 'site'";
+
+}  // namespace tactus::nodes

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+// The saw beside published measurements, and what its front costs beside a blade without one.
+#include "dsp/contact/blade.hpp"
+#include "dsp/saw/published.hpp"
+#include "tools/bench/bench.hpp"
+#include "tools/picture/report/comparison_figure.hpp"
+#include "tools/picture/report/saw_figure.hpp"
+#include "tools/study/saw/saw_trial.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <ctime>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace tactus::bench {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct SawBenchChoice : BenchChoice {
+    std::string figure;
+};
+
+double cpu_seconds() {
+    timespec now{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+struct Row {
+    std::string what, published, tactus, how_far;
+};
+
+struct Comparison {
+    std::vector<Row> rows;
+    picture::SawFigure figure;
+};
+
+Comparison compare() {
+    namespace j = saw::james_2013;
+    namespace p = saw::pearlman_2012;
+    const saw::CuttingLaw law;
+    Comparison made;
+    const auto row = [&](const char* what, double published, double ours, const char* unit) {
+        made.rows.push_back({what, fmt::format("{:.3g} {}", published, unit), fmt::format("{:.3g} {}", ours, unit),
+                             fmt::format("{:+.1f} %", 100.0 * (ours / published - 1.0))});
+    };
+    const auto resultant = [&](double depth) { return std::hypot(law.thrust(depth), law.cutting); };
+    row("fitted: thrust at 10 µm over 2 µm (James 2013)", j::thrust_rise, law.thrust(j::deep) / law.thrust(j::shallow),
+        "");
+    row("fitted: thrust over cutting force, 2 µm", j::ratio_shallow, law.thrust(j::shallow) / law.cutting, "");
+    row("fitted: thrust over cutting force, 10 µm", j::ratio_deep, law.thrust(j::deep) / law.cutting, "");
+    row("fitted: resultant at 2.5 µm (Pearlman 2012)", p::resultant_low, resultant(p::depth_low), "N");
+    row("fitted: resultant at 10 µm (Pearlman 2012)", p::resultant_high, resultant(p::depth_high), "N");
+
+    // Lannin 2011: 7 N, 3 mm, 18 TPI; bone of 4 mm so that few teeth bear, and of 12 mm.
+    for (const double width : {0.004, 0.012}) {
+        std::vector<double> rates{100.0, 140.0, 190.0, 250.0}, removal;
+        for (const double rate : rates)
+            removal.push_back(
+                study::run_saw_trial({.thrust = saw::lannin_2011::thrust, .blade_rate = rate, .width = width}).removal);
+        const double exponent = std::log(removal.back() / removal.front()) / std::log(rates.back() / rates.front());
+        made.rows.push_back(
+            {fmt::format("predicted: cutting rate ∝ speed^n, bone {:.0f} mm (Lannin 2011)", width * 1e3),
+             "n a little above 1", fmt::format("n = {:.2f}, {:.2f} mm³/s at 250 Hz", exponent, removal.back() * 1e9),
+             "no number published"});
+    }
+    // Yu 2023: the feed is given, the force is measured.
+    double least = HUGE_VAL, least_at = 0.0, at_yu = 0.0;
+    for (const double rate : {120.0, 150.0, 180.0, 205.0, 228.0, 250.0, 285.0}) {
+        const double thrust =
+            study::run_saw_trial({.feed = saw::yu_2023::feed, .blade_rate = rate, .settle = 3.0}).thrust;
+        made.figure.thrust.push_back({rate, thrust});
+        if (thrust < least) {
+            least = thrust;
+            least_at = rate;
+        }
+        if (rate == 228.0) at_yu = thrust;
+    }
+    made.rows.push_back({"predicted: rate of least force at 0.67 mm/s, 120 to 285 Hz (Yu 2023)", "228 Hz",
+                         fmt::format("{:.0f} Hz ({:.1f} N; {:.1f} N at 228 Hz)", least_at, least, at_yu),
+                         fmt::format("{:+.0f} %, no minimum inside", 100.0 * (least_at / saw::yu_2023::rate - 1.0))});
+    for (const double thrust : {3.0, 5.0, 7.5, 10.0, 12.5, 15.0, 20.0, 25.0, 30.0})
+        made.figure.feed.push_back({thrust, study::run_saw_trial({.thrust = thrust}).feed * 1e3});
+    return made;
+}
+
+/// Least CPU time and 99th percentile of wall time of a call, s, over `rounds` of 2000.
+struct Cost {
+    double cpu = HUGE_VAL, wall_p99 = 0.0;
+};
+
+template <class Call>
+Cost cost_of(int rounds, Call&& call) {
+    constexpr int calls = 2000;
+    Cost cost;
+    std::vector<double> walls;
+    for (int round = 0; round < rounds; ++round) {
+        const double before = cpu_seconds();
+        for (int n = 0; n < calls; ++n) {
+            const auto start = std::chrono::steady_clock::now();
+            call(n);
+            walls.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        }
+        cost.cpu = std::min(cost.cpu, (cpu_seconds() - before) / calls);
+    }
+    std::ranges::sort(walls);
+    cost.wall_p99 = walls[walls.size() * 99 / 100];
+    return cost;
+}
+
+/// CPU seconds of carving a second of sawing 44 mm of bone to the same depth.
+double carve_cost(bool fronts, int rounds) {
+    double best = HUGE_VAL;
+    for (int round = 0; round < rounds; ++round) {
+        const study::SawTrial trial{.width = 0.046};
+        const auto bone = study::saw_block(trial);
+        carve::Carver carver;
+        carve::CarveSettings settings;
+        if (fronts) settings = study::carve_settings_for(trial.shape);
+        settings.tooth_pitch = trial.shape.pitch;
+        carver.prepare(*bone, settings);
+        saw::SawBlade blade(trial.shape, trial.stiffness);
+        const Quat down = glm::angleAxis(-0.5 * std::numbers::pi, Vec3(1.0, 0.0, 0.0));
+        std::vector<carve::CarveSample> samples;
+        std::vector<carve::CutFront> path;
+        double spent = 0.0;
+        for (int n = 0; n < 1020; ++n) {
+            const Pose pose{Vec3(0.0, 0.0, 0.0001 - 0.0006e-3 * n), down};
+            if (fronts) {
+                blade.step(bone->current(), pose, {true, 228.0, 0.001}, {.rub = 0.0, .deepest = 1e-3});
+                blade.teeth().fill(path.emplace_back(), pose, true);
+            } else {
+                samples.push_back({pose, 0.001, 7.0, 228.0, true});
+            }
+            if (n % 17 != 16) continue;
+            const double before = cpu_seconds();
+            if (fronts) carver.update(*bone, path);
+            else carver.update(*bone, samples);
+            bone->reclaim(bone->publish().version);
+            spent += cpu_seconds() - before;
+            path.clear();
+            samples.clear();
+        }
+        best = std::min(best, spent);
+    }
+    return best;
+}
+
+Json costs(int rounds) {
+    const study::SawTrial trial{.width = 0.046};
+    const auto bone = study::saw_block(trial);
+    const contact::BladePoints points({trial.shape.length, trial.shape.height, trial.shape.thickness});
+    const Quat down = glm::angleAxis(-0.5 * std::numbers::pi, Vec3(1.0, 0.0, 0.0));
+    // Teeth 0.5 mm deep, a hand that moves 4 mm along the blade.
+    const auto pose = [&](int n) { return Pose{Vec3(0.002 * std::sin(0.01 * n), 0.0, -0.5e-3), down}; };
+    const volume::BoneSnapshot now = bone->current();
+    volatile double sink = 0.0;
+    const Cost plain = cost_of(rounds, [&](int n) {
+        const Pose at = pose(n);
+        sink = sink + contact::blade_contact(now, points, at, at.position, 3000.0).load;
+    });
+    saw::SawBlade blade(trial.shape, trial.stiffness);
+    carve::CutFront front;
+    const auto step = [&](int n, bool running) {
+        sink = sink + blade.step(now, pose(n), {running, 228.0, 0.001}, {}).thrust;
+        blade.teeth().fill(front, pose(n), running);
+    };
+    for (double z = 0.002; z > -0.5e-3; z -= 0.1e-3) {  // onto the bone
+        blade.step(now, {Vec3(0.0, 0.0, z), down}, {false, 228.0, 0.001}, {});
+    }
+    const Cost resting = cost_of(rounds, [&](int n) { step(n, false); });
+    const Cost cutting = cost_of(rounds, [&](int n) { step(n, true); });
+    const double samples = carve_cost(false, rounds), fronts = carve_cost(true, rounds);
+    return {{"blade_pass_us", plain.cpu * 1e6},
+            {"front_us", cutting.cpu * 1e6},
+            {"front_standing_us", resting.cpu * 1e6},
+            {"front_over_blade_pass", cutting.cpu / plain.cpu},
+            {"front_wall_p99_us", cutting.wall_p99 * 1e6},
+            {"blade_pass_wall_p99_us", plain.wall_p99 * 1e6},
+            {"carve_samples_ms_per_s", samples * 1e3},
+            {"carve_fronts_ms_per_s", fronts * 1e3},
+            {"carve_fronts_over_samples", fronts / samples}};
+}
+
+int bench_saw(const SawBenchChoice& choice) {
+    const Comparison made = compare();
+    const Json cost = costs(choice.rounds);
+    if (!choice.figure.empty()) picture::write_figure(picture::draw_saw_law(made.figure), choice.figure);
+    if (choice.json) {
+        Json rows = Json::array();
+        for (const Row& r : made.rows)
+            rows.push_back({{"what", r.what}, {"published", r.published}, {"tactus", r.tactus}, {"off", r.how_far}});
+        fmt::print("{}\n", Json{{"published", rows}, {"cost", cost}}.dump(2));
+        return done;
+    }
+    fmt::print("{:<72} {:<20} {:<34} {}\n", "", "published", "Tactus", "off");
+    for (const Row& r : made.rows) fmt::print("{:<72} {:<20} {:<34} {}\n", r.what, r.published, r.tactus, r.how_far);
+    fmt::print(
+        "\nfront and forces, 32 teeth and 88 points of the faces, all teeth in bone: {:.1f} µs of CPU time, {:.2g} "
+        "times the {:.1f} µs of blade_pass; wall p99 {:.1f} µs\n",
+        cost["front_us"].get<double>(), cost["front_over_blade_pass"].get<double>(),
+        cost["blade_pass_us"].get<double>(), cost["front_wall_p99_us"].get<double>());
+    fmt::print("carving a second of a 46 mm cut: {:.1f} ms of CPU time from fronts, {:.1f} ms from poses\n",
+               cost["carve_fronts_ms_per_s"].get<double>(), cost["carve_samples_ms_per_s"].get<double>());
+    return done;
+}
+
+}  // namespace
+
+Verb saw_verb() {
+    return {"saw", "the cutting law beside published measurements, and the cost of the cutting front",
+            [](VerbOptions& verb) -> Action {
+                const auto choice = std::make_shared<SawBenchChoice>();
+                verb.add("--rounds", choice->rounds, "repetitions of each timing; the best counts")
+                    .shows_default()
+                    .range(1, 100);
+                verb.add("--figure", choice->figure, "draw the law and the measurements to this .svg or .png");
+                verb.flag("--json", choice->json, "as JSON");
+                return [choice] { return bench_saw(*choice); };
+            }};
+}
+
+}  // namespace tactus::bench

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/session/site_choice.hpp"
+
+#include "tools/session/load_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+namespace tactus::session {
+
+namespace {
+
+Vec3 three_numbers(const char* option, std::string_view text) {
+    Vec3 v(0.0);
+    const char *at = text.data(), *const end = at + text.size();
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto [stop, error] = std::from_chars(at, end, v[axis]);
+        const bool last = axis == 2;
+        if (error != std::errc() || !std::isfinite(v[axis]) || (last ? stop != end : stop == end || *stop != ','))
+            throw Error(fmt::format("{} {}: give three numbers with commas, as in 12.5,-3,40", option, text));
+        at = stop + 1;
+    }
+    return v;
+}
+
+}  // namespace
+
+void choose_site(PatchChoice& choice, const SiteText& text) {
+    if (text.site.empty() && text.approach.empty()) return;
+    if (text.site.empty()) throw Error("--approach needs --site: the point that the saw is to meet");
+    const Vec3 site = three_numbers("--site", text.site);
+    const Vec3 approach = text.approach.empty() ? Vec3(0.0) : three_numbers("--approach", text.approach);
+    if (!text.approach.empty() && !(glm::length(approach) > 1e-9)) throw Error("--approach 0,0,0 is no direction");
+    patch::Problems problems;
+    const patch::Patch patch = patch::load_patch(find_patch(choice.patch), problems);
+    bool any = false;
+    for (const patch::PatchNode& node : patch.nodes) {
+        const bool has_bone = std::ranges::any_of(
+            node.settings, [](const auto& setting) { return setting.name == "bone" || setting.name == "source"; });
+        if (!has_bone || (node.type != "workspace" && node.type != "carve")) continue;
+        any = true;
+        choice.overrides.settings.push_back(node.name + ".find_site=false");
+        choice.overrides.settings.push_back(
+            fmt::format("{}.site={} mm, {} mm, {} mm", node.name, site.x, site.y, site.z));
+        choice.overrides.settings.push_back(
+            fmt::format("{}.approach={}, {}, {}", node.name, approach.x, approach.y, approach.z));
+    }
+    if (!any && problems.empty())
+        throw Error(fmt::format("{}: --site needs a workspace with a bone, which this patch has not", choice.patch));
+}
+
+}  // namespace tactus::session
