@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace tactus::session {
@@ -15,6 +16,22 @@ namespace {
 constexpr double worth_a_note = 1e-4;  // fraction of clipped samples
 
 }  // namespace
+
+std::size_t ChannelLevels::strongest() const {
+    return static_cast<std::size_t>(std::max_element(rms.begin(), rms.end()) - rms.begin());
+}
+
+ChannelLevels channel_levels(const std::filesystem::path& file, const table::LogSelection& log) {
+    sound::RecordReader reader(file, log, std::nullopt);
+    ChannelLevels out{reader.channels(), std::vector<double>(reader.channels().size())};
+    if (out.names.size() == 1) return out;
+    std::vector<signal::Level> levels(out.names.size());
+    sound::RecordBlock block;
+    while (reader.next(block))
+        for (std::size_t c = 0; c < levels.size(); ++c) levels[c].push(block.channels[c]);
+    for (std::size_t c = 0; c < levels.size(); ++c) out.rms[c] = levels[c].rms();
+    return out;
+}
 
 TakeFile::TakeFile(const TakeChoice& choice)
     : choice_(choice), reader_(std::make_shared<sound::RecordReader>(choice.file, choice.log, std::nullopt)) {
@@ -70,7 +87,7 @@ void TakeFile::mix(const sound::RecordBlock& block, std::vector<double>& out) co
 }
 
 signal::Take TakeFile::take() const {
-    return signal::Take(rate(), frames_, [this] {
+    signal::Take take(rate(), frames_, [this] {
         reader_->rewind();
         return [this, block = sound::RecordBlock(), mixed = std::vector<double>(),
                 piece = std::size_t{0}]() mutable -> std::span<const double> {
@@ -84,6 +101,8 @@ signal::Take TakeFile::take() const {
             return {};
         };
     });
+    if (reader_->log()) take.usable = std::min(take.usable, reader_->log()->usable);
+    return take;
 }
 
 }  // namespace tactus::session

@@ -43,7 +43,7 @@ std::string scores_table(const study::ComparedPair& pair) {
     unjudged("st_sim", c.st_sim, "", aligned);
     unjudged("spqi", c.spqi, "", aligned);
     unjudged("coherence_mean", c.coherence_mean, "", aligned);
-    unjudged("touch cosine", c.touch_cosine, "", "perceived shape, 40 to 1000 Hz");
+    unjudged("touch cosine", c.touch_cosine, "", "perceived shape");
     unjudged("touch gap", c.touch_gap_db, " dB", "perceived strength of the output at equal power");
     return out + "</table>\n";
 }
@@ -114,7 +114,10 @@ std::string comparison_method(const study::ComparedPair& pair) {
         "<li>Spectra: Welch, Hann, half overlapping, mean of each segment removed. Segments of 1024 samples for "
         "lsd_db and the cosines, 2048 for coherence, 4096 for the third-octave bands and the curves, 8192 for lines "
         "and orders; shorter when a take does not hold four. The curves have a resolution of {:.3g} Hz.</li>"
-        "<li>lsd_db: rms of the level differences from 40 to 500 Hz, levels limited to 40 dB below the reference's "
+        "<li>The band is what both takes can be trusted in, at most 40 to 1000 Hz; lsd_db and cosine_40_500 end at 500 Hz "
+        "where the band does not end before. above_noise counts lines and third-octave bands that stand above the "
+        "noise in both takes: without one, noise would be compared with noise.</li>"
+        "<li>lsd_db: rms of the level differences, levels limited to 40 dB below the reference's "
         "maximum. "
         "Cosines are of amplitude spectra. Third octaves have centres 10^(n/10) Hz; bands within 40 dB of the "
         "strongest count. harmonic_error_db: the worst order's difference from the mean difference.</li>"
