@@ -39,6 +39,18 @@ Part part_of(const Recording& r) {
     return {sample(r.loop_begin), r.loop_end > 0.0 ? std::min(sample(r.loop_end), r.samples.size()) : r.samples.size()};
 }
 
+/// About the mean, of the selected part.
+double rms_of(const Recording& r) {
+    const Part part = part_of(r);
+    double sum = 0.0, squares = 0.0;
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+        const auto x = static_cast<double>(r.samples[i]);
+        sum += x, squares += x * x;
+    }
+    const auto count = static_cast<double>(std::max<std::size_t>(1, part.end - part.begin));
+    return std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count)));
+}
+
 void load_samples(Recording& r) {
     const Sound sound = load_sound(r.file);
     r.sample_rate = sound.rate;
@@ -234,10 +246,13 @@ RecordingSet load_recording_set(const std::filesystem::path& path, std::optional
 
 std::vector<vibration::SawRecording> saw_recordings(const RecordingSet& set) {
     std::vector<vibration::SawRecording> out;
+    double strongest = 0.0;
+    for (const Recording& r : set.recordings) strongest = std::max(strongest, rms_of(r));
+    const double normalised = strongest > 0.0 ? assumed_vibration / strongest : 1.0;
     for (const Recording& r : set.recordings) {
         const Part part = part_of(r);
         out.push_back({r.samples, static_cast<double>(r.sample_rate), r.rate, r.load, r.cutting,
-                       r.full_scale.value_or(1.0), part.begin, part.end});
+                       r.full_scale.value_or(normalised), part.begin, part.end});
     }
     return out;
 }

@@ -53,7 +53,14 @@ struct RecordingSet {
 /// Throws Error with file, line and column.
 RecordingSet load_recording_set(const std::filesystem::path& path, std::optional<double> rate = std::nullopt);
 
-/// The input of SawVoice::prepare; refers to `set`.
+/// m/s² rms: what the strongest recording of an uncalibrated set is played as. Powered bone saws have 90 to 180 m/s²
+/// at the handle.
+inline constexpr double assumed_vibration = 100.0;
+inline constexpr const char* uncalibrated_note =
+    "the recordings are not calibrated: the strongest is played as 100 m/s^2 rms; 'full_scale' in a recording set "
+    "states their level";
+
+/// The input of SawVoice::prepare; refers to `set`. Levels of an uncalibrated set are normalised together.
 std::vector<vibration::SawRecording> saw_recordings(const RecordingSet& set);
 
 }  // namespace tactus::sound

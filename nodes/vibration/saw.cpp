@@ -10,7 +10,7 @@ struct Saw {
 
     In<Ramp> load{optional, "thrust on the blade; unconnected: 0", "N"};
     In<bool> trigger{optional, "the saw runs while true; unconnected: it always runs"};
-    Out<Signal> signal{"the vibration; relative to full scale if the recordings are not calibrated", "m/s^2"};
+    Out<Signal> signal{"the vibration; recordings that are not calibrated are played as 100 m/s^2 rms", "m/s^2"};
     Out<double> rate{"strokes of the blade per second", "Hz"};
     Out<bool> running{"the blade moves"};
     Asset<sound::RecordingSet> saw{"the recordings"};
@@ -29,6 +29,8 @@ struct Saw {
         } catch (const Error& error) {
             setup.fail(error.message());
         }
+        name_ = setup.name;
+        calibrated_ = saw->calibrated();
     }
 
     void process(const Tick& tick) noexcept {
@@ -41,8 +43,14 @@ struct Saw {
         }
     }
 
+    void report(Report& report) const {
+        if (!calibrated_) report.set(name_, "note", std::string(sound::uncalibrated_note));
+    }
+
 private:
     vibration::SawVoice voice_;
+    std::string name_;
+    bool calibrated_ = true;
 };
 
 TACTUS_NODE(Saw, load, trigger, signal, rate, running, saw, blade_rate, gain, spin_up, spin_down, load_on, load_off,
