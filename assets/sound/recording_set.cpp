@@ -6,7 +6,7 @@
 #include "assets/sound/sound.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
-#include "dsp/signal/spectrum/comb.hpp"
+#include "dsp/signal/spectrum/fundamental.hpp"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -20,7 +20,6 @@ namespace tactus::sound {
 namespace {
 
 constexpr double lowest_rate = 5.0, highest_rate = 1000.0;  // Hz
-constexpr double lowest_heard = 60.0, highest_heard = 400.0; // Hz: search range for an unstated rate
 constexpr double usual_load = 7.0;                          // N: typical thrust on a bone saw
 
 const std::array<std::string, 7> set_keys{"title",  "note",       "licence",  "synthesised",
@@ -62,11 +61,11 @@ void settle_rate(Recording& r) {
     const Part part = part_of(r);
     if (r.rate == 0.0) {
         const auto part_used = std::span(r.samples).subspan(part.begin, part.end - part.begin);
-        const signal::Comb heard = signal::fit_comb(part_used, r.sample_rate, lowest_heard, highest_heard);
-        if (heard.confidence < signal::sure_of_comb)
+        const signal::FundamentalEstimate heard = signal::find_fundamental(part_used, r.sample_rate);
+        if (!heard.is_certain())
             throw Error(fmt::format("no rate of reciprocation was found in '{}'; state it, as in rate = \"233 Hz\"",
                                     r.file.filename().string()));
-        r.rate = heard.best.frequency;
+        r.rate = heard.frequency;
         r.rate_estimated = true;
     }
     const double cycles = static_cast<double>(part.end - part.begin) / r.sample_rate * r.rate;

@@ -68,8 +68,11 @@ TakeFile::TakeFile(const TakeChoice& choice)
     if (reader_->log())
         notes_.push_back(fmt::format("the {} is a log with {:.4g} rows per second, reliable to about {:.0f} Hz", role,
                                      rate(), reader_->log()->usable));
-    const double share =
-        static_cast<double>(longest.clipped()) / static_cast<double>(std::max<std::size_t>(1, frames_));
+    double share = static_cast<double>(longest.clipped()) / static_cast<double>(std::max<std::size_t>(1, frames_));
+    if (reader_->log() && choice.channel > 0)
+        share = std::max(share,
+                         static_cast<double>(reader_->log()->at_limit[static_cast<std::size_t>(choice.channel - 1)]) /
+                             static_cast<double>(reader_->log()->rows));
     if (share > worth_a_note)
         notes_.push_back(
             fmt::format("the {} is clipped: {:.2g} % of its samples are at the limits", role, 100.0 * share));

@@ -4,8 +4,8 @@
 #include "dsp/core/error.hpp"
 #include "dsp/signal/filter/resample.hpp"
 #include "dsp/signal/spectrum/bands.hpp"
-#include "dsp/signal/spectrum/comb.hpp"
 #include "dsp/signal/spectrum/cross.hpp"
+#include "dsp/signal/spectrum/fundamental.hpp"
 #include "dsp/signal/spectrum/welch.hpp"
 
 #include <fmt/format.h>
@@ -25,7 +25,6 @@ constexpr double silence = 1e-5;  // of the peak
 // Segments for distance and cosine, coherence, bands, lines.
 constexpr std::size_t coarse = 1024, middle = 2048, fine = 4096, sharp = 8192;
 constexpr double speed_range = 0.03;
-constexpr double lowest_rate = 60.0, highest_rate = 400.0;  // of a saw, Hz
 
 double decibel(double power_ratio) { return 10.0 * std::log10(power_ratio); }
 
@@ -163,10 +162,13 @@ double power_in_band(double peak, const Spectrum& density, const Comparison& res
     return power;
 }
 
-/// Hz; 0 when the lines have no common fundamental.
-double rate_of_strokes(const Spectrum& density) {
-    const Comb comb = fit_comb(density, lowest_rate, highest_rate);
-    return comb.confidence >= sure_of_comb ? comb.best.frequency : 0.0;
+/// Hz; 0 when it is uncertain.
+double fundamental_of(const Take& take) {
+    FundamentalStream stream(take.rate, take.frames);
+    const Take::Blocks blocks = take.open();
+    for (std::span<const double> block = blocks(); !block.empty(); block = blocks()) stream.push(block);
+    const FundamentalEstimate found = stream.estimate();
+    return found.is_certain() ? found.frequency : 0.0;
 }
 
 double peak_of(double before, std::span<const double> samples) {
@@ -319,8 +321,8 @@ Comparison compare(const Take& reference, const Take& output, const ComparisonOp
         axes.push_back({options.reference_axes[i], options.output_axes[i], pair.reference_start, pair.output_start, 1.0,
                         pair.sign, pair.common});
     const auto [sharp_reference, sharp_output] = spectra_of(axes, sharp);
-    result.reference_hz = rate_of_strokes(sharp_reference);
-    result.output_hz = rate_of_strokes(sharp_output);
+    result.reference_hz = fundamental_of(reference);
+    result.output_hz = fundamental_of(output);
     const double ratio = result.output_hz / result.reference_hz;
     const bool one_saw = std::abs(ratio - 1.0) < speed_range;
     // Both rates are known and similar: the output is resampled to the reference's.

@@ -9,10 +9,10 @@ namespace tactus::signal {
 
 namespace {
 
-constexpr double silent_score = 0.15;  // of a section in which nothing is heard
-constexpr double step_cost = 2.0;      // per unit of ln(f) between sections
-constexpr double most_step = 0.25;     // greatest cost
-constexpr double least_support = 0.25, heard_at_all = 0.1;
+constexpr double silent_score = 0.09;  // of a section in which nothing is heard
+constexpr double step_cost = 0.7;      // per unit of ln(f) between sections
+constexpr double most_step = 0.2;      // greatest cost
+constexpr double least_support = 0.25, heard_at_all = 0.16;
 constexpr double jump_in = 0.5;        // of the movement in an eighth of a section: an impact
 
 WelchSettings hann(double rate, std::size_t segment, std::size_t overlap) {
@@ -102,9 +102,10 @@ FundamentalStream::Path FundamentalStream::best_path() const {
             for (std::size_t origin = 0; origin < states; ++origin) {
                 if (i > 0 && origin >= sections_[i - 1].count && origin + 1 < states) continue;
                 const double before = i > 0 ? frequency_of(i - 1, origin) : 0.0;
-                const double cost = here > 0.0 && before > 0.0
-                                        ? std::min(most_step, step_cost * std::abs(std::log(here / before)))
-                                        : 0.5 * most_step * static_cast<double>((here > 0.0) != (before > 0.0) && i > 0);
+                const double cost =
+                    here > 0.0 && before > 0.0
+                        ? std::min(most_step, step_cost * std::abs(std::log(here / before)))
+                        : 0.5 * most_step * static_cast<double>((here > 0.0) != (before > 0.0) && i > 0);
                 if (total[origin] - cost + score > next[state]) {
                     next[state] = total[origin] - cost + score;
                     from[i][state] = origin;
@@ -144,7 +145,8 @@ FundamentalEstimate FundamentalStream::estimate() const {
         if (sum < 0.9 * all) high = point.frequency;
         sum += point.score;
     }
-    const double share = sections_.empty() ? 0.0 : static_cast<double>(heard.size()) / static_cast<double>(sections_.size());
+    const double share =
+        sections_.empty() ? 0.0 : static_cast<double>(heard.size()) / static_cast<double>(sections_.size());
     const double mean = heard.empty() ? 0.0 : all / static_cast<double>(heard.size());
     double near = 0.0;
     for (const HarmonicSum& point : heard) near += alike(point.frequency, median, 0.25) ? point.score : 0.0;
@@ -153,16 +155,20 @@ FundamentalEstimate FundamentalStream::estimate() const {
     // A line of the whole record that few sections have is of an event: the ring of a strike.
     std::size_t supporting = 0;
     for (const Section& section : sections_)
-        supporting += std::any_of(section.candidates.begin(), section.candidates.begin() + static_cast<std::ptrdiff_t>(section.count),
+        supporting += std::any_of(section.candidates.begin(),
+                                  section.candidates.begin() + static_cast<std::ptrdiff_t>(section.count),
                                   [&](const HarmonicSum& one) { return alike(one.frequency, sharp.frequency, 0.03); });
     const bool supported = static_cast<double>(supporting) >= least_support * static_cast<double>(sections_.size());
     const double rival = whole.size() > 1 ? whole[1].score / std::max(sharp.score, 1e-9) : 0.0;
     const double fixed = (supported ? 1.0 : 0.3) * sharp.score * (1.0 - 0.5 * rival);
     const double weaker = std::min(fixed, varied), stronger = std::max(fixed, varied);
-    if (alike(sharp.frequency, median, 0.03)) {
+    // One rate of a path is no other answer than the path.
+    const bool on_path = sharp.frequency >= 0.95 * low && sharp.frequency <= 1.05 * high;
+    if (on_path || alike(sharp.frequency, median, 0.03)) {
         double close = 0.0;
-        for (const HarmonicSum& point : heard) close += alike(point.frequency, sharp.frequency, 0.012) ? point.score : 0.0;
-        out.steady = close >= 0.7 * all;
+        for (const HarmonicSum& point : heard)
+            close += alike(point.frequency, sharp.frequency, 0.012) ? point.score : 0.0;
+        out.steady = close >= 0.7 * all && all > 0.0;
         out.frequency = out.steady ? sharp.frequency : median;
         out.confidence = std::min(1.0, stronger + 0.5 * weaker);
     } else if (stronger > 0.0) {
@@ -174,14 +180,8 @@ FundamentalEstimate FundamentalStream::estimate() const {
     out.high = out.steady ? out.frequency : high;
     if (out.confidence < heard_at_all) out = {};
     for (const HarmonicSum& one : whole)
-        if (!alike(one.frequency, out.frequency, 0.03) && out.rivals.size() < 3 && one.score > 0.05) out.rivals.push_back(one);
-    if (getenv("DBG")) {
-        printf("  sharp");
-        for (auto& w : whole) printf(" %.1f:%.2f", w.frequency, w.score);
-        printf(" | path med %.1f (%.1f..%.1f) mean %.2f share %.2f together %.2f\n   ", median, low, high, mean, share, together);
-        for (auto& p : path.points) printf(" %.0f:%.2f", p.frequency, p.score);
-        printf("\n");
-    }
+        if (!alike(one.frequency, out.frequency, 0.03) && out.rivals.size() < 3 && one.score > 0.05)
+            out.rivals.push_back(one);
     return out;
 }
 

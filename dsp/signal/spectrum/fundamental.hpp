@@ -22,10 +22,10 @@ struct HarmonicSum {
     double score = 0.0;      ///< 0 … 1
 };
 
-/// The best fundamentals from `lowest` to `highest` Hz of a Hann spectrum, best first, none within 3 % of another. An
-/// order counts by its level above the noise around it, at most 30 dB: neither the strongest line nor a missing first
-/// order decides. Places between the orders count against a fundamental, which rules out its multiples; a submultiple
-/// has missing orders. Allocates.
+/// The best fundamentals from `lowest` to `highest` Hz of a Hann spectrum, best first, none within 3 % of another and
+/// none below five bins. An order counts by its level above the noise around it, at most 30 dB: neither the strongest
+/// line nor a missing first order decides. Multiples of the fundamental explain fewer lines than it does, submultiples
+/// have missing orders. Allocates.
 std::vector<HarmonicSum> harmonic_sums(const Spectrum& spectrum, double lowest, double highest, std::size_t most = 5);
 
 struct FundamentalEstimate {
@@ -35,14 +35,15 @@ struct FundamentalEstimate {
     double low = 0.0, high = 0.0;     ///< Hz: the middle 80 % of the path
     std::vector<HarmonicSum> rivals;  ///< other rates that explain the lines nearly as well
 
-    static constexpr double certain = 0.3;
+    static constexpr double certain =
+        0.25;  // of 200 noisy saws, 97 % of the right ones reach it and none of the wrong ones
     bool is_certain() const { return frequency > 0.0 && confidence >= certain; }
 };
 
-/// Estimates the fundamental of a record that comes in pieces, in memory for 40 numbers a half second.
+/// Estimates the fundamental of a record that comes in pieces, in a memory of about 100 bytes per half second.
 class FundamentalStream {
 public:
-    /// `frames`: length of the record, an estimate is enough.
+    /// `frames`: length of the record; an estimate is enough.
     FundamentalStream(double rate, std::size_t frames, double lowest = lowest_fundamental,
                       double highest = highest_fundamental);
 

@@ -13,6 +13,7 @@ constexpr double full_db = 30.0;         // an order so far above the noise coun
 constexpr std::size_t around = 32;       // bins to each side for the noise
 constexpr std::size_t most_lines = 32;   // strongest lines that candidates are made of
 constexpr double neighbours = 0.03;
+constexpr double least_spacing = 5.0;  // bins between orders: a line of a Hann window is four wide
 
 struct Peak {
     double frequency, salience;  // Hz, 0 … 1
@@ -34,7 +35,8 @@ std::vector<Peak> peaks_of(const Spectrum& spectrum, double lowest, double highe
     std::vector<Peak> peaks;
     std::vector<double> bins;
     const double last_bin = std::min(highest / spectrum.df, static_cast<double>(p.size()) - 2.0);
-    for (auto k = static_cast<std::size_t>(std::max(2.0, lowest / spectrum.df)); static_cast<double>(k) <= last_bin; ++k) {
+    for (auto k = static_cast<std::size_t>(std::max(2.0, lowest / spectrum.df)); static_cast<double>(k) <= last_bin;
+         ++k) {
         if (!(p[k] > p[k - 1] && p[k] >= p[k + 1])) continue;
         const std::size_t from = k > around ? std::max<std::size_t>(2, k - around) : 2;
         bins.assign(p.begin() + static_cast<std::ptrdiff_t>(from),
@@ -42,7 +44,9 @@ std::vector<Peak> peaks_of(const Spectrum& spectrum, double lowest, double highe
         // The quantile below the median: many bins around may belong to lines.
         const auto quantile = bins.begin() + static_cast<std::ptrdiff_t>(bins.size() * 3 / 10);
         std::nth_element(bins.begin(), quantile, bins.end());
-        const double level = 10.0 * std::log10(p[k] / std::max(*quantile, 1e-20 * p[k]));
+        // Side lobes of a window are no lines: the first is 31 dB below its line.
+        const double least = 3e-4 * *std::max_element(bins.begin(), bins.end());
+        const double level = 10.0 * std::log10(p[k] / std::max(*quantile, least));
         if (level <= threshold) continue;
         const bool above = p[k + 1] > p[k - 1];
         const double ratio = std::sqrt((above ? p[k + 1] : p[k - 1]) / p[k]);
@@ -71,46 +75,39 @@ double reach_of(double place, double fundamental, double df) {
     return std::min(0.75 * df + 0.006 * place, 0.12 * fundamental);
 }
 
-/// Weighted mean salience at (k − offset) × f.
-double mean_at(std::span<const Peak> peaks, double f, double offset, int orders, double df) {
-    double sum = 0.0, weights = 0.0;
-    for (int k = 1; k <= orders; ++k) {
-        const double place = (k - offset) * f, weight = 1.0 / std::sqrt(k);
-        weights += weight;
-        if (const Peak* peak = peak_near(peaks, place, reach_of(place, f, df))) sum += weight * peak->salience;
-    }
-    return weights > 0.0 ? sum / weights : 0.0;
-}
+struct Comb {
+    double frequency = 0.0;
+    double filled = 0.0;  ///< mean salience of the orders up to the last one there is
+    double share = 0.0;   ///< of all lines that are orders, less what would be by chance
+};
 
-HarmonicSum sum_of(std::span<const Peak> peaks, double frequency, double df, double top) {
-    HarmonicSum out{frequency, 0.0};
-    double score = 0.0;
-    int orders = 1;
+Comb comb_of(std::span<const Peak> peaks, double total, double frequency, double df, double top) {
+    Comb out{frequency, 0.0, 0.0};
     for (int round = 0; round < 2; ++round) {
-        orders = std::clamp(static_cast<int>(top / out.frequency), 1, most_orders);
-        double sum = 0.0, weights = 0.0, there = 0.0, wanted = 0.0, until_last = 0.0, products = 0.0, squares = 0.0;
+        const int orders = std::clamp(static_cast<int>(top / out.frequency), 1, most_orders);
+        double sum = 0.0, weights = 0.0, until_last = 0.0, products = 0.0, squares = 0.0;
         for (int k = 1; k <= orders; ++k) {
             const double place = k * out.frequency, weight = 1.0 / std::sqrt(k);
             weights += weight;
-            wanted += weight;
             const Peak* const peak = peak_near(peaks, place, reach_of(place, out.frequency, df));
             if (!peak) continue;
             sum += weight * peak->salience;
-            there += weight;
-            until_last = wanted;
+            until_last = weights;
             products += peak->salience * k * peak->frequency;
             squares += peak->salience * k * k;
         }
         if (!(squares > 0.0)) return out;
-        // Few orders that fill all places up to the last of them are nearly as good as many.
-        const double all = sum / weights, filled = sum / std::max(until_last, 1e-9);
-        score = (0.5 * all + 0.5 * filled) * (there / until_last);
+        double explained = 0.0, chance = 0.0;
+        for (const Peak& peak : peaks) {
+            const double place = std::max(1.0, std::round(peak.frequency / out.frequency)) * out.frequency;
+            const double reach = reach_of(place, out.frequency, df);
+            if (std::abs(peak.frequency - place) <= reach) explained += peak.salience;
+            chance += peak.salience * 2.0 * reach / out.frequency;
+        }
+        out.share = std::clamp((explained - chance) / std::max(total - chance, 1e-9), 0.0, 1.0);
+        out.filled = sum / until_last;
         out.frequency = products / squares;
     }
-    const double halves = mean_at(peaks, out.frequency, 0.5, orders, df);
-    const double thirds = std::max(mean_at(peaks, out.frequency, 1.0 / 3.0, orders, df),
-                                   mean_at(peaks, out.frequency, 2.0 / 3.0, orders, df));
-    out.score = std::clamp(score - std::max(halves, thirds), 0.0, 1.0);
     return out;
 }
 
@@ -124,13 +121,24 @@ std::vector<HarmonicSum> harmonic_sums(const Spectrum& spectrum, double lowest, 
     std::vector<Peak> strongest = peaks;
     std::ranges::sort(strongest, [](const Peak& a, const Peak& b) { return a.salience > b.salience; });
     if (strongest.size() > most_lines) strongest.resize(most_lines);
+    double total = 0.0, greatest = 1e-9;
+    for (const Peak& peak : peaks) total += peak.salience;
+    std::vector<Comb> combs;
     for (const Peak& line : strongest)
         for (int order = 1; order <= most_orders; ++order) {
             const double f = line.frequency / order;
-            if (f < lowest || f > highest || f < 2.5 * spectrum.df) continue;
-            const HarmonicSum one = sum_of(peaks, f, spectrum.df, top);
-            if (one.score > 0.0 && one.frequency >= lowest && one.frequency <= highest) found.push_back(one);
+            if (f < lowest || f > highest || f < least_spacing * spectrum.df) continue;
+            const Comb one = comb_of(peaks, total, f, spectrum.df, top);
+            if (!(one.share > 0.0) || one.frequency < lowest || one.frequency > highest) continue;
+            combs.push_back(one);
+            greatest = std::max(greatest, one.share);
         }
+    // Multiples of the fundamental explain fewer lines than it does, submultiples have missing orders. Lines of other
+    // origin lower all shares alike.
+    for (const Comb& one : combs) {
+        const double relative = one.share / greatest;
+        found.push_back({one.frequency, std::min(1.0, one.filled * relative * relative * std::sqrt(one.share))});
+    }
     std::ranges::sort(found, [](const HarmonicSum& a, const HarmonicSum& b) {
         return a.score != b.score ? a.score > b.score : a.frequency > b.frequency;
     });

@@ -25,7 +25,12 @@ Json or_null(const std::optional<T>& value) {
 Json lines_json(const std::vector<signal::SpectralLine>& lines, double fundamental) {
     Json list = Json::array();
     for (const signal::SpectralLine& line : lines) {
-        Json entry{{"hz", line.frequency}, {"db", signal::level_db(line)}, {"snr_db", line.snr_db}};
+        // "db" is of the amplitude, as before; it goes with the next release.
+        Json entry{{"hz", line.frequency},
+                   {"rms", std::sqrt(line.power)},
+                   {"rms_db", signal::rms_db(line)},
+                   {"db", signal::level_db(line)},
+                   {"snr_db", line.snr_db}};
         if (const std::string name = name_of_line(line.frequency, fundamental); !name.empty()) entry["name"] = name;
         list.push_back(std::move(entry));
     }
@@ -68,6 +73,8 @@ Json to_json(const ComparedPair& o) {
               {"touch",
                {{"threshold_of", touch_unit(o.touch)}, {"cosine_40_1000", c.touch_cosine}, {"gap_db", c.touch_gap_db}}},
               {"band_hz", {c.lowest, c.highest}},
+              {"rms", {{"reference", c.reference_rms}, {"output", c.output_rms}}},
+              {"db_re", "1 of the record's unit, rms"},
               {"above_noise",
                {{"reference", c.above_noise.in_reference},
                 {"output", c.above_noise.in_output},

@@ -65,9 +65,11 @@ ExposureOperation analyse_exposure(const std::filesystem::path& file, const Expo
         out.axes.push_back(reader.channels()[chosen[i]]);
         out.weighted.push_back(records[i].by_transform());
         out.filtered.push_back(records[i].by_filter());
-        if (levels[i].clipped() > 0)
-            out.notes.push_back(fmt::format("axis {} is clipped in {} samples: the value is too low", out.axes.back(),
-                                            levels[i].clipped()));
+        const std::size_t clipped =
+            std::max(levels[i].clipped(), reader.log() ? reader.log()->at_limit[chosen[i]] : std::size_t{0});
+        if (clipped > 0)
+            out.notes.push_back(
+                fmt::format("axis {} is clipped in {} samples: the value is too low", out.axes.back(), clipped));
     }
     if (!out.calibrated) out.notes.push_back("uncalibrated: the values are interpreted as m/s^2");
     if (out.band_high < 1250.0)

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 using namespace tactus;
 
@@ -23,7 +25,7 @@ TEST_CASE("the weighting has the values of its definition in the norm") {
 }
 
 TEST_CASE("the filter is within 0.5 % of the definition from 6.3 to 1250 Hz at 20 kHz, within 0.1 % from 44.1 kHz on") {
-    for (const auto [rate, deviation] :
+    for (const auto& [rate, deviation] :
          {std::pair(20000.0, 0.005), {44100.0, 0.001}, {48000.0, 0.001}, {96000.0, 5e-4}}) {
         const signal::HandArmFilter filter(rate);
         for (double f = 2.0; f < 2000.0; f *= 1.05) {
