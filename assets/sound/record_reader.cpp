@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace tactus::sound {
 
@@ -22,6 +23,16 @@ bool is_log(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     return extension == ".csv" || extension == ".tsv" || extension == ".txt" || extension == ".log";
+}
+
+/// Values at the ends of a converter of 16 bits, when all are whole numbers of it.
+std::size_t rows_at_limit(std::span<const double> values) {
+    std::size_t count = 0;
+    for (const double x : values) {
+        if (x != std::round(x) || x > 32768.0 || x < -32768.0) return 0;
+        count += x >= 32767.0 || x == -32768.0;
+    }
+    return count;
 }
 
 }  // namespace
@@ -81,8 +92,21 @@ RecordReader::RecordReader(const std::filesystem::path& path, const table::LogSe
         for (const auto& piece : even.pieces) source_->frames += piece.front().size();
         source_->names = log.names;
         source_->calibration.unit = "count";
-        source_->log = LogFacts{log.times.size(),   log.lost_rows,     even.gaps,  even.lost,
-                                even.shortest_step, even.longest_step, even.usable};
+        source_->log = LogFacts{.rows = log.times.size(),
+                                .lost_rows = log.lost_rows,
+                                .gaps = even.gaps,
+                                .lost_seconds = even.lost,
+                                .shortest_step = even.shortest_step,
+                                .longest_step = even.longest_step,
+                                .levels = {},
+                                .at_limit = {},
+                                .usable = even.usable};
+        for (const std::vector<double>& column : log.columns) {
+            std::vector<double> scaled = column;
+            for (double& x : scaled) x *= calibration ? calibration->factor : 1.0;
+            source_->log->levels.emplace_back().push(scaled);
+            source_->log->at_limit.push_back(rows_at_limit(column));
+        }
     }
     if (calibration) source_->calibration = *calibration;
 }

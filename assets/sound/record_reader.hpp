@@ -3,6 +3,7 @@
 #pragma once
 
 #include "assets/table/sample_log.hpp"
+#include "dsp/signal/spectrum/level.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -31,6 +32,8 @@ struct LogFacts {
     std::size_t rows = 0, lost_rows = 0, gaps = 0;
     double lost_seconds = 0.0;
     double shortest_step = 0.0, longest_step = 0.0;  ///< s
+    std::vector<signal::Level> levels;   ///< per channel, of the rows themselves, calibrated
+    std::vector<std::size_t> at_limit;  ///< rows at the ends of 16 bits in a channel of whole numbers
     double usable = 0.0;  ///< Hz, usable bandwidth given the uneven steps; at most half the mean rate
 };
 

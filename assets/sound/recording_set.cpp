@@ -7,7 +7,7 @@
 #include "assets/sound/sound.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/units.hpp"
-#include "dsp/signal/spectrum/comb.hpp"
+#include "dsp/signal/spectrum/fundamental.hpp"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -21,7 +21,6 @@ namespace tactus::sound {
 namespace {
 
 constexpr double lowest_rate = 5.0, highest_rate = 1000.0;  // Hz
-constexpr double lowest_heard = 60.0, highest_heard = 400.0; // Hz: search range for an unstated rate
 constexpr double usual_load = 7.0;                          // N: typical thrust on a bone saw
 
 const std::array<std::string, 8> set_keys{"title",  "note",       "licence",   "synthesised",
@@ -40,6 +39,18 @@ Part part_of(const Recording& r) {
     return {sample(r.loop_begin), r.loop_end > 0.0 ? std::min(sample(r.loop_end), r.samples.size()) : r.samples.size()};
 }
 
+/// About the mean, of the selected part.
+double rms_of(const Recording& r) {
+    const Part part = part_of(r);
+    double sum = 0.0, squares = 0.0;
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+        const auto x = static_cast<double>(r.samples[i]);
+        sum += x, squares += x * x;
+    }
+    const auto count = static_cast<double>(std::max<std::size_t>(1, part.end - part.begin));
+    return std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count)));
+}
+
 void load_samples(Recording& r) {
     const Sound sound = load_sound(r.file);
     r.sample_rate = sound.rate;
@@ -51,11 +62,11 @@ void settle_rate(Recording& r) {
     const Part part = part_of(r);
     if (r.rate == 0.0) {
         const auto part_used = std::span(r.samples).subspan(part.begin, part.end - part.begin);
-        const signal::Comb heard = signal::fit_comb(part_used, r.sample_rate, lowest_heard, highest_heard);
-        if (heard.confidence < signal::sure_of_comb)
+        const signal::FundamentalEstimate heard = signal::find_fundamental(part_used, r.sample_rate);
+        if (!heard.is_certain())
             throw Error(fmt::format("no rate of reciprocation was found in '{}'; state it, as in rate = \"233 Hz\"",
                                     r.file.filename().string()));
-        r.rate = heard.best.frequency;
+        r.rate = heard.frequency;
         r.rate_estimated = true;
     }
     const double cycles = static_cast<double>(part.end - part.begin) / r.sample_rate * r.rate;
@@ -256,7 +267,13 @@ vibration::SawRecording saw_recording(const Recording& r) {
 
 std::vector<vibration::SawRecording> saw_recordings(const RecordingSet& set) {
     std::vector<vibration::SawRecording> out;
-    for (const Recording& r : set.recordings) out.push_back(saw_recording(r));
+    double strongest = 0.0;
+    for (const Recording& r : set.recordings) strongest = std::max(strongest, rms_of(r));
+    const double normalised = strongest > 0.0 ? assumed_vibration / strongest : 1.0;
+    for (const Recording& r : set.recordings) {
+        out.push_back(saw_recording(r));
+        if (!r.full_scale) out.back().gain = normalised;
+    }
     return out;
 }
 

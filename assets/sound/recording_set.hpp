@@ -63,7 +63,14 @@ RecordingSet load_recording_set(const std::filesystem::path& path, std::optional
 
 /// Refers to the samples of `recording`.
 vibration::SawRecording saw_recording(const Recording& recording);
-/// The input of SawVoice::prepare and fit_saw_model; refers to `set`.
+/// m/s² rms: what the strongest recording of an uncalibrated set is played as. Powered bone saws have 90 to 180 m/s²
+/// at the handle.
+inline constexpr double assumed_vibration = 100.0;
+inline constexpr const char* uncalibrated_note =
+    "the recordings are not calibrated: the strongest is played as 100 m/s^2 rms; 'full_scale' in a recording set "
+    "states their level";
+
+/// The input of SawVoice::prepare and fit_saw_model; refers to `set`. Levels of an uncalibrated set are normalised together.
 std::vector<vibration::SawRecording> saw_recordings(const RecordingSet& set);
 
 }  // namespace tactus::sound

@@ -60,7 +60,7 @@ public:
                  fmt::format("this program reads models of version {}; make a new one with 'tactus model'", version));
         const toml::node& unit = need(table, "unit");
         const std::string word = text(unit);
-        if (word != "m/s^2" && word != "full scale") fail(unit, "'unit' must be \"m/s^2\" or \"full scale\"");
+        if (word != "m/s^2" && word != "normalised") fail(unit, "'unit' must be \"m/s^2\" or \"normalised\"");
         out.calibrated = word == "m/s^2";
         numbers(need(table, "phases"), out.model.phases, 1, -2.0 * std::numbers::pi, 2.0 * std::numbers::pi);
         const toml::node& list = need(table, "condition");
@@ -162,7 +162,7 @@ void save_saw_model(const SawModel& model, const SawModelTexts& texts, const std
         "# A model of a saw's vibration, for the 'saw' node.\ntitle = {}\nnote = {}\nlicence = {}\nsynthesised = {}\n\n"
         "[model]\nversion = {}\nunit = \"{}\"\nphases = {}\n",
         quoted(texts.title), quoted(texts.note), quoted(texts.licence), texts.synthesised, version,
-        texts.calibrated ? "m/s^2" : "full scale", list_of(model.phases));
+        texts.calibrated ? "m/s^2" : "normalised", list_of(model.phases));
     for (const SawCondition& condition : model.conditions) {
         const vibration::SawSound& sound = condition.sound;
         out += fmt::format("\n[[model.condition]]\nrate = \"{:.17g} Hz\"\nstate = \"{}\"\n", condition.rate,

@@ -13,7 +13,7 @@ namespace tactus::sound {
 struct SawModelTexts {
     std::string title, note, licence;
     bool synthesised = false;  ///< fitted to computed sounds, not to recordings
-    bool calibrated = false;   ///< levels are in m/s², else in full scale
+    bool calibrated = false;   ///< levels are in m/s², else normalised
 };
 
 /// Writes the whole file:
@@ -21,7 +21,7 @@ struct SawModelTexts {
 ///     title = "…"   note = "…"   licence = "…"   synthesised = true
 ///     [model]
 ///     version = 1
-///     unit = "m/s^2"                   # or "full scale"
+///     unit = "m/s^2"                   # or "normalised": uncalibrated, the strongest recording as 100 m/s^2 rms
 ///     phases = [0.0, …]                # rad, of each order
 ///     [[model.condition]]
 ///     rate = "150 Hz"   state = "cutting"   load = "7 N"   density = "1200 kg/m^3"

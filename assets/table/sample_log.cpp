@@ -59,6 +59,7 @@ public:
         choose_columns(names);
         if (!has_header) row(line, rest_.empty());
         while (next(line)) row(line, rest_.empty());
+        refuse_ambiguous();
         if (log_.times.empty()) fail(0, "there is no row with a number in every chosen column");
         return std::move(log_);
     }
@@ -97,17 +98,67 @@ private:
     void split(std::string_view line) {
         fields_.clear();
         for (;;) {
-            const std::size_t end = std::min(line.find(separator_), line.size());
+            std::size_t end = std::min(line.find(separator_), line.size());
+            // A quoted field may hold the separator, as "1,234".
+            if (!line.empty() && line.front() == '"')
+                if (const std::size_t quote = line.find('"', 1); quote != std::string_view::npos && quote > end)
+                    end = std::min(line.find(separator_, quote), line.size());
             fields_.push_back(trimmed(line.substr(0, end)));
             if (end == line.size()) return;
             line.remove_prefix(end + 1);
         }
     }
 
-    Cell parse(std::string_view field, double& number) const {
+    /// Whether a number like 1,234 is 1234 or 1.234 is known only from the others.
+    void note_style(std::string_view field) {
+        if (field.find_first_not_of("+-0123456789.,eE") != std::string_view::npos) return;
+        const std::size_t comma = field.find(','), point = field.find('.');
+        if (comma == std::string_view::npos && point == std::string_view::npos) return;
+        const std::size_t first = std::min(comma, point), sign = field.front() == '+' || field.front() == '-' ? 1 : 0;
+        bool grouped = first > sign && first <= sign + 3 && field[sign] != '0';
+        for (std::size_t at = first; grouped && at < field.size(); at += 4)
+            grouped = (field[at] == ',' || field[at] == '.') && field.size() >= at + 4 &&
+                      field.substr(at + 1, 3).find_first_not_of("0123456789") == std::string_view::npos &&
+                      (field.size() == at + 4 || field[at + 4] == ',' || field[at + 4] == '.');
+        const bool twice = field.find_first_of(",.", first + 1) != std::string_view::npos;
+        if (twice) throw_ambiguous(field, "has thousands separators");
+        if (comma != std::string_view::npos && separator_ == ',')
+            throw_ambiguous(field, "has a comma, which also separates the fields");
+        if (grouped && comma != std::string_view::npos && grouped_.empty()) grouped_ = field, grouped_line_ = line_;
+        else if (comma != std::string_view::npos && !grouped) commas_ = true;
+        else if (point != std::string_view::npos && separator_ != ',') (grouped ? maybe_points_ : points_) = true;
+    }
+
+    [[noreturn]] void throw_ambiguous(std::string_view field, const char* why) const {
+        fail(1, fmt::format("'{}' {}; write numbers without them", field.substr(0, 40), why));
+    }
+
+    /// At the end of the file. 1.234 alone is a decimal point, 1,234 alone could be either.
+    void refuse_ambiguous() {
+        if (commas_ && (points_ || maybe_points_))
+            fail(0, "some numbers have a decimal comma and some a point; write all alike");
+        if (!grouped_.empty() && !commas_) {
+            line_ = grouped_line_;
+            fail(1, fmt::format("'{}' may be {} or {}: no other number of the file shows whether the comma is decimal; "
+                                "write numbers with a point",
+                                grouped_, without_commas(grouped_), with_point(grouped_)));
+        }
+    }
+
+    static std::string without_commas(std::string text) {
+        std::erase(text, ',');
+        return text;
+    }
+    static std::string with_point(std::string text) {
+        std::replace(text.begin(), text.end(), ',', '.');
+        return text;
+    }
+
+    Cell parse(std::string_view field, double& number) {
         if (field.empty()) return Cell::lost;
+        note_style(field);
         std::array<char, 64> buffer;
-        if (separator_ == ';' && field.size() < buffer.size() && field.find(',') != std::string_view::npos) {
+        if (separator_ != ',' && field.size() < buffer.size() && field.find(',') != std::string_view::npos) {
             std::replace_copy(field.begin(), field.end(), buffer.begin(), ',', '.');
             field = {buffer.data(), field.size()};
         }
@@ -208,7 +259,7 @@ private:
     }
 
     /// True when the field has no value.
-    bool take(std::size_t column, double& number) const {
+    bool take(std::size_t column, double& number) {
         const Cell cell = parse(fields_[column], number);
         if (cell == Cell::garbage)
             fail(static_cast<int>(column) + 1,
@@ -227,6 +278,10 @@ private:
     std::vector<std::size_t> columns_;
     std::vector<std::string_view> fields_;
     std::vector<double> values_;
+    // How decimals are written, as far as numbers show it.
+    bool commas_ = false, points_ = false, maybe_points_ = false;
+    std::string grouped_;
+    int grouped_line_ = 0;
 };
 
 }  // namespace

@@ -26,8 +26,8 @@ struct SampleLog {
 };
 
 /// Parses a log. Fields are separated by commas, semicolons or tabs (the most frequent in the header); lines that start
-/// with '#' are comments; the first other line names the columns, otherwise they are called 1, 2, …. With semicolons a
-/// number may have a decimal comma. A row with an empty field or "nan" counts as lost. Throws Error with
+/// with '#' are comments; the first other line names the columns, otherwise they are called 1, 2, …. With semicolons or
+/// tabs a number may have a decimal comma; thousands separators, and numbers that could have one, are refused. A row with an empty field or "nan" counts as lost. Throws Error with
 /// file:line:column.
 SampleLog read_sample_log(std::string_view text, const std::string& file, const LogSelection& selection);
 

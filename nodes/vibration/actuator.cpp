@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/vibration/actuator.hpp"
 
+#include "dsp/signal/filter/loudest_rms.hpp"
 #include "dsp/signal/filter/sample.hpp"
+#include "dsp/signal/spectrum/perception.hpp"
 #include "graph/node/node.hpp"
+
+#include <fmt/format.h>
 
 namespace tactus::nodes {
 
@@ -46,6 +50,7 @@ struct Actuator {
             setup.fail(error.message());
         }
         name_ = setup.name;
+        volts_ = metres_ = tactus::signal::LoudestRms(static_cast<std::size_t>(0.25 * setup.rate()));
     }
 
     void process(const Tick& tick) noexcept {
@@ -56,10 +61,21 @@ struct Actuator {
             signal[i] = signal::to_sample(out.acceleration);
             current[i] = signal::to_sample(out.current);
             limited_ += out.limited;
+            volts_(out.voltage);
+            metres_(out.acceleration);
         }
     }
 
-    void report(Report& report) const { report.set(name_, "limited_samples", static_cast<double>(limited_)); }
+    void report(Report& report) const {
+        report.set(name_, "limited_samples", static_cast<double>(limited_));
+        report.set(name_, "loudest_rms_V", volts_.value());
+        report.set(name_, "loudest_rms_m_s2", metres_.value());
+        if (metres_.value() > 0.0 && metres_.value() < tactus::signal::touch_of_grasp)
+            report.set(name_, "note",
+                       fmt::format("the handle vibrates with {:.2g} m/s^2 rms where it is loudest, below what a hand "
+                                   "feels, about {:g} m/s^2",
+                                   metres_.value(), tactus::signal::touch_of_grasp));
+    }
 
 private:
     static void override_with(double& value, double given) {
@@ -68,6 +84,7 @@ private:
 
     tactus::vibration::Actuator actuator_;
     std::int64_t limited_ = 0;
+    tactus::signal::LoudestRms volts_, metres_;  // of a quarter of a second
     std::string name_;
 };
 

@@ -13,7 +13,7 @@ struct Saw {
     In<Ramp> load{optional, "thrust on the blade; unconnected: 0", "N"};
     In<bool> trigger{optional, "the saw runs while true; unconnected: it always runs"};
     In<Ramp> density{optional, "apparent density of the bone; only a model follows it; unconnected: unknown", "kg/m^3"};
-    Out<Signal> signal{"the vibration; relative to full scale if the recordings are not calibrated", "m/s^2"};
+    Out<Signal> signal{"the vibration; recordings that are not calibrated are played as 100 m/s^2 rms", "m/s^2"};
     Out<double> rate{"strokes of the blade per second", "Hz"};
     Out<bool> running{"the blade moves"};
     Asset<sound::RecordingSet> saw{"the recordings, or a model made of them by 'tactus model'"};
@@ -38,6 +38,8 @@ struct Saw {
         } catch (const Error& error) {
             setup.fail(error.message());
         }
+        name_ = setup.name;
+        calibrated_ = saw->calibrated();
     }
 
     void process(const Tick& tick) noexcept {
@@ -58,10 +60,16 @@ struct Saw {
         }
     }
 
+    void report(Report& report) const {
+        if (!calibrated_) report.set(name_, "note", std::string(sound::uncalibrated_note));
+    }
+
 private:
     vibration::SawVoice voice_;
     vibration::ModelledSaw model_;
     bool modelled_ = false;
+    std::string name_;
+    bool calibrated_ = true;
 };
 
 TACTUS_NODE(Saw, load, trigger, density, signal, rate, running, saw, voice, blade_rate, gain, spin_up, spin_down,

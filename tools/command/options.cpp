@@ -179,6 +179,7 @@ template Option VerbOptions::add(const std::string&, std::filesystem::path&, con
 template Option VerbOptions::add(const std::string&, int&, const std::string&);
 template Option VerbOptions::add(const std::string&, double&, const std::string&);
 template Option VerbOptions::add(const std::string&, std::uint64_t&, const std::string&);
+template Option VerbOptions::add(const std::string&, std::optional<int>&, const std::string&);
 template Option VerbOptions::add(const std::string&, std::optional<double>&, const std::string&);
 template Option VerbOptions::add(const std::string&, std::optional<std::string>&, const std::string&);
 template Option VerbOptions::add(const std::string&, std::optional<std::uint64_t>&, const std::string&);

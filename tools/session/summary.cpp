@@ -183,6 +183,10 @@ std::string summary_text(const run::Engine& engine, const Report& report, double
             text +=
                 fmt::format("  fault of {} at {:.3f} s: {}; {:.2g} N faded to nothing\n", slot->name,
                             tactus::seconds(fault.tick * slot->period), control::describe(fault.reason), fault.force_N);
+    for (const auto& [section, values] : report.sections)
+        if (const auto note = values.find("note"); note != values.end())
+            if (const auto* words = std::get_if<std::string>(&note->second))
+                text += fmt::format("  note: {}: {}\n", section, *words);
     for (const std::string& notice : engine.host().notices) text += fmt::format("  note: {}\n", notice);
     return text;
 }

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace tactus::session {
@@ -15,6 +16,22 @@ namespace {
 constexpr double worth_a_note = 1e-4;  // fraction of clipped samples
 
 }  // namespace
+
+std::size_t ChannelLevels::strongest() const {
+    return static_cast<std::size_t>(std::max_element(rms.begin(), rms.end()) - rms.begin());
+}
+
+ChannelLevels channel_levels(const std::filesystem::path& file, const table::LogSelection& log) {
+    sound::RecordReader reader(file, log, std::nullopt);
+    ChannelLevels out{reader.channels(), std::vector<double>(reader.channels().size())};
+    if (out.names.size() == 1) return out;
+    std::vector<signal::Level> levels(out.names.size());
+    sound::RecordBlock block;
+    while (reader.next(block))
+        for (std::size_t c = 0; c < levels.size(); ++c) levels[c].push(block.channels[c]);
+    for (std::size_t c = 0; c < levels.size(); ++c) out.rms[c] = levels[c].rms();
+    return out;
+}
 
 TakeFile::TakeFile(const TakeChoice& choice)
     : choice_(choice), reader_(std::make_shared<sound::RecordReader>(choice.file, choice.log, std::nullopt)) {
@@ -51,8 +68,11 @@ TakeFile::TakeFile(const TakeChoice& choice)
     if (reader_->log())
         notes_.push_back(fmt::format("the {} is a log with {:.4g} rows per second, reliable to about {:.0f} Hz", role,
                                      rate(), reader_->log()->usable));
-    const double share =
-        static_cast<double>(longest.clipped()) / static_cast<double>(std::max<std::size_t>(1, frames_));
+    double share = static_cast<double>(longest.clipped()) / static_cast<double>(std::max<std::size_t>(1, frames_));
+    if (reader_->log() && choice.channel > 0)
+        share = std::max(share,
+                         static_cast<double>(reader_->log()->at_limit[static_cast<std::size_t>(choice.channel - 1)]) /
+                             static_cast<double>(reader_->log()->rows));
     if (share > worth_a_note)
         notes_.push_back(
             fmt::format("the {} is clipped: {:.2g} % of its samples are at the limits", role, 100.0 * share));
@@ -70,7 +90,7 @@ void TakeFile::mix(const sound::RecordBlock& block, std::vector<double>& out) co
 }
 
 signal::Take TakeFile::take() const {
-    return signal::Take(rate(), frames_, [this] {
+    signal::Take take(rate(), frames_, [this] {
         reader_->rewind();
         return [this, block = sound::RecordBlock(), mixed = std::vector<double>(),
                 piece = std::size_t{0}]() mutable -> std::span<const double> {
@@ -84,6 +104,8 @@ signal::Take TakeFile::take() const {
             return {};
         };
     });
+    if (reader_->log()) take.usable = std::min(take.usable, reader_->log()->usable);
+    return take;
 }
 
 }  // namespace tactus::session

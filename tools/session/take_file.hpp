@@ -19,6 +19,15 @@ struct TakeChoice {
     int channel = 0;       ///< from 1; 0: the mean of all
 };
 
+struct ChannelLevels {
+    std::vector<std::string> names;
+    std::vector<double> rms;  ///< about the mean
+    std::size_t strongest() const;  ///< index
+};
+
+/// Reads a file with several channels once. Throws Error.
+ChannelLevels channel_levels(const std::filesystem::path& file, const table::LogSelection& log);
+
 class TakeFile {
 public:
     /// Reads the whole file once. For a log with gaps, the longest part is the take. Throws Error.

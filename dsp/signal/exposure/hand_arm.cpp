@@ -2,7 +2,10 @@
 #include "dsp/signal/exposure/hand_arm.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/signal/spectrum/transform.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -16,29 +19,58 @@ constexpr double pi = std::numbers::pi;
 const double w1 = 2.0 * pi * std::pow(10.0, 0.8), w2 = 2.0 * pi * std::pow(10.0, 3.1);
 constexpr double w3 = 100.0, q1 = std::numbers::sqrt2 / 2.0, q4 = 0.64;
 
-/// (n0 + n1 s + n2 s²)/(d0 + d1 s + d2 s²) with s = 2 rate (1 − z⁻¹)/(1 + z⁻¹).
-BiquadCoefficients bilinear(double n0, double n1, double n2, double d0, double d1, double d2, double rate) {
-    const double k = 2.0 * rate, kk = k * k;
-    const double a0 = d0 + d1 * k + d2 * kk;
-    return {(n0 + n1 * k + n2 * kk) / a0, 2.0 * (n0 - n2 * kk) / a0, (n0 - n1 * k + n2 * kk) / a0,
-            2.0 * (d0 - d2 * kk) / a0, (d0 - d1 * k + d2 * kk) / a0};
+using Weight = std::complex<double> (*)(double frequency);
+
+std::complex<double> s_of(double frequency) { return {0.0, 2.0 * pi * frequency}; }
+
+// The three factors of the weighting.
+std::complex<double> band_low(double f) {
+    const auto s = s_of(f);
+    return s * s / (s * s + w1 / q1 * s + w1 * w1);
+}
+std::complex<double> band_high(double f) {
+    const auto s = s_of(f);
+    return w2 * w2 / (s * s + w2 / q1 * s + w2 * w2);
+}
+std::complex<double> velocity(double f) {
+    const auto s = s_of(f);
+    return (w3 * w3 + w3 * s) / (s * s + w3 / q4 * s + w3 * w3);
+}
+
+/// The high-pass by the bilinear transform, s = 2 rate (1 − z⁻¹)/(1 + z⁻¹): its corner is far below the rate.
+BiquadCoefficients bilinear_high_pass(double rate) {
+    const double k = 2.0 * rate, kk = k * k, a0 = w1 * w1 + w1 / q1 * k + kk;
+    return {kk / a0, -2.0 * kk / a0, kk / a0, 2.0 * (w1 * w1 - kk) / a0, (w1 * w1 - w1 / q1 * k + kk) / a0};
+}
+
+/// A section with the poles of the analogue one (impulse invariance) and its gain at 0 Hz, at `middle` and at half the
+/// rate, which the bilinear transform would pull to 0 (Vicanek 2016, matched second-order filters).
+BiquadCoefficients matched(Weight weight, double w0, double q, double rate, double middle) {
+    const double x = w0 / rate, damping = 0.5 / q;
+    const double a1 = -2.0 * std::exp(-damping * x) * std::cos(std::sqrt(1.0 - damping * damping) * x);
+    const double a2 = std::exp(-2.0 * damping * x);
+    const double low = std::norm(weight(0.0)) * (1.0 + a1 + a2) * (1.0 + a1 + a2);
+    const double high = std::norm(weight(0.5 * rate)) * (1.0 - a1 + a2) * (1.0 - a1 + a2);
+    const double p1 = std::pow(std::sin(pi * middle / rate), 2), p0 = 1.0 - p1, p2 = 4.0 * p0 * p1;
+    const double poles =
+        (1.0 + a1 + a2) * (1.0 + a1 + a2) * p0 + (1.0 - a1 + a2) * (1.0 - a1 + a2) * p1 - 4.0 * a2 * p2;
+    const double bend = (poles * std::norm(weight(middle)) - low * p0 - high * p1) / p2;
+    const double sum = 0.5 * (std::sqrt(low) + std::sqrt(high));
+    const double b0 = 0.5 * (sum + std::sqrt(std::max(0.0, sum * sum + bend)));
+    return {b0, 0.5 * (std::sqrt(low) - std::sqrt(high)), -bend / (4.0 * b0), a1, a2};
 }
 
 }  // namespace
 
 std::complex<double> hand_arm_weighting(double frequency) {
-    const std::complex<double> s(0.0, 2.0 * pi * frequency);
-    const auto high = s * s / (s * s + w1 / q1 * s + w1 * w1);
-    const auto low = w2 * w2 / (s * s + w2 / q1 * s + w2 * w2);
-    const auto velocity = (w3 * w3 + w3 * s) / (s * s + w3 / q4 * s + w3 * w3);
-    return high * low * velocity;
+    return band_low(frequency) * band_high(frequency) * velocity(frequency);
 }
 
 HandArmFilter::HandArmFilter(double rate) : rate_(rate) {
     if (!(rate > 0.0)) throw Error("the hand-arm weighting needs a sampling rate above 0 Hz");
-    sections_[0].coefficients = bilinear(0.0, 0.0, 1.0, w1 * w1, w1 / q1, 1.0, rate);
-    sections_[1].coefficients = bilinear(w2 * w2, 0.0, 0.0, w2 * w2, w2 / q1, 1.0, rate);
-    sections_[2].coefficients = bilinear(w3 * w3, w3, 0.0, w3 * w3, w3 / q4, 1.0, rate);
+    sections_[0].coefficients = bilinear_high_pass(rate);
+    sections_[1].coefficients = matched(band_high, w2, q1, rate, std::min(0.5 * w2 / pi, 0.4 * rate));
+    sections_[2].coefficients = matched(velocity, w3, q4, rate, std::min(1000.0, 0.125 * rate));
 }
 
 std::complex<double> HandArmFilter::response(double frequency) const {
@@ -47,16 +79,52 @@ std::complex<double> HandArmFilter::response(double frequency) const {
     return product;
 }
 
-double weighted_acceleration(const Spectrum& density) {
-    double sum = 0.0;
-    const auto weight = [&](std::size_t k) { return std::norm(hand_arm_weighting(density.frequency(k))); };
-    for (std::size_t k = 1; k < density.power.size(); ++k) {
-        // A Hann window spreads power with a variance of a third of a bin squared; the curvature of the weighting turns
-        // that into a bias, which is subtracted.
-        const double bent = (8.0 * weight(k) - weight(k - 1) - weight(k + 1)) / 6.0;
-        sum += density.power[k] * bent;
+WeightedRecord::WeightedRecord(double rate, double mean) : rate_(rate), mean_(mean), filter_(rate) {}
+
+void WeightedRecord::push(std::span<const double> samples) {
+    for (const double x : samples) {
+        held_.push_back(x - mean_);
+        const double y = filter_(x - mean_);
+        filtered_ += y * y;
+        if (++in_piece_; held_.size() == longest_block) transform();
     }
-    return std::sqrt(sum * density.df);
+    count_ += samples.size();
+}
+
+void WeightedRecord::end_piece() {
+    if (in_piece_ == 0) return;
+    // The filter rings on after the end: the transform contains that, too.
+    for (std::size_t i = 0; i < tail(); ++i) {
+        const double y = filter_(0.0);
+        filtered_ += y * y;
+    }
+    filter_ = HandArmFilter(rate_);
+    transform();
+    in_piece_ = 0;
+}
+
+std::size_t WeightedRecord::tail() const { return static_cast<std::size_t>(0.5 * rate_); }
+
+void WeightedRecord::transform() {
+    if (held_.empty()) return;
+    const std::size_t size = std::bit_ceil(held_.size() + tail());
+    const std::vector<std::complex<double>> spectrum = spectrum_of(held_, size);
+    double sum = 0.0;
+    for (std::size_t k = 1; k < spectrum.size(); ++k) {
+        const double both_sides = 2 * k == size ? 1.0 : 2.0;
+        sum += both_sides * std::norm(spectrum[k]) *
+               std::norm(hand_arm_weighting(rate_ * static_cast<double>(k) / static_cast<double>(size)));
+    }
+    transformed_ += sum / static_cast<double>(size);
+    held_.clear();
+}
+
+double WeightedRecord::by_transform() const {
+    return std::sqrt(transformed_ / static_cast<double>(std::max<std::size_t>(1, count_)));
+}
+
+double WeightedRecord::by_filter() const {
+    return std::sqrt(filtered_ / static_cast<double>(std::max<std::size_t>(1, count_)));
 }
 
 double vibration_total(std::span<const double> axes) {

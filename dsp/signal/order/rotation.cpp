@@ -2,7 +2,6 @@
 #include "dsp/signal/order/rotation.hpp"
 
 #include "dsp/core/error.hpp"
-#include "dsp/signal/spectrum/fft.hpp"
 #include "dsp/signal/spectrum/window.hpp"
 
 #include <fmt/format.h>
@@ -41,19 +40,31 @@ double salience(std::span<const double> power, double floor, double bins_per_hz,
 Rotation rotation_from_tacho(std::span<const double> tacho, double rate, double pulses) {
     if (tacho.empty()) throw Error("the tachometer channel is empty");
     const auto [low, high] = std::minmax_element(tacho.begin(), tacho.end());
-    const double middle = 0.5 * (*low + *high), hysteresis = 0.1 * (*high - *low);
-    std::vector<double> turns, times;
-    bool armed = false;
-    for (std::size_t i = 1; i < tacho.size(); ++i) {
-        if (tacho[i] < middle - hysteresis) armed = true;
-        if (!armed || tacho[i] < middle || tacho[i - 1] >= middle) continue;
-        armed = false;
-        turns.push_back(static_cast<double>(turns.size()) / pulses);
-        times.push_back((static_cast<double>(i) - (tacho[i] - middle) / (tacho[i] - tacho[i - 1])) / rate);
+    TachoStream stream(*low, *high, rate);
+    stream.push(tacho);
+    return stream.rotation(pulses);
+}
+
+void TachoStream::push(std::span<const double> tacho) {
+    for (const double x : tacho) {
+        const std::size_t i = count_++;
+        const double before = before_;
+        before_ = x;
+        if (i == 0) continue;
+        if (x < middle_ - hysteresis_) armed_ = true;
+        if (!armed_ || x < middle_ || before >= middle_) continue;
+        armed_ = false;
+        times_.push_back((static_cast<double>(i) - (x - middle_) / (x - before)) / rate_);
     }
-    if (turns.size() < 4)
-        throw Error(fmt::format("the tachometer channel has {} pulses; order analysis needs at least 4", turns.size()));
-    return {std::move(turns), std::move(times)};
+}
+
+Rotation TachoStream::rotation(double pulses) const {
+    if (times_.size() < 4)
+        throw Error(
+            fmt::format("the tachometer channel has {} pulses; order analysis needs at least 4", times_.size()));
+    std::vector<double> turns(times_.size());
+    for (std::size_t i = 0; i < turns.size(); ++i) turns[i] = static_cast<double>(i) / pulses;
+    return {std::move(turns), times_};
 }
 
 Rotation rotation_at(double frequency, double seconds) { return {{0.0, seconds * frequency}, {0.0, seconds}}; }
@@ -71,82 +82,111 @@ Rotation Ridge::rotation(double seconds) const {
     return {std::move(turns), std::move(times)};
 }
 
-Ridge track_ridge(std::span<const double> record, double rate, const RidgeSettings& settings) {
-    const auto frame = static_cast<std::size_t>(settings.frame * rate);
-    if (frame < 16 || record.size() < 2 * frame)
-        throw Error(fmt::format("tracking a rate needs at least {:.3g} s; state it with --rate instead",
-                                std::max(2.0 * settings.frame, 32.0 / rate)));
+RidgeStream::RidgeStream(double rate, const RidgeSettings& settings)
+    : rate_(rate),
+      settings_(settings),
+      frame_(static_cast<std::size_t>(settings.frame * rate)),
+      hop_(std::max<std::size_t>(1, frame_ / 4)),
+      most_frames_(960),
+      bins_per_hz_(static_cast<double>(std::bit_ceil(4 * std::max<std::size_t>(frame_, 16))) / rate),
+      grid_(std::max(0.002, 0.25 / (settings.frame * settings.highest))),
+      window_(make_window(WindowKind::hann, std::max<std::size_t>(frame_, 16))),
+      x_(std::bit_ceil(4 * std::max<std::size_t>(frame_, 16))),
+      fft_(x_.size()) {
     if (!(settings.lowest > 0.0) || !(settings.highest > settings.lowest))
         throw Error("the range of the rate must begin above 0 Hz and end above its beginning");
-    const std::size_t hop = std::max<std::size_t>(1, frame / 4), padded = std::bit_ceil(4 * frame);
-    const double bins_per_hz = static_cast<double>(padded) / rate;
-    const double grid = std::max(0.002, 0.25 / (settings.frame * settings.highest));
-    std::vector<double> candidates;
-    for (double f = settings.lowest; f <= settings.highest; f *= 1.0 + grid) candidates.push_back(f);
-    const std::size_t count = candidates.size(), frames = (record.size() - frame) / hop + 1;
-    const auto reach = std::max<std::ptrdiff_t>(1, std::lround(settings.most_change / grid));
+    for (double f = settings.lowest; f <= settings.highest; f *= 1.0 + grid_) candidates_.push_back(f);
+    score_.resize(candidates_.size());
+    next_.resize(candidates_.size());
+    power_.resize(fft_.bins());
+    spectrum_.resize(fft_.bins());
+    top_ = static_cast<std::size_t>(
+        std::min(static_cast<double>(fft_.bins()), 1.2 * settings.orders * settings.highest * bins_per_hz_));
+}
 
-    const std::vector<double> window = make_window(WindowKind::hann, frame);
-    RealFft<double> fft(padded);
-    std::vector<double> x(padded), power(fft.bins()), sorted, score(count), next(count);
-    std::vector<std::complex<double>> spectrum(fft.bins());
-    const auto top = static_cast<std::size_t>(
-        std::min(static_cast<double>(fft.bins()), 1.2 * settings.orders * settings.highest * bins_per_hz));
+void RidgeStream::push(std::span<const double> samples) {
+    held_.insert(held_.end(), samples.begin(), samples.end());
+    while (frame_ >= 16 && held_.size() >= (most_frames_ - 1) * hop_ + frame_) track(most_frames_);
+}
+
+Ridge RidgeStream::finish() {
+    if (frame_ < 16 || held_.size() + done_ * hop_ < 2 * frame_)
+        throw Error(fmt::format("tracking a rate needs at least {:.3g} s; state it with --rate instead",
+                                std::max(2.0 * settings_.frame, 32.0 / rate_)));
+    if (held_.size() >= frame_) track((held_.size() - frame_) / hop_ + 1);
+    ridge_.prominence_db /= static_cast<double>(done_);
+    return std::move(ridge_);
+}
+
+/// Sets the power of a frame; returns its noise floor.
+double RidgeStream::power_of(std::span<const double> samples) {
+    std::fill(x_.begin(), x_.end(), 0.0);
+    for (std::size_t j = 0; j < frame_; ++j) x_[j] = samples[j] * window_[j];
+    fft_.forward(x_, spectrum_);
+    for (std::size_t k = 0; k < power_.size(); ++k) power_[k] = std::norm(spectrum_[k]);
+    sorted_.assign(power_.begin() + 1, power_.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(top_, 3)));
+    const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
+    std::nth_element(sorted_.begin(), middle, sorted_.end());
+    // Without noise, the window's side lobes must not count as orders.
+    const double strongest = *std::max_element(sorted_.begin(), sorted_.end());
+    return std::max({*middle, 1e-4 * strongest, 1e-300});
+}
+
+/// The best path through so many frames from the first held sample on.
+void RidgeStream::track(std::size_t frames) {
+    const std::size_t count = candidates_.size();
+    const auto reach = std::max<std::ptrdiff_t>(1, std::lround(settings_.most_change / grid_));
     std::vector<std::uint16_t> from(frames * count);
-    const auto power_of = [&](std::size_t i) {
-        std::fill(x.begin(), x.end(), 0.0);
-        for (std::size_t j = 0; j < frame; ++j) x[j] = record[i * hop + j] * window[j];
-        fft.forward(x, spectrum);
-        for (std::size_t k = 0; k < power.size(); ++k) power[k] = std::norm(spectrum[k]);
-        sorted.assign(power.begin() + 1, power.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(top, 3)));
-        const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-        std::nth_element(sorted.begin(), middle, sorted.end());
-        // Without noise, the window's side lobes must not count as orders.
-        const double strongest = *std::max_element(sorted.begin(), sorted.end());
-        return std::max({*middle, 1e-4 * strongest, 1e-300});
-    };
+    const auto frame_at = [&](std::size_t i) { return std::span<const double>(held_).subspan(i * hop_, frame_); };
     for (std::size_t i = 0; i < frames; ++i) {
-        const double floor = power_of(i);
+        const double floor = power_of(frame_at(i));
         for (std::size_t c = 0; c < count; ++c) {
             double best = -1.0;
             std::size_t origin = c;
-            if (i > 0)
+            if (i + done_ > 0)
                 for (std::ptrdiff_t step = -reach; step <= reach; ++step) {
                     const auto b = static_cast<std::ptrdiff_t>(c) + step;
                     if (b < 0 || b >= static_cast<std::ptrdiff_t>(count)) continue;
                     // A small cost of changes keeps the path straight through noise.
-                    const double value = score[static_cast<std::size_t>(b)] -
+                    const double value = score_[static_cast<std::size_t>(b)] -
                                          0.3 * std::abs(static_cast<double>(step)) / static_cast<double>(reach);
                     if (value > best) best = value, origin = static_cast<std::size_t>(b);
                 }
-            next[c] = std::max(best, 0.0) + salience(power, floor, bins_per_hz, candidates[c], settings.orders);
+            next_[c] = std::max(best, 0.0) + salience(power_, floor, bins_per_hz_, candidates_[c], settings_.orders);
             from[i * count + c] = static_cast<std::uint16_t>(origin);
         }
-        std::swap(score, next);
+        std::swap(score_, next_);
     }
     std::vector<std::size_t> path(frames);
-    path[frames - 1] = static_cast<std::size_t>(std::max_element(score.begin(), score.end()) - score.begin());
+    path[frames - 1] = static_cast<std::size_t>(std::max_element(score_.begin(), score_.end()) - score_.begin());
     for (std::size_t i = frames - 1; i-- > 0;) path[i] = from[(i + 1) * count + path[i + 1]];
-
-    Ridge ridge;
     for (std::size_t i = 0; i < frames; ++i) {
-        const double floor = power_of(i);
-        const auto value = [&](double f) { return salience(power, floor, bins_per_hz, f, settings.orders); };
-        double a = candidates[path[i]] * (1.0 - 1.5 * grid), b = candidates[path[i]] * (1.0 + 1.5 * grid);
+        const double floor = power_of(frame_at(i));
+        const auto value = [&](double f) { return salience(power_, floor, bins_per_hz_, f, settings_.orders); };
+        double a = candidates_[path[i]] * (1.0 - 1.5 * grid_), b = candidates_[path[i]] * (1.0 + 1.5 * grid_);
         for (int round = 0; round < 30; ++round) {
             const double left = a + (b - a) / 3.0, right = b - (b - a) / 3.0;
             if (value(left) < value(right)) a = left;
             else b = right;
         }
-        ridge.time.push_back((static_cast<double>(i * hop) + 0.5 * static_cast<double>(frame)) / rate);
-        ridge.frequency.push_back(0.5 * (a + b));
+        ridge_.time.push_back((static_cast<double>((done_ + i) * hop_) + 0.5 * static_cast<double>(frame_)) / rate_);
+        ridge_.frequency.push_back(0.5 * (a + b));
         // Counts only orders below half the sample rate.
-        const double held = static_cast<double>(power.size()) / (0.5 * (a + b) * bins_per_hz);
-        const int there = std::clamp(static_cast<int>(held), 1, settings.orders);
-        ridge.prominence_db +=
-            10.0 * salience(power, floor, bins_per_hz, 0.5 * (a + b), there) / static_cast<double>(frames);
+        const double held = static_cast<double>(power_.size()) / (0.5 * (a + b) * bins_per_hz_);
+        const int there = std::clamp(static_cast<int>(held), 1, settings_.orders);
+        ridge_.prominence_db += 10.0 * salience(power_, floor, bins_per_hz_, 0.5 * (a + b), there);
     }
-    return ridge;
+    // What the next frames may go on from, without the sum growing for hours.
+    const double most = *std::max_element(score_.begin(), score_.end());
+    for (double& score : score_) score = std::max(0.0, score - most + 100.0);
+    held_.erase(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(frames * hop_));
+    done_ += frames;
+}
+
+Ridge track_ridge(std::span<const double> record, double rate, const RidgeSettings& settings) {
+    RidgeStream stream(rate, settings);
+    stream.push(record);
+    return stream.finish();
 }
 
 }  // namespace tactus::signal

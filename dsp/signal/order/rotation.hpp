@@ -3,7 +3,10 @@
 #pragma once
 
 #include "dsp/geometry/spline.hpp"
+#include "dsp/signal/spectrum/fft.hpp"
 
+#include <complex>
+#include <cstddef>
 #include <span>
 
 namespace tactus::signal {
@@ -14,6 +17,22 @@ using Rotation = geometry::Spline;
 /// Rising crossings of the middle between the tachometer's low and high level, with a hysteresis of a tenth of their
 /// distance; `pulses` per revolution. Throws Error for fewer than four.
 Rotation rotation_from_tacho(std::span<const double> tacho, double rate, double pulses);
+
+/// The same for a channel that comes in pieces; `low` and `high` are its extremes.
+class TachoStream {
+public:
+    TachoStream(double low, double high, double rate)
+        : middle_(0.5 * (low + high)), hysteresis_(0.1 * (high - low)), rate_(rate) {}
+    void push(std::span<const double> tacho);
+    /// Throws Error for fewer than four pulses.
+    Rotation rotation(double pulses) const;
+
+private:
+    double middle_, hysteresis_, rate_, before_ = 0.0;
+    std::size_t count_ = 0;
+    bool armed_ = false;
+    std::vector<double> times_;
+};
 
 /// A constant rate in Hz over `seconds`.
 Rotation rotation_at(double frequency, double seconds);
@@ -31,6 +50,30 @@ struct Ridge {
     double prominence_db = 0.0;
 
     Rotation rotation(double seconds) const;
+};
+
+/// `track_ridge` for a record that comes in pieces: paths are chosen minute by minute, each from where the last may end.
+class RidgeStream {
+public:
+    /// Throws Error for settings that are invalid.
+    RidgeStream(double rate, const RidgeSettings& settings);
+
+    void push(std::span<const double> samples);
+    /// Throws Error when the record was shorter than two frames.
+    Ridge finish();
+
+private:
+    void track(std::size_t frames);
+    double power_of(std::span<const double> samples);
+
+    double rate_;
+    RidgeSettings settings_;
+    std::size_t frame_, hop_, most_frames_, done_ = 0, top_;
+    double bins_per_hz_, grid_;
+    std::vector<double> candidates_, score_, next_, window_, held_, x_, power_, sorted_;
+    std::vector<std::complex<double>> spectrum_;
+    RealFft<double> fft_;
+    Ridge ridge_;
 };
 
 /// Ridge tracking: the path of the rate with the strongest orders (dynamic programming on a logarithmic grid, then

@@ -106,4 +106,23 @@ Alignment align_takes(std::span<const double> reference, std::span<const double>
     return found;
 }
 
+std::size_t stretch_of_loop(std::span<const double> loop, std::span<const double> part, double rate, double lowest,
+                            double highest) {
+    const std::size_t size = loop.size() / 2 * 2;
+    if (size < 2 || part.empty()) return 0;
+    const std::vector<Complex> a = spectrum_of(loop.first(size), size),
+                               b = spectrum_of(part.first(std::min(part.size(), size)), size);
+    std::vector<Complex> product(a.size());
+    for (std::size_t k = 1; k < a.size(); ++k) {
+        const double f = rate * static_cast<double>(k) / static_cast<double>(size);
+        if (f < lowest || f > highest) continue;
+        const Complex both = a[k] * std::conj(b[k]);
+        if (std::abs(both) > 0.0) product[k] = both / std::sqrt(std::abs(both));
+    }
+    const std::vector<double> correlation = samples_of(product);
+    const auto alike = [](double x, double y) { return std::abs(x) < std::abs(y); };
+    return static_cast<std::size_t>(std::max_element(correlation.begin(), correlation.end(), alike) -
+                                    correlation.begin());
+}
+
 }  // namespace tactus::signal

@@ -2,6 +2,7 @@
 // Detects whether two takes were recorded simultaneously, and their delay.
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 namespace tactus::signal {
@@ -20,5 +21,11 @@ struct Alignment {
 /// of that peak. Both at `rate` Hz. Allocates.
 Alignment align_takes(std::span<const double> reference, std::span<const double> output, double rate, double lowest,
                       double highest, double longest);
+
+/// Index in `loop`, which repeats, from which on it is most like `part`, which is not longer: the peak of the circular
+/// correlation in the band from `lowest` to `highest` Hz, with half the whitening of `align_takes`, so that neither one
+/// line nor noise decides. Both at `rate` Hz. Allocates.
+std::size_t stretch_of_loop(std::span<const double> loop, std::span<const double> part, double rate, double lowest,
+                            double highest);
 
 }  // namespace tactus::signal

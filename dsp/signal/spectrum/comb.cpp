@@ -115,13 +115,4 @@ Comb fit_comb(const Spectrum& spectrum, double lowest, double highest) noexcept 
     return out;
 }
 
-Comb fit_comb(std::span<const float> record, double rate, double lowest, double highest) {
-    WelchSettings settings;
-    settings.rate = rate;
-    settings.segment = suggested_segment(rate, record.size());
-    settings.overlap = settings.segment / 2;
-    if (settings.segments_in(record.size()) < 2) return {};
-    return fit_comb(welch<float>(record, settings), lowest, highest);
-}
-
 }  // namespace tactus::signal

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fundamental frequency of a line spectrum: the comb that explains most lines with the fewest missing teeth.
+// Fundamental frequency of a live spectrum, without memory of its own: the comb that explains most lines with the fewest
+// missing teeth. Records are analysed by `find_fundamental`.
 #pragma once
 
 #include "dsp/signal/spectrum/lines.hpp"
@@ -11,7 +12,7 @@
 namespace tactus::signal {
 
 struct CombFit {
-    double frequency = 0.0;   ///< Hz; 0: no line was found
+    double frequency = 0.0;  ///< Hz; 0: no line was found
     double explained = 0.0;  ///< share of the lines' amplitude on the comb, minus the share expected by chance
     double complete = 0.0;  ///< share of the comb's low teeth that are present
     double score() const { return explained * complete; }
@@ -32,12 +33,5 @@ struct Comb {
 /// Fits combs with fundamentals from `lowest` to `highest` Hz. A comb and its subharmonic explain the same lines; the
 /// subharmonic has more missing teeth and wins only when there are lines in between. Wait-free, does not allocate.
 Comb fit_comb(const Spectrum& spectrum, double lowest, double highest) noexcept;
-
-/// The same for a record at `rate` Hz in memory, from its spectrum in segments of the suggested length. No comb when
-/// the record has fewer than two segments. Allocates.
-Comb fit_comb(std::span<const float> record, double rate, double lowest, double highest);
-
-/// Confidence from which on a rate counts as the machine's; noise stays far below.
-inline constexpr double sure_of_comb = 0.3;
 
 }  // namespace tactus::signal

@@ -4,8 +4,8 @@
 #include "dsp/core/error.hpp"
 #include "dsp/signal/filter/resample.hpp"
 #include "dsp/signal/spectrum/bands.hpp"
-#include "dsp/signal/spectrum/comb.hpp"
 #include "dsp/signal/spectrum/cross.hpp"
+#include "dsp/signal/spectrum/fundamental.hpp"
 #include "dsp/signal/spectrum/welch.hpp"
 
 #include <fmt/format.h>
@@ -20,13 +20,11 @@ namespace tactus::signal {
 namespace {
 
 constexpr double rate = 8000.0;  // Hz: the comparison uses frequencies below 1 kHz
-constexpr double touch_end = 500.0;
 constexpr double shortest = 0.5, stretch = 60.0;  // s: minimum length of a take; length used for alignment
 constexpr double silence = 1e-5;  // of the peak
 // Segments for distance and cosine, coherence, bands, lines.
 constexpr std::size_t coarse = 1024, middle = 2048, fine = 4096, sharp = 8192;
 constexpr double speed_range = 0.03;
-constexpr double lowest_rate = 60.0, highest_rate = 400.0;  // of a saw, Hz
 
 double decibel(double power_ratio) { return 10.0 * std::log10(power_ratio); }
 
@@ -123,6 +121,14 @@ private:
     std::size_t size_of(const Stream& stream) const { return common == 0 ? stream.size() : common; }
 };
 
+void add(Spectrum& sum, const Spectrum& one) {
+    if (sum.power.empty()) {
+        sum = one;
+        return;
+    }
+    for (std::size_t k = 0; k < sum.power.size(); ++k) sum.power[k] += one.power[k];
+}
+
 /// A spectrum of each.
 struct SpectraOfBoth {
     WelchStream<double> reference, output;
@@ -133,6 +139,21 @@ struct SpectraOfBoth {
     }
 };
 
+/// Takes of one axis each, with the same start and speed. The first pair is the one whose waveforms are compared.
+using Axes = std::span<const Pair>;
+
+/// Spectra with the powers of all axes added, the root sum of squares of their amplitudes.
+std::pair<Spectrum, Spectrum> spectra_of(Axes axes, std::size_t segment) {
+    std::pair<Spectrum, Spectrum> sum;
+    for (const Pair& axis : axes) {
+        SpectraOfBoth both(axes.front().settings(segment));
+        axis.read([&](std::span<const double> r, std::span<const double> d) { both.push(r, d); });
+        add(sum.first, both.reference.spectrum());
+        add(sum.second, both.output.spectrum());
+    }
+    return sum;
+}
+
 /// Power in the band. Throws Error when it is negligible relative to the peak, as for a constant.
 double power_in_band(double peak, const Spectrum& density, const Comparison& result, const char* name) {
     const double power = band_power(density, result.lowest, result.highest);
@@ -141,10 +162,13 @@ double power_in_band(double peak, const Spectrum& density, const Comparison& res
     return power;
 }
 
-/// Hz; 0 when the lines have no common fundamental.
-double rate_of_strokes(const Spectrum& density) {
-    const Comb comb = fit_comb(density, lowest_rate, highest_rate);
-    return comb.confidence >= sure_of_comb ? comb.best.frequency : 0.0;
+/// Hz; 0 when it is uncertain.
+double fundamental_of(const Take& take) {
+    FundamentalStream stream(take.rate, take.frames);
+    const Take::Blocks blocks = take.open();
+    for (std::span<const double> block = blocks(); !block.empty(); block = blocks()) stream.push(block);
+    const FundamentalEstimate found = stream.estimate();
+    return found.is_certain() ? found.frequency : 0.0;
 }
 
 double peak_of(double before, std::span<const double> samples) {
@@ -152,20 +176,18 @@ double peak_of(double before, std::span<const double> samples) {
     return before;
 }
 
-void score_spectra(const Pair& pair, const ComparisonOptions& options, SpectrogramSimilarity& spectrograms,
+void score_spectra(Axes axes, const ComparisonOptions& options, SpectrogramSimilarity& spectrograms,
                    Comparison& result) {
-    SpectraOfBoth coarse_spectra(pair.settings(coarse)), fine_spectra(pair.settings(fine));
     double reference_peak = 0.0, output_peak = 0.0;
-    pair.read([&](std::span<const double> r, std::span<const double> d) {
-        coarse_spectra.push(r, d);
-        fine_spectra.push(r, d);
+    axes.front().read([&](std::span<const double> r, std::span<const double> d) {
         const std::size_t both = std::min(r.size(), d.size());
         spectrograms.push(r.first(both), d.first(both));
         reference_peak = peak_of(reference_peak, r);
         output_peak = peak_of(output_peak, d);
     });
     spectrograms.end_of_pass();
-    const Spectrum fine_reference = fine_spectra.reference.spectrum(), fine_output = fine_spectra.output.spectrum();
+    const auto [fine_reference, fine_output] = spectra_of(axes, fine);
+    const auto [a, b] = spectra_of(axes, coarse);
     const double low = result.lowest, high = result.highest;
     const double reference_power = power_in_band(reference_peak, fine_reference, result, "reference");
     const double output_power = power_in_band(output_peak, fine_output, result, "output");
@@ -174,10 +196,9 @@ void score_spectra(const Pair& pair, const ComparisonOptions& options, Spectrogr
     result.gain_db = decibel(reference_power / output_power);
     const double gain = std::sqrt(reference_power / output_power);
 
-    const Spectrum a = coarse_spectra.reference.spectrum(), b = coarse_spectra.output.spectrum();
     const SpectrumPair powers{a.power, b.power, a.df};
-    result.lsd_db = log_spectral_distance(powers, low, std::min(touch_end, high), gain);
-    result.cosine_500 = spectral_cosine(powers, low, std::min(touch_end, high));
+    result.lsd_db = log_spectral_distance(powers, low, result.touched(), gain);
+    result.cosine_500 = spectral_cosine(powers, low, result.touched());
     result.cosine_1000 = spectral_cosine(powers, low, high);
     result.touch_cosine = spectral_cosine(powers, low, high, options.touch);
     double felt_reference = 0.0, felt_output = 0.0;
@@ -190,8 +211,10 @@ void score_spectra(const Pair& pair, const ComparisonOptions& options, Spectrogr
     }
     result.touch_gap_db = decibel(felt_output / felt_reference);
 
+    // A band that reaches beyond what can be trusted does not count; the one of 1000 Hz does.
+    const double last_centre = high < 0.999 * most_frequency ? high / std::pow(10.0, 0.05) : high;
     result.third_octaves =
-        third_octave_errors({fine_reference.power, fine_output.power, fine_reference.df}, low, high, gain);
+        third_octave_errors({fine_reference.power, fine_output.power, fine_reference.df}, low, last_centre, gain);
     double square = 0.0;
     for (const BandError& band : result.third_octaves) {
         result.third_octave_max_db = std::max(result.third_octave_max_db, std::abs(band.error_db));
@@ -223,9 +246,12 @@ void score_over_time(const Pair& pair, SpectrogramSimilarity& spectrograms, Comp
     spectrograms.end_of_pass();
     result.spectrogram_similarity = spectrograms.value();
     if (!waveforms) return;
-    result.st_sim = waveforms->st_sim();
-    result.spqi = waveforms->spqi();
-    result.signal_to_noise_db = waveforms->signal_to_noise_db();
+    // These compare all frequencies of the waveforms.
+    if (result.highest >= 0.999 * most_frequency) {
+        result.st_sim = waveforms->st_sim();
+        result.spqi = waveforms->spqi();
+        result.signal_to_noise_db = waveforms->signal_to_noise_db();
+    }
     const CrossSpectra cross = crossed->spectra();
     result.coherence = cross.coherence();
     result.coherence_step = cross.df;
@@ -261,10 +287,15 @@ Take::Take(std::span<const double> samples, double sample_rate)
 
 Comparison compare(const Take& reference, const Take& output, const ComparisonOptions& options) {
     Comparison result;
-    result.highest = std::min(1000.0, 0.45 * std::min(reference.rate, output.rate));
-    if (!(result.highest >= 100.0))
-        throw Error(fmt::format("a rate of {:g} Hz is too low to compare vibrations from 40 Hz on; 223 Hz is the least",
-                                std::min(reference.rate, output.rate)));
+    result.highest = std::min({most_frequency, reference.usable, output.usable});
+    if (!(result.highest >= narrowest_band)) {
+        const bool first = reference.usable < output.usable;
+        throw Error(
+            fmt::format("the {}, sampled at {:g} Hz, can be trusted to {:.3g} Hz only: vibrations are compared from "
+                        "{:g} Hz on, at least to {:g} Hz",
+                        first ? "reference" : "output", first ? reference.rate : output.rate, result.highest,
+                        least_frequency, narrowest_band));
+    }
     for (const auto& [take, name] : {std::pair(&reference, "reference"), std::pair(&output, "output")})
         if (static_cast<double>(take->frames) < shortest * take->rate)
             throw Error(fmt::format("the {} is shorter than {} s", name, shortest));
@@ -285,24 +316,27 @@ Comparison compare(const Take& reference, const Take& output, const ComparisonOp
         pair.sign = result.alignment.correlation < 0.0 ? -1.0 : 1.0;
         pair.common = std::min(pair.reference_size(), pair.output_size());
     }
-    SpectraOfBoth sharp_spectra(pair.settings(sharp));
-    pair.read([&](std::span<const double> a, std::span<const double> b) { sharp_spectra.push(a, b); });
-    const Spectrum sharp_reference = sharp_spectra.reference.spectrum(), sharp_output = sharp_spectra.output.spectrum();
-    result.reference_hz = rate_of_strokes(sharp_reference);
-    result.output_hz = rate_of_strokes(sharp_output);
+    std::vector<Pair> axes{pair};
+    for (std::size_t i = 0; i < std::min(options.reference_axes.size(), options.output_axes.size()); ++i)
+        axes.push_back({options.reference_axes[i], options.output_axes[i], pair.reference_start, pair.output_start, 1.0,
+                        pair.sign, pair.common});
+    const auto [sharp_reference, sharp_output] = spectra_of(axes, sharp);
+    result.reference_hz = fundamental_of(reference);
+    result.output_hz = fundamental_of(output);
     const double ratio = result.output_hz / result.reference_hz;
     const bool one_saw = std::abs(ratio - 1.0) < speed_range;
     // Both rates are known and similar: the output is resampled to the reference's.
     if (one_saw && !result.alignment.significant && std::abs(ratio - 1.0) >= 1e-5)
-        pair.speed = result.speed_ratio = ratio;
+        for (Pair& axis : axes) axis.speed = result.speed_ratio = ratio;
     SpectrogramSimilarity spectrograms(rate, result.lowest, result.highest);
-    score_spectra(pair, options, spectrograms, result);
-    score_over_time(pair, spectrograms, result);
+    score_spectra(axes, options, spectrograms, result);
+    score_over_time(axes.front(), spectrograms, result);
     // For a saw at another speed the orders are compared, each take at its own rate.
     result.harmonic_error_db = harmonic_error(sharp_reference, result.reference_hz, sharp_output,
                                               one_saw ? result.output_hz : result.reference_hz, result.highest);
     result.lines = match_lines(sharp_reference, sharp_output, std::pow(10.0, result.gain_db / 20.0), result.speed_ratio,
                                result.lowest, result.highest);
+    result.above_noise = above_noise(sharp_reference, sharp_output, result.lines, result.lowest, result.highest);
     return result;
 }
 

@@ -2,11 +2,13 @@
 // Compares two vibrations, for example a take of a saw and a take of an actuator that reproduces it.
 #pragma once
 
+#include "dsp/signal/spectrum/above_noise.hpp"
 #include "dsp/signal/spectrum/alignment.hpp"
 #include "dsp/signal/spectrum/line_match.hpp"
 #include "dsp/signal/spectrum/perception.hpp"
 #include "dsp/signal/spectrum/similarity.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <span>
@@ -22,6 +24,7 @@ struct Take {
     double rate = 48000.0;    ///< Hz
     std::size_t frames = 0;   ///< samples in all
     std::function<Blocks()> open;
+    double usable = 0.45 * rate;  ///< Hz: frequency up to which it can be trusted
 
     Take(double sample_rate, std::size_t count, std::function<Blocks()> opener)
         : rate(sample_rate), frames(count), open(std::move(opener)) {}
@@ -33,20 +36,30 @@ struct Take {
 struct ComparisonOptions {
     ThresholdUnit touch = ThresholdUnit::displacement;
     double longest_delay = 2.0;  ///< s, greatest delay or advance of the output
+    /// The other axes of both takes, sampled together with them: spectra are then sums of the powers of all axes.
+    std::vector<Take> reference_axes{}, output_axes{};
 };
+
+/// The band of scores, Hz: from `least_frequency` to what both takes can be trusted in, at most to `most_frequency`.
+/// Below `narrowest_band` there is too little left to compare.
+inline constexpr double least_frequency = 40.0, most_frequency = 1000.0, touch_end = 500.0, narrowest_band = 80.0;
 
 struct Comparison {
     Alignment alignment;
-    double lowest = 40.0, highest = 1000.0;  ///< Hz: the band that both takes contain
+    double lowest = least_frequency, highest = most_frequency;  ///< Hz: the band that both takes can be trusted in
+    /// Hz: end of the band of `lsd_db` and `cosine_500`.
+    double touched() const { return std::min(touch_end, highest); }
     double gain_db = 0.0;  ///< gain that gives the output the reference's power in the band
     double reference_rms = 0.0, output_rms = 0.0; ///< in the band
-    double lsd_db = 0.0;                          ///< 40 to 500 Hz
-    double cosine_500 = 0.0, cosine_1000 = 0.0;
+    double lsd_db = 0.0;                          ///< to touched()
+    double cosine_500 = 0.0, cosine_1000 = 0.0;   ///< to touched(), to highest
+    AboveNoise above_noise;
     std::optional<double> harmonic_error_db;      ///< none when the reference has no harmonics
     std::vector<BandError> third_octaves;
     double third_octave_max_db = 0.0, third_octave_rms_db = 0.0;
     double spectrogram_similarity = 0.0;
-    std::optional<double> st_sim, spqi, coherence_mean, signal_to_noise_db;  ///< for aligned takes only
+    std::optional<double> st_sim, spqi, signal_to_noise_db;  ///< for aligned takes only, trusted up to 1 kHz
+    std::optional<double> coherence_mean;                    ///< for aligned takes only
     double touch_cosine = 0.0;  ///< cosine_1000 with perceptual weights
     double touch_gap_db = 0.0;  ///< how much stronger the output feels at equal power
     double reference_hz = 0.0, output_hz = 0.0;  ///< fundamentals; 0 when none was found
@@ -61,7 +74,7 @@ struct Comparison {
 /// Compares two takes of any rates and lengths of at least 0.5 s, in constant memory; each is read up to four times.
 /// Their loudest minute decides whether they belong together. Takes that do not are compared by their spectra only;
 /// when both are one saw at rates within 3 % of each other, they are compared at equal orders. Throws Error when a take
-/// is too short, too slow or silent. Allocates.
+/// is too short or silent, or cannot be trusted up to `narrowest_band`. Allocates.
 Comparison compare(const Take& reference, const Take& output, const ComparisonOptions& options = {});
 
 }  // namespace tactus::signal

@@ -50,6 +50,7 @@ std::vector<SpectralLine> strong_lines(const Spectrum& density, double lowest, d
 }  // namespace
 
 double level_db(const SpectralLine& line) { return decibel(2.0 * line.power); }
+double rms_db(const SpectralLine& line) { return decibel(line.power); }
 
 std::optional<double> harmonic_error(const Spectrum& reference, double reference_hz, const Spectrum& output,
                                      double output_hz, double highest) {

@@ -11,6 +11,8 @@ namespace tactus::signal {
 
 /// Level of a line's amplitude, dB re 1 of the record's unit.
 double level_db(const SpectralLine& line);
+/// Level of its root mean square, 3.01 dB less.
+double rms_db(const SpectralLine& line);
 
 /// Greatest deviation of the orders' level differences from their mean, dB: orders of the two fundamentals up to
 /// `highest` that are 6 dB above their neighbourhood in the reference and within 40 dB of its strongest. None with

@@ -23,12 +23,13 @@ WelchSettings hann(double rate, std::size_t segment, std::size_t overlap) {
     return settings;
 }
 
-/// Half a second, in segments short enough to keep a varying line together and long enough to resolve the lines of a
-/// saw. A shorter record fills none and needs no memory for one.
-WelchSettings block_settings(double rate, std::size_t frames) {
-    const double longest = std::min(0.25 * rate, static_cast<double>(frames));
-    const std::size_t segment = std::bit_floor(static_cast<std::size_t>(std::max(64.0, longest)));
-    return hann(rate, segment, segment * 3 / 4);
+/// Windows three quarters over each other, from three quarters before the record to three quarters after it: the sum of
+/// their squares is the same at each sample.
+WelchSettings band_settings(double rate, std::size_t frames) {
+    const std::size_t segment = std::max<std::size_t>(4, suggested_segment(rate, frames) / 4 * 4);
+    WelchSettings settings = hann(rate, segment, segment / 4 * 3);
+    settings.detrend = Detrend::none;
+    return settings;
 }
 
 std::vector<SpectralLine> strongest(std::vector<SpectralLine> lines) {
@@ -47,11 +48,11 @@ bool same(const WelchSettings& a, const WelchSettings& b) {
 
 VibrationAnalysis::VibrationAnalysis(const AnalysisSettings& settings, std::size_t frames)
     : settings_(settings),
+      frames_(frames),
       lines_(hann(settings.psd.rate, suggested_segment(settings.psd.rate, frames),
                   suggested_segment(settings.psd.rate, frames) / 2)),
-      block_(block_settings(settings.psd.rate, frames)),
-      fresh_block_(block_),
-      block_length_(static_cast<std::size_t>(std::ceil(0.5 * settings.psd.rate))) {
+      bands_(band_settings(settings.psd.rate, frames)),
+      fundamental_(settings.psd.rate, frames, settings.lowest, settings.highest) {
     const std::size_t segment = suggested_segment(settings.psd.rate, frames);
     if (!same(settings.psd, hann(settings.psd.rate, segment, segment / 2))) psd_.emplace(settings.psd);
     if (settings.envelope) {
@@ -72,6 +73,12 @@ VibrationAnalysis::VibrationAnalysis(const AnalysisSettings& settings, std::size
 void VibrationAnalysis::push(std::span<const double> samples) {
     level_.push(samples);
     lines_.push(samples);
+    if (in_piece_ == 0) surround();
+    shifted_.assign(samples.begin(), samples.end());
+    for (double& x : shifted_) x -= mean_;
+    bands_.push(shifted_);
+    in_piece_ += samples.size();
+    pushed_ += samples.size();
     if (psd_) psd_->push(samples);
     if (spectrogram_) spectrogram_->push(samples);
     if (envelope_) {
@@ -81,82 +88,38 @@ void VibrationAnalysis::push(std::span<const double> samples) {
             if ((*envelope_)(x, value)) envelope_values_.push_back(value);
         envelope_spectrum_->push(envelope_values_);
     }
-    while (!samples.empty()) {
-        const std::size_t part = std::min(samples.size(), block_length_ - in_block_);
-        block_.push(samples.first(part));
-        for (std::size_t i = 0; i < part; ++i) {
-            const double step = samples[i] - last_;
-            movement_[(in_block_ + i) * movement_.size() / block_length_] += step * step;
-            last_ = samples[i];
-        }
-        samples = samples.subspan(part);
-        in_block_ += part;
-        if (in_block_ == block_length_) end_block();
-    }
+    fundamental_.push(samples);
 }
 
-void VibrationAnalysis::end_block() {
-    const Spectrum spectrum = block_.spectrum();
-    if (!spectrum.power.empty()) {
-        const Comb comb = fit_comb(spectrum, settings_.lowest, settings_.highest);
-        // An impact excites many frequencies at once: the ripples of its spectrum are no lines.
-        double all = 1e-300, most = 0.0;
-        for (const double movement : movement_) all += movement, most = std::max(most, movement);
-        if (comb.confidence > 0.1 && most < 0.4 * all) seconds_.push_back({comb.best.frequency, comb.confidence});
-        else seconds_.push_back({0.0, 0.0});
-    }
-    block_ = fresh_block_;
-    in_block_ = 0;
-    movement_.fill(0.0);
+void VibrationAnalysis::surround() {
+    const WelchSettings settings = band_settings(settings_.psd.rate, frames_);
+    shifted_.assign(settings.overlap, 0.0);
+    bands_.push(shifted_);
+}
+
+Spectrum VibrationAnalysis::band_spectrum() const {
+    // A copy takes the end: more may be pushed after a report.
+    WelchStream<double> ended = bands_;
+    const WelchSettings settings = band_settings(settings_.psd.rate, frames_);
+    ended.push(std::vector<double>(settings.segment, 0.0));
+    Spectrum spectrum = ended.spectrum();
+    const double scale = static_cast<double>(spectrum.segments * settings.step()) /
+                         static_cast<double>(std::max<std::size_t>(1, pushed_));
+    for (double& power : spectrum.power) power *= scale;
+    return spectrum;
 }
 
 void VibrationAnalysis::gap() {
+    if (in_piece_ > 0) {
+        const WelchSettings settings = band_settings(settings_.psd.rate, frames_);
+        shifted_.assign(settings.segment, 0.0);
+        bands_.push(shifted_);
+        bands_.forget_waiting();
+        in_piece_ = 0;
+    }
     lines_.forget_waiting();
     if (psd_) psd_->forget_waiting();
-    block_ = fresh_block_;
-    in_block_ = 0;
-    movement_.fill(0.0);
-}
-
-FundamentalEstimate VibrationAnalysis::fundamental(const Spectrum& lines) const {
-    const Comb comb = fit_comb(lines, settings_.lowest, settings_.highest);
-    FundamentalEstimate out{comb.best.frequency, comb.confidence,     true,
-                            comb.best.frequency, comb.best.frequency, {comb.others().begin(), comb.others().end()}};
-    std::vector<Second> heard;
-    for (const Second& second : seconds_)
-        if (second.frequency > 0.0) heard.push_back(second);
-    if (heard.size() < 2) return out;
-    std::sort(heard.begin(), heard.end(), [](const Second& a, const Second& b) { return a.frequency < b.frequency; });
-    const auto share_near = [&](double frequency, double ratio) {
-        double near = 0.0, all = 1e-30;
-        for (const Second& second : seconds_) {
-            const double weight = std::max(second.confidence, 0.1);
-            all += weight;
-            if (second.frequency > 0.0 && std::abs(second.frequency / frequency - 1.0) < ratio) near += weight;
-        }
-        return near / all;
-    };
-    if (out.frequency > 0.0 && share_near(out.frequency, 0.01) >= 0.7) {
-        out.confidence =
-            std::max(out.confidence, std::min(1.0, out.confidence + 0.5 * share_near(out.frequency, 0.01) - 0.35));
-        return out;
-    }
-    // With a varying rate the spectrum of the whole record smears the lines; those of short sections do not.
-    double all = 0.0, sum = 0.0, trust = 0.0;
-    for (const Second& second : heard) all += second.confidence;
-    for (const Second& second : heard) {
-        trust += second.confidence * second.confidence / all;
-        if (sum < 0.1 * all) out.low = second.frequency;
-        if (sum < 0.5 * all) out.frequency = second.frequency;
-        if (sum < 0.9 * all) out.high = second.frequency;
-        sum += second.confidence;
-    }
-    out.steady = false;
-    const double heard_share = static_cast<double>(heard.size()) / static_cast<double>(seconds_.size());
-    out.confidence = trust * share_near(out.frequency, 0.1) * heard_share;
-    if (comb.best.frequency > 0.0 && std::abs(comb.best.frequency / out.frequency - 1.0) > 0.02)
-        out.rivals.insert(out.rivals.begin(), comb.best);
-    return out;
+    fundamental_.gap();
 }
 
 VibrationReport VibrationAnalysis::report() const {
@@ -166,13 +129,11 @@ VibrationReport VibrationAnalysis::report() const {
     out.psd = psd_ ? psd_->spectrum() : out.lines;
     out.spectrogram = spectrogram_;
     if (out.lines.power.size() < 8) return out;
-    out.fundamental = fundamental(out.lines);
-    // Noise reaches lower confidences than this.
-    if (out.fundamental.confidence < 0.1) out.fundamental.frequency = 0.0;
+    out.fundamental = fundamental_.estimate();
     out.harmonics = harmonic_table(out.lines, out.fundamental.frequency, settings_.orders);
     out.peaks = strongest(find_lines(out.lines, 2.0 * out.lines.df, settings_.psd.rate));
     out.hum = find_hum(out.lines, out.fundamental.frequency);
-    out.bands = third_octaves(out.lines);
+    out.bands = third_octaves(band_spectrum());
     if (envelope_spectrum_) {
         const Spectrum envelope = envelope_spectrum_->spectrum();
         const double highest = 0.5 * (settings_.envelope->second - settings_.envelope->first);

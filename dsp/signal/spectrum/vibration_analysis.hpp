@@ -3,13 +3,12 @@
 #pragma once
 
 #include "dsp/signal/spectrum/bands.hpp"
-#include "dsp/signal/spectrum/comb.hpp"
 #include "dsp/signal/spectrum/envelope.hpp"
+#include "dsp/signal/spectrum/fundamental.hpp"
 #include "dsp/signal/spectrum/level.hpp"
 #include "dsp/signal/spectrum/lines.hpp"
 #include "dsp/signal/spectrum/spectrogram.hpp"
 
-#include <array>
 #include <optional>
 #include <utility>
 
@@ -17,18 +16,10 @@ namespace tactus::signal {
 
 struct AnalysisSettings {
     WelchSettings psd;  ///< of the displayed spectrum; its rate is the record's
-    double lowest = 20.0, highest = 500.0;  ///< Hz: range of the fundamental
+    double lowest = lowest_fundamental, highest = highest_fundamental;  ///< Hz: range of the fundamental
     int orders = 10;
     std::optional<std::pair<double, double>> envelope;  ///< Hz: band of the envelope analysis
     bool spectrogram = false;
-};
-
-struct FundamentalEstimate {
-    double frequency = 0.0;  ///< Hz; 0: not periodic
-    double confidence = 0.0;  ///< 0 … 1
-    bool steady = false;  ///< constant rate; otherwise `frequency` is the median of its path
-    double low = 0.0, high = 0.0;  ///< Hz: the middle 80 % of the path, in half seconds
-    std::vector<CombFit> rivals;  ///< other rates that explain the lines nearly as well
 };
 
 struct VibrationReport {
@@ -39,7 +30,7 @@ struct VibrationReport {
     std::vector<Harmonic> harmonics;
     std::vector<SpectralLine> peaks;  ///< the strongest 20, by frequency
     std::vector<HumLine> hum;
-    std::vector<Band> bands;
+    std::vector<Band> bands;  ///< of all samples alike: their sum is the mean square, but for what is outside of them
     std::vector<SpectralLine> envelope;  ///< lines of the envelope's spectrum, the strongest 20
     std::optional<Spectrogram> spectrogram;
 };
@@ -49,26 +40,27 @@ public:
     /// `frames`: length of the record. Throws Error when the settings are invalid.
     VibrationAnalysis(const AnalysisSettings& settings, std::size_t frames);
 
+    /// Of the whole record, before the first `push`; bands are of what is left without it.
+    void set_mean(double mean) { mean_ = mean; }
     void push(std::span<const double> samples);
     /// Marks a gap: no segment spans it.
     void gap();
     VibrationReport report() const;
 
 private:
-    void end_block();
-    FundamentalEstimate fundamental(const Spectrum& lines) const;
+    void surround();
+    Spectrum band_spectrum() const;
 
     AnalysisSettings settings_;
+    std::size_t frames_;
     Level level_;
-    WelchStream<double> lines_, block_, fresh_block_;
+    WelchStream<double> lines_, bands_;
+    double mean_ = 0.0;
+    std::size_t in_piece_ = 0;  // samples since the start or the last gap
+    std::size_t pushed_ = 0;
+    std::vector<double> shifted_;
+    FundamentalStream fundamental_;
     std::optional<WelchStream<double>> psd_;
-    std::size_t block_length_, in_block_ = 0;
-    struct Second {
-        double frequency, confidence;
-    };
-    std::vector<Second> seconds_;
-    std::array<double, 8> movement_{};  // squared differences in the eighths of a block
-    double last_ = 0.0;
     std::optional<BandEnvelope> envelope_;
     std::optional<WelchStream<double>> envelope_spectrum_;
     std::optional<Spectrogram> spectrogram_;

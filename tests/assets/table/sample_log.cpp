@@ -41,6 +41,20 @@ TEST_CASE(
     CHECK(read("t,a\n1000000,7\n2000000,8\n", selection).times == std::vector{1.0, 2.0});
 }
 
+TEST_CASE("a number that may have a thousands separator is refused, one that cannot is read") {
+    using Catch::Matchers::ContainsSubstring;
+    CHECK_THROWS_WITH(read("t,a\n0,\"1,234\"\n1,\"2,345\"\n"), ContainsSubstring("'1,234' has a comma"));
+    CHECK_THROWS_WITH(read("t;a\n0;1,234\n1;2,345\n"),
+                      ContainsSubstring("l.csv:2:1") && ContainsSubstring("may be 1234 or 1.234"));
+    CHECK_THROWS_WITH(read("t;a\n0;1,234.5\n"), ContainsSubstring("thousands separators"));
+    CHECK_THROWS_WITH(read("t;a\n0;1.234.567\n"), ContainsSubstring("thousands separators"));
+    CHECK_THROWS_WITH(read("t;a\n0,5;1.234\n"), ContainsSubstring("some numbers have a decimal comma"));
+    CHECK(read("t;a\n0,5;1,234\n1,5;2,345\n").columns[0] == std::vector{1.234, 2.345});
+    CHECK(read("t\ta\n0,5\t1,25\n").columns[0] == std::vector{1.25});
+    CHECK(read("t;a\n0;1.234\n1;2.345\n").columns[0] == std::vector{1.234, 2.345});
+    CHECK(read("t,a\n0,\"1.5\"\n").columns[0] == std::vector{1.5});
+}
+
 TEST_CASE("rows without a number are counted as lost, a half last line too") {
     const table::SampleLog log = read("t,a\n0,1\n1,\n2,nan\n3,4\n4");
     CHECK(log.times == std::vector{0.0, 3.0});

@@ -31,7 +31,7 @@ struct CompareChoice {
     fs::path thresholds;
     std::string plot;                                // .svg or .png
     fs::path report, table;                          // .html, .csv
-    std::string touch = "displacement";
+    std::string touch = "displacement", axes = "strongest";
     std::vector<std::string> time_columns, columns;  // columns of CSV logs, for both files or for each
     std::string time_unit;
     int jobs = 0;                                    // pairs at a time, 0: one per core
@@ -143,6 +143,7 @@ int compare(const CompareChoice& choice) {
     study::CompareSettings settings = choice.settings;
     if (!choice.thresholds.empty()) settings.thresholds = table::load_thresholds(choice.thresholds);
     settings.touch = touch_of(choice.touch);
+    settings.axes = choice.axes == "vector" ? study::Axes::vector : study::Axes::strongest;
     settings.logs = {selection_for(choice, 0), selection_for(choice, 1)};
     settings.pictures = !choice.plot.empty() || !choice.report.empty();
     if (fs::is_directory(settings.reference) || fs::is_directory(settings.output))
@@ -166,9 +167,12 @@ Action add(VerbOptions& verb) {
     verb.add("--jobs", choice->jobs, "pairs at a time, 0: one per core").range(0, 256);
     verb.add("--reference-scale", settings.reference_scale, "units per full scale, such as m/s^2").shows_default();
     verb.add("--output-scale", settings.output_scale, "scale of the output, in the same unit").shows_default();
-    verb.add("--channel", settings.channel, "channel of both files, from 1; 0: the mean of all")
+    verb.add("--channel", settings.channel, "channel of both files, from 1; 0: the mean of all").range(0, 1024);
+    verb.add("--axes", choice->axes,
+             "of several channels: the strongest of the reference and the same of the output, or vector: the root sum "
+             "of squares of the spectra of all")
         .shows_default()
-        .range(0, 1024);
+        .one_of({"strongest", "vector"});
     verb.add("--time-column", choice->time_columns,
              "time column of CSV logs: name or number, for both files or for each")
         .separated_by(',')

@@ -25,7 +25,12 @@ Json or_null(const std::optional<T>& value) {
 Json lines_json(const std::vector<signal::SpectralLine>& lines, double fundamental) {
     Json list = Json::array();
     for (const signal::SpectralLine& line : lines) {
-        Json entry{{"hz", line.frequency}, {"db", signal::level_db(line)}, {"snr_db", line.snr_db}};
+        // "db" is of the amplitude, as before; it goes with the next release.
+        Json entry{{"hz", line.frequency},
+                   {"rms", std::sqrt(line.power)},
+                   {"rms_db", signal::rms_db(line)},
+                   {"db", signal::level_db(line)},
+                   {"snr_db", line.snr_db}};
         if (const std::string name = name_of_line(line.frequency, fundamental); !name.empty()) entry["name"] = name;
         list.push_back(std::move(entry));
     }
@@ -68,7 +73,20 @@ Json to_json(const ComparedPair& o) {
               {"touch",
                {{"threshold_of", touch_unit(o.touch)}, {"cosine_40_1000", c.touch_cosine}, {"gap_db", c.touch_gap_db}}},
               {"band_hz", {c.lowest, c.highest}},
+              {"rms", {{"reference", c.reference_rms}, {"output", c.output_rms}}},
+              {"db_re", "1 of the record's unit, rms"},
+              {"above_noise",
+               {{"reference", c.above_noise.in_reference},
+                {"output", c.above_noise.in_output},
+                {"both_hz", c.above_noise.in_both}}},
+              {"scores", Json::array()},
               {"notes", o.notes}};
+    for (const Judged& score : o.verdict.scores)
+        json["scores"].push_back({{"name", score.name},
+                                  {"value", score.value},
+                                  {score.at_least ? "at_least" : "at_most", score.limit},
+                                  {"passed", score.passed},
+                                  {"band_hz", {score.lowest, score.highest}}});
     for (const signal::BandError& band : c.third_octaves)
         json["third_octave"].push_back({{"hz", band.hz}, {"error_db", band.error_db}});
     return json;
@@ -103,11 +121,13 @@ void print(const ComparedPair& o) {
             if (score.passed == passed)
                 fmt::print("  {} {:<24} {:>8.3f}  {} {:<6g} {}\n", passed ? "ok  " : "FAIL", score.name, score.value,
                            score.at_least ? "at least" : "at most ", score.limit, score.about);
+    if (!o.verdict.not_judged.empty()) fmt::print("  not judged: {}\n", fmt::join(o.verdict.not_judged, ", "));
     fmt::print("\n");
     if (c.alignment.significant)
-        fmt::print("  one recording      the output is {:.3f} ms {}{}; ST-SIM {:.3f}, SPQI {:.3f}, coherence {:.3f}\n",
+        fmt::print("  one recording      the output is {:.3f} ms {}{}; {}coherence {:.3f}\n",
                    1e3 * std::abs(c.alignment.delay), c.alignment.delay < 0.0 ? "early" : "late",
-                   c.alignment.correlation < 0.0 ? " and inverted" : "", *c.st_sim, *c.spqi, *c.coherence_mean);
+                   c.alignment.correlation < 0.0 ? " and inverted" : "",
+                   c.st_sim ? fmt::format("ST-SIM {:.3f}, SPQI {:.3f}, ", *c.st_sim, *c.spqi) : "", *c.coherence_mean);
     else
         fmt::print(
             "  two recordings     nothing shows that they were made together: ST-SIM, SPQI and coherence do not "

@@ -63,6 +63,7 @@ Json operation_json(const Operation& one) {
             {"band_hz", {signal::hand_arm_lowest, one.band_high}},
             {"lower_bound", one.is_lower_bound()},
             {"a_hw_filter", one.filtered},
+            {"a_hw_by", "transform of the record"},
             {"axes", one.axes},
             {"file", one.file},
             {"duration_s", one.duration},
@@ -100,7 +101,8 @@ void write_table(const ExposureChoice& choice, const std::vector<Operation>& ope
 void print_operation(const Operation& one) {
     fmt::print("{}: {:.0f} min a day\n", one.file, one.duration / 60.0);
     for (std::size_t i = 0; i < one.axes.size(); ++i)
-        fmt::print("  axis {}: a_hw {:.3g} m/s^2 (by filter {:.3g})\n", one.axes[i], one.weighted[i], one.filtered[i]);
+        fmt::print("  axis {}: a_hw {:.4g} m/s^2 rms, by transform of the record (by filter {:.4g})\n", one.axes[i],
+                   one.weighted[i], one.filtered[i]);
     if (one.three_axes) fmt::print("  a_hv {:.3g} m/s^2\n", one.total());
     fmt::print("  action value {}, limit value {}\n", reached(signal::action_value, one.total()),
                reached(signal::limit_value, one.total()));

@@ -42,9 +42,9 @@ Json rows_json(const study::SawModelling& modelling) {
 }
 
 void print(const study::SawModelling& modelling, const ModelChoice& choice) {
-    fmt::print("{}: {} conditions, a residual filter of order {}, in {}{}\n", choice.out.string(),
+    fmt::print("{}: {} conditions, a residual filter of order {}, {}{}\n", choice.out.string(),
                modelling.model.conditions.size(), vibration::SawModelSize::lines,
-               modelling.texts.calibrated ? "m/s^2" : "full scale",
+               modelling.texts.calibrated ? "in m/s^2" : "normalised",
                modelling.texts.synthesised ? "; fitted to computed sounds, not to recordings" : "");
     fmt::print("log-spectral distance and level (rms), {:g} to {:g} Hz, dB:\n", choice.settings.lowest,
                choice.settings.highest);
@@ -68,7 +68,7 @@ int model(const ModelChoice& choice) {
     sound::save_saw_model(modelling.model, modelling.texts, choice.out);
     if (choice.json) {
         const Json json{{"model", choice.out.string()},
-                        {"unit", modelling.texts.calibrated ? "m/s^2" : "full scale"},
+                        {"unit", modelling.texts.calibrated ? "m/s^2" : "normalised"},
                         {"synthesised", modelling.texts.synthesised},
                         {"band_hz", {choice.settings.lowest, choice.settings.highest}},
                         {"rows", rows_json(modelling)}};

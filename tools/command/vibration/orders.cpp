@@ -5,6 +5,7 @@
 #include "dsp/core/error.hpp"
 #include "tools/command/vibration/record_options.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/study/vibration/level_reference.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -22,6 +23,8 @@ using Json = nlohmann::ordered_json;
 struct OrdersChoice : RecordChoice {
     study::OrdersSettings settings;
     std::filesystem::path csv;
+    std::string band;  // LOW:HIGH in Hz; empty: found
+    bool peak = false;
 };
 
 std::string json_of(const std::string& file, const study::Orders& found) {
@@ -32,6 +35,7 @@ std::string json_of(const std::string& file, const study::Orders& found) {
               {"rate_hz", {{"min", found.rate.low}, {"max", found.rate.high}, {"mean", found.rate.mean}}},
               {"channels", Json::array()}};
     if (found.source == "ridge") json["ridge_prominence_db"] = found.prominence_db;
+    const study::LevelReference reference = study::level_reference(found.calibration);
     for (const study::OrdersOfChannel& one : found.channels) {
         Json channel{{"name", one.name},
                      {"unit", found.calibration.unit},
@@ -39,37 +43,54 @@ std::string json_of(const std::string& file, const study::Orders& found) {
                      {"turns", one.spectrum.turns},
                      {"segments", one.spectrum.segments},
                      {"orders", Json::array()}};
-        for (const signal::OrderLevel& level : one.spectrum.orders)
+        channel["db_re"] = reference.text;
+        for (const signal::OrderLevel& level : one.spectrum.orders) {
+            if (level.above_nyquist) {
+                channel["orders"].push_back({{"order", level.order}, {"above_nyquist", true}});
+                continue;
+            }
+            const double square = 0.5 * level.amplitude * level.amplitude;
             channel["orders"].push_back({{"order", level.order},
+                                         {"rms", std::sqrt(square)},
+                                         {"rms_db", reference.db(square)},
                                          {"amplitude", level.amplitude},
-                                         {"db", 20.0 * std::log10(std::max(level.amplitude / std::sqrt(2.0), 1e-15))},
+                                         {"db", 10.0 * std::log10(std::max(square, 1e-30))},
                                          {"snr_db", level.snr_db}});
+        }
         json["channels"].push_back(channel);
     }
     return json.dump(2) + "\n";
 }
 
-std::string text_of(const std::string& file, const study::Orders& found) {
-    std::string text =
-        fmt::format("{}: {} from {:.2f} to {:.2f} Hz\n", file, found.source, found.rate.low, found.rate.high);
+std::string text_of(const std::string& file, const study::Orders& found, bool peak) {
+    const study::LevelReference reference = study::level_reference(found.calibration);
+    std::string text = fmt::format("{}: {} from {:.2f} to {:.2f} Hz\n  levels: {}, dB rms re {}\n", file, found.source,
+                                   found.rate.low, found.rate.high, peak ? "peak" : "rms", reference.text);
     for (const study::OrdersOfChannel& one : found.channels) {
         text += fmt::format("  channel {}, {:.0f} turns\n", one.name, one.spectrum.turns);
-        for (const signal::OrderLevel& level : one.spectrum.orders)
-            text += fmt::format("    order {:3g}  {:.5g} {}  SNR {:.0f} dB\n", level.order, level.amplitude,
-                                found.calibration.unit, level.snr_db);
+        for (const signal::OrderLevel& level : one.spectrum.orders) {
+            const double square = 0.5 * level.amplitude * level.amplitude;
+            if (level.above_nyquist) text += fmt::format("    order {:3g}  above half the sample rate\n", level.order);
+            else
+                text += fmt::format("    order {:3g}  {:.5g} {}  {:.1f} dB  SNR {:.0f} dB\n", level.order,
+                                    peak ? level.amplitude : std::sqrt(square), found.calibration.unit,
+                                    reference.db(square), level.snr_db);
+        }
     }
     return text;
 }
 
-/// CSV of amplitude over order.
-std::string csv_of(const study::Orders& found) {
+/// CSV of level over order.
+std::string csv_of(const study::Orders& found, bool peak) {
     std::string csv = "order";
-    for (const study::OrdersOfChannel& one : found.channels) csv += "," + one.name;
+    for (const study::OrdersOfChannel& one : found.channels)
+        csv += fmt::format(",{}_{}", one.name, peak ? "peak" : "rms");
     csv += '\n';
     const signal::OrderSpectrum& first = found.channels.front().spectrum;
     for (std::size_t k = 0; k < first.amplitude.size(); ++k) {
         csv += fmt::format("{}", static_cast<double>(k) * first.step);
-        for (const study::OrdersOfChannel& one : found.channels) csv += fmt::format(",{}", one.spectrum.amplitude[k]);
+        for (const study::OrdersOfChannel& one : found.channels)
+            csv += fmt::format(",{}", one.spectrum.amplitude[k] / (peak ? 1.0 : std::sqrt(2.0)));
         csv += '\n';
     }
     return csv;
@@ -90,9 +111,10 @@ int orders(const OrdersChoice& choice) {
     const std::filesystem::path& file = choice.files.front();
     study::OrdersSettings settings = choice.settings;
     settings.record = choice.record;
+    if (!choice.band.empty()) settings.range = parse_band(choice.band, "--band");
     const study::Orders found = study::analyse_orders(file, settings);
-    if (!choice.csv.empty()) about_file(file, [&] { file::write_whole_file(choice.csv, csv_of(found)); });
-    fmt::print("{}", choice.json ? json_of(file.string(), found) : text_of(file.string(), found));
+    if (!choice.csv.empty()) about_file(file, [&] { file::write_whole_file(choice.csv, csv_of(found, choice.peak)); });
+    fmt::print("{}", choice.json ? json_of(file.string(), found) : text_of(file.string(), found, choice.peak));
     return done;
 }
 
@@ -103,10 +125,12 @@ Action add(VerbOptions& verb) {
     const Option tacho = verb.add("--tacho", settings.tacho, "channel of the tachometer, from 1").range(1, 1024);
     verb.add("--pulses", settings.pulses, "tachometer pulses per revolution").shows_default().range(0.01, 1e5);
     verb.add("--rate", settings.fixed, "known constant rate, Hz").unit("Hz").range(0.01, 1e6).excludes(tacho);
-    verb.band("--band", settings.range.first, settings.range.second, "search range of a tracked rate, Hz");
+    verb.add("--band", choice->band,
+             "LOW:HIGH in Hz: search range of a tracked rate (default: around the fundamental, else 20:400)");
     verb.old("--range", "--band");
     verb.add("--orders", settings.highest, "highest order").shows_default().range(1, 200);
-    verb.add("--csv", choice->csv, "CSV file for amplitude over order");
+    verb.add("--csv", choice->csv, "CSV file for the level over order");
+    verb.flag("--peak", choice->peak, "peak values instead of rms, in text and CSV");
     return [choice] { return orders(*choice); };
 }
 

@@ -3,6 +3,7 @@
 
 #include "tools/command/batch.hpp"
 #include "tools/counted.hpp"
+#include "tools/study/vibration/level_reference.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -29,8 +30,11 @@ Json number_or_null(double value) { return value > 0.0 ? Json(value) : Json(null
 
 Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
     const signal::VibrationReport& r = channel.report;
+    const study::LevelReference reference = study::level_reference(file.calibration);
     Json json{{"name", channel.name},
               {"rms", r.level.rms()},
+              {"rms_db", reference.db(r.level.rms() * r.level.rms())},
+              {"db_re", reference.text},
               {"crest", r.level.crest()},
               {"mean", r.level.mean()},
               {"peak", r.level.peak()},
@@ -40,7 +44,8 @@ Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
               {"fundamental_hz", number_or_null(r.fundamental.frequency)},
               {"confidence", r.fundamental.confidence},
               {"fundamental",
-               {{"steady", r.fundamental.steady},
+               {{"certain", r.fundamental.is_certain()},
+                {"steady", r.fundamental.steady},
                 {"range_hz", {r.fundamental.low, r.fundamental.high}},
                 {"rivals", Json::array()}}},
               {"harmonics", Json::array()},
@@ -49,10 +54,14 @@ Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
               {"bands", Json::array()},
               {"envelope", Json::array()},
               {"warnings", channel.warnings}};
-    for (const signal::CombFit& rival : r.fundamental.rivals)
-        json["fundamental"]["rivals"].push_back({{"hz", rival.frequency}, {"score", rival.score()}});
-    const auto line = [](const signal::SpectralLine& l) {
-        return Json{{"hz", l.frequency}, {"db", decibels(l.power)}, {"snr_db", l.snr_db}};
+    for (const signal::HarmonicSum& rival : r.fundamental.rivals)
+        json["fundamental"]["rivals"].push_back({{"hz", rival.frequency}, {"score", rival.score}});
+    const auto line = [&](const signal::SpectralLine& l) {
+        return Json{{"hz", l.frequency},
+                    {"rms", std::sqrt(l.power)},
+                    {"rms_db", reference.db(l.power)},
+                    {"db", decibels(l.power)},
+                    {"snr_db", l.snr_db}};
     };
     const double first = r.harmonics.empty() ? 0.0 : decibels(r.harmonics.front().power);
     for (const signal::Harmonic& h : r.harmonics) {
@@ -71,8 +80,11 @@ Json channel_json(const AnalysedChannel& channel, const AnalysedFile& file) {
         json["hum"].push_back(row);
     }
     for (const signal::Band& b : r.bands)
-        json["bands"].push_back(
-            {{"hz", b.centre}, {"db", decibels(b.power)}, {"deviation_db", band_deviation(b, r.lines)}});
+        json["bands"].push_back({{"hz", b.centre},
+                                 {"rms", std::sqrt(b.power)},
+                                 {"rms_db", reference.db(b.power)},
+                                 {"db", decibels(b.power)},
+                                 {"deviation_db", band_deviation(b, r.lines)}});
     for (const signal::SpectralLine& l : r.envelope) json["envelope"].push_back(line(l));
     return json;
 }
@@ -112,6 +124,8 @@ std::string analysis_text(const AnalysedFile& file) {
     std::string text = fmt::format("{}: {:.3f} s at {:.6g} Hz, {}\n", file.file.string(), file.duration, file.rate,
                                    counted(file.channels.size(), "channel"));
     auto out = std::back_inserter(text);
+    const study::LevelReference reference = study::level_reference(file.calibration);
+    fmt::format_to(out, "  levels: rms, dB re {}\n", reference.text);
     if (file.log)
         fmt::format_to(out,
                        "  uneven log, {} rows, steps {:.3g} to {:.3g} ms: resampled; limited to {:.4g} Hz, reliable to "
@@ -122,32 +136,33 @@ std::string analysis_text(const AnalysedFile& file) {
         const signal::VibrationReport& r = channel.report;
         const auto list = [&](const char* name, const std::vector<signal::SpectralLine>& lines) {
             if (lines.empty()) return;
-            fmt::format_to(out, "    {}:", name);
+            fmt::format_to(out, "    {}, Hz (dB rms):", name);
             for (const signal::SpectralLine& l : lines)
-                fmt::format_to(out, " {:.2f} ({:.1f} dB)", l.frequency, decibels(l.power));
+                fmt::format_to(out, " {:.2f} ({:.1f})", l.frequency, reference.db(l.power));
             text += '\n';
         };
-        fmt::format_to(out, "  channel {}: rms {:.4g} {}{}, crest {:.2f}\n", channel.name, r.level.rms(),
-                       file.calibration.unit, file.calibration.known ? "" : " (uncalibrated)", r.level.crest());
+        fmt::format_to(out, "  channel {}: rms {:.4g} {}{}, {:.2f} dB; crest {:.2f}\n", channel.name, r.level.rms(),
+                       file.calibration.unit, file.calibration.known ? "" : " (uncalibrated)",
+                       reference.db(r.level.rms() * r.level.rms()), r.level.crest());
         if (r.fundamental.frequency > 0.0) {
-            fmt::format_to(out, "    fundamental {:.3f} Hz, confidence {:.2f}", r.fundamental.frequency,
-                           r.fundamental.confidence);
-            for (const signal::CombFit& rival : r.fundamental.rivals)
+            fmt::format_to(out, "    fundamental {:.3f} Hz, confidence {:.2f}{}", r.fundamental.frequency,
+                           r.fundamental.confidence, r.fundamental.is_certain() ? "" : ", uncertain");
+            for (const signal::HarmonicSum& rival : r.fundamental.rivals)
                 fmt::format_to(out, "{} {:.1f}", &rival == r.fundamental.rivals.data() ? "; or" : ",", rival.frequency);
             text += '\n';
         } else {
             text += "    no fundamental\n";
         }
         if (!r.harmonics.empty()) {
-            text += "    orders:";
+            text += "    orders, dB rms:";
             for (const signal::Harmonic& h : r.harmonics)
-                fmt::format_to(out, " {}{}", h.order, h.present ? fmt::format(" {:.1f} dB", decibels(h.power)) : " –");
+                fmt::format_to(out, " {}{}", h.order, h.present ? fmt::format(" {:.1f}", reference.db(h.power)) : " –");
             text += '\n';
         }
         list("lines", r.peaks);
         for (const signal::HumLine& h : r.hum)
-            fmt::format_to(out, "    hum of {} Hz mains at {:.2f} Hz, {:.1f} dB, SNR {:.0f} dB\n", h.mains, h.frequency,
-                           decibels(h.power), h.snr_db);
+            fmt::format_to(out, "    hum of {} Hz mains at {:.2f} Hz, {:.1f} dB rms, SNR {:.0f} dB\n", h.mains,
+                           h.frequency, reference.db(h.power), h.snr_db);
         list("envelope", r.envelope);
         for (const std::string& warning : channel.warnings) fmt::format_to(out, "    {}\n", warning);
     }

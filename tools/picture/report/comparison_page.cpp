@@ -43,14 +43,14 @@ std::string scores_table(const study::ComparedPair& pair) {
     unjudged("st_sim", c.st_sim, "", aligned);
     unjudged("spqi", c.spqi, "", aligned);
     unjudged("coherence_mean", c.coherence_mean, "", aligned);
-    unjudged("touch cosine", c.touch_cosine, "", "perceived shape, 40 to 1000 Hz");
+    unjudged("touch cosine", c.touch_cosine, "", "perceived shape");
     unjudged("touch gap", c.touch_gap_db, " dB", "perceived strength of the output at equal power");
     return out + "</table>\n";
 }
 
 std::string lines_table(const signal::Comparison& c) {
     std::string out =
-        "<table><tr><th>line</th><th class=\"n\">Hz</th><th class=\"n\">level, dB</th><th class=\"n\">SNR, dB</th>"
+        "<table><tr><th>line</th><th class=\"n\">Hz</th><th class=\"n\">rms, dB</th><th class=\"n\">SNR, dB</th>"
         "<th>where</th></tr>\n";
     const auto rows = [&](const std::vector<signal::SpectralLine>& lines, double fundamental, const char* where) {
         for (const signal::SpectralLine& line : lines) {
@@ -58,7 +58,7 @@ std::string lines_table(const signal::Comparison& c) {
             out += fmt::format(
                 "<tr><td>{}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.1f}</td><td class=\"n\">"
                 "{:.1f}</td><td>{}</td></tr>\n",
-                name.empty() ? "–" : name, line.frequency, signal::level_db(line), line.snr_db, where);
+                name.empty() ? "–" : name, line.frequency, signal::rms_db(line), line.snr_db, where);
         }
     };
     rows(c.lines.in_both, c.reference_hz, "both");
@@ -114,12 +114,16 @@ std::string comparison_method(const study::ComparedPair& pair) {
         "<li>Spectra: Welch, Hann, half overlapping, mean of each segment removed. Segments of 1024 samples for "
         "lsd_db and the cosines, 2048 for coherence, 4096 for the third-octave bands and the curves, 8192 for lines "
         "and orders; shorter when a take does not hold four. The curves have a resolution of {:.3g} Hz.</li>"
-        "<li>lsd_db: rms of the level differences from 40 to 500 Hz, levels limited to 40 dB below the reference's "
+        "<li>The band is what both takes can be trusted in, at most 40 to 1000 Hz; lsd_db and cosine_40_500 end at 500 "
+        "Hz "
+        "where the band does not end before. above_noise counts lines and third-octave bands that stand above the "
+        "noise in both takes: without one, noise would be compared with noise.</li>"
+        "<li>lsd_db: rms of the level differences, levels limited to 40 dB below the reference's "
         "maximum. "
         "Cosines are of amplitude spectra. Third octaves have centres 10^(n/10) Hz; bands within 40 dB of the "
         "strongest count. harmonic_error_db: the worst order's difference from the mean difference.</li>"
         "<li>Lines: Hann interpolation between bins; they stand 10 dB or more above their neighbourhood and within 60 "
-        "dB of the strongest. Levels are dB re 1 of the record's unit, amplitude.</li>"
+        "dB of the strongest. Levels are dB re 1 of the record's unit, rms.</li>"
         "<li>Spectrograms: Hann windows of 60 ms, each shown down to 60 dB below its own maximum.</li>"
         "<li>Touch: threshold curve of {}. Above 500 Hz vibration is hardly perceptible.</li></ul>\n",
         c.lowest, c.highest, c.step, study::touch_unit(pair.touch));

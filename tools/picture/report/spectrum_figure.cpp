@@ -3,6 +3,7 @@
 
 #include "tools/picture/report/plot_panel.hpp"
 #include "tools/picture/report/spectrogram_panel.hpp"
+#include "tools/study/vibration/level_reference.hpp"
 
 #include <fmt/format.h>
 
@@ -22,15 +23,16 @@ void draw_curve(display::Figure& figure, const study::AnalysedChannel& channel, 
                 double y, double lowest, double highest) {
     const signal::VibrationReport& r = channel.report;
     const signal::Spectrum& psd = r.psd;
+    const study::LevelReference reference = study::level_reference(file.calibration);
     std::vector<double> levels;
-    double top = -300.0;
+    double top = -400.0;
     for (std::size_t k = 0; k < psd.power.size(); ++k) {
-        levels.push_back(study::decibels(psd.power[k]));
+        levels.push_back(reference.db(psd.power[k]));
         if (psd.frequency(k) >= lowest && psd.frequency(k) <= highest) top = std::max(top, levels.back());
     }
     top = 10.0 * std::ceil(top / 10.0) + 10.0;
     const PlotPanel panel(figure, left, y, width, spectrum_height, {lowest, highest}, {top - decades_down, top});
-    panel.axes(10.0, fmt::format("dB re 1 ({})²/Hz", file.calibration.unit), true);
+    panel.axes(10.0, fmt::format("dB re ({})²/Hz", reference.text), true);
     if (highest > 500.0 && lowest < 500.0) {
         panel.upright(500.0, limit_colour, 4.0);
         figure.text({panel.x_of(500.0) + 4.0, y + spectrum_height - 6.0}, "limit of touch", 10.0, soft);

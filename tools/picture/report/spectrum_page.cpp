@@ -4,6 +4,7 @@
 #include "tools/counted.hpp"
 #include "tools/picture/report/html_report.hpp"
 #include "tools/picture/report/spectrum_figure.hpp"
+#include "tools/study/vibration/level_reference.hpp"
 
 #include <fmt/format.h>
 
@@ -14,19 +15,20 @@ namespace tactus::picture {
 
 namespace {
 
-std::string row(const std::string& name, const signal::SpectralLine& line) {
+std::string row(const std::string& name, const signal::SpectralLine& line, const study::LevelReference& reference) {
     return fmt::format(
         "<tr><td>{}</td><td class=\"n\">{:.3f}</td><td class=\"n\">{:.1f}</td><td class=\"n\">{:.1f}</td></tr>\n", name,
-        line.frequency, study::decibels(line.power), line.snr_db);
+        line.frequency, reference.db(line.power), line.snr_db);
 }
 
-std::string lines_table(const signal::VibrationReport& r) {
-    std::string out =
-        "<table><tr><th>line</th><th class=\"n\">Hz</th><th class=\"n\">level, dB</th><th class=\"n\">SNR, dB</th>"
-        "</tr>\n";
+std::string lines_table(const signal::VibrationReport& r, const study::LevelReference& reference) {
+    std::string out = fmt::format(
+        "<table><tr><th>line</th><th class=\"n\">Hz</th><th class=\"n\">rms, dB re {}</th><th class=\"n\">SNR, dB</th>"
+        "</tr>\n",
+        reference.text);
     for (const signal::Harmonic& h : r.harmonics)
-        if (h.present) out += row(fmt::format("order {}", h.order), h);
-    for (const signal::HumLine& h : r.hum) out += row(fmt::format("hum, {} × {} Hz", h.order, h.mains), h);
+        if (h.present) out += row(fmt::format("order {}", h.order), h, reference);
+    for (const signal::HumLine& h : r.hum) out += row(fmt::format("hum, {} × {} Hz", h.order, h.mains), h, reference);
     const auto is_named = [&](const signal::SpectralLine& line) {
         const auto near = [&](const signal::SpectralLine& other) {
             return std::abs(line.frequency - other.frequency) < r.lines.df;
@@ -36,19 +38,20 @@ std::string lines_table(const signal::VibrationReport& r) {
         return std::ranges::any_of(r.hum, near);
     };
     for (const signal::SpectralLine& line : r.peaks)
-        if (!is_named(line)) out += row("–", line);
-    for (const signal::SpectralLine& line : r.envelope) out += row("of the envelope", line);
+        if (!is_named(line)) out += row("–", line, reference);
+    for (const signal::SpectralLine& line : r.envelope) out += row("of the envelope", line, reference);
     return out + "</table>\n";
 }
 
-std::string bands_table(const signal::VibrationReport& r) {
-    std::string out =
-        "<table><tr><th class=\"n\">third octave, Hz</th><th class=\"n\">level, dB</th><th class=\"n\">± "
-        "dB</th></tr>\n";
+std::string bands_table(const signal::VibrationReport& r, const study::LevelReference& reference) {
+    std::string out = fmt::format(
+        "<table><tr><th class=\"n\">third octave, Hz</th><th class=\"n\">rms, dB re {}</th><th class=\"n\">± "
+        "dB</th></tr>\n",
+        reference.text);
     for (const signal::Band& band : r.bands)
         out +=
             fmt::format("<tr><td class=\"n\">{:.4g}</td><td class=\"n\">{:.1f}</td><td class=\"n\">{:.2f}</td></tr>\n",
-                        band.centre, study::decibels(band.power), study::band_deviation(band, r.lines));
+                        band.centre, reference.db(band.power), study::band_deviation(band, r.lines));
     return out + "</table>\n";
 }
 
@@ -59,9 +62,9 @@ std::string channel_section(const study::AnalysedChannel& channel, const study::
                                   html::escaped(channel.name), r.level.rms(), unit,
                                   file.calibration.known ? "" : " (uncalibrated)", r.level.crest());
     if (r.fundamental.frequency > 0.0) {
-        out +=
-            fmt::format("Fundamental {:.3f} Hz, confidence {:.2f}", r.fundamental.frequency, r.fundamental.confidence);
-        for (const signal::CombFit& rival : r.fundamental.rivals)
+        out += fmt::format("Fundamental {:.3f} Hz, confidence {:.2f}{}", r.fundamental.frequency,
+                           r.fundamental.confidence, r.fundamental.is_certain() ? "" : ", uncertain");
+        for (const signal::HarmonicSum& rival : r.fundamental.rivals)
             out += fmt::format("{} {:.1f} Hz", &rival == r.fundamental.rivals.data() ? "; or" : ",", rival.frequency);
         out += ".</p>\n";
     } else {
@@ -72,7 +75,8 @@ std::string channel_section(const study::AnalysedChannel& channel, const study::
         for (const std::string& warning : channel.warnings) out += "<li>" + html::escaped(warning) + "</li>";
         out += "</ul>\n";
     }
-    return out + lines_table(r) + bands_table(r);
+    const study::LevelReference reference = study::level_reference(file.calibration);
+    return out + lines_table(r, reference) + bands_table(r, reference);
 }
 
 }  // namespace
@@ -107,10 +111,10 @@ std::string analysis_method(const SpectrumMethod& method) {
         "<li>Curves: Welch, window {}, overlap {:g} %, detrend {}, average {}, scaling {}.</li>"
         "<li>Lines and bands: Welch, Hann, half overlapping, mean of each segment removed. Between bins by the ratio "
         "of "
-        "the two strongest (Hann); SNR over the median of the bins 4 to 16 away. Levels are dB re 1 of the unit, mean "
-        "square. A line needs an SNR that a noise bin exceeds once in a million.</li>"
-        "<li>Fundamental from {} Hz: the comb that explains most of the lines' amplitude with fewest low teeth "
-        "missing.</li>"
+        "the two strongest (Hann); SNR over the median of the bins 4 to 16 away. Levels are of the root mean square. "
+        "A line needs an SNR that a noise bin exceeds once in a million.</li>"
+        "<li>Fundamental from {} Hz: harmonic sums of half seconds, joined to a path over time, and of the whole "
+        "record; uncertain below a confidence of 0.25.</li>"
         "<li>Third octaves have centres 10^(n/10) Hz; ± is one standard deviation of noise in the band.</li></ul>\n",
         method.window, 100.0 * method.overlap, method.detrend, method.average, method.scaling,
         html::escaped(method.fundamental));

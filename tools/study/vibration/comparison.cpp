@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 namespace tactus::study {
 
@@ -42,6 +44,46 @@ signal::Spectrogram spectrogram_of(const signal::Take& take) {
     return spectrogram;
 }
 
+/// Pairs of channels (from 1; 0: the mean of all) of the reference and the output; the first pair is the strongest.
+std::vector<std::pair<int, int>> compared_channels(const CompareSettings& settings, std::vector<std::string>& notes) {
+    if (settings.channel) return {{*settings.channel, *settings.channel}};
+    const session::ChannelLevels r = session::channel_levels(settings.reference, settings.logs[0]),
+                                 d = session::channel_levels(settings.output, settings.logs[1]);
+    const std::size_t first = r.strongest();
+    const auto pair_of = [](std::size_t a, std::size_t b) {
+        return std::pair(static_cast<int>(a) + 1, static_cast<int>(b) + 1);
+    };
+    if (settings.axes == Axes::vector) {
+        if (r.names.size() != d.names.size())
+            throw Error(fmt::format("{} has {} channels and {} has {}: --axes vector needs equally many",
+                                    settings.reference.string(), r.names.size(), settings.output.string(),
+                                    d.names.size()));
+        std::vector<std::pair<int, int>> all{pair_of(first, first)};
+        for (std::size_t i = 0; i < r.names.size(); ++i)
+            if (i != first) all.push_back(pair_of(i, i));
+        if (all.size() > 1)
+            notes.push_back(
+                fmt::format("spectra are the root sum of squares of {} channels; what is compared over "
+                            "time is channel {}",
+                            all.size(), r.names[first]));
+        return all;
+    }
+    std::size_t second = 0;
+    if (d.names.size() > 1) {
+        const auto named = std::ranges::find(d.names, r.names[first]);
+        second = named != d.names.end() ? static_cast<std::size_t>(named - d.names.begin()) : first;
+        if (second >= d.names.size())
+            throw Error(
+                fmt::format("{}: has no channel like channel {} of the reference, its strongest; choose with "
+                            "--channel",
+                            settings.output.string(), r.names[first]));
+    }
+    if (r.names.size() > 1 || d.names.size() > 1)
+        notes.push_back(fmt::format("compared: channel {} of the reference{}, channel {} of the output", r.names[first],
+                                    r.names.size() > 1 ? ", its strongest" : "", d.names[second]));
+    return {pair_of(first, second)};
+}
+
 }  // namespace
 
 const char* touch_unit(signal::ThresholdUnit unit) {
@@ -65,13 +107,24 @@ ComparedPair compare_files(const CompareSettings& settings) {
     o.thresholds = settings.thresholds;
     o.touch = settings.touch;
     o.actuator_known = !settings.actuator.empty();
-    const session::TakeFile reference(
-        {settings.reference, "reference", settings.logs[0], settings.reference_scale, settings.channel});
-    const session::TakeFile output(
-        {settings.output, "output", settings.logs[1], settings.output_scale, settings.channel});
+    const std::vector<std::pair<int, int>> channels = compared_channels(settings, o.notes);
+    const auto open = [&](bool is_output, int channel) {
+        return session::TakeFile({is_output ? settings.output : settings.reference, is_output ? "output" : "reference",
+                                  settings.logs[is_output ? 1 : 0],
+                                  is_output ? settings.output_scale : settings.reference_scale, channel});
+    };
+    const session::TakeFile reference = open(false, channels.front().first);
+    const session::TakeFile output = open(true, channels.front().second);
+    signal::ComparisonOptions options{.touch = o.touch, .longest_delay = settings.longest_delay};
+    std::vector<std::unique_ptr<session::TakeFile>> others;
+    for (std::size_t i = 1; i < channels.size(); ++i) {
+        others.push_back(std::make_unique<session::TakeFile>(open(false, channels[i].first)));
+        options.reference_axes.push_back(others.back()->take());
+        others.push_back(std::make_unique<session::TakeFile>(open(true, channels[i].second)));
+        options.output_axes.push_back(others.back()->take());
+    }
     try {
-        compare_takes(o, reference.take(), output.take(), {.touch = o.touch, .longest_delay = settings.longest_delay},
-                      settings.pictures);
+        compare_takes(o, reference.take(), output.take(), options, settings.pictures);
     } catch (const Error& error) {
         throw Error(
             fmt::format("{} and {}: {}", settings.reference.string(), settings.output.string(), error.message()));
@@ -81,8 +134,8 @@ ComparedPair compare_files(const CompareSettings& settings) {
     if (std::abs(reference.rate() / output.rate() - 1.0) > 1e-3)
         o.notes.push_back(fmt::format("sampled at {:.6g} and {:.6g} Hz", reference.rate(), output.rate()));
     if (o.comparison.highest < 1000.0)
-        o.notes.push_back(
-            fmt::format("the recording with the lower rate is limited to {:.0f} Hz", o.comparison.highest));
+        o.notes.push_back(fmt::format("judged from {:.0f} to {:.0f} Hz: what both can be trusted in",
+                                      o.comparison.lowest, o.comparison.highest));
     o.level_gap_db = level_gap(settings, o.comparison, reference.peak());
     o.verdict = judge(o.comparison, o.level_gap_db, settings.thresholds);
     return o;

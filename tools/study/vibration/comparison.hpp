@@ -8,11 +8,18 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace tactus::study {
+
+/// What is compared of records with several channels.
+enum class Axes {
+    strongest,  ///< the strongest channel of the reference, and the same of the output
+    vector,     ///< the root sum of squares of the spectra of all channels
+};
 
 struct CompareSettings {
     std::filesystem::path reference, output;
@@ -22,7 +29,8 @@ struct CompareSettings {
     double mass = 0.3;                                 ///< moving mass, kg
     double reference_scale = 1.0, output_scale = 1.0;  ///< units per full scale
     double longest_delay = 2.0;                        ///< s
-    int channel = 0;                                   ///< 0: the mean of all
+    std::optional<int> channel;                        ///< of both, from 1; 0: the mean of all; none: by `axes`
+    Axes axes = Axes::strongest;
     std::array<table::LogSelection, 2> logs;  ///< columns of the reference and the output if they are CSV
     bool pictures = false;  ///< also compute spectrograms
 };

@@ -3,7 +3,6 @@
 
 #include "dsp/core/error.hpp"
 #include "dsp/signal/spectrum/level.hpp"
-#include "dsp/signal/spectrum/vibration_analysis.hpp"
 
 #include <fmt/format.h>
 
@@ -35,40 +34,42 @@ ExposureOperation analyse_exposure(const std::filesystem::path& file, const Expo
     const double nyquist = reader.log() ? std::min(0.5 * out.rate, reader.log()->usable) : 0.5 * out.rate;
     out.band_high = std::min(signal::hand_arm_highest, nyquist);
 
-    signal::WelchSettings welch;
-    welch.rate = out.rate;
-    welch.segment = signal::suggested_segment(out.rate, reader.frames());
-    welch.overlap = welch.segment / 2;
-    std::vector<signal::WelchStream<double>> spectra(chosen.size(), signal::WelchStream<double>(welch));
-    std::vector<signal::HandArmFilter> filters(chosen.size(), signal::HandArmFilter(out.rate));
-    std::vector<double> squares(chosen.size()), offsets(chosen.size()), scaled;
+    std::vector<double> scaled;
     std::vector<signal::Level> levels(chosen.size());
     std::size_t count = 0;
     sound::RecordBlock block;
-    while (reader.next(block)) {
-        for (std::size_t i = 0; i < chosen.size(); ++i) {
-            scaled = block.channels[chosen[i]];
-            for (double& x : scaled) x *= calibration.si;
-            levels[i].push(scaled);
-            if (block.after_gap) spectra[i].forget_waiting();
-            spectra[i].push(scaled);
-            // The constant part is removed: it is not vibration, and its onset would excite the filter.
-            if (count == 0) offsets[i] = scaled.front();
-            for (const double x : scaled) {
-                const double y = filters[i](x - offsets[i]);
-                squares[i] += y * y;
+    const auto read = [&](double from, const auto& use) {
+        reader.rewind();
+        std::size_t done = 0;
+        while (reader.next(block)) {
+            for (std::size_t i = 0; i < chosen.size(); ++i) {
+                scaled = block.channels[chosen[i]];
+                for (double& x : scaled) x *= calibration.si;
+                use(i, scaled);
             }
+            done += block.size();
+            progress(from +
+                     0.5 * static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, reader.frames())));
         }
-        count += block.size();
-        progress(static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, reader.frames())));
-    }
+        count = done;
+    };
+    read(0.0, [&](std::size_t i, const std::vector<double>& samples) { levels[i].push(samples); });
+    std::vector<signal::WeightedRecord> records;
+    for (const signal::Level& level : levels) records.emplace_back(out.rate, level.mean());
+    read(0.5, [&](std::size_t i, const std::vector<double>& samples) {
+        if (block.after_gap) records[i].end_piece();
+        records[i].push(samples);
+    });
+    for (signal::WeightedRecord& record : records) record.end_piece();
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         out.axes.push_back(reader.channels()[chosen[i]]);
-        out.weighted.push_back(signal::weighted_acceleration(spectra[i].spectrum()));
-        out.filtered.push_back(std::sqrt(squares[i] / static_cast<double>(std::max<std::size_t>(1, count))));
-        if (levels[i].clipped() > 0)
-            out.notes.push_back(fmt::format("axis {} is clipped in {} samples: the value is too low", out.axes.back(),
-                                            levels[i].clipped()));
+        out.weighted.push_back(records[i].by_transform());
+        out.filtered.push_back(records[i].by_filter());
+        const std::size_t clipped =
+            std::max(levels[i].clipped(), reader.log() ? reader.log()->at_limit[chosen[i]] : std::size_t{0});
+        if (clipped > 0)
+            out.notes.push_back(
+                fmt::format("axis {} is clipped in {} samples: the value is too low", out.axes.back(), clipped));
     }
     if (!out.calibrated) out.notes.push_back("uncalibrated: the values are interpreted as m/s^2");
     if (out.band_high < 1250.0)
@@ -81,7 +82,8 @@ ExposureOperation analyse_exposure(const std::filesystem::path& file, const Expo
                         out.axes.size()));
     if (out.rate < 20000.0)
         out.notes.push_back(
-            "below 20 kHz sample rate the filter deviates from the standard; use the values from the spectrum");
+            "below 20 kHz sample rate the filter deviates from the standard by more than 0.5 %; what counts is the "
+            "transform of the record, which does not");
     const double minutes = static_cast<double>(count) / out.rate / 60.0;
     if (minutes < 1.0) out.notes.push_back("the standard requires at least one minute of measurement in total");
     return out;

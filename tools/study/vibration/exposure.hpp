@@ -23,7 +23,7 @@ struct ExposureSettings {
 struct ExposureOperation {
     std::string file;
     std::vector<std::string> axes;
-    std::vector<double> weighted, filtered;  ///< m/s², from the spectrum and from the filter, per axis
+    std::vector<double> weighted, filtered;  ///< m/s² rms per axis: by transform, which counts; by filter
     double rate = 0.0, duration = 0.0;       ///< Hz; s per day
     bool calibrated = false, three_axes = false;
     double band_high = signal::hand_arm_highest;     ///< Hz

@@ -2,10 +2,14 @@
 #include "tools/study/vibration/orders.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/signal/filter/resample.hpp"
+#include "dsp/signal/spectrum/fundamental.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
+#include <span>
 
 namespace tactus::study {
 
@@ -16,69 +20,127 @@ constexpr double least_prominence_db = 6.0;  // noise alone reaches 5
 RateRange rates_of(const signal::Rotation& rotation) {
     const double turns = rotation.last() - rotation.first();
     RateRange rates{1e300, 0.0, turns / (rotation(rotation.last()).value - rotation(rotation.first()).value)};
-    for (int i = 0; i <= 1000; ++i) {
-        const double rate = 1.0 / rotation(rotation.first() + turns * i / 1000.0).slope;
-        rates.low = std::min(rates.low, rate);
-        rates.high = std::max(rates.high, rate);
-    }
+    for (int i = 0; i <= 1000; ++i)
+        rates.low = std::min(rates.low, 1.0 / rotation(rotation.first() + turns * i / 1000.0).slope);
+    rates.high = signal::highest_rate(rotation);
     return rates;
 }
 
 /// The selected channels without the tachometer.
-std::vector<std::size_t> wanted_channels(const WholeRecord& record, const OrdersSettings& settings) {
+std::vector<std::size_t> wanted_channels(const sound::RecordReader& reader, const OrdersSettings& settings) {
     std::vector<std::size_t> wanted;
     const std::vector<int>& asked_for = settings.record.channels;
-    for (std::size_t i = 0; i < record.channels.size(); ++i) {
+    for (std::size_t i = 0; i < reader.channels().size(); ++i) {
         const int channel = static_cast<int>(i) + 1;
-        const bool asked = settings.tacho == 0 || asked_for.empty() ||
-                           std::find(asked_for.begin(), asked_for.end(), channel) != asked_for.end();
+        const bool asked =
+            asked_for.empty() || std::find(asked_for.begin(), asked_for.end(), channel) != asked_for.end();
         if (asked && channel != settings.tacho) wanted.push_back(i);
     }
     return wanted;
 }
 
+/// Reads the record from its start; calls use(block).
+template <class Use>
+void read_all(sound::RecordReader& reader, const Use& use) {
+    reader.rewind();
+    sound::RecordBlock block;
+    while (reader.next(block)) {
+        if (block.after_gap) throw Error("the record has gaps; cut out the part to analyse");
+        use(block);
+    }
+}
+
+signal::Rotation rotation_of_tacho(sound::RecordReader& reader, const OrdersSettings& settings) {
+    if (static_cast<std::size_t>(settings.tacho) > reader.channels().size())
+        throw Error(fmt::format("there is no channel {} with a tachometer", settings.tacho));
+    const auto channel = static_cast<std::size_t>(settings.tacho - 1);
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    read_all(reader, [&](const sound::RecordBlock& block) {
+        for (const double x : block.channels[channel]) low = std::min(low, x), high = std::max(high, x);
+    });
+    if (!(low <= high)) throw Error("the tachometer channel is empty");
+    signal::TachoStream tacho(low, high, reader.rate());
+    read_all(reader, [&](const sound::RecordBlock& block) { tacho.push(block.channels[channel]); });
+    return tacho.rotation(settings.pulses);
+}
+
+/// The rate as it varies, near the fundamental of the record where that is certain.
+signal::Rotation rotation_of_ridge(sound::RecordReader& reader, std::size_t channel, const OrdersSettings& settings,
+                                   Orders& out) {
+    const double rate = reader.rate();
+    signal::RidgeSettings ridge_settings;
+    std::tie(ridge_settings.lowest, ridge_settings.highest) = settings.range.value_or(OrdersSettings::usual_range);
+    if (!settings.range) {
+        signal::FundamentalStream fundamental(rate, reader.frames());
+        read_all(reader, [&](const sound::RecordBlock& block) { fundamental.push(block.channels[channel]); });
+        if (const signal::FundamentalEstimate found = fundamental.estimate(); found.is_certain()) {
+            // Beyond the middle 80 % the rate may go further, but not to its double or half.
+            ridge_settings.lowest = std::max(0.72 * found.frequency, 0.6 * found.low);
+            ridge_settings.lowest = std::min(ridge_settings.lowest, 0.95 * found.low);
+            ridge_settings.highest = std::max(1.05 * found.high, std::min(1.45 * found.frequency, 1.6 * found.high));
+        }
+    }
+    // A lower sample rate holds all the orders that are tracked.
+    const double enough = 2.56 * 1.2 * ridge_settings.orders * ridge_settings.highest;
+    std::optional<signal::ResamplingStream> thinned;
+    if (rate > 1.5 * enough) thinned.emplace(reader.frames(), rate, enough);
+    signal::RidgeStream ridge(thinned ? enough : rate, ridge_settings);
+    std::vector<double> values;
+    read_all(reader, [&](const sound::RecordBlock& block) {
+        const std::span<const double> samples = block.channels[channel];
+        if (!thinned) {
+            ridge.push(samples);
+            return;
+        }
+        values.clear();
+        thinned->push(samples, values);
+        ridge.push(values);
+    });
+    const signal::Ridge found = ridge.finish();
+    out.prominence_db = found.prominence_db;
+    if (found.prominence_db < least_prominence_db)
+        throw Error("no rate can be tracked in the record; state it with --rate, or give a --tacho channel");
+    return found.rotation(out.duration);
+}
+
 /// The rotation; sets its source in `out`.
-signal::Rotation rotation_of(const WholeRecord& record, const OrdersSettings& settings, Orders& out) {
+signal::Rotation rotation_of(sound::RecordReader& reader, std::size_t channel, const OrdersSettings& settings,
+                             Orders& out) {
     if (settings.tacho > 0) {
         out.source = "tachometer";
-        if (static_cast<std::size_t>(settings.tacho) > record.channels.size())
-            throw Error(fmt::format("there is no channel {} with a tachometer", settings.tacho));
-        return signal::rotation_from_tacho(record.channels[static_cast<std::size_t>(settings.tacho - 1)], record.rate,
-                                           settings.pulses);
+        return rotation_of_tacho(reader, settings);
     }
     if (settings.fixed) {
         out.source = "fixed";
         return signal::rotation_at(*settings.fixed, out.duration);
     }
     out.source = "ridge";
-    signal::RidgeSettings ridge_settings;
-    std::tie(ridge_settings.lowest, ridge_settings.highest) = settings.range;
-    const signal::Ridge ridge = signal::track_ridge(record.channels.front(), record.rate, ridge_settings);
-    out.prominence_db = ridge.prominence_db;
-    if (ridge.prominence_db < least_prominence_db)
-        throw Error("no rate can be tracked in the record; state it with --rate, or give a --tacho channel");
-    return ridge.rotation(out.duration);
+    return rotation_of_ridge(reader, channel, settings, out);
 }
 
 }  // namespace
 
 Orders analyse_orders(const std::filesystem::path& file, const OrdersSettings& settings) {
-    RecordSettings reading = settings.record;
-    if (settings.tacho > 0) reading.channels.clear();
-    const WholeRecord record = read_whole(file, reading);
+    sound::RecordReader reader = open_record(file, settings.record);
+    chosen_channels(reader, file, settings.record);  // refuses channels that there are not
     Orders out;
-    out.sample_rate = record.rate;
-    out.duration = static_cast<double>(record.channels.front().size()) / record.rate;
-    out.calibration = record.calibration;
-    const std::vector<std::size_t> wanted = wanted_channels(record, settings);
+    out.sample_rate = reader.rate();
+    out.duration = static_cast<double>(reader.frames()) / reader.rate();
+    out.calibration = reader.calibration();
     try {
-        const signal::Rotation rotation = rotation_of(record, settings, out);
+        const std::vector<std::size_t> wanted = wanted_channels(reader, settings);
         if (wanted.empty()) throw Error("there is no channel beside the tachometer");
+        const signal::Rotation rotation = rotation_of(reader, wanted.front(), settings, out);
         out.rate = rates_of(rotation);
-        for (const std::size_t i : wanted)
-            out.channels.push_back(
-                {record.names[i], signal::order_spectrum(record.channels[i], record.rate, rotation, settings.highest)});
+        std::vector<signal::OrderStream> streams(
+            wanted.size(), signal::OrderStream(reader.rate(), reader.frames(), rotation, settings.highest));
+        read_all(reader, [&](const sound::RecordBlock& block) {
+            for (std::size_t i = 0; i < wanted.size(); ++i) streams[i].push(block.channels[wanted[i]]);
+        });
+        for (std::size_t i = 0; i < wanted.size(); ++i)
+            out.channels.push_back({reader.channels()[wanted[i]], streams[i].spectrum()});
     } catch (const Error& error) {
+        if (error.message().starts_with(file.string())) throw;
         throw Error(fmt::format("{}: {}", file.string(), error.message()));
     }
     return out;

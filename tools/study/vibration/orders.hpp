@@ -19,7 +19,9 @@ struct OrdersSettings {
     int tacho = 0;                                ///< channel from 1; 0: none
     double pulses = 1.0;                          ///< tachometer pulses per revolution
     std::optional<double> fixed;                  ///< Hz
-    std::pair<double, double> range{20.0, 400.0}; ///< Hz, search range of a tracked rate
+    /// Hz, search range of a tracked rate; none: around the fundamental of the record if that is certain.
+    std::optional<std::pair<double, double>> range;
+    static constexpr std::pair<double, double> usual_range{20.0, 400.0};
     int highest = 10;                             ///< order
 };
 
@@ -41,7 +43,7 @@ struct Orders {
     std::vector<OrdersOfChannel> channels;
 };
 
-/// Throws Error.
+/// Of a record of any length without gaps. Throws Error.
 Orders analyse_orders(const std::filesystem::path& file, const OrdersSettings& settings);
 
 }  // namespace tactus::study

@@ -53,23 +53,4 @@ std::vector<std::filesystem::path> expand_folders(const std::vector<std::filesys
     return out;
 }
 
-WholeRecord read_whole(const std::filesystem::path& file, const RecordSettings& settings) {
-    sound::RecordReader reader = open_record(file, settings);
-    const std::vector<std::size_t> chosen = chosen_channels(reader, file, settings);
-    if (reader.frames() > (std::size_t{1} << 28) / chosen.size())
-        throw Error(fmt::format("{}: longer than 2^28 values; cut it first", file.string()));
-    WholeRecord whole{reader.rate(), {}, std::vector<std::vector<double>>(chosen.size()), reader.calibration()};
-    for (const std::size_t channel : chosen) whole.names.push_back(reader.channels()[channel]);
-    sound::RecordBlock block;
-    while (reader.next(block)) {
-        if (block.after_gap)
-            throw Error(fmt::format("{}: the record has gaps; cut out the part to analyse", file.string()));
-        for (std::size_t i = 0; i < chosen.size(); ++i) {
-            const std::vector<double>& from = block.channels[chosen[i]];
-            whole.channels[i].insert(whole.channels[i].end(), from.begin(), from.end());
-        }
-    }
-    return whole;
-}
-
 }  // namespace tactus::study

@@ -28,13 +28,4 @@ std::vector<std::size_t> chosen_channels(const sound::RecordReader& reader, cons
 /// Expands folders to their records in order of name.
 std::vector<std::filesystem::path> expand_folders(const std::vector<std::filesystem::path>& files);
 
-/// The selected channels of a record in memory, at most 2^28 values and without gaps.
-struct WholeRecord {
-    double rate = 0.0;  ///< Hz
-    std::vector<std::string> names;
-    std::vector<std::vector<double>> channels;
-    sound::Calibration calibration;
-};
-WholeRecord read_whole(const std::filesystem::path& file, const RecordSettings& settings);
-
 }  // namespace tactus::study

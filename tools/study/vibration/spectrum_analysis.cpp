@@ -25,7 +25,8 @@ signal::WelchSettings psd_settings(const SpectrumSettings& settings, double rate
     return welch;
 }
 
-std::vector<std::string> warnings_of(const signal::VibrationReport& report, const AnalysedFile& file) {
+std::vector<std::string> warnings_of(const signal::VibrationReport& report, const AnalysedFile& file,
+                                     std::size_t channel) {
     std::vector<std::string> warnings;
     const signal::Level& level = report.level;
     if (level.largest() == 0.0) warnings.push_back("the channel is silent");
@@ -35,6 +36,11 @@ std::vector<std::string> warnings_of(const signal::VibrationReport& report, cons
         warnings.push_back(fmt::format(
             "clipped: {} samples in runs at the limit ({:.3g} %); peaks and high orders are wrong", level.clipped(),
             100.0 * static_cast<double>(level.clipped()) / static_cast<double>(level.count())));
+    if (file.log && file.log->at_limit[channel] > 0)
+        warnings.push_back(fmt::format(
+            "clipped: {} rows at the ends of 16 bits ({:.3g} %); peaks and high orders are wrong",
+            file.log->at_limit[channel],
+            100.0 * static_cast<double>(file.log->at_limit[channel]) / static_cast<double>(file.log->rows)));
     if (report.lines.effective_segments < 4.0)
         warnings.push_back(fmt::format("short: only {} segments; noise levels are uncertain by {:.1f} dB",
                                        report.lines.segments, 4.34 * report.lines.relative_deviation()));
@@ -73,7 +79,13 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSetti
     } catch (const Error& error) {
         throw Error(fmt::format("{}: {}", file.string(), error.message()));
     }
+    // The mean first: the bands contain the ends of the record, where a constant part would be a step.
     sound::RecordBlock block;
+    std::vector<signal::Level> levels(chosen.size());
+    while (reader.next(block))
+        for (std::size_t i = 0; i < chosen.size(); ++i) levels[i].push(block.channels[chosen[i]]);
+    for (std::size_t i = 0; i < chosen.size(); ++i) analyses[i].set_mean(levels[i].mean());
+    reader.rewind();
     std::size_t done = 0;
     while (reader.next(block)) {
         for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -90,7 +102,9 @@ AnalysedFile analyse_file(const std::filesystem::path& file, const SpectrumSetti
         signal::Spectrum& psd = out.channels.back().report.psd;
         if (!wanted.is_density)
             for (double& power : psd.power) power *= psd.noise_bandwidth;
-        out.channels.back().warnings = warnings_of(out.channels.back().report, out);
+        // The rows themselves have the level, whatever resampling does near half the rate.
+        if (out.log) out.channels.back().report.level = out.log->levels[chosen[i]];
+        out.channels.back().warnings = warnings_of(out.channels.back().report, out, chosen[i]);
     }
     return out;
 }

@@ -10,6 +10,8 @@ namespace tactus::study {
 
 namespace {
 
+constexpr double coherent = 0.5;
+
 std::vector<signal::SpectralLine> stronger_than(const std::vector<signal::SpectralLine>& lines, double least_db) {
     std::vector<signal::SpectralLine> out;
     for (const signal::SpectralLine& line : lines)
@@ -31,26 +33,34 @@ std::vector<std::string> Verdict::failed() const {
 Verdict judge(const signal::Comparison& c, double level_gap_db, const table::Thresholds& limits) {
     Verdict verdict;
     const auto add = [&](const char* name, std::optional<double> value, const std::optional<double>& limit,
-                         bool at_least, const char* about) {
+                         bool at_least, const char* about, double highest) {
         if (!limit) return;
         if (!value || !std::isfinite(*value)) {
             verdict.not_judged.emplace_back(name);
             return;
         }
-        verdict.scores.push_back(
-            {name, *value, *limit, at_least, at_least ? *value >= *limit : *value <= *limit, about});
+        verdict.scores.push_back({name, *value, *limit, at_least, at_least ? *value >= *limit : *value <= *limit,
+                                  fmt::format("{}, {:.0f} to {:.0f} Hz", about, c.lowest, highest), c.lowest, highest});
     };
-    add("lsd_db", c.lsd_db, limits.lsd_db, false, "rms of the level difference, 40 to 500 Hz, dB");
-    add("cosine_40_500", c.cosine_500, limits.cosine_40_500, true, "shape of the spectrum, 40 to 500 Hz");
-    add("cosine_40_1000", c.cosine_1000, limits.cosine_40_1000, true, "shape of the spectrum, 40 to 1000 Hz");
-    add("harmonic_error_db", c.harmonic_error_db, limits.harmonic_error_db, false, "worst order of the saw, dB");
-    add("third_octave_max_db", c.third_octave_max_db, limits.third_octave_max_db, false, "worst third-octave band, dB");
+    const double touched = c.touched(), high = c.highest;
+    // Two takes of one event share more than noise.
+    const double shared = c.alignment.significant && c.coherence_mean.value_or(0.0) > coherent
+                              ? std::max(1.0, static_cast<double>(c.above_noise.in_both.size()))
+                              : static_cast<double>(c.above_noise.in_both.size());
+    add("above_noise", shared, 1.0, true, "lines or bands above the noise in both", high);
+    add("lsd_db", c.lsd_db, limits.lsd_db, false, "rms of the level difference, dB", touched);
+    add("cosine_40_500", c.cosine_500, limits.cosine_40_500, true, "shape of the spectrum", touched);
+    add("cosine_40_1000", high > touched ? std::optional(c.cosine_1000) : std::nullopt, limits.cosine_40_1000, true,
+        "shape of the spectrum", high);
+    add("harmonic_error_db", c.harmonic_error_db, limits.harmonic_error_db, false, "worst order of the saw, dB", high);
+    add("third_octave_max_db", c.third_octave_max_db, limits.third_octave_max_db, false, "worst third-octave band, dB",
+        high);
     add("spectrogram_similarity", c.spectrogram_similarity, limits.spectrogram_similarity, true,
-        "correlation of the spectrograms");
-    add("st_sim", c.st_sim, limits.st_sim, true, "ST-SIM");
-    add("spqi", c.spqi, limits.spqi, true, "SPQI");
-    add("coherence_mean", c.coherence_mean, limits.coherence_mean, true, "coherence");
-    add("level_gap_db", level_gap_db, limits.level_gap_db, false, "softer than the reference, dB");
+        "correlation of the spectrograms", high);
+    add("st_sim", c.st_sim, limits.st_sim, true, "ST-SIM", high);
+    add("spqi", c.spqi, limits.spqi, true, "SPQI", high);
+    add("coherence_mean", c.coherence_mean, limits.coherence_mean, true, "coherence", high);
+    add("level_gap_db", level_gap_db, limits.level_gap_db, false, "softer than the reference, dB", high);
 
     double strongest = -1e9;
     for (const auto* lines : {&c.lines.in_both, &c.lines.only_in_reference})
@@ -59,12 +69,13 @@ Verdict judge(const signal::Comparison& c, double level_gap_db, const table::Thr
     if (strongest < -1e8) strongest = 20.0 * std::log10(std::sqrt(2.0) * c.reference_rms);
     if (limits.added_line_db) {
         verdict.added = stronger_than(c.lines.only_in_output, strongest + *limits.added_line_db - c.gain_db);
-        add("only_in_output", static_cast<double>(verdict.added.size()), 0.0, false, "lines that the output adds");
+        add("only_in_output", static_cast<double>(verdict.added.size()), 0.0, false, "lines that the output adds",
+            high);
     }
     if (limits.missing_line_db) {
         verdict.missing = stronger_than(c.lines.only_in_reference, strongest + *limits.missing_line_db);
-        add("only_in_reference", static_cast<double>(verdict.missing.size()), 0.0, false,
-            "lines missing in the output");
+        add("only_in_reference", static_cast<double>(verdict.missing.size()), 0.0, false, "lines missing in the output",
+            high);
     }
     return verdict;
 }

@@ -14,7 +14,8 @@ struct Judged {
     std::string name;   ///< name of the score, as in the JSON
     double value = 0.0, limit = 0.0;
     bool at_least = false, passed = true;
-    std::string about;  ///< explanation of the score
+    std::string about;               ///< explanation of the score, with its band
+    double lowest = 0.0, highest = 0.0;  ///< Hz: the band that the score judges
 };
 
 struct Verdict {

@@ -46,6 +46,22 @@ TEST_CASE("samples at uneven times give the wave they were taken from") {
     CHECK(worst < 2e-3);
 }
 
+TEST_CASE("uneven times do not change the level of a tone below 0.4 of the rate") {
+    const Random random{1};
+    for (const double frequency : {0.1, 0.2, 0.3, 0.39}) {
+        std::vector<double> times, values;
+        for (std::size_t i = 0; i < 4000; ++i) {
+            times.push_back(0.003 * (static_cast<double>(i) + 0.4 * random.uniform(i) - 0.2));
+            values.push_back(std::sin(2.0 * std::numbers::pi * frequency / 0.003 * times.back()));
+        }
+        const signal::EvenRecord even = signal::regularise(times, Channels{values});
+        double square = 0.0;
+        for (const double x : even.pieces[0][0]) square += x * x / static_cast<double>(even.pieces[0][0].size());
+        CAPTURE(frequency);
+        CHECK(std::sqrt(square) == Approx(1.0 / std::numbers::sqrt2).epsilon(0.005));
+    }
+}
+
 TEST_CASE("a gap parts the record, nothing is made up in it, and equal time stamps are spread") {
     std::vector<double> times, values;
     for (int i = 0; i < 300; ++i) {

@@ -87,6 +87,55 @@ TEST_CASE("the ridge of a few clean orders is their rate and not half of it, and
     }
 }
 
+TEST_CASE("an order above half the sample rate has no level") {
+    const std::vector<double> x = run_up();
+    const signal::OrderSpectrum spectrum = signal::order_spectrum(
+        std::span(x).first(4000), 1000.0, signal::rotation_at(120.0, 4.0), 8);  // 500 Hz are order 4.17
+    REQUIRE(spectrum.orders.size() == 8);
+    for (const signal::OrderLevel& order : spectrum.orders) {
+        CHECK(order.above_nyquist == (order.order > 4.5));
+        if (order.above_nyquist) CHECK(order.amplitude == 0.0);
+    }
+    CHECK(spectrum.end == Approx(500.0 / 120.0));
+    CHECK(static_cast<double>(spectrum.amplitude.size() - 1) * spectrum.step <= spectrum.end);
+}
+
+TEST_CASE("orders and the ridge of a record in pieces are those of the whole, to the bit") {
+    const std::vector<double> x = run_up();
+    const signal::Rotation rotation = signal::rotation_at(120.0, static_cast<double>(x.size()) / rate);
+    signal::OrderStream stream(rate, x.size(), rotation, 6);
+    signal::RidgeStream ridge(rate, {});
+    for (std::size_t at = 0; at < x.size(); at += 777) {
+        const std::span<const double> part = std::span(x).subspan(at, std::min<std::size_t>(777, x.size() - at));
+        stream.push(part);
+        ridge.push(part);
+    }
+    CHECK(stream.spectrum().amplitude == signal::order_spectrum(x, rate, rotation, 6).amplitude);
+    CHECK(ridge.finish().frequency == signal::track_ridge(x, rate, {}).frequency);
+}
+
+TEST_CASE("a ridge of minutes is followed across the minutes") {
+    std::vector<double> x(150 * 2000);
+    double phase = 0.0;
+    const Random random{9};
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        phase += (100.0 + 40.0 * std::sin(2.0 * std::numbers::pi * static_cast<double>(i) / 2000.0 / 47.0)) / 2000.0;
+        for (int k = 1; k <= 3; ++k) x[i] += std::sin(2.0 * std::numbers::pi * k * phase) / k;
+        x[i] += 0.3 * random.normal(i);
+    }
+    signal::RidgeSettings settings;
+    settings.lowest = 50.0;
+    settings.highest = 160.0;
+    settings.orders = 3;
+    const signal::Ridge ridge = signal::track_ridge(x, 2000.0, settings);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < ridge.time.size(); ++i)
+        worst = std::max(worst, std::abs(ridge.frequency[i] -
+                                         (100.0 + 40.0 * std::sin(2.0 * std::numbers::pi * ridge.time[i] / 47.0))));
+    CHECK(ridge.time.size() > 2300);
+    CHECK(worst < 4.0);
+}
+
 TEST_CASE("a fixed rate needs no tracking") {
     std::vector<double> x(16000);
     for (std::size_t i = 0; i < x.size(); ++i)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/signal/spectrum/alignment.hpp"
 
+#include "dsp/core/random.hpp"
 #include "dsp/signal/filter/resample.hpp"
 #include "tests/dsp/vibration/plant.hpp"
 #include "tests/support/catch.hpp"
@@ -77,4 +78,20 @@ TEST_CASE("silence and records of a few samples belong to nothing") {
     CHECK_FALSE(align(std::vector<double>(8000), std::vector<double>(8000)).significant);
     CHECK_FALSE(align(std::vector<double>(10, 1.0), std::vector<double>(10, 1.0)).significant);
     CHECK_FALSE(align({}, {}).significant);
+}
+
+TEST_CASE("a part of a loop is found in it, through a filter and across its end") {
+    const Random random{11};
+    std::vector<double> loop(8000), part(3000);
+    double y = 0.0;
+    for (std::size_t i = 0; i < loop.size(); ++i) loop[i] = y = 0.7 * y + random.normal(i);
+    for (const std::size_t begin : {std::size_t{0}, std::size_t{1234}, std::size_t{6500}}) {
+        double low = 0.0;
+        for (std::size_t i = 0; i < part.size(); ++i)
+            part[i] = low = 0.5 * low + loop[(begin + i) % loop.size()] + 0.3 * random.normal(20000 + i);
+        const auto found = static_cast<double>(signal::stretch_of_loop(loop, part, 4000.0, 40.0, 1000.0));
+        CAPTURE(begin, found);
+        const double off = std::abs(found - static_cast<double>(begin));
+        CHECK(std::min(off, 8000.0 - off) <= 2.0);
+    }
 }

@@ -115,8 +115,8 @@ TEST_CASE("a slow sensor is compared as far as it goes") {
     CHECK(found.highest == Approx(450.0));
     CHECK(found.third_octaves.back().hz < 450.0);
     CHECK(found.cosine_1000 > 0.999);
-    CHECK_THROWS_WITH(signal::compare({take, rate}, {at_rate(take, 200.0), 200.0}),
-                      ContainsSubstring("200 Hz is too low"));
+    CHECK_THROWS_WITH(signal::compare({take, rate}, {at_rate(take, 160.0), 160.0}),
+                      ContainsSubstring("can be trusted to 72 Hz only"));
 }
 
 TEST_CASE("silence, and takes too short to tell, are refused by name") {
@@ -128,4 +128,54 @@ TEST_CASE("silence, and takes too short to tell, are refused by name") {
                       ContainsSubstring("output is shorter"));
     const std::vector<float> direct(96000, 0.5f);
     CHECK_THROWS_WITH(signal::compare({take, rate}, {direct, rate}), ContainsSubstring("output is silent"));
+}
+
+TEST_CASE("only the band that both takes can be trusted in is compared") {
+    const std::vector<float> take = test::saw(233.0, true, 6.0, rate, 1);
+    signal::Take trusted(take, rate);
+    trusted.usable = 300.0;
+    const signal::Comparison found = signal::compare({take, rate}, trusted);
+    CHECK(found.highest == 300.0);
+    CHECK(found.touched() == 300.0);
+    CHECK(found.third_octaves.back().hz * std::pow(10.0, 0.05) < 300.1);
+    CHECK_FALSE(found.st_sim.has_value());
+    for (const signal::SpectralLine& line : found.lines.in_both) CHECK(line.frequency < 300.0);
+    trusted.usable = 42.0;
+    CHECK_THROWS_WITH(signal::compare({take, rate}, trusted), ContainsSubstring("output, sampled at 48000 Hz"));
+}
+
+TEST_CASE("noise has nothing above itself, and what a saw has above its noise is named") {
+    std::vector<double> white(48000), red(48000);
+    std::uint64_t state = 1;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < white.size(); ++i) {
+        state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+        white[i] = static_cast<double>(state >> 11) * 0x1.0p-53 - 0.5;
+        red[i] = sum = 0.999 * sum + white[i];
+    }
+    const signal::Comparison noise = signal::compare({std::span<const double>(white).first(24000), 8000.0},
+                                                     {std::span<const double>(white).last(24000), 8000.0});
+    CHECK(noise.lsd_db < 2.0);  // all that was judged before
+    CHECK(noise.above_noise.in_both.empty());
+    CHECK(signal::compare({std::span<const double>(red).first(24000), 8000.0},
+                          {std::span<const double>(red).last(24000), 8000.0})
+              .above_noise.in_both.empty());
+    const std::vector<float> a = test::saw(233.0, false, 6.0, rate, 1), b = test::saw(233.0, false, 6.0, rate, 2);
+    CHECK(signal::compare({a, rate}, {b, rate}).above_noise.in_both.size() >= 2);
+}
+
+TEST_CASE("spectra of several axes add their powers") {
+    std::vector<double> x(48000), y(48000), none(48000, 0.0);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const double t = 2.0 * std::numbers::pi * static_cast<double>(i) / 8000.0;
+        x[i] = 3.0 * std::sin(100.0 * t) + 0.5 * std::sin(200.0 * t);
+        y[i] = 4.0 * std::sin(100.0 * t + 1.0);
+    }
+    signal::ComparisonOptions options;
+    options.reference_axes.emplace_back(std::span<const double>(y), 8000.0);
+    options.output_axes.emplace_back(std::span<const double>(none), 8000.0);
+    const signal::Comparison found =
+        signal::compare({std::span<const double>(x), 8000.0}, {std::span<const double>(x), 8000.0}, options);
+    CHECK(found.reference_rms == Approx(std::sqrt(12.5 + 0.125)).epsilon(1e-3));  // of 3, 4 and 0.5
+    CHECK(found.output_rms == Approx(std::sqrt(4.5 + 0.125)).epsilon(1e-3));
 }

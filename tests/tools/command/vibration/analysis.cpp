@@ -2,13 +2,18 @@
 // The verbs that analyse records, as scripts call them.
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
+#include "tests/support/skip.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <fmt/format.h>
 #include <sndfile.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <numbers>
 #include <string>
@@ -282,6 +287,162 @@ TEST_CASE("orders follow a tachometer, a ridge, or a stated rate", "[slow]") {
               .get<double>() == Approx(0.5).epsilon(1e-3));
     CHECK(folder.tactus("orders steady.wav --tacho 1").code == 2);
     CHECK(folder.tactus("orders steady.wav --tacho 3").code == 2);
+}
+
+TEST_CASE("one sine has one level in every verb: its rms, in dB re full scale or re 1 µm/s²") {
+    const Folder folder;
+    std::vector<double> tone = tones({{100.0, 0.1}}, 4.0);
+    add_noise(tone, 1e-4);
+    folder.sound("tone.wav", tone);
+    constexpr double rms = 0.1 / std::numbers::sqrt2, level = -23.01;
+    const json channel = folder.tactus("spectrum --json tone.wav").only("rows")["channels"][0];
+    CHECK(channel["db_re"] == "full scale");
+    CHECK(channel["rms_db"].get<double>() == Approx(level).margin(0.01));
+    CHECK(channel["peaks"][0]["rms"].get<double>() == Approx(rms).epsilon(1e-3));
+    CHECK(channel["peaks"][0]["rms_db"].get<double>() == Approx(level).margin(0.01));
+    CHECK(channel["harmonics"][0]["rms_db"].get<double>() == Approx(level).margin(0.01));
+    const json orders = folder.tactus("orders --json --rate 100 tone.wav").answer()["channels"][0];
+    CHECK(orders["db_re"] == "full scale");
+    CHECK(orders["orders"][0]["rms"].get<double>() == Approx(rms).epsilon(2e-3));
+    CHECK(orders["orders"][0]["rms_db"].get<double>() == Approx(level).margin(0.02));
+    const json compared = folder.tactus("compare --json tone.wav tone.wav").only("pairs");
+    REQUIRE(compared["in_both"].size() == 1);
+    CHECK(compared["in_both"][0]["rms_db"].get<double>() == Approx(level).margin(0.02));
+    CHECK(folder.tactus("spectrum tone.wav").out.find("levels: rms, dB re full scale") != std::string::npos);
+    const std::string text = folder.tactus("orders --rate 100 --orders 1 tone.wav").out;
+    CHECK(text.find("levels: rms, dB rms re full scale") != std::string::npos);
+    CHECK(text.find("0.0707") != std::string::npos);
+    CHECK(folder.tactus("orders --rate 100 --orders 1 --peak tone.wav").out.find("0.1 full scale") !=
+          std::string::npos);
+    const json calibrated =
+        folder.tactus("spectrum --json --full-scale '49 m/s^2' tone.wav").only("rows")["channels"][0];
+    CHECK(calibrated["db_re"] == "1 µm/s²");
+    CHECK(calibrated["rms_db"].get<double>() == Approx(level + 20.0 * std::log10(49e6)).margin(0.01));
+    const json in_g = folder.tactus("spectrum --json --full-scale '5 g' tone.wav").only("rows")["channels"][0];
+    CHECK(in_g["rms_db"].get<double>() == Approx(level + 20.0 * std::log10(5.0 * 9.80665e6)).margin(0.01));
+}
+
+TEST_CASE("third-octave bands add up to the rms, wherever in the record the vibration is") {
+    const Folder folder;
+    std::vector<double> x = tones({{200.0, 0.5}}, 5.0);
+    add_noise(x, 0.2);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = 0.1 + x[i] * std::exp(-static_cast<double>(i) / 9600.0);
+    folder.sound("fading.wav", x);
+    const json channel = folder.tactus("spectrum --json fading.wav").only("rows")["channels"][0];
+    double sum = 0.0;
+    for (const json& band : channel["bands"]) sum += std::pow(band["rms"].get<double>(), 2);
+    // The noise above the last band is missing: less than 0.1 dB.
+    CHECK(10.0 * std::log10(sum) == Approx(channel["rms_db"].get<double>()).margin(0.1));
+}
+
+TEST_CASE("a log has the level of its rows, and rows at the ends of 16 bits are clipped") {
+    const Folder folder;
+    std::string text = "time_ms,a\n";
+    double square = 0.0;
+    for (int i = 0; i < 3000; ++i) {
+        const double t = 3.0 * i + (i % 5 == 0 ? 0.6 : 0.0);
+        const double y = std::round(9000.0 * std::sin(2.0 * std::numbers::pi * 0.13 * t));
+        const double row = i == 500 ? 32767.0 : i == 900 || i == 1500 ? -32768.0 : y;
+        square += row * row / 3000.0;
+        text += fmt::format("{},{}\n", t, row);
+    }
+    folder.text("log.csv", text);
+    const json channel = folder.tactus("spectrum --json log.csv").only("rows")["channels"][0];
+    CHECK(channel["rms"].get<double>() == Approx(std::sqrt(square)).epsilon(0.001));
+    CHECK(channel["warnings"].dump().find("clipped: 3 rows at the ends of 16 bits") != std::string::npos);
+    CHECK(folder.tactus("exposure --full-scale '0.0006 m/s^2' log.csv").out.find("clipped in 3 samples") !=
+          std::string::npos);
+}
+
+TEST_CASE("one file has one fundamental in every verb, and orders above half the sample rate have no level") {
+    const Folder folder;
+    std::vector<double> x = tones({{332.0, 0.3}, {498.0, 0.02}, {664.0, 0.2}, {830.0, 0.1}}, 4.0, 8000.0);  // of 166 Hz
+    add_noise(x, 0.02);
+    folder.sound("saw.wav", x, 1, 8000);
+    const json channel = folder.tactus("spectrum --json saw.wav").only("rows")["channels"][0];
+    CHECK(channel["fundamental_hz"].get<double>() == Approx(166.0).margin(0.1));
+    CHECK(channel["fundamental"]["certain"] == true);
+    const json compared = folder.tactus("compare --json saw.wav saw.wav").only("pairs");
+    CHECK(compared["fundamental_hz"]["reference"] == channel["fundamental_hz"]);
+    const json orders = folder.tactus("orders --json --orders 30 saw.wav").answer();
+    CHECK(orders["rate_hz"]["mean"].get<double>() == Approx(166.0).margin(0.5));
+    const json levels = orders["channels"][0]["orders"];
+    REQUIRE(levels.size() == 30);
+    CHECK(levels[23].contains("rms"));
+    CHECK(levels[24]["above_nyquist"] == true);  // 4150 Hz
+    CHECK_FALSE(levels[24].contains("amplitude"));
+}
+
+TEST_CASE("the recordings of real saws have the fundamental that their spectrograms show", "[slow]") {
+    const char* const data = std::getenv("TACTUS_SHARED_DATA");
+    if (!data) {
+        tactus::test::skip("needs recordings in TACTUS_SHARED_DATA");
+        return;
+    }
+    const Folder folder;
+    const auto fundamental = [&](const std::string& file) {
+        return folder.tactus(fmt::format("spectrum --json {}/recordings/{}", data, file)).only("rows")["channels"];
+    };
+    // Read off by eye: the middle of the time, and how far the rate goes in most of it.
+    struct Mark {
+        const char* file;
+        double low, high;
+    };
+    for (const Mark& mark :
+         {Mark{"chainsaw_116765a.flac", 140.0, 176.0}, Mark{"chainsaw_cutting_149294a.flac", 215.0, 222.0},
+          Mark{"chainsaw_cutting_tree_169127b.flac", 147.0, 165.0}}) {
+        const json channel = fundamental(mark.file)[0];
+        CAPTURE(mark.file, channel["fundamental_hz"], channel["confidence"]);
+        CHECK(channel["fundamental_hz"].get<double>() > mark.low);
+        CHECK(channel["fundamental_hz"].get<double>() < mark.high);
+        CHECK(channel["fundamental"]["certain"] == true);
+    }
+    for (const char* file : {"accel_tree_machete.csv", "accel_tree_ambient.csv"})
+        for (const json& channel : fundamental(file)) {
+            CAPTURE(file, channel["name"], channel["fundamental_hz"], channel["confidence"]);
+            CHECK(channel["fundamental_hz"].is_null());
+        }
+}
+
+TEST_CASE("exposure of a second with an offset is that of a minute, by transform and by filter") {
+    const Folder folder;
+    const auto record = [&](const char* name, double seconds) {
+        std::vector<double> x = tones({{30.0, 0.2}, {125.0, 0.3}}, seconds, 20000.0);
+        for (double& v : x) v += 0.4;
+        x.front() = 0.9;  // what begins with a jerk is no offset
+        folder.sound(name, x, 1, 20000);
+        return folder.tactus(fmt::format("exposure --json --full-scale '49 m/s^2' {}", name)).only("operations");
+    };
+    const json second = record("short.wav", 1.0), longer = record("long.wav", 20.0);
+    const double wanted = 49.0 / std::numbers::sqrt2 * std::hypot(0.2 * 0.54690, 0.3 * 0.12787);
+    CHECK(longer["a_hw"][0].get<double>() == Approx(wanted).epsilon(0.005));
+    for (const json& one : {second, longer}) {
+        CHECK(one["a_hw_filter"][0].get<double>() == Approx(one["a_hw"][0].get<double>()).epsilon(0.005));
+        CHECK(one["a_hw"][0].get<double>() == Approx(wanted).epsilon(0.02));
+        CHECK(one["a_hw_by"] == "transform of the record");
+    }
+}
+
+TEST_CASE("orders needs no more memory for a longer recording", "[slow]") {
+    const Folder folder;
+    const auto kilobytes = [&](double seconds) {
+        folder.sound("long.wav", tones({{100.0, 0.3}, {200.0, 0.2}}, seconds, 8000.0), 1, 8000,
+                     SF_FORMAT_WAV | SF_FORMAT_PCM_16);
+        const std::string file = (folder.path / "long.wav").string();
+        const pid_t child = fork();
+        if (child == 0) {
+            if (std::freopen("/dev/null", "w", stdout) == nullptr) _exit(9);
+            execl(tactus::test::command().c_str(), "tactus", "orders", "--rate", "100", file.c_str(), nullptr);
+            _exit(9);
+        }
+        int status = 0;
+        rusage usage{};
+        REQUIRE(wait4(child, &status, 0, &usage) == child);
+        CHECK(status == 0);
+        return usage.ru_maxrss;
+    };
+    // 300 s more would take 19 MB as numbers of 8 bytes.
+    CHECK(kilobytes(360.0) < kilobytes(60.0) + 6000);
 }
 
 TEST_CASE("orders and exposure answer odd records or refuse them with one line", "[slow]") {

@@ -6,6 +6,7 @@
 #include "tests/support/skip.hpp"
 #include "tests/tools/run_command.hpp"
 
+#include <fmt/format.h>
 #include <sndfile.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -16,6 +17,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <numbers>
@@ -253,7 +255,7 @@ TEST_CASE("compare answers or says what is wrong with a file, once, and ends wit
     refused(
         sound_of(folder, "nan.wav", [](double t) { return t > 1.0 ? std::numeric_limits<double>::quiet_NaN() : 0.1; }),
         "NaN");
-    refused(sound_of(folder, "slow.wav", saw(30.0), {.rate = 200}), "too low");
+    refused(sound_of(folder, "slow.wav", saw(30.0), {.rate = 160}), "trusted to 72 Hz only");
     const std::string bytes = slurp(good);
     refused(folder.write("cut.wav", bytes.substr(0, bytes.size() / 2)), "cut short");
 
@@ -313,6 +315,65 @@ TEST_CASE("compare reads logs as it reads sounds, each with its own columns, and
     const Outcome none = folder.tactus("compare " + whole + " " + wave + " --column nothing");
     CHECK(none.code == 2);
     CHECK(none.err.find("nothing") != std::string::npos);
+}
+
+TEST_CASE("a chain saw is not the same as silence, and each score says in which band it was judged") {
+    const char* const data = std::getenv("TACTUS_SHARED_DATA");
+    if (!data) {
+        tactus::test::skip("needs recordings in TACTUS_SHARED_DATA");
+        return;
+    }
+    const Folder folder;
+    const std::string saw = fmt::format("{}/recordings/accel_tree_chainsaw.csv", data),
+                      silence = fmt::format("{}/recordings/accel_tree_ambient.csv", data);
+    const json axis = compared(folder, saw + " " + silence + " --column accel_z", 1);
+    CHECK(axis["failed"].dump().find("above_noise") != std::string::npos);
+    CHECK(axis["above_noise"]["both_hz"].empty());
+    CHECK(axis["above_noise"]["output"] == 0);
+    CHECK(axis["band_hz"][1].get<double>() == Approx(100.0).margin(0.5));
+    for (const json& score : axis["scores"]) CHECK(score["band_hz"] == axis["band_hz"]);
+    const Outcome text = folder.tactus("compare " + saw + " " + silence);
+    CHECK(text.code == 1);
+    CHECK(text.out.find("40 to 100 Hz") != std::string::npos);
+    CHECK(text.out.find("500 Hz") == std::string::npos);
+    CHECK(text.out.find("compared: channel accel_x of the reference, its strongest") != std::string::npos);
+    const json vector = compared(folder, saw + " " + silence + " --axes vector", 1);
+    CHECK(vector["notes"].dump().find("root sum of squares of 3 channels") != std::string::npos);
+    CHECK(folder.tactus("compare " + saw + " " + saw).code == 0);
+}
+
+TEST_CASE("compare refuses a log that can be trusted to 42 Hz only") {
+    const Folder folder;
+    std::string text = "time_ms,a\n";
+    for (int i = 0; i < 4000; ++i)  // every 50th step is four times as long
+        text += fmt::format("{},{:.6f}\n", 3 * i + 9 * (i / 50),
+                            std::sin(2.0 * std::numbers::pi * 0.06 * (3 * i + 9 * (i / 50))));
+    const std::string log = folder.write("log.csv", text).string();
+    const Outcome refused = folder.tactus("compare " + log + " " + log);
+    CHECK(refused.code == 2);
+    CHECK(refused.err.find("can be trusted to 41.7 Hz only") != std::string::npos);
+}
+
+TEST_CASE("of several channels the strongest of the reference is compared with the same of the output") {
+    const Folder folder;
+    const auto file = [&](const char* name, double first, double second) {
+        return sound_of(folder, name,
+                        [=, a = saw(233.0, first), b = saw(150.0, second), channel = 0](double t) mutable {
+                            return channel++ % 2 == 0 ? a(t) : b(t);
+                        },
+                        {.channels = 2})
+            .string();
+    };
+    const std::string reference = file("a.wav", 0.1, 0.5), output = file("b.wav", 0.5, 0.2);
+    const json same = compared(folder, reference + " " + output, 0);
+    CHECK(same["fundamental_hz"]["reference"].get<double>() == Approx(150.0).margin(0.1));
+    CHECK(same["fundamental_hz"]["output"].get<double>() == Approx(150.0).margin(0.1));
+    CHECK(compared(folder, reference + " " + output + " --channel 1", 0)["fundamental_hz"]["output"].get<double>() ==
+          Approx(233.0).margin(0.1));
+    CHECK(compared(folder, reference + " " + output + " --axes vector", 1)["verdict"] == "fail");
+    const std::string mono = sound_of(folder, "m.wav", saw(150.0)).string();
+    CHECK(folder.tactus("compare " + reference + " " + mono).code == 0);
+    CHECK(folder.tactus("compare " + reference + " " + mono + " --axes vector").code == 2);
 }
 
 TEST_CASE("compare needs no more memory for a longer recording", "[slow]") {

@@ -18,6 +18,7 @@ signal::Comparison good() {
     c.reference_rms = c.output_rms = 1.0;
     c.harmonic_error_db = 0.1;
     c.lines.in_both = {line(200.0, 0.0)};
+    c.above_noise = {1, 1, {200.0}};
     return c;
 }
 
@@ -43,6 +44,22 @@ TEST_CASE("a score that does not exist is not judged, and said to be so") {
     const Verdict verdict = judge(c, 0.0, strict);
     CHECK(verdict.passed());
     CHECK(verdict.not_judged == std::vector<std::string>{"harmonic_error_db", "st_sim"});
+}
+
+TEST_CASE("without anything above the noise of both there is no pass, and scores name the band that they judge") {
+    signal::Comparison c = good();
+    c.above_noise.in_both.clear();
+    CHECK(judge(c, 0.0, {}).failed() == std::vector<std::string>{"above_noise"});
+    c.alignment.significant = true;
+    c.coherence_mean = 0.9;  // what two takes of one event share is no noise
+    CHECK(judge(c, 0.0, {}).passed());
+    c.highest = 150.0;
+    const Verdict narrow = judge(c, 0.0, {});
+    CHECK(narrow.not_judged == std::vector<std::string>{"cosine_40_1000"});
+    for (const Judged& score : narrow.scores) {
+        INFO(score.about);
+        CHECK(score.about.ends_with("40 to 150 Hz"));
+    }
 }
 
 TEST_CASE("a line that only one has counts by its level beside the reference's strongest, at equal power") {

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/signal/spectrum/fundamental.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace tactus::signal {
+
+namespace {
+
+constexpr double silent_score = 0.09;  // of a section in which nothing is heard
+constexpr double step_cost = 0.7;      // per unit of ln(f) between sections
+constexpr double most_step = 0.2;      // greatest cost
+constexpr double least_support = 0.25, heard_at_all = 0.16;
+constexpr double jump_in = 0.5;        // of the movement in an eighth of a section: an impact
+
+WelchSettings hann(double rate, std::size_t segment, std::size_t overlap) {
+    WelchSettings settings;
+    settings.rate = rate;
+    settings.segment = segment;
+    settings.overlap = overlap;
+    return settings;
+}
+
+/// Short enough to keep a varying line together, long enough to resolve the lines of a saw.
+WelchSettings section_settings(double rate, std::size_t frames) {
+    const double longest = std::min(0.25 * rate, static_cast<double>(frames));
+    const std::size_t segment = std::bit_floor(static_cast<std::size_t>(std::max(64.0, longest)));
+    return hann(rate, segment, segment * 3 / 4);
+}
+
+WelchSettings whole_settings(double rate, std::size_t frames) {
+    const std::size_t segment = suggested_segment(rate, frames);
+    return hann(rate, segment, segment / 2);
+}
+
+bool alike(double a, double b, double ratio) { return a > 0.0 && b > 0.0 && std::abs(a / b - 1.0) < ratio; }
+
+}  // namespace
+
+FundamentalStream::FundamentalStream(double rate, std::size_t frames, double lowest, double highest)
+    : rate_(rate),
+      lowest_(lowest),
+      highest_(highest),
+      whole_(whole_settings(rate, frames)),
+      section_(section_settings(rate, frames)),
+      fresh_section_(section_),
+      section_length_(static_cast<std::size_t>(std::ceil(0.5 * rate))) {}
+
+void FundamentalStream::push(std::span<const double> samples) {
+    whole_.push(samples);
+    while (!samples.empty()) {
+        const std::size_t part = std::min(samples.size(), section_length_ - in_section_);
+        section_.push(samples.first(part));
+        for (std::size_t i = 0; i < part; ++i) {
+            const double step = samples[i] - last_;
+            movement_[(in_section_ + i) * movement_.size() / section_length_] += step * step;
+            last_ = samples[i];
+        }
+        samples = samples.subspan(part);
+        in_section_ += part;
+        if (in_section_ == section_length_) end_section();
+    }
+}
+
+void FundamentalStream::end_section() {
+    Section section;
+    double all = 1e-300, most = 0.0;
+    for (const double movement : movement_) all += movement, most = std::max(most, movement);
+    // An impact excites many frequencies at once: the ripples of its spectrum are no lines.
+    if (most < jump_in * all)
+        for (const HarmonicSum& one : harmonic_sums(section_.spectrum(), lowest_, highest_, most_candidates))
+            section.candidates[section.count++] = one;
+    sections_.push_back(section);
+    section_ = fresh_section_;
+    in_section_ = 0;
+    movement_.fill(0.0);
+}
+
+void FundamentalStream::gap() {
+    whole_.forget_waiting();
+    section_ = fresh_section_;
+    in_section_ = 0;
+    movement_.fill(0.0);
+}
+
+/// The path with the greatest sum of scores less costs of changes, by dynamic programming.
+FundamentalStream::Path FundamentalStream::best_path() const {
+    constexpr std::size_t states = most_candidates + 1;  // the last one: nothing heard
+    std::vector<std::array<std::size_t, states>> from(sections_.size());
+    std::array<double, states> total{}, next{};
+    for (std::size_t i = 0; i < sections_.size(); ++i) {
+        const auto frequency_of = [&](std::size_t section, std::size_t state) {
+            return state < sections_[section].count ? sections_[section].candidates[state].frequency : 0.0;
+        };
+        for (std::size_t state = 0; state < states; ++state) {
+            next[state] = -1e9;
+            if (state >= sections_[i].count && state + 1 < states) continue;
+            const double here = frequency_of(i, state);
+            const double score = state < sections_[i].count ? sections_[i].candidates[state].score : silent_score;
+            for (std::size_t origin = 0; origin < states; ++origin) {
+                if (i > 0 && origin >= sections_[i - 1].count && origin + 1 < states) continue;
+                const double before = i > 0 ? frequency_of(i - 1, origin) : 0.0;
+                const double cost =
+                    here > 0.0 && before > 0.0
+                        ? std::min(most_step, step_cost * std::abs(std::log(here / before)))
+                        : 0.5 * most_step * static_cast<double>((here > 0.0) != (before > 0.0) && i > 0);
+                if (total[origin] - cost + score > next[state]) {
+                    next[state] = total[origin] - cost + score;
+                    from[i][state] = origin;
+                }
+                if (i == 0) break;
+            }
+        }
+        total = next;
+    }
+    Path path;
+    path.points.resize(sections_.size());
+    if (sections_.empty()) return path;
+    auto state = static_cast<std::size_t>(std::max_element(total.begin(), total.end()) - total.begin());
+    path.score = total[state] / static_cast<double>(sections_.size());
+    for (std::size_t i = sections_.size(); i-- > 0;) {
+        if (state < sections_[i].count) path.points[i] = sections_[i].candidates[state];
+        state = from[i][state];
+    }
+    return path;
+}
+
+FundamentalEstimate FundamentalStream::estimate() const {
+    FundamentalEstimate out;
+    const std::vector<HarmonicSum> whole = harmonic_sums(whole_.spectrum(), lowest_, highest_);
+    const HarmonicSum sharp = whole.empty() ? HarmonicSum{} : whole.front();
+    const Path path = best_path();
+    std::vector<HarmonicSum> heard;
+    for (const HarmonicSum& point : path.points)
+        if (point.frequency > 0.0) heard.push_back(point);
+    std::ranges::sort(heard, {}, &HarmonicSum::frequency);
+    double all = 0.0, sum = 0.0;
+    for (const HarmonicSum& point : heard) all += point.score;
+    double median = 0.0, low = 0.0, high = 0.0;
+    for (const HarmonicSum& point : heard) {
+        if (sum < 0.1 * all) low = point.frequency;
+        if (sum < 0.5 * all) median = point.frequency;
+        if (sum < 0.9 * all) high = point.frequency;
+        sum += point.score;
+    }
+    const double share =
+        sections_.empty() ? 0.0 : static_cast<double>(heard.size()) / static_cast<double>(sections_.size());
+    const double mean = heard.empty() ? 0.0 : all / static_cast<double>(heard.size());
+    double near = 0.0;
+    for (const HarmonicSum& point : heard) near += alike(point.frequency, median, 0.25) ? point.score : 0.0;
+    const double together = all > 0.0 ? near / all : 0.0;
+    const double varied = mean * std::sqrt(share) * together;
+    // A line of the whole record that few sections have is of an event: the ring of a strike.
+    std::size_t supporting = 0;
+    for (const Section& section : sections_)
+        supporting += std::any_of(section.candidates.begin(),
+                                  section.candidates.begin() + static_cast<std::ptrdiff_t>(section.count),
+                                  [&](const HarmonicSum& one) { return alike(one.frequency, sharp.frequency, 0.03); });
+    const bool supported = static_cast<double>(supporting) >= least_support * static_cast<double>(sections_.size());
+    const double rival = whole.size() > 1 ? whole[1].score / std::max(sharp.score, 1e-9) : 0.0;
+    const double fixed = (supported ? 1.0 : 0.3) * sharp.score * (1.0 - 0.5 * rival);
+    const double weaker = std::min(fixed, varied), stronger = std::max(fixed, varied);
+    // One rate of a path is no other answer than the path.
+    const bool on_path = sharp.frequency >= 0.95 * low && sharp.frequency <= 1.05 * high;
+    if (on_path || alike(sharp.frequency, median, 0.03)) {
+        double close = 0.0;
+        for (const HarmonicSum& point : heard)
+            close += alike(point.frequency, sharp.frequency, 0.012) ? point.score : 0.0;
+        out.steady = close >= 0.7 * all && all > 0.0;
+        out.frequency = out.steady ? sharp.frequency : median;
+        out.confidence = std::min(1.0, stronger + 0.5 * weaker);
+    } else if (stronger > 0.0) {
+        out.steady = fixed >= varied;
+        out.frequency = out.steady ? sharp.frequency : median;
+        out.confidence = stronger - 0.5 * weaker;
+    }
+    out.low = out.steady ? out.frequency : low;
+    out.high = out.steady ? out.frequency : high;
+    if (out.confidence < heard_at_all) out = {};
+    for (const HarmonicSum& one : whole)
+        if (!alike(one.frequency, out.frequency, 0.03) && out.rivals.size() < 3 && one.score > 0.05)
+            out.rivals.push_back(one);
+    return out;
+}
+
+FundamentalEstimate find_fundamental(std::span<const double> record, double rate, double lowest, double highest) {
+    FundamentalStream stream(rate, record.size(), lowest, highest);
+    stream.push(record);
+    return stream.estimate();
+}
+
+FundamentalEstimate find_fundamental(std::span<const float> record, double rate, double lowest, double highest) {
+    FundamentalStream stream(rate, record.size(), lowest, highest);
+    std::vector<double> piece;
+    for (constexpr std::size_t most = 65536; !record.empty(); record = record.subspan(std::min(most, record.size()))) {
+        const std::span<const float> part = record.first(std::min(most, record.size()));
+        piece.assign(part.begin(), part.end());
+        stream.push(piece);
+    }
+    return stream.estimate();
+}
+
+}  // namespace tactus::signal

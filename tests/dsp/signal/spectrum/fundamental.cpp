@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dsp/signal/spectrum/fundamental.hpp"
+
+#include "dsp/core/random.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+using namespace tactus;
+
+namespace {
+
+/// A saw whose rate is known: 3 to 10 orders of random levels, some missing, in noise, with a drift of the rate and
+/// jitter of the cycles.
+struct Saw {
+    double rate, frequency, drift;
+    std::vector<double> samples;
+
+    explicit Saw(std::uint64_t seed) {
+        const Random random{seed};
+        std::uint64_t drawn = 1'000'000;
+        const auto draw = [&](double low, double high) { return low + (high - low) * random.uniform(drawn++); };
+        const double told = std::exp(draw(std::log(50.0), std::log(400.0)));
+        constexpr double rates[] = {8000.0, 12800.0, 22050.0, 44100.0};
+        rate = rates[static_cast<std::size_t>(draw(0.0, 3.999))];
+        const double seconds = draw(2.0, 4.0);
+        const int orders = static_cast<int>(draw(3.0, 11.0));
+        const double slope = draw(0.0, 1.5);
+        const bool first_missing = draw(0.0, 1.0) < 0.3;
+        const double snr_db = draw(-3.0, 25.0);
+        drift = draw(0.0, 1.0) < 0.5 ? 0.0 : draw(0.0, 0.04);
+        const double jitter = draw(0.0, 1.0) < 0.5 ? 0.0 : draw(0.0, 0.01);
+        std::vector<double> amplitudes(static_cast<std::size_t>(orders + 1)), phases(amplitudes.size());
+        double power = 0.0;
+        int common = 0;
+        for (int k = 1; k <= orders; ++k) {
+            const auto at = static_cast<std::size_t>(k);
+            amplitudes[at] = std::pow(k, -slope) * std::pow(10.0, draw(-6.0, 6.0) / 20.0);
+            phases[at] = draw(0.0, 2.0 * std::numbers::pi);
+            const bool dropped = k > 2 && draw(0.0, 1.0) < 0.1;
+            if ((k == 1 && first_missing) || dropped || k * told > 0.45 * rate) amplitudes[at] = 0.0;
+            if (amplitudes[at] > 0.0) common = std::gcd(common, k);
+            power += 0.5 * amplitudes[at] * amplitudes[at];
+        }
+        const double noise = std::sqrt(power * std::pow(10.0, -0.1 * snr_db));
+        const double start = draw(0.0, 2.0 * std::numbers::pi), speed = draw(0.1, 0.5);
+        const bool is_dull = draw(0.0, 1.0) < 0.5;
+        samples.resize(static_cast<std::size_t>(seconds * rate));
+        double phase = 0.0, walk = 0.0, dull = 0.0, cycle = 1.0, sum = 0.0;
+        std::uint64_t cycles = 7'000'000;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const double t = static_cast<double>(i) / rate;
+            const double f = told * (1.0 + drift * std::sin(2.0 * std::numbers::pi * speed * t + start));
+            sum += f;
+            if (phase >= cycle) cycle += 1.0, walk = jitter * random.normal(cycles++);
+            phase += f * (1.0 + walk) / rate;
+            double y = 0.0;
+            for (std::size_t k = 1; k < amplitudes.size(); ++k)
+                y += amplitudes[k] * std::sin(2.0 * std::numbers::pi * static_cast<double>(k) * phase + phases[k]);
+            const double white = random.normal(i + 20'000'000);
+            dull = 0.9 * dull + 0.436 * white;
+            samples[i] = y + noise * (is_dull ? dull : white);
+        }
+        // Orders 2, 4, 6 alone are orders 1, 2, 3 of the double rate.
+        frequency = std::max(1, common) * sum / static_cast<double>(samples.size());
+    }
+};
+
+}  // namespace
+
+TEST_CASE("of 200 saws with noise, missing orders and jitter 95 % are right, few of them uncertain", "[slow]") {
+    int right = 0, doubted = 0, wrong = 0, admitted = 0;
+    for (std::uint64_t seed = 1000; seed < 1200; ++seed) {
+        const Saw saw(seed);
+        const signal::FundamentalEstimate found = signal::find_fundamental(saw.samples, saw.rate);
+        if (std::abs(found.frequency / saw.frequency - 1.0) < 0.02 + saw.drift) {
+            ++right;
+            doubted += !found.is_certain();
+        } else {
+            ++wrong;
+            admitted += !found.is_certain();
+            UNSCOPED_INFO("seed " << seed << ": " << saw.frequency << " Hz, found " << found.frequency);
+        }
+    }
+    INFO(right << " right, " << doubted << " of them uncertain; " << wrong << " wrong, " << admitted << " uncertain");
+    CHECK(right >= 190);
+    CHECK(doubted <= 0.1 * right);
+    CHECK(admitted >= 0.95 * wrong);
+}
+
+TEST_CASE("noise of any colour has no fundamental") {
+    for (std::uint64_t seed = 0; seed < 30; ++seed) {
+        const Random random{900'000 + seed};
+        const double colour = seed % 3 == 0 ? 0.98 : seed % 3 == 1 ? 0.5 : 0.0;
+        std::vector<double> noise(22050 * (1 + seed % 4));
+        double y = 0.0;
+        for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = y = colour * y + random.normal(i);
+        CAPTURE(seed);
+        CHECK(signal::find_fundamental(noise, 22050.0).frequency == 0.0);
+    }
+}
+
+TEST_CASE("nine orders of 228 Hz are found wherever their levels are, also behind a pause") {
+    std::vector<double> x(4 * 48000);
+    for (std::size_t i = 0; i < x.size(); ++i)
+        for (int k = 1; k <= 9; ++k)
+            x[i] += (k == 3 ? 1.0 : 0.03) * (i < 48000 ? 0.0 : 1.0) *
+                    std::sin(2.0 * std::numbers::pi * 228.0 * k * static_cast<double>(i) / 48000.0 + k);
+    const signal::FundamentalEstimate found = signal::find_fundamental(x, 48000.0);
+    CHECK(found.frequency == Approx(228.0).margin(0.1));
+    CHECK(found.is_certain());
+}
+
+TEST_CASE("a rate that changes is followed, and its range is told") {
+    std::vector<double> x(6 * 8000);
+    double phase = 0.0;
+    const Random random{4};
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        phase += (150.0 + 30.0 * std::sin(2.0 * std::numbers::pi * static_cast<double>(i) / 48000.0)) / 8000.0;
+        for (int k = 1; k <= 5; ++k) x[i] += std::sin(2.0 * std::numbers::pi * k * phase + k) / k;
+        x[i] += 0.1 * random.normal(i);
+    }
+    const signal::FundamentalEstimate found = signal::find_fundamental(x, 8000.0);
+    CHECK(found.frequency == Approx(150.0).margin(12.0));
+    CHECK_FALSE(found.steady);
+    CHECK(found.low == Approx(122.0).margin(10.0));
+    CHECK(found.high == Approx(178.0).margin(10.0));
+    CHECK(found.is_certain());
+}
+
+TEST_CASE("the ring of a few strikes is no fundamental") {
+    std::vector<double> x(10 * 8000);
+    const Random random{5};
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const double since = std::fmod(static_cast<double>(i) / 8000.0, 4.0);
+        x[i] = std::exp(-since / 0.03) * std::sin(2.0 * std::numbers::pi * 95.0 * since) + 0.002 * random.normal(i);
+    }
+    CHECK_FALSE(signal::find_fundamental(x, 8000.0).is_certain());
+}
+
+TEST_CASE("a record in pieces has the fundamental of the whole") {
+    const Saw saw(1007);
+    signal::FundamentalStream stream(saw.rate, saw.samples.size());
+    for (std::size_t at = 0; at < saw.samples.size(); at += 1000)
+        stream.push(std::span(saw.samples).subspan(at, std::min<std::size_t>(1000, saw.samples.size() - at)));
+    const signal::FundamentalEstimate a = stream.estimate(), b = signal::find_fundamental(saw.samples, saw.rate);
+    CHECK(a.frequency == b.frequency);
+    CHECK(a.confidence == b.confidence);
+}
