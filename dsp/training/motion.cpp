@@ -142,15 +142,18 @@ MotionMeasures motion_of(std::span<const AttemptSample> samples, const PlannedCu
     const Track track = low_pass(samples);
     const std::size_t first = index_of(track, m.begin), last = index_of(track, m.end);
     for (std::size_t n = first; n < last; ++n) m.path += glm::length(track.position[n + 1] - track.position[n]);
-    const std::vector<std::size_t> turns = reversals_of(track, first, last, cut.stroke, least_stroke);
-    const std::size_t halves = turns.size() - 1;
-    m.strokes = static_cast<int>((halves + 1) / 2);
+    m.strokes = static_cast<int>(reversals_of(track, first, last, cut.stroke, least_stroke).size() / 2);
+    // Half strokes from reversal to reversal, also where the touch begins or ends within one: a part of one would have
+    // less jerk, and the first and the last, which may hold a rest, more.
+    const std::vector<std::size_t> turns = reversals_of(track, 0, track.position.size() - 1, cut.stroke, least_stroke);
     double sum = 0.0, count = 0.0;
-    for (std::size_t n = 0; n < halves; ++n)
+    for (std::size_t n = 1; n + 2 < turns.size(); ++n) {
+        if (turns[n + 1] <= first || turns[n] >= last) continue;
         if (const auto jerk = log_dimensionless_jerk(track, turns[n], turns[n + 1])) {
             sum += *jerk;
             ++count;
         }
+    }
     m.jerk = count > 0.0 ? std::optional(sum / count) : log_dimensionless_jerk(track, first, last);
     return m;
 }
