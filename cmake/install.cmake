@@ -19,7 +19,7 @@ set_property(SOURCE devices/hosted/host_process.cpp APPEND PROPERTY
 install(DIRECTORY assets/library/patches assets/library/displays DESTINATION ${installed_library}
         FILES_MATCHING PATTERN "*.toml")
 # saw-vibration.json is what the commands that made the equaliser printed.
-foreach(kind bones cases equalisers saw)
+foreach(kind bones cases equalisers saw tasks)
   install(DIRECTORY ${CMAKE_BINARY_DIR}/library/${kind} DESTINATION ${installed_library} PATTERN "saw-vibration.json" EXCLUDE)
 endforeach()
 

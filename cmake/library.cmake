@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The library stands beside the command: patches and display files copied from assets/library, bones and recordings computed.
-foreach(kind patches displays)
+# The library stands beside the command: patches, tasks and display files copied from assets/library, bones and recordings computed.
+foreach(kind patches displays tasks)
   set(folder ${PROJECT_SOURCE_DIR}/assets/library/${kind})
   file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE ${folder} ${folder}/*.toml)
   foreach(file ${files})
@@ -12,7 +12,7 @@ endforeach()
 add_executable(make_library tools/make_library.cpp)
 target_link_libraries(make_library PRIVATE tactus_assets tactus_flags)
 add_custom_command(
-  OUTPUT ${CMAKE_BINARY_DIR}/library/bones/mandible.vdb ${CMAKE_BINARY_DIR}/library/bones/fragments.vdb ${CMAKE_BINARY_DIR}/library/cases/mandible-twelve/case.plan.json ${CMAKE_BINARY_DIR}/library/saw/reciprocating.toml
+  OUTPUT ${CMAKE_BINARY_DIR}/library/bones/mandible.vdb ${CMAKE_BINARY_DIR}/library/bones/fragments.vdb ${CMAKE_BINARY_DIR}/library/bones/fibula.vdb ${CMAKE_BINARY_DIR}/library/tasks/mandible-canal.nrrd ${CMAKE_BINARY_DIR}/library/tasks/fibula-vessels.nrrd ${CMAKE_BINARY_DIR}/library/cases/mandible-twelve/case.plan.json ${CMAKE_BINARY_DIR}/library/saw/reciprocating.toml
   # OpenVDB and TBB are not instrumented; elsewhere the variable means nothing.
   COMMAND ${CMAKE_COMMAND} -E env TSAN_OPTIONS=ignore_noninstrumented_modules=1 $<TARGET_FILE:make_library> ${CMAKE_BINARY_DIR}/library
   DEPENDS make_library
@@ -33,4 +33,4 @@ add_custom_command(
   VERBATIM)
 
 add_custom_target(bundled_library ALL
-  DEPENDS ${CMAKE_BINARY_DIR}/library/bones/mandible.vdb ${CMAKE_BINARY_DIR}/library/bones/fragments.vdb ${CMAKE_BINARY_DIR}/library/cases/mandible-twelve/case.plan.json ${CMAKE_BINARY_DIR}/library/saw/reciprocating.toml ${equaliser}.toml)
+  DEPENDS ${CMAKE_BINARY_DIR}/library/bones/mandible.vdb ${CMAKE_BINARY_DIR}/library/bones/fragments.vdb ${CMAKE_BINARY_DIR}/library/bones/fibula.vdb ${CMAKE_BINARY_DIR}/library/tasks/mandible-canal.nrrd ${CMAKE_BINARY_DIR}/library/tasks/fibula-vessels.nrrd ${CMAKE_BINARY_DIR}/library/cases/mandible-twelve/case.plan.json ${CMAKE_BINARY_DIR}/library/saw/reciprocating.toml ${equaliser}.toml)

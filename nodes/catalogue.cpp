@@ -39,6 +39,7 @@
     X(Magnitude, math)                  \
     X(Mix, vibration)                   \
     X(PassivityObserver, coupling)      \
+    X(PlanFrame, training)              \
     X(PointProxy, coupling)             \
     X(Probe, record)                    \
     X(QuasiStaticCoupling, coupling)    \
@@ -57,6 +58,7 @@
     X(SphereProxy, coupling)            \
     X(Spring, coupling)                 \
     X(Sweep, vibration)                 \
+    X(Task, training)                   \
     X(TestRig, admittance)              \
     X(VoxmapContact, contact)           \
     X(Workspace, device)

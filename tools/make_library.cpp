@@ -3,9 +3,11 @@
 #include "assets/cases/plan_file.hpp"
 #include "assets/file/whole_file.hpp"
 #include "assets/library/broken_mandible.hpp"
+#include "assets/library/fibula.hpp"
 #include "assets/library/fragments.hpp"
 #include "assets/library/mandible.hpp"
 #include "assets/library/saw_recordings.hpp"
+#include "assets/volume/write_volume.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
@@ -15,6 +17,7 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fs = std::filesystem;
@@ -50,6 +53,19 @@ void make_case(const tactus::bone::Bone& mandible, const fs::path& folder) {
     fmt::print("{}: the hand needs {:.1f} s\n", (folder / "case.plan.json").string(), broken.seconds);
 }
 
+/// What the tasks of the library need beside their texts: a bone and the structures to spare.
+void make_tasks(const fs::path& folder) {
+    const fs::path fibula = folder / "bones" / "fibula.vdb", tasks = folder / "tasks";
+    fs::create_directories(tasks);
+    tactus::bone::save_bone(tactus::library::make_fibula(), fibula);
+    fmt::print("{}\n", fibula.string());
+    for (const auto& [name, labels] : {std::pair{"mandible-canal.nrrd", tactus::library::mandible_canal()},
+                                       std::pair{"fibula-vessels.nrrd", tactus::library::fibula_vessels()}}) {
+        tactus::volume::write_volume(labels, tactus::volume::WrittenType::int16, tasks / name);
+        fmt::print("{}\n", (tasks / name).string());
+    }
+}
+
 void make_library(const fs::path& folder) {
     const fs::path bone = folder / "bones" / "mandible.vdb", saw = folder / "saw";
     std::error_code failure;
@@ -63,6 +79,7 @@ void make_library(const fs::path& folder) {
     const fs::path fragments = folder / "bones" / "fragments.vdb";
     tactus::bone::save_bones(tactus::library::make_fragments(), fragments);
     fmt::print("{}\n", fragments.string());
+    make_tasks(folder);
     tactus::library::make_saw_recordings(saw);
     std::set<std::string> written;
     for (const auto& entry : fs::directory_iterator(saw)) written.insert(entry.path().string());

@@ -3,6 +3,7 @@
 
 #include "assets/file/whole_file.hpp"
 #include "assets/sound/sound.hpp"
+#include "assets/volume/write_volume.hpp"
 #include "tests/campaign/limited_run.hpp"
 #include "tests/fuzz/seeds.hpp"
 #include "tests/support/bone_files.hpp"
@@ -127,6 +128,17 @@ fs::path small_case(const fs::path& folder) {
     return made;
 }
 
+/// A training task beside the label map of what it spares.
+fs::path small_task(const fs::path& folder) {
+    const fs::path made = folder / "task";
+    fs::create_directories(made);
+    volume::Grid labels{{8, 8, 8}, {-1e-3, -4e-3, -6e-3}, Vec3(0.4e-3), std::vector<float>(512, 0.0f)};
+    for (std::size_t n = 200; n < 260; ++n) labels.values[n] = 1.0f;
+    volume::write_volume(labels, volume::WrittenType::int16, made / "nerve.nrrd");
+    fs::copy_file(test::source_folder() / "tests/fuzz/assets/toml_files.seeds/task.toml", made / "task.toml");
+    return made;
+}
+
 /// 0.7 s, as the shortest that is compared is half a second.
 std::vector<fs::path> small_sounds(const fs::path& folder) {
     std::vector<float> samples(2 * 700);
@@ -205,6 +217,10 @@ std::vector<Format> make_formats(const fs::path& folder) {
          .seeds = {seed("graph/patch.seeds/small.toml"), source / "assets/library/patches/touch-sphere.toml",
                    source / "assets/library/patches/saw-vibration.toml"},
          .verbs = {{"check", "FILE"}, {"draw", "FILE"}}},
+        {.name = "task",
+         .seeds = {small_task(folder)},
+         .verbs = {{"render", "saw-task", "--seconds", "0.02", "--out", "out", "--overwrite", "--asset",
+                    "task=FILE/task.toml"}}},
         {.name = "table",
          .seeds = {seed("assets/tables.seeds/response.csv"), seed("assets/tables.seeds/trajectory.csv")},
          .verbs = {{"equalise", "FILE", "-o", "out.toml", "--from", "25", "--to", "80"},

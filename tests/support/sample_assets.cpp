@@ -2,6 +2,7 @@
 // Assets for tests, made in memory: a ball of bone, a saw of two recordings and a short equaliser.
 #include "dsp/contact/sample_surface.hpp"
 #include "graph/node/assets.hpp"
+#include "graph/node/task_asset.hpp"
 #include "tests/support/node_harness.hpp"
 
 #include <cmath>
@@ -72,6 +73,14 @@ std::shared_ptr<const void> sample_asset(std::string_view type_name) {
     if (type_name == AssetLoader<control::DeflectionTable>::name)
         return std::make_shared<const control::DeflectionTable>(
             control::DeflectionTable{{-1.0, 0.0, 1.0, 5.0}, {-1e-3, 0.0, 2e-3, 4e-3}, {-0.5e-3, 1e-3, 3e-3, 4e-3}});
+    if (type_name == AssetLoader<training::Task>::name) {
+        training::Task task;
+        task.title = "through the ball";
+        task.cut.point = {0.0, 0.0, 10e-3};
+        task.limits = {5.0, 1.0, 0.5};
+        task.spared.push_back({"ball", 1e-3, ball().distance});
+        return std::make_shared<const training::Task>(std::move(task));
+    }
     throw Error("no sample of a " + std::string(type_name));
 }
 

@@ -29,6 +29,7 @@
     X(fracture_surface, bones, fractures) \
     X(snap, bones, fractures)             \
     X(plan, planning, fractures)          \
+    X(score, training, training)          \
     X(gripper, grippers, grippers)        \
     X(calibrate, displays, displays)      \
     X(devices, machine, machine)          \
@@ -62,8 +63,8 @@ namespace tactus::command {
 namespace {
 
 constexpr const char *run_and_patch = "Run and patch", *vibrations = "Vibration", *bones = "Bones",
-                     *fractures = "Fractures and plans", *grippers = "Grippers", *displays = "Displays",
-                     *machine = "This machine";
+                     *fractures = "Fractures and plans", *training = "Training", *grippers = "Grippers",
+                     *displays = "Displays", *machine = "This machine";
 
 Verb under(const char* job, Verb verb) {
     verb.job = job;

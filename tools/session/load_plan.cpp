@@ -82,6 +82,8 @@ std::string with_commas(std::size_t number) {
 
 fs::path find_patch(const std::string& name) { return find_bundled(name, "patch", "patches"); }
 
+fs::path find_task(const std::string& name) { return find_bundled(name, "task", "tasks"); }
+
 fs::path find_display(const std::string& name) {
     // The folder was called rigs before: paths into it, and own libraries that have it, still work.
     const fs::path path(name), folder = path.parent_path();

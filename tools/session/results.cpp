@@ -62,7 +62,7 @@ display::Image picture_of(const bone::Bone& bone, const std::string& name, const
 
 }  // namespace
 
-WrittenFiles write_results(const Report& report, const std::filesystem::path& folder) {
+WrittenFiles write_results(const Report& report, const std::filesystem::path& folder, bool with_pictures) {
     WrittenFiles written;
     std::vector<std::string> bones;
     const auto write = [&written](std::vector<std::string>& names, const std::string& name, const auto& how) {
@@ -79,7 +79,7 @@ WrittenFiles write_results(const Report& report, const std::filesystem::path& fo
             write(bones, name + ".vdb", [&, file = folder / (name + ".vdb")] { bone::save_bone(**bone, file); });
     for (const auto& [name, result] : report.results) {
         const auto* bone = std::any_cast<std::shared_ptr<const bone::Bone>>(&result);
-        if (!bone) continue;
+        if (!bone || !with_pictures) continue;
         display::Image picture;
         try {
             picture = picture_of(**bone, name, towards_site(report));

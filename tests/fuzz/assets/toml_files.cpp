@@ -4,6 +4,7 @@
 #include "assets/sound/equaliser_file.hpp"
 #include "assets/sound/recording_set.hpp"
 #include "assets/table/thresholds.hpp"
+#include "assets/training/task_file.hpp"
 #include "dsp/core/error.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tools/study/rig_matrix.hpp"
@@ -30,5 +31,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try_reader(file.path(), [](const auto& path) { tactus::table::load_thresholds(path); });
     try_reader(file.path(), [](const auto& path) { tactus::sound::load_equaliser(path); });
     try_reader(file.path(), [](const auto& path) { tactus::sound::load_recording_set(path); });
+    try_reader(file.path(), [](const auto& path) { tactus::training::load_task_file(path); });
     return 0;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/picture/report/html_report.hpp"
 
+#include "devices/display/png.hpp"
+
 #include <fmt/format.h>
 
 namespace tactus::picture::html {
@@ -18,6 +20,18 @@ img,svg{max-width:100%;height:auto}.small{color:#6b7280;font-size:13px}.pass{col
 void replace_all(std::string& text, std::string_view what, const std::string& by) {
     for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
         text.replace(at, what.size(), by);
+}
+
+std::string base64(const std::string& bytes) {
+    static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t n = 0; n < bytes.size(); n += 3) {
+        std::uint32_t three = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            three = three << 8 | (n + k < bytes.size() ? static_cast<unsigned char>(bytes[n + k]) : 0u);
+        for (std::size_t k = 0; k < 4; ++k) text += n + k > bytes.size() ? '=' : digits[three >> (18 - 6 * k) & 63];
+    }
+    return text;
 }
 
 }  // namespace
@@ -41,6 +55,13 @@ std::string drawing(const display::Figure& figure, std::string_view mark) {
     replace_all(svg, "id=\"c", fmt::format("id=\"{}c", mark));
     replace_all(svg, "url(#c", fmt::format("url(#{}c", mark));
     return svg;
+}
+
+std::string picture(const display::Image& image, std::string_view caption) {
+    return fmt::format(
+        "<figure><img alt=\"{0}\" width=\"{1}\" src=\"data:image/png;base64,{2}\"><figcaption "
+        "class=\"small\">{0}</figcaption></figure>\n",
+        escaped(caption), image.width, base64(display::png_bytes(image)));
 }
 
 std::string page(std::string_view title, const std::string& body) {

@@ -15,6 +15,9 @@ std::string escaped(std::string_view text);
 /// An inline drawing. `mark` (letters) makes the names in the drawing unique within the page.
 std::string drawing(const display::Figure& figure, std::string_view mark);
 
+/// A picture within the page, with its caption.
+std::string picture(const display::Image& image, std::string_view caption);
+
 /// A complete page with a heading. `title` is text, `body` is HTML.
 std::string page(std::string_view title, const std::string& body);
 

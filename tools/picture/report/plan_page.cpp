@@ -2,7 +2,6 @@
 #include "tools/picture/report/plan_page.hpp"
 
 #include "assets/mesh/mesh.hpp"
-#include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/fit/gap.hpp"
 #include "dsp/fit/registration.hpp"
@@ -26,18 +25,6 @@ namespace tactus::picture {
 namespace {
 
 constexpr int width = 720, height = 540;
-
-std::string base64(const std::string& bytes) {
-    static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (std::size_t n = 0; n < bytes.size(); n += 3) {
-        std::uint32_t three = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            three = three << 8 | (n + k < bytes.size() ? static_cast<unsigned char>(bytes[n + k]) : 0u);
-        for (std::size_t k = 0; k < 4; ++k) text += n + k > bytes.size() ? '=' : digits[three >> (18 - 6 * k) & 63];
-    }
-    return text;
-}
 
 display::PictureMesh placed(const mesh::Mesh& mesh, const Pose& pose, const Vec3& colour) {
     display::PictureMesh picture;
@@ -74,11 +61,7 @@ std::string picture_of(const std::vector<display::PictureMesh>& meshes, const Ve
     display::View view =
         display::fit_view(box.low, box.high, direction, Vec3(0.0, 0.0, 1.0), static_cast<double>(width) / height);
     view.eye = view.target + (view.eye - view.target) * 0.85;
-    return fmt::format(
-        "<figure><img alt=\"{0}\" width=\"{1}\" src=\"data:image/png;base64,{2}\"><figcaption "
-        "class=\"small\">{0}</figcaption></figure>\n",
-        html::escaped(caption), width,
-        base64(display::png_bytes(display::render_picture(meshes, view, width, height))));
+    return html::picture(display::render_picture(meshes, view, width, height), caption);
 }
 
 /// Colour map of the gap: blue for overlap, white for contact, red for a gap of 1 mm, grey for no neighbour.

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Task files: what a trainee is to do on a bone, in TOML. The format is described in docs/reference/task-file.md.
+#pragma once
+
+#include "dsp/training/planned_cut.hpp"
+#include "dsp/training/spared.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::training {
+
+/// Of the key `format`.
+inline constexpr int task_format = 1;
+
+/// A structure that must not be cut: a label of a label map.
+struct SparedFile {
+    std::string name;
+    std::filesystem::path file;
+    int label = 1;
+    double margin = 0.0;  ///< m; nearer is a warning
+    int line = 0;         ///< in the task file
+};
+
+/// What an attempt should stay below. Empty: no limit.
+struct TaskLimits {
+    std::optional<double> force;  ///< N, on the hand
+    std::optional<double> time;   ///< s, from the first touch of the bone to the last
+    std::optional<double> heat;   ///< s above the temperature that harms bone
+};
+
+struct TaskFile {
+    std::filesystem::path file;  ///< where it was read, absolute
+    std::string title, about;
+    std::filesystem::path bone;         ///< absolute; may end in "#NAME", as assets of a patch
+    std::string patch = "saw-task";     ///< a path, or a name in the library
+    std::vector<std::string> settings;  ///< NODE.PARAM=VALUE, for that patch
+    double length = 60.0;               ///< s: an attempt ends then
+    BladeSize blade;
+    PlannedCut cut;
+    bool is_guide = false;
+    std::vector<SparedFile> spare;
+    TaskLimits limits;
+};
+
+/// Reads and checks a task file; bone and label maps are not opened. Throws Error with file:line:column.
+TaskFile load_task_file(const std::filesystem::path& path);
+
+/// A task with its spared structures in memory; the bone is not loaded.
+struct Task : TaskFile {
+    std::vector<SparedStructure> spared;
+    std::uint64_t hash = 0;  ///< of the task file and its label maps
+};
+Task load_task(const std::filesystem::path& path);
+
+}  // namespace tactus::training

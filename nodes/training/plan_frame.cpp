@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/node/node.hpp"
+#include "graph/node/task_asset.hpp"
+
+#include <glm/gtc/quaternion.hpp>
+
+namespace tactus::nodes {
+
+struct PlanFrame {
+    static constexpr auto about =
+        "Puts a scene in front of the planned cut of a task: a blade that rests at the origin of the scene and cuts "
+        "towards its -z, with its stroke along x, then stands before the planned entry. Behind 'workspace'.";
+
+    In<Pose> pose{"of the blade: workspace.pose", "m"};
+    In<Pose> frame{"device axes at the handle: workspace.frame", "m"};
+    Out<Pose> placed{"pose of the blade at the bone", "m"};
+    Out<Pose> placed_frame{"device axes at the handle, at the bone; for device_wrench", "m"};
+    Asset<training::Task> task{"the task"};
+    Param clearance{structural, "5 mm", "0 mm", "100 mm", "from the resting blade to the planned entry"};
+
+    void prepare(const Setup&) {
+        const training::PlannedCut& cut = task->cut;
+        at_ = {cut.point - clearance.value * cut.feed,
+               glm::normalize(glm::quat_cast(Mat3(cut.stroke, cut.normal, -cut.feed)))};
+        placed = at_ * Pose{};
+        placed_frame = at_ * Pose{};
+    }
+    void process(const Tick&) noexcept {
+        placed = at_ * pose.get();
+        placed_frame = at_ * frame.get();
+    }
+
+private:
+    Pose at_;
+};
+
+TACTUS_NODE(PlanFrame, pose, frame, placed, placed_frame, task, clearance)
+
+}  // namespace tactus::nodes

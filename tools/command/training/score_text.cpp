@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/command/training/score_text.hpp"
+
+#include "tools/command/batch.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace tactus::command {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* not_validated = "not validated";
+
+Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+Json json_of(const study::Score& s) {
+    Json json{
+        {"plane", {{"rms_mm", or_null(s.rms_mm)}, {"max_mm", or_null(s.max_mm)}, {"angle_deg", or_null(s.angle_deg)}}},
+        {"over_mm3", s.over_mm3},
+        {"under_mm3", s.under_mm3},
+        {"spared", Json::array()},
+        {"force", {{"mean_N", s.mean_N}, {"over_limit_Ns", s.over_limit_Ns}, {"jerk", or_null(s.jerk)}}},
+        {"breakthrough",
+         {{"depth_mm", or_null(s.breakthrough_mm)}, {"speed_mm_per_s", or_null(s.breakthrough_mm_per_s)}}},
+        {"strokes", s.strokes},
+        {"seconds", s.seconds},
+        {"path_mm", s.path_mm},
+        {"heat_s", or_null(s.heat_s)}};
+    for (const study::SparedScore& one : s.spared)
+        json["spared"].push_back(
+            {{"name", one.name}, {"injured_mm3", one.injured_mm3}, {"closest_mm", one.closest_mm}});
+    json["validity"] = not_validated;
+    return json;
+}
+
+Json row_of(const study::ScoredRun& run, std::span<const study::ReferenceMeasure> reference) {
+    Json json{{"run", run.name}, {"task", run.task.title}};
+    if (!run.trainee.empty()) json["trainee"] = run.trainee;
+    json.update(json_of(run.score));
+    if (reference.empty()) return json;
+    Json percentiles = Json::object();
+    const auto all = study::measures();
+    for (std::size_t n = 0; n < all.size(); ++n)
+        percentiles[all[n].name] = or_null(study::percentile(all[n], all[n].of(run.score), reference[n]));
+    json["percentiles"] = percentiles;
+    return json;
+}
+
+}  // namespace
+
+std::string score_json(const study::ScoredRun& run) { return json_of(run.score).dump(2) + "\n"; }
+
+std::string score_json(std::span<const study::ScoredRun> runs, std::span<const study::ReferenceMeasure> reference) {
+    if (runs.size() == 1 && reference.empty()) return score_json(runs.front());
+    Json json{{"version", 1}, {"validity", not_validated}, {"rows", Json::array()}, {"learning", Json::array()}};
+    for (const study::ScoredRun& run : runs) json["rows"].push_back(row_of(run, reference));
+    for (const study::LearningCurve& curve : study::learning_curves(runs)) {
+        Json values = Json::array();
+        for (const auto& value : curve.values) values.push_back(or_null(value));
+        json["learning"].push_back({{"task", curve.task},
+                                    {"measure", curve.measure},
+                                    {"values", values},
+                                    {"exponent", or_null(curve.exponent)}});
+    }
+    if (!reference.empty()) {
+        json["reference"] = Json::array();
+        for (const study::ReferenceMeasure& one : reference)
+            json["reference"].push_back({{"measure", one.measure},
+                                         {"n", one.values.size()},
+                                         {"mean", one.values.empty() ? Json(nullptr) : Json(one.mean)},
+                                         {"deviation", or_null(one.deviation)}});
+    }
+    return json.dump(2) + "\n";
+}
+
+std::string score_csv(std::span<const study::ScoredRun> runs) {
+    std::string text = "run,trainee,task";
+    for (const study::Measure& measure : study::measures()) text += "," + measure.name;
+    text += ",validity\n";
+    for (const study::ScoredRun& run : runs) {
+        text += fmt::format("{},{},{}", csv_field(run.name), csv_field(run.trainee), csv_field(run.task.title));
+        for (const study::Measure& measure : study::measures()) {
+            const auto value = measure.of(run.score);
+            text += value ? fmt::format(",{:.6g}", *value) : ",";
+        }
+        text += fmt::format(",{}\n", not_validated);
+    }
+    return text;
+}
+
+std::string score_text(std::span<const study::ScoredRun> runs, std::span<const study::ReferenceMeasure> reference) {
+    std::string text;
+    const auto all = study::measures();
+    for (const study::ScoredRun& run : runs) {
+        text += fmt::format("{}: {}\n", run.name, run.task.title);
+        for (std::size_t n = 0; n < all.size(); ++n) {
+            const auto value = all[n].of(run.score);
+            text += fmt::format("  {:<28} {:>10}", all[n].name, value ? fmt::format("{:.4g}", *value) : "-");
+            if (!reference.empty())
+                if (const auto rank = study::percentile(all[n], value, reference[n]))
+                    text += fmt::format("   percentile {:.0f} of {}", *rank, reference[n].values.size());
+            text += "\n";
+        }
+        for (const study::SparedScore& one : run.score.spared)
+            if (one.injured_mm3 > 0.0) text += fmt::format("  injured: {}, {:.3g} mm³\n", one.name, one.injured_mm3);
+    }
+    return text + "scores are not validated\n";
+}
+
+}  // namespace tactus::command

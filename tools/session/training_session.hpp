@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// The folder of a training session: tasks in order, one attempt at each, kept and resumed.
+//
+//   DIR/PSEUDONYM/1/session.json          trainee, tasks, attempts; replaced as a whole after each attempt
+//   DIR/PSEUDONYM/1/01-NAME/run, /take    results and take of the attempt at the first task
+//   DIR/PSEUDONYM/1/01-NAME-cut-off-1     what is left of an attempt that was cut off
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tactus::session {
+
+struct SessionTask {
+    std::string name;            ///< stem of the task file
+    std::filesystem::path file;  ///< absolute
+    std::uint64_t hash = 0;      ///< of the task
+};
+
+/// Throws Error unless `name` is 1 to 64 letters, digits, '-', '_' or '.', beginning with a letter or digit: it becomes
+/// the name of a folder.
+void check_pseudonym(const std::string& name);
+
+class TrainingSession {
+public:
+    struct Choice {
+        std::string trainee;
+        std::filesystem::path out;
+        std::vector<SessionTask> tasks;
+        bool is_new = false;  ///< begin another session although the last one is not complete
+    };
+    /// Opens the trainee's last session when it is not complete, else begins the next one; locks it until destroyed.
+    /// Attempts that were cut off are put aside. Throws Error when the session to resume has other tasks, when another
+    /// program has it, or when the folder cannot be written.
+    explicit TrainingSession(const Choice& choice);
+    TrainingSession(const TrainingSession&) = delete;
+    TrainingSession& operator=(const TrainingSession&) = delete;
+
+    const std::filesystem::path& folder() const { return folder_; }
+    bool is_resumed() const { return is_resumed_; }
+    /// Number of completed attempts, which is the index of the next task.
+    std::size_t done() const { return done_.size(); }
+    bool is_complete() const { return done() == tasks_.size(); }
+    const SessionTask& task(std::size_t n) const { return tasks_[n]; }
+    std::size_t count() const { return tasks_.size(); }
+    /// Folder of the next attempt; made by this call.
+    std::filesystem::path begin_attempt() const;
+    /// The next attempt came to its end: from now on it is not repeated, whatever happens. Throws Error.
+    void complete_attempt(double seconds, bool ended_early);
+
+private:
+    struct Done {
+        std::string folder, time;
+        double seconds = 0.0;
+        bool ended_early = false;
+    };
+    /// Of the session's folder; the system releases it when the program dies.
+    struct Lock {
+        int handle = -1;
+        explicit Lock(int opened = -1) : handle(opened) {}
+        Lock& operator=(Lock&& other) noexcept;
+        ~Lock();
+    };
+    void lock();
+    void read();
+    void save() const;
+    void put_aside() const;
+    std::string attempt_name(std::size_t n) const;
+
+    std::string trainee_;
+    std::filesystem::path folder_;
+    std::vector<SessionTask> tasks_;
+    std::vector<Done> done_;
+    bool is_resumed_ = false;
+    Lock lock_;
+};
+
+bool is_training_session(const std::filesystem::path& folder);
+
+/// Folders of the completed attempts of a session, in order. Throws Error when session.json is damaged.
+std::vector<std::filesystem::path> completed_attempts(const std::filesystem::path& session);
+
+/// The trainee of the session that an attempt's folder is in; empty when it is in none.
+std::string trainee_of_attempt(const std::filesystem::path& attempt);
+
+}  // namespace tactus::session

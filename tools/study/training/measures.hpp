@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scores of several attempts: one list of measures, learning curves, and a reference group.
+#pragma once
+
+#include "tools/study/training/score.hpp"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tactus::study {
+
+struct Measure {
+    std::string name;  ///< "plane.rms_mm"
+    std::string label;  ///< for pages, with the unit
+    enum class Better { less, more, unknown } better;
+    std::optional<double> (*of)(const Score&);
+};
+
+/// All measures, in the order of a score. Those of spared structures are the sum of the injured volumes and the least
+/// distance.
+std::span<const Measure> measures();
+
+/// How one measure went over the attempts at one task, in the order in which they are given.
+struct LearningCurve {
+    std::string task, measure;
+    std::vector<std::optional<double>> values;
+    std::optional<double>
+        exponent;  ///< b of value = a n^b (power law of practice), by least squares of the logarithms;
+                                     ///< none for less than three values or when one is not above 0
+};
+std::vector<LearningCurve> learning_curves(std::span<const ScoredRun> runs);
+
+/// What a group of attempts scored in one measure.
+struct ReferenceMeasure {
+    std::string measure;
+    std::vector<double> values;  ///< ascending; attempts without a value are left out
+    double mean = 0.0;
+    std::optional<double> deviation;  ///< standard deviation of the sample; none for less than two values
+};
+std::vector<ReferenceMeasure> reference_of(std::span<const ScoredRun> runs);
+
+/// Percent of the group that did worse, those that did as well counting half. None without a value or a group, or when
+/// neither less nor more is better.
+std::optional<double> percentile(const Measure& measure, const std::optional<double>& value,
+                                 const ReferenceMeasure& group);
+
+}  // namespace tactus::study
