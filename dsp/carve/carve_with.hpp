@@ -49,11 +49,11 @@ public:
     template <class Field>
     CarveResult update(Field& field, std::span<const CutFront> fronts) noexcept {
         CarveResult result;
-        follows_fronts_ = true;
         for (const CutFront& front : fronts) {
             if (front.count <= 0 || !is_valid(front.pose)) continue;
             pose_ = front.pose;
             settings_.kerf = std::min(front.kerf, widest_);
+            front_pitch_ = front.pitch;
             const bool running = front.running != 0;
             if (cutting_ && !running) cut_out(field, result);
             cutting_ = running;
@@ -100,7 +100,7 @@ private:
         const auto nodes = edge_.nodes();
         const Vec3 span = nodes[n + 1].at - nodes[n].at, y = pose_.rotate({0, 1, 0});
         const Vec3 aside = span - y * glm::dot(span, y);
-        return follows_fronts_ && glm::length(aside) > 1.15 * edge_.pitch();
+        return front_pitch_ > 0.0 && glm::length(aside) > 1.15 * front_pitch_;
     }
 
     template <class Field>
@@ -282,7 +282,7 @@ private:
     Pose pose_, frame_;
     bool placed_ = false;
     bool cutting_ = false;
-    bool follows_fronts_ = false;
+    double front_pitch_ = 0.0;  // m between the nodes of the last front; 0: this carver moves its own edge
 };
 
 }  // namespace tactus::carve

@@ -17,7 +17,6 @@ constexpr double fastest_hand = 3.0;  // m/s: faster is a jump
 constexpr double most_lag = 0.020;  // m: a tooth farther from its blade lets go
 constexpr double dry_friction = 0.3;  // of a blade that stands still, steel on bone
 constexpr double side_share = 0.1;  // of the speed of advance: teeth cut little along the edge and across the blade
-constexpr double climb_out = 0.3;  // slope at which a tooth that slides across leaves its groove
 constexpr int most_plunges = 32, most_slides = 12;
 
 }  // namespace
@@ -148,7 +147,8 @@ void ToothRow::slide(const Walk& walk, Tooth& tooth, int axis) const noexcept {
         }
     }
     const Vec3 direction = axes_[axis] * sign, across = axis == 0 ? z : y;
-    const double level = -walk.front.ahead - 0.02 * walk.voxel;  // deeper would plane bone off
+    // As deep as the floor's ripple and a late version of the bone need: less would lift a tooth with every slide.
+    const double level = -walk.front.ahead - 0.15 * walk.voxel;
     for (int move = 0; move < most_slides && side - held > 1e-12; ++move) {
         const carve::RoundFront::Contact contact =
             walk.front.look(walk.bone, tooth.at, direction, across, Vec3(0.0), 0.1 * walk.voxel);
@@ -161,9 +161,7 @@ void ToothRow::slide(const Walk& walk, Tooth& tooth, int axis) const noexcept {
         Vec3 to = tooth.at + direction * step;
         double climbed = 0.0;
         for (int climb = 0;; ++climb) {
-            // Along the blade a tooth stays as deep as it has cut; across it climbs out, or it would plane.
-            const double limit = std::min(axis == 2 ? before + climb_out * step : before, level);
-            const double short_by = limit - walk.front.floor(walk.bone, to, y, z);
+            const double short_by = std::min(before, level) - walk.front.floor(walk.bone, to, y, z);
             if (short_by <= 0.0) break;
             climbed += short_by;
             const double left = side - step, up = deep + climbed;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/carve/carver.hpp"
+#include "dsp/saw/saw_shape.hpp"
 #include "dsp/volume/components.hpp"
 #include "graph/node/assets.hpp"
 #include "graph/node/node.hpp"
@@ -137,6 +138,7 @@ private:
         carve::CarveSettings s;
         s.kerf = kerf;
         s.stroke = stroke;
+        if (front.connected) s.tooth_pitch = saw::tooth_pitch;
         // A front brings its nodes; as many places as it can have.
         s.blade_length = front.connected ? (carve::CutFront::most_nodes - 1) * s.tooth_pitch - s.stroke : length.value;
         s.speed = speed;

@@ -66,7 +66,8 @@ Comparison compare() {
         std::vector<double> rates{100.0, 140.0, 190.0, 250.0}, removal;
         for (const double rate : rates)
             removal.push_back(
-                study::run_saw_trial({.thrust = saw::lannin_2011::thrust, .blade_rate = rate, .width = width}).removal);
+                width * 1e-3 *
+                study::run_saw_trial({.thrust = saw::lannin_2011::thrust, .blade_rate = rate, .width = width}).feed);
         const double exponent = std::log(removal.back() / removal.front()) / std::log(rates.back() / rates.front());
         made.rows.push_back(
             {fmt::format("predicted: cutting rate ∝ speed^n, bone {:.0f} mm (Lannin 2011)", width * 1e3),
@@ -120,6 +121,9 @@ Cost cost_of(int rounds, Call&& call) {
 /// CPU seconds of carving a second of sawing 44 mm of bone to the same depth.
 double carve_cost(bool fronts, int rounds) {
     double best = HUGE_VAL;
+    // The front follows the hand, so that both remove the same.
+    const saw::CuttingLaw easy{
+        .cutting = 0.0, .thrust_shallow = 1e-4, .thrust_deep = 2e-4, .rub = 0.0, .deepest = 1e-3};
     for (int round = 0; round < rounds; ++round) {
         const study::SawTrial trial{.width = 0.046};
         const auto bone = study::saw_block(trial);
@@ -136,7 +140,7 @@ double carve_cost(bool fronts, int rounds) {
         for (int n = 0; n < 1020; ++n) {
             const Pose pose{Vec3(0.0, 0.0, 0.0001 - 0.0006e-3 * n), down};
             if (fronts) {
-                blade.step(bone->current(), pose, {true, 228.0, 0.001}, {.rub = 0.0, .deepest = 1e-3});
+                blade.step(bone->current(), pose, {true, 228.0, 0.001}, easy);
                 blade.teeth().fill(path.emplace_back(), pose, true);
             } else {
                 samples.push_back({pose, 0.001, 7.0, 228.0, true});
