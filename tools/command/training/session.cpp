@@ -44,7 +44,7 @@ struct AttemptEnd {
 
 view::ViewedRunChoice attempt_choice(const SessionChoice& choice, const training::TaskFile& task, const fs::path& at) {
     view::ViewedRunChoice run = choice.run;
-    run.patch = task.patch;
+    run.patch = task.patch.empty() ? "saw-task" : task.patch;
     run.overrides.settings = task.settings;
     // What the command line says is said last, and wins.
     run.overrides.settings.insert(run.overrides.settings.end(), choice.run.overrides.settings.begin(),
