@@ -36,7 +36,7 @@ struct TaskFile {
     std::filesystem::path file;  ///< where it was read, absolute
     std::string title, about;
     std::filesystem::path bone;         ///< absolute; may end in "#NAME", as assets of a patch
-    std::string patch = "saw-task";     ///< a path, or a name in the library
+    std::string patch;                  ///< a path, or a name in the library; empty: the usual one
     std::vector<std::string> settings;  ///< NODE.PARAM=VALUE, for that patch
     double length = 60.0;               ///< s: an attempt ends then
     BladeSize blade;

@@ -29,6 +29,7 @@
     X(fracture_surface, bones, fractures) \
     X(snap, bones, fractures)             \
     X(plan, planning, fractures)          \
+    X(session, training, training)        \
     X(score, training, training)          \
     X(gripper, grippers, grippers)        \
     X(calibrate, displays, displays)      \

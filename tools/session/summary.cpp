@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/session/summary.hpp"
 
+#include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
 #include "engine/io/lost_device.hpp"
 #include "tools/session/live_table.hpp"
+#include "tools/session/task_summary.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -189,6 +191,31 @@ std::string summary_text(const run::Engine& engine, const Report& report, double
                 text += fmt::format("  note: {}: {}\n", section, *words);
     for (const std::string& notice : engine.host().notices) text += fmt::format("  note: {}\n", notice);
     return text;
+}
+
+TaskSummary read_task_summary(const std::filesystem::path& folder) {
+    const std::filesystem::path file = folder / "summary.json";
+    if (!std::filesystem::exists(file)) {
+        const bool was_cut_off =
+            std::filesystem::exists(folder / "task.csv.part") || std::filesystem::exists(folder / "summary.json.part");
+        throw Error(was_cut_off
+                        ? fmt::format("{}: the run did not come to its end; score its take instead, or finish it with "
+                                      "'tactus replay TAKE --out FOLDER'",
+                                      folder.string())
+                        : fmt::format("{}: is neither the results of a run nor a take nor a session", folder.string()));
+    }
+    const Json json = Json::parse(file::read_whole_file(file), nullptr, false);
+    if (!json.is_object()) throw Error(fmt::format("{}: not JSON", file.string()));
+    const auto task = json.find("task");
+    if (task == json.end() || !task->is_object())
+        throw Error(fmt::format("{}: the run had no node 'task', so there is nothing to score", file.string()));
+    const auto text = [&](const char* key) {
+        const auto found = task->find(key);
+        if (found == task->end() || !found->is_string())
+            throw Error(fmt::format("{}: does not state the task's '{}'", file.string(), key));
+        return found->get<std::string>();
+    };
+    return {text("file"), text("hash"), text("record")};
 }
 
 }  // namespace tactus::session

@@ -6,19 +6,14 @@
 //   DIR/PSEUDONYM/1/01-NAME-cut-off-1     what is left of an attempt that was cut off
 #pragma once
 
+#include "assets/training/session_file.hpp"
+
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 namespace tactus::session {
-
-struct SessionTask {
-    std::string name;            ///< stem of the task file
-    std::filesystem::path file;  ///< absolute
-    std::uint64_t hash = 0;      ///< of the task
-};
 
 /// Throws Error unless `name` is 1 to 64 letters, digits, '-', '_' or '.', beginning with a letter or digit: it becomes
 /// the name of a folder.
@@ -29,7 +24,7 @@ public:
     struct Choice {
         std::string trainee;
         std::filesystem::path out;
-        std::vector<SessionTask> tasks;
+        std::vector<training::SessionTask> tasks;
         bool is_new = false;  ///< begin another session although the last one is not complete
     };
     /// Opens the trainee's last session when it is not complete, else begins the next one; locks it until destroyed.
@@ -42,21 +37,15 @@ public:
     const std::filesystem::path& folder() const { return folder_; }
     bool is_resumed() const { return is_resumed_; }
     /// Number of completed attempts, which is the index of the next task.
-    std::size_t done() const { return done_.size(); }
-    bool is_complete() const { return done() == tasks_.size(); }
-    const SessionTask& task(std::size_t n) const { return tasks_[n]; }
-    std::size_t count() const { return tasks_.size(); }
+    std::size_t done() const { return file_.attempts.size(); }
+    bool is_complete() const { return done() == count(); }
+    std::size_t count() const { return file_.tasks.size(); }
     /// Folder of the next attempt; made by this call.
     std::filesystem::path begin_attempt() const;
     /// The next attempt came to its end: from now on it is not repeated, whatever happens. Throws Error.
     void complete_attempt(double seconds, bool ended_early);
 
 private:
-    struct Done {
-        std::string folder, time;
-        double seconds = 0.0;
-        bool ended_early = false;
-    };
     /// Of the session's folder; the system releases it when the program dies.
     struct Lock {
         int handle = -1;
@@ -65,15 +54,13 @@ private:
         ~Lock();
     };
     void lock();
-    void read();
+    void check_tasks(const std::vector<training::SessionTask>& wanted) const;
     void save() const;
     void put_aside() const;
-    std::string attempt_name(std::size_t n) const;
+    std::string attempt_name() const;
 
-    std::string trainee_;
     std::filesystem::path folder_;
-    std::vector<SessionTask> tasks_;
-    std::vector<Done> done_;
+    training::SessionFile file_;
     bool is_resumed_ = false;
     Lock lock_;
 };

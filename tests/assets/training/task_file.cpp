@@ -84,7 +84,7 @@ TEST_CASE("a task is read with its units, relative to its own folder") {
     const training::TaskFile task = training::load_task_file(folder.write(plane));
     CHECK(task.title == "a cut");
     CHECK(task.bone == folder.path.parent_path() / "bones/jaw.vdb");
-    CHECK(task.patch == "saw-task");
+    CHECK(task.patch.empty());
     CHECK(task.settings == std::vector<std::string>{"simulated.depth=8 mm"});
     CHECK(task.length == 20.0);
     CHECK(std::abs(task.blade.kerf - 0.8 * mm) < 1e-12);

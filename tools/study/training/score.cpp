@@ -9,10 +9,10 @@
 #include "tools/session/results.hpp"
 #include "tools/session/scratch_folder.hpp"
 #include "tools/session/summary.hpp"
+#include "tools/session/task_summary.hpp"
 #include "tools/session/training_session.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -22,35 +22,10 @@
 namespace tactus::study {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 namespace {
 
 constexpr double degree = 57.29577951308232;
-
-Json summary_of(const fs::path& folder) {
-    const fs::path file = folder / "summary.json";
-    if (!fs::exists(file)) {
-        const bool was_cut_off = fs::exists(folder / "task.csv.part") || fs::exists(folder / "summary.json.part");
-        throw Error(was_cut_off
-                        ? fmt::format("{}: the run did not come to its end; score its take instead, or finish "
-                                      "it with 'tactus replay TAKE --out FOLDER'",
-                                      folder.string())
-                        : fmt::format("{}: is neither the results of a run nor a take nor a session", folder.string()));
-    }
-    Json json = Json::parse(file::read_whole_file(file), nullptr, false);
-    if (!json.is_object()) throw Error(fmt::format("{}: not JSON", file.string()));
-    if (!json.contains("task") || !json["task"].is_object())
-        throw Error(fmt::format("{}: the run had no node 'task', so there is nothing to score", file.string()));
-    return json;
-}
-
-std::string text_of(const Json& json, const char* key, const fs::path& folder) {
-    const auto found = json.find(key);
-    if (found == json.end() || !found->is_string())
-        throw Error(fmt::format("{}: summary.json does not state the task's '{}'", folder.string(), key));
-    return found->get<std::string>();
-}
 
 /// The bone that was cut: the one of the run that has the samples of the task's.
 bone::Bone bone_after(const fs::path& folder, const bone::Bone& before) {
@@ -129,13 +104,13 @@ void repeat_take(const fs::path& folder, const fs::path& out) {
                                                                        written.names, losses));
 }
 
-training::Task task_of(const Json& said, const fs::path& instead, const fs::path& folder) {
+training::Task task_of(const session::TaskSummary& said, const fs::path& instead, const fs::path& folder) {
     if (!instead.empty()) return training::load_task(instead);
-    const fs::path file = text_of(said, "file", folder);
+    const fs::path file = said.file;
     if (!fs::exists(file))
         throw Error(fmt::format("{}: the task {} is gone; name it with --task", folder.string(), file.string()));
     training::Task task = training::load_task(file);
-    if (fmt::format("{:016x}", task.hash) != text_of(said, "hash", folder))
+    if (fmt::format("{:016x}", task.hash) != said.hash)
         throw Error(fmt::format("{}: the task {} has changed since; score with --task to use it as it is now",
                                 folder.string(), file.string()));
     return task;
@@ -175,15 +150,14 @@ ScoredRun score_run(const fs::path& folder, const fs::path& task) {
         run.name = folder.string();
         return run;
     }
-    const Json summary = summary_of(folder);
-    const Json& said = summary["task"];
+    const session::TaskSummary said = session::read_task_summary(folder);
     ScoredRun run;
     run.name = folder.string();
     run.task = task_of(said, task, folder);
     run.before = bone::load_bone(run.task.bone);
     run.after = bone_after(folder, run.before);
     check_same_bone(run.before, run.after, folder);
-    const std::string record_name = text_of(said, "record", folder);
+    const std::string& record_name = said.record;
     if (record_name.empty() || fs::path(record_name).has_parent_path())
         throw Error(fmt::format("{}: the run has no record of its attempt", folder.string()));
     Record record = record_of(folder / record_name);

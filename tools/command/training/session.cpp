@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// tactus session: a trainee's tasks in order, with their takes, resumed after a crash.
+#include "assets/file/whole_file.hpp"
+#include "assets/training/task_file.hpp"
+#include "dsp/core/error.hpp"
+#include "tools/command/options.hpp"
+#include "tools/command/patch_options.hpp"
+#include "tools/command/training/score_text.hpp"
+#include "tools/exit_code.hpp"
+#include "tools/session/load_plan.hpp"
+#include "tools/session/rendered_run.hpp"
+#include "tools/session/run_session.hpp"
+#include "tools/session/stop_signals.hpp"
+#include "tools/session/summary.hpp"
+#include "tools/session/training_session.hpp"
+#include "tools/terminal.hpp"
+#include "tools/view/view.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace tactus::command {
+
+using namespace session;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SessionChoice {
+    std::vector<std::string> tasks;
+    std::string trainee;
+    fs::path out;
+    view::ViewedRunChoice run;  // what all attempts share
+    bool offline = false, is_new = false;
+};
+
+/// What an attempt came to. `code` is the exit code that its failures stand for.
+struct AttemptEnd {
+    double seconds = 0.0;
+    int code = done;
+};
+
+view::ViewedRunChoice attempt_choice(const SessionChoice& choice, const training::TaskFile& task, const fs::path& at) {
+    view::ViewedRunChoice run = choice.run;
+    run.patch = task.patch.empty() ? "saw-task" : task.patch;
+    run.overrides.settings = task.settings;
+    // What the command line says is said last, and wins.
+    run.overrides.settings.insert(run.overrides.settings.end(), choice.run.overrides.settings.begin(),
+                                  choice.run.overrides.settings.end());
+    run.overrides.assets = {"task=" + task.file.string(), "bone=" + task.bone.string()};
+    run.overrides.assets.insert(run.overrides.assets.end(), choice.run.overrides.assets.begin(),
+                                choice.run.overrides.assets.end());
+    if (!run.seconds) run.seconds = task.length;
+    run.out = at / "run";
+    run.record = at / "take";
+    run.edits = false;
+    return run;
+}
+
+AttemptEnd tell(double seconds, const std::vector<std::string>& losses, const std::vector<std::string>& faults) {
+    for (const std::string& loss : losses) say(stderr, fmt::format("tactus: {}\n", loss));
+    for (const std::string& fault : faults) say(stderr, fmt::format("tactus: {}\n", fault));
+    return {seconds, losses.empty() && faults.empty() ? done : output_lost};
+}
+
+AttemptEnd make_attempt(const view::ViewedRunChoice& choice, bool offline, compile::AssetCache& assets,
+                        const std::atomic<bool>& stop) {
+    if (choice.view.wanted) {
+        const int code = view::view_run(choice, stop);
+        return {choice.seconds.value(), code};
+    }
+    LiveLine line;
+    if (offline) {
+        const RenderedRun run =
+            render_run(choice, assets, stop, [&](double share) { line.show(fmt::format("{:3.0f} %", 100.0 * share)); });
+        line.clear();
+        return tell(run.seconds, run.losses, run.faults);
+    }
+    RunSession run(choice, assets);
+    run.run({[&] {
+                 line.show(fmt::format("{:.0f} s of {:.0f} s; Ctrl-C ends the attempt and the session",
+                                       run.engine().progress_seconds(), *choice.seconds));
+             },
+             [](const std::string&) {}},
+            stop);
+    line.clear();
+    run.finish();
+    return tell(run.engine().progress_seconds(), run.losses(), unrecovered(run.engine()));
+}
+
+/// Scores what was done; a failure is told, and the session goes on: the score can be made again.
+void keep_score(const fs::path& attempt) {
+    try {
+        const study::ScoredRun run = study::score_run(attempt);
+        file::write_whole_file(attempt / "score.json", score_json(run));
+        say(stdout, score_text(std::span(&run, 1), {}));
+    } catch (const Error& error) {
+        say(stderr, fmt::format("tactus: no score: {}\n", error.what()));
+    }
+}
+
+int run_session(const SessionChoice& choice) {
+    TrainingSession::Choice wanted{choice.trainee, choice.out, {}, choice.is_new};
+    check_pseudonym(choice.trainee);
+    std::vector<training::TaskFile> tasks;
+    compile::AssetCache assets;
+    for (const std::string& name : choice.tasks) {
+        const fs::path file = fs::absolute(find_task(name));
+        // Everything is read before anything is made: an error of the last task must not end a session halfway.
+        const training::Task task = training::load_task(file);
+        wanted.tasks.push_back({file.stem().string(), file, task.hash});
+        tasks.push_back(task);
+        load_plan(attempt_choice(choice, task, "attempt"), assets);
+    }
+    TrainingSession session(wanted);
+    if (session.is_resumed())
+        say(stderr, fmt::format("resuming {}: {} of {} tasks were completed\n", session.folder().string(),
+                                session.done(), session.count()));
+    const std::atomic<bool>& stop = stop_on_signals();
+    int worst = done;
+    while (!session.is_complete() && !stop) {
+        const training::TaskFile& task = tasks[session.done()];
+        const fs::path attempt = session.begin_attempt();
+        say(stderr, fmt::format("task {} of {}: {}\n{}{}", session.done() + 1, session.count(), task.title, task.about,
+                                task.about.empty() ? "" : "\n"));
+        const view::ViewedRunChoice run = attempt_choice(choice, task, attempt);
+        const AttemptEnd end = make_attempt(run, choice.offline, assets, stop);
+        session.complete_attempt(end.seconds, stop);
+        worst = std::max(worst, end.code);
+        keep_score(attempt);
+    }
+    if (!session.is_complete()) {
+        say(stderr, fmt::format("tactus: {} of {} tasks were completed; the same command goes on with the next\n",
+                                session.done(), session.count()));
+        return worst == done ? answer_is_no : worst;
+    }
+    say(stdout, fmt::format("session complete: {}\n", session.folder().string()));
+    return worst;
+}
+
+Action add(VerbOptions& verb) {
+    const auto choice = std::make_shared<SessionChoice>();
+    verb.add("tasks", choice->tasks, "task files, or names in the library such as mandible-canal, in their order")
+        .required();
+    verb.add("--trainee", choice->trainee, "pseudonym of the trainee: letters, digits, '-', '_', '.'; not a name")
+        .required();
+    verb.add("-o,--out", choice->out, "folder of all sessions; this one is DIR/PSEUDONYM/NUMBER").required();
+    verb.flag("--new", choice->is_new, "begin another session although the last one is not complete");
+    verb.flag("--offline", choice->offline, "render the attempts instead of running them in real time");
+    verb.add("--seconds", choice->run.seconds, "length of each attempt, s (default: that of the task)")
+        .unit("s")
+        .range(1e-3, 1e5);
+    add_override_options(verb, choice->run);
+    verb.add("--audio", choice->run.audio, "sound output: part of a card's name, default, file or none");
+    verb.flag("--view", choice->run.view.wanted, "open a window for each attempt; closing it ends the attempt");
+    return [choice] { return run_session(*choice); };
+}
+
+}  // namespace
+
+Verb session_verb() {
+    return {"session", "run training tasks in order for a trainee; keeps takes and scores, and resumes after a crash",
+            add};
+}
+
+}  // namespace tactus::command
