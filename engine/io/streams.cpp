@@ -39,9 +39,11 @@ private:
     std::int64_t next_ = 0;
 };
 
-/// "N, N m" is the unit of three columns, then that of the others. A name of a column holds no comma and no blank.
-std::string unit_of_column(const std::string& units, std::size_t column) {
+/// "N, N m" is the unit of three columns, then that of the others. A name of a column holds no comma and no blank. A
+/// quaternion has no unit.
+std::string unit_of_column(const std::string& units, std::size_t column, const ValueType& type) {
     const std::size_t comma = units.find(',');
+    if (&type == &value::pose && column >= 3 && comma == std::string::npos) return {};
     std::string unit = column < 3 || comma == std::string::npos ? units.substr(0, comma) : units.substr(comma + 1);
     unit.erase(0, unit.find_first_not_of(' '));
     std::ranges::replace_if(unit, [](char letter) { return letter == ' ' || letter == ','; }, '_');
@@ -58,7 +60,7 @@ public:
           period_(format.period) {
         std::string header = "t_s";
         for (std::size_t i = 0; i < type_.columns.size(); ++i) {
-            const std::string unit = unit_of_column(format.unit, i);
+            const std::string unit = unit_of_column(format.unit, i, type_);
             header += fmt::format(",{}{}{}", type_.columns[i], unit.empty() ? "" : "_", unit);
         }
         file_->append(header + "\n");

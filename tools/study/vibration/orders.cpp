@@ -74,10 +74,10 @@ signal::Rotation rotation_of_ridge(sound::RecordReader& reader, std::size_t chan
         signal::FundamentalStream fundamental(rate, reader.frames());
         read_all(reader, [&](const sound::RecordBlock& block) { fundamental.push(block.channels[channel]); });
         if (const signal::FundamentalEstimate found = fundamental.estimate(); found.is_certain()) {
-            // Beyond the middle 80 % the rate may go further, but not to its double or half.
-            ridge_settings.lowest = std::max(0.72 * found.frequency, 0.6 * found.low);
-            ridge_settings.lowest = std::min(ridge_settings.lowest, 0.95 * found.low);
-            ridge_settings.highest = std::max(1.05 * found.high, std::min(1.45 * found.frequency, 1.6 * found.high));
+            // Beyond the middle 80 % of its path the rate goes further, but a steady one not to its double or half.
+            const double beyond = found.steady ? 1.4 : 1.3;
+            ridge_settings.lowest = found.low / beyond;
+            ridge_settings.highest = found.high * beyond;
         }
     }
     // A lower sample rate holds all the orders that are tracked.

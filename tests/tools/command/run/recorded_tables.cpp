@@ -19,7 +19,7 @@ wires = [
   "hand.pose        -> ball.pose",
   "ball.wrench      -> out.wrench",
   "hand.pose        -> pose.in",
-  "hand.velocity    -> twist.in",
+  "hand.twist       -> twist.in",
   "ball.wrench      -> wrench.in",
   "seven.value      -> number.in",
   "hand.trigger     -> bool.in",
@@ -33,7 +33,7 @@ rate = "1 kHz"
 [nodes.seven]
 type = "constant"
 rate = "1 kHz"
-value = "7"
+number = "7"
 [nodes.ball]
 type = "sphere_contact"
 rate = "1 kHz"
