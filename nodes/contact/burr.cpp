@@ -26,7 +26,7 @@ struct Burr {
     Param stiffness{structural, "0.8 N/mm", "0.01 N/mm", "50 N/mm", "that the hand feels"};
     Param diameter{structural, "4 mm", "1 mm", "8 mm", "of the ball; also the 'kerf' of carve"};
     Param flutes{structural, "8", "1", "32", "cutting edges; one bears at a time"};
-    Param rate{"1000 Hz", "1 Hz", "2000 Hz", "turns per second"};
+    Param turn_rate{"1000 Hz", "1 Hz", "2000 Hz", "turns per second"};
 
     void prepare(const Setup&) {
         burr_.emplace(saw::BurrShape{0.5 * diameter, flutes}, stiffness);
@@ -37,7 +37,7 @@ struct Burr {
     void process(const Tick& tick) noexcept {
         const bool runs = !running.connected || running.get();
         const double dt = std::clamp(tick.elapsed_seconds(), seconds(tick.period), 0.05);
-        const saw::BurrContact now = burr_->step(bone.get(), pose.get(), runs, rate, dt, law_);
+        const saw::BurrContact now = burr_->step(bone.get(), pose.get(), runs, turn_rate, dt, law_);
         wrench = now.wrench;
         load = now.load;
         flute_force = now.along;
@@ -76,6 +76,6 @@ private:
 };
 
 TACTUS_NODE(Burr, pose, bone, running, wrench, load, flute_force, feed, penetration, in_contact, front, stiffness,
-            diameter, flutes, rate)
+            diameter, flutes, turn_rate)
 
 }  // namespace tactus::nodes

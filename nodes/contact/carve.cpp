@@ -23,8 +23,10 @@ struct Carve {
         "path at a speed inversely proportional to density (thesis 6.2.2).";
 
     Batch<Pose> path{optional,
-                     "all poses of the blade: x along the stroke, y into the bone; speed and force law below"};
-    Batch<carve::CutFront> front{optional, "all fronts that a saw has cut; then only 'length' and 'kerf' below matter"};
+                     "all poses of the blade: x along the stroke, y into the bone; speed and force law below; "
+                     "unconnected, and without 'front', nothing is carved"};
+    Batch<carve::CutFront> front{
+        optional, "all fronts that a saw has cut; then 'path' is not read, and only 'length' and 'kerf' below matter"};
     Batch<double> load{optional, "thrust at each pose; unconnected: the reference force", "N"};
     In<bool> running{optional, "the saw runs; unconnected: always"};
     In<double> strokes{optional, "reciprocation rate; unconnected: the reference rate", "Hz"};
@@ -54,8 +56,6 @@ struct Carve {
         options.band =
             4.0 * std::max({bone_->distance.spacing.x, bone_->distance.spacing.y, bone_->distance.spacing.z}) + kerf;
         editor_ = std::make_unique<volume::BoneEditor>(bone_->distance, bone_->density, options);
-        if (path.connected == front.connected)
-            setup.fail("connect either 'front', of a saw_blade or burr, or 'path', to carve by the law of this node");
         carver_.prepare(*editor_, settings());
         samples_.reserve(4096);
         bone = editor_->current();
@@ -152,7 +152,7 @@ private:
     /// Copies the path for the carver. When a tick has more than 4096 poses, the oldest are dropped.
     void gather() noexcept {
         samples_.clear();
-        const auto poses = path.values();
+        const auto poses = path.connected ? path.values() : std::span<const Pose>{};
         const auto loads = load.connected ? load.values() : std::span<const double>{};
         const std::size_t first = poses.size() > samples_.capacity() ? poses.size() - samples_.capacity() : 0;
         for (std::size_t i = first; i < poses.size(); ++i) {

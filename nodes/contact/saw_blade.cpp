@@ -17,7 +17,7 @@ struct SawBlade {
     In<Pose> pose{"of the blade: x along the teeth, y into the bone, origin in the middle of the tooth line"};
     In<volume::BoneSnapshot> bone{"the carved bone"};
     In<bool> running{optional, "the saw runs; unconnected: always"};
-    In<double> strokes{optional, "cycles of the stroke per second; unconnected: 'rate'", "Hz"};
+    In<double> strokes{optional, "cycles of the stroke per second; unconnected: 'stroke_rate'", "Hz"};
     Out<Wrench> wrench{"on the blade, about its origin", "N, N m"};
     Out<double> load{"thrust against the cutting direction", "N"};
     Out<double> stroke_force{"of the teeth along the stroke, to and fro at the stroke's rate", "N"};
@@ -28,7 +28,9 @@ struct SawBlade {
     Out<carve::CutFront> front{"how far the teeth have cut; wire it to carve.front as batch"};
     Param stiffness{structural, "0.8 N/mm", "0.01 N/mm", "50 N/mm",
                     "upper bound of the stiffness that the hand feels, for any number of points in contact"};
-    Param rate{"228 Hz", "1 Hz", "1000 Hz", "cycles of the stroke per second, unless 'strokes' is connected"};
+    Param stroke_rate{"228 Hz", "1 Hz", "1000 Hz", "cycles of the stroke per second, unless 'strokes' is connected"};
+    Param sharpness{structural, "1", "0.1", "20",
+                    "forces of the published teeth over those of these: the same thrust cuts that much more"};
     Flag sagittal{false,
                   "the blade swings about an axis 'height' behind its teeth; otherwise it strokes along its length"};
     Param length{structural, "40 mm", "5 mm", "80 mm", "of the tooth line"};
@@ -58,15 +60,17 @@ struct SawBlade {
                                    carve::CutFront::most_nodes - 1));
         if (shape.kerf <= shape.thickness)
             setup.fail("the kerf is not wider than the blade, which would bind; widen 'kerf' or thin the blade");
+        law_ = saw::CuttingLaw{}.sharpened(sharpness);
         blade_.emplace(shape, stiffness);
         ticks_ = touching_ = thrust_ = deepest_ = 0.0;
         last_ = {};
     }
 
     void process(const Tick& tick) noexcept {
-        const saw::Drive drive{!running.connected || running.get(),
-                               strokes.connected ? std::clamp(strokes.get(), 0.0, 2000.0) : static_cast<double>(rate),
-                               std::clamp(tick.elapsed_seconds(), seconds(tick.period), 0.05)};
+        const saw::Drive drive{
+            !running.connected || running.get(),
+            strokes.connected ? std::clamp(strokes.get(), 0.0, 2000.0) : static_cast<double>(stroke_rate),
+            std::clamp(tick.elapsed_seconds(), seconds(tick.period), 0.05)};
         const saw::SawContact now = blade_->step(bone.get(), pose.get(), drive, law_);
         wrench = now.wrench;
         load = now.thrust;
@@ -107,6 +111,6 @@ private:
 };
 
 TACTUS_NODE(SawBlade, pose, bone, running, strokes, wrench, load, stroke_force, feed, teeth, penetration, in_contact,
-            front, stiffness, rate, sagittal, length, height, thickness, kerf, stroke, tooth_pitch)
+            front, stiffness, stroke_rate, sharpness, sagittal, length, height, thickness, kerf, stroke, tooth_pitch)
 
 }  // namespace tactus::nodes

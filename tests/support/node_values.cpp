@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/node_values.hpp"
 
+#include "dsp/carve/cut_front.hpp"
 #include "dsp/contact/shape.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "dsp/geometry/triangle_tree.hpp"
@@ -119,7 +120,19 @@ void sample_value(const ValueType& type, const Random& random, std::int64_t k, F
     } else if (&type == &value::snapshot<volume::BoneSnapshot>) put(out, sample_bone().current());
     else if (&type == &value::snapshot<coupling::Body>) put(out, sample_scene().objects[0].body);
     else if (&type == &value::snapshot<coupling::Scene>) put(out, sample_scene());
-    else throw Error("no sample values for a " + std::string(type.name));
+    else if (&type == &value::snapshot<carve::CutFront>) {
+        carve::CutFront front;
+        front.pose = draw.pose();
+        front.kerf = 1e-3;
+        front.pitch = 1.4e-3;
+        front.count = 8;
+        for (std::size_t n = 0; n < 8; ++n) front.offset[n] = {1.4e-3f * (static_cast<float>(n) - 3.5f), 0.0f, 0.0f};
+        front.seated = 0xff;
+        front.running = 1;
+        front.version = k;
+        front.content_hash = carve::hash_of(front);
+        put(out, front);
+    } else throw Error("no sample values for a " + std::string(type.name));
 }
 
 DeviceSample sample_device(const Random& random, std::int64_t k, Feed feed) {

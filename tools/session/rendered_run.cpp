@@ -2,7 +2,6 @@
 #include "tools/session/rendered_run.hpp"
 
 #include "engine/run/engine.hpp"
-#include "tools/session/limit_stiffness.hpp"
 #include "tools/session/load_plan.hpp"
 #include "tools/session/output_folder.hpp"
 #include "tools/session/results.hpp"
@@ -28,7 +27,6 @@ RenderedRun render_run(const RunChoice& choice, compile::AssetCache& assets, con
         options.take = take.get();
     }
     run::Engine engine(std::move(plan), options);
-    limit_stiffness(engine.plan(), engine.host());
     engine.render(static_cast<int>(std::max(1u, std::thread::hardware_concurrency())), [&](double done) {
         if (stop) engine.stop();
         progress(done);
