@@ -24,7 +24,8 @@ struct Carve {
 
     Batch<Pose> path{optional,
                      "all poses of the blade: x along the stroke, y into the bone; speed and force law below"};
-    Batch<carve::CutFront> front{optional, "all fronts that a saw has cut; then only 'length' and 'kerf' below matter"};
+    Batch<carve::CutFront> front{optional,
+                                 "all fronts that a saw has cut; then 'path' and the law of this node do not count"};
     Batch<double> load{optional, "thrust at each pose; unconnected: the reference force", "N"};
     In<bool> running{optional, "the saw runs; unconnected: always"};
     In<double> strokes{optional, "reciprocation rate; unconnected: the reference rate", "Hz"};
@@ -54,8 +55,8 @@ struct Carve {
         options.band =
             4.0 * std::max({bone_->distance.spacing.x, bone_->distance.spacing.y, bone_->distance.spacing.z}) + kerf;
         editor_ = std::make_unique<volume::BoneEditor>(bone_->distance, bone_->density, options);
-        if (path.connected == front.connected)
-            setup.fail("connect either 'front', of a saw_blade or burr, or 'path', to carve by the law of this node");
+        if (!path.connected && !front.connected)
+            setup.fail("connect 'front', of a saw_blade or burr, or 'path', to carve by the law of this node");
         carver_.prepare(*editor_, settings());
         samples_.reserve(4096);
         bone = editor_->current();

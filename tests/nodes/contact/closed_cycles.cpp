@@ -258,11 +258,24 @@ const std::vector<Case>& cases() {
                                 .depth = bone == &thin ? 3.0 * mm : 1.0 * mm,
                                 .turn = 0.1,
                                 .rest = rotation_by({-0.5 * std::numbers::pi, 0.0, 0.0}),
-                                .set_up = [=](NodeHarness& n) {
-                                    n.feed("bone", bone->current());
-                                    if (type == std::string_view("saw_blade")) n.feed("running", false);
-                                },
+                                .set_up =
+                                    [=](NodeHarness& n) {
+                                        n.feed("bone", bone->current());
+                                        if (type == std::string_view("saw_blade")) n.feed("running", false);
+                                    },
                                 .wired = type == std::string_view("saw_blade")});
+        made.push_back({.type = "burr",
+                        .pose = "pose",
+                        .stiffness = 800.0,
+                        .tolerance = 1e-5,
+                        .lift = 2.0 * mm,
+                        .rest = rotation_by({-0.5 * std::numbers::pi, 0.0, 0.0}),
+                        .set_up =
+                            [](NodeHarness& n) {
+                                n.feed("bone", block.current());
+                                n.feed("running", false);
+                            },
+                        .wired = true});
         for (const char* type : {"point_proxy", "sphere_proxy"})
             for (const char* surface : {"field", "triangles"})
                 for (const char* friction : {"0", "0.5"})
