@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/node_values.hpp"
 
+#include "dsp/carve/cut_front.hpp"
 #include "dsp/contact/shape.hpp"
 #include "dsp/coupling/scene.hpp"
 #include "dsp/geometry/triangle_tree.hpp"
@@ -117,7 +118,19 @@ void sample_value(const ValueType& type, const Random& random, std::int64_t k, F
         const double largest = std::numeric_limits<float>::max();
         put(out, std::isfinite(v) && std::abs(v) > largest ? std::numeric_limits<float>::max() : static_cast<float>(v));
     } else if (&type == &value::snapshot<volume::BoneSnapshot>) put(out, sample_bone().current());
-    else if (&type == &value::snapshot<coupling::Body>) put(out, sample_scene().objects[0].body);
+    else if (&type == &value::snapshot<carve::CutFront>) {
+        carve::CutFront front;
+        front.pose.position = draw.vector(0.05);
+        front.kerf = 1e-3;
+        front.pitch = 1.4e-3;
+        front.count = 2;
+        front.running = 1;
+        front.seated = 3;
+        front.version = k;
+        front.place(0, front.pose.position);
+        front.place(1, front.pose.position + Vec3(1.4e-3, 0.0, 0.0));
+        put(out, front);
+    } else if (&type == &value::snapshot<coupling::Body>) put(out, sample_scene().objects[0].body);
     else if (&type == &value::snapshot<coupling::Scene>) put(out, sample_scene());
     else throw Error("no sample values for a " + std::string(type.name));
 }
