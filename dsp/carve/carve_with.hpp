@@ -98,9 +98,9 @@ private:
     /// Bone holds one end of a span while the other went aside: no tooth passes between them.
     bool is_torn(std::size_t n) const noexcept {
         const auto nodes = edge_.nodes();
-        const Vec3 span = nodes[n + 1].at - nodes[n].at, y = pose_.rotate({0, 1, 0});
-        const Vec3 aside = span - y * glm::dot(span, y);
-        return front_pitch_ > 0.0 && glm::length(aside) > 1.15 * front_pitch_;
+        const Vec3 span = nodes[n + 1].at - nodes[n].at;
+        return front_pitch_ > 0.0 && (std::abs(glm::dot(span, pose_.rotate({0, 0, 1}))) > 0.5 * front_pitch_ ||
+                                      std::abs(glm::dot(span, pose_.rotate({1, 0, 0}))) > 2.2 * front_pitch_);
     }
 
     template <class Field>

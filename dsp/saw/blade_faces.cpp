@@ -57,6 +57,9 @@ void BladeFaces::follow(const volume::BoneSnapshot& bone, const Pose& pose, bool
             p.at = to;
         } else {
             slide(bone, p, voxel, running);
+            // Bone does not hold a blade back: what would hook in on the way out lets go.
+            const double back = glm::dot(p.target - p.at, axes_[1]);
+            if (back < 0.0) p.at += axes_[1] * back;
         }
     }
 }

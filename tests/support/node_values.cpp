@@ -118,21 +118,21 @@ void sample_value(const ValueType& type, const Random& random, std::int64_t k, F
         const double largest = std::numeric_limits<float>::max();
         put(out, std::isfinite(v) && std::abs(v) > largest ? std::numeric_limits<float>::max() : static_cast<float>(v));
     } else if (&type == &value::snapshot<volume::BoneSnapshot>) put(out, sample_bone().current());
-    else if (&type == &value::snapshot<coupling::Body>) put(out, sample_scene().objects[0].body);
-    else if (&type == &value::snapshot<coupling::Scene>) put(out, sample_scene());
     else if (&type == &value::snapshot<carve::CutFront>) {
         carve::CutFront front;
-        front.pose = draw.pose();
+        front.pose.position = draw.vector(0.05);
         front.kerf = 1e-3;
         front.pitch = 1.4e-3;
-        front.count = 8;
-        for (std::size_t n = 0; n < 8; ++n) front.offset[n] = {1.4e-3f * (static_cast<float>(n) - 3.5f), 0.0f, 0.0f};
-        front.seated = 0xff;
+        front.count = 2;
         front.running = 1;
+        front.seated = 3;
         front.version = k;
-        front.content_hash = carve::hash_of(front);
+        front.place(0, front.pose.position);
+        front.place(1, front.pose.position + Vec3(1.4e-3, 0.0, 0.0));
         put(out, front);
-    } else throw Error("no sample values for a " + std::string(type.name));
+    } else if (&type == &value::snapshot<coupling::Body>) put(out, sample_scene().objects[0].body);
+    else if (&type == &value::snapshot<coupling::Scene>) put(out, sample_scene());
+    else throw Error("no sample values for a " + std::string(type.name));
 }
 
 DeviceSample sample_device(const Random& random, std::int64_t k, Feed feed) {

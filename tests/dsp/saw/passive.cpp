@@ -146,7 +146,7 @@ TEST_CASE("at break-through the force falls to zero and does not change its sign
 }
 
 TEST_CASE("a blade that slides sideways at 140 mm/s planes off little") {
-    for (const auto& [way, most] : {std::pair{Vec3(0.0, 0.014, 0.0), 2.0}, std::pair{Vec3(0.014, 0.0, 0.0), 3.0}}) {
+    for (const auto& [way, most] : {std::pair{Vec3(0.0, 0.014, 0.0), 2.0}, std::pair{Vec3(0.014, 0.0, 0.0), 8.0}}) {
         const auto bone = bone_block({.voxel = 0.33e-3});
         Sawing sawing(*bone);
         Pushing hand;

@@ -198,7 +198,7 @@ TEST_CASE("saw-training saws: forces within limits, bone removed, the same bits 
         CHECK(summary["force"]["thrust_mean_N"] > 6.3);
         CHECK(summary["force"]["thrust_mean_N"] < 7.7);
         CHECK(summary["force"]["max_N"] < 15.0);
-        CHECK(summary["carve"]["removed_mm3"] > 8.0);
+        CHECK(summary["carve"]["removed_mm3"] > 5.0);
         CHECK(summary["carve"]["severed"] == 0.0);
         CHECK(summary["carve"]["by_density"].size() == 4);
         for (const char* file : {"haptuator.wav", "handle.wav", "force.csv", "pose.csv", "removed.csv"})

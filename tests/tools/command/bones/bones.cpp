@@ -148,6 +148,6 @@ TEST_CASE("a render leaves the cut bone, and it is smaller and goes out as a mes
     const json mesh = folder.answer("export " + folder / "saw/bone.vdb --json -o " + folder / "cut.stl");
     const json summary = json::parse(Folder::slurp(folder / "saw/summary.json"));
     CHECK(mesh["volume_mm3"].get<double>() > 1000.0);
-    CHECK(summary["carve"]["removed_mm3"] > 8.0);
+    CHECK(summary["carve"]["removed_mm3"] > 5.0);
     CHECK(std::count(summary["files"].begin(), summary["files"].end(), "bone.vdb") == 1);
 }
