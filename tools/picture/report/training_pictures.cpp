@@ -111,7 +111,7 @@ display::Image view_of(const std::vector<display::PictureMesh>& meshes, const Ve
     if (!(low.x <= high.x)) low = high = Vec3(0.0);
     const Vec3 up = std::abs(direction.z) < 0.9 ? Vec3(0.0, 0.0, 1.0) : Vec3(0.0, -1.0, 0.0);
     display::View view = display::fit_view(low, high, direction, up, static_cast<double>(width) / height);
-    view.eye = view.target + (view.eye - view.target) * 0.8;
+    view.eye = view.target + (view.eye - view.target) * 0.95;
     return display::render_picture(meshes, view, width, height);
 }
 
