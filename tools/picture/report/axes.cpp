@@ -68,10 +68,12 @@ void Axes::curve(const std::vector<display::FigurePoint>& values, display::Colou
     figure.unclip();
 }
 
-void Axes::level(double value, display::Colour colour, const std::string& word) const {
+void Axes::level(double value, display::Colour colour, const std::string& word, bool below) const {
     curve({{across.low, value}, {across.high, value}}, colour, 4.0, false);
-    if (!word.empty())
-        figure.text({x + width - 4.0, at(across.low, value).y - 3.0}, word, 10.0, colour, display::TextAnchor::end);
+    if (word.empty()) return;
+    const double line = at(across.low, value).y;
+    if (below) figure.text({x + 4.0, line + 11.0}, word, 10.0, colour, display::TextAnchor::start);
+    else figure.text({x + width - 4.0, line - 3.0}, word, 10.0, colour, display::TextAnchor::end);
 }
 
 }  // namespace tactus::picture

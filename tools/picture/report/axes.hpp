@@ -31,8 +31,8 @@ struct Axes {
     /// Grid, ticks, numbers, title and units.
     void draw(const std::string& title, const std::string& unit_across, const std::string& unit_up) const;
     void curve(const std::vector<display::FigurePoint>& values, display::Colour colour, double dash, bool dots) const;
-    /// A dashed horizontal line, with a word at its end.
-    void level(double value, display::Colour colour, const std::string& word) const;
+    /// A dashed horizontal line, with a word above its end or, `below`, below its begin.
+    void level(double value, display::Colour colour, const std::string& word, bool below = false) const;
 };
 
 }  // namespace tactus::picture

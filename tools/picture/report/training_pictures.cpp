@@ -111,7 +111,7 @@ display::Image view_of(const std::vector<display::PictureMesh>& meshes, const Ve
     if (!(low.x <= high.x)) low = high = Vec3(0.0);
     const Vec3 up = std::abs(direction.z) < 0.9 ? Vec3(0.0, 0.0, 1.0) : Vec3(0.0, -1.0, 0.0);
     display::View view = display::fit_view(low, high, direction, up, static_cast<double>(width) / height);
-    view.eye = view.target + (view.eye - view.target) * 0.8;
+    view.eye = view.target + (view.eye - view.target) * 0.95;
     return display::render_picture(meshes, view, width, height);
 }
 
@@ -178,17 +178,17 @@ display::Figure draw_attempt(const study::ScoredRun& run) {
     const auto panel = [&](int row, Scale up) {
         return Axes{figure, 60.0, 26.0 + 182.0 * row, 840.0, 120.0, time, up};
     };
-    const Axes first = panel(0, {-5.0, 1.05e3 * deepest + 1.0, false});
+    const Axes first = panel(0, {-5.0, 1.2e3 * deepest + 1.0, false});
     first.draw("Depth of the teeth along the planned feed", "", "mm");
     first.curve(depth, curve_colours[0], 0.0, false);
     first.level(task.cut.depth * 1e3, curve_colours[1], "depth stop");
-    if (run.severance.severed) first.level(run.severance.exit * 1e3, curve_colours[2], "far side of the bone");
+    if (run.severance.severed) first.level(run.severance.exit * 1e3, curve_colours[2], "far side of the bone", true);
     const Axes second = panel(1, {-1.05e3 * widest, 1.05e3 * widest, false});
     second.draw("Distance from the planned plane, from 2 mm above the bone on", "", "mm");
     second.curve(distance, curve_colours[0], 0.0, false);
     second.level(task.cut.tolerance * 1e3, curve_colours[1], "tolerance");
     second.level(-task.cut.tolerance * 1e3, curve_colours[1], "");
-    const Axes third = panel(2, {0.0, 1.05 * most, false});
+    const Axes third = panel(2, {0.0, 1.25 * most, false});
     third.draw("Force on the hand", "time, s", "N");
     third.curve(force, curve_colours[0], 0.0, false);
     if (task.limits.force) third.level(*task.limits.force, curve_colours[1], "limit");

@@ -59,7 +59,7 @@ TEST_CASE("a session that is killed goes on with the next task and keeps what wa
     const Folder folder;
     const fs::path session = folder.path / "out/P01/1";
     {
-        Background run(folder, words(folder, "12"));
+        Background run(folder, words(folder, "5"));
         REQUIRE(test::wait_for([&] { return fs::exists(session / "02-mandible-canal/take/timing.log"); }));
         run.end(SIGKILL);
     }
