@@ -2,6 +2,7 @@
 // validate, and compare and exposure over folders, as scripts call them.
 #include "tests/support/catch.hpp"
 #include "tests/support/places.hpp"
+#include "tests/support/skip.hpp"
 #include "tests/tools/run_command.hpp"
 
 #include <sndfile.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <fstream>
 #include <numbers>
 #include <sstream>
@@ -113,6 +115,23 @@ TEST_CASE("validate: with its equaliser the bundled handle has the vibration of 
         CHECK(html.find(needed) != std::string::npos);
     }
     CHECK(html.find("href=") == std::string::npos);
+}
+
+TEST_CASE("validate: a second of a saw that is never steady is compared with the second that was played") {
+    const char* const data = std::getenv("TACTUS_SHARED_DATA");
+    if (!data) {
+        tactus::test::skip("needs recordings in TACTUS_SHARED_DATA");
+        return;
+    }
+    const Folder folder;
+    const Outcome outcome =
+        folder.tactus(std::string("validate saw-vibration --json --level 0 --seconds 1 --reference ") + data +
+                      "/recordings/chainsaw_cutting_tree_169127b.flac");
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    const json run = json::parse(outcome.out)["runs"][0];
+    CHECK(run["lsd_db"] < 0.5);
+    CHECK(run["drive_rms_v"] > 0.1);
 }
 
 TEST_CASE("validate: without its equaliser the handle fails, and one line per run says by what") {
