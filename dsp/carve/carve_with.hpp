@@ -50,7 +50,7 @@ public:
     CarveResult update(Field& field, std::span<const CutFront> fronts) noexcept {
         CarveResult result;
         for (const CutFront& front : fronts) {
-            if (front.count <= 0 || !is_valid(front.pose)) continue;
+            if (front.count <= 0 || !is_near(field, front)) continue;
             pose_ = front.pose;
             settings_.kerf = std::min(front.kerf, widest_);
             front_pitch_ = front.pitch;
@@ -87,6 +87,22 @@ private:
     struct Ends {
         Vec3 a, b;
     };
+
+    /// A front that is no number, or far from the bone, cuts nothing and is no place that a path leads from.
+    template <class Field>
+    static bool is_near(const Field& field, const CutFront& front) noexcept {
+        if (!is_valid(front.pose) || static_cast<std::size_t>(front.count) > CutFront::most_nodes) return false;
+        constexpr double margin = 0.2;  // m
+        const Vec3 low = field.origin();
+        for (std::size_t n = 0; n < static_cast<std::size_t>(front.count); ++n) {
+            const Vec3 at = front.at(n) - low;
+            for (int axis = 0; axis < 3; ++axis) {
+                const double extent = field.spacing()[axis] * field.size()[static_cast<std::size_t>(axis)];
+                if (!(at[axis] > -margin && at[axis] < extent + margin)) return false;
+            }
+        }
+        return true;
+    }
 
     double removal_at(const CarveSample& sample) const noexcept {
         const CarveSettings& s = settings_;
