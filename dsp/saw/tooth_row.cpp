@@ -153,6 +153,8 @@ void ToothRow::slide(const Walk& walk, Tooth& tooth, int axis) const noexcept {
         const carve::RoundFront::Contact contact =
             walk.front.look(walk.bone, tooth.at, direction, across, Vec3(0.0), 0.1 * walk.voxel);
         if (contact.density > 0.0) {
+            // A tooth that comes in from the air hangs below the floor by the elastic lag of the others: up the face.
+            if (axis == 0 && climb_face(walk, tooth, direction, side - held, deep)) continue;
             tooth.density[static_cast<std::size_t>(axis)] = contact.density;
             return;
         }
@@ -173,6 +175,26 @@ void ToothRow::slide(const Walk& walk, Tooth& tooth, int axis) const noexcept {
         side -= step;
         deep += climbed;
     }
+}
+
+/// Draws a tooth back along the face of bone that stops it, where that and the step that it opens shorten the lag.
+bool ToothRow::climb_face(const Walk& walk, Tooth& tooth, const Vec3& direction, double way,
+                          double& deep) const noexcept {
+    const double rise = 0.25 * walk.voxel;
+    for (int n = 1; n <= most_slides; ++n) {
+        const double up = deep + n * rise;
+        if (!(up * up < deep * deep + way * way)) return false;
+        const Vec3 to = tooth.at - axes_[1] * (n * rise);
+        const carve::RoundFront::Contact contact =
+            walk.front.look(walk.bone, to, direction, axes_[2], Vec3(0.0), 0.1 * walk.voxel);
+        if (contact.density > 0.0) continue;
+        const double left = way - std::min({way, contact.clear, 0.5 * walk.voxel});
+        if (!(up * up + left * left < deep * deep + way * way)) continue;
+        tooth.at = to;
+        deep = up;
+        return true;
+    }
+    return false;
 }
 
 double ToothRow::squared_norm() noexcept {

@@ -142,6 +142,11 @@ Option& Option::excludes(const Option& other) {
     return *this;
 }
 
+Option& Option::value_name(const std::string& name) {
+    option_->type_name(name);
+    return *this;
+}
+
 Option& Option::about(const std::string& text) {
     option_->description(text);
     return *this;

@@ -34,6 +34,7 @@ public:
     Option& needs(const Option& other);
     Option& excludes(const Option& other);
     Option& about(const std::string& text);
+    Option& value_name(const std::string& name);  ///< in the help text, such as LOW:HIGH
     Option& hidden();  ///< accepted, but not shown in help texts: an old spelling
 
 private:

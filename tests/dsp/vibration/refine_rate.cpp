@@ -27,14 +27,14 @@ std::vector<float> buzz(double frequency, double noise, double rate, double seco
 
 }  // namespace
 
-TEST_CASE("the rate of a buzz is heard to 0.05 Hz, whatever the sample rate, in silence and in noise") {
+TEST_CASE("the rate of a buzz of one second is heard to 0.06 Hz, whatever the sample rate, in silence and in noise") {
     for (const double sample_rate : {22050.0, 44100.0, 48000.0, 96000.0})
         for (const double frequency : {75.0, 150.3, 233.0, 333.3})
             for (const double noise : {0.0, 0.1}) {
                 INFO(sample_rate << " Hz, " << frequency << " Hz, noise " << noise);
                 const signal::FundamentalEstimate heard =
                     signal::find_fundamental(buzz(frequency, noise, sample_rate), sample_rate);
-                CHECK(heard.frequency == Approx(frequency).margin(0.05));
+                CHECK(heard.frequency == Approx(frequency).margin(0.06));
                 CHECK(heard.is_certain());
             }
 }

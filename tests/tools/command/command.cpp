@@ -80,7 +80,7 @@ TEST_CASE("check says how stiff a hand may feel each path, and what the patch de
     CHECK(as_shipped["latency_ms"] == 0.0);
     // 30 N s/m over half a millisecond.
     CHECK(as_shipped["stiffness_limit_N_per_mm"].get<double>() == Approx(60.0));
-    CHECK(as_shipped["declared_N_per_mm"].get<double>() == Approx(20.0));
+    CHECK(as_shipped["declared_N_per_mm"].get<double>() == Approx(40.0));
     CHECK(as_shipped["declared_by"] == "blade.stiffness");
     CHECK(as_shipped["ok"] == true);
     CHECK(loop("--set simulated.damping='5 N s/m'", 1)["ok"] == false);

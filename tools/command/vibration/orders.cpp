@@ -126,7 +126,8 @@ Action add(VerbOptions& verb) {
     verb.add("--pulses", settings.pulses, "tachometer pulses per revolution").shows_default().range(0.01, 1e5);
     verb.add("--rate", settings.fixed, "known constant rate, Hz").unit("Hz").range(0.01, 1e6).excludes(tacho);
     verb.add("--band", choice->band,
-             "LOW:HIGH in Hz: search range of a tracked rate (default: around the fundamental, else 20:400)");
+             "search range of a tracked rate, Hz (default: around the fundamental, else 20:400)")
+        .value_name("LOW:HIGH");
     verb.old("--range", "--band");
     verb.add("--orders", settings.highest, "highest order").shows_default().range(1, 200);
     verb.add("--csv", choice->csv, "CSV file for the level over order");
