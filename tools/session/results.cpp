@@ -40,8 +40,8 @@ display::Bounds site_box(const Report& report) {
     const double none = std::numeric_limits<double>::quiet_NaN();
     const Vec3 at = vector_of(report, "position_mm", Vec3(none)) * 1e-3;
     if (!is_finite(at)) return box;
-    // Half the blade, which is also more than the depth of most cuts.
-    constexpr double half = 15e-3;
+    // The diagonal is 35 mm: a cut that is shorter is seen whole.
+    constexpr double half = 10e-3;
     box.add(at - half);
     box.add(at + half);
     return box;
