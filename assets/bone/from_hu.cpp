@@ -275,8 +275,8 @@ float hu_of_density(float density) {
 
 std::string density_calibration() {
     return fmt::format(
-        "uncalibrated: density = {} * HU + {} kg/m3 (mg/cm3), at least 0; line of Rho, Hobatho and Ashman "
-        "1995, no phantom in the scan",
+        "from HU, without a density phantom in the scan: density = {} * HU + {} kg/m3 (mg/cm3), at least 0; line of "
+        "Rho, Hobatho and Ashman 1995",
         density_slope, density_offset);
 }
 
@@ -294,6 +294,10 @@ SparseHuBone sparse_bone_from_hu(const HuLayers& hu, const BoneSurface& surface,
                         iso));
     SparseHuBone result;
     result.components = found.voxels.size();
+    for (std::size_t n = 0; n < found.voxels.size(); ++n) {
+        result.voxels_above += found.voxels[n];
+        if (surface.keep == 0 || n < surface.keep) result.voxels_kept += found.voxels[n];
+    }
     const Box box = room_around(found, surface.keep, hu.layout);
     const volume::Components components = moved_into(std::exchange(found, {}), box);
     const volume::RunRows no_hollows{

@@ -21,8 +21,7 @@ struct BoneSurface {
     bool fill = true;          ///< closed hollows count as bone; they keep their low density
 };
 
-/// Density in kg/m³ from HU by the default linear relation, at least 0. Uncalibrated: no density phantom was in the
-/// scan.
+/// Density in kg/m³ from HU by the default linear relation, at least 0. No density phantom was in the scan.
 float density_of_hu(float hu);
 /// The inverse of density_of_hu for densities above 0, HU.
 float hu_of_density(float density);
@@ -51,6 +50,7 @@ struct SparseHuBone {
     SparseBone bone;
     std::map<std::string, std::string> provenance;
     std::size_t components = 0;  ///< found above the threshold, before selection
+    std::size_t voxels_above = 0, voxels_kept = 0;  ///< that reach the threshold: all, and of the kept components
 };
 
 /// Builds distance and density on the samples of `hu` (LPS, m) around the bone, with a margin of 5 mm and at least six

@@ -22,19 +22,20 @@ struct ImportOptions {
     /// A volume for read_volume (NRRD, NIfTI, a DICOM folder or file, InVesalius), or a mesh: .stl, .ply, .obj.
     std::filesystem::path input;
     std::string series;                 ///< DICOM: the series to read, by its UID or the end of it
-    double threshold = 300.0;  ///< HU; samples at or above it are bone. 300 is common for cortex and dense cores
+    /// HU; samples at or above it are bone. Default: suggested_threshold of the whole volume, which `info` prints.
+    std::optional<double> threshold;
     std::string crop;  ///< "x0:x1,y0:y1,z0:z1" in mm, LPS; empty for everything
     std::string component = "largest";  ///< "largest", "all", or the number of components to keep, largest first
-    std::optional<std::string>
-        unit;  ///< unit of a mesh's coordinates: "mm", "cm" or "m"; mm is assumed when the size is plausible
+    /// Unit of length: "mm", "cm" or "m". Default: what the file states, or mm when the size is plausible for a bone.
+    std::optional<std::string> unit;
     std::optional<double> spacing;  ///< m, all axes; default: the CT's own; for meshes 0.4 mm or 1/400 of the extent
     bool fill = true;  ///< closed hollows below the threshold count as bone
     /// HU = first · value + second, for volumes with uncalibrated scanner values.
     std::optional<std::pair<double, double>> rescale;
     /// Uniform density of a mesh, kg/m³; default: an assumed cortex of 1800 to 2 mm depth and a core of 400.
     std::optional<double> mesh_density;
-    std::string label;          ///< a label map: "all", one label's number or its name
-    std::filesystem::path ct;   ///< the CT of a label map, in the same frame; may be empty
+    std::string label;  ///< a label map: "all", one label's number or its name
+    std::filesystem::path ct;  ///< the CT of a label map, in the same frame; may be empty
     std::optional<double> pointshell;  ///< m: also samples points on the surface, about one per spacing²
     bool pointshell_by_curvature = false;  ///< closer together where curvature is high
     RunJobs run = run_in_turn;  ///< threads; they do not change the bits of the result
@@ -54,6 +55,13 @@ struct ImportSummary {
         double min = 0.0, max = 0.0, mean = 0.0;
     } density;  ///< kg/m³ over the samples inside
     std::size_t components = 0;  ///< found, before selection
+    struct {
+        std::optional<double> hu;  ///< of a CT; none for meshes and label maps
+        std::string from;  ///< "given", or "suggested: " and the method
+        double above_mm3 = 0.0;  ///< all voxels that reach it
+        double kept_mm3 = 0.0;  ///< those of the components that were kept
+        std::optional<double> mask_mm3;  ///< of a masked CT: all voxels that are not 0
+    } threshold;
     std::size_t points = 0;  ///< number of pointshell points
     std::vector<std::string> notes;  ///< corrections and assumptions, one sentence each
 };

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/bone/ct_threshold.hpp"
 #include "assets/bone/from_hu.hpp"
 #include "assets/bone/import_steps.hpp"
 #include "assets/volume/reoriented_volume.hpp"
@@ -22,6 +23,8 @@ namespace {
 
 constexpr double mm = 1e-3;
 constexpr double most_ct_voxels = 4e9;  // read in layers, never all in memory
+
+double volume_mm3(const Vec3& spacing) { return spacing.x * spacing.y * spacing.z / (mm * mm * mm); }
 
 struct Range {
     Vec3 low{-std::numeric_limits<double>::infinity()}, high{std::numeric_limits<double>::infinity()};  // m
@@ -96,7 +99,7 @@ SparseImport import_ct(const ImportOptions& options, const ImportReport& report,
     const Range crop = parse_crop(options.crop);
     const std::size_t keep = parse_component(options.component);
     report(0.0, "reading");
-    const std::unique_ptr<volume::SliceReader> reader = volume::open_volume(options.input, {options.series});
+    const std::unique_ptr<volume::SliceReader> reader = open_scan(options.input, options, options.series);
     volume::ScanVolume& about = reader->about;
     volume::ReorientedVolume source(*reader, options.run);
     source.set_line(options.rescale);
@@ -136,6 +139,14 @@ SparseImport import_ct(const ImportOptions& options, const ImportReport& report,
         return all;
     };
     const HuLayers hu{layout, layers};
+    CtThreshold threshold;
+    if (options.threshold) {
+        threshold = {*options.threshold, "given"};
+    } else {
+        check();
+        threshold = suggested_threshold(threshold_histogram(source), about.hu);
+        threshold.how = "suggested: " + threshold.how;
+    }
     ImportInLayers how;
     how.at_once = options.layers_at_once;
     how.check_values = check;
@@ -143,13 +154,21 @@ SparseImport import_ct(const ImportOptions& options, const ImportReport& report,
         report(0.85 * share, share < 0.45 ? "reading and finding bone" : "surface and distance");
     };
     SparseHuBone made =
-        sparse_bone_from_hu(hu, {static_cast<float>(options.threshold), keep, options.fill}, options.run, how);
+        sparse_bone_from_hu(hu, {static_cast<float>(threshold.value), keep, options.fill}, options.run, how);
     summary.hu = volume::name_of(about.hu);
     summary.notes = about.notes;
     summary.components = made.components;
+    const double voxel = volume_mm3(layout.spacing);
+    summary.threshold.hu = threshold.value;
+    summary.threshold.from = threshold.how;
+    summary.threshold.above_mm3 = double(made.voxels_above) * voxel;
+    summary.threshold.kept_mm3 = double(made.voxels_kept) * voxel;
+    if (about.hu == volume::HuKind::masked)
+        summary.threshold.mask_mm3 = double(source.tally().count - source.tally().zeros) * volume_mm3(about.spacing());
     SparseImport result{std::move(made.bone), {}};
     result.about.provenance = std::move(made.provenance);
     auto& provenance = result.about.provenance;
+    provenance["threshold_from"] = threshold.how;
     provenance["encoding"] = about.encoding;
     provenance["file_frame"] = volume::name_of(about.file_frame);
     if (source.is_turned()) provenance["axes"] = "turned; resampled to LPS";

@@ -115,7 +115,7 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
     const ImportReport report{progress};
     const std::string file = options.input.string();
     report(0.0, "reading");
-    const std::unique_ptr<volume::SliceReader> reader = volume::open_volume(options.input, {options.series});
+    const std::unique_ptr<volume::SliceReader> reader = open_scan(options.input, options, options.series);
     volume::ReorientedVolume source(*reader, options.run);
     reader->about.kind = volume::VolumeKind::labels;
     if (source.is_turned()) source.settle();
@@ -129,7 +129,7 @@ std::vector<ImportedBone> import_labels(const ImportOptions& options, const Impo
     std::optional<volume::ReorientedVolume> ct;
     volume::HuKind hu = volume::HuKind::none;
     if (!options.ct.empty()) {
-        grey = volume::open_volume(options.ct);
+        grey = open_scan(options.ct, options, "");
         ct.emplace(*grey, options.run);
         ct->set_line(options.rescale);
         ct->settle();

@@ -3,6 +3,7 @@
 #include "assets/bone/import_steps.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/repair.hpp"
+#include "assets/volume/length_unit.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/volume/surface_distance.hpp"
 
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 namespace tactus::bone {
@@ -20,24 +22,18 @@ namespace {
 constexpr double mm = 1e-3;
 constexpr double most_mesh_voxels = 4e8;
 
-double unit_of(const ImportOptions& options, double extent) {
-    if (options.unit) {
-        if (*options.unit == "mm") return mm;
-        if (*options.unit == "cm") return 10.0 * mm;
-        if (*options.unit == "m") return 1.0;
-        throw Error(fmt::format("unit '{}' is not mm, cm or m", *options.unit));
-    }
-    if (extent < 5.0 || extent > 2000.0) {
-        const std::string_view likely = extent < 0.005 ? "" : extent <= 2.0 ? "m" : extent < 5.0 ? "cm" : "";
-        throw Error(
-            fmt::format("{}: the mesh is {:.3g} units across, which is not plausible in mm; give its unit with --unit "
-                        "mm, cm or m{}",
-                        options.input.string(), extent,
-                        likely.empty() ? ""
-                                       : fmt::format(" (--unit {} would make it {:.0f} mm)", likely,
-                                                     extent * (likely == "m" ? 1000.0 : 10.0))));
-    }
-    return mm;
+struct Unit {
+    double metres;
+    std::string_view from;  // for the provenance
+};
+
+Unit unit_of(const ImportOptions& options, const mesh::MeshOrigin& origin, double extent) {
+    if (options.unit) return {volume::metres_in(*options.unit), ""};
+    if (origin.unit) return {*origin.unit, " (stated in the file)"};
+    if (const std::string question = volume::unit_question("the mesh", extent, volume::plausible_bone);
+        !question.empty())
+        throw Error(fmt::format("{}: {}", options.input.string(), question));
+    return {mm, " (assumed)"};
 }
 
 // Keeps the components that enclose the largest volumes and orients each outwards.
@@ -77,8 +73,8 @@ Bone import_mesh(const ImportOptions& options, const ImportReport& report, Impor
     Vec3 low = mesh.vertices.front(), high = low;
     for (const Vec3& v : mesh.vertices) low = glm::min(low, v), high = glm::max(high, v);
     const auto widest = [](const Vec3& v) { return std::max({v.x, v.y, v.z}); };
-    const double unit = unit_of(options, widest(high - low));
-    for (Vec3& v : mesh.vertices) v *= unit;
+    const Unit unit = unit_of(options, origin, widest(high - low));
+    for (Vec3& v : mesh.vertices) v *= unit.metres;
     const mesh::MeshRepair repaired = mesh::repair(mesh, options.input.string());
     if (!repaired.is_clean()) summary.notes.push_back(repaired.describe());
     if (origin.without_area > 0)
@@ -111,7 +107,7 @@ Bone import_mesh(const ImportOptions& options, const ImportReport& report, Impor
                                          : assumed_density_law();
     bone.provenance["file_frame"] =
         fmt::format("{}{}", volume::name_of(origin.frame), origin.frame_stated ? "" : " (assumed)");
-    bone.provenance["unit"] = fmt::format("{} m{}", unit, options.unit ? "" : " (assumed)");
+    bone.provenance["unit"] = fmt::format("{} m{}", unit.metres, unit.from);
     return bone;
 }
 

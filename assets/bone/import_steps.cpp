@@ -3,6 +3,7 @@
 
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
+#include "assets/volume/length_unit.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 #include "dsp/core/hash.hpp"
@@ -36,7 +37,8 @@ std::vector<std::filesystem::path> source_files(const std::filesystem::path& inp
 void check_options(const ImportOptions& options) {
     if (options.spacing && !(*options.spacing >= 0.01 * mm && *options.spacing <= 100.0 * mm))
         throw Error("the spacing must be between 0.01 and 100 mm");
-    if (!std::isfinite(options.threshold)) throw Error("the threshold must be a number of HU");
+    if (options.threshold && !std::isfinite(*options.threshold)) throw Error("the threshold must be a number of HU");
+    if (options.unit) volume::metres_in(*options.unit);
     if (options.mesh_density && !(*options.mesh_density > 0.0 && *options.mesh_density < 1e5))
         throw Error("the density of a mesh must be above 0 and below 100000 kg/m3");
 }
@@ -71,6 +73,16 @@ void check_layout(const volume::Grid& layout, double most) {
         throw Error(
             fmt::format("{:.0f} voxels at {:.3g} mm are too many (at most {:.0f}); use a larger spacing or a crop box",
                         count, layout.spacing.x / mm, most));
+}
+
+std::unique_ptr<volume::SliceReader> open_scan(const std::filesystem::path& path, const ImportOptions& options,
+                                               const std::string& series) {
+    if (options.mesh_density)
+        throw Error(fmt::format("{}: --density is for meshes; a scan has its own", path.string()));
+    std::unique_ptr<volume::SliceReader> reader = volume::open_volume(path, {series, options.unit});
+    if (const std::string question = volume::unit_question(reader->about); !question.empty())
+        throw Error(fmt::format("{}: {}", path.string(), question));
+    return reader;
 }
 
 void measure(const Bone& bone, ImportSummary& summary) {

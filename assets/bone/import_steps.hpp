@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -43,6 +44,10 @@ std::size_t parse_component(const std::string& text);
 
 /// Throws Error for more voxels than `most`.
 void check_layout(const volume::Grid& layout, double most);
+
+/// Opens a CT or label map. Throws Error when its unit of length must be asked for, and for options of meshes.
+std::unique_ptr<volume::SliceReader> open_scan(const std::filesystem::path& path, const ImportOptions& options,
+                                               const std::string& series);
 
 /// Applies the linear calibration to scanner values. Throws Error when the values are not HU and no calibration is
 /// given.

@@ -4,20 +4,43 @@
 #include "assets/bone/import.hpp"
 #include "assets/cases/plan_file.hpp"
 #include "assets/cases/propose_paint.hpp"
+#include "assets/mesh/mesh.hpp"
+#include "assets/volume/scan_volume.hpp"
 #include "dsp/contact/sample_surface.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include <algorithm>
+#include <optional>
+#include <string>
 
 namespace tactus::cases {
+
+namespace {
+
+// A plan has no place for a unit, and fragments may be smaller than whole bones: mm, unless a mesh is far too small or
+// too large for that; then import refuses it.
+std::optional<std::string> unit_of(const std::filesystem::path& path) {
+    if (volume::is_volume_file(path)) return "mm";
+    mesh::MeshOrigin origin;
+    const mesh::Mesh mesh = mesh::load_mesh(path, 1.0, &origin);
+    Vec3 low = mesh.vertices.front(), high = low;
+    for (const Vec3& v : mesh.vertices) low = glm::min(low, v), high = glm::max(high, v);
+    const double extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+    if (origin.unit || !(extent >= 5.0 && extent <= 2000.0)) return std::nullopt;
+    return "mm";
+}
+
+}  // namespace
 
 bone::Bone bone_from_file(const std::filesystem::path& path, const RunJobs& run) {
     if (bone::file_of_bone(path).extension() == ".vdb") return bone::load_bone(path);
     bone::ImportOptions options;
     options.input = path;
     options.run = run;
+    options.unit = unit_of(path);
     return bone::import_bone(options);
 }
 

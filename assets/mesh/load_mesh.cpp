@@ -2,11 +2,13 @@
 #include "assets/file/whole_file.hpp"
 #include "assets/mesh/mesh.hpp"
 #include "assets/mesh/mesh_readers.hpp"
+#include "assets/volume/length_unit.hpp"
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <numeric>
 #include <tuple>
@@ -61,6 +63,17 @@ std::optional<volume::Frame> stated_frame(std::string_view text) {
     return {};
 }
 
+std::optional<double> stated_unit(std::string_view text) {
+    const std::size_t at = text.find("unit=");
+    if (at == std::string_view::npos) return {};
+    const std::string_view word = text.substr(at + 5, 3);
+    for (const std::string_view unit : {"mm", "cm", "m"})
+        if (word.starts_with(unit) &&
+            (word.size() == unit.size() || !std::isalnum(static_cast<unsigned char>(word[unit.size()]))))
+            return volume::metres_in(unit);
+    return {};
+}
+
 std::string_view Words::next() {
     constexpr std::string_view blanks = " \t\r\n\v\f";
     at_ = std::min(text_.find_first_not_of(blanks, at_), text_.size());
@@ -91,7 +104,7 @@ Mesh load_mesh(const std::filesystem::path& path, double scale, MeshOrigin* orig
                     : kind == "ply" ? read_ply(bytes, file)
                                     : read_obj(bytes, file);
     check_numbers(text.surface, file);
-    MeshOrigin found{text.frame.value_or(volume::Frame::lps), text.frame.has_value(), 0};
+    MeshOrigin found{text.frame.value_or(volume::Frame::lps), text.frame.has_value(), text.unit, 0};
     for (Vec3& v : text.surface.vertices)
         v = (found.frame == volume::Frame::ras ? volume::turned_about_z(v) : v) * scale;
     found.without_area = join_equal_points(text.surface);

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 
 namespace tactus::mesh {
 
@@ -19,6 +20,7 @@ struct Mesh : geometry::TriangleSurface {
 struct MeshOrigin {
     volume::Frame frame = volume::Frame::lps;       ///< frame of the coordinates in the file
     bool frame_stated = false;      ///< by "SPACE=RAS" or "SPACE=LPS" in a header or comment; else LPS is assumed
+    std::optional<double> unit;     ///< m, from "unit=mm", "unit=cm" or "unit=m" in a header or comment
     std::size_t without_area = 0;   ///< triangles dropped because two corners coincide
 };
 

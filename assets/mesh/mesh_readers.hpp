@@ -15,6 +15,7 @@ namespace tactus::mesh {
 struct MeshText {
     geometry::TriangleSurface surface;
     std::optional<volume::Frame> frame;  ///< from "SPACE=RAS" or "SPACE=LPS" in a header or comment
+    std::optional<double> unit;          ///< m, from "unit=mm" and the like
 };
 
 MeshText read_stl(const std::string& bytes, const std::string& file);
@@ -23,6 +24,8 @@ MeshText read_obj(const std::string& bytes, const std::string& file);
 
 /// The frame that a header or comment states, if any.
 std::optional<volume::Frame> stated_frame(std::string_view text);
+/// The unit that a header or comment states, m, if any.
+std::optional<double> stated_unit(std::string_view text);
 
 /// Splits text at whitespace without copying it.
 class Words {

@@ -33,6 +33,7 @@ MeshText read_obj(const std::string& bytes, const std::string& file) {
         const std::string_view first = words.next();
         if (first.starts_with('#')) {
             if (const auto stated = stated_frame(line)) mesh.frame = stated;
+            if (const auto stated = stated_unit(line)) mesh.unit = stated;
         } else if (first == "v") {
             Vec3 point;
             for (int n = 0; n < 3; ++n) point[n] = words.number(file);

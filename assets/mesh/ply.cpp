@@ -80,7 +80,8 @@ std::string_view line_at(std::string_view bytes, std::size_t& at) {
     return line;
 }
 
-Header header_of(std::string_view bytes, const std::string& file, std::optional<volume::Frame>& frame) {
+Header header_of(std::string_view bytes, const std::string& file, std::optional<volume::Frame>& frame,
+                 std::optional<double>& unit) {
     Header header;
     std::size_t at = 0;
     bool has_coding = false;
@@ -96,6 +97,7 @@ Header header_of(std::string_view bytes, const std::string& file, std::optional<
         }
         if (first == "comment" || first == "obj_info") {
             if (const auto stated = stated_frame(line)) frame = stated;
+            if (const auto stated = stated_unit(line)) unit = stated;
         } else if (first == "format") {
             const std::string_view name = words.next();
             if (name != "ascii" && name != "binary_little_endian" && name != "binary_big_endian")
@@ -160,7 +162,7 @@ void read_element(Body& body, const Element& element, const std::string& file, g
 
 MeshText read_ply(const std::string& bytes, const std::string& file) {
     MeshText mesh;
-    const Header header = header_of(bytes, file, mesh.frame);
+    const Header header = header_of(bytes, file, mesh.frame, mesh.unit);
     Body body(std::string_view(bytes).substr(header.size), header.coding, file);
     for (const Element& element : header.elements) read_element(body, element, file, mesh.surface);
     return mesh;

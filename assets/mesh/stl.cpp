@@ -43,6 +43,7 @@ void read_text(const std::string& bytes, const std::string& file, geometry::Tria
 MeshText read_stl(const std::string& bytes, const std::string& file) {
     MeshText mesh;
     mesh.frame = stated_frame(std::string_view(bytes).substr(0, 300));
+    mesh.unit = stated_unit(std::string_view(bytes).substr(0, 300));
     const bool text =
         bytes.starts_with("solid") && bytes.find("facet") != std::string::npos && bytes.find('\0') == std::string::npos;
     if (text) {

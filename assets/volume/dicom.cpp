@@ -14,7 +14,9 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <optional>
+#include <set>
 #include <span>
 
 namespace tactus::volume {
@@ -23,6 +25,9 @@ namespace {
 
 using Images = std::vector<DicomImage>;
 constexpr std::size_t most_files = 100'000;
+constexpr std::size_t mark_end = 132;  // bytes: preamble and mark
+
+bool has_dicom_mark(std::string_view start) { return start.size() >= mark_end && start.substr(128, 4) == "DICM"; }
 
 std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> files;
@@ -39,8 +44,30 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
     return files;
 }
 
-// The images of a folder or of a file. A file with a single image adds the other files of its series in the folder.
+// The images in a zip. Images of one name get their number, so that they stay different files.
+Images collect_zip(const std::filesystem::path& path) {
+    const auto archive = std::make_shared<const file::ZipFile>(path);
+    Images all;
+    std::set<std::string> names;
+    for (file::ZipFile::Entry entry : archive->entries()) {
+        if (entry.size < mark_end || !has_dicom_mark(archive->read(entry, mark_end)) ||
+            entry.name.ends_with("/DICOMDIR"))
+            continue;
+        if (!names.insert(entry.name).second) entry.name += fmt::format("#{}", entry.index + 1);
+        Images found = dicom_images(archive, entry);
+        all.insert(all.end(), found.begin(), found.end());
+    }
+    if (all.empty())
+        throw Error(fmt::format("{}: the zip has no DICOM images; other files must be unpacked first", path.string()));
+    std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.file < b.file; });
+    return all;
+}
+
+// The images of a folder, a zip or a file. A file with a single image adds the other files of its series in the folder.
 Images collect(const std::filesystem::path& path) {
+    // The first bytes of a DICOM file are free, so they may look like those of a zip.
+    if (!std::filesystem::is_directory(path) && !is_dicom_file(path) && file::is_zip_file(path))
+        return collect_zip(path);
     if (!std::filesystem::is_directory(path)) {
         Images own = dicom_images(path);
         if (own.empty()) throw Error(fmt::format("{}: no image can be read as DICOM", path.string()));
@@ -117,7 +144,7 @@ void check_alike(const Images& images, const std::string& place) {
 }
 
 struct Slices {
-    Images images;               // ascending along the normal
+    Images images;  // ascending along the normal
     std::vector<double> height;  // mm along the normal
 };
 
@@ -182,7 +209,7 @@ public:
         }
         std::vector<CompactSlice>& frames = frames_[image.file];
         if (frames.empty()) {
-            const std::vector<float> samples = dicom_samples(dicom_images(image.file));
+            const std::vector<float> samples = dicom_samples(dicom_images_beside(image));
             for (std::size_t at = 0; at < samples.size(); at += each_)
                 frames.emplace_back(std::span(samples).subspan(at, each_));
         }
@@ -321,8 +348,8 @@ private:
 
 bool is_dicom_file(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
-    char mark[132] = {};
-    return file.read(mark, sizeof mark) && std::string_view(mark + 128, 4) == "DICM";
+    std::string start(mark_end, '\0');
+    return file.read(start.data(), mark_end) && has_dicom_mark(start);
 }
 
 std::unique_ptr<SliceReader> open_dicom(const std::filesystem::path& path, const ReadOptions& options) {

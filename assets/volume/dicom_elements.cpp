@@ -143,8 +143,9 @@ private:
 }  // namespace
 
 void check_dicom_elements(const std::filesystem::path& path) {
-    const std::string file = path.string(), bytes = file::read_whole_file(path);
-    Walk(bytes, file).whole_file();
+    check_dicom_elements(file::read_whole_file(path), path.string());
 }
+
+void check_dicom_elements(std::string_view bytes, const std::string& file) { Walk(bytes, file).whole_file(); }
 
 }  // namespace tactus::volume

@@ -2,6 +2,7 @@
 #include "assets/volume/dicom_images.hpp"
 
 #include "assets/file/room.hpp"
+#include "assets/file/whole_file.hpp"
 #include "assets/volume/dicom_elements.hpp"
 #include "dsp/core/error.hpp"
 
@@ -20,6 +21,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <sstream>
+#include <utility>
 
 namespace tactus::volume {
 
@@ -114,15 +117,13 @@ void take_functional_groups(const gdcm::DataSet& set, std::size_t frame, DicomIm
     if (values) take_rescale(*values, image);
 }
 
-void check_claim(const DicomImage& image, int frames, int bits, bool compressed) {
+void check_claim(const DicomImage& image, double size, int frames, int bits, bool compressed) {
     const std::string file = image.file.string();
     if (image.rows < 1 || image.columns < 1)
         throw Error(fmt::format("{}: the image has {} rows and {} columns", file, image.rows, image.columns));
-    std::error_code failure;
-    const auto size = static_cast<double>(std::filesystem::file_size(image.file, failure));
     const double asked = double(image.rows) * image.columns * frames * bits / 8.0;
     // No transfer syntax compresses noisy images by a factor of thousands; empty images come close.
-    if (failure || asked > size * (compressed ? 2000.0 : 1.0))
+    if (asked > size * (compressed ? 2000.0 : 1.0))
         throw Error(fmt::format(
             "{}: cut short: its header asks for {:.0f} bytes of samples, more than the file can hold", file, asked));
 }
@@ -145,21 +146,16 @@ void rescale(const char* bytes, const Layout& layout, const DicomImage& image, s
     }
 }
 
-}  // namespace
-
-std::vector<DicomImage> dicom_images(const std::filesystem::path& file) {
-    silence();
-    check_dicom_elements(file);
-    gdcm::Reader reader;
-    reader.SetFileName(file.c_str());
+// The images that `reader`, which has its input, finds in `file` of `size` bytes.
+std::vector<DicomImage> images_of(gdcm::Reader& reader, const DicomImage& file, double size) {
+    const std::string name = file.file.string();
     std::vector<DicomImage> images;
     try {
         if (!reader.ReadUpToTag(pixel_data)) return {};
         const gdcm::DataSet& set = reader.GetFile().GetDataSet();
         const int rows = binary_of(set, {0x0028, 0x0010}, 0), columns = binary_of(set, {0x0028, 0x0011}, 0);
         if (rows == 0 && columns == 0) return {};
-        DicomImage image;
-        image.file = file;
+        DicomImage image = file;
         image.rows = rows;
         image.columns = columns;
         image.instance = text_of(set, {0x0008, 0x0018});
@@ -169,12 +165,12 @@ std::vector<DicomImage> dicom_images(const std::filesystem::path& file) {
         image.is_localizer = text_of(set, {0x0008, 0x0008}).find("LOCALIZER") != std::string::npos;
         image.is_inverted = text_of(set, {0x0028, 0x0004}) == "MONOCHROME1";
         if (binary_of(set, {0x0028, 0x0002}, 1) != 1)
-            throw Error(fmt::format("{}: this is a colour image, not a CT", file.string()));
+            throw Error(fmt::format("{}: this is a colour image, not a CT", name));
         // GDCM reads the number of frames of these classes without checking that it exists.
         gdcm::MediaStorage kind;
         kind.SetFromFile(reader.GetFile());
         if (kind.GetModalityDimension() > 2 && !set.FindDataElement(gdcm::Tag(0x0028, 0x0008)))
-            throw Error(fmt::format("{}: a multi-frame image without a number of frames", file.string()));
+            throw Error(fmt::format("{}: a multi-frame image without a number of frames", name));
         const gdcm::TransferSyntax& syntax = reader.GetFile().GetHeader().GetDataSetTransferSyntax();
         image.syntax = gdcm::TransferSyntax::GetTSString(syntax) ? gdcm::TransferSyntax::GetTSString(syntax) : "";
         take_geometry(set, set, set, image);
@@ -182,8 +178,9 @@ std::vector<DicomImage> dicom_images(const std::filesystem::path& file) {
         const auto counted = decimals_of(set, {0x0028, 0x0008});
         const double frames = counted.empty() ? 1.0 : counted[0];
         if (!(frames >= 1.0 && frames <= 100000.0))
-            throw Error(fmt::format("{}: {:g} frames are not possible", file.string(), frames));
-        check_claim(image, static_cast<int>(frames), binary_of(set, {0x0028, 0x0100}, 16), syntax.IsEncapsulated());
+            throw Error(fmt::format("{}: {:g} frames are not possible", name, frames));
+        check_claim(image, size, static_cast<int>(frames), binary_of(set, {0x0028, 0x0100}, 16),
+                    syntax.IsEncapsulated());
         const bool enhanced = set.FindDataElement(gdcm::Tag(0x5200, 0x9230));
         for (int frame = 0; frame < static_cast<int>(frames); ++frame) {
             image.frame = frame;
@@ -194,9 +191,40 @@ std::vector<DicomImage> dicom_images(const std::filesystem::path& file) {
     } catch (const Error&) {
         throw;
     } catch (const std::exception& failure) {
-        throw Error(fmt::format("{}: cannot be read as DICOM: {}", file.string(), failure.what()));
+        throw Error(fmt::format("{}: cannot be read as DICOM: {}", name, failure.what()));
     }
     return images;
+}
+
+}  // namespace
+
+std::vector<DicomImage> dicom_images(const std::filesystem::path& file) {
+    silence();
+    check_dicom_elements(file);
+    gdcm::Reader reader;
+    reader.SetFileName(file.c_str());
+    DicomImage from;
+    from.file = file;
+    return images_of(reader, from, static_cast<double>(file::require_file(file)));
+}
+
+std::vector<DicomImage> dicom_images(const std::shared_ptr<const file::ZipFile>& archive,
+                                     const file::ZipFile::Entry& entry) {
+    silence();
+    std::string bytes = archive->read(entry);
+    check_dicom_elements(bytes, entry.name);
+    std::istringstream stream(std::move(bytes));
+    gdcm::Reader reader;
+    reader.SetStream(stream);
+    DicomImage from;
+    from.file = entry.name;
+    from.archive = archive;
+    from.entry = entry;
+    return images_of(reader, from, static_cast<double>(entry.size));
+}
+
+std::vector<DicomImage> dicom_images_beside(const DicomImage& image) {
+    return image.archive ? dicom_images(image.archive, image.entry) : dicom_images(image.file);
 }
 
 std::vector<float> dicom_samples(const std::vector<DicomImage>& images) {
@@ -208,7 +236,13 @@ std::vector<float> dicom_samples(const std::vector<DicomImage>& images) {
     };
     try {
         gdcm::ImageReader reader;
-        reader.SetFileName(file.c_str());
+        std::istringstream stream;
+        if (first.archive) {
+            stream.str(first.archive->read(first.entry));
+            reader.SetStream(stream);
+        } else {
+            reader.SetFileName(file.c_str());
+        }
         if (!reader.Read()) refuse("damaged, cut short, or compressed in a way that GDCM does not support");
         const gdcm::Image& picture = reader.GetImage();
         const gdcm::PixelFormat& format = picture.GetPixelFormat();

@@ -148,6 +148,7 @@ void read_geometry(const Header& h, ScanVolume& volume, const std::string& name)
     const SampleMap<Frame::ras> map = h.sform > 0 ? from_rows(h, unit) : from_quaternion(h, unit);
     volume.map = to_lps(map);
     volume.file_frame = Frame::ras;
+    volume.unit_stated = code >= 1 && code <= 3;
     check_map(volume.map, name);
     if (h.sform > 0 && h.qform > 0) {
         const SampleMap<Frame::ras> other = from_quaternion(h, unit);

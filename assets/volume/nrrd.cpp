@@ -88,6 +88,7 @@ void read_geometry(const Nrrd& nrrd, unsigned first, ScanVolume& volume, const s
     if (!is_finite(map.origin)) map.origin = Vec3(0.0);  // not given
     volume.map = is_ras ? to_lps(SampleMap<Frame::ras>{map.step, map.origin}) : map;
     volume.file_frame = is_ras ? Frame::ras : Frame::lps;
+    volume.unit_stated = nrrd.spaceUnits[0] && *nrrd.spaceUnits[0];
     check_map(volume.map, file);
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assets/file/whole_file.hpp"
+#include "assets/file/zip_file.hpp"
+#include "assets/volume/length_unit.hpp"
 #include "assets/volume/readers.hpp"
 #include "dsp/core/error.hpp"
 
@@ -30,7 +32,8 @@ Format format_of(const std::filesystem::path& path) {
     if (ends_with(path, ".nrrd") || ends_with(path, ".nhdr")) return Format::nrrd;
     if (ends_with(path, ".nii") || ends_with(path, ".nii.gz")) return Format::nifti;
     if (ends_with(path, ".inv3")) return Format::inv3;
-    if (ends_with(path, ".dcm") || ends_with(path, ".ima") || is_dicom_file(path)) return Format::dicom;
+    if (ends_with(path, ".dcm") || ends_with(path, ".ima") || is_dicom_file(path) || file::is_zip_file(path))
+        return Format::dicom;
     std::array<char, 7> mark{};
     std::ifstream(path, std::ios::binary).read(mark.data(), mark.size());
     return std::string_view(mark.data(), mark.size()) == "NRRD000" ? Format::nrrd : Format::none;
@@ -40,7 +43,9 @@ Format format_of(const std::filesystem::path& path) {
 
 bool is_volume_file(const std::filesystem::path& path) { return format_of(path) != Format::none; }
 
-std::unique_ptr<SliceReader> open_volume(const std::filesystem::path& path, const ReadOptions& options) {
+namespace {
+
+std::unique_ptr<SliceReader> open_in_mm(const std::filesystem::path& path, const ReadOptions& options) {
     switch (format_of(path)) {
         case Format::nrrd: return open_nrrd(path);
         case Format::nifti: return open_nifti(path);
@@ -48,8 +53,25 @@ std::unique_ptr<SliceReader> open_volume(const std::filesystem::path& path, cons
         case Format::dicom: return open_dicom(path, options);
         case Format::none: break;
     }
-    throw Error(fmt::format(
-        "{}: not a supported volume; use a DICOM folder or file, .nrrd, .nhdr, .nii, .nii.gz or .inv3", path.string()));
+    throw Error(
+        fmt::format("{}: not a supported volume; use a DICOM folder, zip or file, .nrrd, .nhdr, .nii, .nii.gz or .inv3",
+                    path.string()));
+}
+
+}  // namespace
+
+std::unique_ptr<SliceReader> open_volume(const std::filesystem::path& path, const ReadOptions& options) {
+    std::unique_ptr<SliceReader> reader = open_in_mm(path, options);
+    ScanVolume& about = reader->about;
+    if (!options.unit) return reader;
+    const double scale = metres_in(*options.unit) / metres_in("mm");
+    if (about.unit_stated && scale != 1.0)
+        throw Error(fmt::format("{}: the file states its unit of length; leave out --unit", path.string()));
+    about.map.step *= scale;
+    about.map.origin *= scale;
+    about.unit_stated = true;
+    check_map(about.map, path.string());
+    return reader;
 }
 
 ScanVolume read_volume(const std::filesystem::path& path, const ReadOptions& options) {

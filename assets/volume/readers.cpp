@@ -46,9 +46,9 @@ std::size_t checked_count(const std::array<std::int64_t, 3>& size, const std::st
 void check_map(const SampleMap<Frame::lps>& map, const std::string& file) {
     for (int axis = 0; axis < 3; ++axis) {
         const double length = glm::length(map.step[axis]);
-        if (!(length > 1e-6 && length < 0.1))
+        if (!(length > 1e-8 && length < 0.1))
             throw Error(
-                fmt::format("{}: the voxel spacing along axis {} is missing or not between 0.001 and 100 mm; "
+                fmt::format("{}: the voxel spacing along axis {} is missing or not between 0.00001 and 100 mm; "
                             "give its spacing and directions in mm",
                             file, axis));
     }

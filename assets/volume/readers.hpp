@@ -22,7 +22,8 @@ bool is_dicom_file(const std::filesystem::path& path);
 
 /// Number of samples. Throws Error when an axis is empty or there are more than 1e9 samples.
 std::size_t checked_count(const std::array<std::int64_t, 3>& size, const std::string& file);
-/// Throws Error unless every spacing is between 0.001 and 100 mm and the axes span a volume.
+/// Throws Error unless every spacing is between 0.00001 and 100 mm and the axes span a volume. The lower limit lets files
+/// in m pass, whose unit is asked for later.
 void check_map(const SampleMap<Frame::lps>& map, const std::string& file);
 /// Throws Error when a value is not a number. Derives kind and hu from the values when the file does not state them.
 /// Labels: whole numbers from 0 to 255, most of them 0, if the samples were `integers`. Calibrated HU: air near -1000.

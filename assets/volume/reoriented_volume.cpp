@@ -294,4 +294,10 @@ Grid lps_grid(ScanVolume volume) {
     return whole_of(layers);
 }
 
+std::pair<double, double> ReorientedVolume::range() const {
+    const double low = double(tally_.low), high = double(tally_.high);
+    if (!line_) return {low, high};
+    return std::minmax({line_->first * low + line_->second, line_->first * high + line_->second});
+}
+
 }  // namespace tactus::volume

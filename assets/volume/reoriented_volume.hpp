@@ -34,6 +34,8 @@ public:
     /// Determines the kind of values (reader.about.kind, .hu); reads all slices that were not read yet.
     void settle();
     const Tally& tally() const { return tally_; }
+    /// Least and greatest value of the file, after set_line. Valid after settle().
+    std::pair<double, double> range() const;
 
     /// Applies first · value + second to all values from now on.
     void set_line(std::optional<std::pair<double, double>> line) { line_ = line; }

@@ -44,6 +44,7 @@ struct ScanVolume {
     VolumeKind kind = VolumeKind::ct;
     HuKind hu = HuKind::calibrated;
     std::vector<Segment> segments;     ///< named segments of a label map
+    bool unit_stated = true;           ///< false: the file states no unit of length, mm is assumed
     bool uniform = true;               ///< the slices were evenly spaced in the file; false: they were interpolated
     std::string format;                ///< "NRRD", "NIfTI", "DICOM", "InVesalius"
     std::string encoding;              ///< storage of the samples: "raw", "gzip", a transfer syntax, ...
@@ -60,12 +61,16 @@ struct ScanVolume {
 
 struct ReadOptions {
     std::string series;  ///< DICOM: the series to read, by its UID or the end of it; needed when a folder has several
+    std::optional<std::string> unit;  ///< "mm", "cm" or "m", for files that state no unit of length; default: mm
 };
 
-/// Reads NRRD (.nrrd, .nhdr, .seg.nrrd), NIfTI-1 and -2 (.nii, .nii.gz), a DICOM file or a folder of them, or an
-/// InVesalius project (.inv3), detected by content if possible, otherwise by extension. Throws Error for files that are
+/// Reads NRRD (.nrrd, .nhdr, .seg.nrrd), NIfTI-1 and -2 (.nii, .nii.gz), a DICOM file, a folder or zip of them,
+/// or an InVesalius project (.inv3), detected by content if possible, otherwise by extension. Throws Error for files that are
 /// damaged, shorter than the header claims (before memory is allocated), without geometry, or in another format.
 ScanVolume read_volume(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// Asks for the unit when the file states none and the volume is not plausible in mm; else empty. See unit_question.
+std::string unit_question(const ScanVolume& volume);
 
 /// True for files and folders that read_volume accepts by name; false for meshes, bones and everything else.
 bool is_volume_file(const std::filesystem::path& path);

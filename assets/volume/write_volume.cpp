@@ -66,7 +66,8 @@ std::string nrrd_of(const Grid& grid, WrittenType type) {
     const Vec3 h = grid.spacing * 1e3, o = grid.origin * 1e3;
     return fmt::format(
                "NRRD0005\ntype: {}\ndimension: 3\nspace: left-posterior-superior\nsizes: {} {} {}\n"
-               "space directions: ({},0,0) (0,{},0) (0,0,{})\nkinds: domain domain domain\nendian: little\n"
+               "space units: \"mm\" \"mm\" \"mm\"\nspace directions: ({},0,0) (0,{},0) (0,0,{})\nkinds: domain domain "
+               "domain\nendian: little\n"
                "encoding: gzip\nspace origin: ({},{},{})\n\n",
                type == WrittenType::int16 ? "short" : "float", grid.size[0], grid.size[1], grid.size[2], h.x, h.y, h.z,
                o.x, o.y, o.z) +

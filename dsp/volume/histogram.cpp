@@ -6,17 +6,26 @@
 namespace tactus::volume {
 
 Histogram histogram_of(std::span<const float> values, std::size_t bins) {
-    Histogram histogram;
-    histogram.counts.assign(bins, 0);
-    if (values.empty()) return histogram;
+    if (values.empty()) return empty_histogram(0.0, 0.0, bins);
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    histogram.low = double(*low);
-    histogram.high = double(*high);
+    Histogram histogram = empty_histogram(double(*low), double(*high), bins);
+    add_values(histogram, values);
+    return histogram;
+}
+
+Histogram empty_histogram(double low, double high, std::size_t bins) {
+    Histogram histogram{low, high, {}};
+    histogram.counts.assign(bins, 0);
+    return histogram;
+}
+
+void add_values(Histogram& histogram, std::span<const float> values) {
+    const std::size_t bins = histogram.counts.size();
     const double scale =
         histogram.high > histogram.low ? static_cast<double>(bins) / (histogram.high - histogram.low) : 0.0;
     for (const float value : values)
-        ++histogram.counts[std::min(bins - 1, static_cast<std::size_t>((double(value) - histogram.low) * scale))];
-    return histogram;
+        ++histogram.counts[std::min(bins - 1,
+                                    static_cast<std::size_t>(std::max(0.0, (double(value) - histogram.low) * scale)))];
 }
 
 std::size_t otsu(const Histogram& histogram, std::size_t first) {
@@ -39,8 +48,7 @@ std::size_t otsu(const Histogram& histogram, std::size_t first) {
     return border;
 }
 
-double suggested_threshold(std::span<const float> values, bool masked) {
-    const Histogram histogram = histogram_of(values, 2048);
+double suggested_threshold(const Histogram& histogram, bool masked) {
     if (!masked) {
         const std::size_t border = otsu(histogram, otsu(histogram));
         return histogram.low + static_cast<double>(border) * histogram.width();

@@ -18,6 +18,9 @@ struct Histogram {
     double middle(std::size_t bin) const { return low + (static_cast<double>(bin) + 0.5) * width(); }
 };
 Histogram histogram_of(std::span<const float> values, std::size_t bins);
+/// Bins between `low` and `high`, to be filled by add_values; values beyond count in the first and last bin.
+Histogram empty_histogram(double low, double high, std::size_t bins);
+void add_values(Histogram& histogram, std::span<const float> values);
 
 /// Otsu's threshold (1979) among the bins from `first` on: it minimises the variance within both groups. Returns the
 /// index of the first bin above it; `first` when all values are in one bin.
@@ -25,6 +28,6 @@ std::size_t otsu(const Histogram& histogram, std::size_t first = 0);
 
 /// A threshold between bone and the rest of a CT: Otsu's method twice, first to separate air, then to split the
 /// rest. In a masked volume (zeros around the bone): half the median of the values above zero.
-double suggested_threshold(std::span<const float> values, bool masked);
+double suggested_threshold(const Histogram& histogram, bool masked);
 
 }  // namespace tactus::volume

@@ -26,7 +26,8 @@ void make(std::vector<std::string> words, const fs::path& folder) {
 void make_ct(const fs::path& file) {
     constexpr int size = 120;
     std::string bytes = fmt::format(
-        "NRRD0004\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: {0} {0} {0}\n"
+        "NRRD0005\ntype: short\ndimension: 3\nspace: left-posterior-superior\nspace units: \"mm\" \"mm\" \"mm\"\n"
+        "sizes: {0} {0} {0}\n"
         "space directions: (0.4,0,0) (0,0.4,0) (0,0,0.4)\nspace origin: (0,0,0)\nendian: little\nencoding: raw\n\n",
         size);
     for (int z = 0; z < size; ++z)

@@ -182,7 +182,7 @@ std::vector<Format> make_formats(const fs::path& folder) {
          .close = [](std::string bytes, std::uint64_t) { return test::sealed(std::move(bytes)); }},
         {.name = "nrrd",
          .seeds = files_in(folder / "assets_nrrd"),
-         .verbs = {info, {"import", "FILE", "-o", "out.vdb"}},
+         .verbs = {info, {"import", "FILE", "--unit", "mm", "-o", "out.vdb"}},
          .open = unpack,
          .close = pack_samples},
         {.name = "wav",
@@ -191,12 +191,12 @@ std::vector<Format> make_formats(const fs::path& folder) {
          .close = mend_riff},
         {.name = "nifti",
          .seeds = files_in(folder / "assets_nifti"),
-         .verbs = {info, {"import", "FILE", "-o", "out.vdb"}},
+         .verbs = {info, {"import", "FILE", "--unit", "mm", "-o", "out.vdb"}},
          .open = unpack,
          .close = [](std::string bytes, std::uint64_t number) { return number % 2 == 0 ? gzip(bytes) : bytes; }},
         {.name = "dicom",
          .seeds = files_in(folder / "assets_dicom"),
-         .verbs = {info, {"import", "FILE", "-o", "out.vdb"}}},
+         .verbs = {info, {"import", "FILE", "--unit", "mm", "-o", "out.vdb"}}},
         {.name = "inv3",
          .seeds = with_ending(folder / "assets_inv3", ".inv3"),
          .verbs = {info},
@@ -229,7 +229,7 @@ std::vector<Format> make_formats(const fs::path& folder) {
     for (const std::string kind : {"stl", "ply", "obj"})
         all.push_back({.name = kind,
                        .seeds = files_in(folder / ("assets_" + kind)),
-                       .verbs = {info, {"import", "FILE", "-o", "out.vdb"}}});
+                       .verbs = {info, {"import", "FILE", "--unit", "mm", "-o", "out.vdb"}}});
     return all;
 }
 

@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 
 namespace tactus::session {
@@ -33,7 +34,21 @@ Vec3 towards_site(const Report& report) {
     return glm::normalize(-normal - 0.55 * glm::cross(normal, stroke) - 0.45 * stroke);
 }
 
-display::Image picture_of(const bone::Bone& bone, const std::string& name, const Vec3& towards) {
+/// Box around the place of the cut; empty when the report names none.
+display::Bounds site_box(const Report& report) {
+    display::Bounds box;
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    const Vec3 at = vector_of(report, "position_mm", Vec3(none)) * 1e-3;
+    if (!is_finite(at)) return box;
+    // The diagonal is 35 mm: a cut that is shorter is seen whole.
+    constexpr double half = 10e-3;
+    box.add(at - half);
+    box.add(at + half);
+    return box;
+}
+
+display::Image picture_of(const bone::Bone& bone, const std::string& name, const Vec3& towards,
+                          const display::Bounds& site) {
     constexpr int width = 1280, height = 800;
     display::PictureMaker maker(width, height);
     display::MeshPool& meshes = maker.renderer().meshes();
@@ -49,11 +64,12 @@ display::Image picture_of(const bone::Bone& bone, const std::string& name, const
     }
     display::OrbitCamera camera;
     camera.look_along(towards, std::abs(towards.z) < 0.9 ? Vec3(0.0, 0.0, 1.0) : Vec3(0.0, -1.0, 0.0));
-    camera.fit(picture.bounds, static_cast<double>(width) / height, 1.2);
+    const bool is_close = !site.empty() && site.radius() < picture.bounds.radius();
+    camera.fit(is_close ? site : picture.bounds, static_cast<double>(width) / height, is_close ? 1.1 : 1.2);
     display::Image image =
         maker.draw(picture, display::views_of(camera, picture.bounds, width, height, display::StereoMode::mono));
     display::Legend legend;
-    legend.title = name;
+    legend.title = is_close ? name + ", around the cut" : name;
     legend.scales.push_back(display::density_scale(mesher.colours));
     display::add_legend(image, legend);
     display::add_scale_bar(image, camera.metres_per_pixel(height));
@@ -82,7 +98,7 @@ WrittenFiles write_results(const Report& report, const std::filesystem::path& fo
         if (!bone || !with_pictures) continue;
         display::Image picture;
         try {
-            picture = picture_of(**bone, name, towards_site(report));
+            picture = picture_of(**bone, name, towards_site(report), site_box(report));
         } catch (const Error& error) {
             say(stderr, fmt::format("tactus: no picture of the {}: {}\n", name, error.what()));
             continue;

@@ -73,6 +73,9 @@ struct Imported {
 Imported import_of(const Ct& ct, bone::ImportOptions options = {}) {
     const TemporaryFolder folder;
     options.input = folder / "ct.nrrd";
+    // The volumes are smaller than a scan, and their shapes are defined by 300 HU.
+    if (!options.unit) options.unit = "mm";
+    if (!options.threshold) options.threshold = 300.0;
     file::write_whole_file(options.input, header_of(ct) + "\n" + samples_of(ct));
     Imported result;
     result.bone = bone::import_bone(options, {}, &result.summary);
@@ -122,6 +125,12 @@ Imported import_mesh_text(const std::string& text, const std::string& name, bone
     return result;
 }
 
+bone::ImportOptions in_mm() {
+    bone::ImportOptions options;
+    options.unit = "mm";
+    return options;
+}
+
 }  // namespace
 
 TEST_CASE("a CT sphere becomes a bone of its volume, area and density") {
@@ -135,7 +144,7 @@ TEST_CASE("a CT sphere becomes a bone of its volume, area and density") {
     CHECK(ball.summary.surface_area_mm2 == Approx(4.0 * std::numbers::pi * radius * radius).epsilon(0.02));
     CHECK(ball.summary.density.max == Approx(1.067 * 1500.0 + 131.0).epsilon(1e-3));
     CHECK(is_at(middle_of(ball.bone), {0.0, 0.0, 0.0}));
-    CHECK_THAT(ball.bone.provenance.at("calibration"), ContainsSubstring("uncalibrated"));
+    CHECK_THAT(ball.bone.provenance.at("calibration"), ContainsSubstring("without a density phantom"));
 }
 
 TEST_CASE("asked for, an import has points spread over its surface") {
@@ -303,7 +312,7 @@ TEST_CASE("a detached header reads the same volume") {
 }
 
 TEST_CASE("a closed mesh becomes a bone with an exact distance and an assumed density") {
-    const Imported cube = import_mesh_text(cube_stl(), "cube.stl");
+    const Imported cube = import_mesh_text(cube_stl(), "cube.stl", in_mm());
     CHECK(cube.summary.hu == "none");
     CHECK(cube.summary.bone_volume_mm3 == Approx(8000.0).epsilon(0.01));
     CHECK(glm::length(middle_of(cube.bone) - Vec3(15e-3, 10e-3, 10e-3)) < 2.5e-4);
@@ -315,16 +324,15 @@ TEST_CASE("a closed mesh becomes a bone with an exact distance and an assumed de
 }
 
 TEST_CASE("meshes that are open, damaged or of unlikely size are refused with what to do") {
-    CHECK_THROWS_WITH(import_mesh_text(cube_stl(20.0, 11), "open.stl"), ContainsSubstring("3 boundary edges"));
-    CHECK_THROWS_WITH(import_mesh_text(cube_stl(0.02), "metres.stl"),
-                      ContainsSubstring("--unit m would make it 20 mm"));
+    CHECK_THROWS_WITH(import_mesh_text(cube_stl(20.0, 11), "open.stl", in_mm()), ContainsSubstring("3 boundary edges"));
+    CHECK_THROWS_WITH(import_mesh_text(cube_stl(0.2), "metres.stl"), ContainsSubstring("--unit m makes it 200 mm"));
     bone::ImportOptions metres;
     metres.unit = "cm";
     CHECK(import_mesh_text(cube_stl(2.0), "cm.stl", metres).summary.bone_volume_mm3 == Approx(8000.0).epsilon(0.01));
     metres.unit = "inch";
     CHECK_THROWS_WITH(import_mesh_text(cube_stl(), "inch.stl", metres), ContainsSubstring("mm, cm or m"));
     const std::string whole = cube_stl();
-    CHECK_THROWS_AS(import_mesh_text(whole.substr(0, whole.size() / 2), "cut.stl"), Error);
+    CHECK_THROWS_AS(import_mesh_text(whole.substr(0, whole.size() / 2), "cut.stl", in_mm()), Error);
     std::string binary(80, ' ');
     binary += std::string("\xff\xff\xff\x7f", 4) + std::string(50, '\0');
     CHECK_THROWS_WITH(import_mesh_text(binary, "huge.stl"), ContainsSubstring("cut short"));

@@ -155,7 +155,7 @@ TEST_CASE("with a CT the surface goes to its grey values, also through noise and
         CHECK(after.p95 < 0.15);
         CHECK(after.p95 < 0.7 * before.p95);
         CHECK_THAT(seen.provenance.at("surface"), ContainsSubstring("grey values"));
-        CHECK_THAT(seen.provenance.at("calibration"), ContainsSubstring("uncalibrated"));
+        CHECK_THAT(seen.provenance.at("calibration"), ContainsSubstring("without a density phantom"));
         CHECK(seen.name == "label 3");
         // The same CT taken by its threshold.
         const bone::Bone direct = bone::bone_from_hu(hu, {640.0f, 1, true}).bone;
@@ -256,6 +256,7 @@ TEST_CASE("a label map's file becomes one file of bones in its frame, and labels
                 if (labels.at(i, j, k) > 0.0f && i > 12) labels.at(i, j, k) = 5.0f;
     bone::ImportOptions options;
     options.input = folder / "two.nrrd";
+    options.unit = "mm";
     options.label = "all";
     file::write_whole_file(options.input, nrrd_of(labels));
     const std::vector<bone::ImportedBone> both = bone::import_labels(options);

@@ -164,6 +164,7 @@ TEST_CASE("a mesh a metre from the origin becomes the same bone as one at it") {
         bone::ImportOptions options;
         options.input = folder / name;
         options.spacing = 0.47e-3;
+        options.unit = "mm";
         return bone::import_bone(options);
     };
     const bone::Bone near = bone("near.obj"), away = bone("far.obj");

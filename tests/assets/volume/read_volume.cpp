@@ -152,8 +152,8 @@ TEST_CASE("a folder of several series asks which, and takes the one that is name
     CHECK_THROWS_WITH(volume::read_volume(place.folder.path),
                       ContainsSubstring("2 series") && ContainsSubstring("--series") &&
                           ContainsSubstring("9.8.7  5 images") && ContainsSubstring("1.2.3.4"));
-    check_same(volume::read_volume(place.folder.path, {"9.8.7"}), v);
-    CHECK_THROWS_WITH(volume::read_volume(place.folder.path, {"5.5"}), ContainsSubstring("matches 0"));
+    check_same(volume::read_volume(place.folder.path, {"9.8.7", {}}), v);
+    CHECK_THROWS_WITH(volume::read_volume(place.folder.path, {"5.5", {}}), ContainsSubstring("matches 0"));
     other.image_type = "ORIGINAL\\PRIMARY\\LOCALIZER";
     std::filesystem::remove_all(place.folder / "b");
     write_dicom_folder(v, place.folder / "b", other);

@@ -104,7 +104,8 @@ std::string nrrd_bytes(const WrittenVolume& v) {
     const auto vector = [](const Vec3& p) { return fmt::format("({:.9g},{:.9g},{:.9g})", p.x, p.y, p.z); };
     return fmt::format(
                "NRRD0005\ntype: short\ndimension: 3\nsizes: {} {} {}\nspace: left-posterior-superior\n"
-               "space directions: {} {} {}\nspace origin: {}\nendian: little\nencoding: raw\n\n",
+               "space units: \"mm\" \"mm\" \"mm\"\nspace directions: {} {} {}\nspace origin: {}\nendian: "
+               "little\nencoding: raw\n\n",
                v.size[0], v.size[1], v.size[2], vector(v.step[0]), vector(v.step[1]), vector(v.step[2]),
                vector(v.origin)) +
            samples(v);

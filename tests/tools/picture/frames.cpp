@@ -306,3 +306,41 @@ high_left = "-260 mm, 0 mm, 150 mm"
     CHECK(folder.tactus(render + " --offset study").code == 0);
     CHECK(folder.tactus(render + " --offset far").err.find("study") != std::string::npos);
 }
+
+TEST_CASE("iso shows the front of a bone wherever the tool is, and the default the side of the tool", "[slow]") {
+    if (!can_render()) return;
+    const Folder folder;
+    const std::string command =
+        "render saw-training --seconds 0.1 --frames 1 --size 320x200 --out " + folder.path.string();
+    for (const char* view : {"iso", "front", "tool"})
+        REQUIRE(folder.tactus(command + "/" + view + " --view-from " + view).code == 0);
+    REQUIRE(folder.tactus(command + "/default").code == 0);
+    const auto frame = [&](const char* name) { return folder.path / name / "frame_0001.png"; };
+    CHECK(slurp(frame("default")) == slurp(frame("tool")));
+    // The label names the view, so that two views never have the same bytes.
+    CHECK(slurp(frame("iso")) != slurp(frame("tool")));
+    CHECK(slurp(frame("iso")) != slurp(frame("front")));
+    const Outcome wrong = folder.tactus(command + "/x --view-from behind");
+    CHECK(wrong.code == 2);
+    CHECK(wrong.err.find("iso, tool or 1 to 7") != std::string::npos);
+}
+
+TEST_CASE("the picture of a cut is close to it, and export zooms on the same place", "[slow]") {
+    if (!can_render()) return;
+    const Folder folder;
+    const fs::path jaw = tactus::test::library_folder() / "bones/mandible.vdb";
+    REQUIRE(folder.tactus("render saw-training --seconds 1.5 --out " + folder.path.string() + "/saw").code == 0);
+    const Pixels picture(folder.path / "saw/bone.png");
+    // The bone fills the picture beyond its borders: no background along the middle row, where there was at both ends.
+    std::size_t background = 0;
+    const auto row = static_cast<std::size_t>(picture.height / 2) * static_cast<std::size_t>(picture.width);
+    for (std::size_t x = 0; x < static_cast<std::size_t>(picture.width); ++x) {
+        const unsigned char* p = &picture.rgb[3 * (row + x)];
+        background += p[2] > p[0];  // bluish; bone is yellowish or green
+    }
+    CHECK(static_cast<double>(background) < 0.35 * picture.width);
+    const Outcome part = folder.tactus("export " + folder.path.string() + "/saw/bone.vdb --json --cut-of " +
+                                       jaw.string() + " -o " + folder.path.string() + "/kerf.stl");
+    INFO(part.err);
+    CHECK(part.code == 0);
+}

@@ -6,6 +6,7 @@
 #include "dsp/core/error.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/study/bones/crop_bone.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -20,6 +21,8 @@ struct ExportChoice {
     std::filesystem::path input, out;
     std::string bone;             // empty: all bones of the file
     std::string quantity = "hu";  // of a volume: "hu", "density" or "distance"
+    std::string crop;             // x0:x1,y0:y1,z0:z1, mm; empty: everything
+    std::filesystem::path cut_of;  // the bone before the cut: only the part around the cut; may be empty
     bool json = false;
 };
 
@@ -29,6 +32,18 @@ std::vector<bone::Bone> chosen_bones(const ExportChoice& choice) {
     const std::string path = choice.input.string();
     one.push_back(bone::load_bone(choice.bone.empty() ? path : path + "#" + choice.bone));
     return one;
+}
+
+// Leaves the part in the box, or around the cut, of each bone.
+void crop(std::vector<bone::Bone>& bones, const ExportChoice& choice, bool closed) {
+    if (choice.crop.empty() && choice.cut_of.empty()) return;
+    if (!choice.crop.empty() && !choice.cut_of.empty()) throw Error("--crop and --cut-of exclude each other");
+    if (!choice.cut_of.empty() && bones.size() != 1) throw Error("--cut-of needs one bone; choose it with --bone");
+    for (bone::Bone& bone : bones)
+        bone = study::part_of_bone(bone,
+                                   choice.crop.empty() ? study::box_of_cut(bone, bone::load_bone(choice.cut_of))
+                                                       : study::parse_box(choice.crop),
+                                   closed);
 }
 
 bone::BoneQuantity quantity_of(const std::string& text) {
@@ -66,7 +81,8 @@ int export_bone(const ExportChoice& choice) {
     if (!is_mesh && kind != ".nrrd" && kind != ".nii" && !choice.out.string().ends_with(".nii.gz"))
         throw Error(fmt::format("{}: export writes .stl and .ply (the surface), .nrrd, .nii and .nii.gz (a volume)",
                                 choice.out.string()));
-    const std::vector<bone::Bone> bones = chosen_bones(choice);
+    std::vector<bone::Bone> bones = chosen_bones(choice);
+    crop(bones, choice, is_mesh);
     nlohmann::ordered_json json = is_mesh ? export_mesh(bones, choice.out) : export_volume(bones, choice);
     std::vector<std::string> names;
     for (const bone::Bone& bone : bones) names.push_back(bone.name);
@@ -87,6 +103,8 @@ Action add(VerbOptions& verb) {
     verb.add("bone", choice->input, "bone file; FILE.vdb#NAME for one of several").required();
     verb.add("-o,--out", choice->out, ".stl or .ply: the surface; .nrrd, .nii or .nii.gz: a volume").required();
     verb.add("--bone", choice->bone, "one of several bones (default: all)");
+    verb.add("--crop", choice->crop, "only this box: x0:x1,y0:y1,z0:z1 in mm, LPS");
+    verb.add("--cut-of", choice->cut_of, "the bone before it was cut: only 5 mm around what the cut removed");
     verb.add("--quantity", choice->quantity, "quantity of a volume")
         .one_of({"hu", "density", "distance"})
         .shows_default();

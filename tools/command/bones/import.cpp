@@ -2,17 +2,20 @@
 #include "assets/bone/bone.hpp"
 #include "assets/bone/import_steps.hpp"
 #include "dsp/core/error.hpp"
+#include "tools/command/bones/scan_options.hpp"
 #include "tools/command/options.hpp"
 #include "tools/counted.hpp"
 #include "tools/exit_code.hpp"
+#include "tools/study/bones/saw_spacing.hpp"
 #include "tools/study/workers.hpp"
 #include "tools/terminal.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <cstdio>
 #include <memory>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 namespace tactus::command {
@@ -24,6 +27,28 @@ struct ImportChoice : bone::ImportOptions {
     bool json = false;
 };
 
+nlohmann::ordered_json threshold_json(const bone::ImportSummary& s) {
+    if (!s.threshold.hu) return nullptr;
+    nlohmann::ordered_json json{{"hu", *s.threshold.hu},
+                                {"from", s.threshold.from},
+                                {"above_mm3", s.threshold.above_mm3},
+                                {"kept_mm3", s.threshold.kept_mm3}};
+    if (s.threshold.mask_mm3) json["mask_mm3"] = *s.threshold.mask_mm3;
+    return json;
+}
+
+std::string threshold_text(const bone::ImportSummary& s, const std::string& component) {
+    if (!s.threshold.hu) return "";
+    std::string text = fmt::format(
+        "  threshold {:g} HU ({}): voxels of {:.1f} cm³ reach it, {:.1f} cm³ were kept ({})\n", *s.threshold.hu,
+        s.threshold.from, s.threshold.above_mm3 * 1e-3, s.threshold.kept_mm3 * 1e-3,
+        component == "largest" || component == "all" ? "component " + component : component + " largest components");
+    if (s.threshold.mask_mm3)
+        text += fmt::format("  the mask of the scan holds {:.1f} cm³; a lower --threshold takes more of it\n",
+                            *s.threshold.mask_mm3 * 1e-3);
+    return text;
+}
+
 nlohmann::ordered_json json_of(const bone::ImportSummary& s) {
     return {{"frame", s.frame},
             {"hu", s.hu},
@@ -33,16 +58,26 @@ nlohmann::ordered_json json_of(const bone::ImportSummary& s) {
             {"surface_area_mm2", s.surface_area_mm2},
             {"density", {{"min", s.density.min}, {"max", s.density.max}, {"mean", s.density.mean}}},
             {"components", s.components},
+            {"threshold", threshold_json(s)},
+            {"narrowest_kerf_mm", study::narrowest_kerf_mm(s.voxel_mm)},
             {"points", s.points},
             {"notes", s.notes}};
 }
 
-std::string text_of(const bone::ImportSummary& s) {
+// What the densities rest on.
+std::string_view density_source(const bone::ImportSummary& s, const std::optional<double>& given) {
+    if (s.hu == "none") return given ? "given" : "assumed";
+    return s.hu == "masked" ? "from HU of a masked scan, without a density phantom"
+                            : "from calibrated HU, without a density phantom";
+}
+
+std::string text_of(const bone::ImportSummary& s, const bone::ImportOptions& options) {
     std::string text = fmt::format(
         "{} x {} x {} voxels of {:.3g} x {:.3g} x {:.3g} mm\n  {:.0f} mm³ of bone, {:.0f} mm² of surface, {} "
-        "found\n  density {:.0f} … {:.0f}, mean {:.0f} kg/m³ ({})\n{}",
+        "found\n{}  density {:.0f} … {:.0f}, mean {:.0f} kg/m³ ({})\n  {}\n{}",
         s.size[0], s.size[1], s.size[2], s.voxel_mm[0], s.voxel_mm[1], s.voxel_mm[2], s.bone_volume_mm3,
-        s.surface_area_mm2, counted(s.components, "component"), s.density.min, s.density.max, s.density.mean, s.hu,
+        s.surface_area_mm2, counted(s.components, "component"), threshold_text(s, options.component), s.density.min,
+        s.density.max, s.density.mean, density_source(s, options.mesh_density), study::saw_line(s.voxel_mm),
         s.points ? fmt::format("  {} on the surface\n", counted(s.points, "point")) : "");
     for (const std::string& note : s.notes) text += fmt::format("  {}\n", note);
     return text;
@@ -62,7 +97,7 @@ int import_label_map(const ImportChoice& choice, const bone::ImportOptions& opti
         nlohmann::ordered_json one{{"name", bones[n].name}, {"label", std::stoi(bones[n].provenance.at("label"))}};
         one.update(json_of(made[n].summary));
         list.push_back(std::move(one));
-        text += fmt::format("{}: {}  surface: {}\n", bones[n].name, text_of(made[n].summary),
+        text += fmt::format("{}: {}  surface: {}\n", bones[n].name, text_of(made[n].summary, choice),
                             bones[n].provenance.at("surface"));
     }
     if (choice.json) fmt::print("{}\n", nlohmann::ordered_json{{"bones", list}, {"file", choice.out.string()}}.dump(2));
@@ -84,55 +119,30 @@ int import_bone(const ImportChoice& choice) {
     nlohmann::ordered_json json = json_of(summary);
     json["file"] = choice.out.string();
     if (choice.json) fmt::print("{}\n", json.dump(2));
-    else fmt::print("{}: {}", choice.out.string(), text_of(summary));
+    else fmt::print("{}: {}", choice.out.string(), text_of(summary, choice));
     return done;
-}
-
-std::pair<double, double> rescale_by_points(const std::string& text) {
-    double a = 0.0, b = 0.0, c = 0.0, d = 0.0;
-    if (std::sscanf(text.c_str(), "%lf:%lf,%lf:%lf", &a, &b, &c, &d) != 4 || a == c || b == d)
-        throw Error("--hu-calibration takes two points VALUE:HU, as in --hu-calibration 60:-1000,1084:0");
-    const double slope = (d - b) / (c - a);
-    return {slope, b - slope * a};
-}
-
-std::pair<double, double> rescale_of(const std::string& text) {
-    double slope = 0.0, intercept = 0.0;
-    if (std::sscanf(text.c_str(), "%lf,%lf", &slope, &intercept) != 2)
-        throw Error("--rescale takes SLOPE,INTERCEPT, as in --rescale 1,-1024");
-    return {slope, intercept};
 }
 
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<ImportChoice>();
     verb.add("input", choice->input, "the file").required();
     verb.add("-o,--out", choice->out, "OpenVDB file for the bone").required();
-    verb.add("--threshold", choice->threshold, "CT number at and above which a voxel is bone, HU")
-        .unit("HU")
-        .shows_default();
+    verb.add("--threshold", choice->threshold,
+             "CT number at and above which a voxel is bone, HU (default: the one that info suggests)")
+        .unit("HU");
     verb.add("--crop", choice->crop, "x0:x1,y0:y1,z0:z1 in mm, LPS");
     verb.add("--component", choice->component, "parts to keep: largest, all, or a number, largest first")
         .shows_default();
-    verb.add("--unit", choice->unit, "unit of a mesh: mm, cm or m").one_of({"mm", "cm", "m"});
+    add_unit(verb, choice->unit);
+    verb.add("--density", choice->mesh_density,
+             "of a mesh, throughout, kg/m^3 (default: a cortex of 1800 to 2 mm depth around a core of 400)")
+        .unit("kg/m^3");
     verb.call<double>(
             "--spacing,--isotropic", [choice](const double& mm) { choice->spacing = mm * 1e-3; },
             "resample to this grid spacing, mm")
         .unit("mm");
     verb.add("--series", choice->series, "DICOM: the series to take, by its UID or the end of it");
-    verb.call<std::string>(
-        "--hu-calibration",
-        [choice](const std::string& text) {
-            const auto [slope, intercept] = rescale_by_points(text);
-            choice->rescale = {slope, intercept};
-        },
-        "scanner numbers to HU by two points: VALUE:HU,VALUE:HU");
-    verb.call<std::string>(
-        "--rescale",
-        [choice](const std::string& text) {
-            const auto [slope, intercept] = rescale_of(text);
-            choice->rescale = {slope, intercept};
-        },
-        "scanner numbers to HU: SLOPE,INTERCEPT");
+    add_rescale(verb, [choice](const Rescale& rescale) { choice->rescale = rescale; });
     verb.call<double>(
             "--pointshell", [choice](const double& mm) { choice->pointshell = mm * 1e-3; },
             "also sample contact points on the surface with this spacing, mm")
@@ -147,7 +157,9 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb import_verb() {
-    return {"import", "make a bone from a CT (DICOM, NRRD, NIfTI, InVesalius) or a closed mesh (STL, PLY, OBJ)", add};
+    return {"import",
+            "make a bone from a CT (DICOM folder or zip, NRRD, NIfTI, InVesalius) or a closed mesh (STL, PLY, OBJ)",
+            add};
 }
 
 }  // namespace tactus::command

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/core/error.hpp"
+#include "tools/command/bones/scan_options.hpp"
 #include "tools/command/options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/picture/report/inspection_picture.hpp"
@@ -22,7 +23,7 @@ using study::Inspection;
 struct InfoChoice {
     std::filesystem::path input;
     std::filesystem::path out;  // picture: a file, or a folder for INPUT.png; empty: none
-    std::string series;         // of a DICOM folder
+    study::InspectionOptions how;
     bool json = false;
 };
 
@@ -39,8 +40,12 @@ nlohmann::ordered_json json_of(const Inspection& found) {
                                 {"hu", found.hu},
                                 {"range", found.range},
                                 {"suggested_threshold", nullptr},
+                                {"unit", nullptr},
+                                {"unit_question", nullptr},
                                 {"components", parts}};
     if (found.threshold) json["suggested_threshold"] = *found.threshold;
+    if (!found.unit.empty()) json["unit"] = found.unit;
+    if (!found.unit_question.empty()) json["unit_question"] = found.unit_question;
     return json;
 }
 
@@ -60,6 +65,8 @@ std::string bars(const volume::Histogram& histogram) {
 std::string text_of(const Inspection& found) {
     const auto& [x, y, z] = found.spacing_mm;
     std::string text = fmt::format("kind: {}, frame {}\n", found.kind, found.frame);
+    // Lengths below are right only if mm was meant.
+    if (!found.unit_question.empty()) text += found.unit_question + "; until then, lengths are printed as if in mm\n";
     if (found.size[0] > 0)
         text += fmt::format("{} x {} x {} voxels of {:.4g} x {:.4g} x {:.4g} mm{}{}\n", found.size[0], found.size[1],
                             found.size[2], x, y, z, found.uniform ? "" : ", slices unevenly spaced",
@@ -69,9 +76,9 @@ std::string text_of(const Inspection& found) {
         text += bars(found.histogram);
     }
     if (found.threshold)
-        text += fmt::format("suggested threshold: {:.0f} ({})\n", *found.threshold,
-                            found.hu == "masked" ? "half the median of the unmasked values"
-                                                 : "Otsu's method twice: first air, then bone");
+        text +=
+            fmt::format("suggested threshold: {:g}{} ({}); import uses it unless --threshold is given\n",
+                        *found.threshold, found.hu == "scanner" ? ", a scanner number" : " HU", found.threshold_from);
     text += fmt::format("{} component{}:\n", found.parts_in_all, found.parts_in_all == 1 ? "" : "s");
     for (const InspectedPart& part : found.parts) {
         const auto& b = part.bounds_mm;
@@ -85,7 +92,7 @@ std::string text_of(const Inspection& found) {
 }
 
 int info(const InfoChoice& choice) {
-    const Inspection found = study::inspect(choice.input, choice.series);
+    const Inspection found = study::inspect(choice.input, choice.how);
     std::filesystem::path picture = choice.out;
     if (!picture.empty()) {
         if (std::filesystem::is_directory(picture))
@@ -105,7 +112,9 @@ int info(const InfoChoice& choice) {
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<InfoChoice>();
     verb.add("file", choice->input, "the file").required();
-    verb.add("--series", choice->series, "DICOM: the series to look at, by its UID or the end of it");
+    verb.add("--series", choice->how.series, "DICOM: the series to look at, by its UID or the end of it");
+    add_unit(verb, choice->how.unit);
+    add_rescale(verb, [choice](const Rescale& rescale) { choice->how.rescale = rescale; });
     verb.add("-o,--out", choice->out, "a PNG of three slices and the surface: a file, or a folder to put it in");
     verb.flag("--json", choice->json, "as JSON");
     return [choice] { return info(*choice); };

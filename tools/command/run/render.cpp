@@ -125,7 +125,7 @@ void add_frame_options(VerbOptions& verb, FrameChoice& choice) {
     const auto add = [&](const char* name, std::string& value, const char* about) {
         verb.add(name, value, about).shows_default().needs(frames);
     };
-    add("--view-from", choice.view_from, "front, back, left, right, top, bottom or iso");
+    add("--view-from", choice.view_from, "front, back, left, right, top, bottom, iso (front left) or tool (its side)");
     add("--size", choice.size, "size of the pictures in pixels, WIDTHxHEIGHT");
     add("--clip", choice.clip, "clip the scene at a plane: x, -y, \"z=12 mm\"");
     add_sight_options(verb, choice.sight, &frames);

@@ -2,14 +2,18 @@
 #include "tools/picture/report/inspection_picture.hpp"
 
 #include "assets/bone/labels.hpp"
+#include "devices/display/legend.hpp"
 #include "devices/display/offscreen.hpp"
 #include "devices/display/png.hpp"
 
 #include <glm/geometric.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <string_view>
 
 namespace tactus::picture {
@@ -63,9 +67,10 @@ struct Canvas {
 struct Slice {
     int axis, across, down;
     bool upwards;
-    std::string_view letters;
+    std::string_view letters, name;
 };
-constexpr std::array<Slice, 3> slices{{{2, 0, 1, false, "RLAP"}, {1, 0, 2, true, "RLSI"}, {0, 1, 2, true, "APSI"}}};
+constexpr std::array<Slice, 3> slices{
+    {{2, 0, 1, false, "RLAP", "axial"}, {1, 0, 2, true, "RLSI", "coronal"}, {0, 1, 2, true, "APSI", "sagittal"}}};
 
 Vec3 colour_at(const study::Inspection& found, const std::array<double, 3>& u) {
     const volume::Grid& grid = found.grey;
@@ -120,6 +125,14 @@ void draw_slice(Canvas& canvas, const study::Inspection& found, const Slice& sli
     canvas.letter(left + panel / 2 - 5, top + panel - 20, slice.letters[3]);
 }
 
+// The name of a panel, in its lower left corner.
+void label(Canvas& canvas, const std::string& name, int left, int top) {
+    display::Legend legend;
+    legend.title = name;
+    const display::Image text = display::legend_image(legend, 1.0);
+    canvas.paste(text, left + 6, top + panel - text.height - 6);
+}
+
 display::PictureMesh picture_mesh(const mesh::ColouredSurface& from, const Vec3& origin) {
     std::vector<Vec3> normals(from.surface.vertices.size(), Vec3(0.0));
     display::PictureMesh mesh;
@@ -154,19 +167,20 @@ void write_picture(const study::Inspection& found, const std::filesystem::path& 
     std::vector<display::PictureMesh> meshes;
     for (const auto& each : found.surfaces)
         if (!each.surface.triangles.empty()) meshes.push_back(picture_mesh(each, middle));
-    const auto view = [&](const Vec3& direction, const Vec3& up, int left, int top) {
+    const auto view = [&](const std::string& name, const Vec3& direction, const Vec3& up, int left, int top) {
         if (meshes.empty()) return;
         display::View from = display::fit_view(low - middle, high - middle, direction, up);
         // The bounding sphere of the box is larger than its content.
         from.eye = from.target + (from.eye - from.target) * 0.85;
         canvas.paste(display::render_picture(meshes, from, panel, panel), left, top);
+        label(canvas, name, left, top);
     };
     const std::array<std::array<int, 2>, 3> places{{{0, 0}, {panel + gap, 0}, {0, panel + gap}}};
     if (found.grey.values.empty()) {
         // From the front, from above and from the patient's left.
-        view(Vec3(0, 1, 0), Vec3(0, 0, 1), places[0][0], places[0][1]);
-        view(Vec3(0, 0, -1), Vec3(0, -1, 0), places[1][0], places[1][1]);
-        view(Vec3(-1, 0, 0), Vec3(0, 0, 1), places[2][0], places[2][1]);
+        view("front", Vec3(0, 1, 0), Vec3(0, 0, 1), places[0][0], places[0][1]);
+        view("top", Vec3(0, 0, -1), Vec3(0, -1, 0), places[1][0], places[1][1]);
+        view("left", Vec3(-1, 0, 0), Vec3(0, 0, 1), places[2][0], places[2][1]);
     } else {
         Vec3 centre =
             (found.grey.origin +
@@ -177,9 +191,14 @@ void write_picture(const study::Inspection& found, const std::filesystem::path& 
                 const auto& bounds = found.parts.front().bounds_mm[static_cast<std::size_t>(a)];
                 centre[a] = 0.5 * (bounds[0] + bounds[1]);
             }
-        for (std::size_t n = 0; n < 3; ++n) draw_slice(canvas, found, slices[n], centre, places[n][0], places[n][1]);
+        for (std::size_t n = 0; n < 3; ++n) {
+            draw_slice(canvas, found, slices[n], centre, places[n][0], places[n][1]);
+            label(canvas,
+                  fmt::format("{}, {} = {:.1f} mm", slices[n].name, "xyz"[slices[n].axis], centre[slices[n].axis]),
+                  places[n][0], places[n][1]);
+        }
     }
-    view(Vec3(-0.55, 0.8, -0.25), Vec3(0, 0, 1), panel + gap, panel + gap);
+    view("front left", Vec3(-0.55, 0.8, -0.25), Vec3(0, 0, 1), panel + gap, panel + gap);
     display::write_png(canvas.image, path.string());
 }
 

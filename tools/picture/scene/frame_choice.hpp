@@ -11,7 +11,8 @@ namespace tactus::picture {
 /// The options of the command line.
 struct FrameChoice {
     int frames = 0;                ///< number of pictures, 0: none
-    std::string view_from = "iso";  ///< a name or number of dsp/display/camera.hpp
+    /// A name or number of dsp/display/camera.hpp, or "tool": an iso view from the side of the tool.
+    std::string view_from = "tool";
     std::string size = "1280x800";
     std::string clip;              ///< "x", "-y", "z=12 mm": clip plane; the part above it along the axis is removed
     SightChoice sight;

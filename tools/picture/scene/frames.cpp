@@ -32,11 +32,14 @@ std::pair<int, int> parse_size(const std::string& text) {
 }
 
 display::NamedView parse_view(const std::string& text) {
+    if (text == "tool") return display::NamedView::iso;
     if (const auto named = display::view_of_name(text)) return *named;
     if (text.size() == 1 && text[0] >= '1' && text[0] <= '7') return *display::view_of_number(text[0] - '0');
-    const std::vector<std::string> names(display::view_names.begin(), display::view_names.end());
-    throw Error(fmt::format("--view-from must be front, back, left, right, top, bottom, iso or 1 to 7, not '{}'{}",
-                            text, did_you_mean(text, names)));
+    std::vector<std::string> names(display::view_names.begin(), display::view_names.end());
+    names.emplace_back("tool");
+    throw Error(
+        fmt::format("--view-from must be front, back, left, right, top, bottom, iso, tool or 1 to 7, not '{}'{}", text,
+                    did_you_mean(text, names)));
 }
 
 /// Parses "x", "-y" or "z=12 mm": the axis and a position along it; without one: the middle.
@@ -106,6 +109,13 @@ struct FrameWriter::State {
         return static_cast<double>(width) / maker.height();
     }
 
+    /// Names the side that the picture shows.
+    std::string view_text() const {
+        if (choice.view_from == "tool" && model.tool()) return "side of the tool";
+        return view == display::NamedView::iso ? "front left"
+                                               : std::string(display::view_names[static_cast<std::size_t>(view)]);
+    }
+
     /// The pose of the head must be observed from the first picture on.
     void check_head() const {
         if (sight.head.empty() || observer.latest<Pose>(sight.head)) return;
@@ -121,8 +131,7 @@ struct FrameWriter::State {
         display::Picture& picture = model.update();
         if (!is_aimed) {
             camera.look_from(view);
-            if (view == display::NamedView::iso && model.tool())
-                camera.look_from_side_of(*model.tool(), model.bounds());
+            if (choice.view_from == "tool" && model.tool()) camera.look_from_side_of(*model.tool(), model.bounds());
             camera.fit(model.bounds(), aspect(), 1.12);
             is_aimed = !model.bounds().empty();
         }
@@ -133,7 +142,7 @@ struct FrameWriter::State {
             const auto views = sight.views(screen, camera, picture.bounds, maker.width(), maker.height());
             display::Image image = maker.draw(picture, views);
             display::Legend legend = model.legend();
-            legend.title = fmt::format("{}, {:.2f} s", legend.title, time_of(frame));
+            legend.title = fmt::format("{}, {:.2f} s, {}", legend.title, time_of(frame), view_text());
             legend.warnings.insert(legend.warnings.end(), sight.warnings().begin(), sight.warnings().end());
             add_legend(image, legend, views, sight.text_of(screen));
             if (!sight.is_off_axis() && sight.mode_of(0) == display::StereoMode::mono)

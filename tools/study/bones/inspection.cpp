@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/study/bones/inspection.hpp"
 
+#include "assets/bone/ct_threshold.hpp"
 #include "assets/bone/labels.hpp"
 #include "assets/mesh/mesh.hpp"
+#include "assets/volume/length_unit.hpp"
 #include "assets/volume/reoriented_volume.hpp"
 #include "dsp/geometry/surface_net.hpp"
 #include "dsp/volume/components.hpp"
@@ -65,9 +67,13 @@ geometry::TriangleSurface view_surface(const volume::Grid& grid, float iso, floa
     return geometry::surface_net(coarse, iso, true);
 }
 
-void inspect_ct(Inspection& found) {
+void inspect_ct(Inspection& found, volume::HuKind hu) {
     const volume::Grid& grid = found.grey;
-    found.threshold = volume::suggested_threshold(grid.values, found.hu == "masked");
+    volume::Histogram histogram = bone::threshold_histogram(found.range[0], found.range[1]);
+    volume::add_values(histogram, grid.values);
+    const bone::CtThreshold threshold = bone::suggested_threshold(histogram, hu);
+    found.threshold = threshold.value;
+    found.threshold_from = threshold.how;
     const auto iso = static_cast<float>(*found.threshold);
     const volume::Components components = volume::components_above(grid, iso);
     found.parts_in_all = components.voxels.size();
@@ -119,14 +125,16 @@ void inspect_labels(Inspection& found, const volume::ScanVolume& volume) {
     found.is_labels = true;
 }
 
-Inspection inspect_volume(const std::filesystem::path& path, const std::string& series) {
-    const std::unique_ptr<volume::SliceReader> reader = volume::open_volume(path, {series});
+Inspection inspect_volume(const std::filesystem::path& path, const InspectionOptions& options) {
+    const std::unique_ptr<volume::SliceReader> reader = volume::open_volume(path, {options.series, options.unit});
     volume::ReorientedVolume layers(*reader, on_threads());
+    layers.set_line(options.rescale);
     if (layers.is_turned()) layers.settle();
     Inspection found;
     found.grey = volume::whole_of(layers);
     layers.settle();
-    const volume::ScanVolume& about = reader->about;
+    volume::ScanVolume& about = reader->about;
+    if (options.rescale && about.kind == volume::VolumeKind::ct) about.hu = volume::HuKind::calibrated;
     found.kind = volume::name_of(about.kind);
     found.frame = volume::name_of(about.file_frame);
     found.hu = volume::name_of(about.hu);
@@ -136,13 +144,34 @@ Inspection inspect_volume(const std::filesystem::path& path, const std::string& 
     found.tilt_deg = about.tilt_deg();
     found.notes = about.notes;
     found.histogram = volume::histogram_of(found.grey.values, 24);
-    found.range = {layers.tally().low, layers.tally().high};
+    found.range = {layers.range().first, layers.range().second};
+    found.unit_question = volume::unit_question(about);
+    found.unit = found.unit_question.empty() ? "mm" : "";
     if (about.kind == volume::VolumeKind::labels) inspect_labels(found, about);
-    else inspect_ct(found);
+    else inspect_ct(found, about.hu);
     return found;
 }
 
-Inspection inspect_mesh(const std::filesystem::path& path) {
+// The unit of a mesh, m; mm where it must be asked for.
+double settle_unit(const mesh::Mesh& mesh, const mesh::MeshOrigin& origin, const std::optional<std::string>& given,
+                   Inspection& found) {
+    if (given) {
+        found.unit = *given;
+        return volume::metres_in(*given);
+    }
+    if (origin.unit) {
+        found.unit = *origin.unit < 5e-3 ? "mm" : *origin.unit < 0.5 ? "cm" : "m";
+        return *origin.unit;
+    }
+    Vec3 low = mesh.vertices.front(), high = low;
+    for (const Vec3& v : mesh.vertices) low = glm::min(low, v), high = glm::max(high, v);
+    const Vec3 size = high - low;
+    found.unit_question = volume::unit_question("the mesh", std::max({size.x, size.y, size.z}), volume::plausible_bone);
+    found.unit = found.unit_question.empty() ? "mm" : "";
+    return 1e-3;
+}
+
+Inspection inspect_mesh(const std::filesystem::path& path, const std::optional<std::string>& given) {
     mesh::MeshOrigin origin;
     const mesh::Mesh mesh = mesh::load_mesh(path, 1.0, &origin);
     const mesh::MeshTopology topology = mesh::topology_of(mesh);
@@ -150,16 +179,17 @@ Inspection inspect_mesh(const std::filesystem::path& path) {
     found.kind = "mesh";
     found.frame = volume::name_of(origin.frame);
     found.hu = "none";
+    const double unit = settle_unit(mesh, origin, given, found);
     std::vector<geometry::TriangleSurface> parts(topology.components);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
         parts[static_cast<std::size_t>(topology.component_of[t])].triangles.push_back(mesh.triangles[t]);
     for (geometry::TriangleSurface& part : parts) {
-        // Only the points of the part, in mm as in the file.
+        // Only the points of the part.
         std::map<int, int> renamed;
         for (auto& t : part.triangles)
             for (int& corner : t) {
                 const auto [at, fresh] = renamed.insert({corner, static_cast<int>(part.vertices.size())});
-                if (fresh) part.vertices.push_back(mesh.vertices[static_cast<std::size_t>(corner)] * 1e-3);
+                if (fresh) part.vertices.push_back(mesh.vertices[static_cast<std::size_t>(corner)] * unit);
                 corner = at->second;
             }
         found.parts.push_back({"", std::abs(mesh::volume_of(part)) * 1e9, bounds_of(part)});
@@ -170,8 +200,12 @@ Inspection inspect_mesh(const std::filesystem::path& path) {
     found.parts_in_all = found.parts.size();
     for (std::size_t n = 0; n < found.parts.size(); ++n) found.parts[n].name = fmt::format("part {}", n + 1);
     if (found.parts.size() > most_parts) found.parts.resize(most_parts);
-    found.notes.push_back(
-        fmt::format("{} points, {} triangles; coordinates taken as mm", mesh.vertices.size(), mesh.triangles.size()));
+    found.notes.push_back(fmt::format("{} points, {} triangles; coordinates {}", mesh.vertices.size(),
+                                      mesh.triangles.size(),
+                                      given                         ? "in " + *given
+                                      : origin.unit                 ? "in " + found.unit + ", as the file states"
+                                      : found.unit_question.empty() ? "taken as mm"
+                                                                    : "in an unknown unit"));
     if (!topology.is_watertight())
         found.notes.push_back(
             fmt::format("not watertight: {} boundary, {} non-manifold and {} flipped edges; volumes are rough",
@@ -185,6 +219,7 @@ Inspection inspect_bones(const std::filesystem::path& path) {
     else bones.push_back(bone::load_bone(path));
     Inspection found;
     found.kind = "bone";
+    found.unit = "mm";
     found.frame = "LPS";
     const bone::Bone& first = bones.front();
     const auto hu = first.provenance.find("hu");
@@ -219,11 +254,11 @@ Inspection inspect_bones(const std::filesystem::path& path) {
 
 }  // namespace
 
-Inspection inspect(const std::filesystem::path& path, const std::string& series) {
+Inspection inspect(const std::filesystem::path& path, const InspectionOptions& options) {
     const std::string kind = path.extension().string();
     if (bone::file_of_bone(path).extension() == ".vdb") return inspect_bones(path);
-    if (kind == ".stl" || kind == ".ply" || kind == ".obj") return inspect_mesh(path);
-    return inspect_volume(path, series);
+    if (kind == ".stl" || kind == ".ply" || kind == ".obj") return inspect_mesh(path, options.unit);
+    return inspect_volume(path, options);
 }
 
 }  // namespace tactus::study

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tactus::study {
@@ -29,7 +30,10 @@ struct Inspection {
     double tilt_deg = 0.0;
     std::string hu;                    ///< "calibrated", "masked", "scanner" or "none"
     std::array<double, 2> range{};     ///< range of the values: HU or scanner values, labels, or kg/m³ for a bone
-    std::optional<double> threshold;   ///< for a CT
+    std::optional<double> threshold;   ///< for a CT: the one that import uses without --threshold
+    std::string threshold_from;        ///< its method
+    std::string unit;                  ///< of a mesh: "mm", "cm" or "m"; "mm" for all else; "" when it must be asked
+    std::string unit_question;         ///< what to ask, one sentence; see volume::unit_question
     std::vector<InspectedPart> parts;  ///< largest first; labels and bones in file order
     std::size_t parts_in_all = 0;      ///< includes small parts of a CT that are not listed
     volume::Histogram histogram;               ///< 24 bins
@@ -41,7 +45,14 @@ struct Inspection {
     std::vector<mesh::ColouredSurface> surfaces;  ///< surfaces for the view
 };
 
+/// How to read the file: as in bone::ImportOptions.
+struct InspectionOptions {
+    std::string series;
+    std::optional<std::string> unit;
+    std::optional<std::pair<double, double>> rescale;
+};
+
 /// Reads and measures a volume, mesh or bone file. Throws Error when it cannot be read.
-Inspection inspect(const std::filesystem::path& path, const std::string& series = "");
+Inspection inspect(const std::filesystem::path& path, const InspectionOptions& options = {});
 
 }  // namespace tactus::study

@@ -85,8 +85,9 @@ TEST_CASE("info answers the same questions for a CT and a label map and a mesh a
                         folder / "two.vdb")
                 .code == 0);
     REQUIRE(folder.tactus("export " + folder / "two.vdb" + " -o " + folder / "two.stl").code == 0);
-    const char* keys[] = {"kind",     "frame", "size",  "spacing_mm",          "uniform",
-                          "tilt_deg", "hu",    "range", "suggested_threshold", "components"};
+    const char* keys[] = {"kind",     "frame",        "size",  "spacing_mm",          "uniform",
+                          "tilt_deg", "hu",           "range", "suggested_threshold", "components",
+                          "unit",     "unit_question"};
     for (const auto& [file, kind] : {std::pair<std::string, std::string>{"ct.nrrd", "ct"},
                                      {"labels.nrrd", "labels"},
                                      {"two.stl", "mesh"},

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/study/bones/saw_spacing.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::study {
+
+namespace {
+
+constexpr double voxels_per_kerf = 3.05;
+
+}  // namespace
+
+double narrowest_kerf_mm(const std::array<double, 3>& voxel_mm) {
+    return voxels_per_kerf * *std::max_element(voxel_mm.begin(), voxel_mm.end());
+}
+
+double coarsest_spacing_mm(double kerf_mm) { return std::floor(100.0 * kerf_mm / voxels_per_kerf) / 100.0; }
+
+std::string saw_line(const std::array<double, 3>& voxel_mm) {
+    const double narrowest = narrowest_kerf_mm(voxel_mm);
+    if (narrowest <= usual_kerf_mm) return fmt::format("a saw can cut it with a kerf of {:.2g} mm or wider", narrowest);
+    return fmt::format(
+        "too coarse for a saw of {:g} mm kerf, which needs --spacing {:g} or finer; as it is, the kerf must be {:.2g} "
+        "mm "
+        "or wider",
+        usual_kerf_mm, coarsest_spacing_mm(usual_kerf_mm), std::ceil(10.0 * narrowest) / 10.0);
+}
+
+}  // namespace tactus::study
