@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a plan says about its fits: void ones, connected parts, reasons. The fits are written into the plan's file.
 #include "tests/support/catch.hpp"
+#include "tests/tools/bar.hpp"
 #include "tests/tools/box_stl.hpp"
 #include "tests/tools/run_command.hpp"
 
@@ -75,6 +76,7 @@ TEST_CASE("a fit is void when its partner moves away, holds in a moved group, an
     CHECK(row.state()["fragments"][1]["fit"]["moved_since"]["distance_mm"].get<double>() == Approx(12.0));
     REQUIRE(row.run("report").code == 0);
     CHECK(says(slurp(row.folder.path / "case.html"), "fit to a is void"));
+    CHECK(row.run("settle").code == 2);
     REQUIRE(row.run("undo", "--steps 2").code == 0);
     CHECK(row.verdict(1) == "fit");
     // The fragment itself counts as its partner does: 0.06 degrees.
@@ -141,4 +143,49 @@ TEST_CASE("a pose too far away for a body is refused, and the plan is as it was"
     }
     CHECK(says(row.run("move", "b --pose 1e308,0,0,1,0,0,0").err, "100 m away"));
     CHECK(slurp(row.plan) == before);
+}
+
+TEST_CASE("a fragment does not go where a third one is, is told why it stays, and keeps to what stands", "[slow]") {
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    bone::save_bone(test::bar(), file("bar.vdb"));
+    REQUIRE(folder.tactus("fracture " + file("bar.vdb") + " -o " + file("f") + " --seed 4 --spread 5 --turn 10").code ==
+            0);
+    // It takes up the bar's right end.
+    folder.write("third.stl", test::box_stl(Vec3(10.0, -5.0, -8.0), Vec3(18.0, 5.0, 8.0)));
+    const std::string plan = file("case.plan.json");
+    REQUIRE(folder
+                .tactus("plan new " + plan + " one=" + file("f/fragment_01.vdb") + " two=" + file("f/fragment_02.vdb") +
+                        " third=" + file("third.stl"))
+                .code == 0);
+    const Outcome blocked = folder.tactus("plan snap " + plan + " two one");
+    INFO(blocked.out << blocked.err);
+    CHECK(blocked.code == 1);
+    CHECK(says(blocked.out, "two to one: blocked"));
+    CHECK(says(blocked.out, "it would lie in 'third' with"));
+    REQUIRE(folder.tactus("plan hide " + plan + " third").code == 0);
+    // Nothing fits from too far away, and no distance is told.
+    REQUIRE(folder.tactus("plan move " + plan + " two --pose 60,0,0,1,0,0,0").code == 0);
+    const Outcome far = folder.tactus("plan snap " + plan + " two one");
+    INFO(far.out);
+    CHECK(far.code == 1);
+    CHECK(says(far.out, "too far away"));
+    CHECK(says(far.out, "--mode global"));
+    const json told = json::parse(folder.tactus("plan snap " + plan + " two one --json").out);
+    CHECK(told["rms_mm"].is_null());
+    CHECK(told["moved"].is_null());
+    CHECK(says(told["reason"].get<std::string>(), "too far away"));
+    REQUIRE(folder.tactus("plan undo " + plan).code == 0);
+    const Outcome fits = folder.tactus("plan snap " + plan + " two");
+    INFO(fits.out);
+    CHECK(fits.code == 0);
+    CHECK(folder.tactus("plan settle " + plan).code == 0);
+    // The third one is shown again, and hangs on nothing.
+    REQUIRE(folder.tactus("plan unhide " + plan + " third").code == 0);
+    REQUIRE(folder.tactus("plan move " + plan + " third --pose 60,0,0,1,0,0,0").code == 0);
+    CHECK(folder.tactus("plan check " + plan).code == 1);
+    const Outcome settled = folder.tactus("plan settle " + plan);
+    INFO(settled.out);
+    CHECK(settled.code == 1);
+    CHECK(says(settled.out, "connected to nothing: third"));
 }
