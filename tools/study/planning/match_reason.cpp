@@ -124,7 +124,8 @@ std::string why_not_placed(const cases::CasePlan& plan, const PlanMatching& matc
     const fit::FitSettings& settings = matching.settings().fit;
     const char* const next = way == MatchWay::near
                                  ? "bring it nearer to its place, correct the paint, or use --mode global"
-                                 : "name the partner, or correct the paint";
+                             : only == fit::Arrangement::none ? "name the partner, or correct the paint"
+                                                              : "correct the paint";
     if (found.is_small)
         return fmt::format("only {:.0f} mm² of the painted fracture fit, which is chance; {}",
                            match.quality.overlap * 1e6, next);
