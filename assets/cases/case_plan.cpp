@@ -6,6 +6,7 @@
 #include "dsp/core/error.hpp"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include <algorithm>
 #include <iterator>
@@ -42,27 +43,29 @@ int group_meant(const PlanStep& step, const PlanState& state) {
     refuse(step, fmt::format("there is no group '{}'{}", step.group, did_you_mean(step.group, names)));
 }
 
+constexpr double farthest = 100.0;  // m: beyond it the numbers of a pose are wrong
+
+bool is_near(const Pose& pose) {
+    const Vec3 away = glm::abs(pose.position);
+    return std::max({away.x, away.y, away.z}) <= farthest;
+}
+
 void place(const CasePlan& plan, const PlanStep& step, PlanState& state) {
     if (step.poses.size() != step.fragments.size()) refuse(step, "does not have one pose per fragment");
     for (std::size_t n = 0; n < step.poses.size(); ++n) {
         const std::string& name = plan.fragments[static_cast<std::size_t>(step.fragments[n])].name;
         if (!is_valid(step.poses[n])) refuse(step, fmt::format("the pose of '{}' is not valid", name));
+        if (!is_near(step.poses[n]))
+            refuse(step, fmt::format("'{}' would lie more than {:.0f} m away; are the numbers in mm?", name, farthest));
         if (state.arrangement.is_locked(step.fragments[n])) refuse(step, fmt::format("'{}' is locked", name));
     }
     fit::Arrangement& a = state.arrangement;
-    const auto fit_of = [&state](int fragment) -> auto& { return state.fits[static_cast<std::size_t>(fragment)]; };
     for (std::size_t n = 0; n < step.poses.size(); ++n) a.place(step.fragments[n], step.poses[n]);
-    // A fit to a fragment that does not move along is no longer valid.
-    for (const int fragment : step.fragments)
-        if (std::ranges::find(step.fragments, a.fitted_to(fragment)) == step.fragments.end()) {
-            a.fit(fragment, fit::Arrangement::none);
-            fit_of(fragment).reset();
-        }
     if (!step.fit) return;
     const auto partner = std::ranges::find(plan.fragments, step.fit->partner, &PlanFragment::name);
     a.fit(step.fragments[0], partner == plan.fragments.end() ? fit::Arrangement::none
                                                              : static_cast<int>(partner - plan.fragments.begin()));
-    fit_of(step.fragments[0]) = step.fit;
+    state.fits[static_cast<std::size_t>(step.fragments[0])] = step.fit;
 }
 
 void forget_groups_that_are_gone(PlanState& state) {

@@ -82,11 +82,13 @@ struct CasePlan {
 struct PlanState {
     fit::Arrangement arrangement;
     std::vector<std::string> group_names;  ///< per group of the arrangement, "" for an unnamed one
-    std::vector<std::optional<PlanFit>> fits;  ///< per fragment: fit of the step that placed it last
+    std::vector<std::optional<PlanFit>> fits;  ///< per fragment: its last fit, which may be void
     std::optional<MirrorTarget> mirror;
 
     /// Number of the group of that name, or Arrangement::none.
     int find_group(std::string_view name) const;
+    /// Whether the fragment still lies as it was fitted: neither it nor its partner has moved from the other.
+    bool holds(int fragment) const { return arrangement.fitted_to(fragment) != fit::Arrangement::none; }
 };
 /// State after the step `head` (-1: as scanned), or at the head of the current alternative. Poses have the same bits as
 /// in the steps.

@@ -2,6 +2,7 @@
 #include "assets/cases/propose_paint.hpp"
 
 #include "dsp/core/error.hpp"
+#include "dsp/fit/faces.hpp"
 #include "dsp/geometry/neighbours.hpp"
 #include "dsp/geometry/point_tree.hpp"
 
@@ -133,6 +134,31 @@ std::size_t keep_patches_near(std::span<contact::SurfacePoint> points, std::span
         else
             for (const std::size_t i : patch) points[i].label = contact::surface_label::none;
     return count;
+}
+
+std::size_t drop_small_faces(std::span<contact::SurfacePoint> points, double least_area) {
+    const auto labelled = [&] {
+        return static_cast<std::size_t>(
+            std::ranges::count(points, contact::surface_label::fracture, &contact::SurfacePoint::label));
+    };
+    std::size_t left = labelled();
+    if (!(least_area > 0.0)) return left;
+    // Without a small face its neighbours may be split otherwise.
+    for (int round = 0; round < 5; ++round) {
+        const auto faces = fit::split_faces(points);
+        for (contact::SurfacePoint& p : points)
+            if (p.label == contact::surface_label::fracture) p.label = contact::surface_label::none;
+        for (const auto& face : faces) {
+            double area = 0.0;
+            for (const std::size_t n : face) area += points[n].area;
+            if (area < least_area) continue;
+            for (const std::size_t n : face) points[n].label = contact::surface_label::fracture;
+        }
+        const std::size_t now = labelled();
+        if (now == left) break;
+        left = now;
+    }
+    return left;
 }
 
 }  // namespace tactus::cases

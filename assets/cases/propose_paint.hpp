@@ -53,4 +53,8 @@ std::size_t propose_inside(std::span<contact::SurfacePoint> points, const fit::R
 std::size_t keep_patches_near(std::span<contact::SurfacePoint> points, std::span<const contact::SurfacePoint> other,
                               double reach);
 
+/// Removes the label of faces (see fit::split_faces) smaller than `least_area` (m²), and of labelled points that belong
+/// to no face. With 0, does nothing. Returns the number of points that stay labelled.
+std::size_t drop_small_faces(std::span<contact::SurfacePoint> points, double least_area);
+
 }  // namespace tactus::cases

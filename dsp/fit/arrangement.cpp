@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dsp/fit/arrangement.hpp"
 
+#include "dsp/core/rotation.hpp"
+
 #include <glm/geometric.hpp>
 
 namespace tactus::fit {
@@ -41,11 +43,25 @@ bool Arrangement::move(int fragment, const Pose& to) noexcept {
         moved.orientation = glm::normalize(moved.orientation);
     }
     at(fragment).pose = wanted;
-    for (int other = 0; other < static_cast<int>(size()); ++other) {
-        const int partner = fitted_to(other);
-        if (partner != none && move_together(fragment, other) && !move_together(fragment, partner)) fit(other, none);
-    }
     return true;
+}
+
+void Arrangement::fit(int fragment, int partner) noexcept {
+    at(fragment).fitted_to = partner;
+    at(fragment).beside = partner == none ? Pose{} : pose(partner).inverse() * pose(fragment);
+}
+
+Arrangement::Departure Arrangement::departure(int fragment) const noexcept {
+    const int partner = was_fitted_to(fragment);
+    if (partner == none) return {};
+    const Pose now = pose(partner).inverse() * pose(fragment), &then = at(fragment).beside;
+    return {glm::length(now.position - then.position),
+            glm::length(rotation_between(then.orientation, now.orientation))};
+}
+
+int Arrangement::fitted_to(int fragment) const noexcept {
+    const Departure away = departure(fragment);
+    return away.distance <= void_distance && away.angle <= void_angle ? was_fitted_to(fragment) : none;
 }
 
 int Arrangement::join(std::span<const int> fragments) noexcept {

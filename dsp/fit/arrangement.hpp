@@ -5,6 +5,7 @@
 #include "dsp/core/types.hpp"
 
 #include <cstddef>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -16,11 +17,20 @@ class Arrangement {
 public:
     static constexpr int none = -1;
 
+    /// A fit is void when one of both has moved farther from the other than this, in the partner's frame.
+    static constexpr double void_distance = 0.05e-3;  ///< m, of the origin of the fragment's file
+    static constexpr double void_angle = 0.05 * std::numbers::pi / 180.0;  ///< rad
+
     struct Place {
         Pose pose;
         int group = none;
-        int fitted_to = none;  ///< the fragment that it was fitted to, until it moves away
+        int fitted_to = none;  ///< the fragment that it was fitted to last
+        Pose beside;  ///< its pose in that fragment's frame when it was fitted
         bool locked = false, hidden = false;
+    };
+    /// How far a fragment has moved from where it was fitted, in its partner's frame: m and rad.
+    struct Departure {
+        double distance = 0.0, angle = 0.0;
     };
     struct Group {
         int parent = none;
@@ -33,7 +43,12 @@ public:
     const Pose& pose(int fragment) const noexcept { return at(fragment).pose; }
     bool is_locked(int fragment) const noexcept { return at(fragment).locked; }
     bool is_hidden(int fragment) const noexcept { return at(fragment).hidden; }
-    int fitted_to(int fragment) const noexcept { return at(fragment).fitted_to; }
+    /// The fragment that it fits: it was fitted there, and neither has moved from the other since. Else `none`.
+    int fitted_to(int fragment) const noexcept;
+    /// The fragment that it was fitted to last, also when that fit is void.
+    int was_fitted_to(int fragment) const noexcept { return at(fragment).fitted_to; }
+    /// Since it was fitted; zero when it never was.
+    Departure departure(int fragment) const noexcept;
     /// Innermost group of a fragment; parent of a group; `none` when there is none.
     int group_of(int fragment) const noexcept { return at(fragment).group; }
     int parent_of(int group) const noexcept { return groups_[static_cast<std::size_t>(group)].parent; }
@@ -48,10 +63,10 @@ public:
 
     /// Places one fragment without its group: replays a recorded step.
     void place(int fragment, const Pose& pose) noexcept { at(fragment).pose = pose; }
-    /// Records that the fragment fits this one; `none`: it fits none.
-    void fit(int fragment, int partner) noexcept { at(fragment).fitted_to = partner; }
+    /// Records that the fragment fits this one as both lie now; `none`: it fits none.
+    void fit(int fragment, int partner) noexcept;
     /// Moves a fragment to `pose` and everything that moves with it by the same motion; ignores an invalid pose and
-    /// locked fragments. Fragments that leave their partner are no longer fitted. Returns whether it moved.
+    /// locked fragments. Fits to fragments that do not move along become void. Returns whether it moved.
     bool move(int fragment, const Pose& pose) noexcept;
 
     /// Makes a group of these fragments and all that move with them: their groups become nested groups. Returns its

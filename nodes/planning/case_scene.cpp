@@ -285,10 +285,13 @@ private:
         }
         is_changed_ = true;
     }
-    /// Updates the poses of one body and of those that move with it only.
+    /// Updates the poses of one body and of those that move with it only. A fit to one of them may have become void.
     void show_unit(int fragment) noexcept {
-        for (int n = 0; n < static_cast<int>(parts_.size()); ++n)
-            if (now_->move_together(fragment, n)) show_place(n);
+        for (int n = 0; n < static_cast<int>(parts_.size()); ++n) {
+            const int fitted = now_->was_fitted_to(n);
+            if (now_->move_together(fragment, n) || (fitted >= 0 && now_->move_together(fragment, fitted)))
+                show_place(n);
+        }
         is_changed_ = true;
     }
     void show_place(int fragment) noexcept {

@@ -8,6 +8,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <string>
@@ -73,6 +74,12 @@ struct FragmentMatcher {
         report.set(name_, "faces", static_cast<double>(matcher_->faces()));
         report.set(name_, "looks", looks_);
         report.set(name_, "fits", fits_);
+        if (lonely_ > 0.0) {
+            report.set(name_, "looks_without_partner", lonely_);
+            report.set(name_, "hint",
+                       std::string("nothing was locked or fitted, so there was nothing to fit to: lock a fragment "
+                                   "('tactus plan lock', or 'tactus trigger lock'), or set partners = \"all\""));
+        }
     }
 
 private:
@@ -97,6 +104,7 @@ private:
         }
         was_ = place;
         ++looks_;
+        lonely_ += partners.index == 0 && std::ranges::find(stands, 1) == stands.end();
         fits_ += match.verdict == fit::FitVerdict::fit;
         const bool is_fit = match.verdict == fit::FitVerdict::fit;
         target = is_fit ? match.pose * mine.body.home : mine.pose;
@@ -144,7 +152,7 @@ private:
     std::array<Pose, tactus::coupling::Scene::most_objects> poses_;
     std::array<char, tactus::coupling::Scene::most_objects> stands_{};
     std::string name_;
-    double looks_ = 0.0, fits_ = 0.0;
+    double looks_ = 0.0, fits_ = 0.0, lonely_ = 0.0;
     int was_ = -1;
 };
 

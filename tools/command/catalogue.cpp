@@ -40,6 +40,7 @@
 #define TACTUS_PLAN_VERBS(X)      \
     X(plan_new, planning)         \
     X(plan_show, planning)        \
+    X(plan_check, planning)       \
     X(plan_move, planning)        \
     X(plan_group, planning)       \
     X(plan_add, planning)         \

@@ -2,6 +2,7 @@
 #include "dsp/fit/arrangement.hpp"
 
 #include "dsp/core/rotation.hpp"
+#include "dsp/fit/assemblies.hpp"
 #include "dsp/fit/history.hpp"
 #include "tests/support/catch.hpp"
 
@@ -10,6 +11,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <vector>
 
 using namespace tactus;
 
@@ -91,6 +94,38 @@ TEST_CASE("a locked fragment holds its group, and no pose that is none moves any
     a.lock(0, false);
     CHECK_FALSE(a.move(1, turned(std::numeric_limits<double>::quiet_NaN(), 0.0)));
     CHECK(a.move(1, turned(1.0, 0.0)));
+}
+
+TEST_CASE("a fit holds while both fragments keep their places to each other, and no longer") {
+    fit::Arrangement a(4);
+    for (int n = 0; n < 4; ++n) a.place(n, turned(0.1 * n, 0.3 * n));
+    a.fit(1, 0);
+    a.fit(2, 1);
+    CHECK(a.fitted_to(1) == 0);
+    CHECK(fit::assemblies(a) == std::vector<std::vector<int>>{{0, 1, 2}, {3}});
+    const Pose home = a.pose(0);
+    REQUIRE(a.move(0, turned(0.04e-3, 0.0)));
+    CHECK(a.fitted_to(1) == 0);
+    REQUIRE(a.move(0, turned(0.0, 0.06 * std::numbers::pi / 180.0)));
+    CHECK(a.fitted_to(1) == none);
+    CHECK(a.was_fitted_to(1) == 0);
+    CHECK(a.departure(1).angle == Approx(0.06 * std::numbers::pi / 180.0));
+    CHECK(fit::assemblies(a) == std::vector<std::vector<int>>{{1, 2}, {0}, {3}});
+    CHECK(fit::standing(a, 0) == std::vector<char>{0, 1, 1, 0});
+    a.lock(3, true);
+    CHECK(fit::standing(a, 0) == std::vector<char>{0, 0, 0, 1});
+    REQUIRE(a.move(0, home));
+    CHECK(a.fitted_to(1) == 0);
+    // A fragment that moves takes its own connections with it.
+    CHECK(fit::standing(a, 1) == std::vector<char>{0, 0, 0, 1});
+    a.lock(3, false);
+    CHECK(fit::standing(a, 1) == std::vector<char>{0, 0, 0, 0});
+    join(a, {0, 1});
+    for (int n = 1; n < 30; ++n) REQUIRE(a.move(n % 2, turned(0.5 * n, 0.7 * n)));
+    CHECK(a.fitted_to(1) == 0);
+    CHECK(a.fitted_to(2) == none);
+    a.hide(0, true);
+    CHECK(fit::assemblies(a).size() == 3);
 }
 
 TEST_CASE("steps are undone to the root and redone to the tip, and a new step leaves the old branch in the tree") {

@@ -89,7 +89,9 @@ Action add(VerbOptions& verb) {
     verb.add("--paint", settings.paint, "use this file of strokes instead of the proposal");
     verb.flag("--correct", settings.correct, "apply the strokes of --paint on top of the proposal");
     verb.add("--facing", settings.facing,
-             "another fragment of the same scan: propose the surface that faces it, also when it is smooth");
+             "another fragment of the same scan: propose the surface that faces it, also when it is smooth; once per "
+             "neighbour")
+        .one_each();
     const Option intact = verb.add(
         "--intact", settings.intact,
         "the unbroken bone, in any position: propose the surface inside of it; with --facing only near that fragment");
@@ -102,7 +104,8 @@ Action add(VerbOptions& verb) {
         .unit("mm")
         .shows_default()
         .range(0.1, 100.0);
-    verb.flag("--keep", settings.keep, "start from the paint in the bone file, or from the proposal when it has none");
+    verb.flag("--keep", settings.keep,
+              "keep the paint in the bone file; what --facing or --intact propose is added to it");
     verb.add("--roughness", settings.roughness,
              "roughness above which a point counts as broken: mean of 1 - cos of normals")
         .shows_default()

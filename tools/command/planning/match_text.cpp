@@ -5,16 +5,20 @@
 
 namespace tactus::command {
 
-void print_match(const cases::CasePlan& plan, const study::PlanMatch& found) {
+void print_match(const cases::CasePlan& plan, const study::PlanMatch& found, const std::string& reason) {
     const fit::FragmentMatch& match = found.match;
     const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
-    if (match.partner == fit::Arrangement::none)
-        fmt::print("{}: no other fragment faces it at a small distance\n", name(match.moving));
-    else
+    if (match.partner == fit::Arrangement::none) fmt::print("{} stays where it is: {}\n", name(match.moving), reason);
+    else {
         fmt::print("{} to {}: {}, {} faces, score {:.2f}, margin {:.2f}, {:.0f} mm² on each other, {:.3f} mm rms{}\n",
                    name(match.moving), name(match.partner), fit::name_of(match.verdict), match.faces,
                    match.quality.score, match.margin, match.quality.overlap * 1e6, match.quality.rms * 1e3,
                    match.verdict == fit::FitVerdict::fit ? "" : "; it stays where it was");
+        if (!reason.empty()) fmt::print("{}\n", reason);
+    }
+    if (found.is_apart)
+        fmt::print("'{}' is not connected to what stands, and nothing of that fits '{}'; see 'tactus plan check'\n",
+                   name(match.partner), name(match.moving));
     if (found.as_scanned) fmt::print("{}\n", as_scanned_note);
 }
 

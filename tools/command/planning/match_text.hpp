@@ -5,31 +5,38 @@
 #include "tools/command/pose_text.hpp"
 #include "tools/study/planning/plan_matching.hpp"
 
+#include <string>
+
 namespace tactus::command {
 
-/// In a JSON type.
+/// In a JSON type. Numbers of a match are null when no faces met. `reason`: why the fragment was not placed, or empty.
 template <class Json>
-Json match_json(const cases::CasePlan& plan, const study::PlanMatch& found) {
+Json match_json(const cases::CasePlan& plan, const study::PlanMatch& found, const std::string& reason) {
     const fit::FragmentMatch& match = found.match;
     const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
+    const bool met = match.partner != fit::Arrangement::none;
+    const auto number = [met](double value) { return met ? Json(value) : Json(nullptr); };
     return {{"fragment", name(match.moving)},
-            {"partner", match.partner == fit::Arrangement::none ? Json(nullptr) : Json(name(match.partner))},
+            {"partner", met ? Json(name(match.partner)) : Json(nullptr)},
             {"verdict", fit::name_of(match.verdict)},
             {"placed", match.verdict == fit::FitVerdict::fit},
+            {"reason", reason.empty() ? Json(nullptr) : Json(reason)},
             {"as_scanned", found.as_scanned},
+            {"inside", found.inside == fit::Arrangement::none ? Json(nullptr) : Json(name(found.inside))},
+            {"apart", found.is_apart},
             {"faces", match.faces},
-            {"score", match.quality.score},
-            {"margin", match.margin},
-            {"rms_mm", match.quality.rms * 1e3},
-            {"gap_mm", match.quality.gap * 1e3},
-            {"penetration_mm", match.quality.penetration * 1e3},
-            {"overlap_mm2", match.quality.overlap * 1e6},
-            {"pose", pose_json<Json>(match.pose)},
-            {"moved", motion_json<Json>(found.moved)},
+            {"score", number(match.quality.score)},
+            {"margin", number(match.margin)},
+            {"rms_mm", number(match.quality.rms * 1e3)},
+            {"gap_mm", number(match.quality.gap * 1e3)},
+            {"penetration_mm", number(match.quality.penetration * 1e3)},
+            {"overlap_mm2", number(match.quality.overlap * 1e6)},
+            {"pose", met ? pose_json<Json>(match.pose) : Json(nullptr)},
+            {"moved", met ? motion_json<Json>(found.moved) : Json(nullptr)},
             {"paint", found.was_painted ? "file" : "proposed"}};
 }
 
-/// Prints one line on standard output.
-void print_match(const cases::CasePlan& plan, const study::PlanMatch& found);
+/// Prints one line on standard output, and one for the reason.
+void print_match(const cases::CasePlan& plan, const study::PlanMatch& found, const std::string& reason);
 
 }  // namespace tactus::command

@@ -16,25 +16,33 @@ using Json = nlohmann::ordered_json;
 Json json_of(const cases::CasePlan& plan, const std::vector<study::PlanGap>& gaps) {
     const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
     Json pairs = Json::array();
-    for (const study::PlanGap& g : gaps)
+    for (const study::PlanGap& g : gaps) {
+        // Without surfaces that face each other there is no gap.
+        const bool is_facing = g.gap.facing_area > 0.0;
         pairs.push_back({{"fragments", {name(g.first), name(g.second)}},
                          {"facing_mm2", g.gap.facing_area * 1e6},
                          {"contact_mm2", g.gap.contact_area * 1e6},
-                         {"gap_median_mm", g.gap.median * 1e3},
-                         {"gap_p95_mm", g.gap.p95 * 1e3},
+                         {"gap_median_mm", is_facing ? Json(g.gap.median * 1e3) : Json(nullptr)},
+                         {"gap_p95_mm", is_facing ? Json(g.gap.p95 * 1e3) : Json(nullptr)},
                          {"deepest_mm", g.gap.deepest * 1e3},
                          {"overlap_mm3", g.overlap * 1e9}});
+    }
     return pairs;
 }
 
 void print(const cases::CasePlan& plan, const std::vector<study::PlanGap>& gaps) {
     const auto name = [&plan](int n) { return plan.fragments[static_cast<std::size_t>(n)].name; };
+    if (gaps.empty()) fmt::print("no two shown fragments face each other within 3 mm\n");
     for (const study::PlanGap& g : gaps)
-        fmt::print(
-            "{} and {}: {:.0f} mm² face each other, {:.0f} mm² touch; gap {:.2f} mm (95 %: {:.2f} mm), "
-            "{:.1f} mm³ overlap, {:.2f} mm deep\n",
-            name(g.first), name(g.second), g.gap.facing_area * 1e6, g.gap.contact_area * 1e6,
-            study::shown_mm(g.gap.median * 1e3), g.gap.p95 * 1e3, g.overlap * 1e9, g.gap.deepest * 1e3);
+        if (!(g.gap.facing_area > 0.0))
+            fmt::print("{} and {}: do not face each other within 3 mm; {:.1f} mm³ overlap\n", name(g.first),
+                       name(g.second), g.overlap * 1e9);
+        else
+            fmt::print(
+                "{} and {}: {:.0f} mm² face each other, {:.0f} mm² touch; gap {:.2f} mm (95 %: {:.2f} mm), "
+                "{:.1f} mm³ overlap, {:.2f} mm deep\n",
+                name(g.first), name(g.second), g.gap.facing_area * 1e6, g.gap.contact_area * 1e6,
+                study::shown_mm(g.gap.median * 1e3), g.gap.p95 * 1e3, g.overlap * 1e9, g.gap.deepest * 1e3);
 }
 
 int gap(const PlanChoice& choice) {

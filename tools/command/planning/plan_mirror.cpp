@@ -22,7 +22,7 @@ struct MirrorChoice : PlanChoice {
 
 Json faces_json(const study::FacesThere& faces) {
     return {{"contact_mm2", faces.gap.contact_area * 1e6},
-            {"gap_median_mm", faces.gap.median * 1e3},
+            {"gap_median_mm", faces.gap.facing_area > 0.0 ? Json(faces.gap.median * 1e3) : Json(nullptr)},
             {"deepest_mm", faces.gap.deepest * 1e3},
             {"overlap_mm3", faces.overlap * 1e9}};
 }

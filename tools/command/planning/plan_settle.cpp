@@ -3,6 +3,8 @@
 #include "dsp/core/error.hpp"
 #include "tools/command/planning/match_text.hpp"
 #include "tools/command/planning/plan_options.hpp"
+#include "tools/study/planning/match_reason.hpp"
+#include "tools/study/planning/plan_words.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,37 +17,61 @@ struct SettleChoice : PlanChoice {
     int passes = 1;
 };
 
-/// The named fragments, or all fitted fragments that are not locked.
+/// All fragments with a fit that holds and that are not locked.
+std::vector<int> held_fragments(const cases::PlanState& state) {
+    std::vector<int> numbers;
+    for (int n = 0; n < static_cast<int>(state.fits.size()); ++n)
+        if (state.holds(n) && state.arrangement.can_move(n)) numbers.push_back(n);
+    return numbers;
+}
+
+/// The named fragments, or all fragments with a fit that holds and that are not locked.
 std::vector<int> settled_fragments(const cases::CasePlan& plan, const std::vector<std::string>& names) {
     std::vector<int> numbers;
     for (const std::string& name : names) numbers.push_back(cases::find_fragment(plan, name));
-    if (numbers.empty()) {
-        const cases::PlanState state = cases::state_of(plan);
-        for (int n = 0; n < static_cast<int>(plan.fragments.size()); ++n)
-            if (state.fits[static_cast<std::size_t>(n)] && state.arrangement.can_move(n)) numbers.push_back(n);
-    }
-    if (numbers.empty()) throw Error("no fragment is fitted yet; run 'tactus plan snap' first");
+    if (numbers.empty()) numbers = held_fragments(cases::state_of(plan));
+    if (numbers.empty())
+        throw Error(
+            "no fragment that can move has a fit that holds; see 'tactus plan show', and run 'tactus plan snap' "
+            "first");
     return numbers;
 }
 
 int settle(const SettleChoice& choice) {
+    constexpr int most_rounds = 4;
     study::OpenPlan open(choice.plan);
     cases::CasePlan& plan = open.plan;
     const std::vector<int> numbers = settled_fragments(plan, choice.names);
+    const std::vector<int> held = held_fragments(cases::state_of(plan));
     study::PlanMatching matching(plan, choice.plan.parent_path());
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     bool all_fit = true;
+    const auto settle_one = [&](int n) {
+        const fit::Arrangement now = cases::state_of(plan).arrangement;
+        const study::PlanMatch found = matching.near(now, n, study::Partners::all);
+        const std::string reason =
+            study::why_not_placed(plan, matching, now, found, fit::Arrangement::none, study::MatchWay::near);
+        const bool fits = found.match.verdict == fit::FitVerdict::fit;
+        if (fits) study::do_step(plan, study::step_of(plan, found.match, "settle"), choice.plan);
+        all_fit = all_fit && fits;
+        rows.push_back(match_json<nlohmann::ordered_json>(plan, found, reason));
+        if (!choice.json) print_match(plan, found, reason);
+    };
     for (int pass = 0; pass < choice.passes; ++pass)
-        for (const int n : numbers) {
-            const study::PlanMatch found = matching.near(cases::state_of(plan).arrangement, n);
-            const bool fits = found.match.verdict == fit::FitVerdict::fit;
-            if (fits) study::do_step(plan, study::step_of(plan, found.match, "settle"), choice.plan);
-            all_fit = all_fit && fits;
-            rows.push_back(match_json<nlohmann::ordered_json>(plan, found));
-            if (!choice.json) print_match(plan, found);
-        }
-    if (choice.json) fmt::print("{}\n", nlohmann::ordered_json{{"version", 1}, {"rows", rows}}.dump(2));
-    return all_fit ? done : answer_is_no;
+        for (const int n : numbers) settle_one(n);
+    // A fragment that was settled before its partner may have lost its fit.
+    for (int round = 0; round < most_rounds; ++round)
+        for (const int n : held)
+            if (!cases::state_of(plan).holds(n)) settle_one(n);
+    const cases::PlanState state = cases::state_of(plan);
+    if (choice.json)
+        fmt::print(
+            "{}\n",
+            nlohmann::ordered_json{{"version", 1}, {"rows", rows}, {"assemblies", study::assembly_names(plan, state)}}
+                .dump(2));
+    else
+        for (const std::string& line : study::connection_words(plan, state)) fmt::print("{}\n", line);
+    return all_fit && study::is_in_one_part(state) ? done : answer_is_no;
 }
 
 Action add(VerbOptions& verb) {
@@ -59,7 +85,10 @@ Action add(VerbOptions& verb) {
 }  // namespace
 
 Verb plan_settle_verb() {
-    return {"settle", "refine fitted fragments, each against all its neighbours; 1: one does not fit", add};
+    return {"settle",
+            "refine fitted fragments, each against all its neighbours; 1: one does not fit, or the fragments are not "
+            "connected",
+            add};
 }
 
 }  // namespace tactus::command

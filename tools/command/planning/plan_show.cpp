@@ -5,10 +5,13 @@
 #include "tools/command/pose_text.hpp"
 #include "tools/counted.hpp"
 #include "tools/study/planning/plan_case.hpp"
+#include "tools/study/planning/plan_words.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
+
+#include <numbers>
 
 namespace tactus::command {
 
@@ -24,15 +27,20 @@ std::vector<std::string> groups_of(const cases::PlanState& state, int fragment) 
     return names;
 }
 
-Json fit_json(const cases::PlanFit& fit) {
-    return {{"partner", fit.partner},
-            {"verdict", fit.verdict},
-            {"score", fit.score},
-            {"margin", fit.margin},
-            {"rms_mm", fit.rms * 1e3},
-            {"gap_mm", fit.gap * 1e3},
-            {"penetration_mm", fit.penetration * 1e3},
-            {"overlap_mm2", fit.overlap * 1e6}};
+/// `verdict` is "void" when the fragment or its partner has moved from the other since.
+Json fit_json(const cases::PlanState& state, int fragment) {
+    const cases::PlanFit& fit = *state.fits[static_cast<std::size_t>(fragment)];
+    const fit::Arrangement::Departure away = state.arrangement.departure(fragment);
+    return {
+        {"partner", fit.partner},
+        {"verdict", state.holds(fragment) ? fit.verdict : "void"},
+        {"moved_since", {{"distance_mm", away.distance * 1e3}, {"angle_deg", away.angle * 180.0 / std::numbers::pi}}},
+        {"score", fit.score},
+        {"margin", fit.margin},
+        {"rms_mm", fit.rms * 1e3},
+        {"gap_mm", fit.gap * 1e3},
+        {"penetration_mm", fit.penetration * 1e3},
+        {"overlap_mm2", fit.overlap * 1e6}};
 }
 
 Json json_of(const cases::CasePlan& plan, const std::vector<std::string>& problems) {
@@ -48,6 +56,7 @@ Json json_of(const cases::CasePlan& plan, const std::vector<std::string>& proble
                fit::steps_to(before, plan.place().tip).size() - fit::steps_to(before, plan.place().head).size()},
               {"steps_in_all", plan.steps.size()},
               {"mirror", nullptr},
+              {"assemblies", study::assembly_names(plan, state)},
               {"problems", problems}};
     for (int n = 0; n < static_cast<int>(plan.fragments.size()); ++n) {
         const cases::PlanFragment& f = plan.fragments[static_cast<std::size_t>(n)];
@@ -58,7 +67,7 @@ Json json_of(const cases::CasePlan& plan, const std::vector<std::string>& proble
                       {"locked", state.arrangement.is_locked(n)},
                       {"hidden", state.arrangement.is_hidden(n)},
                       {"fit", nullptr}};
-        if (const auto& fit = state.fits[static_cast<std::size_t>(n)]) fragment["fit"] = fit_json(*fit);
+        if (state.fits[static_cast<std::size_t>(n)]) fragment["fit"] = fit_json(state, n);
         json["fragments"].push_back(fragment);
     }
     for (int g = 0; g < static_cast<int>(state.arrangement.most_groups()); ++g) {
@@ -101,11 +110,11 @@ int show_plan(const PlanChoice& choice) {
         std::string marks = state.arrangement.is_locked(n) ? ", locked" : "";
         if (state.arrangement.is_hidden(n)) marks += ", hidden";
         for (const std::string& group : groups_of(state, n)) marks += fmt::format(", in '{}'", group);
-        if (const auto& fit = state.fits[static_cast<std::size_t>(n)])
-            marks += fmt::format(", {} to {} ({:.2f} mm rms)", fit->verdict, fit->partner, fit->rms * 1e3);
+        if (const std::string fit = study::fit_words(state, n); !fit.empty()) marks += ", " + fit;
         fmt::print("  {}: at {:.2f} {:.2f} {:.2f} mm, turned {:.2f}°{}\n", f.name, pose.position.x * 1e3,
                    pose.position.y * 1e3, pose.position.z * 1e3, study::angle_deg(pose), marks);
     }
+    for (const std::string& line : study::connection_words(plan, state)) fmt::print("  {}\n", line);
     for (const std::string& problem : problems) fmt::print("! {}\n", problem);
     return done;
 }

@@ -3,6 +3,7 @@
 #include "dsp/core/error.hpp"
 #include "tools/command/planning/match_text.hpp"
 #include "tools/command/planning/plan_options.hpp"
+#include "tools/study/planning/match_reason.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -30,22 +31,31 @@ int snap_fragment(const SnapChoice& choice) {
     if (matching.faces_of(moving) == 0)
         throw Error(
             fmt::format("fragment '{}' has no painted fracture; see 'tactus fracture-surface'", choice.names[0]));
-    const study::PlanMatch found =
-        choice.mode == "global" ? matching.anywhere(a, moving, only) : matching.near(a, moving, only);
+    const study::MatchWay way = choice.mode == "global" ? study::MatchWay::anywhere : study::MatchWay::near;
+    const study::PlanMatch found = way == study::MatchWay::anywhere
+                                       ? matching.anywhere(a, moving, only)
+                                       : matching.near(a, moving, study::Partners::standing_first, only);
     const bool fits = found.match.verdict == fit::FitVerdict::fit;
+    const std::string reason = study::why_not_placed(plan, matching, a, found, only, way);
     // Everything that may fail runs before the plan is changed.
     const auto target = study::target_distances(state, folder, matching.fragment(moving), found.from, found.match.pose);
+    // Where nothing fits, the distance there says nothing.
+    const bool has_place = fits || found.as_scanned;
     if (fits) study::do_step(plan, study::step_of(plan, found.match, "snap"), choice.plan);
     if (choice.json) {
-        nlohmann::ordered_json json = match_json<nlohmann::ordered_json>(plan, found);
+        using Json = nlohmann::ordered_json;
+        Json json = match_json<Json>(plan, found, reason);
         if (target)
-            json["target"] = {{"median_before_mm", 1e3 * target->before}, {"median_there_mm", 1e3 * target->there}};
+            json["target"] = {{"median_before_mm", 1e3 * target->before},
+                              {"median_there_mm", has_place ? Json(1e3 * target->there) : Json(nullptr)}};
         fmt::print("{}\n", json.dump(2));
     } else {
-        print_match(plan, found);
+        print_match(plan, found, reason);
         if (target)
-            fmt::print("from the healthy side: median {:.2f} mm where it was, {:.2f} mm where its faces fit\n",
-                       1e3 * target->before, 1e3 * target->there);
+            fmt::print("from the healthy side: median {:.2f} mm where it was{}\n", 1e3 * target->before,
+                       has_place ? fmt::format(", {:.2f} mm {}", 1e3 * target->there,
+                                               fits ? "where its faces fit" : "where the scan has it")
+                                 : "");
     }
     return fits ? done : answer_is_no;
 }

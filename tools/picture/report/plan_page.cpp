@@ -10,6 +10,7 @@
 #include "tools/picture/report/html_report.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 #include "tools/study/bones/surface_file.hpp"
+#include "tools/study/planning/plan_words.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -144,7 +145,10 @@ std::string fragments_table(const Case& c) {
             "</td><td class=\"n\">{:.2f}</td>",
             colour.x * 255, colour.y * 255, colour.z * 255, html::escaped(c.name(n)),
             1e3 * glm::length(c.pose(n).apply(middle) - middle), study::angle_deg(c.pose(n)));
-        if (const auto& fit = c.state.fits[n])
+        if (const auto& fit = c.state.fits[n]; fit && !c.state.holds(static_cast<int>(n)))
+            out += fmt::format("<td>{}</td><td class=\"fail\" colspan=\"5\">{}</td>", html::escaped(fit->partner),
+                               html::escaped(study::fit_words(c.state, static_cast<int>(n))));
+        else if (fit)
             out += fmt::format(
                 "<td>{}</td><td class=\"{}\">{}</td><td class=\"n\">{:.2f}</td><td class=\"n\">{:.2f}</td><td "
                 "class=\"n\">{:.3f}</td><td class=\"n\">{}</td>",
@@ -236,6 +240,17 @@ std::string alternatives(const cases::CasePlan& plan) {
     return out + "</ul>\n";
 }
 
+/// What hangs together, and first of all that something does not.
+std::string connections(const Case& c) {
+    std::string out;
+    if (!study::is_in_one_part(c.state))
+        out += "<p class=\"fail\">Warning: the fragments are not all connected by fits that hold.</p>\n";
+    out += "<ul>\n";
+    for (const std::string& line : study::connection_words(c.plan, c.state))
+        out += "<li>" + html::escaped(line) + "</li>\n";
+    return out + "</ul>\n";
+}
+
 std::string mirror(const Case& c) {
     if (!c.state.mirror) return "";
     return fmt::format(
@@ -263,7 +278,7 @@ std::string plan_page(const cases::CasePlan& plan, std::vector<study::CaseFragme
         fmt::format("<p>Alternative '{}', {}. Research use; not a medical device.</p>\n",
                     html::escaped(c.plan.alternatives[static_cast<std::size_t>(c.plan.current)].name),
                     counted(c.fragments.size(), "fragment")) +
-        fragments_table(c) + mirror(c) + pages + places(c) + steps(c) + alternatives(c.plan);
+        connections(c) + fragments_table(c) + mirror(c) + pages + places(c) + steps(c) + alternatives(c.plan);
     return html::page(c.plan.title, body);
 }
 

@@ -4,11 +4,8 @@
 #include "assets/cases/paint_file.hpp"
 #include "assets/cases/propose_paint.hpp"
 #include "dsp/contact/sample_surface.hpp"
-#include "dsp/core/error.hpp"
 #include "tools/study/bones/fragment_file.hpp"
 #include "tools/study/bones/intact_side.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -40,26 +37,44 @@ LaidIntact propose_by_intact(std::vector<contact::SurfacePoint>& points, const F
     return laid;
 }
 
-/// Labels the points proposed by the selected methods.
+bool is_painted(const contact::SurfacePoint& p) { return p.label == contact::surface_label::fracture; }
+
+/// Labels what faces at least one of the fragments.
+void propose_by_facing(std::vector<contact::SurfacePoint>& points, const FractureSurfaceSettings& settings,
+                       double least_area) {
+    cases::FacingOptions options;
+    options.reach = settings.reach;
+    options.least_area = least_area;
+    std::vector<char> faces(points.size(), 0);
+    for (const std::filesystem::path& other : settings.facing) {
+        cases::propose_facing(points, points_of_fragment(other), options);
+        for (std::size_t n = 0; n < points.size(); ++n) faces[n] = faces[n] || is_painted(points[n]);
+    }
+    for (std::size_t n = 0; n < points.size(); ++n)
+        points[n].label = faces[n] ? contact::surface_label::fracture : contact::surface_label::none;
+}
+
+/// Labels the points proposed by the selected methods. A patch may fall into faces: small ones are left out, too.
 std::optional<LaidIntact> propose(std::vector<contact::SurfacePoint>& points, const FractureSurfaceSettings& settings) {
+    std::optional<LaidIntact> laid;
+    double least_area = settings.least_area.value_or(20e-6);
     if (!settings.intact.empty()) {
-        const LaidIntact laid = propose_by_intact(points, settings);
-        if (!settings.facing.empty())
-            cases::keep_patches_near(points, points_of_fragment(settings.facing), settings.reach);
-        return laid;
+        least_area = settings.least_area.value_or(cases::IntactOptions{}.least_area);
+        laid = propose_by_intact(points, settings);
+        std::vector<contact::SurfacePoint> others;
+        for (const std::filesystem::path& other : settings.facing)
+            for (const contact::SurfacePoint& p : points_of_fragment(other)) others.push_back(p);
+        if (!settings.facing.empty()) cases::keep_patches_near(points, others, settings.reach);
+    } else if (!settings.facing.empty()) {
+        propose_by_facing(points, settings, least_area);
+    } else {
+        cases::ProposalOptions options;
+        options.roughness = settings.roughness;
+        options.least_area = least_area;
+        cases::propose_fracture(points, options);
     }
-    if (!settings.facing.empty()) {
-        cases::FacingOptions options;
-        options.reach = settings.reach;
-        if (settings.least_area) options.least_area = *settings.least_area;
-        cases::propose_facing(points, points_of_fragment(settings.facing), options);
-        return std::nullopt;
-    }
-    cases::ProposalOptions options;
-    options.roughness = settings.roughness;
-    if (settings.least_area) options.least_area = *settings.least_area;
-    cases::propose_fracture(points, options);
-    return std::nullopt;
+    cases::drop_small_faces(points, least_area);
+    return laid;
 }
 
 }  // namespace
@@ -68,14 +83,13 @@ FractureSurface propose_fracture_surface(const FractureSurfaceSettings& settings
     FractureSurface out{bone_of_file(settings.bone), std::nullopt};
     std::vector<contact::SurfacePoint>& points = out.bone.points;
     if (points.empty()) points = contact::sample_surface(out.bone.distance, {});
-    const bool has_paint = std::ranges::any_of(
-        points, [](const contact::SurfacePoint& p) { return p.label == contact::surface_label::fracture; });
-    if (settings.keep && has_paint && !(settings.facing.empty() && settings.intact.empty()))
-        throw Error(
-            fmt::format("{}: with --keep the existing paint is used, so --facing and --intact have no effect; leave "
-                        "out --keep for a new proposal",
-                        settings.bone.string()));
-    if (!settings.keep || !has_paint) out.intact = propose(points, settings);
+    const bool has_paint = std::ranges::any_of(points, is_painted);
+    const bool is_asked = !settings.facing.empty() || !settings.intact.empty();
+    const std::vector<contact::SurfacePoint> before = points;
+    if (!settings.keep || !has_paint || is_asked) out.intact = propose(points, settings);
+    if (settings.keep && has_paint)
+        for (std::size_t n = 0; n < points.size(); ++n)
+            if (is_painted(before[n])) points[n].label = contact::surface_label::fracture;
     if (!settings.paint.empty()) cases::paint_from_file(points, settings.paint, settings.correct);
     return out;
 }

@@ -7,14 +7,15 @@
 
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 namespace tactus::study {
 
 struct FractureSurfaceSettings {
     std::filesystem::path bone;        ///< bone file or closed mesh
     std::filesystem::path paint;       ///< file of strokes in place of the proposal; empty: none
-    std::filesystem::path
-        facing;      ///< another fragment of the same scan: proposes the surface that faces it; empty: none
+    std::vector<std::filesystem::path>
+        facing;      ///< other fragments of the same scan: proposes the surface that faces them; empty: none
     std::filesystem::path intact;      ///< the unbroken bone: proposes the surface inside of it; empty: none
     std::filesystem::path main;        ///< fragment to which the unbroken bone is registered first; empty: `bone`
     double roughness = 0.06;           ///< threshold of roughness: mean of 1 − cos between normals
@@ -22,7 +23,7 @@ struct FractureSurfaceSettings {
     std::optional<double> least_area;  ///< m²; none: the default of each method
     bool mirror = false;               ///< `intact` is from the other side of the body
     bool correct = false;              ///< apply `paint` on top of the proposal
-    bool keep = false;                 ///< start from the paint in the bone file
+    bool keep = false;                 ///< keep the paint of the bone file; `facing` and `intact` add to it
 };
 
 /// Registration of the unbroken bone.

@@ -2,7 +2,10 @@
 #include "tools/study/planning/plan_matching.hpp"
 
 #include "dsp/fit/as_scanned.hpp"
+#include "dsp/fit/assemblies.hpp"
 #include "tools/study/bones/intact_side.hpp"
+
+#include <algorithm>
 
 namespace tactus::study {
 
@@ -38,30 +41,127 @@ PlanMatching::PlanMatching(const cases::CasePlan& plan, const std::filesystem::p
     matcher_ = std::make_unique<fit::FragmentMatcher>(surfaces_, settings);
 }
 
+namespace {
+
+// Small patches of any two surfaces fit by chance.
+constexpr double least_fitted_area = 30e-6;  // m²
+constexpr double least_fitted_share = 0.1;  // of the paint of the fragment that has less
+constexpr double most_deep_area = 10e-6;  // m²: as much of a surface may lie deep in another bone
+
+double painted_area(const CaseFragment& fragment) {
+    double area = 0.0;
+    for (const contact::SurfacePoint& p : fragment.bone.points)
+        if (p.label == contact::surface_label::fracture) area += p.area;
+    return area;
+}
+
+/// m² of the points' surface deeper than `depth` in the other bone.
+double deep_area(const CaseFragment& fragment, const Pose& pose, const CaseFragment& other, const Pose& other_pose,
+                 double depth) {
+    const Pose into = other_pose.inverse() * pose;
+    double area = 0.0;
+    for (const contact::SurfacePoint& p : fragment.bone.points) {
+        const volume::Sample here = other.map.sample(into.apply(p.position));
+        if (here.inside && here.value < -depth) area += p.area;
+    }
+    return area;
+}
+
+double coarsest(const CaseFragment& fragment) {
+    const Vec3& spacing = fragment.bone.distance.spacing;
+    return std::max({spacing.x, spacing.y, spacing.z});
+}
+
+}  // namespace
+
+double PlanMatching::least_overlap(const fit::FragmentMatch& made) const {
+    return std::max(least_fitted_area, least_fitted_share * std::min(painted_area(fragment(made.moving)),
+                                                                     painted_area(fragment(made.partner))));
+}
+
+/// Looks for the shown fragment that what moves would lie in most, on more than what two scans differ by.
+void PlanMatching::look_for_overlap(PlanMatch& found, const fit::Arrangement& arrangement) const {
+    const int moving = found.match.moving, count = static_cast<int>(arrangement.size());
+    const Pose motion = found.match.pose * arrangement.pose(moving).inverse();
+    for (int m = 0; m < count; ++m) {
+        if (!arrangement.move_together(moving, m)) continue;
+        const Pose at = m == moving ? found.match.pose : motion * arrangement.pose(m);
+        for (int n = 0; n < count; ++n) {
+            if (arrangement.move_together(moving, n) || arrangement.is_hidden(n)) continue;
+            const CaseFragment &mine = fragment(m), &other = fragment(n);
+            const Pose& there = arrangement.pose(n);
+            const double depth = std::max({settings().fit.most_penetration, coarsest(mine), coarsest(other)});
+            if (!(std::max(deep_area(mine, at, other, there, depth), deep_area(other, there, mine, at, depth)) >
+                  most_deep_area))
+                continue;
+            const double volume = fit::overlap_volume(mine.bone.distance, at, other.map, there);
+            if (found.inside != fit::Arrangement::none && !(volume > found.inside_volume)) continue;
+            found.inside = n;
+            found.inside_volume = volume;
+        }
+    }
+}
+
 PlanMatch PlanMatching::judged(const fit::FragmentMatch& made, const fit::Arrangement& arrangement) const {
-    PlanMatch found{made, false, arrangement.pose(made.moving), {}, fragment(made.moving).was_painted};
+    PlanMatch found;
+    found.match = made;
+    found.from = arrangement.pose(made.moving);
+    found.was_painted = fragment(made.moving).was_painted;
     const std::vector<contact::SurfacePoint>& points = fragment(made.moving).bone.points;
     // A fit that only reproduces the scanned position gives no information about the correct pose.
     found.as_scanned =
         made.verdict == fit::FitVerdict::fit &&
         fit::is_as_scanned(points, arrangement.pose(made.partner).inverse() * made.pose, fragment(made.partner).map);
     if (found.as_scanned) found.match.verdict = fit::FitVerdict::ambiguous;
+    if (found.match.verdict == fit::FitVerdict::fit) {
+        found.is_small = made.quality.overlap < least_overlap(made);
+        if (found.is_small) found.match.verdict = fit::FitVerdict::no_match;
+        else look_for_overlap(found, arrangement);
+        if (found.inside != fit::Arrangement::none) found.match.verdict = fit::FitVerdict::blocked;
+    }
     found.moved = motion_between(found.from, made.pose, middle_of(points));
     return found;
 }
 
-PlanMatch PlanMatching::near(const fit::Arrangement& arrangement, int moving, int only) {
-    return judged(matcher_->near(moving, poses_of(arrangement), partners_of(arrangement, moving, only)), arrangement);
+namespace {
+
+/// `look(stands)` with what stands; when that does not fit, with all partners.
+template <class Look>
+PlanMatch standing_first(const fit::Arrangement& a, int moving, int only, const Look& look) {
+    std::vector<char> stands = fit::standing(a, moving);
+    const std::vector<char> all = partners_of(a, moving, only);
+    for (std::size_t n = 0; n < stands.size(); ++n) stands[n] = stands[n] && all[n];
+    const bool is_some = std::ranges::find(stands, 1) != stands.end();
+    if (is_some) {
+        PlanMatch found = look(stands);
+        if (found.match.verdict == fit::FitVerdict::fit || stands == all) return found;
+    }
+    PlanMatch found = look(all);
+    found.is_apart = is_some && found.match.verdict == fit::FitVerdict::fit &&
+                     !stands[static_cast<std::size_t>(found.match.partner)];
+    return found;
+}
+
+}  // namespace
+
+PlanMatch PlanMatching::near(const fit::Arrangement& arrangement, int moving, Partners partners, int only) {
+    const auto look = [&](const std::vector<char>& stands) {
+        return judged(matcher_->near(moving, poses_of(arrangement), stands), arrangement);
+    };
+    if (partners == Partners::all || only != fit::Arrangement::none)
+        return look(partners_of(arrangement, moving, only));
+    return standing_first(arrangement, moving, only, look);
 }
 
 PlanMatch PlanMatching::anywhere(const fit::Arrangement& arrangement, int moving, int only) {
     const auto poses = poses_of(arrangement);
-    const auto stands = partners_of(arrangement, moving, only);
-    fit::FragmentMatch match = matcher_->near(moving, poses, stands);
-    matcher_->begin_search();
-    do match = matcher_->search(moving, poses, stands);
-    while (matcher_->left() > 0);
-    return judged(match, arrangement);
+    return standing_first(arrangement, moving, only, [&](const std::vector<char>& stands) {
+        fit::FragmentMatch match = matcher_->near(moving, poses, stands);
+        matcher_->begin_search();
+        do match = matcher_->search(moving, poses, stands);
+        while (matcher_->left() > 0);
+        return judged(match, arrangement);
+    });
 }
 
 cases::PlanStep step_of(const cases::CasePlan& plan, const fit::FragmentMatch& match, const char* by) {

@@ -22,7 +22,15 @@ struct PlanMatch {
     Pose from;                ///< pose of the fragment before
     Motion moved;             ///< motion of its centre from there
     bool was_painted = false; ///< the paint comes from the file; false: it was proposed
+    bool is_small = false;  ///< what fits is too small a part of the painted fracture; the verdict is `no_match`
+    int inside = fit::Arrangement::none;  ///< fragment that it would lie in; the verdict is `blocked`
+    double inside_volume = 0.0;  ///< m³ of both
+    bool is_apart = false;  ///< it fits a fragment that is not connected to what stands, and nothing of that
 };
+
+/// Possible partners of a fragment that moves: what stands (see fit::standing) and, when nothing of that fits, the other
+/// visible fragments; or all visible ones at once.
+enum class Partners : std::uint8_t { standing_first, all };
 
 /// The fragments of a plan and a matcher for them. Does not change the plan.
 class PlanMatching {
@@ -32,15 +40,18 @@ public:
 
     /// Number of painted faces of a fragment.
     std::size_t faces_of(int fragment) const { return matcher_->faces_of(fragment); }
+    const fit::MatcherSettings& settings() const { return matcher_->settings; }
     const CaseFragment& fragment(int n) const { return loaded_[static_cast<std::size_t>(n)]; }
 
-    /// Fits a fragment from its current pose. Partners: all visible fragments that do not move along, or `only` one of
-    /// them.
-    PlanMatch near(const fit::Arrangement& arrangement, int moving, int only = fit::Arrangement::none);
-    /// Fits a fragment from any pose.
+    /// Fits a fragment from its current pose. Fragments that move along are no partners. `only`: one partner.
+    PlanMatch near(const fit::Arrangement& arrangement, int moving, Partners partners,
+                   int only = fit::Arrangement::none);
+    /// Fits a fragment from any pose, to what stands first.
     PlanMatch anywhere(const fit::Arrangement& arrangement, int moving, int only = fit::Arrangement::none);
 
 private:
+    double least_overlap(const fit::FragmentMatch& made) const;
+    void look_for_overlap(PlanMatch& found, const fit::Arrangement& arrangement) const;
     PlanMatch judged(const fit::FragmentMatch& made, const fit::Arrangement& arrangement) const;
 
     std::vector<CaseFragment> loaded_;

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 using namespace tactus;
 using nlohmann::json;
@@ -131,10 +132,6 @@ TEST_CASE("the break is proposed by the unbroken bone, laid on the piece by itse
     INFO(far.out << far.err);
     REQUIRE(far.code == 0);
     CHECK(area(json::parse(far.out)) == Approx(wanted).epsilon(0.25));
-    const Outcome kept = folder.tactus("fracture-surface " + file("a/fragment_01.vdb") + " -o " + file("q.vdb") +
-                                       " --keep --facing " + file("a/fragment_02.vdb"));
-    CHECK(kept.code == 2);
-    CHECK(kept.err.find("--keep") != std::string::npos);
     CHECK(folder.tactus("fracture-surface " + file("bar.vdb") + " -o " + file("n.json") + " --mirror").code == 2);
 }
 
@@ -154,4 +151,34 @@ TEST_CASE("snap and fracture refuse what they cannot use with one clear line", "
         CHECK(done.code == 2);
         CHECK(std::ranges::count(done.err, '\n') == 1);
     }
+}
+
+TEST_CASE("a fragment is painted towards several neighbours at once, and the paint that it has is kept", "[slow]") {
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    const std::string jaw = (test::library_folder() / "bones/mandible.vdb").string();
+    REQUIRE(folder.tactus("fracture " + jaw + " -o " + file("a") + " --pieces 3 --seed 5 --spread 3").code == 0);
+    const auto area_of = [&](const std::string& piece, const std::string& options) {
+        const Outcome done = folder.tactus("fracture-surface " + piece + " -o " + file("q.vdb") + " --json " + options);
+        INFO(done.out << done.err);
+        REQUIRE(done.code == 0);
+        double sum = 0.0;
+        const json told = json::parse(done.out);
+        for (const json& face : told["faces"]) {
+            CHECK(face["area_mm2"].get<double>() >= 20.0);
+            sum += face["area_mm2"].get<double>();
+        }
+        return sum;
+    };
+    // The third piece broke from both others.
+    const std::string piece = file("a/fragment_03.vdb"), first = " --facing " + file("a/fragment_01.vdb"),
+                      second = " --facing " + file("a/fragment_02.vdb");
+    const double other = area_of(piece, second), one = area_of(piece, first);
+    std::filesystem::copy_file(file("q.vdb"), file("once.vdb"));
+    CHECK(one > 100.0);
+    CHECK(other > 100.0);
+    CHECK(area_of(piece, first + second) == Approx(one + other).epsilon(0.02));
+    // In two calls: the second keeps what the first has painted.
+    CHECK(area_of(file("once.vdb"), "--keep" + second) == Approx(one + other).epsilon(0.02));
+    CHECK(area_of(file("once.vdb"), second) == Approx(other).epsilon(0.02));
 }

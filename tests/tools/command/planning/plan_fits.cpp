@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a plan says about its fits: void ones, connected parts, reasons. The fits are written into the plan's file.
+#include "tests/support/catch.hpp"
+#include "tests/tools/bar.hpp"
+#include "tests/tools/box_stl.hpp"
+#include "tests/tools/run_command.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <string>
+
+using namespace tactus;
+using nlohmann::json;
+using tactus::test::Folder;
+using tactus::test::Outcome;
+using tactus::test::slurp;
+
+namespace {
+
+constexpr const char* names[] = {"a", "b", "c", "d"};
+
+/// A case of four boxes in a row, 1 mm from each other.
+struct Row {
+    Folder folder;
+    std::string plan = (folder.path / "case.plan.json").string();
+
+    Row() {
+        std::string files;
+        for (int n = 0; n < 4; ++n) {
+            const std::string file = std::string(names[n]) + ".stl";
+            folder.write(file, test::box_stl(Vec3(11.0 * n, 0.0, 0.0), Vec3(11.0 * n + 10.0, 12.0, 14.0)));
+            files += " " + (folder.path / file).string();
+        }
+        const Outcome made = folder.tactus("plan new " + plan + files);
+        INFO(made.err);
+        REQUIRE(made.code == 0);
+    }
+    Outcome run(const std::string& verb, const std::string& rest = "") const {
+        return folder.tactus("plan " + verb + " " + plan + " " + rest);
+    }
+    json state() const { return json::parse(run("show", "--json").out); }
+    std::string verdict(int n) const {
+        const json fit = state()["fragments"][static_cast<std::size_t>(n)]["fit"];
+        return fit.is_null() ? "none" : fit["verdict"].get<std::string>();
+    }
+    /// Moves a fragment and says in the file that this was a fit.
+    void fit(const std::string& fragment, const std::string& partner, const std::string& pose) const {
+        REQUIRE(run("move", fragment + " --pose " + pose).code == 0);
+        json file = json::parse(slurp(plan));
+        file["steps"].back()["fit"] = {{"partner", partner}, {"verdict", "fit"},  {"score", 0.8},
+                                       {"margin", 0.5},      {"rms_m", 8e-5},     {"gap_m", 0.0},
+                                       {"penetration_m", 0}, {"overlap_m2", 1e-4}};
+        folder.write("case.plan.json", file.dump());
+    }
+};
+
+bool says(const std::string& text, const std::string& what) { return text.find(what) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("a fit is void when its partner moves away, holds in a moved group, and comes back with undo", "[slow]") {
+    const Row row;
+    row.fit("b", "a", "-1,0,0,1,0,0,0");
+    CHECK(row.verdict(1) == "fit");
+    CHECK(says(row.run("show").out, "fit to a (0.08 mm rms)"));
+    // Less than 0.05 mm and 0.05 degrees is the same place.
+    REQUIRE(row.run("move", "a --pose 0.04,0,0,1,0,0,0").code == 0);
+    CHECK(row.verdict(1) == "fit");
+    REQUIRE(row.run("move", "a --pose 12,0,0,1,0,0,0").code == 0);
+    CHECK(row.verdict(1) == "void");
+    const std::string shown = row.run("show").out;
+    INFO(shown);
+    CHECK(says(shown, "fit to a is void: moved 12.00 mm and 0.00° from it since"));
+    CHECK_FALSE(says(shown, "0.08 mm rms"));
+    CHECK(row.state()["fragments"][1]["fit"]["moved_since"]["distance_mm"].get<double>() == Approx(12.0));
+    REQUIRE(row.run("report").code == 0);
+    CHECK(says(slurp(row.folder.path / "case.html"), "fit to a is void"));
+    CHECK(row.run("settle").code == 2);
+    REQUIRE(row.run("undo", "--steps 2").code == 0);
+    CHECK(row.verdict(1) == "fit");
+    // The fragment itself counts as its partner does: 0.06 degrees.
+    REQUIRE(row.run("move", "b --pose -1,0,0,0.99999986,0,0,0.000523599").code == 0);
+    CHECK(row.verdict(1) == "void");
+    REQUIRE(row.run("undo").code == 0);
+    REQUIRE(row.run("group", "a b --name both").code == 0);
+    REQUIRE(row.run("move", "a --pose 30,-20,7,0.5,0.5,-0.5,0.5").code == 0);
+    CHECK(row.verdict(1) == "fit");
+}
+
+TEST_CASE("a plan says what is connected to what, and fragments in several parts are not finished", "[slow]") {
+    const Row row;
+    row.fit("b", "a", "-1,0,0,1,0,0,0");
+    row.fit("d", "c", "-1,0,0,1,0,0,0");
+    CHECK(row.state()["assemblies"] == json::array({{"a", "b"}, {"c", "d"}}));
+    const Outcome shown = row.run("show");
+    INFO(shown.out);
+    CHECK(shown.code == 0);
+    CHECK(says(shown.out, "connected by fits: a, b\n"));
+    CHECK(says(shown.out, "connected by fits: c, d\n"));
+    const Outcome apart = row.run("check");
+    INFO(apart.out);
+    CHECK(apart.code == 1);
+    CHECK(says(apart.out, "in 2 parts that no fit connects"));
+    REQUIRE(row.run("report").code == 0);
+    CHECK(says(slurp(row.folder.path / "case.html"), "not all connected"));
+    row.fit("c", "b", "-2,0,0,1,0,0,0");
+    // It moved from the one that was fitted to it: that fit is void, and d hangs on nothing.
+    CHECK(row.state()["assemblies"] == json::array({{"a", "b", "c"}, {"d"}}));
+    CHECK(says(row.run("check").out, "d: fit to c is void"));
+    row.fit("d", "c", "-3,0,0,1,0,0,0");
+    CHECK(row.run("check").code == 0);
+    CHECK(json::parse(row.run("check", "--json").out)["ok"] == true);
+    REQUIRE(row.run("report").code == 0);
+    CHECK_FALSE(says(slurp(row.folder.path / "case.html"), "not all connected"));
+    REQUIRE(row.run("undo").code == 0);
+    CHECK(row.run("check").code == 1);
+    REQUIRE(row.run("hide", "d").code == 0);
+    CHECK(row.run("check").code == 0);
+}
+
+TEST_CASE("a gap between fragments that do not face each other is not told as a number", "[slow]") {
+    const Row row;
+    REQUIRE(row.run("move", "b --pose 0,0,90,1,0,0,0").code == 0);
+    const Outcome gap = row.run("gap", "a b");
+    INFO(gap.out);
+    CHECK(says(gap.out, "a and b: do not face each other within 3 mm"));
+    CHECK_FALSE(says(gap.out, "gap 0.00 mm"));
+    const json pair = json::parse(row.run("gap", "a b --json").out)[0];
+    CHECK(pair["gap_median_mm"].is_null());
+    CHECK(pair["gap_p95_mm"].is_null());
+    CHECK(json::parse(row.run("gap", "c d --json").out)[0]["gap_median_mm"].get<double>() == Approx(1.0).margin(0.1));
+}
+
+TEST_CASE("a pose too far away for a body is refused, and the plan is as it was", "[slow]") {
+    const Row row;
+    const std::string before = slurp(row.plan);
+    for (const char* pose : {"1e308,0,0,1,0,0,0", "0,-1e9,0,1,0,0,0", "0,0,1e5.1,1,0,0,0"}) {
+        const Outcome moved = row.run("move", std::string("b --pose ") + pose);
+        INFO(pose << moved.err);
+        CHECK(moved.code == 2);
+        CHECK(std::ranges::count(moved.err, '\n') == 1);
+    }
+    CHECK(says(row.run("move", "b --pose 1e308,0,0,1,0,0,0").err, "100 m away"));
+    CHECK(slurp(row.plan) == before);
+}
+
+TEST_CASE("a fragment does not go where a third one is, is told why it stays, and keeps to what stands", "[slow]") {
+    const Folder folder;
+    const auto file = [&folder](const std::string& name) { return (folder.path / name).string(); };
+    bone::save_bone(test::bar(), file("bar.vdb"));
+    REQUIRE(folder.tactus("fracture " + file("bar.vdb") + " -o " + file("f") + " --seed 4 --spread 5 --turn 10").code ==
+            0);
+    // It takes up the bar's right end.
+    folder.write("third.stl", test::box_stl(Vec3(10.0, -5.0, -8.0), Vec3(18.0, 5.0, 8.0)));
+    const std::string plan = file("case.plan.json");
+    REQUIRE(folder
+                .tactus("plan new " + plan + " one=" + file("f/fragment_01.vdb") + " two=" + file("f/fragment_02.vdb") +
+                        " third=" + file("third.stl"))
+                .code == 0);
+    const Outcome blocked = folder.tactus("plan snap " + plan + " two one");
+    INFO(blocked.out << blocked.err);
+    CHECK(blocked.code == 1);
+    CHECK(says(blocked.out, "two to one: blocked"));
+    CHECK(says(blocked.out, "it would lie in 'third' with"));
+    REQUIRE(folder.tactus("plan hide " + plan + " third").code == 0);
+    // Nothing fits from too far away, and no distance is told.
+    REQUIRE(folder.tactus("plan move " + plan + " two --pose 60,0,0,1,0,0,0").code == 0);
+    const Outcome far = folder.tactus("plan snap " + plan + " two one");
+    INFO(far.out);
+    CHECK(far.code == 1);
+    CHECK(says(far.out, "too far away"));
+    CHECK(says(far.out, "--mode global"));
+    const json told = json::parse(folder.tactus("plan snap " + plan + " two one --json").out);
+    CHECK(told["rms_mm"].is_null());
+    CHECK(told["moved"].is_null());
+    CHECK(says(told["reason"].get<std::string>(), "too far away"));
+    REQUIRE(folder.tactus("plan undo " + plan).code == 0);
+    const Outcome fits = folder.tactus("plan snap " + plan + " two");
+    INFO(fits.out);
+    CHECK(fits.code == 0);
+    CHECK(folder.tactus("plan settle " + plan).code == 0);
+    // The third one is shown again, and hangs on nothing.
+    REQUIRE(folder.tactus("plan unhide " + plan + " third").code == 0);
+    REQUIRE(folder.tactus("plan move " + plan + " third --pose 60,0,0,1,0,0,0").code == 0);
+    CHECK(folder.tactus("plan check " + plan).code == 1);
+    const Outcome settled = folder.tactus("plan settle " + plan);
+    INFO(settled.out);
+    CHECK(settled.code == 1);
+    CHECK(says(settled.out, "connected to nothing: third"));
+}

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why a fragment was not placed, and what to do next.
+#pragma once
+
+#include "tools/study/planning/plan_matching.hpp"
+
+#include <string>
+
+namespace tactus::study {
+
+enum class MatchWay : std::uint8_t { near, anywhere };
+
+/// One sentence per cause, with the next step; empty when the fragment fits. `only`: the partner that was named, or
+/// Arrangement::none.
+std::string why_not_placed(const cases::CasePlan& plan, const PlanMatching& matching,
+                           const fit::Arrangement& arrangement, const PlanMatch& found, int only, MatchWay way);
+
+}  // namespace tactus::study
