@@ -17,7 +17,7 @@ constexpr double fastest_hand = 3.0;  // m/s: faster is a jump
 constexpr double most_lag = 0.020;  // m: a tooth farther from its blade lets go
 constexpr double dry_friction = 0.3;  // of a blade that stands still, steel on bone
 constexpr double side_share = 0.1;  // of the speed of advance: teeth cut little along the edge and across the blade
-constexpr int most_plunges = 32, most_slides = 12;
+constexpr int most_plunges = 32, most_slides = 12, most_climbs = 12;
 
 }  // namespace
 
@@ -153,8 +153,6 @@ void ToothRow::slide(const Walk& walk, Tooth& tooth, int axis) const noexcept {
         const carve::RoundFront::Contact contact =
             walk.front.look(walk.bone, tooth.at, direction, across, Vec3(0.0), 0.1 * walk.voxel);
         if (contact.density > 0.0) {
-            // A tooth that comes in from the air hangs below the floor by the elastic lag of the others: up the face.
-            if (axis == 0 && climb_face(walk, tooth, direction, side - held, deep)) continue;
             tooth.density[static_cast<std::size_t>(axis)] = contact.density;
             return;
         }
@@ -163,38 +161,20 @@ void ToothRow::slide(const Walk& walk, Tooth& tooth, int axis) const noexcept {
         Vec3 to = tooth.at + direction * step;
         double climbed = 0.0;
         for (int climb = 0;; ++climb) {
-            const double short_by = std::min(before, level) - walk.front.floor(walk.bone, to, y, z);
+            double short_by = std::min(before, level) - walk.front.floor(walk.bone, to, y, z);
             if (short_by <= 0.0) break;
+            // Beside a wall the distance grows more slowly than the tooth rises.
+            short_by = std::max(short_by, 0.02 * walk.voxel);
             climbed += short_by;
             const double left = side - step, up = deep + climbed;
             const bool shorter = up * up + weight * left * left < deep * deep + weight * side * side;
-            if (climb == 3 || !shorter) return;
+            if (climb == most_climbs || !shorter) return;
             to -= y * short_by;
         }
         tooth.at = to;
         side -= step;
         deep += climbed;
     }
-}
-
-/// Draws a tooth back along the face of bone that stops it, where that and the step that it opens shorten the lag.
-bool ToothRow::climb_face(const Walk& walk, Tooth& tooth, const Vec3& direction, double way,
-                          double& deep) const noexcept {
-    const double rise = 0.25 * walk.voxel;
-    for (int n = 1; n <= most_slides; ++n) {
-        const double up = deep + n * rise;
-        if (!(up * up < deep * deep + way * way)) return false;
-        const Vec3 to = tooth.at - axes_[1] * (n * rise);
-        const carve::RoundFront::Contact contact =
-            walk.front.look(walk.bone, to, direction, axes_[2], Vec3(0.0), 0.1 * walk.voxel);
-        if (contact.density > 0.0) continue;
-        const double left = way - std::min({way, contact.clear, 0.5 * walk.voxel});
-        if (!(up * up + left * left < deep * deep + way * way)) continue;
-        tooth.at = to;
-        deep = up;
-        return true;
-    }
-    return false;
 }
 
 double ToothRow::squared_norm() noexcept {

@@ -71,7 +71,6 @@ private:
     void pursue(const Walk& walk, Tooth& tooth) const noexcept;
     void plunge(const Walk& walk, Tooth& tooth) const noexcept;
     void slide(const Walk& walk, Tooth& tooth, int axis) const noexcept;
-    bool climb_face(const Walk& walk, Tooth& tooth, const Vec3& direction, double way, double& deep) const noexcept;
     double advance(const CuttingLaw& law, const Tooth& tooth, double spring, double norm, double speed) const noexcept;
 
     SawShape shape_;
