@@ -201,11 +201,10 @@ TEST_CASE("a worse hand scores worse in every measure, and a take scores as its 
     const Folder folder;
     const std::string here = folder.path.string();
     const auto attempt = [&](const std::string& trainee, const std::string& settings) {
-        // The bone gives way at once, so that both hands go through it.
-        const Outcome o = folder.tactus("session fibula-osteotomy --trainee " + trainee + " --out " + here +
-                                        " --offline --seconds 6 --set carve.speed='40 mm/s' --set "
-                                        "carve.bricks_per_tick=2048 --set simulated.stroke_rate='1.5 Hz' " +
-                                        settings);
+        // With sharp teeth both hands go through the bone.
+        const Outcome o = folder.tactus(
+            "session fibula-osteotomy --trainee " + trainee + " --out " + here +
+            " --offline --seconds 9 --set blade.sharpness=6 --set simulated.stroke_rate='1.5 Hz' " + settings);
         INFO(o.err);
         REQUIRE(o.code == 0);
         return here + "/" + trainee + "/1/01-fibula-osteotomy";
