@@ -24,11 +24,11 @@ picture() {
 }
 
 if [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" saw-training "* ]]; then
-    "$tactus" render saw-training --seconds 4 --out "$folder/bone" >/dev/null
+    "$tactus" render saw-training --seconds 12 --out "$folder/bone" >/dev/null
     mv "$folder/bone/bone.png" "$pictures/saw-training.png"
     echo saw-training.png
 fi
-picture scene-saw-training saw-training --seconds 3.4 --frames 1
+picture scene-saw-training saw-training --seconds 12 --frames 1
 picture scene-fragments fragments --seconds 2.2 --frames 1
 picture scene-press-fragments press-fragments --seconds 4 --frames 1
 picture scene-peg-in-hole peg-in-hole --seconds 2.4 --frames 1 --clip=-y

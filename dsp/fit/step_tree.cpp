@@ -10,8 +10,7 @@ namespace {
 bool same(const Arrangement::Place& a, const Arrangement::Place& b) noexcept {
     // Bitwise: undo restores exactly the same values.
     return std::memcmp(&a.pose, &b.pose, sizeof(Pose)) == 0 && a.group == b.group && a.fitted_to == b.fitted_to &&
-           std::memcmp(&a.beside, &b.beside, sizeof(Pose)) == 0 &&
-           a.locked == b.locked && a.hidden == b.hidden;
+           std::memcmp(&a.beside, &b.beside, sizeof(Pose)) == 0 && a.locked == b.locked && a.hidden == b.hidden;
 }
 bool same(const Arrangement::Group& a, const Arrangement::Group& b) noexcept {
     return a.parent == b.parent && a.exists == b.exists;

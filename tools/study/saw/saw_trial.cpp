@@ -27,7 +27,8 @@ std::unique_ptr<volume::BoneEditor> saw_block(const SawTrial& trial) {
                     static_cast<float>(glm::length(glm::max(q, Vec3(0.0))) + std::min(std::max({q.x, q.y, q.z}), 0.0));
             }
     return std::make_unique<volume::BoneEditor>(
-        grid, density, volume::BoneEditorOptions{.band = 4.0 * trial.voxel + 2e-3, .max_dirty = 900, .max_versions = 3});
+        grid, density,
+        volume::BoneEditorOptions{.band = 4.0 * trial.voxel + 2e-3, .max_dirty = 900, .max_versions = 3});
 }
 
 carve::CarveSettings carve_settings_for(const saw::SawShape& shape) {
