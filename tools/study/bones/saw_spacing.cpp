@@ -24,9 +24,9 @@ std::string saw_line(const std::array<double, 3>& voxel_mm) {
     const double narrowest = narrowest_kerf_mm(voxel_mm);
     if (narrowest <= usual_kerf_mm) return fmt::format("a saw can cut it with a kerf of {:.2g} mm or wider", narrowest);
     return fmt::format(
-        "too coarse for a saw of {:g} mm kerf, which needs --spacing {:g} or finer; as it is, the kerf must be {:.2g} "
-        "mm "
-        "or wider",
+        "coarse for a saw of {:g} mm kerf, which needs --spacing {:g} or finer: a patch resamples it around the site; "
+        "as "
+        "it is, the kerf must be {:.2g} mm or wider",
         usual_kerf_mm, coarsest_spacing_mm(usual_kerf_mm), std::ceil(10.0 * narrowest) / 10.0);
 }
 
