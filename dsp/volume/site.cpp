@@ -15,6 +15,7 @@ namespace tactus::volume {
 
 namespace {
 
+constexpr double near_enough = 30e-3;  // m from a point that somebody names to the bone
 constexpr double far = 1.0;  // m: distance outside of the grid, where there is no bone
 constexpr double deepest = 40e-3;         // m
 constexpr double least_thickness = 1e-3;  // m; less is noise of the segmentation
@@ -70,7 +71,8 @@ public:
         std::optional<Vec3> surface =
             glm::length(approach) > 0.0 ? first_hit(point, glm::normalize(approach)) : std::nullopt;
         if (!surface) surface = nearest_surface(point);
-        if (!surface) return std::nullopt;
+        if (!surface || (glm::length(approach) == 0.0 && glm::length(*surface - point) > near_enough))
+            return std::nullopt;
         const Vec3 g = slope(*surface);
         const Vec3 feed = glm::length(approach) > 0.0 ? glm::normalize(approach)
                           : glm::length(g) > 0.1      ? -glm::normalize(g)

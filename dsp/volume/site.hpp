@@ -39,7 +39,8 @@ std::optional<SawSite> find_saw_site(const Grid& distance, const Grid& density, 
 
 /// The site where a line through `point` along `approach` first meets the bone; without an approach (zero), or where the
 /// line misses, the surface nearest to `point`. The blade lies in the direction, of eight, in which the bone is
-/// narrowest and the blade is free of other bone, if there is one. Empty when no surface is near.
+/// narrowest and the blade is free of other bone, if there is one. Empty when there is no surface, or, without an
+/// approach, none within 30 mm of `point`.
 std::optional<SawSite> saw_site_at(const Grid& distance, const Grid& density, const Vec3& point, const Vec3& approach,
                                    const SiteRequest& request = {});
 

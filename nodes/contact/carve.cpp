@@ -19,8 +19,7 @@ namespace tactus::nodes {
 struct Carve {
     static constexpr auto about =
         "Removes bone: what the front of a saw has passed (saw_blade, burr), or what the teeth of a blade reach along "
-        "its "
-        "path at a speed inversely proportional to density (thesis 6.2.2).";
+        "its path at a speed inversely proportional to density (thesis 6.2.2).";
 
     Batch<Pose> path{optional,
                      "all poses of the blade: x along the stroke, y into the bone; speed and force law below; "

@@ -15,24 +15,16 @@ constexpr double most_step = 0.2;      // greatest cost
 constexpr double least_support = 0.25, heard_at_all = 0.16;
 constexpr double jump_in = 0.5;        // of the movement in an eighth of a section: an impact
 
-WelchSettings hann(double rate, std::size_t segment, std::size_t overlap) {
-    WelchSettings settings;
-    settings.rate = rate;
-    settings.segment = segment;
-    settings.overlap = overlap;
-    return settings;
-}
-
 /// Short enough to keep a varying line together, long enough to resolve the lines of a saw.
 WelchSettings section_settings(double rate, std::size_t frames) {
     const double longest = std::min(0.25 * rate, static_cast<double>(frames));
     const std::size_t segment = std::bit_floor(static_cast<std::size_t>(std::max(64.0, longest)));
-    return hann(rate, segment, segment * 3 / 4);
+    return WelchSettings::hann(rate, segment, segment * 3 / 4);
 }
 
 WelchSettings whole_settings(double rate, std::size_t frames) {
     const std::size_t segment = suggested_segment(rate, frames);
-    return hann(rate, segment, segment / 2);
+    return WelchSettings::hann(rate, segment, segment / 2);
 }
 
 bool alike(double a, double b, double ratio) { return a > 0.0 && b > 0.0 && std::abs(a / b - 1.0) < ratio; }

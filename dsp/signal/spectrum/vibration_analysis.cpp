@@ -15,19 +15,11 @@ namespace {
 
 constexpr std::size_t most_peaks = 20;
 
-WelchSettings hann(double rate, std::size_t segment, std::size_t overlap) {
-    WelchSettings settings;
-    settings.rate = rate;
-    settings.segment = segment;
-    settings.overlap = overlap;
-    return settings;
-}
-
 /// Windows three quarters over each other, from three quarters before the record to three quarters after it: the sum of
 /// their squares is the same at each sample.
 WelchSettings band_settings(double rate, std::size_t frames) {
     const std::size_t segment = std::max<std::size_t>(4, suggested_segment(rate, frames) / 4 * 4);
-    WelchSettings settings = hann(rate, segment, segment / 4 * 3);
+    WelchSettings settings = WelchSettings::hann(rate, segment, segment / 4 * 3);
     settings.detrend = Detrend::none;
     return settings;
 }
@@ -49,12 +41,12 @@ bool same(const WelchSettings& a, const WelchSettings& b) {
 VibrationAnalysis::VibrationAnalysis(const AnalysisSettings& settings, std::size_t frames)
     : settings_(settings),
       frames_(frames),
-      lines_(hann(settings.psd.rate, suggested_segment(settings.psd.rate, frames),
-                  suggested_segment(settings.psd.rate, frames) / 2)),
+      lines_(WelchSettings::hann(settings.psd.rate, suggested_segment(settings.psd.rate, frames),
+                                 suggested_segment(settings.psd.rate, frames) / 2)),
       bands_(band_settings(settings.psd.rate, frames)),
       fundamental_(settings.psd.rate, frames, settings.lowest, settings.highest) {
     const std::size_t segment = suggested_segment(settings.psd.rate, frames);
-    if (!same(settings.psd, hann(settings.psd.rate, segment, segment / 2))) psd_.emplace(settings.psd);
+    if (!same(settings.psd, WelchSettings::hann(settings.psd.rate, segment, segment / 2))) psd_.emplace(settings.psd);
     if (settings.envelope) {
         const auto [low, high] = *settings.envelope;
         if (!(low > 0.0) || !(high > low) || !(high < 0.5 * settings.psd.rate))
@@ -62,7 +54,7 @@ VibrationAnalysis::VibrationAnalysis(const AnalysisSettings& settings, std::size
                                     high, 0.5 * settings.psd.rate));
         envelope_.emplace(low, high, settings.psd.rate);
         const std::size_t length = suggested_segment(envelope_->rate(), frames / envelope_->step());
-        envelope_spectrum_.emplace(hann(envelope_->rate(), length, length / 2));
+        envelope_spectrum_.emplace(WelchSettings::hann(envelope_->rate(), length, length / 2));
     }
     if (settings.spectrogram) {
         const double longest = std::min(0.1 * settings.psd.rate, static_cast<double>(frames) / 8.0);

@@ -31,6 +31,14 @@ struct WelchSettings {
     Averaging averaging = Averaging::mean;
     Scaling scaling = Scaling::density;
 
+    static WelchSettings hann(double rate, std::size_t segment, std::size_t overlap) {
+        WelchSettings settings;
+        settings.rate = rate;
+        settings.segment = segment;
+        settings.overlap = overlap;
+        return settings;
+    }
+
     std::size_t step() const { return segment - overlap; }
     /// Number of whole segments in this many samples; the remainder is dropped.
     std::size_t segments_in(std::size_t samples) const {

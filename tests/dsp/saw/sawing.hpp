@@ -93,7 +93,7 @@ struct Sawing {
     }
 };
 
-/// A hand without mass that pushes with a force and gives way slowly.
+/// A hand without mass that pushes with a force, against a damper.
 struct Pushing {
     Vec3 position{0.0, 0.0, 0.3e-3};
     double damping = 300.0;  // N·s/m

@@ -131,7 +131,7 @@ TEST_CASE("an operator notices a force as long after as the reaction time says")
     }
 }
 
-TEST_CASE("when bone gives way, an operator with a reaction time plunges further than one without") {
+TEST_CASE("after a break-through an operator with a reaction time stops short of one who feeds on at once") {
     const auto plunge = [](double reaction) {
         simulate::StrokePlan plan;
         plan.tremor.rms = 0.0;

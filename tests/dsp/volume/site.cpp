@@ -143,6 +143,8 @@ TEST_CASE("a site is chosen by a point and a direction") {
     REQUIRE(nearest);
     CHECK(glm::length(nearest->point - Vec3(-5e-3, 6e-3, 1e-3)) < 0.5e-3);
     CHECK(nearest->feed.y < -0.99);
+    // A point far from the bone names no place on it.
+    CHECK_FALSE(at({0.0, 500e-3, 0.0}, Vec3(0.0)));
 }
 
 TEST_CASE("a coarse bone is resampled around a site") {

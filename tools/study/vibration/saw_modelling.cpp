@@ -24,11 +24,7 @@ signal::Spectrum spectrum_of(std::span<const float> samples, double rate, double
     constexpr double model_rate = vibration::SawModelSize::residual_rate;
     std::vector<double> resampled = signal::resample(samples, rate, model_rate);
     for (double& x : resampled) x *= gain;
-    signal::WelchSettings settings;
-    settings.rate = model_rate;
-    settings.segment = 2048;
-    settings.overlap = 1024;
-    return signal::welch<double>(resampled, settings);
+    return signal::welch<double>(resampled, signal::WelchSettings::hann(model_rate, 2048, 1024));
 }
 
 std::vector<float> play(const vibration::SawModel& model, const vibration::SawRecording& recording) {
