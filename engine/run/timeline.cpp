@@ -125,12 +125,13 @@ void Timeline::schedule_change(std::int64_t id, const std::string& node, const s
     replayed_changes_[static_cast<std::size_t>(id)] = {id, 0, found->second, value, now_->ramp_of(found->second)};
 }
 
-/// Hashes of the outputs that end with a generation. A group that never took over the next one ends with its own.
+/// Hashes of the outputs that end with a generation. A group that never took over the next one ends with its own; one
+/// that ended before its first tick gave nothing, whether it took its program up or not.
 void Timeline::gather_hashes(const build::Generation& old, const build::Generation* next, PortHashes& parts) {
     for (std::size_t g = 0; g < old.groups.size(); ++g) {
         const GroupRuntime& group = *old.groups[g];
         const build::GroupProgram& program = *old.programs[g];
-        if (old.number > group.plan_number()) continue;
+        if (old.number > group.plan_number() || group.ran() == 0) continue;
         const build::GroupProgram* successor = nullptr;
         for (std::size_t n = 0; next && next->number <= group.plan_number() && n < next->groups.size(); ++n)
             if (next->groups[n] == old.groups[g]) successor = next->programs[n].get();

@@ -148,6 +148,43 @@ TEST_CASE("a storm of edits under load is repeated to the bit from its take", "[
     std::filesystem::remove_all(folder);
 }
 
+TEST_CASE("a run that ends before the first tick of a group that an edit made has its hashes again", "[live]") {
+    const auto folder = scratch("unborn");
+    std::string more = with(four_rates(), "wires = [\n", "wires = [\n  \"a.out -> late.in\",\n");
+    more += "[nodes.late]\ntype = \"chaos\"\nrate = \"10 Hz\"\n";
+    run::Engine::PortHashes live_hashes;
+    {
+        take::TakeWriter take(folder,
+                              {.patch_file = "p.toml", .overrides = {}, .seed = {}, .seconds = 30.0, .live = true});
+        run::EngineOptions options;
+        options.seconds = 30.0;
+        options.live = true;
+        options.take = &take;
+        run::Engine engine(compile_text(four_rates()), options);
+        std::atomic<bool> stop{false};
+        bool is_asked = false;
+        run::LiveOptions live;
+        live.stop = &stop;
+        live.watch = [&] {
+            if (is_asked || engine.progress_seconds() < 0.05) return;
+            is_asked = true;
+            engine.edit([&] { return compile_text(more); },
+                        [&](const run::EditOutcome& outcome) {
+                            CHECK_FALSE(outcome.error);
+                            stop = true;
+                        });
+        };
+        engine.run_live(live);
+        engine.finish();
+        live_hashes = engine.port_hashes();
+    }
+    const Repetition again = repeat(folder, 2);
+    CHECK_FALSE(again.difference);
+    CHECK(again.hashes == live_hashes);
+    CHECK(again.matches_result);
+    std::filesystem::remove_all(folder);
+}
+
 TEST_CASE("a parameter set from outside holds two quanta later, and the take repeats it", "[live]") {
     const auto folder = scratch("set");
     run::Engine::PortHashes live_hashes;
