@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "assets/file/json.hpp"
 #include "dsp/core/units.hpp"
 #include "nodes/catalogue.hpp"
 #include "tools/command/options.hpp"
@@ -6,7 +7,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -15,7 +15,7 @@
 
 namespace tactus::command {
 
-using Json = nlohmann::ordered_json;
+using file::Json;
 
 namespace {
 
@@ -126,7 +126,7 @@ int nodes(const std::string& wanted, bool json) {
     }
     if (list.empty()) throw Error(fmt::format("no node type '{}'{}", wanted, did_you_mean(wanted, names)));
     if (json) fmt::print("{}\n", Json{{"version", 1}, {"rows", list}}.dump(2));
-    else if (!wanted.empty()) print_whole(list.front());
+    else if (!wanted.empty()) print_whole(list[0]);
     else
         for (const Json& node : list) fmt::print("{:<16} {}\n", text_of(node, "type"), text_of(node, "about"));
     return done;
