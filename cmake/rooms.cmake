@@ -30,15 +30,22 @@ if(TACTUS_COVERAGE)
 endif()
 find_program(CCACHE ccache)
 if(CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  # Precompiled headers are part of what ccache compares; it asks to be told that this is wanted.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
 endif()
+option(TACTUS_PCH "precompile the headers that most files of a room include" ON)
+# Reading the standard library, fmt and GLM takes as long as compiling what a file of ours says.
+set(TACTUS_PCH_HEADERS <algorithm> <array> <cmath> <cstring> <memory> <numbers> <optional> <span> <string> <string_view> <vector>
+  ${PROJECT_SOURCE_DIR}/dsp/core/error.hpp ${PROJECT_SOURCE_DIR}/dsp/core/types.hpp)
 find_program(MOLD mold)
 if(MOLD)
   target_link_options(tactus_flags INTERFACE -fuse-ld=mold)
 endif()
 
+# PRECOMPILE: headers that most files of the room include, beside those of TACTUS_PCH_HEADERS. A file still names what it uses:
+# builds with TACTUS_PCH=OFF check that.
 function(tactus_room name)
-  cmake_parse_arguments(ROOM "OPTIMISE" "" "LINKS;PRIVATE_LINKS" ${ARGN})
+  cmake_parse_arguments(ROOM "OPTIMISE" "" "LINKS;PRIVATE_LINKS;PRECOMPILE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${name}/*.cpp)
   # Programs of their own.
   list(FILTER sources EXCLUDE REGEX "/(main|make_library)\\.cpp$")
@@ -52,6 +59,9 @@ function(tactus_room name)
   target_link_libraries(tactus_${name} PUBLIC ${ROOM_LINKS} fmt::fmt PRIVATE tactus_flags ${ROOM_PRIVATE_LINKS})
   if(ROOM_OPTIMISE AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
     target_compile_options(tactus_${name} PRIVATE -O3)
+  endif()
+  if(TACTUS_PCH)
+    target_precompile_headers(tactus_${name} PRIVATE ${TACTUS_PCH_HEADERS} ${ROOM_PRECOMPILE})
   endif()
 endfunction()
 
