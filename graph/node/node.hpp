@@ -12,8 +12,8 @@
 //     };
 //     TACTUS_NODE(Gain, in, out, gain)
 //
-// Parameters that several types share are a struct of their own with a TACTUS_GROUP line, which any node may hold as a
-// member and list like one; in a patch they stand among the node's own:
+// Parameters that several types share are a struct with a TACTUS_GROUP line. A node has it as a member and lists it
+// like a parameter. In a patch its parameters are parameters of the node:
 //
 //     struct WaveParameters {
 //         Param height{"0 mm", "0 mm", "2 mm", "of the waves"};
@@ -22,7 +22,7 @@
 //     };
 //
 // Optional members: `void prepare(const Setup&)` may allocate and throw Error, and sets the initial value of each
-// output; `void report(Report&) const` speaks after the run; `static constexpr NodeRole role` says what the type does
+// output; `void report(Report&) const` adds results after the run; `static constexpr NodeRole role` is the type's role
 // at the border of a patch.
 #pragma once
 
@@ -42,11 +42,12 @@ namespace tactus {
 
 class MemberVisitor;
 
-/// Ports and parameters that are declared together, by TACTUS_GROUP.
+/// A struct of ports and parameters with a TACTUS_GROUP line.
 template <class G>
 concept MemberGroup = requires(G& group, MemberVisitor& visitor) { group.each(visitor); };
 
-/// Receives every declared member of a node, in the order of the TACTUS_NODE line; those of a group one by one.
+/// Is called with each declared member of a node, in the order of the TACTUS_NODE line. Members of a group come one by
+/// one.
 class MemberVisitor {
 public:
     virtual ~MemberVisitor() = default;
@@ -76,17 +77,17 @@ public:
     }
 };
 
-/// What a node type does at the border of a patch. Analyses of a plan look for a role, never for a type's name.
+/// Role of a node type at the border of a patch. Analyses of a plan look for a role, never for the name of a type.
 enum class NodeRole : std::uint8_t {
-    inner,
+    inner,  ///< none of the others
     hand_source,  ///< gives the pose of a hand; has a text parameter `device`
-    hand_sink,    ///< sends a force to a hand; has a text parameter `device`
-    placement,    ///< places a device in the scene; its parameter `scale` says how many metres one metre becomes
-    sound_sink,
-    file_sink
+    hand_sink,  ///< sends a force to a hand; has a text parameter `device`
+    placement,  ///< places a device in the scene; has a parameter `scale`: metres of the scene per metre of the device
+    sound_sink,  ///< sends a signal to a sound card
+    file_sink  ///< writes a file
 };
 
-/// One row of the catalogue.
+/// A node type as the catalogue lists it. The functions take a node that `create` made; `prepare` may throw Error.
 struct NodeType {
     std::string name;  ///< "blade_contact"
     std::string_view about;

@@ -22,8 +22,8 @@ constexpr std::size_t line = cache_line;
 constexpr std::size_t chunk_bytes = 64 << 10;
 constexpr std::size_t largest_in_chunk = chunk_bytes / 4;
 
-/// Begins at a multiple of its size, so that a node finds it by its own address. Goes when nothing lives in it and no
-/// thread fills it.
+/// Memory for several nodes. It is aligned to its size, so a node's address gives its chunk. It is freed when it holds
+/// no node and no thread fills it.
 struct alignas(line) Chunk {
     std::atomic<int> users{1};
     std::size_t used = line;  ///< bytes from the beginning on, whole lines
@@ -47,7 +47,7 @@ struct Filling {
     }
 };
 
-/// Whole lines, an odd number of them: what every call touches of many equal nodes then falls into all sets of a cache.
+/// An odd number of whole lines: the data of many equal nodes then spreads over all sets of a cache.
 std::size_t room_for(std::size_t bytes) { return ((node_offset + bytes + line - 1) / line | 1) * line; }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace tactus {
 namespace {
 
-/// "0.2 kg" → "kg": the unit part of a quantity that the program itself states.
+/// "0.2 kg" → "kg": the unit of a quantity of the program itself, which is valid.
 std::string_view unit_of(std::string_view quantity) {
     const std::size_t space = quantity.find(' ');
     return space == std::string_view::npos ? std::string_view{} : quantity.substr(space + 1);

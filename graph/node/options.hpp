@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Named option values as a patch writes them, for example the table [devices.hand]. The reader of the options states
-// default and range where it asks for a value, so what exists is exactly what was asked for.
+// Named options of a table in a patch, for example [devices.hand]. The code that reads an option states its default and
+// range. An option that no code reads is an error.
 #pragma once
 
 #include "dsp/core/error.hpp"
@@ -12,41 +12,43 @@
 
 namespace tactus {
 
-/// One option as written. Numbers and booleans of the file are given as their text: "3", "true".
+/// One option as written. Numbers and booleans are their text in the file: "3", "true".
 struct OptionText {
     std::string name;
     std::string text;
     SourceLocation where;
-    std::string scope = {};  ///< in front of an asset's name: where in a flattened patch the option was written
+    std::string scope = {};  ///< prefix of asset names for an option from a sub-patch: "voice:"
 };
 
-/// The options of one thing. Ask for each value once, then call `finish`.
+/// The options of one owner. Read each one once, then call `finish`.
 class Options {
 public:
-    /// `owner` names the thing in messages: "device 'hand'".
+    /// `owner` is the name in messages: "device 'hand'".
     explicit Options(std::string owner, std::vector<OptionText> given = {}, SourceLocation where = {});
 
-    /// Value in SI of `name`, or `standard` when it is not given. All three carry units and share a dimension; an empty
-    /// `min` or `max` leaves that side open. Throws Error when the text is no quantity of that dimension or out of range.
+    /// Value in SI of `name`, or of `standard` when it is not given. `standard`, `min` and `max` have units of one
+    /// dimension; an empty limit means none. Throws Error for text of another dimension or a value out of range.
     double quantity(std::string_view name, std::string_view standard, std::string_view min = {},
                     std::string_view max = {});
 
+    /// Text of `name`, or `standard` when it is not given.
     std::string text(std::string_view name, std::string_view standard);
 
     /// "true" or "false". Throws Error on other text.
     bool flag(std::string_view name, bool standard);
 
-    /// One of `choices`; returns its index. Throws Error listing them. `standard` must be one of them.
+    /// Index of the given word in `choices`. `standard` must be one of them. Throws Error that lists them for another
+    /// word.
     std::size_t choice(std::string_view name, std::span<const std::string> choices, std::string_view standard);
 
-    /// True when the patch gives `name`. Does not count as asking.
+    /// True when the patch gives `name`. This does not count as reading it.
     bool has(std::string_view name) const;
 
-    /// Where `name` is written, or where the owner is when it is not given; for errors found later.
+    /// Place of `name` in the file, or of the owner when it is not given. For errors that are found later.
     const SourceLocation& where(std::string_view name) const;
     const SourceLocation& where() const { return where_; }
 
-    /// Throws Error at the first given name that was never asked for.
+    /// Throws Error at the first given option that was never read.
     void finish() const;
 
     const std::string& owner() const { return owner_; }

@@ -13,23 +13,24 @@
 
 namespace tactus {
 
-/// Marks what a patch may leave out: an input without a wire, an asset without a file.
+/// Marks an input that needs no wire, or an asset that needs no file.
 struct Optional {};
 inline constexpr Optional optional{};
 
-/// A structural parameter shapes memory or wiring and cannot change while the patch runs.
+/// Marks a parameter that decides memory or wiring. It cannot change while the patch runs.
 struct Structural {};
 inline constexpr Structural structural{};
 
-/// Marks a stiffness that a hand does not feel as such, because a coupling stands between.
+/// Marks a stiffness that the hand feels only through a coupling, so the device's stability limit does not apply to it.
 struct Internal {};
 inline constexpr Internal internal{};
 
-/// Marks a count, a choice by number or a press: it changes at once, never through values in between.
+/// Marks a count, a choice by number or a trigger. It changes in one step; other parameters ramp.
 struct Discrete {};
 inline constexpr Discrete discrete{};
 
-/// A quantity with unit and range. Its unit is that of the default; a number wire may drive it unless structural.
+/// A quantity with unit and range. The unit of the default is the unit of the parameter. A number wire may drive it
+/// unless it is structural. The constructors throw Error for text that is no quantity.
 struct Param {
     Param(std::string_view default_text, std::string_view min_text, std::string_view max_text, const char* about_ = "");
     Param(Structural, std::string_view default_text, std::string_view min_text, std::string_view max_text,
@@ -51,33 +52,36 @@ struct Param {
     Param& operator=(const Param&) = delete;
 
     operator double() const { return value; }
-    /// SI value of "0.8 N/mm". Throws Error without a location when it is no such quantity or out of range.
+    /// SI value of text such as "0.8 N/mm". Throws Error, without a location, for another dimension or a value out of
+    /// range.
     double parse(std::string_view text) const;
+    /// Throws Error like `parse`; the value then stays.
     void set(std::string_view text) { value = parse(text); }
-    /// Driven by a wire: outside its range it is clamped, NaN keeps the last value.
+    /// Sets the value from a wire, in SI. A value out of range is clamped; NaN keeps the last value.
     void drive(double v) noexcept {
         if (v == v) value = v < min ? min : v > max ? max : v;
     }
 
     double value, min, max;  ///< SI
-    std::string unit;        ///< as in the default, "N/mm"
+    std::string unit;  ///< as in the default, "N/mm"
     const char* about;
     bool is_structural = false;
     bool is_internal = false;
     bool is_discrete = false;
 };
 
-/// One of several words.
+/// One of several words. The first is the default.
 struct Choice {
-    // Not string_view: two words in braces would be read as the begin and end of one.
+    // Not string_view: two words in braces would be taken as begin and end of one string_view.
     Choice(std::initializer_list<const char*> words, std::string_view about_ = {})
-        : options(words.begin(), words.end()), about(about_) {}  ///< the first word is the default
+        : options(words.begin(), words.end()), about(about_) {}
 
     bool is(std::string_view word) const { return options[static_cast<std::size_t>(index)] == word; }
+    /// Throws Error for a word that is no option.
     void set(std::string_view word);
 
     std::vector<std::string> options;
-    int index = 0;
+    int index = 0;  ///< of the chosen option
     std::string_view about;
 };
 
@@ -94,6 +98,7 @@ struct Text {
 struct Flag {
     Flag(bool default_value, std::string_view about_ = {}) : value(default_value), about(about_) {}
     operator bool() const { return value; }
+    /// Throws Error unless the text is "true" or "false".
     void set(std::string_view text);
 
     bool value;
@@ -104,28 +109,29 @@ struct Flag {
 struct Vector {
     Vector(std::string_view default_text, std::string_view about_ = {});
     operator const Vec3&() const { return value; }
-    /// From "10 mm, 0 mm, 5 mm".
+    /// Sets it from text such as "10 mm, 0 mm, 5 mm". Throws Error.
     void set(std::string_view text);
 
     Vec3 value{0.0, 0.0, 0.0};  ///< SI
-    std::string unit;
+    std::string unit;  ///< as in the default, "mm"
     std::string_view about;
 };
 
-/// The name of an entry of the patch's [assets]; loaded before `prepare`.
+/// The name of an entry of the patch's [assets]. The engine loads it before `prepare`.
 struct AssetParam {
-    std::string name;                    ///< as the patch gives it, empty when not set
+    std::string name;  ///< as the patch gives it, empty when not set
     SourceLocation where;
     std::string_view about, type_name;
     bool is_optional = false;
-    std::shared_ptr<const void> loaded;
-    std::shared_ptr<const void> (*load)(const std::string& path) = nullptr;
+    std::shared_ptr<const void> loaded;  ///< null when the patch names none
+    std::shared_ptr<const void> (*load)(const std::string& path) = nullptr;  ///< throws Error
 };
 
-/// Loads a `T` from a file; specialised next to each asset type's declaration in graph/node/assets.hpp.
+/// Loads a `T` from a file. graph/node/assets.hpp specialises it for each type of asset.
 template <class T>
 struct AssetLoader;
 
+/// An asset of type `T`. Nodes that name the same file share it. Check an optional one by `if (asset)` before use.
 template <class T>
 struct Asset : AssetParam {
     Asset(std::string_view about_ = {}) {

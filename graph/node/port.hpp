@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ports: the members of a node through which wires reach it. The engine points them at the values before each call.
+// Ports: the inputs and outputs of a node. Before each call of `process` the engine sets their pointers to the values.
 #pragma once
 
 #include "dsp/core/time.hpp"
@@ -19,41 +19,42 @@ enum class InputKind : std::uint8_t {
     any,     ///< any type, decided by the wire
 };
 
-// What every call touches stands last in an input and first in an output and a parameter, and the rest between is small:
-// the working part of a node with one input, one output and one parameter fits one cache line (see graph/node/node_memory).
+// The members that every call uses are last in an input and first in an output and a parameter. In a node with one
+// input, one output and one parameter they fit one cache line (graph/node/node_memory.hpp).
 
-/// What the engine sees of an input.
+/// An input as the engine sees it, without its C++ type.
 struct Input {
     const ValueType* type = nullptr;
     const char *about = "", *unit = "";
     InputKind kind = InputKind::value;
     bool is_optional = false;
     bool connected = false;
-    // A batch: `count` values at `data`, taken at logical times `times`.
-    int count = 0;
-    const Flicks* times = nullptr;
+    int count = 0;  ///< of a batch: values at `data`
+    const Flicks* times = nullptr;  ///< of a batch: logical time of each value
     Flicks period = 0;  ///< logical time between two values of the producer
 
     const std::byte* data = nullptr;  ///< first value of this call
     std::ptrdiff_t stride = 0;  ///< bytes from one activation to the next, 0 when constant
 };
 
-/// What the engine sees of an output.
+/// An output as the engine sees it, without its C++ type.
 struct Output {
-    std::byte* data = nullptr;
-    std::ptrdiff_t stride = 0;
+    std::byte* data = nullptr;  ///< first value of this call
+    std::ptrdiff_t stride = 0;  ///< bytes from one activation to the next
 
     const ValueType* type = nullptr;
     const char *about = "", *unit = "";
 };
 
-/// An output of snapshots, and what the schedule says about earlier versions.
+/// An output of snapshots. The engine reports which earlier versions may still be read, so that a node can reuse
+/// memory.
 struct SnapshotOutput : Output {
-    std::int64_t oldest_readable = 0;  ///< versions before this are read no more
-    bool last_was_dropped = false;  ///< nobody took the last one
+    std::int64_t oldest_readable = 0;  ///< no reader uses a version before this one
+    bool last_was_dropped = false;  ///< the last version was sent to no reader
 };
 
-/// An input. In a call of several activations the value is constant: the engine cuts calls where it changes.
+/// An input of one value per call, or of one per activation for Signal and Ramp. The engine splits a call of several
+/// activations where a value that is no stream changes.
 template <class T>
 struct In : Input {
     In(const char* about_ = "", const char* unit_ = "") {
@@ -74,7 +75,8 @@ struct In : Input {
     }
 };
 
-/// Every value a producer published since the last call, oldest first, with the logical time of each.
+/// An input of all values that the producer has published since the last call, oldest first, with the logical time of
+/// each.
 template <class T>
 struct Batch : Input {
     Batch(const char* about_ = "", const char* unit_ = "") {
@@ -90,7 +92,7 @@ struct Batch : Input {
     std::span<const Flicks> sample_times() const { return {times, static_cast<std::size_t>(count)}; }
 };
 
-/// An input of any type, for probes and recorders; `type` is that of the wire.
+/// An input of any type, for probes and recorders. The wire sets `type`.
 struct AnyIn : Input {
     AnyIn(const char* about_ = "") {
         kind = InputKind::any;
@@ -98,8 +100,8 @@ struct AnyIn : Input {
     }
 };
 
-/// An output. A node in an audio group writes `out[i]` for every activation of the call; what a signal held before is
-/// not there any more.
+/// An output. It keeps its value until the node writes another one. A signal does not: write `out[i]` for every
+/// activation of the call.
 template <class T>
 struct Out : std::conditional_t<SnapshotHandle<T>, SnapshotOutput, Output> {
     Out(const char* about_ = "", const char* unit_ = "") {

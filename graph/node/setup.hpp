@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a node sees: `Setup` while it prepares, `Tick` while it runs, `Report` when the run is over.
+// What a node is given: `Setup` in `prepare`, `Tick` in `process`, `Report` after the run.
 #pragma once
 
 #include "dsp/control/force_limiter.hpp"
@@ -21,95 +21,101 @@ namespace tactus {
 
 struct ValueType;
 
-/// One call: activations index … index + frames − 1 of the node's group.
+/// One call of `process`: activations index … index + frames − 1 of the node's group.
 struct Tick {
     std::int64_t index = 0;
-    Flicks period = 0;
+    Flicks period = 0;   ///< logical time from one activation to the next
     Flicks elapsed = 0;  ///< logical time since the previous activation; more than one period after skipped ticks
     int frames = 1;      ///< always 1 outside audio groups
 
-    double rate() const { return rate_of(period); }
+    double rate() const { return rate_of(period); }  ///< Hz
     double elapsed_seconds() const { return seconds(elapsed); }
     double time_seconds() const { return seconds(index * period); }
 };
 
-/// A device as the nodes of one group share it: the engine fills `sample` before the steps of an activation and hands
-/// `wrench` and `motors` to the driver after them.
+/// A device, shared by the nodes of one group. The engine fills `sample` before the nodes run and sends `wrench` and
+/// `motors` to the driver after them.
 struct DevicePort {
     DeviceInfo info;
     DeviceSample sample;
-    Wrench wrench;
+    Wrench wrench;  ///< on the hand, in the device frame about the origin of the pose: N, N·m
     MotorDrive motors;
-    control::Fault fault = control::Fault::none;  ///< why the node that writes `wrench` gives no force
-    bool hold_off = false;  ///< the engine is about to change the plan: fade the force to zero, ramp in when this ends
+    control::Fault fault = control::Fault::none;  ///< why the node that writes `wrench` sends no force
+    /// True before the plan changes: fade the force to zero. Ramp it in when this is false again.
+    bool hold_off = false;
 };
 
 enum class DeviceUse : std::uint8_t {
-    read,
+    read,   ///< the node reads the sample
     drive,  ///< the node writes the port's wrench; one node per device may
 };
 
-/// Values that leave the graph for a file or a sound card. Whoever drains it is not in the tick.
+/// A queue of values from a node to a file or a sound card. Another thread empties it.
 class RecordStream {
 public:
     virtual ~RecordStream() = default;
-    /// `count` values of the stream's type, those of activations first, first + 1, …, `stride` bytes apart; false when
-    /// there was no room and they were dropped. Wait-free.
+    /// Adds `count` values of the stream's type, `stride` bytes apart: those of activations first, first + 1, … Returns
+    /// false when there is no room; the values are then lost. Wait-free.
     virtual bool write(std::int64_t first, const void* values, std::size_t count, std::ptrdiff_t stride) noexcept = 0;
 };
 
-/// Puts a stream's values where they are safe, in a form of its own. Called by one thread, never in a tick: it may wait
-/// for a disk.
+/// Writes a stream to a file in a format of its own. One thread calls it, never in a tick; it may wait for the disk.
 class StreamKeeper {
 public:
     virtual ~StreamKeeper() = default;
-    /// Before the run, with the stream's file. Throws Error.
+    /// Opens the stream's file, before the run. Throws Error.
     virtual void open(const std::string& path) = 0;
-    /// Values of activations first, first + 1, …
+    /// Adds `count` values of the stream's type, adjacent: those of activations first, first + 1, …
     virtual void take(std::int64_t first, const std::byte* values, std::size_t count) = 0;
-    /// All that was taken is safe when it returns. Throws Error; it is called again then.
+    /// Writes all values taken so far to the file. Throws Error; the caller then tries again later.
     virtual void save() = 0;
-    /// After the run. Throws Error.
+    /// Closes the file, after the run. Throws Error.
     virtual void finish() = 0;
 };
 
-/// What a recorded stream holds. Signals become sound files, all else CSV with the time in front.
+/// Content of a recorded stream. Signals are written as sound files, other types as CSV with the time as first column.
 struct StreamFormat {
-    std::string file;  ///< name within the run's folder: "haptuator.wav", "force.csv"
+    std::string file;  ///< name in the run's folder: "haptuator.wav", "force.csv"
     std::string unit;  ///< of one full value, "m/s^2"
     const ValueType* type = nullptr;
     Flicks period = 0;
-    std::shared_ptr<StreamKeeper> keeper{};  ///< who writes the file; none: the engine does
+    std::shared_ptr<StreamKeeper> keeper{};  ///< writes the file; null: the engine does
 };
 
-/// What `prepare` asks for from outside of the patch: devices, recordings, sound.
+/// Gives `prepare` what lies outside the patch: devices, recordings, sound. `where` is the place of the node in the
+/// patch, for errors.
 class Host {
 public:
     virtual ~Host() = default;
-    /// The haptic device of that name ("" = the only one), opened on first use. Throws Error.
+    /// The haptic device of that name ("": the only one). Opens it on first use. Throws Error.
     virtual DevicePort& device(const std::string& name, DeviceUse use, const SourceLocation& where) = 0;
+    /// A file in the run's folder. Throws Error.
     virtual RecordStream& record(const StreamFormat& format, const SourceLocation& where) = 0;
-    /// Sound for a listener or an actuator: the card when the run is live and there is one, else the format's file.
+    /// Sound for a listener or an actuator: to the sound card in a live run with a card, otherwise to the format's
+    /// file. Throws Error.
     virtual RecordStream& audio(const StreamFormat& format, const SourceLocation& where) = 0;
 };
 
+/// What `prepare` is given.
 struct Setup {
     std::string name;  ///< of the node, as in the patch
     SourceLocation where;  ///< of the node in the patch
-    Flicks period = 0;  ///< of its group
-    int max_frames = 1;  ///< most activations one call may run
-    std::uint64_t seed = 0;  ///< for its random numbers; differs per node
+    Flicks period = 0;  ///< of the node's group
+    int max_frames = 1;  ///< most activations of one call; size buffers for it
+    std::uint64_t seed = 0;  ///< for the node's random numbers; differs from node to node
     Host* host = nullptr;
 
     double rate() const { return rate_of(period); }
+    /// Throws Error at the node's place in the patch.
     [[noreturn]] void fail(const std::string& message) const { throw Error(where, message); }
 };
 
-/// What the nodes have to say about a finished run, by section and key. Becomes summary.json.
+/// Results of the nodes of a finished run, by section and key. They are written to summary.json.
 struct Report {
     using Value = std::variant<double, std::string, std::vector<double>>;
     std::map<std::string, std::map<std::string, Value>> sections;
-    std::map<std::string, std::any> results;  ///< large things to look at afterwards, such as the cut bone
+    /// Large results for the caller, such as the cut bone; not in summary.json.
+    std::map<std::string, std::any> results;
 
     void set(const std::string& section, const std::string& key, Value value) {
         sections[section][key] = std::move(value);

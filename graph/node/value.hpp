@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The types that a wire can carry, as run-time descriptors: the compiler and the engine move values by these.
+// The types of value that a wire can carry. The compiler and the engine know a value only by its run-time descriptor.
 #pragma once
 
 #include "dsp/core/hash.hpp"
@@ -20,23 +20,24 @@ namespace tactus {
 
 /// Tag of an audio wire: one float per activation.
 struct Signal {};
-/// Tag of a number that an audio node reads once per sample, so that a slower wire can glide into it.
+/// Tag of a number that an audio node reads once per sample. A slower wire is interpolated to that rate.
 struct Ramp {};
 
-/// An immutable version of something large. `T` is a small handle with `version` (rising) and `content_hash`.
+/// A small handle to an immutable version of something large. `version` rises with each change.
 template <class T>
 concept SnapshotHandle = std::is_trivially_copyable_v<T> && requires(const T& t) {
     { t.version } -> std::convertible_to<std::int64_t>;
     { t.content_hash } -> std::convertible_to<std::uint64_t>;
 };
 
-/// Specialise with a `load` to let a file stand on a wire as a constant `T`.
+/// Specialise it with a `load` for each `T` that a patch may wire from an asset. `load` puts the value in `out` and
+/// returns its owner. Throws Error.
 template <class T>
 struct SnapshotFile {
     static constexpr std::shared_ptr<const void> (*load)(const std::string& path, void* out) = nullptr;
 };
 
-/// A bone file as a bone that nobody carves.
+/// A bone file, as a bone that is never carved.
 template <>
 struct SnapshotFile<volume::BoneSnapshot> {
     static std::shared_ptr<const void> load(const std::string& path, void* out);
@@ -44,15 +45,17 @@ struct SnapshotFile<volume::BoneSnapshot> {
 
 /// What the engine needs to know about a type of value. One object per type; compared by address.
 struct ValueType {
-    std::string_view name;                                     ///< as users see it: "pose", "signal"
-    std::size_t size = 0;                                      ///< bytes of one value
-    std::span<const std::string_view> columns;                 ///< names of its doubles for a trace, empty if opaque
+    std::string_view name;  ///< as users see it: "pose", "signal"
+    std::size_t size = 0;  ///< bytes of one value
+    std::span<const std::string_view> columns;  ///< names of its doubles in a trace; empty: not traced
     void (*hash)(Hash&, const void*) = nullptr;
-    void (*interpolate)(const void* a, const void* b, double t, void* out) = nullptr;  ///< null: not interpolable
+    /// Between `a` (t = 0) and `b` (t = 1); null: cannot be interpolated.
+    void (*interpolate)(const void* a, const void* b, double t, void* out) = nullptr;
     void (*to_columns)(const void*, double* out) = nullptr;
-    void (*make_default)(void* out) = nullptr;                 ///< zero, identity, nothing
-    std::int64_t (*version)(const void*) = nullptr;            ///< non-null for snapshots
-    /// Snapshots that a file can hold: loads it, puts the handle in `out` and returns the owner. Throws Error.
+    void (*make_default)(void* out) = nullptr;  ///< zero, identity, nothing
+    std::int64_t (*version)(const void*) = nullptr;  ///< non-null for snapshots
+    /// Loads a snapshot from a file: puts the handle in `out` and returns its owner. Throws Error. Null: no file holds
+    /// one.
     std::shared_ptr<const void> (*load_asset)(const std::string& path, void* out) = nullptr;
 };
 
@@ -73,6 +76,7 @@ inline const ValueType snapshot{
 };
 }  // namespace value
 
+/// The descriptor of `T`.
 template <class T>
 constexpr const ValueType& value_type() {
     if constexpr (std::is_same_v<T, Pose>) return value::pose;
@@ -84,7 +88,7 @@ constexpr const ValueType& value_type() {
     else return value::snapshot<T>;
 }
 
-/// What is stored for a `T` on a wire.
+/// The type in memory of a value of type `T` on a wire.
 template <class T> struct ElementOf {
     using type = T;
 };

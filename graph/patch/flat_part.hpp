@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What flattening looks things up in, so that a patch of n nodes takes n steps. Only sub_patch.cpp includes it.
+// Indexes for flattening sub-patches, so that its time grows linearly with the number of nodes. For sub_patch.cpp only.
 #pragma once
 
 #include "graph/patch/sub_patch.hpp"
@@ -14,7 +14,7 @@
 
 namespace tactus::patch {
 
-/// A flattened part, and what is looked up in it each time it is used.
+/// A flattened sub-patch with indexes of its nodes and ends by name.
 struct FlatPart {
     using Ends = std::vector<const PatchEnd*>;
     using Index = std::unordered_map<std::string_view, Ends>;
@@ -42,11 +42,11 @@ struct FlatPart {
 
     Patch patch;
     Index offered, outputs, parameters;
-    Index targets;  ///< where a wire may end: inputs, then parameters
+    Index targets;  ///< ends of wires: inputs, then parameters
     std::unordered_map<std::string_view, std::size_t> nodes;
 };
 
-/// The wires of a patch whose nodes are being replaced: what each of them has become, by the nodes it joins.
+/// The wires of a patch while its sub-patches are replaced: for each original wire, the wires that stand for it now.
 class OuterWires {
 public:
     OuterWires(std::vector<PatchWire> wires, const std::vector<PatchNode>& nodes) : pieces_(wires.size()) {
@@ -59,12 +59,13 @@ public:
         }
     }
 
-    /// Calls `replace` with the pieces of each wire at a node, in the order of the wires.
+    /// Calls `replace` with the wires that stand for each wire at `node`, in the order of the file.
     template <class Replace>
     void at(const std::string& node, Replace&& replace) {
         for (const std::size_t w : touching_.at(node)) replace(pieces_[w]);
     }
 
+    /// All wires, in the order of the file. Moves them out.
     std::vector<PatchWire> joined() {
         std::vector<PatchWire> wires;
         for (auto& pieces : pieces_) std::ranges::move(pieces, std::back_inserter(wires));
@@ -77,7 +78,7 @@ private:
     }
 
     std::vector<std::vector<PatchWire>> pieces_;
-    std::unordered_map<std::string, std::vector<std::size_t>> touching_;  // of each node that is a patch
+    std::unordered_map<std::string, std::vector<std::size_t>> touching_;  // of each node that is a sub-patch
 };
 
 }  // namespace tactus::patch

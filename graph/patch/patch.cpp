@@ -59,11 +59,11 @@ private:
         return std::pair(a.line, a.column) < std::pair(b.line, b.column);
     }
 
-    // TOML tables come sorted by key; the file's order is what people see.
+    // TOML tables are sorted by key. Users expect the order of the file.
     template <class Item>
     static void sort_by_place(std::vector<Item>& items) {
         if (std::ranges::is_sorted(items, comes_before, &Item::where)) return;
-        // Items are large: each moves once.
+        // Items are large: move each once.
         std::vector<Item*> order;
         for (Item& item : items) order.push_back(&item);
         std::ranges::stable_sort(order, comes_before, [](const Item* item) { return std::cref(item->where); });
@@ -127,7 +127,7 @@ private:
                 problems_.add(at(item), "a wire is a text: \"hand.pose -> blade.pose\"");
                 continue;
             }
-            // Columns within a text are only known when it is written as it reads: on one line, without escapes.
+            // Columns inside a text are known only for text on one line without escapes.
             const toml::source_region& region = item.source();
             const bool as_written = region.begin.line == region.end.line &&
                                     region.end.column - region.begin.column == text->get().size() + 2;
@@ -197,7 +197,7 @@ private:
         }
     }
 
-    /// What the file says itself ends where its parts begin.
+    /// Cuts the text at the first [[parts]].
     void end_text(const toml::array& parts, const toml::table& root) {
         const auto first = parts.front().source().begin.line;
         for (const auto& [key, value] : root)
@@ -205,10 +205,10 @@ private:
                 return problems_.add(at(parts.front()), "[[parts]] stand at the end of a patch");
         std::size_t end = 0;
         for (toml::source_index line = 1; line < first; ++line) end = patch_.text.find('\n', end) + 1;
-        patch_.text.resize(end - (end > 0));  // with the end of line that a bundle puts in front
+        patch_.text.resize(end - (end > 0));  // with the newline that a bundle adds before the parts
     }
 
-    /// The last line on which something begins within `value`; tables need not stand together in a file.
+    /// The last line on which an item of `value` begins. The tables of a file need not be adjacent.
     static toml::source_index last_line(const toml::node& value) {
         toml::source_index last = value.source().begin.line;
         if (const toml::table* table = value.as_table())
@@ -225,13 +225,13 @@ private:
             {std::string(key.str()), given.is_absolute() ? given : file_.parent_path() / given, at(value)});
     }
 
-    /// There, but no text, which has been said already.
+    /// True for a value that is no text; the error has been reported.
     static bool is_mistyped(const toml::table& table, std::string_view key) {
         const toml::node* value = table.get(key);
         return value && !value->is_string();
     }
 
-    /// The table behind `[kind.name]`, or null after saying what is wrong.
+    /// The table `[kind.name]`, or null after an error.
     const toml::table* table_of(const toml::key& key, const toml::node& value, std::string_view kind) {
         const toml::table* table = value.as_table();
         if (!table) problems_.add(at(value), fmt::format("'{}' is a table; write [{}.{}]", key.str(), kind, key.str()));
@@ -292,7 +292,7 @@ private:
         }
         if (node.type.empty() && !is_mistyped(*table, "type"))
             problems_.add(node.where, fmt::format("node '{}' has no type", node.name));
-        // What is within a patch has its own rate, or says that it wants one.
+        // The nodes of a sub-patch have rates of their own, or rate = "outer".
         const bool may_be_without = is_sub_patch(node) && node.rate.empty() && node.group.empty();
         if (!may_be_without && node.rate.empty() == node.group.empty() && !is_mistyped(*table, "rate") &&
             !is_mistyped(*table, "group"))
@@ -333,9 +333,9 @@ private:
     }
 
     std::filesystem::path file_;
-    std::string name_;  ///< of the file, in messages
+    std::string name_;  ///< of the file, for messages
     Problems& problems_;
-    std::size_t earlier_;  ///< problems that were there before
+    std::size_t earlier_;  ///< number of problems before
     Patch patch_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A patch as its text says it: names and texts with their places, nothing resolved yet.
+// A patch as written: names and texts with their places in the file. Nothing is resolved or checked against node types.
 #pragma once
 
 #include "dsp/core/error.hpp"
@@ -13,63 +13,71 @@
 
 namespace tactus::patch {
 
+/// How a wire between two rates carries values: the last one, interpolated, all since the last call, or delayed.
 enum class WireMode : std::uint8_t { hold, linear, batch, delay };
 
-/// "blade.load -> saw.load as linear". An asset on the left side has no port: from_node is its name, from_port empty.
+/// A wire, such as "blade.load -> saw.load as linear". For an asset on the left side `from_node` is its name and
+/// `from_port` is empty.
 struct PatchWire {
     std::string from_node, from_port, to_node, to_port;
     WireMode mode = WireMode::hold;
-    bool mode_given = false;
+    bool mode_given = false;  ///< the text has an "as"
     int delay = 0;  ///< activations of the producer, for WireMode::delay
     SourceLocation where;
 };
 
+/// An entry [nodes.NAME].
 struct PatchNode {
     std::string name, type;
-    std::string rate;   ///< "1 kHz", empty when `group` is given; "outer" within a patch that is a node
+    /// "1 kHz"; empty when `group` is given; "outer" in a sub-patch: the rate of the node that it is.
+    std::string rate;
     std::string group;  ///< name of an entry of [groups], empty when `rate` is given
     SourceLocation where, type_where, rate_where;
     std::vector<OptionText> settings;  ///< every other key
 };
 
+/// An entry [groups.NAME].
 struct PatchGroup {
     std::string name, rate;
-    std::string latency;  ///< "250 ms", empty: the default
-    int backlog = -1;     ///< activations that may run late, −1: the default
+    std::string latency;  ///< "250 ms"; empty: the default
+    int backlog = -1;  ///< activations that may run late, −1: the default
     SourceLocation where;
 };
 
+/// A line of [assets].
 struct PatchAsset {
     std::string name;
     std::filesystem::path path;  ///< resolved against the folder of the patch
     SourceLocation where;
 };
 
+/// An entry [devices.NAME].
 struct PatchDevice {
     std::string name, driver;
     SourceLocation where;
     std::vector<OptionText> settings;
 };
 
-/// What a patch offers when it is a node of another: the name outside, and a port or parameter within. An input or a
-/// parameter may stand for several.
+/// A port or parameter that a sub-patch offers: its name outside, and the node and port inside. An input or a parameter
+/// has one entry for each port that it sets.
 struct PatchEnd {
     std::string name, node, port;
     SourceLocation where;
 };
 
-/// The text of a patch that is a node of this one, or of one within it.
+/// The text of a sub-patch, at any depth.
 struct PatchPart {
-    std::string path;  ///< relative to the folder of the outermost patch, with '/', or absolute
+    std::string path;  ///< relative to the folder of the outermost patch, with '/'; or absolute
     std::string text;
 
     bool operator==(const PatchPart&) const = default;
 };
 
+/// A patch file.
 struct Patch {
     std::filesystem::path file;
     std::string title;
-    Flicks quantum = flicks_per_second / 1000;  ///< latency of audio towards other groups
+    Flicks quantum = flicks_per_second / 1000;  ///< latency of values from an audio group to other groups
     std::uint64_t seed = 1;
     std::vector<PatchWire> wires;
     std::vector<PatchAsset> assets;
@@ -78,37 +86,39 @@ struct Patch {
     std::vector<PatchNode> nodes;  ///< in the order of the file
     std::vector<PatchEnd> inputs, outputs, parameters;
     std::vector<PatchPart> parts;
-    std::vector<PatchEnd> offered;  ///< by patches within, once flattened: "voice.level" and what it stands for
-    std::string text;               ///< the file as read, without [[parts]]
+    /// After flatten(): ends that the sub-patches offered, by names such as "voice.level".
+    std::vector<PatchEnd> offered;
+    std::string text;  ///< the file as read, without [[parts]]
 };
 
-/// What a command line changes: `node.param=value` and `asset=path`.
+/// Changes of a patch from the command line, as given: `node.param=value` and `asset=path`.
 struct PatchOverrides {
     std::vector<std::string> settings;  ///< "blade.stiffness=0.8 N/mm", "devices.hand.mass=0.2 kg"
-    std::vector<std::string> assets;    ///< "bone=mine.vdb"
+    std::vector<std::string> assets;  ///< "bone=mine.vdb"
 };
 
-/// Every problem found, in order of appearance; reading and compiling go on past the first where they can.
+/// All errors of a patch, in the order of the file. Reading and compiling go on after the first where they can.
 struct Problems {
     std::vector<Error> list;
 
     void add(const SourceLocation& where, const std::string& message) { list.emplace_back(where, message); }
     bool empty() const { return list.empty(); }
-    /// The next problem is still worth comparing with all names there are: nobody reads the hints of hundreds.
+    /// False after 100 problems: a hint compares a name with all others, which is slow, and nobody reads that many.
     bool wants_hint() const { return list.size() < 100; }
 };
 
-/// Reads patch text. `file` names it in messages and anchors relative paths. Problems found are added; what could be
-/// read is returned.
+/// Reads patch text. `file` is its name in messages, and relative paths start at its folder. Adds the errors to
+/// `problems` and returns what it could read.
 Patch read_patch(std::string_view text, const std::filesystem::path& file, Problems& problems);
 
-/// Reads a patch file. Throws Error when the file cannot be read at all.
+/// Reads a patch file in the same way. Throws Error when the file cannot be read.
 Patch load_patch(const std::filesystem::path& file, Problems& problems);
 
-/// Applies what the command line changes; names that do not exist are problems with the location "--set" or "--asset".
+/// Applies changes from the command line. A name that does not exist is a problem at the location "--set" or "--asset".
 void apply_overrides(Patch& patch, const PatchOverrides& overrides, Problems& problems);
 
-/// Period of "1 kHz" in flicks. Throws Error naming the nearest exact rates when it is not a whole number of flicks.
+/// Period in flicks of a rate such as "1 kHz". Throws Error with the nearest exact rates when it is no whole number of
+/// flicks.
 Flicks parse_rate(std::string_view text);
 
 }  // namespace tactus::patch

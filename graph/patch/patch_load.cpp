@@ -53,7 +53,7 @@ void read_parts(Patch& patch) {
                 patch.parts.push_back({path, patch_text(file_of_part(patch, path))});
                 known.insert(path);
             } catch (const Error&) {
-                // What names it is told when the patch is flattened.
+                // flatten() reports the error at the node that names the file.
             }
         }
     };

@@ -14,7 +14,7 @@ namespace tactus::patch {
 
 namespace {
 
-/// Finds one port of a node by name; every signal port is offered when it is another.
+/// Finds a signal port of a node by name, and collects the names of all signal ports for the message.
 struct SignalPorts final : MemberVisitor {
     explicit SignalPorts(std::string_view wanted_) : wanted(wanted_) {}
 

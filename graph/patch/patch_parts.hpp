@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of a patch found by name, for verbs that run only some of it.
+// Finds signals of a patch by name and cuts a patch down to some of its nodes, for verbs that run only a part.
 #pragma once
 
 #include "graph/compile/plan.hpp"
@@ -10,19 +10,19 @@
 
 namespace tactus::patch {
 
-/// One end of a signal's wires.
+/// A signal port of a node.
 struct SignalEnd {
-    const PatchNode* node = nullptr;  ///< in the patch
+    const PatchNode* node = nullptr;  ///< points into the patch
     std::string port, unit;
     bool is_input = false;
 };
 
-/// "actuator.signal" → that port of that node. `option` is what the command line calls it, for messages. Throws Error
-/// when there is none, or it carries no signal.
+/// The port that text such as "actuator.signal" names. `option` is the command line's option, for messages. Throws
+/// Error when there is no such port or it carries no signal.
 SignalEnd find_signal(const Patch& patch, const std::string& text, std::string_view option,
                       compile::Catalogue catalogue);
 
-/// Leaves only the nodes of those names and what leads to them, in the order of the patch.
+/// Removes all nodes but those of `names` and the nodes upstream of them. The order stays.
 void keep_what_leads_to(std::vector<std::string> names, Patch& patch);
 
 }  // namespace tactus::patch

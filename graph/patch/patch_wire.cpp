@@ -29,7 +29,7 @@ std::vector<Word> words_of(std::string_view text) {
             ++at;
             continue;
         }
-        // The arrow may touch its neighbours.
+        // No spaces are needed around the arrow.
         std::size_t end = at;
         if (text.substr(at).starts_with("->")) end = at + 2;
         else

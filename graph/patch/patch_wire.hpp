@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grammar of one wire: "from.port -> to.port as linear".
+// Parser of one wire: "from.port -> to.port as linear".
 #pragma once
 
 #include "graph/patch/patch.hpp"
@@ -8,11 +8,11 @@
 
 namespace tactus::patch {
 
-/// `where` is the place of the text's first character. Throws Error at the word that is wrong, or at `where` when the
-/// text does not stand in the file `as_written`.
+/// `where` is the place of the first character. Throws Error at the wrong word when the file holds the text
+/// `as_written`, otherwise (escapes, several lines) at `where`.
 PatchWire parse_wire(std::string_view text, const SourceLocation& where, bool as_written = true);
 
-/// Letters, digits, '_' and '-', not empty.
+/// True for a name of letters, digits, '_' and '-' that is not empty.
 bool is_name(std::string_view text);
 
 }  // namespace tactus::patch

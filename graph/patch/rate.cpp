@@ -14,15 +14,15 @@ constexpr auto whole_second = static_cast<double>(flicks_per_second);
 
 bool is_exact(double hertz) {
     const double period = whole_second / hertz;
-    // The quotient itself is rounded to a part in 1e16.
+    // The quotient is rounded, by up to one part in 1e16.
     return std::abs(period - std::round(period)) <= 1e-9 + 1e-15 * period;
 }
 
-/// An exact rate on one side of `hertz` that takes at most four digits to write: the shortest of those near enough.
-/// Others are exact too, but most of them cannot be written as a decimal.
+/// An exact rate near `hertz`, on one side of it, with at most four digits: the one with the fewest. Most other exact
+/// rates have no finite decimal.
 double short_exact_rate(double hertz, int side) {
     const double magnitude = std::floor(std::log10(hertz));
-    // Ends at the latest at the powers of ten around, or at 192 kHz: these are exact.
+    // The search ends at a power of ten or at 192 kHz: these are exact.
     for (double near = 0.01;; near *= 10.0)
         for (int digits = 1; digits <= 4; ++digits) {
             const double step = std::pow(10.0, magnitude + 1 - digits);

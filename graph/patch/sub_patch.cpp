@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A patch that names itself twice, sixteen deep, would have 65,536 nodes.
+// A chain of sixteen files, each of which uses the next twice, would give 65,536 nodes.
 constexpr std::size_t most_nodes = 100'000, most_deep = 16;
 
 template <class Item>
@@ -41,7 +41,7 @@ public:
         for (const PatchPart& part : outermost.parts) texts_.emplace(part.path, &part.text);
     }
 
-    /// `path`: the part that `patch` was read from, empty for the outermost.
+    /// `path` is that of the sub-patch `patch`, empty for the outermost patch.
     void flatten(Patch& patch, const std::string& path) {
         deep_.push_back(path);
         std::vector<PatchNode> nodes = std::exchange(patch.nodes, {});
@@ -68,7 +68,7 @@ public:
     }
 
 private:
-    /// What `node` is, flattened; null after saying what is wrong.
+    /// The sub-patch that `node` is, flattened; null after an error.
     const FlatPart* part(const PatchNode& node, const std::string& from) {
         if (node.type.size() == sub_patch_prefix.size()) {
             problems_.add(node.type_where, "name the file: type = \"patch:voice.toml\"");
@@ -167,10 +167,10 @@ private:
             }
     }
 
-    /// What a part offers may itself be offered by a patch within it.
+    /// Follows an end that a sub-patch offers from one of its own sub-patches.
     static NamedEnd resolved(const FlatPart& part, const PatchEnd& end) { return all_within(part, end).front(); }
 
-    /// Sets what a parameter of a part stands for, in its nodes: from `first` on in `patch`.
+    /// Sets the parameters inside that a parameter of a sub-patch stands for. Its nodes begin at `first` in `patch`.
     void set(Patch& patch, std::size_t first, const FlatPart& part, const OptionText& given) {
         const FlatPart::Ends& parameters = FlatPart::find(part.parameters, given.name);
         for (const PatchEnd* parameter : parameters)
@@ -193,7 +193,7 @@ private:
         return did_you_mean(name, names);
     }
 
-    /// One end, or all that a patch within puts behind it.
+    /// The end itself, or all ends that it stands for when its node is a sub-patch.
     static std::vector<NamedEnd> all_within(const FlatPart& part, const PatchEnd& end) {
         std::vector<NamedEnd> all;
         for (const PatchEnd* deeper : FlatPart::find(part.offered, end.node + '.' + end.port))
@@ -202,7 +202,7 @@ private:
         return all;
     }
 
-    /// Leads the wires that begin or end at `node` to what is behind its ports.
+    /// Joins the wires at the sub-patch `node` to the ports inside.
     void connect(OuterWires& wires, const PatchNode& node, const FlatPart& part) {
         wires.at(node.name, [&](std::vector<PatchWire>& pieces) {
             std::vector<PatchWire> led;
@@ -212,7 +212,7 @@ private:
         });
     }
 
-    /// False after saying what is wrong.
+    /// False after an error.
     bool lead_source(PatchWire& wire, const PatchNode& node, const FlatPart& part) {
         if (wire.from_node != node.name || wire.from_port.empty()) return true;
         const FlatPart::Ends& ends = FlatPart::find(part.outputs, wire.from_port);
@@ -243,13 +243,13 @@ private:
 
     const Patch& outermost_;
     Problems& problems_;
-    std::vector<std::string> deep_;  ///< parts that are being flattened, outermost first
-    std::unordered_map<std::string_view, const std::string*> texts_;  ///< of parts, by path
+    std::vector<std::string> deep_;  ///< sub-patches that are being flattened, outermost first
+    std::unordered_map<std::string_view, const std::string*> texts_;  ///< of sub-patches, by path
     std::unordered_map<std::string, std::unique_ptr<FlatPart>> flat_;
     bool has_stopped_ = false;
 };
 
-/// A TOML text that reads back to the same bytes, on as many lines.
+/// A TOML string that reads back to the same bytes and has as many lines.
 std::string toml_text(std::string_view text) {
     std::string out = "\"\"\"\n";
     for (const char c : text) {

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// A patch as a node of another. The file says what it offers:
+// Sub-patches: a patch as a node of another. The file lists the ports and parameters that it offers:
 //
 //     [inputs]
-//     load = "saw.load"                              # a port within, or a list of them
+//     load = "saw.load"                              # a port of a node, or a list of ports
 //     [outputs]
 //     signal = "equaliser.signal"
 //     [parameters]
 //     level = "saw.level"
 //
-// and another patch uses it, with wires to what is offered:
+// Another patch uses it and wires these ports:
 //
 //     [nodes.voice]
-//     type = "patch:saw-voice.toml"                  # beside the file that says so
-//     rate = "48 kHz"                                # only when nodes within say rate = "outer"
+//     type = "patch:saw-voice.toml"                  # relative to the file of this patch
+//     rate = "48 kHz"                                # only when its nodes have rate = "outer"
 //     level = 0.5
 //
-// It flattens: 'saw' within becomes the node 'voice:saw', and nothing is slower or later for it. Groups and assets
-// within are named so as well; a device is the outer patch's of that name, if it has one. `quantum` and `seed` are
-// those of the outermost patch.
+// A sub-patch is flattened: its node 'saw' becomes the node 'voice:saw', at no cost in time or latency. Its groups and
+// assets are renamed in the same way. A device of the outer patch replaces the device of the same name. `quantum` and
+// `seed` are those of the outermost patch.
 #pragma once
 
 #include "graph/patch/patch.hpp"
@@ -30,35 +30,37 @@
 namespace tactus::patch {
 
 inline constexpr std::string_view sub_patch_prefix = "patch:";
-inline constexpr char within_node = ':';        ///< between the name of a node and of one within it
+inline constexpr char within_node = ':';        ///< as in "voice:saw"
 inline constexpr std::string_view outer_rate = "outer";
 
-/// The type names a patch file.
+/// True when the node's type names a patch file.
 bool is_sub_patch(const PatchNode& node);
 
-/// Path of the part that `type` names in the part at `from` (empty: the outermost patch).
+/// Path of the sub-patch that `type` names in the sub-patch at `from` (empty: the outermost patch), as in PatchPart.
 std::string part_path(const std::string& from, const std::string& type);
 
+/// The file of a path of PatchPart.
 std::filesystem::path file_of_part(const Patch& patch, const std::string& path);
 
-/// Reads the files of all patches within, to any depth, that `patch.parts` does not hold yet. What cannot be read is
-/// left out; flatten() says so.
+/// Reads the files of all sub-patches, to any depth, that `patch.parts` does not hold yet. Leaves out a file that
+/// cannot be read; flatten() reports it.
 void read_parts(Patch& patch);
 
-/// Files of `patch.parts`, for who watches them.
+/// Files of `patch.parts`, for a watcher of files.
 std::vector<std::filesystem::path> part_files(const Patch& patch);
 
-/// Replaces every node that is a patch by what is within it. Reads no file. A patch without such nodes stays as it is.
+/// Replaces each sub-patch by its nodes and wires. Adds errors to `problems`. Reads no file; a patch without
+/// sub-patches does not change.
 void flatten(Patch& patch, Problems& problems);
 
-/// One text that holds the patch and all within it, as entries [[parts]] at its end; without any: its text.
+/// One text of the patch with all its sub-patches as entries [[parts]] at the end.
 std::string bundle_text(const Patch& patch);
 
-/// The node and port (or parameter) that "node.name" of a flattened patch stands for. Names that no patch within offers
-/// come back as they are.
+/// A node and its port or parameter.
 struct NamedEnd {
     std::string node, name;
 };
+/// The end that `node`.`name` means in a flattened patch. A name that no sub-patch offered is returned as it is.
 NamedEnd end_within(const Patch& patch, std::string_view node, std::string_view name);
 
 }  // namespace tactus::patch
