@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/compile/compile.hpp"
+#include "graph/compile/decide_types.hpp"
 
 #include <fmt/format.h>
 
@@ -144,12 +145,22 @@ private:
             return;
         }
         const ValueType& type = source_type();
-        if (port.kind == InputKind::any) port.type = &type;
+        if (port.kind == InputKind::any) take_type(port, type);
         if (port.type != &type)
             throw Error(fmt::format("'{}.{}' gives a {}, but '{}.{}' takes a {}", source_.from_node, source_.from_port,
                                     type.name, source_.to_node, source_.to_port, port.type->name));
         check_mode(port, type);
         port.period = plan_.groups[static_cast<std::size_t>(node(wire_.from_node).group)].period;
+    }
+
+    void take_type(Input& port, const ValueType& type) {
+        if (&type == &value::undecided)
+            throw Error(fmt::format("the type of '{}.{}' is not known: feed an input of '{}' by a node of known type",
+                                    source_.from_node, source_.from_port, source_.from_node));
+        if (!(port.takes & kind_of(type)))
+            throw Error(fmt::format("'{}.{}' gives a {}, but '{}.{}' takes a {}", source_.from_node, source_.from_port,
+                                    type.name, source_.to_node, source_.to_port, type_names(port.takes)));
+        if (!port.type) port.type = &type;
     }
 
     void check_mode(const Input& port, const ValueType& type) {
@@ -206,6 +217,7 @@ void resolve_wires(Plan& plan, patch::Problems& problems) {
     // Without every node there is nothing sound to say about the wires between them.
     for (const PlanNode& node : plan.nodes)
         if (!node.type || node.group < 0) return;
+    decide_types(plan);
     WireContext context(plan, problems);
     plan.wires.reserve(plan.patch.wires.size());
     const std::size_t known = problems.list.size();
