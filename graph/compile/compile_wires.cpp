@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/compile/compile.hpp"
-#include "graph/compile/decide_types.hpp"
 
 #include <fmt/format.h>
 
@@ -217,7 +216,6 @@ void resolve_wires(Plan& plan, patch::Problems& problems) {
     // Without every node there is nothing sound to say about the wires between them.
     for (const PlanNode& node : plan.nodes)
         if (!node.type || node.group < 0) return;
-    decide_types(plan);
     WireContext context(plan, problems);
     plan.wires.reserve(plan.patch.wires.size());
     const std::size_t known = problems.list.size();
