@@ -19,12 +19,17 @@ using file::Json;
 
 namespace {
 
+/// "any", or "number, vector or wrench".
+std::string several(const Input& port) {
+    return port.takes == kinds::every ? "any" : type_names(port.takes);
+}
+
 class Describer : public MemberVisitor {
 public:
     Json ports_in = Json::array(), ports_out = Json::array(), parameters = Json::array();
 
     void input(std::string_view name, Input& port) override {
-        std::string type = port.type ? std::string(port.type->name) : "any";
+        std::string type = port.type ? std::string(port.type->name) : several(port);
         if (port.kind == InputKind::batch) type = "batch of " + type;
         ports_in.push_back({{"name", name},
                             {"type", type},
