@@ -3,6 +3,7 @@
 #include "tools/study/vibration/orders.hpp"
 #include "assets/file/whole_file.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/readable.hpp"
 #include "tools/command/vibration/record_options.hpp"
 #include "tools/exit_code.hpp"
 #include "tools/study/vibration/level_reference.hpp"
@@ -21,7 +22,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct OrdersChoice : RecordChoice {
-    study::OrdersSettings settings;
+    study::OrdersSettings orders;
     std::filesystem::path csv;
     std::string band;  // LOW:HIGH in Hz; empty: found
     bool peak = false;
@@ -31,6 +32,7 @@ std::string json_of(const std::string& file, const study::Orders& found) {
     Json json{{"file", file},
               {"sample_rate_hz", found.sample_rate},
               {"duration_s", found.duration},
+              {"stretch", stretch_json(found.stretch)},
               {"source", found.source},
               {"rate_hz", {{"min", found.rate.low}, {"max", found.rate.high}, {"mean", found.rate.mean}}},
               {"channels", Json::array()}};
@@ -66,14 +68,15 @@ std::string text_of(const std::string& file, const study::Orders& found, bool pe
     const study::LevelReference reference = study::level_reference(found.calibration);
     std::string text = fmt::format("{}: {} from {:.2f} to {:.2f} Hz\n  levels: {}, dB rms re {}\n", file, found.source,
                                    found.rate.low, found.rate.high, peak ? "peak" : "rms", reference.text);
+    if (!found.stretch.is_whole()) text += fmt::format("  of the record: {}\n", found.stretch.text());
     for (const study::OrdersOfChannel& one : found.channels) {
         text += fmt::format("  channel {}, {:.0f} turns\n", one.name, one.spectrum.turns);
         for (const signal::OrderLevel& level : one.spectrum.orders) {
             const double square = 0.5 * level.amplitude * level.amplitude;
             if (level.above_nyquist) text += fmt::format("    order {:3g}  above half the sample rate\n", level.order);
             else
-                text += fmt::format("    order {:3g}  {:.5g} {}  {:.1f} dB  SNR {:.0f} dB\n", level.order,
-                                    peak ? level.amplitude : std::sqrt(square), found.calibration.unit,
+                text += fmt::format("    order {:3g}  {}  {:.1f} dB  SNR {:.0f} dB\n", level.order,
+                                    readable(peak ? level.amplitude : std::sqrt(square), found.calibration.unit, 5),
                                     reference.db(square), level.snr_db);
         }
     }
@@ -109,8 +112,8 @@ void about_file(const std::filesystem::path& file, const Function& function) {
 int orders(const OrdersChoice& choice) {
     if (choice.files.size() != 1) throw Error("orders takes one file");
     const std::filesystem::path& file = choice.files.front();
-    study::OrdersSettings settings = choice.settings;
-    settings.record = choice.record;
+    study::OrdersSettings settings = choice.orders;
+    settings.record = choice.settings();
     if (!choice.band.empty()) settings.range = parse_band(choice.band, "--band");
     const study::Orders found = study::analyse_orders(file, settings);
     if (!choice.csv.empty()) about_file(file, [&] { file::write_whole_file(choice.csv, csv_of(found, choice.peak)); });
@@ -120,7 +123,7 @@ int orders(const OrdersChoice& choice) {
 
 Action add(VerbOptions& verb) {
     const auto choice = std::make_shared<OrdersChoice>();
-    study::OrdersSettings& settings = choice->settings;
+    study::OrdersSettings& settings = choice->orders;
     add_record_options(verb, *choice, "a sound file or CSV log");
     const Option tacho = verb.add("--tacho", settings.tacho, "channel of the tachometer, from 1").range(1, 1024);
     verb.add("--pulses", settings.pulses, "tachometer pulses per revolution").shows_default().range(0.01, 1e5);

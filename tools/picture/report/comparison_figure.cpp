@@ -4,6 +4,7 @@
 #include "assets/file/whole_file.hpp"
 #include "devices/display/png.hpp"
 #include "dsp/core/error.hpp"
+#include "dsp/core/readable.hpp"
 #include "tools/picture/report/plot_panel.hpp"
 #include "tools/picture/report/spectrogram_panel.hpp"
 
@@ -133,7 +134,7 @@ void draw_coherence(display::Figure& figure, const signal::Comparison& c, double
 }
 
 std::string number(double value) {
-    if (value == std::round(value) && std::abs(value) != 1.0) return fmt::format("{:g}", value);
+    if (value == std::round(value) && std::abs(value) != 1.0) return plain(value, 6);
     return fmt::format("{:.{}f}", value, std::abs(value) < 10.0 ? 3 : 1);
 }
 

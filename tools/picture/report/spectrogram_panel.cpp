@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/picture/report/spectrogram_panel.hpp"
 
+#include "dsp/core/readable.hpp"
+#include "tools/picture/report/axes.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -76,18 +79,17 @@ void draw_spectrogram(display::Figure& figure, const signal::Spectrogram& s, con
             c = end;
         }
     const double bottom = y + picture_height, duration = s.column_seconds() * static_cast<double>(s.columns());
-    for (const double hz : {10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0}) {
-        if (hz < lowest || hz > highest) continue;
+    for (const double hz : Scale{lowest, highest, true}.ticks()) {
         const double at = bottom - picture_height * std::log(hz / lowest) / std::log(highest / lowest);
         figure.line({{left - 4.0, at}, {left, at}}, ink, 1.0);
-        figure.text({left - 6.0, at + 4.0}, fmt::format("{:g}", hz), 11.0, ink, display::TextAnchor::end);
+        figure.text({left - 6.0, at + 4.0}, axis_number(hz), 11.0, ink, display::TextAnchor::end);
     }
     const double step = std::pow(10.0, std::floor(std::log10(duration / 2.0)));
     const double tick = duration / step > 10.0 ? 5.0 * step : duration / step > 5.0 ? 2.0 * step : step;
-    for (double t = 0.0; t <= duration * 1.0001; t += tick) {
-        const double x = left + width * t / duration;
+    for (double t = std::ceil(style.begin / tick - 1e-9) * tick; t <= style.begin + duration * 1.0001; t += tick) {
+        const double x = left + width * (t - style.begin) / duration;
         figure.line({{x, bottom}, {x, bottom + 4.0}}, ink, 1.0);
-        figure.text({x, bottom + 16.0}, fmt::format("{:g}", t), 11.0, ink, display::TextAnchor::middle);
+        figure.text({x, bottom + 16.0}, plain(t), 11.0, ink, display::TextAnchor::middle);
     }
     figure.line({{left, y}, {left + width, y}, {left + width, bottom}, {left, bottom}, {left, y}}, ink, 1.0);
     figure.text({left - 46.0, y + 0.5 * picture_height}, "Hz", 11.0, ink, display::TextAnchor::middle, false, true);
@@ -98,7 +100,9 @@ void draw_spectrogram(display::Figure& figure, const signal::Spectrogram& s, con
                          picture_height / shades + 0.4, heat(static_cast<double>(i) / (shades - 1)));
     for (int i = 0; i <= 3; ++i)
         figure.text({left + width + 30.0, bottom - picture_height * i / 3.0 + 4.0},
-                    fmt::format("{:.0f} dB", (style.relative ? 0.0 : top) - span + 20.0 * i), 10.0, ink);
+                    fmt::format("{:.0f} dB",
+                                (style.relative ? 0.0 : top - 20.0 * std::log10(style.reference)) - span + 20.0 * i),
+                    10.0, ink);
 }
 
 }  // namespace tactus::picture

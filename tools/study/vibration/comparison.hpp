@@ -32,6 +32,7 @@ struct CompareSettings {
     std::optional<int> channel;                        ///< of both, from 1; 0: the mean of all; none: by `axes`
     Axes axes = Axes::strongest;
     std::array<table::LogSelection, 2> logs;  ///< columns of the reference and the output if they are CSV
+    std::array<sound::Stretch, 2> stretches{};  ///< of the reference and the output, each from its own start
     bool pictures = false;  ///< also compute spectrograms
 };
 
@@ -43,6 +44,7 @@ struct ComparedPair {
     signal::ThresholdUnit touch = signal::ThresholdUnit::displacement;
     double level_gap_db = 0.0;
     bool actuator_known = false;  ///< the level gap refers to an actuator at its limits
+    std::array<sound::ReadStretch, 2> stretches{};  ///< what was read of the reference and the output
     std::vector<std::string> notes;
     std::vector<signal::Spectrogram> spectrograms;  ///< of reference and output, if requested
 };
