@@ -28,12 +28,13 @@ std::vector<double> Scale::ticks() const {
         return all;
     }
     const double raw = (high - low) / 5.0, power = std::pow(10.0, std::floor(std::log10(raw)));
-    const double step = raw / power > 5.0   ? 10.0 * power
-                        : raw / power > 2.0 ? 5.0 * power
-                        : raw / power > 1.0 ? 2.0 * power
-                                            : power;
-    for (double v = std::ceil(low / step - 1e-9) * step; v <= high + 1e-9 * step; v += step)
-        all.push_back(std::abs(v) < 1e-9 * step ? 0.0 : v);
+    const double round = raw / power > 5.0   ? 10.0 * power
+                         : raw / power > 2.0 ? 5.0 * power
+                         : raw / power > 1.0 ? 2.0 * power
+                                             : power;
+    const double apart = step > 0.0 ? step : round;
+    for (double v = std::ceil(low / apart - 1e-9) * apart; v <= high + 1e-9 * apart; v += apart)
+        all.push_back(std::abs(v) < 1e-9 * apart ? 0.0 : v);
     return all;
 }
 
